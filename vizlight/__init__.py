@@ -1,0 +1,59 @@
+"""Light that makes scientific data legible, as point scalars on PyVista meshes.
+
+The names below load when they are first used, so that ``import vizlight`` is quick and
+``import vizlight.model`` needs neither PyVista nor VTK.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from vizlight.data import example_path, load_example
+    from vizlight.filters import illuminate, provenance
+    from vizlight.scene import DepthCue, Light, Material, Scene, View
+
+_HOMES = {
+    "DepthCue": "vizlight.scene",
+    "Light": "vizlight.scene",
+    "Material": "vizlight.scene",
+    "Scene": "vizlight.scene",
+    "View": "vizlight.scene",
+    "example_path": "vizlight.data",
+    "illuminate": "vizlight.filters",
+    "load_example": "vizlight.data",
+    "provenance": "vizlight.filters",
+}
+_MODULES = ("accessor", "engine", "filters", "model", "render", "studies")
+
+__all__ = [
+    "DepthCue",
+    "Light",
+    "Material",
+    "Scene",
+    "View",
+    "example_path",
+    "illuminate",
+    "load_example",
+    "provenance",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Load a public name when it is first used."""
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("vizlight")
+    if name in _HOMES:
+        value = getattr(importlib.import_module(_HOMES[name]), name)
+        globals()[name] = value
+        return value
+    if name in _MODULES:
+        return importlib.import_module(f"vizlight.{name}")
+    raise AttributeError(f"module 'vizlight' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted([*__all__, *_MODULES, "__version__"])

@@ -1,0 +1,320 @@
+"""The light of one block of points: a plan's terms on component-first arrays."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+
+import numpy as np
+
+from vizlight.model import _kernels, falloff, frames
+from vizlight.scene import NO_ATTENUATION, WHITE, Light, View
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from vizlight.plan import Plan
+
+    Array = NDArray[np.floating[Any]]
+
+
+class Rows(Protocol):
+    """Anything that gives rows by slice: an array, or points made on the fly."""
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape; the first axis is that of the points."""
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        """The type of the numbers."""
+
+    def __getitem__(self, rows: slice, /) -> NDArray[Any]:
+        """Return some rows."""
+
+
+class Output:
+    """The arrays that a plan fills."""
+
+    def __init__(self, plan: Plan, count: int) -> None:
+        self.luminance: Array = np.empty(count, plan.dtype)
+        self.valid = np.empty(count, np.bool_)
+        parts = plan.components
+        self.diffuse: Array | None = np.empty(count, plan.dtype) if parts else None
+        self.specular: Array | None = np.empty(count, plan.dtype) if parts else None
+        self.rgb: Array | None = np.empty((count, 3), plan.dtype) if plan.colored else None
+
+
+class _Split(NamedTuple):
+    """A direction as the manifold sees it: the vector, its tangential and its normal part."""
+
+    vector: Array
+    along: Array
+    across: Array
+
+
+class _Tangents:
+    """A k-manifold given by its tangents; it has no sides."""
+
+    def __init__(self, frame: Array) -> None:
+        self.frame = frame
+
+    def split(self, x: Array) -> _Split:
+        return _Split(x, *_kernels.split(x, self.frame))
+
+    def diffuse(self, lit: _Split, exponent: float) -> Array:
+        return _kernels.diffuse(lit.across, exponent, lit.along)
+
+    def phong(self, lit: _Split, eye: _Split, shininess: float) -> Array:
+        along = lit.along + eye.along
+        return _kernels.phong(_kernels.dot(along, along), lit.across, eye.across, shininess)
+
+    def blinn(self, lit: _Split, eye: _Split, shininess: float) -> Array:
+        along, across = _kernels.split(lit.vector + eye.vector, self.frame)
+        return _kernels.blinn(_kernels.dot(along, along), across * across, shininess)
+
+
+class _Surface:
+    """A (n - 1)-manifold given by its unit normals; one-sided unless asked otherwise.
+
+    The tangential part is kept as what is left of the vector, and only where it is needed.
+    """
+
+    def __init__(self, normal: Array, *, two_sided: bool) -> None:
+        self.normal, self.two_sided = normal, two_sided
+
+    def _side(self, cosine: Array) -> Array:
+        return np.abs(cosine) if self.two_sided else np.maximum(cosine, 0)
+
+    def split(self, x: Array) -> _Split:
+        return _Split(x, x, _kernels.dot(self.normal, x))
+
+    def shadow(self, x: Array) -> Array:
+        """Return the clamped cosine of a direction."""
+        return self._side(_kernels.dot(self.normal, x))
+
+    def diffuse(self, lit: _Split, exponent: float) -> Array:
+        return _kernels.power(self._side(lit.across), exponent)
+
+    def phong(self, lit: _Split, eye: _Split, shininess: float) -> Array:
+        tangential, _ = self._half(lit, eye)
+        cosines = (lit.across, eye.across)
+        if self.two_sided:
+            cosines = (np.abs(lit.across), np.abs(eye.across))
+        return self._cut(lit, _kernels.phong(tangential, *cosines, shininess))
+
+    def blinn(self, lit: _Split, eye: _Split, shininess: float) -> Array:
+        tangential, up = self._half(lit, eye)
+        up = self._side(up)
+        return self._cut(lit, _kernels.blinn(tangential, up * up, shininess))
+
+    def _half(self, lit: _Split, eye: _Split) -> tuple[Array, Array]:
+        """Return |(wi + wo)_T|^2 and (wi + wo) . N."""
+        half = lit.vector + eye.vector
+        up = _kernels.dot(self.normal, half)
+        rest = half - up * self.normal
+        return _kernels.dot(rest, rest), up
+
+    def _cut(self, lit: _Split, value: Array) -> Array:
+        """Take the highlight from the side that the light does not reach."""
+        return value if self.two_sided else value * (lit.across > 0)
+
+
+def shade_block(
+    plan: Plan,
+    block: slice,
+    points: Rows,
+    tangents: Rows | None,
+    normals: Rows | None,
+    output: Output,
+) -> None:
+    """Light some rows and write them to the output."""
+    with np.errstate(over="ignore", under="ignore", invalid="ignore", divide="ignore"):
+        _shade_block(plan, block, points, tangents, normals, output)
+
+
+def _shade_block(
+    plan: Plan,
+    block: slice,
+    points: Rows,
+    tangents: Rows | None,
+    normals: Rows | None,
+    output: Output,
+) -> None:
+    scene, dtype, size = plan.scene, plan.dtype, block.stop - block.start
+    valid = np.ones(size, dtype=np.bool_)
+    position = columns(points, block) if plan.needs_points else None
+    manifold: Any = None
+    surface: _Surface | None = None
+    if normals is not None:
+        normal, length = _kernels.unit(columns(normals, block, dtype))
+        valid &= length > 0
+        manifold = surface = _Surface(normal, two_sided=plan.two_sided)
+    if tangents is not None:
+        vectors = columns(tangents, block, dtype).reshape(plan.k, plan.n, size)
+        frame, rank = _kernels.orthonormalize(vectors, frames.default_rtol(plan.n, dtype))
+        valid &= rank == plan.k
+        manifold = _Tangents(frame)
+
+    eye: _Split | None = None
+    seen: NDArray[np.bool_] | None = None
+    if plan.specular:
+        assert scene.view is not None
+        toward_eye, distance = _toward(scene.view, position, dtype)
+        eye = manifold.split(toward_eye)
+        if distance is not None:
+            valid &= distance >= 0
+            seen = distance > 0
+
+    sums = _Sums(plan)
+    for light in scene.lights:
+        toward_light, distance = _toward(light, position, dtype)
+        lit = manifold.split(toward_light)
+        scale: Any = dtype.type(light.intensity)
+        if distance is not None:
+            valid &= distance >= 0
+            if light.attenuation != NO_ATTENUATION:
+                scale = scale * falloff.fading(distance, light.attenuation)
+        if plan.conditioned:
+            assert surface is not None
+            scale = scale * surface.shadow(toward_light)
+        if plan.diffuse:
+            sums.add("diffuse", manifold.diffuse(lit, plan.exponent) * scale, light)
+        if eye is not None:
+            law = manifold.phong if plan.model == "phong" else manifold.blinn
+            value = law(lit, eye, scene.material.shininess) * scale
+            if distance is not None and not distance.all():
+                value = value * (distance > 0)
+            if seen is not None and not seen.all():
+                value = value * seen
+            sums.add("specular", value, light)
+    _store(plan, sums, position, valid, block, output)
+
+
+def columns(rows: Rows, block: slice, dtype: np.dtype[Any] | None = None) -> Array:
+    """Return a block of rows component by component; by default float32 stays, else float64."""
+    part = rows[block]
+    if dtype is None:
+        dtype = np.dtype(np.float32 if part.dtype == np.float32 else np.float64)
+    return np.ascontiguousarray(part.reshape(len(part), -1).T, dtype=dtype)
+
+
+def _toward(
+    owner: Light | View, points: Array | None, dtype: np.dtype[Any]
+) -> tuple[Array, Array | None]:
+    """Return unit directions toward a light or eye, and distances: None at infinity.
+
+    float32 points in float32 work: the target is split into two float32 numbers, whose
+    differences lose nothing to the distance from the origin.
+    """
+    parallel = owner.parallel if isinstance(owner, View) else owner.position is None
+    if parallel:
+        assert owner.direction is not None
+        column, _ = _kernels.unit(np.array(owner.direction, dtype=np.float64)[:, np.newaxis])
+        return column.astype(dtype), None
+    assert points is not None
+    assert owner.position is not None
+    at = np.array(owner.position, dtype=np.float64)[:, np.newaxis]
+    high = at.astype(np.float32)
+    if dtype == np.float32 and points.dtype == np.float32 and np.isfinite(high).all():
+        low = (at - high).astype(np.float32)
+        difference = high - points
+        if low.any():
+            difference += low
+        return _kernels.unit(difference)
+    direction, distance = _kernels.unit(at - points)
+    return direction.astype(dtype, copy=False), distance.astype(dtype, copy=False)
+
+
+class _Sums:
+    """The diffuse and specular light of a block, added up over lights: white and by channel."""
+
+    def __init__(self, plan: Plan) -> None:
+        self.dtype = plan.dtype
+        self.tinted = plan.colored and any(light.color is not None for light in plan.scene.lights)
+        self.white: dict[str, Array] = {}
+        self.channels: dict[str, Array] = {}
+
+    def add(self, term: str, value: Array, light: Light) -> None:
+        _accumulate(self.white, term, value)
+        if self.tinted:
+            tint = np.array(light.color or WHITE, self.dtype)[:, np.newaxis]
+            _accumulate(self.channels, term, tint * value)
+
+
+def _accumulate(sums: dict[str, Array], term: str, value: Array) -> None:
+    if term in sums:
+        sums[term] += value
+    else:
+        sums[term] = value
+
+
+def _store(
+    plan: Plan,
+    sums: _Sums,
+    points: Array | None,
+    valid: NDArray[np.bool_],
+    block: slice,
+    output: Output,
+) -> None:
+    """Weigh the sums by the material, fade them with depth, write them to the output."""
+    scene, number = plan.scene, plan.dtype.type
+    material, cue = scene.material, scene.depth_cue
+    weights = {"diffuse": number(material.diffuse), "specular": number(material.specular)}
+    fade: Array | None = None
+    if cue is not None:
+        assert points is not None
+        assert cue.front is not None
+        assert cue.back is not None
+        fade = falloff.depth_scale(
+            view_depth(scene.view, points),
+            front=cue.front,
+            back=cue.back,
+            front_scale=cue.front_scale,
+            back_scale=cue.back_scale,
+            smooth=cue.smooth,
+        ).astype(plan.dtype)
+        valid &= np.isfinite(fade)
+        fade[~valid] = 1
+    spoiled = None if valid.all() else ~valid
+    for group in (sums.white, sums.channels):
+        for term, value in group.items():
+            value *= weights[term]
+            if spoiled is not None:
+                value[..., spoiled] = 0
+
+    light = output.luminance[block]
+    light[:] = number(plan.ambient)
+    for value in sums.white.values():
+        light += value
+    if cue is not None and fade is not None:
+        light *= fade
+        light += (1 - fade) * number(cue.cue)
+    output.valid[block] = valid
+    for name, array in (("diffuse", output.diffuse), ("specular", output.specular)):
+        if array is not None:
+            array[block] = sums.white.get(name, 0)
+    if output.rgb is not None:
+        parts = sums.channels or sums.white
+        colors = {
+            "ambient": np.multiply(material.color or WHITE, scene.ambient_color or WHITE),
+            "diffuse": material.color or WHITE,
+            "specular": material.specular_color or WHITE,
+        }
+        column = {name: np.array(c, plan.dtype)[:, np.newaxis] for name, c in colors.items()}
+        rgb = np.repeat(number(plan.ambient) * column["ambient"], len(valid), axis=1)
+        for term, value in parts.items():
+            rgb += column[term] * value
+        if cue is not None and fade is not None:
+            rgb *= fade
+            rgb += (1 - fade) * np.array(cue.color or WHITE, plan.dtype)[:, np.newaxis] * cue.cue
+        output.rgb[block] = rgb.T
+
+
+def view_depth(view: View | None, points: Array) -> Array:
+    """Return the depth of points: along the view's axis, or from the eye where it has none."""
+    assert view is not None
+    origin = np.array(view.position or np.zeros(len(points)), dtype=np.float64)[:, np.newaxis]
+    if view.direction is None:
+        return _kernels.length(points - origin)
+    axis, _ = _kernels.unit(np.array(view.direction, dtype=np.float64)[:, np.newaxis])
+    return _kernels.dot(axis, origin - points)

@@ -1,0 +1,160 @@
+"""Validators: every message says name, expected, got and, where there is one, the remedy."""
+
+from __future__ import annotations
+
+import math
+import numbers
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+
+
+def message(name: str, expected: str, got: object, remedy: str = "") -> str:
+    """Return ``name: expected ..., got ...; remedy`` on one line."""
+    text = f"{name}: expected {expected}, got {got}"
+    return f"{text}; {remedy}" if remedy else text
+
+
+def describe(value: object) -> str:
+    """Return a short description of a value for an error message."""
+    if isinstance(value, np.ndarray):
+        return f"an array of shape {value.shape} and type {value.dtype}"
+    text = repr(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def floats(name: str, value: object) -> NDArray[np.floating[Any]]:
+    """Return ``value`` as a floating array; integers become float64, half becomes float32.
+
+    Raises
+    ------
+    TypeError
+        If the value does not hold real numbers.
+    """
+    try:
+        array = np.asarray(value)
+    except ValueError as error:
+        raise TypeError(message(name, "numbers of one shape", describe(value))) from error
+    if array.dtype.kind in "iub":
+        return array.astype(np.float64)
+    if array.dtype.kind != "f":
+        raise TypeError(message(name, "real numbers", describe(value)))
+    if array.dtype == np.float16:
+        return array.astype(np.float32)
+    return array
+
+
+def vectors(name: str, value: object, *, n: int | None = None) -> NDArray[np.floating[Any]]:
+    """Return ``value`` as floats of shape (..., n) with n of at least 2.
+
+    Raises
+    ------
+    TypeError
+        If the value does not hold real numbers.
+    ValueError
+        If the last axis has another length.
+    """
+    array = floats(name, value)
+    if n is not None and (array.ndim == 0 or array.shape[-1] != n):
+        raise ValueError(message(name, f"vectors of shape (..., {n})", describe(array)))
+    if array.ndim == 0 or array.shape[-1] < 2:
+        raise ValueError(message(name, "vectors of shape (..., n), n of 2 or more", describe(array)))
+    return array
+
+
+def number(
+    name: str,
+    value: object,
+    *,
+    low: float = -math.inf,
+    high: float = math.inf,
+) -> float:
+    """Return ``value`` as a finite float in the closed range [low, high].
+
+    Raises
+    ------
+    TypeError
+        If the value is not one real number.
+    ValueError
+        If it is outside the range, infinite or NaN.
+    """
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value.item()
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
+        raise TypeError(message(name, "a number", describe(value)))
+    result = float(value)
+    if not (math.isfinite(result) and low <= result <= high):
+        raise ValueError(message(name, _range(low, high), describe(value)))
+    return result
+
+
+def integer(name: str, value: object, *, low: int) -> int:
+    """Return ``value`` as an int of at least ``low``.
+
+    Raises
+    ------
+    TypeError
+        If the value is not an integer.
+    ValueError
+        If it is less than ``low``.
+    """
+    if isinstance(value, bool) or not isinstance(value, numbers.Integral):
+        raise TypeError(message(name, "an integer", describe(value)))
+    if value < low:
+        raise ValueError(message(name, f"an integer of at least {low}", describe(value)))
+    return int(value)
+
+
+def vector(name: str, value: object, *, direction: bool = False) -> tuple[float, ...]:
+    """Return one finite vector as a tuple of floats.
+
+    With ``direction=True`` its length must not be zero; it is returned as it came.
+
+    Raises
+    ------
+    TypeError
+        If the value does not hold real numbers.
+    ValueError
+        If it is not one vector of at least 2 components, is not finite, or is a zero direction.
+    """
+    array = vectors(name, value)
+    if array.ndim != 1:
+        raise ValueError(message(name, "one vector of n components", describe(array)))
+    result = tuple(float(x) for x in array)
+    if not all(math.isfinite(x) for x in result):
+        remedy = "a light or eye at infinity is given by direction=" if "position" in name else ""
+        raise ValueError(message(name, "finite components", result, remedy))
+    if direction and not any(result):
+        raise ValueError(message(name, "a direction of non-zero length", result))
+    return result
+
+
+def rgb(name: str, value: object) -> tuple[float, float, float]:
+    """Return a colour as three linear channels of at least 0.
+
+    Raises
+    ------
+    TypeError
+        If the value does not hold real numbers.
+    ValueError
+        If there are not three, or one is negative or not finite.
+    """
+    array = floats(name, value)
+    if array.shape != (3,) or not np.all(np.isfinite(array)) or np.any(array < 0):
+        raise ValueError(
+            message(name, "three channels (r, g, b) of 0 or more", describe(value), "1 is full")
+        )
+    r, g, b = (float(x) for x in array)
+    return r, g, b
+
+
+def _range(low: float, high: float) -> str:
+    if low == -math.inf and high == math.inf:
+        return "a finite number"
+    if high == math.inf:
+        return f"a finite number of at least {low:g}"
+    return f"a number from {low:g} to {high:g}"

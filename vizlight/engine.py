@@ -1,0 +1,256 @@
+"""The one seam for all shading: run a scene's plan over points, block by block.
+
+Blocks fit the cache, run on a pool of threads and write into preallocated output, so that
+memory beyond the output does not grow with the mesh.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections import deque
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal, get_args
+
+import numpy as np
+
+from vizlight import _check
+from vizlight._block import Output, Rows, columns, shade_block, view_depth
+from vizlight.plan import Plan, plan
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from numpy.typing import NDArray
+
+    from vizlight.scene import Scene
+
+    Array = NDArray[np.floating[Any]]
+
+__all__ = ["Plan", "Precision", "Rows", "Shading", "depth_range", "plan", "shade"]
+
+Precision = Literal["float32", "float64"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shading:
+    """The light of N points, as :func:`shade` returns it.
+
+    Attributes
+    ----------
+    luminance : ndarray, shape (N,)
+    valid : ndarray of bool, shape (N,)
+        False where a tangent, normal or point cannot be lit; such a point has the ambient light.
+    diffuse, specular : ndarray, shape (N,), or None
+        With ``components``; before the depth cue, kd and ks included.
+    rgb : ndarray, shape (N, 3), or None
+        Where the scene has a colour; linear, not clipped at 1.
+    plan : Plan
+    seconds : float
+        Wall time of the run.
+    """
+
+    luminance: Array
+    valid: NDArray[np.bool_]
+    diffuse: Array | None
+    specular: Array | None
+    rgb: Array | None
+    plan: Plan
+    seconds: float
+
+    @property
+    def ambient(self) -> float:
+        """The ambient term, one number for all points."""
+        return self.plan.ambient
+
+    @property
+    def invalid(self) -> int:
+        """How many points could not be lit."""
+        return self.valid.size - int(np.count_nonzero(self.valid))
+
+
+def shade(
+    points: Rows,
+    tangents: Rows | None,
+    scene: Scene,
+    /,
+    *,
+    normals: Rows | None = None,
+    precision: Precision | None = None,
+    threads: int | None = None,
+    block: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    **options: Any,
+) -> Shading:
+    """Light points by a scene.
+
+    Parameters
+    ----------
+    points : array_like, shape (N, n)
+        Positions, in any unit and of any real type, or an object with ``shape`` and ``dtype``
+        that gives rows by slice. Differences to lights and eye are exact to rounding of the
+        result, also far from the origin.
+    tangents : array_like, shape (N, k, n) or (N, k n) or (N, n), or None
+        Vectors that span the tangent space, of any length; orthonormalised here block by block.
+        None: the manifold is the surface that has the normals.
+    scene : Scene
+    normals : array_like, shape (N, n), optional
+        Outward normals, of any length. With tangents they condition the light (Banks 6).
+    precision : {"float32", "float64"}, optional
+        Of the work and the result. Default: float32 if the vectors are float32 or less, else
+        float64; float64 points keep their differences in float64 either way.
+    threads : int, optional
+        Default: the processors that this process may use.
+    block : int, optional
+        Points in a block. Default: what suits the caches, see :attr:`Plan.block`.
+    progress : callable, optional
+        Called as ``progress(points done, N)`` from this thread's pool after each block.
+    **options
+        Of :func:`plan`: model, compensate, two_sided, components.
+
+    Returns
+    -------
+    Shading
+
+    Raises
+    ------
+    TypeError, ValueError
+        If shapes do not fit, or as :func:`plan`.
+
+    Notes
+    -----
+    Absolute error of the luminance for unit coefficients and one light of intensity 1, in eps
+    of the precision: at most ``24 max(1, p/2)`` for the diffuse and ``32 max(1, s/2)``
+    (s up to 64) or ``64 sqrt(s)`` for the specular term; Blinn's times ``1 / |wi + wo|``. For
+    surfaces given by normals these bounds hold as well. Memory beyond the output is about
+    thirty arrays of a block (half a megabyte each) per thread.
+    """
+    points = _rows("points", points)
+    if len(points.shape) != 2 or points.shape[1] < 2:
+        raise ValueError(
+            _check.message("points", "shape (N, n), n of 2 or more", f"shape {points.shape}")
+        )
+    count, n = points.shape
+    k = None
+    if tangents is not None:
+        tangents = _rows("tangents", tangents)
+        k = _tangent_count(tangents.shape, count, n)
+    if normals is not None:
+        normals = _rows("normals", normals)
+        if tuple(normals.shape) != (count, n):
+            raise ValueError(
+                _check.message("normals", f"shape ({count}, {n})", f"shape {normals.shape}")
+            )
+    if precision is None:
+        given = [rows.dtype for rows in (tangents, normals) if rows is not None]
+        small = given and all(kind in (np.float16, np.float32) for kind in given)
+        precision = "float32" if small else "float64"
+    if precision not in get_args(Precision):
+        raise ValueError(_check.message("precision", "'float32' or 'float64'", repr(precision)))
+    made = plan(scene, n=n, k=k, normals=normals is not None, dtype=precision, **options)
+
+    start = time.perf_counter()
+    output = Output(made, count)
+    step = made.block if block is None else _check.integer("block", block, low=1)
+    blocks = [slice(i, min(i + step, count)) for i in range(0, count, step)]
+
+    def work(block: slice) -> int:
+        shade_block(made, block, points, tangents, normals, output)
+        return block.stop
+
+    for done in _run(work, blocks, min(_workers(threads), len(blocks))):
+        if progress is not None:
+            progress(done, count)
+    return Shading(
+        luminance=output.luminance,
+        valid=output.valid,
+        diffuse=output.diffuse,
+        specular=output.specular,
+        rgb=output.rgb,
+        plan=made,
+        seconds=time.perf_counter() - start,
+    )
+
+
+def _rows(name: str, rows: Any) -> Any:
+    """Return rows to slice: arrays validated, anything else that slices as it is."""
+    if isinstance(rows, np.ndarray) or not hasattr(rows, "dtype"):
+        array = np.asarray(rows)
+        if array.dtype.kind not in "iubf":
+            raise TypeError(_check.message(name, "real numbers", _check.describe(array)))
+        return array
+    return rows
+
+
+def _tangent_count(shape: tuple[int, ...], count: int, n: int) -> int:
+    if len(shape) == 3 and shape[0] == count and shape[2] == n:
+        k = shape[1]
+    elif len(shape) == 2 and shape[0] == count and shape[1] % n == 0:
+        k = shape[1] // n
+    else:
+        k = 0
+    if not 0 < k < n:
+        raise ValueError(
+            _check.message(
+                "tangents",
+                f"shape ({count}, k, {n}) or ({count}, {n} k) with k < {n}",
+                f"shape {tuple(shape)}",
+            )
+        )
+    return k
+
+
+def _workers(threads: int | None) -> int:
+    if threads is not None:
+        return _check.integer("threads", threads, low=1)
+    try:
+        return len(os.sched_getaffinity(0))
+    except AttributeError:  # not on macOS and Windows
+        return os.cpu_count() or 1
+
+
+def _run(
+    work: Callable[[slice], int], blocks: list[slice], workers: int
+) -> Iterator[int]:
+    """Yield the results of work in order, a few blocks ahead of the reader."""
+    if workers <= 1:
+        yield from map(work, blocks)
+        return
+    with ThreadPoolExecutor(workers) as pool:
+        ahead: deque[Future[int]] = deque()
+        try:
+            for block in blocks:
+                ahead.append(pool.submit(work, block))
+                if len(ahead) > 4 * workers:
+                    yield ahead.popleft().result()
+            while ahead:
+                yield ahead.popleft().result()
+        finally:
+            for future in ahead:
+                future.cancel()
+
+
+def depth_range(points: Rows, scene: Scene, /, *, block: int = 1 << 17) -> tuple[float, float]:
+    """Return the nearest and the farthest depth of finite points as the scene's view has it.
+
+    Parameters
+    ----------
+    points : array_like, shape (N, n)
+    scene : Scene
+        With a view.
+    block : int
+        Points taken at once.
+
+    Returns
+    -------
+    near, far : float
+        In the unit of the points; (inf, -inf) if there is no point.
+    """
+    near, far = np.inf, -np.inf
+    for start in range(0, points.shape[0], block):
+        depth = view_depth(scene.view, columns(points, slice(start, start + block)))
+        depth = depth[np.isfinite(depth)]
+        if depth.size:
+            near, far = min(near, float(depth.min())), max(far, float(depth.max()))
+    return near, far

@@ -1,0 +1,220 @@
+"""Take points, tangents and normals from a mesh as rows that the engine slices."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyvista as pv
+
+from vizlight import _check
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from vizlight._block import Rows
+    from vizlight.scene import View
+
+    Array = NDArray[np.floating[Any]]
+
+
+class GridPoints:
+    """The points of an image or a rectilinear grid, made by slice: none are kept."""
+
+    dtype: np.dtype[Any] = np.dtype(np.float64)
+
+    def __init__(self, grid: pv.ImageData | pv.RectilinearGrid) -> None:
+        self.shape: tuple[int, ...] = (grid.n_points, 3)
+        self._dimensions = grid.dimensions
+        if isinstance(grid, pv.ImageData):
+            matrix = np.asarray(grid.index_to_physical_matrix, dtype=np.float64)
+            first = np.array(grid.extent[::2])
+            self._place: Callable[[Array], Array] = (
+                lambda ijk: (ijk + first) @ matrix[:3, :3].T + matrix[:3, 3]
+            )
+        else:
+            axes = [np.asarray(axis, dtype=np.float64) for axis in (grid.x, grid.y, grid.z)]
+            self._place = lambda ijk: np.stack(
+                [axis[i] for axis, i in zip(axes, ijk.T.astype(np.intp), strict=True)], axis=1
+            )
+
+    def __getitem__(self, rows: slice, /) -> Array:
+        """Return some points, the first index running fastest."""
+        flat = np.arange(*rows.indices(self.shape[0]))
+        ijk = np.stack(np.unravel_index(flat, self._dimensions, order="F"), axis=1)
+        return self._place(ijk)
+
+
+def points_of(mesh: pv.DataSet, positions: str | None) -> Rows:
+    """Return the points of a mesh, or a point array of positions in n-space."""
+    if positions is not None:
+        return array_of(mesh, "positions", positions, average_cells=False)
+    if isinstance(mesh, pv.ImageData | pv.RectilinearGrid):
+        return GridPoints(mesh)
+    return np.asarray(mesh.points)
+
+
+def array_of(mesh: pv.DataSet, name: str, value: Any, *, average_cells: bool) -> Array:
+    """Return a point array by name, or an array given as such; two-dimensional, real.
+
+    Raises
+    ------
+    TypeError
+        If it does not hold real numbers.
+    ValueError
+        If there is no such array, or it is cell data and may not be averaged.
+    """
+    if isinstance(value, str):
+        array = _named(mesh, name, value, average_cells=average_cells)
+        what = f"{value!r} with "
+    else:
+        array, what = _check.floats(name, value), ""
+        if array.ndim == 3:
+            array = array.reshape(len(array), -1)
+        if array.ndim == 0 or len(array) != mesh.n_points:
+            raise ValueError(
+                _check.message(name, f"{mesh.n_points} rows, one a point", _check.describe(array))
+            )
+    if array.dtype.kind not in "iubf":
+        raise TypeError(_check.message(name, "real numbers", f"{what}type {array.dtype}"))
+    if array.ndim != 2:
+        raise ValueError(
+            _check.message(
+                name,
+                "vectors, an array of 2 or more components",
+                f"{what}1 component" if array.ndim == 1 else f"{what}shape {array.shape}",
+                "name another array",
+            )
+        )
+    return array
+
+
+def _named(mesh: pv.DataSet, name: str, value: str, *, average_cells: bool) -> Array:
+    if value in mesh.point_data:
+        return np.asarray(mesh.point_data[value])
+    if value in mesh.cell_data:
+        if average_cells:
+            only = mesh.copy(deep=False)
+            only.clear_data()
+            only.cell_data[value] = np.asarray(mesh.cell_data[value])
+            return np.asarray(only.cell_data_to_point_data().point_data[value])
+        raise ValueError(
+            _check.message(
+                name,
+                "a point array",
+                f"the cell array {value!r}",
+                "pass average_cells=True or call mesh.cell_data_to_point_data()",
+            )
+        )
+    there = ", ".join(repr(key) for key in mesh.point_data) or "none"
+    raise ValueError(
+        _check.message(name, f"the name of a point array ({there})", repr(value))
+    )
+
+
+def tangents_of(mesh: pv.DataSet, value: Any, n: int, *, average_cells: bool) -> Array:
+    """Return tangents as (n_points, k n), 0 < k < n."""
+    array = array_of(mesh, "tangents", value, average_cells=average_cells)
+    if array.shape[1] % n or not 0 < array.shape[1] // n < n:
+        allowed = " or ".join(str(k * n) for k in range(1, min(n, 5)))
+        what = f"{value!r} with {array.shape[1]}" if isinstance(value, str) else array.shape[1]
+        raise ValueError(
+            _check.message(
+                "tangents",
+                f"a point array of {allowed} components, rows of {n}",
+                what,
+                "name another array, or the points in n-space by positions=",
+            )
+        )
+    return array
+
+
+def normals_of(mesh: pv.DataSet, value: Any, n: int, view: View | None) -> Array:
+    """Return outward normals: those given, those the mesh carries, or those of its surface."""
+    if value is not None:
+        array = array_of(mesh, "normals", value, average_cells=False)
+        if array.shape[1] != n:
+            what = f"{value!r} with {array.shape[1]}" if isinstance(value, str) else array.shape[1]
+            raise ValueError(_check.message("normals", f"{n} components", what))
+        return array
+    if n != 3:
+        raise ValueError(
+            _check.message("normals", f"a point array of {n} components for {n}-space", None)
+        )
+    carried = mesh.point_data.active_normals
+    if carried is not None:
+        return np.asarray(carried)
+    return surface_normals(mesh, view)
+
+
+def surface_normals(mesh: pv.DataSet, view: View | None) -> Array:
+    """Return the normals of a mesh's outer surface, zero at points that are not on it.
+
+    A closed surface has them outward. An open one has no outside: as a whole they are turned
+    to where they rather point toward the eye and away from the surface's centroid.
+    VTK computes them, in float32.
+
+    Raises
+    ------
+    ValueError
+        If the mesh has no surface.
+    """
+    if isinstance(mesh, pv.PolyData):
+        surface, origin = mesh, None
+    else:
+        surface = mesh.extract_surface(algorithm="geometry", pass_pointid=True, pass_cellid=False)
+        origin = np.asarray(surface.point_data["vtkOriginalPointIds"])
+    if mesh.n_points and not (surface.GetNumberOfPolys() or surface.GetNumberOfStrips()):
+        raise ValueError(
+            _check.message(
+                "mesh",
+                "a surface, whose normals decide where no tangents are named",
+                f"a {type(mesh).__name__} without faces",
+                "name its tangent vectors by tangents=",
+            )
+        )
+    if surface.n_cells == 0:
+        return np.zeros((mesh.n_points, 3), dtype=np.float32)
+    bare = pv.PolyData()
+    bare.copy_structure(surface)
+    closed = bare.n_open_edges == 0
+    found = bare.compute_normals(
+        cell_normals=False,
+        split_vertices=False,
+        consistent_normals=True,
+        auto_orient_normals=closed,
+        non_manifold_traversal=False,
+    )
+    computed = np.array(found.point_data["Normals"])
+    if not closed and _inside_out(computed, np.asarray(bare.points), view):
+        np.negative(computed, out=computed)
+    if origin is None:
+        return computed
+    normals = np.zeros((mesh.n_points, 3), dtype=computed.dtype)
+    normals[origin] = computed
+    return normals
+
+
+def _inside_out(normals: Array, points: Array, view: View | None) -> bool:
+    """Tell whether the normals of an open surface rather point inward and away from the eye.
+
+    The mean of N toward the eye decides for a sheet, the mean of N away from the centroid for
+    a surface that is nearly closed.
+    """
+    outward = _unit(points - points.mean(axis=0, dtype=np.float64))
+    score = np.einsum("ij,ij->", normals, outward)
+    if view is not None and len(view.position or view.direction or ()) == 3:
+        if view.parallel:
+            toward = np.asarray(view.direction)[np.newaxis]
+        else:
+            toward = np.asarray(view.position) - points
+        score += np.einsum("ij,ij->", normals, np.broadcast_to(_unit(toward), normals.shape))
+    return bool(score < 0)
+
+
+def _unit(vectors: Array) -> Array:
+    size = np.linalg.norm(vectors, axis=1, keepdims=True)
+    result: Array = vectors / np.where(size > 0, size, 1)
+    return result

@@ -1,0 +1,25 @@
+"""A progress bar for long work, on standard error, where the caller asks for one."""
+
+from __future__ import annotations
+
+import contextlib
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    Report = Callable[[int, int], None]
+
+
+@contextlib.contextmanager
+def progress(what: str, total: int, *, show: bool) -> Iterator[Callable[[int], None]]:
+    """Yield a function that takes how much is done of a total."""
+    if not show:
+        yield lambda done: None
+        return
+    from rich.console import Console
+    from rich.progress import Progress
+
+    with Progress(console=Console(stderr=True)) as bar:
+        task = bar.add_task(what, total=total)
+        yield lambda done: bar.update(task, completed=done)

@@ -1,0 +1,76 @@
+"""What made an array, kept beside it as field data, so that a saved file can be reproduced."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+import vizlight
+from vizlight import _check
+
+if TYPE_CHECKING:
+    import pyvista as pv
+
+    from vizlight.engine import Shading
+    from vizlight.scene import Scene
+
+
+def key(name: str) -> str:
+    """Return the name of the field array that tells of a point array."""
+    return f"{name}_provenance"
+
+
+def record(shading: Shading, filter_name: str, scene: Scene, options: dict[str, Any]) -> str:
+    """Return what made an array as a line of JSON."""
+    plan = shading.plan
+    return json.dumps(
+        {
+            "vizlight": vizlight.__version__,
+            "filter": filter_name,
+            "precision": plan.dtype.name,
+            "terms": list(plan.terms),
+            "exponent": plan.exponent,
+            "points": int(shading.luminance.size),
+            "invalid": shading.invalid,
+            "options": {name: _plain(value) for name, value in options.items()},
+            "scene": scene.to_dict(),
+        }
+    )
+
+
+def _plain(value: Any) -> Any:
+    """Return a value that JSON can hold; an array given as such is only described."""
+    if value is None or isinstance(value, str | bool | int | float):
+        return value
+    return _check.describe(np.asarray(value))
+
+
+def provenance(mesh: pv.DataSet, /, name: str = "luminance") -> dict[str, Any]:
+    """Return what made a point array: scene, options, terms, precision, version.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        A mesh that a filter of vizlight returned, or one read from a file of it.
+    name : str, default: "luminance"
+        The array.
+
+    Returns
+    -------
+    dict
+        ``illuminate(mesh, Scene.from_dict(p["scene"]), **p["options"])`` makes the array again.
+
+    Raises
+    ------
+    ValueError
+        If the mesh tells nothing of such an array.
+    """
+    if key(name) not in mesh.field_data:
+        told = [k.removesuffix(key("")) for k in mesh.field_data if k.endswith(key(""))]
+        raise ValueError(
+            _check.message("name", f"one of the arrays made by vizlight, {told}", repr(name))
+        )
+    result: dict[str, Any] = json.loads(str(mesh.field_data[key(name)][0]))
+    return result

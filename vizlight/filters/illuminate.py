@@ -1,0 +1,288 @@
+"""Light a mesh by its tangents or by its normals."""
+
+from __future__ import annotations
+
+import dataclasses
+import warnings
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyvista as pv
+
+from vizlight import _check, engine
+from vizlight.filters import _mesh, _progress, _provenance
+from vizlight.scene import Scene
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from vizlight._block import Rows
+    from vizlight.model.reflection import SpecularModel
+
+DEFAULT_NAME = "luminance"
+VALID = "_valid"
+PARTS = ("ambient", "diffuse", "specular", "rgb")
+
+
+def illuminate(
+    mesh: Any,
+    /,
+    scene: Scene,
+    *,
+    tangents: Any = None,
+    positions: str | None = None,
+    normals: Any = None,
+    conditioned: bool = False,
+    two_sided: bool = False,
+    flip_normals: bool = False,
+    compensate: bool = True,
+    model: SpecularModel = "phong",
+    average_cells: bool = False,
+    components: bool = False,
+    precision: engine.Precision | None = None,
+    threads: int | None = None,
+    name: str = DEFAULT_NAME,
+    inplace: bool = False,
+    progress_bar: bool = False,
+) -> Any:
+    """Light a mesh and return it with the light as point scalars.
+
+    With ``tangents`` each point is lit as a k-manifold: by one vector a point as a line, by k
+    vectors as what they span. Without, the normals of the mesh's surface decide (codimension 1).
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet or pyvista.MultiBlock
+        Not changed, unless ``inplace``.
+    scene : Scene
+        Lights, material and view, in the mesh's unit.
+    tangents : str or array_like, optional
+        A point array of ``k n`` components (k vectors of n, row after row), or its values.
+        Vectors of any length: they are orthonormalised.
+    positions : str, optional
+        A point array of n components that places the points in n-space; default the mesh's own.
+    normals : str or array_like, optional
+        Outward normals, a point array of n components or its values. Default: the mesh's active
+        normals, else those of its surface: outward if it is closed; if it is open, as a whole
+        to the side that rather is toward the eye and away from the centroid.
+    conditioned : bool, default: False
+        Tangents inherit the surface's self-shadow: diffuse and specular of each light times
+        ``max(0, N . wi)`` (Banks 6).
+    two_sided : bool, default: False
+        Light the far side of a surface as the near one: ``|N . wi|``.
+    flip_normals : bool, default: False
+        Turn the normals over.
+    compensate : bool, default: True
+        Diffuse with the exponent p(k, n), which gives lines a surface's contrast (Banks 5).
+    model : {"phong", "blinn"}
+        The law of the highlight.
+    average_cells : bool, default: False
+        Allow cell data as tangents, averaged to the points.
+    components : bool, default: False
+        Add the arrays ``ambient``, ``diffuse`` and ``specular``, before any depth cue.
+    precision : {"float32", "float64"}, optional
+        Default: that of the tangents or normals.
+    threads : int, optional
+        Default: the processors that this process may use.
+    name : str, default: "luminance"
+        Of the result. Under another name the further arrays are ``<name>_diffuse`` and so on.
+    inplace : bool, default: False
+        Attach the result to the mesh itself.
+    progress_bar : bool, default: False
+        Show progress on standard error.
+
+    Returns
+    -------
+    pyvista.DataSet or pyvista.MultiBlock
+        The mesh with the point array ``luminance`` (active scalars); ``rgb`` where the scene
+        has a colour; ``luminance_valid`` where some point could not be lit; and the field array
+        ``luminance_provenance``, which :func:`vizlight.provenance` reads.
+
+    Raises
+    ------
+    TypeError
+        If an argument is of the wrong type.
+    ValueError
+        If an array is missing, is cell data, or has the wrong number of components; if there
+        is no surface to take normals from; if the scene lacks a view that it needs.
+
+    Warns
+    -----
+    UserWarning
+        Once, with the count, if points could not be lit: a zero, infinite or NaN vector,
+        dependent tangents, or no normal. They have the ambient light.
+
+    Notes
+    -----
+    Error bounds: :func:`vizlight.engine.shade`. Sources: Banks (1) to (6), Lecture.
+
+    Examples
+    --------
+    >>> import pyvista as pv, vizlight
+    >>> scene = vizlight.Scene(
+    ...     lights=vizlight.Light(direction=(1, 1, 1)), view=vizlight.View(direction=(0, 0, 1))
+    ... )
+    >>> lit = vizlight.illuminate(pv.Sphere(), scene)
+    >>> lit.active_scalars_name
+    'luminance'
+    """
+    options = dict(locals())
+    for own in ("mesh", "scene", "threads", "inplace", "progress_bar"):
+        del options[own]
+    if not isinstance(scene, Scene):
+        raise TypeError(_check.message("scene", "a vizlight.Scene", _check.describe(scene)))
+    if not isinstance(mesh, pv.DataSet | pv.MultiBlock):
+        remedy = "read files by pyvista.read, wrap VTK objects by pyvista.wrap"
+        raise TypeError(_check.message("mesh", "a PyVista mesh", type(mesh).__name__, remedy))
+    if not isinstance(name, str) or not name:
+        raise ValueError(_check.message("name", "a name for the point array", repr(name)))
+    if normals is not None and tangents is not None and not conditioned:
+        remedy = "pass conditioned=True, or leave one of them out"
+        raise ValueError(_check.message("normals", "None beside tangents", "normals", remedy))
+    if conditioned and tangents is None:
+        remedy = "a surface without tangents shadows itself as it is"
+        raise ValueError(_check.message("conditioned", "tangents to condition", None, remedy))
+
+    out = mesh if inplace else _copy(mesh)
+    leaves = list(_leaves(out))
+    if inplace:
+        _refuse_overwriting(leaves, name)
+    jobs = [_prepare(leaf, path, scene, options) for leaf, path in leaves]
+    total = sum(leaf.n_points for leaf, _ in leaves)
+    fitted = _fit_depth_cue(scene, jobs)
+    results: list[engine.Shading] = []
+    with _progress.progress("light", total, show=progress_bar) as report:
+        for job in jobs:
+            done = sum(shading.luminance.size for shading in results)
+            results.append(
+                engine.shade(
+                    job.points,
+                    job.tangents,
+                    fitted,
+                    normals=job.normals,
+                    precision=precision,
+                    threads=threads,
+                    progress=lambda now, _, before=done: report(before + now),
+                    model=model,
+                    compensate=compensate,
+                    two_sided=two_sided,
+                    components=components,
+                )
+            )
+    # Nothing is attached before all is computed: a failure leaves the mesh as it was.
+    for (leaf, _), shading in zip(leaves, results, strict=True):
+        _attach(leaf, shading, name, _provenance.record(shading, "illuminate", fitted, options))
+    invalid = sum(shading.invalid for shading in results)
+    if invalid:
+        warnings.warn(
+            f"{invalid} of {total} points could not be lit (a zero, infinite or NaN vector, "
+            "dependent tangents, or no surface normal there) and have the ambient light; "
+            f"the point array {name + VALID!r} marks them",
+            stacklevel=2,
+        )
+    return out
+
+
+@dataclass(frozen=True)
+class _Job:
+    """The rows of one mesh that the engine lights."""
+
+    points: Rows
+    tangents: Rows | None
+    normals: Rows | None
+
+
+def _copy(mesh: Any) -> Any:
+    """Return a mesh that shares its arrays but may get new ones."""
+    if not isinstance(mesh, pv.MultiBlock):
+        return mesh.copy(deep=False)
+    out = pv.MultiBlock()
+    for i in range(mesh.n_blocks):
+        block = mesh[i]
+        out.append(None if block is None else _copy(block), mesh.get_block_name(i))
+    for key, value in mesh.field_data.items():
+        out.field_data[key] = value
+    return out
+
+
+def _leaves(mesh: Any, path: str = "") -> Iterator[tuple[pv.DataSet, str]]:
+    """Yield the meshes of a MultiBlock, however deep, with where they are."""
+    if not isinstance(mesh, pv.MultiBlock):
+        yield mesh, path
+        return
+    for i in range(mesh.n_blocks):
+        if mesh[i] is not None:
+            yield from _leaves(mesh[i], f"{path}/{mesh.get_block_name(i) or i}")
+
+
+def _prepare(mesh: pv.DataSet, path: str, scene: Scene, options: dict[str, Any]) -> _Job:
+    """Take from one mesh what is lit; a block's errors say which block it is."""
+    try:
+        if not isinstance(mesh, pv.DataSet):
+            raise TypeError(_check.message("mesh", "a PyVista mesh", type(mesh).__name__))
+        points = _mesh.points_of(mesh, options["positions"])
+        n = points.shape[1]
+        tangents = normals = None
+        if options["tangents"] is not None:
+            tangents = _mesh.tangents_of(
+                mesh, options["tangents"], n, average_cells=options["average_cells"]
+            )
+        if tangents is None or options["conditioned"]:
+            normals = _mesh.normals_of(mesh, options["normals"], n, scene.view)
+            if options["flip_normals"]:
+                normals = -normals
+        return _Job(points, tangents, normals)
+    except (TypeError, ValueError) as error:
+        if not path:
+            raise
+        raise type(error)(f"block {path}: {error}") from error
+
+
+def _fit_depth_cue(scene: Scene, jobs: list[_Job]) -> Scene:
+    """Return the scene with the ends of its depth cue taken from the points where not given."""
+    cue = scene.depth_cue
+    if cue is None or scene.view is None or (cue.front is not None and cue.back is not None):
+        return scene
+    ranges = [engine.depth_range(job.points, scene) for job in jobs]
+    near = min((near for near, _ in ranges), default=np.inf)
+    far = max((far for _, far in ranges), default=-np.inf)
+    if not near < far:
+        far = near = 0.0 if not np.isfinite(near) else near
+        far += 1.0
+    front = near if cue.front is None else cue.front
+    back = far if cue.back is None else cue.back
+    return scene.replace(depth_cue=dataclasses.replace(cue, front=front, back=back))
+
+
+def _refuse_overwriting(leaves: list[tuple[pv.DataSet, str]], name: str) -> None:
+    """Refuse to lose the user's own array; one that vizlight made may be made anew."""
+    for leaf, _ in leaves:
+        if name in leaf.point_data and _provenance.key(name) not in leaf.field_data:
+            raise ValueError(
+                _check.message(
+                    "name",
+                    "one that the mesh has no array of, with inplace=True",
+                    repr(name),
+                    "pass another name= or inplace=False",
+                )
+            )
+
+
+def _attach(mesh: pv.DataSet, shading: engine.Shading, name: str, told: str) -> None:
+    prefix = "" if name == DEFAULT_NAME else f"{name}_"
+    data = mesh.point_data
+    for stale in (name + VALID, *(prefix + part for part in PARTS)):
+        if stale in data and _provenance.key(name) in mesh.field_data:
+            del data[stale]
+    if shading.diffuse is not None:
+        data[f"{prefix}ambient"] = np.full_like(shading.luminance, shading.plan.ambient)
+        data[f"{prefix}diffuse"] = shading.diffuse
+        data[f"{prefix}specular"] = shading.specular
+    if shading.rgb is not None:
+        data[f"{prefix}rgb"] = shading.rgb
+    if shading.invalid:
+        data[name + VALID] = shading.valid
+    data.set_array(shading.luminance, name)
+    data.active_scalars_name = name
+    mesh.field_data[_provenance.key(name)] = [told]

@@ -1,0 +1,69 @@
+"""Turn ``(..., n)`` arrays to component-first batches and back."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from vizlight import _check
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Array = NDArray[np.floating[Any]]
+
+#: Frames whose rows miss orthonormality by more than this many sqrt(eps) are refused.
+SLACK = 16.0
+
+
+def batch(frame: Array, *directions: Array) -> tuple[tuple[int, ...], Array, list[Array]]:
+    """Broadcast a frame and directions; return batch shape and component-first arrays."""
+    k, n = frame.shape[-2:]
+    kind = np.result_type(frame, *directions)
+    shape = np.broadcast_shapes(frame.shape[:-2], *(d.shape[:-1] for d in directions))
+    rows = np.broadcast_to(frame, (*shape, k, n)).reshape(-1, k, n).transpose(1, 2, 0)
+    columns = [np.broadcast_to(d, (*shape, n)).reshape(-1, n).T for d in directions]
+    return (
+        shape,
+        np.ascontiguousarray(rows, dtype=kind),
+        [np.ascontiguousarray(c, dtype=kind) for c in columns],
+    )
+
+
+def as_frame(frame: ArrayLike) -> Array:
+    """Validate a tangent frame ``(..., k, n)``: k < n, rows orthonormal or zero."""
+    array = _check.vectors("frame", frame)
+    if array.ndim < 2:
+        raise ValueError(
+            _check.message(
+                "frame",
+                "k tangent rows of n components, shape (..., k, n)",
+                _check.describe(array),
+                "for one tangent a point pass tangent[..., None, :]",
+            )
+        )
+    k, n = array.shape[-2:]
+    if not 0 < k < n:
+        raise ValueError(
+            _check.message(
+                "frame",
+                "0 < k < n tangent rows, shape (..., k, n)",
+                f"k = {k}, n = {n}",
+                "for one tangent a point pass tangent[..., None, :]",
+            )
+        )
+    gram = array @ np.swapaxes(array, -1, -2)
+    diagonal = np.diagonal(gram, axis1=-2, axis2=-1)
+    off = np.abs(gram - np.eye(k) * np.where(diagonal == 0, 0, 1)[..., np.newaxis])
+    worst = float(off.max()) if off.size else 0.0
+    if not worst <= SLACK * float(np.sqrt(np.finfo(array.dtype).eps)):
+        raise ValueError(
+            _check.message(
+                "frame",
+                "orthonormal rows",
+                f"rows off by {worst:.2g}",
+                "call vizlight.model.frames.orthonormalize first",
+            )
+        )
+    return array

@@ -1,0 +1,137 @@
+"""How bright a k-manifold in n-space is on average, and the exponent that evens it out."""
+
+from __future__ import annotations
+
+import functools
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.optimize import brentq
+from scipy.special import gammaln
+
+from vizlight import _check
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Array = NDArray[np.float64]
+
+#: The mean brightness of a surface in 3-space, the standard that others are brought to.
+STANDARD = 0.5
+
+#: B(2j) / (2j (2j - 1)), the coefficients of Stirling's series, highest first.
+_STIRLING = (1 / 156, -691 / 360360, 1 / 1188, -1 / 1680, 1 / 1260, -1 / 360, 1 / 12)
+_SERIES_FROM = 8.0
+
+
+def mean_intensity(k: int, n: int, p: ArrayLike = 1.0) -> Any:
+    """Return the mean of sin(a)^p over all directions of light in n-space.
+
+    Parameters
+    ----------
+    k, n : int
+        Dimension of the manifold and of the space, 0 < k < n (up to 1e6 tested).
+    p : array_like, default: 1.0
+        Exponents of 0 or more, unitless.
+
+    Returns
+    -------
+    float or ndarray
+        I(k, n, p), of the shape of p.
+
+    Raises
+    ------
+    TypeError
+        If k or n is not an integer.
+    ValueError
+        If not 0 < k < n, or an exponent is negative or not finite.
+
+    Notes
+    -----
+    ``I = G(n/2) G((c+p)/2) / (G(c/2) G((n+p)/2))``, G the gamma function, c = n - k: the
+    closed form of the integrals in Banks' appendix. The four log-gammas would cancel for large
+    n; their leading parts are combined by hand into three log1p terms, so the relative error
+    is at most ``64 eps (1 + |ln I|)`` up to n = 1e6 and p = 4e6.
+    Banks 3.3 prints I(1, 2) = 2/pi as 0.673; it is 0.6366.
+    """
+    k, n = _dimensions(k, n)
+    powers = _check.floats("p", p).astype(np.float64)
+    if not np.all(np.isfinite(powers) & (powers >= 0)):
+        raise ValueError(_check.message("p", "finite exponents of 0 or more", _check.describe(p)))
+    result = np.exp(_log_mean(k, n, powers))
+    return float(result) if result.ndim == 0 else result
+
+
+def exponent(k: int, n: int) -> float:
+    """Return p(k, n), the exponent that gives a k-manifold in n-space a mean brightness of 1/2.
+
+    Parameters
+    ----------
+    k, n : int
+        Dimension of the manifold and of the space, 0 < k < n (up to 1e6 tested).
+
+    Returns
+    -------
+    float
+        p(k, n), unitless; p(2, 3) = 1, p(1, 3) = 4.7635, p(1, 4) = 7.6737, p(2, 4) = 2.
+
+    Raises
+    ------
+    TypeError
+        If k or n is not an integer.
+    ValueError
+        If not 0 < k < n.
+
+    Notes
+    -----
+    The root of ``I(k, n, p) = 1/2`` (Banks 3.4 and table 1) by Brent's method on ln I, cached.
+    Relative error at most ``2e-14`` up to n = 1e6.
+    """
+    return _exponent(*_dimensions(k, n))
+
+
+@functools.lru_cache(maxsize=4096)
+def _exponent(k: int, n: int) -> float:
+    def excess(p: float) -> float:
+        return float(_log_mean(k, n, np.float64(p))) - math.log(STANDARD)
+
+    high = 1.0
+    while excess(high) > 0:
+        high *= 2
+    root = float(brentq(excess, 0.0, high, xtol=1e-300, rtol=4 * np.finfo(float).eps))
+    # Whole exponents are exact in the theory (k = c gives 2), and cost a multiplication.
+    whole = float(round(root))
+    return whole if abs(root - whole) < 1e-12 * root else root
+
+
+def _dimensions(k: int, n: int) -> tuple[int, int]:
+    k, n = _check.integer("k", k, low=1), _check.integer("n", n, low=2)
+    if k >= n:
+        raise ValueError(_check.message("k", f"a dimension less than n = {n}", k))
+    return k, n
+
+
+def _log_mean(k: int, n: int, p: Any) -> Any:
+    """Return ln I as a mixed second difference of log-gamma at a = c/2, d = p/2, h = k/2.
+
+    With lnG(x) = (x - 1/2) ln x - x + ln(2 pi)/2 + R(x), the first part of the difference is
+    three log1p terms of one size and R is small, so nothing large cancels.
+    """
+    a, d, h = (n - k) / 2, np.asarray(p, dtype=np.float64) / 2, k / 2
+    leading = (
+        (a - 0.5) * np.log1p(d / a * (h / (a + d + h)))
+        - d * np.log1p(h / (a + d))
+        - h * np.log1p(d / (a + h))
+    )
+    return leading + _remainder(a + d) - _remainder(a) - _remainder(a + d + h) + _remainder(a + h)
+
+
+def _remainder(x: Any) -> Any:
+    """Return R(x), what Stirling's formula leaves of ln G(x): by its series from x = 8 on."""
+    x = np.asarray(x, dtype=np.float64)
+    y = 1 / (x * x)
+    series = functools.reduce(lambda total, term: total * y + term, _STIRLING) / x
+    small = np.minimum(x, _SERIES_FROM)
+    exact = gammaln(small) - (small - 0.5) * np.log(small) + small - 0.5 * math.log(2 * math.pi)
+    return np.where(x < _SERIES_FROM, exact, series)

@@ -1,0 +1,149 @@
+"""How light fades: with distance from its source, and with depth from the eye."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from vizlight import _check
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Array = NDArray[np.floating[Any]]
+
+
+def distance(d: ArrayLike, c1: float, c2: float, c3: float, /) -> Any:
+    """Return the attenuation of a light at distance d.
+
+    Parameters
+    ----------
+    d : array_like, shape (...)
+        Distances of 0 or more from point to light, in the unit of the mesh.
+    c1, c2, c3 : float
+        Constant, linear and quadratic coefficient, each 0 or more, not all 0; units 1,
+        1/length, 1/length^2.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        ``min(1, 1 / (c1 + c2 d + c3 d^2))``, in [0, 1]; 0 at infinite distance.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If a distance is negative or NaN, a coefficient negative, or all are 0.
+
+    Notes
+    -----
+    Relative error at most ``4 eps``. Source: Lecture, effect of distance.
+    """
+    lengths = _check.floats("d", d)
+    if not np.all(lengths >= 0):
+        raise ValueError(_check.message("d", "distances of 0 or more", _check.describe(d)))
+    return fading(lengths, attenuation("c1, c2, c3", (c1, c2, c3)))
+
+
+def attenuation(name: str, value: object) -> tuple[float, float, float]:
+    """Validate the three coefficients of :func:`distance`."""
+    array = _check.floats(name, value)
+    if array.shape != (3,) or not np.all(np.isfinite(array) & (array >= 0)) or not array.any():
+        raise ValueError(
+            _check.message(
+                name,
+                "three coefficients (constant, linear, quadratic) of 0 or more, not all 0",
+                _check.describe(value),
+                "(1, 0, 0) switches attenuation off",
+            )
+        )
+    c1, c2, c3 = (float(c) for c in array)
+    return c1, c2, c3
+
+
+def fading(d: Array, coefficients: tuple[float, float, float]) -> Array:
+    """Return :func:`distance` of distances and coefficients that are known to be good."""
+    c1, c2, c3 = coefficients
+    # A zero coefficient is left out: 0 times an infinite distance is not a number.
+    denominator = np.full_like(d, c1)
+    with np.errstate(over="ignore", under="ignore"):
+        if c2:
+            denominator += c2 * d
+        if c3:
+            denominator += c3 * d * d
+        result: Array = 1 / np.maximum(denominator, 1)
+    return result
+
+
+def depth_cue(
+    intensity: ArrayLike,
+    z: ArrayLike,
+    /,
+    *,
+    front: float,
+    back: float,
+    front_scale: float = 1.0,
+    back_scale: float = 0.0,
+    cue: ArrayLike = 0.0,
+    smooth: bool = False,
+) -> Any:
+    """Return an intensity faded toward a cue with depth.
+
+    Parameters
+    ----------
+    intensity : array_like, shape (...)
+        I, the light before.
+    z : array_like, shape (...)
+        Depths, in any unit and of either sense: front and back say which end is near.
+    front, back : float
+        Zt and Zb, the depths between which the scale changes; not equal.
+    front_scale, back_scale : float
+        St and Sb, the scale at and beyond front and back, in [0, 1].
+    cue : array_like, default: 0.0
+        Icue, the intensity (or one channel of the colour) that fades in.
+    smooth : bool, default: False
+        Go from Sb to St by a smooth step (zero slope at both ends) in place of a straight line.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        ``S I + (1 - S) Icue``, S = Sb + (St - Sb) t, t = (z - Zb) / (Zt - Zb) clamped to
+        [0, 1], or t^2 (3 - 2 t) in its place.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If front equals back, or a scale is outside [0, 1].
+
+    Notes
+    -----
+    Absolute error at most ``8 eps max(|I|, |Icue|)``, for depths that are exact.
+    Source: Lecture, atmospheric attenuation; the smooth step is its "small sigmoid".
+    """
+    front, back = _check.number("front", front), _check.number("back", back)
+    if front == back:
+        raise ValueError(_check.message("front", "a depth other than back", front))
+    scale = depth_scale(
+        _check.floats("z", z),
+        front=front,
+        back=back,
+        front_scale=_check.number("front_scale", front_scale, low=0.0, high=1.0),
+        back_scale=_check.number("back_scale", back_scale, low=0.0, high=1.0),
+        smooth=smooth,
+    )
+    return scale * _check.floats("intensity", intensity) + (1 - scale) * _check.floats("cue", cue)
+
+
+def depth_scale(
+    z: Array, *, front: float, back: float, front_scale: float, back_scale: float, smooth: bool
+) -> Array:
+    """Return the scale S of :func:`depth_cue` for arguments that are known to be good."""
+    t = np.clip((z - back) / (front - back), 0, 1)
+    if smooth:
+        t = t * t * (3 - 2 * t)
+    result: Array = back_scale + (front_scale - back_scale) * t
+    return result

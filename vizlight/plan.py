@@ -1,0 +1,262 @@
+"""Decide what a scene needs: the terms that are computed and nothing else."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, get_args
+
+import numpy as np
+
+from vizlight import _check
+from vizlight.model import brightness
+from vizlight.model._kernels import DEFICIT_FROM
+from vizlight.model.reflection import SpecularModel
+from vizlight.scene import NO_ATTENUATION, Scene
+
+if TYPE_CHECKING:
+    from numpy.typing import DTypeLike
+
+#: Bytes of three components of a block. Some thirty such arrays are alive at once: small enough
+#: for the last cache, large enough that threads seldom wait for the interpreter.
+BLOCK_BYTES = 3 << 19
+
+
+@dataclass(frozen=True, kw_only=True)
+class Plan:
+    """What is computed for each point of a mesh; made by :func:`plan`.
+
+    Attributes
+    ----------
+    n, k : int
+        Dimension of the space and of the manifold that is lit.
+    dtype : numpy.dtype
+        Precision of the work and of the result.
+    scene : Scene
+        With headlights fixed and lights that give nothing left out.
+    exponent : float
+        Of the diffuse term.
+    model : str
+        Of the specular term.
+    surface : bool
+        Whether the manifold is given by its normals (k = n - 1), not by tangents.
+    conditioned : bool
+        Whether tangents inherit the self-shadow of the surface that the normals belong to.
+    two_sided : bool
+        Whether the far side of normals is lit as the near one.
+    diffuse, specular : bool
+        Whether the term is computed.
+    colored, components : bool
+        Which results are kept.
+    """
+
+    n: int
+    k: int
+    dtype: np.dtype[Any]
+    scene: Scene
+    exponent: float
+    model: SpecularModel
+    surface: bool
+    conditioned: bool
+    two_sided: bool
+    diffuse: bool
+    specular: bool
+    colored: bool
+    components: bool
+
+    @property
+    def terms(self) -> tuple[str, ...]:
+        """The names of the terms that are added up."""
+        names = {"ambient": True, "diffuse": self.diffuse, "specular": self.specular}
+        return tuple(name for name, there in names.items() if there)
+
+    @property
+    def ambient(self) -> float:
+        """The ambient term, one number for all points."""
+        return self.scene.material.ambient * self.scene.ambient_intensity
+
+    @property
+    def needs_points(self) -> bool:
+        """Whether anything depends on where a point is."""
+        view = self.scene.view
+        return (
+            any(light.position is not None for light in self.scene.lights)
+            or (self.specular and view is not None and not view.parallel)
+            or self.scene.depth_cue is not None
+        )
+
+    @property
+    def block(self) -> int:
+        """Points in a block, unless the caller says."""
+        return max(BLOCK_BYTES // (self.n * self.k * self.dtype.itemsize), 1)
+
+    @property
+    def multiplies(self) -> bool:
+        """Whether the specular power is taken by multiplication."""
+        shininess = self.scene.material.shininess
+        power = shininess / 2 if self.model == "blinn" else shininess
+        return power == int(power) and power <= DEFICIT_FROM
+
+    def why_not(self, term: str) -> str:
+        """Say why the diffuse or the specular term is left out."""
+        if getattr(self.scene.material, term) == 0:
+            return f"material.{term} is 0"
+        return "no light has an intensity above 0"
+
+    def explain(self) -> str:
+        """Say what is computed, what is skipped and why, a line each."""
+        computed, skipped = _words(self)
+        return "\n".join(
+            [f"compute  {line}" for line in computed] + [f"skip     {line}" for line in skipped]
+        )
+
+
+def plan(
+    scene: Scene,
+    /,
+    *,
+    n: int = 3,
+    k: int | None = None,
+    normals: bool = False,
+    dtype: DTypeLike = np.float64,
+    model: SpecularModel = "phong",
+    compensate: bool = True,
+    two_sided: bool = False,
+    components: bool = False,
+) -> Plan:
+    """Return the terms that a scene needs.
+
+    Parameters
+    ----------
+    scene : Scene
+    n : int, default: 3
+        Dimension of the space.
+    k : int, optional
+        Number of tangents a point. None: the manifold is the surface that has the normals.
+    normals : bool, default: False
+        Whether normals are given. With k they condition the light (Banks 6).
+    dtype : dtype, default: float64
+        float32 or float64.
+    model : {"phong", "blinn"}
+    compensate : bool, default: True
+        Diffuse with the exponent p(k, n) (Banks 5), else 1.
+    two_sided : bool, default: False
+        Light the far side of normals as the near one.
+    components : bool, default: False
+        Keep the diffuse and the specular term.
+
+    Raises
+    ------
+    TypeError
+        If the scene is not a :class:`vizlight.Scene`.
+    ValueError
+        If the scene's vectors are not of n components, a view is needed and missing, or an
+        option is unknown.
+    """
+    if not isinstance(scene, Scene):
+        raise TypeError(_check.message("scene", "a vizlight.Scene", _check.describe(scene)))
+    if model not in get_args(SpecularModel):
+        raise ValueError(_check.message("model", "'phong' or 'blinn'", repr(model)))
+    kind = np.dtype(dtype)
+    if kind not in (np.dtype(np.float32), np.dtype(np.float64)):
+        raise ValueError(_check.message("dtype", "float32 or float64", kind))
+    n = _check.integer("n", n, low=2)
+    if k is None and not normals:
+        raise ValueError(_check.message("tangents", "tangents or normals", "neither"))
+    if k is not None and not 0 < _check.integer("k", k, low=1) < n:
+        raise ValueError(_check.message("k", f"fewer than n = {n} tangents a point", k))
+    if scene.n not in (None, n):
+        raise ValueError(
+            _check.message(
+                "scene", f"vectors of {n} components, as the points have", f"{scene.n} components"
+            )
+        )
+    material, cue = scene.material, scene.depth_cue
+    if cue is not None and (cue.front is None or cue.back is None):
+        raise ValueError(_check.message("depth_cue", "front= and back=", cue))
+
+    surface = k is None
+    size = n - 1 if k is None else k
+    conditioned = normals and not surface
+    exponent = brightness.exponent(size, n) if compensate else 1.0
+    lights = tuple(light for light in scene.lights if light.intensity > 0)
+    specular = bool(material.specular > 0 and lights)
+    diffuse = bool(material.diffuse > 0 and lights)
+    if scene.view is None and (specular or cue is not None):
+        what = "specular term" if specular else "depth cue"
+        remedy = "pass view= or specular=0" if specular else "pass view="
+        raise ValueError(_check.message("view", f"a View, which the {what} needs", None, remedy))
+    lights = tuple(light.seen_from(scene.view) for light in lights) if diffuse or specular else ()
+    return Plan(
+        n=n,
+        k=size,
+        dtype=kind,
+        scene=scene.replace(lights=lights),
+        exponent=exponent,
+        model=model,
+        surface=surface,
+        conditioned=conditioned,
+        two_sided=bool(two_sided),
+        diffuse=diffuse,
+        specular=specular,
+        colored=scene.colored,
+        components=bool(components),
+    )
+
+
+def _words(plan: Plan) -> tuple[list[str], list[str]]:
+    """Return what is computed and what is skipped, in words."""
+    scene = plan.scene
+    material, view, lights = scene.material, scene.view, scene.lights
+    yes, no = [f"ambient: the constant {plan.ambient:g}"], []
+    if plan.surface:
+        sides = "both sides alike" if plan.two_sided else "the outer side only"
+        yes.append(f"surface: one unit normal a point, lit on {sides}")
+        no.append("frame: a surface is lit by its normals, no tangents are needed")
+        law = "|N.wi|" if plan.two_sided else "max(0, N.wi)"
+    else:
+        yes.append(
+            f"frame: {plan.k} orthonormal tangent(s) a point in {plan.n}-space, "
+            f"codimension {plan.n - plan.k}"
+        )
+        law = "|wi_N|"
+    if plan.diffuse:
+        yes.append(f"diffuse: {law} to the power {plan.exponent:.6g}")
+    else:
+        no.append(f"diffuse: {plan.why_not('diffuse')}")
+    if plan.specular and view is not None:
+        yes.append(
+            f"specular: {plan.model}, shininess {material.shininess:g} by "
+            + ("multiplication" if plan.multiplies else "a power")
+        )
+        distant = sum(light.position is None for light in lights)
+        if view.parallel:
+            no.append("eye: no direction a point, the parallel view has one for all")
+            if plan.model == "blinn" and distant:
+                yes.append(f"half vector: one for all points for {distant} light(s)")
+        else:
+            yes.append("eye: its direction and split once a point, shared by all lights")
+    else:
+        no.append(f"specular: {plan.why_not('specular')}")
+        no.append("eye: no term depends on the view")
+    for i, light in enumerate(lights):
+        near = light.position is not None
+        kind = "a direction a point" if near else "one direction for all points"
+        yes.append(f"light {i}: {kind}, intensity {light.intensity:g}")
+        if light.attenuation != NO_ATTENUATION:
+            yes.append(f"light {i}: attenuation {light.attenuation} of the distance")
+        elif near:
+            no.append(f"light {i}: attenuation, its coefficients are {NO_ATTENUATION}")
+    if plan.conditioned:
+        side = "|N.wi|" if plan.two_sided else "max(0, N.wi)"
+        yes.append(f"self-shadow: {side} of the surface's normals, a factor for each light")
+    elif not plan.surface:
+        no.append("self-shadow: no surface conditions the tangents")
+    if scene.depth_cue is not None:
+        yes.append(f"depth cue: {'smooth' if scene.depth_cue.smooth else 'linear'}")
+    else:
+        no.append("depth cue: none asked for")
+    if plan.colored:
+        yes.append("rgb: three channels")
+    else:
+        no.append("rgb: nothing in the scene has a colour")
+    return yes, no

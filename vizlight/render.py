@@ -1,0 +1,326 @@
+"""Pictures of lit meshes, offscreen: the only owner of a plotter. No light is computed here."""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import math
+import os
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, get_args
+
+import numpy as np
+import pyvista as pv
+
+from vizlight import _check
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+Backend = Literal["egl", "osmesa"]
+AntiAliasing = Literal["ssaa", "msaa", "fxaa"]
+
+_VARIABLE = "VTK_DEFAULT_OPENGL_WINDOW"
+_WINDOWS: dict[str, str] = {"egl": "vtkEGLRenderWindow", "osmesa": "vtkOSOpenGLRenderWindow"}
+INSTALL: dict[str, str] = {
+    "egl": "apt-get install -y libegl1 libgl1-mesa-dri",
+    "osmesa": "apt-get install -y libosmesa6",
+}
+
+# Where no library is found VTK ends the process, so another process tries it.
+_PROBE = """
+import vtkmodules.vtkRenderingOpenGL2
+from vtkmodules.vtkRenderingCore import vtkRenderWindow
+window = vtkRenderWindow()
+window.SetOffScreenRendering(1)
+window.SetSize(8, 8)
+window.Render()
+lines = [line.partition(":") for line in window.ReportCapabilities().splitlines()]
+driver = [value.strip() for name, _, value in lines if name == "OpenGL renderer string"]
+assert driver and driver[0], "no OpenGL driver"
+print(window.GetClassName(), driver[0], sep="\\t")
+"""
+
+
+class BackendError(RuntimeError):
+    """No OpenGL library is there to draw with; the message says how to install one."""
+
+
+@dataclass(frozen=True)
+class Probe:
+    """What a try of a backend found."""
+
+    backend: str
+    works: bool
+    detail: str
+
+
+@functools.cache
+def probe(backend: Backend) -> Probe:
+    """Try a backend in another process and say whether it draws.
+
+    Parameters
+    ----------
+    backend : {"egl", "osmesa"}
+
+    Raises
+    ------
+    ValueError
+        If the name is unknown.
+    """
+    if backend not in get_args(Backend):
+        raise ValueError(_check.message("backend", "'egl' or 'osmesa'", repr(backend)))
+    try:
+        run = subprocess.run(
+            [sys.executable, "-c", _PROBE],
+            env={**os.environ, _VARIABLE: _WINDOWS[backend]},
+            capture_output=True,
+            text=True,
+            timeout=60,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        return Probe(backend, works=False, detail="no answer in 60 s")
+    if run.returncode == 0:
+        return Probe(backend, works=True, detail=run.stdout.strip().replace("\t", ", "))
+    return Probe(backend, works=False, detail=f"not there (try: {INSTALL[backend]})")
+
+
+def choose_backend(backend: Backend | None = None) -> Backend | None:
+    """Return the backend to draw with: the one asked for, else EGL, else OSMesa.
+
+    None, on a platform other than Linux or where the environment names a window class, leaves
+    the choice to VTK.
+
+    Raises
+    ------
+    BackendError
+        If none draws.
+    """
+    if backend is None and (not sys.platform.startswith("linux") or os.environ.get(_VARIABLE)):
+        return None
+    tries: tuple[Backend, ...] = ("egl", "osmesa") if backend is None else (backend,)
+    for name in tries:
+        if probe(name).works:
+            return name
+    remedy = " or ".join(f"{INSTALL[name]} ({name.upper()})" for name in tries)
+    raise BackendError(f"no picture: no OpenGL library draws here; as root: {remedy}")
+
+
+@contextlib.contextmanager
+def _window_class(backend: Backend | None) -> Iterator[None]:
+    """Have VTK make windows of a backend; the caller's own windows are made as before."""
+    if backend is None:
+        yield
+        return
+    before = os.environ.get(_VARIABLE)
+    os.environ[_VARIABLE] = _WINDOWS[backend]
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[_VARIABLE]
+        else:
+            os.environ[_VARIABLE] = before
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One of the pictures side by side: a mesh, the array that colours it, a title."""
+
+    mesh: Any
+    scalars: str = "luminance"
+    title: str = ""
+
+
+def camera_on(
+    bounds: Sequence[float],
+    direction: Sequence[float] = (1.0, 1.0, 1.0),
+    *,
+    up: Sequence[float] | None = None,
+    parallel: bool = False,
+    zoom: float = 1.0,
+) -> pv.Camera:
+    """Return a camera that sees all of a bounding box; no OpenGL is needed for it.
+
+    Parameters
+    ----------
+    bounds : (xmin, xmax, ymin, ymax, zmin, zmax)
+        In the unit of the mesh.
+    direction : vector of 3 components
+        From the box's centre toward the eye.
+    up : vector of 3 components, optional
+        Default: z, or y for a view along z.
+    parallel : bool
+    zoom : float
+        Above 0; 2 shows half the width.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a value does not fit.
+    """
+    toward = np.array(_check.vector("direction", direction, direction=True))
+    if toward.size != 3:
+        raise ValueError(_check.message("direction", "3 components", toward.size))
+    toward /= np.linalg.norm(toward)
+    if up is None:
+        up = (0.0, 1.0, 0.0) if abs(toward[2]) > 0.999 else (0.0, 0.0, 1.0)
+    zoom = _check.number("zoom", zoom, low=1e-6)
+    box = np.asarray(bounds, dtype=float).reshape(3, 2)
+    if not np.all(np.isfinite(box)):
+        raise ValueError(_check.message("bounds", "six finite numbers", list(bounds)))
+    centre = box.mean(axis=1)
+    radius = 0.5 * float(np.linalg.norm(box[:, 1] - box[:, 0])) or 1.0
+    camera = pv.Camera()
+    camera.view_angle = 30.0
+    distance = radius / math.sin(math.radians(15.0)) / zoom
+    camera.focal_point = tuple(centre)
+    camera.position = tuple(centre + distance * toward)
+    camera.up = tuple(up)
+    camera.parallel_projection = parallel
+    camera.parallel_scale = radius / zoom
+    camera.clipping_range = (max(distance - 2 * radius, distance * 1e-3), distance + 2 * radius)
+    return camera
+
+
+def save_png(
+    panels: Any,
+    path: str | Path,
+    /,
+    *,
+    camera: Any = None,
+    size: tuple[int, int] = (1200, 800),
+    scalars: str = "luminance",
+    cmap: str = "gray",
+    clim: tuple[float, float] = (0.0, 1.0),
+    background: Any = "white",
+    line_width: float = 1.0,
+    anti_aliasing: AntiAliasing | None = "ssaa",
+    backend: Backend | None = None,
+) -> Path:
+    """Draw lit meshes side by side, offscreen, with one camera, to a PNG file.
+
+    Parameters
+    ----------
+    panels : mesh, Panel, or sequence of them
+        What to draw, from left to right.
+    path : path
+        The picture; its folder must exist.
+    camera : pyvista.Camera, optional
+        Default: :func:`camera_on` what is drawn.
+    size : (int, int)
+        Width and height in pixels, of all panels together.
+    scalars : str
+        For meshes given without a :class:`Panel`. Three components are taken as a colour.
+    cmap : str
+        Of arrays of one component.
+    clim : (float, float)
+        What the ends of the map stand for.
+    background : colour
+    line_width : float
+        In pixels.
+    anti_aliasing : {"ssaa", "msaa", "fxaa"}, optional
+    backend : {"egl", "osmesa"}, optional
+        See :func:`choose_backend`.
+
+    Returns
+    -------
+    pathlib.Path
+
+    Raises
+    ------
+    BackendError
+        If no OpenGL library draws here.
+    ValueError
+        If there is nothing to draw or an array is missing.
+    OSError
+        If the file cannot be written; no partial file is left.
+    """
+    path = Path(path)
+    if path.suffix.lower() != ".png":
+        raise ValueError(_check.message("path", "a name that ends in .png", path.name))
+    items = list(panels) if isinstance(panels, list | tuple) else [panels]
+    shown = [item if isinstance(item, Panel) else Panel(item, scalars) for item in items]
+    if not shown:
+        raise ValueError(_check.message("panels", "one mesh or more", "none"))
+    for panel in shown:
+        if panel.scalars not in panel.mesh.point_data:
+            there = ", ".join(repr(key) for key in panel.mesh.point_data) or "none"
+            raise ValueError(
+                _check.message("scalars", f"a point array ({there})", repr(panel.scalars))
+            )
+    if camera is None:
+        camera = camera_on(_bounds(shown))
+    size = (_check.integer("size", size[0], low=1), _check.integer("size", size[1], low=1))
+    with _window_class(choose_backend(backend)):
+        plotter = pv.Plotter(
+            off_screen=True, shape=(1, len(shown)), window_size=list(size), border=False
+        )
+        try:
+            for column, panel in enumerate(shown):
+                plotter.subplot(0, column)
+                plotter.set_background(background)
+                _draw(plotter, panel, cmap, clim, line_width)
+                plotter.camera = camera.copy()
+                plotter.reset_camera_clipping_range()
+                if anti_aliasing is not None:
+                    plotter.enable_anti_aliasing(anti_aliasing)
+            return replace_file(path, lambda draft: plotter.screenshot(draft))
+        finally:
+            plotter.close()
+
+
+def _draw(
+    plotter: pv.Plotter, panel: Panel, cmap: str, clim: tuple[float, float], line_width: float
+) -> None:
+    mesh = panel.mesh
+    values = np.asarray(mesh.point_data[panel.scalars])
+    colour = values.ndim == 2
+    if colour:
+        # VTK wraps around above 1, so a bright highlight would turn black.
+        values = np.clip(values, 0, 1)
+    if mesh.n_points:
+        plotter.add_mesh(
+            mesh.copy(deep=False),
+            scalars=values,
+            rgb=colour,
+            cmap=None if colour else cmap,
+            clim=None if colour else clim,
+            lighting=False,
+            line_width=line_width,
+            show_scalar_bar=False,
+        )
+    if panel.title:
+        plotter.add_text(panel.title, position="upper_edge", font_size=10, color="black")
+
+
+def _bounds(panels: Sequence[Panel]) -> list[float]:
+    boxes = np.array([panel.mesh.bounds for panel in panels if panel.mesh.n_points])
+    if not boxes.size:
+        raise ValueError(_check.message("panels", "a mesh with points", "empty meshes"))
+    low, high = boxes[:, ::2].min(axis=0), boxes[:, 1::2].max(axis=0)
+    return [float(x) for pair in zip(low, high, strict=True) for x in pair]
+
+
+def replace_file(path: Path, write: Callable[[str], object]) -> Path:
+    """Write a file under another name and move it to its place: whole, or not at all.
+
+    Raises
+    ------
+    OSError
+        If the folder is missing or nothing was written.
+    """
+    if not path.parent.is_dir():
+        raise FileNotFoundError(_check.message("path", "a folder that exists", str(path.parent)))
+    with tempfile.TemporaryDirectory(prefix=".vizlight-", dir=path.parent) as folder:
+        draft = Path(folder) / path.name
+        write(str(draft))
+        if not draft.is_file():
+            raise OSError(_check.message("path", "a file that can be written", str(path)))
+        draft.replace(path)
+    return path
