@@ -10,6 +10,7 @@ import sys
 import tempfile
 import zipfile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyvista as pv
@@ -21,13 +22,13 @@ SOURCE = "mayavi/tests/data/disk_out_ref.ex2"
 def rotating_disk(wheel: Path) -> Path:
     """Write the volume block of the CFD solution with all its fields, in float32."""
     with tempfile.TemporaryDirectory() as folder, zipfile.ZipFile(wheel) as archive:
-        blocks = pv.read(archive.extract(SOURCE, folder))
+        blocks: Any = pv.read(archive.extract(SOURCE, folder))
     volume = blocks[0][0]
     out = volume.copy()
     out.clear_cell_data()
     out.clear_field_data()
     out.points = out.points.astype(np.float32)
-    for name in out.point_data.keys():
+    for name in out.point_data:
         out.point_data[name] = out.point_data[name].astype(np.float32)
     path = HERE / "rotating_disk.vtu"
     out.save(path)

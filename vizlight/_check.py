@@ -12,7 +12,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-
 def message(name: str, expected: str, got: object, remedy: str = "") -> str:
     """Return ``name: expected ..., got ...; remedy`` on one line."""
     text = f"{name}: expected {expected}, got {got}"
@@ -62,7 +61,9 @@ def vectors(name: str, value: object, *, n: int | None = None) -> NDArray[np.flo
     if n is not None and (array.ndim == 0 or array.shape[-1] != n):
         raise ValueError(message(name, f"vectors of shape (..., {n})", describe(array)))
     if array.ndim == 0 or array.shape[-1] < 2:
-        raise ValueError(message(name, "vectors of shape (..., n), n of 2 or more", describe(array)))
+        raise ValueError(
+            message(name, "vectors of shape (..., n), n of 2 or more", describe(array))
+        )
     return array
 
 

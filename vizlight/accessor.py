@@ -5,12 +5,14 @@ Installed as an entry point of PyVista, so that no import is needed.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pyvista as pv
 
 from vizlight import filters
-from vizlight.scene import Scene
+
+if TYPE_CHECKING:
+    from vizlight.scene import Scene
 
 
 @pv.register_dataset_accessor("vizlight", pv.DataObject)

@@ -157,7 +157,7 @@ def shade(
 
     def work(block: slice) -> int:
         shade_block(made, block, points, tangents, normals, output)
-        return block.stop
+        return int(block.stop)
 
     for done in _run(work, blocks, min(_workers(threads), len(blocks))):
         if progress is not None:
@@ -210,9 +210,7 @@ def _workers(threads: int | None) -> int:
         return os.cpu_count() or 1
 
 
-def _run(
-    work: Callable[[slice], int], blocks: list[slice], workers: int
-) -> Iterator[int]:
+def _run(work: Callable[[slice], int], blocks: list[slice], workers: int) -> Iterator[int]:
     """Yield the results of work in order, a few blocks ahead of the reader."""
     if workers <= 1:
         yield from map(work, blocks)

@@ -8,18 +8,18 @@ import math
 import os
 import subprocess
 import sys
-import tempfile
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight.files import check_output, replace_file
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Iterator, Sequence
+    from pathlib import Path
 
 Backend = Literal["egl", "osmesa"]
 AntiAliasing = Literal["ssaa", "msaa", "fxaa"]
@@ -144,7 +144,7 @@ def camera_on(
     up: Sequence[float] | None = None,
     parallel: bool = False,
     zoom: float = 1.0,
-) -> pv.Camera:
+) -> Any:
     """Return a camera that sees all of a bounding box; no OpenGL is needed for it.
 
     Parameters
@@ -176,7 +176,7 @@ def camera_on(
         raise ValueError(_check.message("bounds", "six finite numbers", list(bounds)))
     centre = box.mean(axis=1)
     radius = 0.5 * float(np.linalg.norm(box[:, 1] - box[:, 0])) or 1.0
-    camera = pv.Camera()
+    camera: Any = pv.Camera()  # type: ignore[no-untyped-call]
     camera.view_angle = 30.0
     distance = radius / math.sin(math.radians(15.0)) / zoom
     camera.focal_point = tuple(centre)
@@ -186,6 +186,15 @@ def camera_on(
     camera.parallel_scale = radius / zoom
     camera.clipping_range = (max(distance - 2 * radius, distance * 1e-3), distance + 2 * radius)
     return camera
+
+
+def over_shoulder(camera: Any) -> tuple[float, float, float]:
+    """Return the direction toward a light at infinity above the left shoulder of the eye."""
+    back = -np.array(camera.GetDirectionOfProjection())
+    right = np.cross(np.array(camera.GetViewUp()), back)
+    right /= np.linalg.norm(right)
+    x, y, z = back - 0.6 * right + 0.6 * np.cross(back, right)
+    return float(x), float(y), float(z)
 
 
 def save_png(
@@ -237,13 +246,10 @@ def save_png(
     BackendError
         If no OpenGL library draws here.
     ValueError
-        If there is nothing to draw or an array is missing.
-    OSError
-        If the file cannot be written; no partial file is left.
+        If there is nothing to draw, an array is missing, or the file cannot be written; no
+        partial file is left.
     """
-    path = Path(path)
-    if path.suffix.lower() != ".png":
-        raise ValueError(_check.message("path", "a name that ends in .png", path.name))
+    path = check_output(path, (".png",))
     items = list(panels) if isinstance(panels, list | tuple) else [panels]
     shown = [item if isinstance(item, Panel) else Panel(item, scalars) for item in items]
     if not shown:
@@ -270,13 +276,13 @@ def save_png(
                 plotter.reset_camera_clipping_range()
                 if anti_aliasing is not None:
                     plotter.enable_anti_aliasing(anti_aliasing)
-            return replace_file(path, lambda draft: plotter.screenshot(draft))
+            return replace_file(path, plotter.screenshot)
         finally:
             plotter.close()
 
 
 def _draw(
-    plotter: pv.Plotter, panel: Panel, cmap: str, clim: tuple[float, float], line_width: float
+    plotter: Any, panel: Panel, cmap: str, clim: tuple[float, float], line_width: float
 ) -> None:
     mesh = panel.mesh
     values = np.asarray(mesh.point_data[panel.scalars])
@@ -305,22 +311,3 @@ def _bounds(panels: Sequence[Panel]) -> list[float]:
         raise ValueError(_check.message("panels", "a mesh with points", "empty meshes"))
     low, high = boxes[:, ::2].min(axis=0), boxes[:, 1::2].max(axis=0)
     return [float(x) for pair in zip(low, high, strict=True) for x in pair]
-
-
-def replace_file(path: Path, write: Callable[[str], object]) -> Path:
-    """Write a file under another name and move it to its place: whole, or not at all.
-
-    Raises
-    ------
-    OSError
-        If the folder is missing or nothing was written.
-    """
-    if not path.parent.is_dir():
-        raise FileNotFoundError(_check.message("path", "a folder that exists", str(path.parent)))
-    with tempfile.TemporaryDirectory(prefix=".vizlight-", dir=path.parent) as folder:
-        draft = Path(folder) / path.name
-        write(str(draft))
-        if not draft.is_file():
-            raise OSError(_check.message("path", "a file that can be written", str(path)))
-        draft.replace(path)
-    return path

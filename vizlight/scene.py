@@ -7,14 +7,20 @@ from __future__ import annotations
 
 import dataclasses
 import warnings
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from vizlight import _check
 from vizlight.model import falloff
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Sequence
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    VectorLike: TypeAlias = Sequence[float] | NDArray[np.floating[Any]]
+    ColorLike: TypeAlias = str | VectorLike | Any
 
 Vector = tuple[float, ...]
 Color = tuple[float, float, float]
@@ -26,6 +32,12 @@ def _set(instance: object, **values: object) -> None:
     """Set validated fields of a frozen dataclass."""
     for name, value in values.items():
         object.__setattr__(instance, name, value)
+
+
+def _instance(name: str, value: object, kind: type, *, optional: bool = False) -> None:
+    if not (isinstance(value, kind) or (optional and value is None)):
+        expected = f"a vizlight.{kind.__name__}" + (" or None" if optional else "")
+        raise TypeError(_check.message(name, expected, _check.describe(value)))
 
 
 def _vector(name: str, value: object, *, direction: bool = False) -> Vector | None:
@@ -48,7 +60,7 @@ def _color(name: str, value: Any) -> Color | None:
     return _check.rgb(name, getattr(value, "float_rgb", value))
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, init=False)
 class Light:
     """A point light, far away or near.
 
@@ -76,21 +88,31 @@ class Light:
     Light.headlight : a light that follows the view.
     """
 
-    direction: Vector | None = None
-    position: Vector | None = None
-    intensity: float = 1.0
-    attenuation: tuple[float, float, float] = NO_ATTENUATION
-    color: Color | None = None
-    follows_view: bool = field(default=False, repr=False)
+    direction: Vector | None
+    position: Vector | None
+    intensity: float
+    attenuation: tuple[float, float, float]
+    color: Color | None
+    follows_view: bool
 
-    def __post_init__(self) -> None:
+    def __init__(
+        self,
+        *,
+        direction: VectorLike | None = None,
+        position: VectorLike | None = None,
+        intensity: float = 1.0,
+        attenuation: VectorLike = NO_ATTENUATION,
+        color: ColorLike | None = None,
+        follows_view: bool = False,
+    ) -> None:
         _set(
             self,
-            direction=_vector("direction", self.direction, direction=True),
-            position=_vector("position", self.position),
-            intensity=_check.number("intensity", self.intensity, low=0.0),
-            attenuation=falloff.attenuation("attenuation", self.attenuation),
-            color=_color("color", self.color),
+            direction=_vector("direction", direction, direction=True),
+            position=_vector("position", position),
+            intensity=_check.number("intensity", intensity, low=0.0),
+            attenuation=falloff.attenuation("attenuation", attenuation),
+            color=_color("color", color),
+            follows_view=bool(follows_view),
         )
         given = sum(x is not None for x in (self.direction, self.position))
         if given != (0 if self.follows_view else 1):
@@ -113,7 +135,7 @@ class Light:
             )
 
     @classmethod
-    def headlight(cls, *, intensity: float = 1.0, color: Any = None) -> Light:
+    def headlight(cls, *, intensity: float = 1.0, color: ColorLike | None = None) -> Light:
         """Return a light that follows the view.
 
         Under a parallel view, or a perspective one with a known axis, it shines along that axis
@@ -136,7 +158,7 @@ class Light:
         return dataclasses.replace(self, follows_view=False, **place)
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, init=False)
 class Material:
     """How much light a manifold gives back.
 
@@ -158,21 +180,35 @@ class Material:
         If a value does not fit.
     """
 
-    ambient: float = 0.1
-    diffuse: float = 0.5
-    specular: float = 0.4
-    shininess: float = 20.0
-    color: Color | None = None
-    specular_color: Color | None = None
+    ambient: float
+    diffuse: float
+    specular: float
+    shininess: float
+    color: Color | None
+    specular_color: Color | None
 
-    def __post_init__(self) -> None:
-        for name in ("ambient", "diffuse", "specular", "shininess"):
-            _set(self, **{name: _check.number(name, getattr(self, name), low=0.0)})
-        for name in ("color", "specular_color"):
-            _set(self, **{name: _color(name, getattr(self, name))})
+    def __init__(
+        self,
+        *,
+        ambient: float = 0.1,
+        diffuse: float = 0.5,
+        specular: float = 0.4,
+        shininess: float = 20.0,
+        color: ColorLike | None = None,
+        specular_color: ColorLike | None = None,
+    ) -> None:
+        _set(
+            self,
+            ambient=_check.number("ambient", ambient, low=0.0),
+            diffuse=_check.number("diffuse", diffuse, low=0.0),
+            specular=_check.number("specular", specular, low=0.0),
+            shininess=_check.number("shininess", shininess, low=0.0),
+            color=_color("color", color),
+            specular_color=_color("specular_color", specular_color),
+        )
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, init=False)
 class View:
     """Where the eye is.
 
@@ -193,14 +229,20 @@ class View:
         If a value does not fit, or what the view needs is not given.
     """
 
-    position: Vector | None = None
-    direction: Vector | None = None
-    parallel: bool | None = None
+    position: Vector | None
+    direction: Vector | None
+    parallel: bool
 
-    def __post_init__(self) -> None:
-        position = _vector("position", self.position)
-        direction = _vector("direction", self.direction, direction=True)
-        parallel = (position is None) if self.parallel is None else bool(self.parallel)
+    def __init__(
+        self,
+        *,
+        position: VectorLike | None = None,
+        direction: VectorLike | None = None,
+        parallel: bool | None = None,
+    ) -> None:
+        position = _vector("position", position)
+        direction = _vector("direction", direction, direction=True)
+        parallel = position is None if parallel is None else bool(parallel)
         if position is None and direction is None:
             raise ValueError(
                 _check.message(
@@ -235,7 +277,9 @@ class View:
         for name in ("GetPosition", "GetDirectionOfProjection", "GetParallelProjection"):
             if not hasattr(camera, name):
                 raise TypeError(
-                    _check.message("camera", "a pyvista.Camera or vtkCamera", _check.describe(camera))
+                    _check.message(
+                        "camera", "a pyvista.Camera or vtkCamera", _check.describe(camera)
+                    )
                 )
         return cls(
             position=tuple(camera.GetPosition()),
@@ -244,7 +288,7 @@ class View:
         )
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, init=False)
 class DepthCue:
     """Fade with depth: ``S I + (1 - S) Icue`` (Lecture, atmospheric attenuation).
 
@@ -269,32 +313,40 @@ class DepthCue:
         If a value does not fit.
     """
 
-    front: float | None = None
-    back: float | None = None
-    front_scale: float = 1.0
-    back_scale: float = 0.0
-    cue: float = 0.0
-    color: Color | None = None
-    smooth: bool = False
+    front: float | None
+    back: float | None
+    front_scale: float
+    back_scale: float
+    cue: float
+    color: Color | None
+    smooth: bool
 
-    def __post_init__(self) -> None:
-        for name in ("front", "back"):
-            value = getattr(self, name)
-            if value is not None:
-                _set(self, **{name: _check.number(name, value)})
-        if self.front is not None and self.front == self.back:
-            raise ValueError(_check.message("front", "a depth other than back", self.front))
+    def __init__(
+        self,
+        *,
+        front: float | None = None,
+        back: float | None = None,
+        front_scale: float = 1.0,
+        back_scale: float = 0.0,
+        cue: float = 0.0,
+        color: ColorLike | None = None,
+        smooth: bool = False,
+    ) -> None:
         _set(
             self,
-            front_scale=_check.number("front_scale", self.front_scale, low=0.0, high=1.0),
-            back_scale=_check.number("back_scale", self.back_scale, low=0.0, high=1.0),
-            cue=_check.number("cue", self.cue, low=0.0),
-            color=_color("color", self.color),
-            smooth=bool(self.smooth),
+            front=None if front is None else _check.number("front", front),
+            back=None if back is None else _check.number("back", back),
+            front_scale=_check.number("front_scale", front_scale, low=0.0, high=1.0),
+            back_scale=_check.number("back_scale", back_scale, low=0.0, high=1.0),
+            cue=_check.number("cue", cue, low=0.0),
+            color=_color("color", color),
+            smooth=bool(smooth),
         )
+        if self.front is not None and self.front == self.back:
+            raise ValueError(_check.message("front", "a depth other than back", self.front))
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, init=False)
 class Scene:
     """Lights, material and view of one picture.
 
@@ -317,36 +369,42 @@ class Scene:
         If a value does not fit, or vectors differ in their number of components.
     """
 
-    lights: tuple[Light, ...] = (Light.headlight(),)
-    material: Material = Material()
-    view: View | None = None
-    ambient_intensity: float = 1.0
-    ambient_color: Color | None = None
-    depth_cue: DepthCue | None = None
+    lights: tuple[Light, ...]
+    material: Material
+    view: View | None
+    ambient_intensity: float
+    ambient_color: Color | None
+    depth_cue: DepthCue | None
 
-    def __post_init__(self) -> None:
-        lights: Any = self.lights
+    def __init__(
+        self,
+        *,
+        lights: Light | Iterable[Light] | None = None,
+        material: Material | None = None,
+        view: View | None = None,
+        ambient_intensity: float = 1.0,
+        ambient_color: ColorLike | None = None,
+        depth_cue: DepthCue | None = None,
+    ) -> None:
+        lights = Light.headlight() if lights is None else lights
         lights = (lights,) if isinstance(lights, Light) else tuple(lights)
-        for name, value, kind in (
-            *(("lights", light, Light) for light in lights),
-            ("material", self.material, Material),
-            ("view", self.view, View | None),
-            ("depth_cue", self.depth_cue, DepthCue | None),
-        ):
-            if not isinstance(value, kind):
-                wanted = getattr(kind, "__name__", "View or None")
-                raise TypeError(
-                    _check.message(name, f"vizlight.{wanted}", _check.describe(value))
-                )
+        for light in lights:
+            _instance("lights", light, Light)
+        _instance("material", material, Material, optional=True)
+        _instance("view", view, View, optional=True)
+        _instance("depth_cue", depth_cue, DepthCue, optional=True)
         _set(
             self,
             lights=lights,
-            ambient_intensity=_check.number("ambient_intensity", self.ambient_intensity, low=0.0),
-            ambient_color=_color("ambient_color", self.ambient_color),
+            material=Material() if material is None else material,
+            view=view,
+            ambient_intensity=_check.number("ambient_intensity", ambient_intensity, low=0.0),
+            ambient_color=_color("ambient_color", ambient_color),
+            depth_cue=depth_cue,
         )
         sizes = {
             len(v)
-            for owner in (*lights, self.view)
+            for owner in (*lights, view)
             if owner is not None
             for v in (owner.position, owner.direction)
             if v is not None
@@ -418,7 +476,9 @@ class Scene:
         """
         renderer = getattr(plotter, "renderer", None)
         if renderer is None or not hasattr(renderer, "GetLights"):
-            raise TypeError(_check.message("plotter", "a pyvista.Plotter", _check.describe(plotter)))
+            raise TypeError(
+                _check.message("plotter", "a pyvista.Plotter", _check.describe(plotter))
+            )
         camera = plotter.camera
         fields.setdefault("view", View.from_camera(camera))
         fields.setdefault("lights", list(_lights_of(renderer.GetLights(), camera)))

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista as pv
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from vizlight import _check
 
@@ -31,13 +33,13 @@ class GridPoints:
         if isinstance(grid, pv.ImageData):
             matrix = np.asarray(grid.index_to_physical_matrix, dtype=np.float64)
             first = np.array(grid.extent[::2])
-            self._place: Callable[[Array], Array] = (
-                lambda ijk: (ijk + first) @ matrix[:3, :3].T + matrix[:3, 3]
+            self._place: Callable[[NDArray[np.intp]], Array] = lambda ijk: (
+                (ijk + first) @ matrix[:3, :3].T + matrix[:3, 3]
             )
         else:
             axes = [np.asarray(axis, dtype=np.float64) for axis in (grid.x, grid.y, grid.z)]
             self._place = lambda ijk: np.stack(
-                [axis[i] for axis, i in zip(axes, ijk.T.astype(np.intp), strict=True)], axis=1
+                [axis[i] for axis, i in zip(axes, ijk.T, strict=True)], axis=1
             )
 
     def __getitem__(self, rows: slice, /) -> Array:
@@ -109,9 +111,7 @@ def _named(mesh: pv.DataSet, name: str, value: str, *, average_cells: bool) -> A
             )
         )
     there = ", ".join(repr(key) for key in mesh.point_data) or "none"
-    raise ValueError(
-        _check.message(name, f"the name of a point array ({there})", repr(value))
-    )
+    raise ValueError(_check.message(name, f"the name of a point array ({there})", repr(value)))
 
 
 def tangents_of(mesh: pv.DataSet, value: Any, n: int, *, average_cells: bool) -> Array:
@@ -152,8 +152,8 @@ def normals_of(mesh: pv.DataSet, value: Any, n: int, view: View | None) -> Array
 def surface_normals(mesh: pv.DataSet, view: View | None) -> Array:
     """Return the normals of a mesh's outer surface, zero at points that are not on it.
 
-    A closed surface has them outward. An open one has no outside: as a whole they are turned
-    to where they rather point toward the eye and away from the surface's centroid.
+    A closed surface has them outward. An open one has no outside: each connected piece is
+    turned as a whole, rather toward the eye and away from its own centroid.
     VTK computes them, in float32.
 
     Raises
@@ -188,8 +188,8 @@ def surface_normals(mesh: pv.DataSet, view: View | None) -> Array:
         non_manifold_traversal=False,
     )
     computed = np.array(found.point_data["Normals"])
-    if not closed and _inside_out(computed, np.asarray(bare.points), view):
-        np.negative(computed, out=computed)
+    if not closed:
+        _turn_open(computed, bare, view)
     if origin is None:
         return computed
     normals = np.zeros((mesh.n_points, 3), dtype=computed.dtype)
@@ -197,21 +197,40 @@ def surface_normals(mesh: pv.DataSet, view: View | None) -> Array:
     return normals
 
 
-def _inside_out(normals: Array, points: Array, view: View | None) -> bool:
-    """Tell whether the normals of an open surface rather point inward and away from the eye.
+def _turn_open(normals: Array, surface: pv.PolyData, view: View | None) -> None:
+    """Turn over each connected piece whose normals rather point inward and away from the eye.
 
-    The mean of N toward the eye decides for a sheet, the mean of N away from the centroid for
-    a surface that is nearly closed.
+    The mean of N toward the eye decides for a sheet, the mean of N away from the piece's
+    centroid for one that is nearly closed.
     """
-    outward = _unit(points - points.mean(axis=0, dtype=np.float64))
-    score = np.einsum("ij,ij->", normals, outward)
+    points = np.asarray(surface.points, dtype=np.float64)
+    piece = _pieces(surface)
+    size = np.bincount(piece)
+    centroids = np.stack([np.bincount(piece, axis) / size for axis in points.T], axis=1)
+    score = np.einsum("ij,ij->i", normals, _unit(points - centroids[piece]))
     if view is not None and len(view.position or view.direction or ()) == 3:
-        if view.parallel:
-            toward = np.asarray(view.direction)[np.newaxis]
-        else:
-            toward = np.asarray(view.position) - points
-        score += np.einsum("ij,ij->", normals, np.broadcast_to(_unit(toward), normals.shape))
-    return bool(score < 0)
+        toward = (
+            np.broadcast_to(np.asarray(view.direction), points.shape)
+            if view.parallel
+            else np.asarray(view.position) - points
+        )
+        score += np.einsum("ij,ij->i", normals, _unit(toward))
+    normals[(np.bincount(piece, score) < 0)[piece]] *= -1
+
+
+def _pieces(surface: pv.PolyData) -> NDArray[np.intp]:
+    """Return for each point the number of the connected piece it belongs to."""
+    joined = []
+    for cells in (surface.GetPolys(), surface.GetStrips()):
+        corners = pv.convert_array(cells.GetConnectivityArray())
+        last = np.zeros(len(corners), dtype=np.bool_)
+        last[pv.convert_array(cells.GetOffsetsArray())[1:] - 1] = True
+        follows = np.flatnonzero(~last)
+        joined.append(np.stack([corners[follows], corners[follows + 1]]))
+    a, b = np.concatenate(joined, axis=1)
+    graph = coo_array((np.ones(len(a), np.bool_), (a, b)), shape=(surface.n_points,) * 2)
+    _, piece = connected_components(graph, directed=False)
+    return np.asarray(piece, dtype=np.intp)
 
 
 def _unit(vectors: Array) -> Array:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 def progress(what: str, total: int, *, show: bool) -> Iterator[Callable[[int], None]]:
     """Yield a function that takes how much is done of a total."""
     if not show:
-        yield lambda done: None
+        yield lambda _: None
         return
     from rich.console import Console
     from rich.progress import Progress

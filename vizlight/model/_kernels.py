@@ -147,14 +147,13 @@ def power(x: Array, exponent: float, deficit: Array | None = None) -> Array:
 def _integer_power(x: Array, exponent: int) -> Array:
     if exponent == 0:
         return np.ones_like(x)
-    result: Array | None = None
-    while True:
+    result = None
+    while exponent > 1:
         if exponent & 1:
             result = x if result is None else result * x
         exponent >>= 1
-        if not exponent:
-            return result
         x = x * x
+    return x if result is None else result * x
 
 
 def diffuse(sine: Array, exponent: float, along: Array | None = None) -> Array:

@@ -15,7 +15,7 @@ from vizlight.filters import _mesh, _progress, _provenance
 from vizlight.scene import Scene
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from vizlight._block import Rows
     from vizlight.model.reflection import SpecularModel
@@ -64,8 +64,8 @@ def illuminate(
         A point array of n components that places the points in n-space; default the mesh's own.
     normals : str or array_like, optional
         Outward normals, a point array of n components or its values. Default: the mesh's active
-        normals, else those of its surface: outward if it is closed; if it is open, as a whole
-        to the side that rather is toward the eye and away from the centroid.
+        normals, else those of its surface: outward if it is closed; if it is open, each piece
+        as a whole rather toward the eye and away from its own centroid.
     conditioned : bool, default: False
         Tangents inherit the surface's self-shadow: diffuse and specular of each light times
         ``max(0, N . wi)`` (Banks 6).
@@ -163,7 +163,7 @@ def illuminate(
                     normals=job.normals,
                     precision=precision,
                     threads=threads,
-                    progress=lambda now, _, before=done: report(before + now),
+                    progress=_after(done, report),
                     model=model,
                     compensate=compensate,
                     two_sided=two_sided,
@@ -182,6 +182,10 @@ def illuminate(
             stacklevel=2,
         )
     return out
+
+
+def _after(done: int, report: Callable[[int], None]) -> Callable[[int, int], None]:
+    return lambda now, _: report(done + now)
 
 
 @dataclass(frozen=True)
@@ -271,7 +275,7 @@ def _refuse_overwriting(leaves: list[tuple[pv.DataSet, str]], name: str) -> None
 
 def _attach(mesh: pv.DataSet, shading: engine.Shading, name: str, told: str) -> None:
     prefix = "" if name == DEFAULT_NAME else f"{name}_"
-    data = mesh.point_data
+    data: Any = mesh.point_data
     for stale in (name + VALID, *(prefix + part for part in PARTS)):
         if stale in data and _provenance.key(name) in mesh.field_data:
             del data[stale]

@@ -1,0 +1,380 @@
+"""The command line: ``vizlight demo``, ``vizlight light FILE``, ``vizlight doctor``."""
+
+from __future__ import annotations
+
+import sys
+import time
+import warnings
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from cyclopts import App, CycloptsError, Parameter
+
+import vizlight
+from vizlight import _check
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+#: Exit codes: all well; done but for the picture, or a machine that lacks something; bad input.
+OK, LACKING, BAD_INPUT = 0, 1, 2
+
+app = App(
+    name="vizlight",
+    help="Light that makes scientific data legible.",
+    version=lambda: vizlight.__version__,
+    result_action="return_value",
+)
+Backend = Literal["egl", "osmesa"]
+Vector = Annotated[str, Parameter(allow_leading_hyphen=True)]
+Vectors = Annotated[list[str], Parameter(allow_leading_hyphen=True, negative=())]
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit code; errors are one line on standard error."""
+    try:
+        result = app(
+            None if arguments is None else list(arguments),
+            exit_on_error=False,
+            print_error=False,
+            help_on_error=False,
+        )
+    except CycloptsError as error:
+        return _fail(error)
+    except (TypeError, ValueError, OSError) as error:
+        return _fail(error)
+    except KeyboardInterrupt:
+        return _fail("interrupted")
+    return result if isinstance(result, int) else OK
+
+
+def _fail(error: object) -> int:
+    lines = [line.strip(" │╭╮╰╯─") for line in str(error).splitlines()]
+    sys.stderr.write(f"vizlight: {' '.join(line for line in lines if line)}\n")
+    return BAD_INPUT
+
+
+@app.command
+def demo(
+    *,
+    out: Path = Path("vizlight-demo"),
+    size: str = "1200x500",
+    backend: Backend | None = None,
+) -> int:
+    """Light a real flow: an isosurface of the rotating disk, lit as a surface and by its flow.
+
+    Writes flow.png and flow.vtp and prints a table: points, terms, time, and the error against
+    a float64 reference that shares no code with the engine.
+
+    Parameters
+    ----------
+    out
+        The folder to write to; made if it is missing.
+    size
+        Width and height of the picture in pixels.
+    backend
+        What draws: egl (the default) or osmesa.
+    """
+    from rich.console import Console
+    from rich.table import Table
+
+    from vizlight import demo, files
+
+    pixels = _size(size)
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise files.FileError(
+            _check.message("out", "a folder that can be made", f"'{out}' ({error.strerror})")
+        ) from error
+    lit, camera, rows, explained = demo.light_flow()
+    mesh = files.write_mesh(lit, out / "flow.vtp")
+    table = Table(title="Isosurface Temp = 600 of the rotating disk")
+    for heading in ("lit", "points", "terms", "time [ms]", "largest error"):
+        table.add_column(heading, justify="left" if heading in ("lit", "terms") else "right")
+    for row in rows:
+        table.add_row(
+            row.light, f"{row.points}", row.terms, f"{row.milliseconds:.2f}", f"{row.error:.1e}"
+        )
+    console = Console()
+    console.print(table)
+    console.print("Error: float32 luminance against plain NumPy in float64. The flow's plan:")
+    console.print(explained, highlight=False)
+    console.print(f"mesh     {mesh}", highlight=False)
+    return _draw(demo.panels(lit), out / "flow.png", camera=camera, size=pixels, backend=backend)
+
+
+@app.command
+def light(
+    file: Path,
+    /,
+    *,
+    contour: str | None = None,
+    level: float | None = None,
+    warp: str | None = None,
+    warp_factor: float = 1.0,
+    tangents: str | None = None,
+    average_cells: bool = False,
+    conditioned: bool = False,
+    two_sided: bool = False,
+    flip_normals: bool = False,
+    compensate: bool = True,
+    model: Literal["phong", "blinn"] = "phong",
+    light: Vectors | None = None,
+    lamp: Vectors | None = None,
+    headlight: bool = False,
+    ambient: float = 0.1,
+    diffuse: float = 0.5,
+    specular: float = 0.4,
+    shininess: float = 20.0,
+    color: str | None = None,
+    view: Vector = "1,1,1",
+    up: Vector | None = None,
+    parallel: bool = False,
+    zoom: float = 1.0,
+    depth_cue: bool = False,
+    components: bool = False,
+    precision: Literal["float32", "float64"] | None = None,
+    output: Annotated[list[Path], Parameter(name=["--output", "-o"], negative=())] | None = None,
+    surface: bool = True,
+    size: str = "1200x800",
+    background: str = "white",
+    line_width: float = 1.0,
+    backend: Backend | None = None,
+    explain: bool = False,
+    progress: bool = False,
+) -> int:
+    """Light a mesh from any file that PyVista reads, and write the lit mesh and a picture.
+
+    Parameters
+    ----------
+    file
+        The mesh.
+    contour
+        Light an isosurface of this point array; otherwise the outer surface.
+    level
+        The isosurface's value; default the middle of the range.
+    warp
+        Raise the points of a grid by this point array, such as a terrain's elevation.
+    warp_factor
+        Times the array's values.
+    tangents
+        A point array of vectors to light by; without, the surface's normals.
+    average_cells
+        Allow cell data, averaged to the points.
+    conditioned
+        Tangents inherit the surface's self-shadow.
+    two_sided
+        Light both sides of a surface.
+    flip_normals
+        Turn the normals over.
+    compensate
+        Give lines a surface's contrast.
+    model
+        Law of the highlight.
+    light
+        Direction x,y,z toward a light at infinity; may be repeated. Default: over the left
+        shoulder of the eye.
+    lamp
+        Position x,y,z of a light; may be repeated.
+    headlight
+        Add a light that follows the view.
+    ambient
+        Coefficient of the ambient term.
+    diffuse
+        Coefficient of the diffuse term.
+    specular
+        Coefficient of the specular term.
+    shininess
+        Power of the specular term.
+    color
+        A colour's name or #rrggbb; the picture is then in colour.
+    view
+        Direction x,y,z from the mesh toward the eye.
+    up
+        What is up in the picture; default z.
+    parallel
+        Parallel projection.
+    zoom
+        2 shows half the width.
+    depth_cue
+        Fade to half with depth.
+    components
+        Keep ambient, diffuse and specular as arrays.
+    precision
+        Default: that of the vectors.
+    output
+        A file: .png for the picture; .vtp, .vtu, .vtk, .vts, .vti or .vtr for the mesh; may be
+        repeated. Default: NAME-lit.vtp and NAME-lit.png here.
+    surface
+        Take the surface of a volume; --no-surface lights all its points.
+    size
+        Width and height of the picture in pixels.
+    background
+        Colour behind the mesh.
+    line_width
+        Of lines, in pixels.
+    backend
+        What draws: egl (the default) or osmesa.
+    explain
+        Say what is computed and what is skipped.
+    progress
+        Show a progress bar.
+    """
+    from vizlight import engine, files, render
+    from vizlight.filters import illuminate, provenance
+
+    if output is None:
+        output = [Path(f"{file.stem}-lit.vtp"), Path(f"{file.stem}-lit.png")]
+        if not surface and contour is None:
+            output.pop(0)
+    for path in output:
+        files.check_output(path, (".png", *files.SUFFIXES))
+    pictures = [path for path in output if path.suffix.lower() == ".png"]
+    meshes = [path for path in output if path not in pictures]
+    pixels = _size(size)
+    mesh = files.read_mesh(file)
+    if warp is not None:
+        mesh = files.warped(mesh, warp, warp_factor)
+    if surface or contour is not None:
+        mesh = files.surface_of(mesh, contour, level)
+    for path in meshes:
+        files.check_format(mesh, path)
+    camera = render.camera_on(
+        mesh.bounds,
+        _vector("view", view),
+        up=None if up is None else _vector("up", up),
+        parallel=parallel,
+        zoom=zoom,
+    )
+    lights = [vizlight.Light(direction=_vector("light", text)) for text in light or ()]
+    lights += [vizlight.Light(position=_vector("lamp", text)) for text in lamp or ()]
+    if headlight:
+        lights.append(vizlight.Light.headlight())
+    scene = vizlight.Scene(
+        lights=lights or [vizlight.Light(direction=render.over_shoulder(camera))],
+        material=vizlight.Material(
+            ambient=ambient, diffuse=diffuse, specular=specular, shininess=shininess, color=color
+        ),
+        view=vizlight.View.from_camera(camera),
+        depth_cue=vizlight.DepthCue(back_scale=0.5) if depth_cue else None,
+    )
+    start = time.perf_counter()
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", UserWarning)
+        lit = illuminate(
+            mesh,
+            scene,
+            tangents=tangents,
+            conditioned=conditioned,
+            two_sided=two_sided,
+            flip_normals=flip_normals,
+            compensate=compensate,
+            model=model,
+            average_cells=average_cells,
+            components=components,
+            precision=precision,
+            progress_bar=progress,
+        )
+    seconds = time.perf_counter() - start
+    for warning in caught:
+        sys.stderr.write(f"vizlight: {warning.message}\n")
+    told = provenance(lit)
+    terms = " + ".join(told["terms"])
+    _say(f"{lit.n_points} points lit in {seconds:.3f} s, {told['precision']}: {terms}")
+    if explain:
+        given = lit.point_data[tangents].shape[1] // 3 if tangents in lit.point_data else None
+        plan = engine.plan(
+            vizlight.Scene.from_dict(told["scene"]),
+            k=given,
+            normals=given is None or conditioned,
+            dtype=told["precision"],
+            model=model,
+            compensate=compensate,
+            two_sided=two_sided,
+        )
+        _say(plan.explain())
+    for path in meshes:
+        _say(f"mesh     {files.write_mesh(lit, path)}")
+    codes = [
+        _draw(
+            render.Panel(lit, "rgb" if scene.colored else "luminance"),
+            path,
+            camera=camera,
+            size=pixels,
+            background=background,
+            line_width=line_width,
+            backend=backend,
+        )
+        for path in pictures
+    ]
+    return max(codes, default=OK)
+
+
+@app.command
+def doctor() -> int:
+    """Say what is installed, what draws here, what is missing and how to get it."""
+    import platform
+    from importlib.metadata import PackageNotFoundError, version
+
+    from rich.console import Console
+    from rich.table import Table
+
+    from vizlight import data, render
+
+    table = Table("part", "found", title="vizlight doctor")
+    table.add_row("python", f"{platform.python_version()}, {platform.platform()}")
+    for package in ("vizlight", "numpy", "scipy", "vtk", "pyvista"):
+        try:
+            table.add_row(package, version(package))
+        except PackageNotFoundError:
+            table.add_row(package, f"missing (try: pip install {package})")
+    table.add_row("data", str(data.example_path()))
+    backends: tuple[Backend, ...] = ("egl", "osmesa")
+    probes = [render.probe(backend) for backend in backends]
+    for found in probes:
+        table.add_row(f"draws by {found.backend}", found.detail)
+    Console().print(table)
+    try:
+        render.choose_backend()
+    except render.BackendError as error:
+        sys.stderr.write(f"vizlight: {error}\n")
+        return LACKING
+    return OK
+
+
+def _draw(panels: Any, path: Path, **options: Any) -> int:
+    """Draw a picture; where nothing draws say so and keep what was written."""
+    from vizlight import render
+
+    try:
+        _say(f"picture  {render.save_png(panels, path, **options)}")
+    except render.BackendError as error:
+        sys.stderr.write(f"vizlight: {error}\n")
+        return LACKING
+    return OK
+
+
+def _say(text: str) -> None:
+    sys.stdout.write(f"{text}\n")
+
+
+def _vector(name: str, text: str) -> tuple[float, ...]:
+    try:
+        values = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        values = ()
+    if len(values) != 3:
+        raise ValueError(_check.message(f"--{name}", "three numbers x,y,z", repr(text)))
+    return values
+
+
+def _size(text: str) -> tuple[int, int]:
+    width, _, height = text.lower().partition("x")
+    if not (width.isdigit() and height.isdigit() and int(width) > 0 and int(height) > 0):
+        raise ValueError(_check.message("--size", "WIDTHxHEIGHT in pixels", repr(text)))
+    return int(width), int(height)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
