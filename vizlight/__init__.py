@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from vizlight.data import example_path, load_example
     from vizlight.filters import illuminate, provenance
-    from vizlight.scene import DepthCue, Light, Material, Scene, View
+    from vizlight.light import Light
+    from vizlight.scene import DepthCue, Material, Scene, View
 
 _HOMES = {
     "DepthCue": "vizlight.scene",
-    "Light": "vizlight.scene",
+    "Light": "vizlight.light",
     "Material": "vizlight.scene",
     "Scene": "vizlight.scene",
     "View": "vizlight.scene",

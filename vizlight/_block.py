@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
+from vizlight.light import NO_ATTENUATION, WHITE, Light
 from vizlight.model import _kernels, falloff, frames
-from vizlight.scene import NO_ATTENUATION, WHITE, Light, View
+from vizlight.scene import View
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -4,12 +4,20 @@ from __future__ import annotations
 
 import math
 import numbers
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
+
+    VectorLike: TypeAlias = Sequence[float] | NDArray[np.floating[Any]]
+    ColorLike: TypeAlias = str | VectorLike | Any
+
+Vector = tuple[float, ...]
+Color = tuple[float, float, float]
 
 
 def message(name: str, expected: str, got: object, remedy: str = "") -> str:
@@ -110,7 +118,7 @@ def integer(name: str, value: object, *, low: int) -> int:
     return int(value)
 
 
-def vector(name: str, value: object, *, direction: bool = False) -> tuple[float, ...]:
+def vector(name: str, value: object, *, direction: bool = False) -> Vector:
     """Return one finite vector as a tuple of floats.
 
     With ``direction=True`` its length must not be zero; it is returned as it came.
@@ -134,7 +142,55 @@ def vector(name: str, value: object, *, direction: bool = False) -> tuple[float,
     return result
 
 
-def rgb(name: str, value: object) -> tuple[float, float, float]:
+def optional_vector(name: str, value: object, *, direction: bool = False) -> Vector | None:
+    """Return :func:`vector` of a value, or None."""
+    return None if value is None else vector(name, value, direction=direction)
+
+
+def color(name: str, value: Any) -> Color | None:
+    """Return three channels from numbers, a colour's name or hex, a ``pyvista.Color``, or None.
+
+    Raises
+    ------
+    TypeError
+        If the value does not hold real numbers.
+    ValueError
+        If it is no colour.
+    """
+    if value is None:
+        return None
+    if isinstance(value, str):
+        import pyvista as pv
+
+        try:
+            value = pv.Color(value).float_rgb
+        except ValueError as error:
+            raise ValueError(
+                message(name, "a colour's name, '#rrggbb' or (r, g, b)", repr(value))
+            ) from error
+    return rgb(name, getattr(value, "float_rgb", value))
+
+
+def instance(name: str, value: object, kind: type, *, optional: bool = False) -> None:
+    """Check that a value is of one of this package's classes, or None where that may be.
+
+    Raises
+    ------
+    TypeError
+        If it is not.
+    """
+    if not (isinstance(value, kind) or (optional and value is None)):
+        expected = f"a vizlight.{kind.__name__}" + (" or None" if optional else "")
+        raise TypeError(message(name, expected, describe(value)))
+
+
+def set_fields(frozen: object, **values: object) -> None:
+    """Set the validated fields of a frozen dataclass that is being made."""
+    for name, value in values.items():
+        object.__setattr__(frozen, name, value)
+
+
+def rgb(name: str, value: object) -> Color:
     """Return a colour as three linear channels of at least 0.
 
     Raises

@@ -10,7 +10,8 @@ import numpy as np
 from vizlight import engine, files, render
 from vizlight.data import load_example
 from vizlight.filters import illuminate
-from vizlight.scene import Light, Scene, View
+from vizlight.light import Light
+from vizlight.scene import Scene, View
 from vizlight.studies import reference
 
 LEVEL = 600.0

@@ -120,11 +120,11 @@ def shade(
 
     Notes
     -----
-    Absolute error of the luminance for unit coefficients and one light of intensity 1, in eps
-    of the precision: at most ``24 max(1, p/2)`` for the diffuse and ``32 max(1, s/2)``
-    (s up to 64) or ``64 sqrt(s)`` for the specular term; Blinn's times ``1 / |wi + wo|``. For
-    surfaces given by normals these bounds hold as well. Memory beyond the output is about
-    thirty arrays of a block (half a megabyte each) per thread.
+    The absolute error of the diffuse and the specular term, for one light of intensity 1 and
+    coefficients of 1, is within the bounds of :func:`vizlight.model.reflection.diffuse` and
+    :func:`~vizlight.model.reflection.specular`; places and lengths of vectors add nothing to it.
+    Memory beyond the output: about thirty arrays of a block, each of half a megabyte, for each
+    thread, whatever N.
     """
     points = _rows("points", points)
     if len(points.shape) != 2 or points.shape[1] < 2:

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any, get_args
 import numpy as np
 
 from vizlight import _check
+from vizlight.light import NO_ATTENUATION
 from vizlight.model import brightness
 from vizlight.model._kernels import DEFICIT_FROM
 from vizlight.model.reflection import SpecularModel
-from vizlight.scene import NO_ATTENUATION, Scene
+from vizlight.scene import Scene
 
 if TYPE_CHECKING:
     from numpy.typing import DTypeLike
@@ -152,8 +153,7 @@ def plan(
         If the scene's vectors are not of n components, a view is needed and missing, or an
         option is unknown.
     """
-    if not isinstance(scene, Scene):
-        raise TypeError(_check.message("scene", "a vizlight.Scene", _check.describe(scene)))
+    _check.instance("scene", scene, Scene)
     if model not in get_args(SpecularModel):
         raise ValueError(_check.message("model", "'phong' or 'blinn'", repr(model)))
     kind = np.dtype(dtype)

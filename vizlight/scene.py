@@ -6,156 +6,16 @@ Directions point away from the lit point: toward the light, toward the eye.
 from __future__ import annotations
 
 import dataclasses
-import warnings
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 from vizlight import _check
-from vizlight.model import falloff
+from vizlight.light import Light, from_vtk
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Mapping
 
-    import numpy as np
-    from numpy.typing import NDArray
-
-    VectorLike: TypeAlias = Sequence[float] | NDArray[np.floating[Any]]
-    ColorLike: TypeAlias = str | VectorLike | Any
-
-Vector = tuple[float, ...]
-Color = tuple[float, float, float]
-WHITE: Color = (1.0, 1.0, 1.0)
-NO_ATTENUATION = (1.0, 0.0, 0.0)
-
-
-def _set(instance: object, **values: object) -> None:
-    """Set validated fields of a frozen dataclass."""
-    for name, value in values.items():
-        object.__setattr__(instance, name, value)
-
-
-def _instance(name: str, value: object, kind: type, *, optional: bool = False) -> None:
-    if not (isinstance(value, kind) or (optional and value is None)):
-        expected = f"a vizlight.{kind.__name__}" + (" or None" if optional else "")
-        raise TypeError(_check.message(name, expected, _check.describe(value)))
-
-
-def _vector(name: str, value: object, *, direction: bool = False) -> Vector | None:
-    return None if value is None else _check.vector(name, value, direction=direction)
-
-
-def _color(name: str, value: Any) -> Color | None:
-    """Return three channels from numbers, a colour's name or hex, or a ``pyvista.Color``."""
-    if value is None:
-        return None
-    if isinstance(value, str):
-        import pyvista as pv
-
-        try:
-            value = pv.Color(value).float_rgb
-        except ValueError as error:
-            raise ValueError(
-                _check.message(name, "a colour's name, '#rrggbb' or (r, g, b)", repr(value))
-            ) from error
-    return _check.rgb(name, getattr(value, "float_rgb", value))
-
-
-@dataclass(frozen=True, init=False)
-class Light:
-    """A point light, far away or near.
-
-    Parameters
-    ----------
-    direction : vector of n components, optional
-        Toward the light, for a light at infinity; any length but 0.
-    position : vector of n components, optional
-        Where the light stands, in the unit of the mesh.
-    intensity : float, default: 1.0
-        Unitless, 0 or more.
-    attenuation : (c1, c2, c3), default: (1, 0, 0)
-        Coefficients of ``min(1, 1/(c1 + c2 d + c3 d^2))``; only a positional light has a
-        distance d. (Lecture, effect of distance.)
-    color : (r, g, b) or str, optional
-        Channels that scale the intensity in the array ``rgb``; luminance has no colour.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If a value does not fit, or not exactly one of direction and position is given.
-
-    See Also
-    --------
-    Light.headlight : a light that follows the view.
-    """
-
-    direction: Vector | None
-    position: Vector | None
-    intensity: float
-    attenuation: tuple[float, float, float]
-    color: Color | None
-    follows_view: bool
-
-    def __init__(
-        self,
-        *,
-        direction: VectorLike | None = None,
-        position: VectorLike | None = None,
-        intensity: float = 1.0,
-        attenuation: VectorLike = NO_ATTENUATION,
-        color: ColorLike | None = None,
-        follows_view: bool = False,
-    ) -> None:
-        _set(
-            self,
-            direction=_vector("direction", direction, direction=True),
-            position=_vector("position", position),
-            intensity=_check.number("intensity", intensity, low=0.0),
-            attenuation=falloff.attenuation("attenuation", attenuation),
-            color=_color("color", color),
-            follows_view=bool(follows_view),
-        )
-        given = sum(x is not None for x in (self.direction, self.position))
-        if given != (0 if self.follows_view else 1):
-            raise ValueError(
-                _check.message(
-                    "Light",
-                    "either direction= (toward the light) or position=",
-                    "both" if given == 2 else "neither",
-                    "Light.headlight() follows the view",
-                )
-            )
-        if self.direction is not None and self.attenuation != NO_ATTENUATION:
-            raise ValueError(
-                _check.message(
-                    "attenuation",
-                    "(1, 0, 0) for a light at infinity, which has no distance",
-                    self.attenuation,
-                    "give the light a position=",
-                )
-            )
-
-    @classmethod
-    def headlight(cls, *, intensity: float = 1.0, color: ColorLike | None = None) -> Light:
-        """Return a light that follows the view.
-
-        Under a parallel view, or a perspective one with a known axis, it shines along that axis
-        from infinity, as VTK's does; under any other perspective view it sits in the eye.
-        """
-        return cls(intensity=intensity, color=color, follows_view=True)
-
-    def seen_from(self, view: View | None) -> Light:
-        """Return the light with its place fixed: a headlight's is taken from the view."""
-        if not self.follows_view:
-            return self
-        if view is None:
-            raise ValueError(
-                _check.message("view", "a View, which the headlight follows", None, "pass view=")
-            )
-        if view.direction is not None:
-            place: dict[str, Any] = {"direction": view.direction}
-        else:
-            place = {"position": view.position}
-        return dataclasses.replace(self, follows_view=False, **place)
+    from vizlight._check import Color, ColorLike, Vector, VectorLike
 
 
 @dataclass(frozen=True, init=False)
@@ -197,14 +57,14 @@ class Material:
         color: ColorLike | None = None,
         specular_color: ColorLike | None = None,
     ) -> None:
-        _set(
+        _check.set_fields(
             self,
             ambient=_check.number("ambient", ambient, low=0.0),
             diffuse=_check.number("diffuse", diffuse, low=0.0),
             specular=_check.number("specular", specular, low=0.0),
             shininess=_check.number("shininess", shininess, low=0.0),
-            color=_color("color", color),
-            specular_color=_color("specular_color", specular_color),
+            color=_check.color("color", color),
+            specular_color=_check.color("specular_color", specular_color),
         )
 
 
@@ -240,8 +100,8 @@ class View:
         direction: VectorLike | None = None,
         parallel: bool | None = None,
     ) -> None:
-        position = _vector("position", position)
-        direction = _vector("direction", direction, direction=True)
+        position = _check.optional_vector("position", position)
+        direction = _check.optional_vector("direction", direction, direction=True)
         parallel = position is None if parallel is None else bool(parallel)
         if position is None and direction is None:
             raise ValueError(
@@ -263,7 +123,7 @@ class View:
                     "direction", f"{len(position)} components, as position has", len(direction)
                 )
             )
-        _set(self, position=position, direction=direction, parallel=parallel)
+        _check.set_fields(self, position=position, direction=direction, parallel=parallel)
 
     @classmethod
     def from_camera(cls, camera: Any) -> View:
@@ -332,14 +192,14 @@ class DepthCue:
         color: ColorLike | None = None,
         smooth: bool = False,
     ) -> None:
-        _set(
+        _check.set_fields(
             self,
             front=None if front is None else _check.number("front", front),
             back=None if back is None else _check.number("back", back),
             front_scale=_check.number("front_scale", front_scale, low=0.0, high=1.0),
             back_scale=_check.number("back_scale", back_scale, low=0.0, high=1.0),
             cue=_check.number("cue", cue, low=0.0),
-            color=_color("color", color),
+            color=_check.color("color", color),
             smooth=bool(smooth),
         )
         if self.front is not None and self.front == self.back:
@@ -389,17 +249,17 @@ class Scene:
         lights = Light.headlight() if lights is None else lights
         lights = (lights,) if isinstance(lights, Light) else tuple(lights)
         for light in lights:
-            _instance("lights", light, Light)
-        _instance("material", material, Material, optional=True)
-        _instance("view", view, View, optional=True)
-        _instance("depth_cue", depth_cue, DepthCue, optional=True)
-        _set(
+            _check.instance("lights", light, Light)
+        _check.instance("material", material, Material, optional=True)
+        _check.instance("view", view, View, optional=True)
+        _check.instance("depth_cue", depth_cue, DepthCue, optional=True)
+        _check.set_fields(
             self,
             lights=lights,
             material=Material() if material is None else material,
             view=view,
             ambient_intensity=_check.number("ambient_intensity", ambient_intensity, low=0.0),
-            ambient_color=_color("ambient_color", ambient_color),
+            ambient_color=_check.color("ambient_color", ambient_color),
             depth_cue=depth_cue,
         )
         sizes = {
@@ -481,43 +341,5 @@ class Scene:
             )
         camera = plotter.camera
         fields.setdefault("view", View.from_camera(camera))
-        fields.setdefault("lights", list(_lights_of(renderer.GetLights(), camera)))
+        fields.setdefault("lights", list(from_vtk(renderer.GetLights(), camera)))
         return cls(**fields)
-
-
-def _lights_of(lights: Iterable[Any], camera: Any) -> Iterable[Light]:
-    for light in lights:
-        if not light.GetSwitch():
-            continue
-        channels = tuple(light.GetDiffuseColor())
-        common: dict[str, Any] = {
-            "intensity": light.GetIntensity(),
-            "color": None if channels == WHITE else channels,
-        }
-        if light.LightTypeIsHeadlight():
-            yield Light.headlight(**common)
-            continue
-        if light.LightTypeIsCameraLight():
-            matrix = camera.GetCameraLightTransformMatrix()
-            position = _transform(matrix, light.GetPosition())
-            target = _transform(matrix, light.GetFocalPoint())
-        else:
-            position = tuple(light.GetTransformedPosition())
-            target = tuple(light.GetTransformedFocalPoint())
-        if light.GetPositional():
-            if light.GetConeAngle() < 90:
-                warnings.warn(
-                    f"a spotlight of cone angle {light.GetConeAngle():g} degrees lights in all "
-                    "directions in vizlight",
-                    stacklevel=4,
-                )
-            yield Light(position=position, attenuation=light.GetAttenuationValues(), **common)
-        else:
-            toward = tuple(p - t for p, t in zip(position, target, strict=True))
-            yield Light(direction=toward, **common)
-
-
-def _transform(matrix: Any, point: Vector) -> Vector:
-    x = (*point, 1.0)
-    rows = [sum(matrix.GetElement(i, j) * x[j] for j in range(4)) for i in range(4)]
-    return tuple(row / rows[3] for row in rows[:3])

@@ -130,8 +130,7 @@ def illuminate(
     options = dict(locals())
     for own in ("mesh", "scene", "threads", "inplace", "progress_bar"):
         del options[own]
-    if not isinstance(scene, Scene):
-        raise TypeError(_check.message("scene", "a vizlight.Scene", _check.describe(scene)))
+    _check.instance("scene", scene, Scene)
     if not isinstance(mesh, pv.DataSet | pv.MultiBlock):
         remedy = "read files by pyvista.read, wrap VTK objects by pyvista.wrap"
         raise TypeError(_check.message("mesh", "a PyVista mesh", type(mesh).__name__, remedy))

@@ -30,19 +30,7 @@ def dot(a: Array, b: Array) -> Array:
 
 def length(v: Array) -> Array:
     """Return lengths, right for any scale: NaN where a component is not finite."""
-    with np.errstate(over="ignore", under="ignore", invalid="ignore"):
-        square = dot(v, v)
-    info = np.finfo(v.dtype)
-    low, high = info.tiny / info.eps, info.max
-    if square.size == 0 or (square.min() >= low and square.max() <= high):
-        return np.sqrt(square, out=square)
-    extreme = ~((square >= low) & (square <= high))
-    result: Array = np.sqrt(np.where(extreme, 1, square))
-    scaled, exponent, finite = _rescale(v[:, extreme])
-    with np.errstate(over="ignore", under="ignore"):
-        rest = np.ldexp(np.sqrt(dot(scaled, scaled)), exponent)
-    result[extreme] = np.where(finite, rest, np.nan)
-    return result
+    return _length(v)[0]
 
 
 def unit(v: Array) -> tuple[Array, Array]:
@@ -51,18 +39,32 @@ def unit(v: Array) -> tuple[Array, Array]:
     A vector that is zero or not finite becomes the zero vector; its length is 0 or NaN, so
     ``length > 0`` is the mask of good ones.
     """
-    size = length(v)
-    info = np.finfo(v.dtype)
-    low, high = np.sqrt(info.tiny / info.eps), np.sqrt(info.max)
-    if size.size == 0 or (size.min() >= low and size.max() <= high):
+    size, extreme = _length(v)
+    if extreme is None:
         return v / size, size
-    extreme = ~((size >= low) & (size <= high))
-    result = np.empty(np.broadcast_shapes(v.shape, size.shape), dtype=v.dtype)
+    result = np.empty(v.shape, dtype=v.dtype)
     np.divide(v, size, out=result, where=~extreme)
     scaled, _, _ = _rescale(v[:, extreme])
     scaled_size = np.sqrt(dot(scaled, scaled))
     result[:, extreme] = scaled / np.where(scaled_size > 0, scaled_size, 1)
     return result, size
+
+
+def _length(v: Array) -> tuple[Array, NDArray[np.bool_] | None]:
+    """Return lengths, and a mask of vectors whose squares leave the range of the type."""
+    with np.errstate(over="ignore", under="ignore", invalid="ignore"):
+        square = dot(v, v)
+    info = np.finfo(v.dtype)
+    low, high = info.tiny / info.eps, info.max
+    if square.size == 0 or (square.min() >= low and square.max() <= high):
+        return np.sqrt(square, out=square), None
+    extreme = ~((square >= low) & (square <= high))
+    result: Array = np.sqrt(np.where(extreme, 1, square))
+    scaled, exponent, finite = _rescale(v[:, extreme])
+    with np.errstate(over="ignore", under="ignore"):
+        rest = np.ldexp(np.sqrt(dot(scaled, scaled)), exponent)
+    result[extreme] = np.where(finite, rest, np.nan)
+    return result, extreme
 
 
 def _rescale(v: Array) -> tuple[Array, NDArray[np.intc], NDArray[np.bool_]]:
@@ -113,6 +115,8 @@ def _reject(x: Array, frame: Array) -> Array:
 
 def coefficients(x: Array, frame: Array) -> Array:
     """Return the tangential coefficients ``(k, B)`` of x."""
+    if len(frame) == 1:
+        return dot(frame[0], x)[np.newaxis]
     return np.stack([dot(row, x) for row in frame])
 
 
@@ -157,9 +161,9 @@ def _integer_power(x: Array, exponent: int) -> Array:
 
 
 def diffuse(sine: Array, exponent: float, along: Array | None = None) -> Array:
-    """Return sin(a)^p; ``along``, the tangential coefficients, sharpens p > 64."""
+    """Return sin(a)^p; ``along``, the tangential coefficients, sharpens large p by cos^2."""
     if exponent > DEFICIT_FROM and along is not None:
-        return power(sine, exponent / 2, np.minimum(dot(along, along), 1))
+        return power(sine * sine, exponent / 2, dot(along, along))
     return power(sine, exponent)
 
 

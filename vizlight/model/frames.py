@@ -118,8 +118,8 @@ def split(direction: ArrayLike, frame: ArrayLike, /) -> tuple[Any, Any]:
 
     Notes
     -----
-    The absolute error is at most ``6 eps |x|`` (k = 1 to 3, n up to 8), also where x lies
-    along the tangent: the residual is measured, not ``sqrt(1 - cos^2)``.
+    Absolute error at most ``6 eps |x|`` (k up to 7, n up to 8), also where x lies along the
+    tangent: the residual is measured, not ``sqrt(1 - cos^2)``.
     Source: Banks, section 2 (parts in T and N).
     """
     rows = _layout.as_frame(frame)

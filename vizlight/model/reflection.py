@@ -42,9 +42,10 @@ def diffuse(wi: ArrayLike, frame: ArrayLike, /, *, exponent: float = 1.0) -> Any
 
     Notes
     -----
-    ``sin(a)^p`` with ``sin(a) = |wi_N|``. Absolute error at most ``6 eps max(1, p/2)`` for
-    p up to 64 and ``8 eps sqrt(p)`` above. Source: Banks (1) and (5). In codimension 1 with
-    p = 1 this is two-sided Lambert.
+    ``sin(a)^p`` with ``sin(a) = |wi_N|``; in codimension 1 with p = 1 two-sided Lambert.
+    Source: Banks (1) and (5). Absolute error at most ``(4 + 2 p) eps`` for p from 1 to 128 and
+    ``(8 + sqrt(p)/8) eps`` above. For p < 1 the power is infinitely steep at sin(a) = 0, and
+    the bound is ``(4 eps)^p``.
     """
     exponent = _check.number("exponent", exponent, low=0.0)
     rows = _layout.as_frame(frame)
@@ -100,8 +101,8 @@ def specular(
     exact near the highlight.
     Blinn: h = wi + wo normalised, ``|h_N|``; 0 where wi = -wo, which has no half vector.
 
-    Absolute error at most ``8 eps max(1, s/2)`` for s up to 64 and ``16 eps sqrt(s)`` above;
-    for Blinn the same times ``1 / |wi + wo|``.
+    Absolute error at most ``(4 + s) eps`` for s up to 128 and ``(8 + 3 sqrt(s)) eps`` above;
+    for Blinn times ``1 / |wi + wo|`` where that is more than 1.
     Source: Banks (2) and (3); Fisher and Woo's N.H, generalised.
     """
     if model not in get_args(SpecularModel):

@@ -1,0 +1,129 @@
+"""The formulas a second time: one point at a time, mpmath at 50 digits, no code shared.
+
+Inputs are taken as the exact numbers that the floats are; frames and directions are made
+orthonormal here, in 50 digits.
+"""
+
+from __future__ import annotations
+
+import math
+
+import mpmath
+import numpy as np
+
+mp = mpmath.mp.clone()
+mp.dps = 50
+
+
+def exact(values):
+    """Return nested lists of exact numbers."""
+    if np.ndim(values) == 0:
+        return mp.mpf(float(values))
+    return [exact(v) for v in values]
+
+
+def dot(a, b):
+    return mp.fsum(x * y for x, y in zip(a, b, strict=True))
+
+
+def unit(v):
+    size = mp.sqrt(dot(v, v))
+    return [x / size for x in v] if size else v
+
+
+def orthonormal(rows):
+    """Return orthonormal rows spanning the rows that are not zero."""
+    frame = []
+    for row in rows:
+        for t in frame:
+            c = dot(row, t)
+            row = [x - c * y for x, y in zip(row, t, strict=True)]
+        if any(row):
+            frame.append(unit(row))
+    return frame
+
+
+def split(x, frame):
+    """Return tangential coefficients and the length of the rest."""
+    along = [dot(x, t) for t in frame]
+    rest = list(x)
+    for c, t in zip(along, frame, strict=True):
+        rest = [r - c * y for r, y in zip(rest, t, strict=True)]
+    return along, mp.sqrt(dot(rest, rest))
+
+
+def diffuse(wi, frame, exponent):
+    """sin(a)^p."""
+    _, sine = split(unit(exact(wi)), orthonormal(exact(frame)))
+    return sine ** exact(exponent)
+
+
+def specular(wi, wo, frame, shininess, model):
+    """max(0, |wi_N||wo_N| - wi_T.wo_T)^s, or |h_N|^q."""
+    wi, wo, frame = unit(exact(wi)), unit(exact(wo)), orthonormal(exact(frame))
+    if model == "phong":
+        along_i, sine_i = split(wi, frame)
+        along_o, sine_o = split(wo, frame)
+        return max(mp.mpf(0), sine_i * sine_o - dot(along_i, along_o)) ** exact(shininess)
+    half = [x + y for x, y in zip(wi, wo, strict=True)]
+    if not any(half):
+        return mp.mpf(0)
+    return split(unit(half), frame)[1] ** exact(shininess)
+
+
+def mean_intensity(k, n, p):
+    """I(k, n, p) by the gamma functions themselves."""
+    c, p = n - k, exact(p)
+    log = (
+        mp.loggamma(mp.mpf(n) / 2)
+        + mp.loggamma((c + p) / 2)
+        - mp.loggamma(mp.mpf(c) / 2)
+        - mp.loggamma((n + p) / 2)
+    )
+    return mp.exp(log)
+
+
+def eps(dtype):
+    return float(np.finfo(dtype).eps)
+
+
+def units(value, reference, dtype):
+    """Return |value - reference| in eps of the type."""
+    return float(abs(exact(value) - reference)) / eps(dtype)
+
+
+def frames(random, count, k, n, dtype):
+    """Return random orthonormal frames, rounded to the type."""
+    q, _ = np.linalg.qr(random.standard_normal((count, n, k)))
+    return np.swapaxes(q, 1, 2).astype(dtype)
+
+
+def hard_directions(random, frame, dtype):
+    """Return directions that are hard for a frame (k, n): in, near and across its space."""
+    k, n = frame.shape
+    tangent = random.standard_normal(k) @ frame.astype(float)
+    tangent /= np.linalg.norm(tangent)
+    other = random.standard_normal(n)
+    normal = other - frame.T.astype(float) @ (frame.astype(float) @ other)
+    normal /= np.linalg.norm(normal)
+    found = [other / np.linalg.norm(other), tangent, -tangent, normal]
+    for step in (1e-2, 1e-4, 1e-8, 1e-12):
+        found += [tangent + step * normal, normal + step * tangent]
+    found = [np.asarray(v, dtype=dtype) for v in found]
+    nudged = found[1].copy()
+    nudged[0] = np.nextafter(nudged[0], dtype(math.inf))
+    return [*found, nudged]
+
+
+def reflections(random, wi, frame, dtype):
+    """Return eyes for a light: any, near the reflection of wi, opposite, and at wi itself."""
+    f, w = frame.astype(float), wi.astype(float)
+    along = f.T @ (f @ w)
+    other = random.standard_normal(len(w))
+    normal = other - f.T @ (f @ other)
+    normal *= np.linalg.norm(w - along) / np.linalg.norm(normal)
+    mirror = normal - along
+    found = [other / np.linalg.norm(other), mirror, -w, w]
+    found += [mirror + step * other for step in (1e-1, 1e-3, 1e-5)]
+    found += [-w + 1e-3 * other]
+    return [np.asarray(v, dtype=dtype) for v in found]

@@ -1,0 +1,157 @@
+"""A point light, far away or near, given by plain values or read from a VTK light."""
+
+from __future__ import annotations
+
+import dataclasses
+import warnings
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from vizlight import _check
+from vizlight.model import falloff
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from vizlight._check import Color, ColorLike, Vector, VectorLike
+    from vizlight.scene import View
+
+WHITE = (1.0, 1.0, 1.0)
+NO_ATTENUATION = (1.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, init=False)
+class Light:
+    """A point light, far away or near.
+
+    Parameters
+    ----------
+    direction : vector of n components, optional
+        Toward the light, for a light at infinity; any length but 0.
+    position : vector of n components, optional
+        Where the light stands, in the unit of the mesh.
+    intensity : float, default: 1.0
+        Unitless, 0 or more.
+    attenuation : (c1, c2, c3), default: (1, 0, 0)
+        Coefficients of ``min(1, 1/(c1 + c2 d + c3 d^2))``; only a positional light has a
+        distance d. (Lecture, effect of distance.)
+    color : (r, g, b) or str, optional
+        Channels that scale the intensity in the array ``rgb``; luminance has no colour.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a value does not fit, or not exactly one of direction and position is given.
+
+    See Also
+    --------
+    Light.headlight : a light that follows the view.
+    """
+
+    direction: Vector | None
+    position: Vector | None
+    intensity: float
+    attenuation: tuple[float, float, float]
+    color: Color | None
+    follows_view: bool
+
+    def __init__(
+        self,
+        *,
+        direction: VectorLike | None = None,
+        position: VectorLike | None = None,
+        intensity: float = 1.0,
+        attenuation: VectorLike = NO_ATTENUATION,
+        color: ColorLike | None = None,
+        follows_view: bool = False,
+    ) -> None:
+        _check.set_fields(
+            self,
+            direction=_check.optional_vector("direction", direction, direction=True),
+            position=_check.optional_vector("position", position),
+            intensity=_check.number("intensity", intensity, low=0.0),
+            attenuation=falloff.attenuation("attenuation", attenuation),
+            color=_check.color("color", color),
+            follows_view=bool(follows_view),
+        )
+        given = sum(x is not None for x in (self.direction, self.position))
+        if given != (0 if self.follows_view else 1):
+            raise ValueError(
+                _check.message(
+                    "Light",
+                    "either direction= (toward the light) or position=",
+                    "both" if given == 2 else "neither",
+                    "Light.headlight() follows the view",
+                )
+            )
+        if self.direction is not None and self.attenuation != NO_ATTENUATION:
+            raise ValueError(
+                _check.message(
+                    "attenuation",
+                    "(1, 0, 0) for a light at infinity, which has no distance",
+                    self.attenuation,
+                    "give the light a position=",
+                )
+            )
+
+    @classmethod
+    def headlight(cls, *, intensity: float = 1.0, color: ColorLike | None = None) -> Light:
+        """Return a light that follows the view.
+
+        Under a parallel view, or a perspective one with a known axis, it shines along that axis
+        from infinity, as VTK's does; under any other perspective view it sits in the eye.
+        """
+        return cls(intensity=intensity, color=color, follows_view=True)
+
+    def seen_from(self, view: View | None) -> Light:
+        """Return the light with its place fixed: a headlight's is taken from the view."""
+        if not self.follows_view:
+            return self
+        if view is None:
+            raise ValueError(
+                _check.message("view", "a View, which the headlight follows", None, "pass view=")
+            )
+        if view.direction is not None:
+            place: dict[str, Any] = {"direction": view.direction}
+        else:
+            place = {"position": view.position}
+        return dataclasses.replace(self, follows_view=False, **place)
+
+
+def from_vtk(lights: Iterable[Any], camera: Any) -> Iterable[Light]:
+    """Yield the VTK lights that are on; camera lights stay where the camera now has them."""
+    for light in lights:
+        if not light.GetSwitch():
+            continue
+        channels = tuple(light.GetDiffuseColor())
+        common: dict[str, Any] = {
+            "intensity": light.GetIntensity(),
+            "color": None if channels == WHITE else channels,
+        }
+        if light.LightTypeIsHeadlight():
+            yield Light.headlight(**common)
+            continue
+        if light.LightTypeIsCameraLight():
+            matrix = camera.GetCameraLightTransformMatrix()
+            position = _transform(matrix, light.GetPosition())
+            target = _transform(matrix, light.GetFocalPoint())
+        else:
+            position = tuple(light.GetTransformedPosition())
+            target = tuple(light.GetTransformedFocalPoint())
+        if light.GetPositional():
+            if light.GetConeAngle() < 90:
+                warnings.warn(
+                    f"a spotlight of cone angle {light.GetConeAngle():g} degrees lights in all "
+                    "directions in vizlight",
+                    stacklevel=4,
+                )
+            yield Light(position=position, attenuation=light.GetAttenuationValues(), **common)
+        else:
+            toward = tuple(p - t for p, t in zip(position, target, strict=True))
+            yield Light(direction=toward, **common)
+
+
+def _transform(matrix: Any, point: Vector) -> Vector:
+    x = (*point, 1.0)
+    rows = [sum(matrix.GetElement(i, j) * x[j] for j in range(4)) for i in range(4)]
+    return tuple(row / rows[3] for row in rows[:3])
