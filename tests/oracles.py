@@ -17,6 +17,8 @@ mp.dps = 50
 
 def exact(values):
     """Return nested lists of exact numbers."""
+    if isinstance(values, mp.mpf):
+        return values
     if np.ndim(values) == 0:
         return mp.mpf(float(values))
     return [exact(v) for v in values]
@@ -69,6 +71,90 @@ def specular(wi, wo, frame, shininess, model):
     if not any(half):
         return mp.mpf(0)
     return split(unit(half), frame)[1] ** exact(shininess)
+
+
+def toward(owner, point):
+    """Return direction and distance to a light or an eye; None at infinity."""
+    if owner.position is None or getattr(owner, "parallel", False):
+        return unit(exact(owner.direction)), None
+    difference = [a - b for a, b in zip(exact(owner.position), point, strict=True)]
+    return unit(difference), mp.sqrt(dot(difference, difference))
+
+
+def shade(point, tangents, normal, scene, *, exponent, model="phong", two_sided=False):
+    """Return (ambient, diffuse, specular, luminance, rgb) of one point, term by term."""
+    point, material = exact(point), scene.material
+    eye, distance = toward(scene.view, point)
+    normal = None if normal is None else unit(exact(normal))
+    frame = None if tangents is None else orthonormal(exact(tangents))
+    white = (1, 1, 1)
+    ambient = exact(material.ambient) * exact(scene.ambient_intensity)
+    sums = {"diffuse": [mp.mpf(0)] * 4, "specular": [mp.mpf(0)] * 4}
+    for light in scene.lights:
+        wi, d = toward(light, point)
+        scale = exact(light.intensity)
+        if d is not None:
+            c1, c2, c3 = exact(light.attenuation)
+            scale *= min(mp.mpf(1), 1 / (c1 + c2 * d + c3 * d * d))
+        facing = None
+        if normal is not None:
+            facing = dot(normal, wi)
+            facing = abs(facing) if two_sided else max(facing, mp.mpf(0))
+        half = [a + b for a, b in zip(wi, eye, strict=True)]
+        if frame is not None:
+            if facing is not None:
+                scale *= facing
+            along_i, sine_i = split(wi, frame)
+            along_o, sine_o = split(eye, frame)
+            sine, mirror = sine_i, sine_i * sine_o - dot(along_i, along_o)
+            h = split(unit(half), frame)[1]
+        else:
+            sine, n_i, n_o = facing, dot(normal, wi), dot(normal, eye)
+            mirror = 2 * n_i * n_o - dot(wi, eye)
+            h = dot(unit(half), normal)
+            if two_sided:
+                mirror = abs(n_i) * abs(n_o) + n_i * n_o - dot(wi, eye)
+                h = abs(h)
+            elif n_i <= 0:
+                mirror = h = mp.mpf(0)
+        base = mirror if model == "phong" else h
+        terms = {
+            "diffuse": exact(material.diffuse) * sine ** exact(exponent),
+            "specular": exact(material.specular)
+            * max(base, mp.mpf(0)) ** exact(material.shininess),
+        }
+        for name, term in terms.items():
+            tint = (1, *(light.color or white))
+            sums[name] = [
+                s + scale * term * exact(c) for s, c in zip(sums[name], tint, strict=True)
+            ]
+    diffuse, specular = sums["diffuse"], sums["specular"]
+    colour, shine = exact(material.color or white), exact(material.specular_color or white)
+    tint = exact(scene.ambient_color or white)
+    luminance = ambient + diffuse[0] + specular[0]
+    rgb = [
+        colour[i] * (ambient * tint[i] + diffuse[i + 1]) + shine[i] * specular[i + 1]
+        for i in range(3)
+    ]
+    cue = scene.depth_cue
+    if cue is not None:
+        view = scene.view
+        if view.direction is None:
+            depth = distance
+        else:
+            origin = exact(view.position) if view.position else [mp.mpf(0)] * len(point)
+            back = [a - b for a, b in zip(origin, point, strict=True)]
+            depth = dot(unit(exact(view.direction)), back)
+        t = (depth - exact(cue.back)) / (exact(cue.front) - exact(cue.back))
+        t = min(max(t, mp.mpf(0)), mp.mpf(1))
+        t = t * t * (3 - 2 * t) if cue.smooth else t
+        s = exact(cue.back_scale) + exact(cue.front_scale - cue.back_scale) * t
+        luminance = s * luminance + (1 - s) * exact(cue.cue)
+        rgb = [
+            s * c + (1 - s) * exact(cue.cue) * exact(k)
+            for c, k in zip(rgb, cue.color or white, strict=True)
+        ]
+    return ambient, diffuse[0], specular[0], luminance, rgb
 
 
 def mean_intensity(k, n, p):

@@ -197,9 +197,8 @@ def over_shoulder(camera: Any) -> tuple[float, float, float]:
     return float(x), float(y), float(z)
 
 
-def save_png(
+def make_plotter(
     panels: Any,
-    path: str | Path,
     /,
     *,
     camera: Any = None,
@@ -211,15 +210,13 @@ def save_png(
     line_width: float = 1.0,
     anti_aliasing: AntiAliasing | None = "ssaa",
     backend: Backend | None = None,
-) -> Path:
-    """Draw lit meshes side by side, offscreen, with one camera, to a PNG file.
+) -> pv.Plotter:
+    """Return an offscreen plotter with lit meshes side by side, seen by one camera.
 
     Parameters
     ----------
     panels : mesh, Panel, or sequence of them
         What to draw, from left to right.
-    path : path
-        The picture; its folder must exist.
     camera : pyvista.Camera, optional
         Default: :func:`camera_on` what is drawn.
     size : (int, int)
@@ -239,17 +236,16 @@ def save_png(
 
     Returns
     -------
-    pathlib.Path
+    pyvista.Plotter
+        To be closed by the caller.
 
     Raises
     ------
     BackendError
         If no OpenGL library draws here.
     ValueError
-        If there is nothing to draw, an array is missing, or the file cannot be written; no
-        partial file is left.
+        If there is nothing to draw or an array is missing.
     """
-    path = check_output(path, (".png",))
     items = list(panels) if isinstance(panels, list | tuple) else [panels]
     shown = [item if isinstance(item, Panel) else Panel(item, scalars) for item in items]
     if not shown:
@@ -262,23 +258,52 @@ def save_png(
             )
     if camera is None:
         camera = camera_on(_bounds(shown))
-    size = (_check.integer("size", size[0], low=1), _check.integer("size", size[1], low=1))
+    pixels = [_check.integer("size", pixels, low=1) for pixels in size]
     with _window_class(choose_backend(backend)):
         plotter = pv.Plotter(
-            off_screen=True, shape=(1, len(shown)), window_size=list(size), border=False
+            off_screen=True, shape=(1, len(shown)), window_size=pixels, border=False
         )
-        try:
-            for column, panel in enumerate(shown):
-                plotter.subplot(0, column)
-                plotter.set_background(background)
-                _draw(plotter, panel, cmap, clim, line_width)
-                plotter.camera = camera.copy()
-                plotter.reset_camera_clipping_range()
-                if anti_aliasing is not None:
-                    plotter.enable_anti_aliasing(anti_aliasing)
-            return replace_file(path, plotter.screenshot)
-        finally:
-            plotter.close()
+    for column, panel in enumerate(shown):
+        plotter.subplot(0, column)
+        plotter.set_background(background)
+        _draw(plotter, panel, cmap, clim, line_width)
+        plotter.camera = camera.copy()
+        plotter.reset_camera_clipping_range()
+        if anti_aliasing is not None:
+            plotter.enable_anti_aliasing(anti_aliasing)
+    return plotter
+
+
+def save_png(panels: Any, path: str | Path, /, **options: Any) -> Path:
+    """Draw lit meshes side by side, offscreen, with one camera, to a PNG file.
+
+    Parameters
+    ----------
+    panels : mesh, Panel, or sequence of them
+        What to draw, from left to right.
+    path : path
+        The picture; its folder must exist.
+    **options
+        Of :func:`make_plotter`: camera, size, scalars, cmap, clim, background, line_width,
+        anti_aliasing, backend.
+
+    Returns
+    -------
+    pathlib.Path
+
+    Raises
+    ------
+    BackendError
+        If no OpenGL library draws here.
+    ValueError
+        As :func:`make_plotter`, or if the file cannot be written; no partial file is left.
+    """
+    path = check_output(path, (".png",))
+    plotter = make_plotter(panels, **options)
+    try:
+        return replace_file(path, plotter.screenshot)
+    finally:
+        plotter.close()
 
 
 def _draw(

@@ -1,0 +1,126 @@
+"""Mean brightness and its exponent: the seed's table, 50 digits, Monte Carlo, quadrature."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import oracles
+import pytest
+from scipy.integrate import quad
+
+from vizlight.model import brightness
+
+TABLE_1 = [(1, 2, 2.0), (1, 3, 4.7635), (1, 4, 7.6737), (2, 3, 1.0), (2, 4, 2.0)]
+# 0.673 stands in the source for 2/pi.
+SECTION_3 = [(2, 3, 1 / 2), (1, 3, math.pi / 4), (1, 4, 0.849), (1, 2, 2 / math.pi), (2, 4, 2 / 3)]
+
+
+@pytest.mark.parametrize(("k", "n", "p"), TABLE_1)
+def test_exponents_of_table_1(k, n, p):
+    assert brightness.exponent(k, n) == pytest.approx(p, abs=5e-5)
+
+
+@pytest.mark.parametrize(("k", "n", "mean"), SECTION_3)
+def test_means_of_section_3(k, n, mean):
+    assert brightness.mean_intensity(k, n) == pytest.approx(mean, abs=5e-4)
+
+
+def test_whole_exponents_are_whole():
+    assert brightness.exponent(2, 3) == 1.0
+    for k in (1, 2, 5, 500_000):
+        assert brightness.exponent(k, 2 * k) == 2.0
+
+
+@pytest.mark.parametrize("n", [2, 3, 4, 7, 12])
+def test_mean_by_quadrature(n):
+    """sin^2(a) of a uniform direction has the density x^(c/2-1) (1-x)^(k/2-1) / B(c/2, k/2)."""
+    for k in range(1, n):
+        c, p = n - k, 1.7
+
+        def density(a, power, k=k, c=c):
+            return math.sin(a) ** (c - 1 + power) * math.cos(a) ** (k - 1)
+
+        top, whole = (
+            quad(density, 0, math.pi / 2, args=(power,), epsabs=0, epsrel=1e-12)[0]
+            for power in (p, 0)
+        )
+        assert brightness.mean_intensity(k, n, p) == pytest.approx(top / whole, rel=1e-11)
+
+
+def test_mean_by_monte_carlo(random):
+    count = 200_000
+    for k, n in [(1, 3), (2, 4), (3, 5), (1, 12), (11, 12)]:
+        x = random.standard_normal((count, n))
+        sine = np.sqrt(np.sum(x[:, k:] ** 2, axis=1) / np.sum(x**2, axis=1))
+        p = brightness.exponent(k, n)
+        sample = sine**p
+        assert abs(sample.mean() - 0.5) < 5 * sample.std() / math.sqrt(count)
+
+
+def test_mean_against_50_digits(random, figure):
+    for _ in range(400):
+        n = int(10 ** random.uniform(0.302, 6))
+        k = int(random.choice([1, n - 1, random.integers(1, n)]))
+        p = float(10 ** random.uniform(-3, 6.6))
+        true = oracles.mean_intensity(k, n, p)
+        if true < 1e-290:
+            continue
+        seen = brightness.mean_intensity(k, n, p)
+        error = float(abs(oracles.exact(seen) / true - 1)) / oracles.eps(float)
+        bound = 64 * (1 + abs(float(oracles.mp.log(true))))
+        figure("mean_intensity", "n up to 1e6", float, error, bound)
+
+
+def test_exponent_against_50_digits(random, figure):
+    sizes = [(1, 10**6), (10**6 - 1, 10**6), (2, 10**6), (123_456, 10**6), (1, 100), (99, 100)]
+    sizes += [(int(random.integers(1, n)), int(n)) for n in random.integers(2, 5000, 30)]
+    for k, n in sizes:
+        p = brightness.exponent(k, n)
+        true = oracles.mp.findroot(
+            lambda q, k=k, n=n: oracles.mp.log(2 * oracles.mean_intensity(k, n, q)),
+            oracles.mp.mpf(p),
+        )
+        error = float(abs(p / true - 1)) / oracles.eps(float)
+        figure("exponent", "n up to 1e6", float, error, 2e-14 / oracles.eps(float))
+
+
+def test_exponent_for_large_n():
+    """For k = 1 the mean tends to (1 + p/n)^(-1/2), so p tends to 3 n."""
+    for n in (10**4, 10**5, 10**6):
+        assert brightness.exponent(1, n) / n == pytest.approx(3, abs=6 / n)
+
+
+def test_mean_falls_with_p_and_is_1_at_0():
+    p = np.linspace(0, 30, 100)
+    mean = brightness.mean_intensity(2, 5, p)
+    assert mean.shape == p.shape
+    assert mean[0] == 1
+    assert np.all(np.diff(mean) < 0)
+
+
+def test_result_is_a_float_for_a_number():
+    assert isinstance(brightness.mean_intensity(1, 3), float)
+    assert isinstance(brightness.exponent(1, 3), float)
+
+
+@pytest.mark.parametrize(
+    ("k", "n", "error", "words"),
+    [
+        (3, 3, ValueError, "k: expected a dimension less than n = 3, got 3"),
+        (0, 3, ValueError, "k: expected an integer of at least 1"),
+        (1, 1, ValueError, "n: expected an integer of at least 2"),
+        (1.0, 3, TypeError, "k: expected an integer"),
+        (True, 3, TypeError, "k: expected an integer"),
+    ],
+)
+def test_bad_dimensions(k, n, error, words):
+    for call in (brightness.mean_intensity, brightness.exponent):
+        with pytest.raises(error, match=words):
+            call(k, n)
+
+
+@pytest.mark.parametrize("p", [-1.0, np.nan, np.inf, [1.0, -2.0]])
+def test_bad_exponents(p):
+    with pytest.raises(ValueError, match="p: expected finite exponents of 0 or more"):
+        brightness.mean_intensity(1, 3, p)

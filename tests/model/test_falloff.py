@@ -1,0 +1,117 @@
+"""Distance and depth: the Lecture's functions against their formulas in 50 digits."""
+
+from __future__ import annotations
+
+import numpy as np
+import oracles
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from vizlight.model import falloff
+
+coefficient = st.floats(0, 100, width=32)
+
+
+def distance(d, c1, c2, c3):
+    d, c1, c2, c3 = (oracles.exact(x) for x in (d, c1, c2, c3))
+    denominator = c1 + c2 * d + c3 * d * d
+    return oracles.mp.mpf(1) if denominator <= 1 else 1 / denominator
+
+
+def depth_cue(i, z, zt, zb, st_, sb, cue, smooth):
+    i, z, zt, zb, st_, sb, cue = (oracles.exact(x) for x in (i, z, zt, zb, st_, sb, cue))
+    t = min(max((z - zb) / (zt - zb), oracles.mp.mpf(0)), oracles.mp.mpf(1))
+    if smooth:
+        t = t * t * (3 - 2 * t)
+    s = sb + (st_ - sb) * t
+    return s * i + (1 - s) * cue
+
+
+def test_distance_against_50_digits(dtype, random, figure):
+    for _ in range(300):
+        c = 10 ** random.uniform(-3, 2, 3)
+        d = dtype(10 ** random.uniform(-5, 8))
+        true = distance(d, *c)
+        error = float(abs(oracles.exact(falloff.distance(d, *c)) / true - 1)) / oracles.eps(dtype)
+        figure("distance", "", dtype, error, 4)
+
+
+@given(st.floats(0, 1e6), coefficient, coefficient, st.floats(2**-10, 100, width=32))
+def test_distance_is_between_0_and_1_and_falls(d, c1, c2, c3):
+    near, far = falloff.distance([d, d + 1], c1, c2, c3)
+    assert 0 <= far <= near <= 1
+
+
+def test_distance_at_its_ends():
+    assert falloff.distance(0.0, 0, 0, 1) == 1
+    assert falloff.distance(0.0, 4, 0, 0) == 0.25
+    assert falloff.distance(np.inf, 1, 0, 1) == 0
+    assert falloff.distance(np.inf, 2, 0, 0) == 0.5
+    assert falloff.distance(1e200, 1, 0, 1) == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ((-1.0, 1, 0, 0), "d: expected distances of 0 or more"),
+        ((np.nan, 1, 0, 0), "d: expected distances of 0 or more"),
+        ((1.0, 0, 0, 0), "c1, c2, c3: expected three coefficients.*not all 0"),
+        ((1.0, 1, -1, 0), "c1, c2, c3: expected three coefficients"),
+    ],
+)
+def test_bad_distance(arguments, words):
+    with pytest.raises(ValueError, match=words):
+        falloff.distance(*arguments)
+
+
+@pytest.mark.parametrize("smooth", [False, True])
+def test_depth_cue_against_50_digits(smooth, dtype, random, figure):
+    for _ in range(300):
+        i, cue = (float(dtype(x)) for x in random.uniform(0, 2, 2))
+        low, high = sorted(random.uniform(0, 1, 2))
+        front, back = random.uniform(-10, 10, 2)
+        z = dtype(random.uniform(-12, 12))
+        seen = falloff.depth_cue(
+            dtype(i),
+            z,
+            front=front,
+            back=back,
+            front_scale=high,
+            back_scale=low,
+            cue=dtype(cue),
+            smooth=smooth,
+        )
+        true = depth_cue(i, z, front, back, high, low, cue, smooth)
+        # The depth's own rounding, in parts of the range, is the caller's.
+        blow = max(1, (abs(float(z)) + abs(back)) / abs(front - back))
+        figure(
+            "depth_cue",
+            "smooth" if smooth else "linear",
+            dtype,
+            oracles.units(seen, true, dtype),
+            8 * max(i, cue) * blow,
+        )
+
+
+def test_depth_cue_at_its_ends():
+    z = np.array([-5.0, 0, 1, 2, 9])
+    faded = falloff.depth_cue(1.0, z, front=2, back=0, front_scale=0.9, back_scale=0.1, cue=0.5)
+    np.testing.assert_allclose(faded, [0.55, 0.55, 0.75, 0.95, 0.95])
+    turned = falloff.depth_cue(1.0, -z, front=-2, back=0, front_scale=0.9, back_scale=0.1, cue=0.5)
+    np.testing.assert_allclose(turned, faded)
+
+
+def test_smooth_step_is_flat_at_both_ends():
+    h = 1e-6
+    ends = [falloff.depth_cue(1.0, z, front=1, back=0, smooth=True) for z in (h, 1 - h)]
+    assert ends[0] < 10 * h * h
+    assert 1 - ends[1] < 10 * h * h
+    assert falloff.depth_cue(1.0, 0.5, front=1, back=0, smooth=True) == 0.5
+
+
+def test_bad_depth_cue():
+    with pytest.raises(ValueError, match="front: expected a depth other than back"):
+        falloff.depth_cue(1.0, 0.0, front=1, back=1)
+    with pytest.raises(ValueError, match="back_scale: expected a number from 0 to 1, got 2"):
+        falloff.depth_cue(1.0, 0.0, front=1, back=0, back_scale=2)

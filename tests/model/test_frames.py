@@ -1,0 +1,206 @@
+"""Frames: rank, orthonormality and splitting, on vectors that break careless code."""
+
+from __future__ import annotations
+
+import numpy as np
+import oracles
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+
+from vizlight.model import frames
+
+SIZES = [(1, 2), (1, 3), (2, 3), (1, 4), (2, 4), (3, 8), (7, 8)]
+
+
+def orthonormality(frame, rank):
+    """Return the largest entry of F F^T - 1 over the first rank rows, in float64."""
+    rows = np.asarray(frame, dtype=np.float64)[:rank]
+    return float(np.abs(rows @ rows.T - np.eye(rank)).max()) if rank else 0.0
+
+
+@pytest.mark.parametrize(("k", "n"), SIZES)
+def test_spans_what_it_was_given(k, n, dtype, random, figure):
+    vectors = random.standard_normal((40, k, n)).astype(dtype)
+    frame, rank = frames.orthonormalize(vectors)
+    assert frame.dtype == dtype
+    assert frame.shape == vectors.shape
+    assert np.all(rank == k)
+    for v, f in zip(vectors, frame, strict=True):
+        figure(
+            "orthonormalize", f"k={k}, n={n}", dtype, orthonormality(f, k) / oracles.eps(dtype), 8
+        )
+        rest = v - (v @ f.T) @ f
+        assert np.abs(rest).max() < 50 * oracles.eps(dtype) * np.abs(v).max()
+
+
+def test_first_row_is_along_the_first_vector(dtype):
+    frame, _ = frames.orthonormalize(np.array([[0, -3, 0], [5, 1, 0]], dtype=dtype))
+    np.testing.assert_array_equal(frame, np.array([[0, -1, 0], [1, 0, 0]], dtype=dtype))
+
+
+@pytest.mark.parametrize("apart", [1e-2, 1e-5, 1e-8, 1e-12])
+def test_nearly_dependent_vectors(apart, random, figure):
+    a = random.standard_normal((30, 3))
+    b = a + apart * random.standard_normal((30, 3))
+    frame, rank = frames.orthonormalize(np.stack([a, b], axis=1))
+    assert np.all(rank == 2)
+    for f in frame:
+        figure(
+            "orthonormalize",
+            f"{apart:g} apart",
+            np.float64,
+            orthonormality(f, 2) / oracles.eps(float),
+            8,
+        )
+
+
+def test_dependent_vectors_lower_the_rank_and_leave_zero_rows(dtype, random):
+    a = random.standard_normal((50, 4)).astype(dtype)
+    b = random.standard_normal((50, 4)).astype(dtype)
+    frame, rank = frames.orthonormalize(np.stack([a, dtype(-3) * a, b], axis=1))
+    assert np.all(rank == 2)
+    assert np.all(frame[:, 2] == 0)
+    assert all(orthonormality(f, 2) <= 8 * oracles.eps(dtype) for f in frame)
+
+
+@pytest.mark.parametrize("low", [-150, -300])
+def test_wildly_scaled_vectors(low, random, figure):
+    scale = np.array([10.0**low, 1e150])
+    vectors = random.standard_normal((30, 2, 3)) * scale[:, np.newaxis]
+    frame, rank = frames.orthonormalize(vectors)
+    plain, _ = frames.orthonormalize(vectors / scale[:, np.newaxis])
+    assert np.all(rank == 2)
+    np.testing.assert_allclose(frame, plain, rtol=0, atol=1e-15)
+
+
+def test_smallest_and_largest_numbers(dtype):
+    info = np.finfo(dtype)
+    for size in (info.smallest_subnormal, info.tiny, info.max):
+        frame, rank = frames.orthonormalize(np.array([[0, size, 0]], dtype=dtype))
+        assert rank == 1
+        np.testing.assert_array_equal(frame, np.array([[0, 1, 0]], dtype=dtype))
+    frame, rank = frames.orthonormalize(np.full((1, 3), info.max, dtype=dtype))
+    np.testing.assert_allclose(frame, np.full((1, 3), 3**-0.5), rtol=4 * info.eps)
+
+
+@pytest.mark.parametrize("bad", [0.0, np.nan, np.inf, -np.inf])
+def test_vectors_without_direction_count_for_nothing(bad, dtype):
+    vectors = np.array([[[bad, 0, 0], [0, 2, 0]], [[1, 0, 0], [0, 0, 1]]], dtype=dtype)
+    frame, rank = frames.orthonormalize(vectors)
+    np.testing.assert_array_equal(rank, [1, 2])
+    np.testing.assert_array_equal(frame[0], [[0, 1, 0], [0, 0, 0]])
+    assert np.all(np.isfinite(frame))
+
+
+def test_rtol_sets_what_is_dependent():
+    vectors = [[1.0, 0, 0], [1.0, 1e-3, 0]]
+    assert frames.orthonormalize(vectors)[1] == 2
+    assert frames.orthonormalize(vectors, rtol=1e-2)[1] == 1
+
+
+def test_batch_equals_loop_and_input_stays(dtype, random):
+    vectors = random.standard_normal((3, 5, 2, 4)).astype(dtype)
+    vectors[0, 1, 1] = vectors[0, 1, 0]
+    kept = vectors.copy()
+    frame, rank = frames.orthonormalize(vectors)
+    for index in np.ndindex(3, 5):
+        one, r = frames.orthonormalize(vectors[index])
+        np.testing.assert_allclose(frame[index], one, rtol=0, atol=4 * oracles.eps(dtype))
+        assert r == rank[index]
+    np.testing.assert_array_equal(vectors, kept)
+
+
+def test_empty_batch():
+    frame, rank = frames.orthonormalize(np.empty((0, 2, 3)))
+    assert frame.shape == (0, 2, 3)
+    assert rank.shape == (0,)
+
+
+@pytest.mark.parametrize(("k", "n"), SIZES)
+def test_split_against_50_digits(k, n, dtype, random, figure):
+    for frame in oracles.frames(random, 12, k, n, dtype):
+        for x in oracles.hard_directions(random, frame, dtype):
+            along, normal = frames.split(x, frame)
+            true_along, true_normal = oracles.split(
+                oracles.exact(x), oracles.orthonormal(oracles.exact(frame))
+            )
+            error = max(oracles.units(a, b, dtype) for a, b in zip(along, true_along, strict=True))
+            error = max(error, oracles.units(normal, true_normal, dtype))
+            figure("split", f"k={k}, n={n}, hard directions", dtype, error, 6)
+
+
+def test_split_along_the_tangent_keeps_all_digits(dtype):
+    # 1 - cos^2 of a float32 cannot tell 1e-4 from 0.
+    x = np.array([1, 1e-4, 0], dtype=dtype)
+    _, normal = frames.split(x, np.array([[1, 0, 0]], dtype=dtype))
+    assert normal == x[1]
+
+
+finite = st.floats(-10, 10, width=32)
+
+
+@given(hnp.arrays(np.float64, (2, 5), elements=finite), hnp.arrays(np.float64, 5, elements=finite))
+def test_pythagoras(vectors, x):
+    frame, _ = frames.orthonormalize(vectors)
+    along, normal = frames.split(x, frame)
+    assert np.sum(along**2) + normal**2 == pytest.approx(np.sum(x**2), rel=1e-13, abs=1e-13)
+
+
+@given(hnp.arrays(np.float64, (2, 4), elements=finite), st.integers(0, 1000))
+def test_rotation_of_everything_changes_nothing(vectors, seed):
+    q, _ = np.linalg.qr(np.random.default_rng(seed).standard_normal((4, 4)))
+    x = np.array([1.0, 2.0, -1.0, 0.5])
+    first, rank = frames.orthonormalize(vectors, rtol=1e-6)
+    turned, rank_turned = frames.orthonormalize(vectors @ q.T, rtol=1e-6)
+    assert rank == rank_turned
+    assert frames.split(x, first)[1] == pytest.approx(frames.split(q @ x, turned)[1], abs=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("vectors", "error", "words"),
+    [
+        (
+            [1.0, 0, 0],
+            ValueError,
+            r"vectors: expected .*shape \(\.\.\., k, n\).*v\[\.\.\., None, :\]",
+        ),
+        (np.ones((4, 3)), ValueError, "vectors: expected 0 < k <= n.*k = 4, n = 3"),
+        ("abc", TypeError, "vectors: expected real numbers"),
+        (np.ones((2, 3), complex), TypeError, "vectors: expected real numbers"),
+        ([[1.0], [2.0, 3.0]], TypeError, "vectors: expected numbers of one shape"),
+        (np.ones((1, 1)), ValueError, "n of 2 or more"),
+    ],
+)
+def test_bad_vectors(vectors, error, words):
+    with pytest.raises(error, match=words):
+        frames.orthonormalize(vectors)
+
+
+def test_bad_rtol():
+    with pytest.raises(ValueError, match=r"rtol: expected .* at least 0, got -1"):
+        frames.orthonormalize(np.eye(2, 3), rtol=-1.0)
+
+
+@pytest.mark.parametrize(
+    ("frame", "words"),
+    [
+        (np.eye(3), "frame: expected 0 < k < n"),
+        ([1.0, 0, 0], r"frame: .*tangent\[\.\.\., None, :\]"),
+        (
+            [[2.0, 0, 0]],
+            "frame: expected orthonormal rows, got rows off by 3.*orthonormalize first",
+        ),
+        ([[1.0, 0, 0], [1.0, 0, 0]], "frame: expected orthonormal rows"),
+        ([[np.nan, 0, 0]], "frame: expected orthonormal rows"),
+    ],
+)
+def test_bad_frames(frame, words):
+    with pytest.raises(ValueError, match=words):
+        frames.split([1.0, 0, 0], frame)
+
+
+def test_direction_of_another_space():
+    with pytest.raises(ValueError, match=r"direction: expected vectors of shape \(\.\.\., 3\)"):
+        frames.split([1.0, 0.0], [[1.0, 0, 0]])

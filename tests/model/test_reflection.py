@@ -1,0 +1,229 @@
+"""Diffuse and specular light of k-manifolds: laws first, then 50 digits."""
+
+from __future__ import annotations
+
+import numpy as np
+import oracles
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from vizlight.model import frames, reflection
+
+SIZES = [(1, 2), (1, 3), (2, 3), (1, 4), (2, 4), (3, 4), (3, 8)]
+SHININESS = [1.0, 20.0, 20.5, 64.0, 65.0, 200.0, 1e4, 1e6]
+
+
+def unit(v):
+    return np.asarray(v, dtype=float) / np.linalg.norm(v)
+
+
+def diffuse_bound(p, dtype):
+    """The bound that the docstring claims, in eps."""
+    if p < 1:
+        return (4 * oracles.eps(dtype)) ** p / oracles.eps(dtype)
+    return 4 + 2 * p if p <= 128 else 8 + np.sqrt(p) / 8
+
+
+def specular_bound(s):
+    return 4 + s if s <= 128 else 8 + 3 * np.sqrt(s)
+
+
+@pytest.mark.parametrize(("k", "n"), SIZES)
+@pytest.mark.parametrize("exponent", [0.5, 1.0, 2.0, 4.7635, 64.0, 65.0, 150.0, 1e3, 1e6])
+def test_diffuse_against_50_digits(k, n, exponent, dtype, random, figure):
+    for frame in oracles.frames(random, 2, k, n, dtype):
+        for wi in oracles.hard_directions(random, frame, dtype):
+            value = reflection.diffuse(wi, frame, exponent=exponent)
+            assert value.dtype == dtype
+            error = oracles.units(value, oracles.diffuse(wi, frame, exponent), dtype)
+            figure("diffuse", f"p={exponent:g}", dtype, error, diffuse_bound(exponent, dtype))
+
+
+@pytest.mark.parametrize(("k", "n"), SIZES)
+@pytest.mark.parametrize("model", ["phong", "blinn"])
+def test_specular_against_50_digits(k, n, model, dtype, random, figure):
+    (frame,) = oracles.frames(random, 1, k, n, dtype)
+    for wi in oracles.hard_directions(random, frame, dtype):
+        for wo in oracles.reflections(random, wi, frame, dtype):
+            half = np.linalg.norm(unit(wi) + unit(wo)) if model == "blinn" else 1.0
+            for shininess in SHININESS:
+                value = reflection.specular(wi, wo, frame, shininess=shininess, model=model)
+                assert value.dtype == dtype
+                true = oracles.specular(wi, wo, frame, shininess, model)
+                error = oracles.units(value, true, dtype) * min(half, 1.0)
+                figure(model, f"s={shininess:g}", dtype, error, specular_bound(shininess))
+
+
+def test_codimension_1_is_two_sided_lambert(random, dtype):
+    normal = unit(random.standard_normal(3))
+    tangents = np.linalg.svd(normal[np.newaxis])[2][1:].astype(dtype)
+    wi = random.standard_normal((200, 3)).astype(dtype)
+    lambert = np.abs(wi @ normal) / np.linalg.norm(wi, axis=1)
+    np.testing.assert_allclose(
+        reflection.diffuse(wi, tangents), lambert, atol=8 * oracles.eps(dtype)
+    )
+
+
+@pytest.mark.parametrize("model", ["phong", "blinn"])
+def test_codimension_1_is_the_textbook_highlight(model, random):
+    normal = np.array([0.0, 0, 1])
+    frame = np.eye(3)[:2]
+    wi, wo = random.standard_normal((2, 300, 3))
+    wi[:, 2], wo[:, 2] = np.abs(wi[:, 2]), np.abs(wo[:, 2])
+    wi /= np.linalg.norm(wi, axis=1, keepdims=True)
+    wo /= np.linalg.norm(wo, axis=1, keepdims=True)
+    half = (wi + wo) / np.linalg.norm(wi + wo, axis=1, keepdims=True)
+    mirror = 2 * (wi @ normal)[:, np.newaxis] * normal - wi
+    base = np.sum(mirror * wo, axis=1) if model == "phong" else half @ normal
+    expected = np.maximum(base, 0) ** 7
+    value = reflection.specular(wi, wo, frame, shininess=7, model=model)
+    np.testing.assert_allclose(value, expected, atol=1e-14)
+
+
+@pytest.mark.parametrize("model", ["phong", "blinn"])
+@pytest.mark.parametrize(("k", "n"), SIZES)
+def test_highlight_is_brightest_where_the_reflection_meets_the_eye(model, k, n, random):
+    frame = oracles.frames(random, 1, k, n, float)[0]
+    wi = unit(random.standard_normal(n))
+    along, across = frames.split(wi, frame)
+    towards = random.standard_normal(n)
+    _, size = frames.split(towards, frame)
+    normal = (towards - frame.T @ (frame @ towards)) / size
+    if model == "blinn":  # the half vector is normal only where wi_N and wo_N agree
+        normal = (wi - frame.T @ along) / across
+    mirror = across * normal - frame.T @ along
+    peak = reflection.specular(wi, mirror, frame, shininess=50, model=model)
+    assert peak == pytest.approx(1.0, abs=1e-12)
+    others = mirror + 0.3 * random.standard_normal((200, n))
+    assert np.all(reflection.specular(wi, others, frame, shininess=50, model=model) <= 1 + 1e-12)
+    same_way = across * normal + frame.T @ along
+    if np.linalg.norm(along) > 0.3:
+        assert reflection.specular(wi, same_way, frame, shininess=50, model=model) < 0.9 * peak
+
+
+def test_a_line_reflects_into_a_cone():
+    """All eyes at the mirror angle to the line see the full highlight, however far round."""
+    tangent = np.array([[0.0, 0, 1]])
+    wi = unit([1.0, 0, 0.5])
+    angles = np.linspace(0, 2 * np.pi, 17)
+    cone = np.stack([np.cos(angles), np.sin(angles), np.full(17, -0.5)], axis=1)
+    np.testing.assert_allclose(reflection.specular(wi, cone, tangent, shininess=30), 1, atol=1e-13)
+
+
+vector = st.tuples(*[st.floats(-1, 1, width=32)] * 4).filter(lambda v: np.linalg.norm(v) > 0.1)
+
+
+@given(vector, vector, vector, vector, st.integers(0, 99), st.sampled_from(["phong", "blinn"]))
+def test_turning_everything_changes_nothing(a, b, wi, wo, seed, model):
+    q, _ = np.linalg.qr(np.random.default_rng(seed).standard_normal((4, 4)))
+    frame, rank = frames.orthonormalize([a, b], rtol=1e-2)
+    turned, _ = frames.orthonormalize(np.array([a, b]) @ q.T, rtol=1e-2)
+    if rank < 2 or np.linalg.norm(unit(wi) + unit(wo)) < 0.1:
+        return
+    first = reflection.specular(wi, wo, frame, shininess=9, model=model)
+    again = reflection.specular(q @ wi, q @ wo, turned, shininess=9, model=model)
+    assert again == pytest.approx(first, abs=1e-11)
+    assert reflection.diffuse(q @ wi, turned) == pytest.approx(
+        float(reflection.diffuse(wi, frame)), abs=1e-12
+    )
+
+
+@given(vector, vector, vector, st.sampled_from(["phong", "blinn"]))
+def test_light_and_eye_may_change_places(a, wi, wo, model):
+    frame, _ = frames.orthonormalize([a])
+    there = reflection.specular(wi, wo, frame, shininess=5, model=model)
+    back = reflection.specular(wo, wi, frame, shininess=5, model=model)
+    assert there == pytest.approx(float(back), abs=1e-13)
+    assert 0 <= there <= 1 + 1e-14
+
+
+@given(vector, vector, vector)
+def test_embedding_in_a_larger_space_changes_nothing(a, wi, wo):
+    frame, _ = frames.orthonormalize([a])
+    wide = np.pad(frame, ((0, 0), (0, 1)))
+    for p in (1.0, 3.0):
+        assert reflection.diffuse((*wi, 0), wide, exponent=p) == reflection.diffuse(
+            wi, frame, exponent=p
+        )
+    assert reflection.specular((*wi, 0), (*wo, 0), wide, shininess=8) == pytest.approx(
+        float(reflection.specular(wi, wo, frame, shininess=8)), abs=1e-14
+    )
+
+
+def test_blinn_without_a_half_vector_is_dark(dtype):
+    frame = np.array([[1, 0, 0]], dtype=dtype)
+    wi = np.array([0.6, 0, 0.8], dtype=dtype)
+    assert reflection.specular(wi, -wi, frame, shininess=4, model="blinn") == 0
+    near = -wi + np.array([0, 1e-6, 0], dtype=dtype)
+    value = reflection.specular(wi, near, frame, shininess=4, model="blinn")
+    assert 0 <= value <= 1
+    assert np.isfinite(value)
+
+
+@pytest.mark.parametrize("model", ["phong", "blinn"])
+def test_zero_directions_are_dark(model, dtype):
+    frame = np.array([[1, 0, 0]], dtype=dtype)
+    zero, up = np.zeros(3, dtype), np.array([0, 0, 1], dtype)
+    assert reflection.diffuse(zero, frame) == 0
+    for pair in ((zero, up), (up, zero), (zero, zero)):
+        assert reflection.specular(*pair, frame, shininess=3, model=model) == 0
+    assert reflection.diffuse(np.full(3, np.nan, dtype), frame) == 0
+
+
+def test_shininess_0_is_bright_everywhere():
+    frame = [[1.0, 0, 0]]
+    assert reflection.specular([1, 0, 1], [1, 0, 1], frame, shininess=0) == 1
+
+
+def test_broadcasting_equals_a_loop(dtype, random):
+    frame = oracles.frames(random, 5, 1, 3, dtype)
+    wi = random.standard_normal((4, 1, 3)).astype(dtype)
+    wo = random.standard_normal(3).astype(dtype)
+    value = reflection.specular(wi, wo, frame, shininess=10)
+    assert value.shape == (4, 5)
+    for i, j in np.ndindex(4, 5):
+        one = reflection.specular(wi[i, 0], wo, frame[j], shininess=10)
+        np.testing.assert_allclose(value[i, j], one, atol=16 * oracles.eps(dtype))
+
+
+def test_inputs_stay(random):
+    frame, wi = oracles.frames(random, 5, 1, 3, float), random.standard_normal((5, 3))
+    kept = frame.copy(), wi.copy()
+    for model in ("phong", "blinn"):
+        reflection.specular(wi, wi, frame, shininess=3, model=model)
+    reflection.diffuse(wi, frame, exponent=200)
+    np.testing.assert_array_equal(frame, kept[0])
+    np.testing.assert_array_equal(wi, kept[1])
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "words"),
+    [
+        (lambda f: reflection.diffuse([1, 0, 0], f, exponent=-1), ValueError, "exponent: expected"),
+        (
+            lambda f: reflection.diffuse([1, 0, 0], f, exponent="2"),
+            TypeError,
+            "exponent: expected a number",
+        ),
+        (lambda f: reflection.diffuse([1, 0], f), ValueError, "wi: expected vectors"),
+        (
+            lambda f: reflection.specular([1, 0, 0], [1, 0], f, shininess=1),
+            ValueError,
+            "wo: expected",
+        ),
+        (
+            lambda f: reflection.specular([1, 0, 0], [1, 0, 0], f, shininess=float("nan")),
+            ValueError,
+            "shininess: expected",
+        ),
+        (
+            lambda f: reflection.specular([1, 0, 0], [1, 0, 0], f, shininess=1, model="gouraud"),
+            ValueError,
+            "model: expected 'phong' or 'blinn', got 'gouraud'",
+        ),
+    ],
+)
+def test_bad_input(call, error, words):
+    with pytest.raises(error, match=words):
+        call([[1.0, 0, 0]])

@@ -1,0 +1,72 @@
+"""Every validator lets good values pass and refuses bad ones by name."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from vizlight import _check
+
+
+@pytest.mark.parametrize(
+    ("validate", "value", "expected"),
+    [
+        (lambda n, v: _check.number(n, v, low=0), 2, 2.0),
+        (lambda n, v: _check.number(n, v), np.float32(1.5), 1.5),
+        (lambda n, v: _check.number(n, v), np.array(3.0), 3.0),
+        (lambda n, v: _check.integer(n, v, low=1), np.int64(4), 4),
+        (_check.vector, np.array([1, 2, 3]), (1.0, 2.0, 3.0)),
+        (lambda n, v: _check.vector(n, v, direction=True), [0, 1e-300], (0.0, 1e-300)),
+        (_check.optional_vector, None, None),
+        (_check.rgb, [0, 0.5, 2], (0.0, 0.5, 2.0)),
+        (_check.color, "#ff0000", (1.0, 0.0, 0.0)),
+        (_check.color, pv.Color("lime"), (0.0, 1.0, 0.0)),
+        (_check.color, None, None),
+    ],
+)
+def test_good_values(validate, value, expected):
+    assert validate("x", value) == expected
+
+
+@pytest.mark.parametrize(
+    ("validate", "value", "error", "words"),
+    [
+        (lambda n, v: _check.number(n, v, low=0), -1, ValueError, "at least 0, got -1"),
+        (lambda n, v: _check.number(n, v, low=0, high=1), 2, ValueError, "from 0 to 1, got 2"),
+        (_check.number, np.inf, ValueError, "a finite number, got inf"),
+        (_check.number, True, TypeError, "a number, got True"),
+        (_check.number, [1.0], TypeError, "a number"),
+        (lambda n, v: _check.integer(n, v, low=1), 0, ValueError, "at least 1, got 0"),
+        (lambda n, v: _check.integer(n, v, low=1), 1.0, TypeError, "an integer, got 1.0"),
+        (_check.vector, [1.0], ValueError, "n of 2 or more"),
+        (_check.vector, np.ones((2, 3)), ValueError, "one vector"),
+        (_check.vector, [1, np.nan, 0], ValueError, "finite components"),
+        (lambda n, v: _check.vector(n, v, direction=True), [0, 0, 0], ValueError, "non-zero"),
+        (_check.vector, "abc", TypeError, "real numbers, got 'abc'"),
+        (_check.vectors, [[1, 2], [3]], TypeError, "numbers of one shape"),
+        (_check.rgb, [1, 2], ValueError, "three channels"),
+        (_check.rgb, [0, -1, 0], ValueError, "three channels"),
+        (_check.color, "no such colour", ValueError, "a colour's name"),
+        (lambda n, v: _check.instance(n, v, int), "s", TypeError, "a vizlight.int, got 's'"),
+    ],
+)
+def test_bad_values(validate, value, error, words):
+    with pytest.raises(error, match=f"^x: expected .*{words}"):
+        validate("x", value)
+
+
+def test_infinite_position_names_the_remedy():
+    with pytest.raises(ValueError, match="at infinity is given by direction="):
+        _check.vector("position", [np.inf, 0, 0])
+
+
+def test_types_of_floats():
+    assert _check.floats("x", [1, 2]).dtype == np.float64
+    assert _check.floats("x", np.float16(1)).dtype == np.float32
+    assert _check.floats("x", np.float32(1)).dtype == np.float32
+
+
+def test_long_values_are_shortened():
+    assert len(_check.describe("x" * 500)) <= 60
+    assert _check.describe(np.ones((2, 3))) == "an array of shape (2, 3) and type float64"

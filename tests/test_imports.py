@@ -1,0 +1,59 @@
+"""What an import loads: the mathematics needs no PyVista, and the package is quick to import."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+PROBE = """
+import sys
+{code}
+heavy = {{"pyvista", "vtk", "vtkmodules", "scipy", "rich"}}
+print(sorted({{name.partition(".")[0] for name in sys.modules}} & heavy))
+"""
+
+
+def loaded(code):
+    run = subprocess.run(
+        [sys.executable, "-c", PROBE.format(code=code)], capture_output=True, text=True, check=True
+    )
+    return run.stdout.strip()
+
+
+@pytest.mark.parametrize(
+    "module",
+    [
+        "vizlight.model",
+        "vizlight.model.frames",
+        "vizlight.model.reflection",
+        "vizlight.model.brightness",
+        "vizlight.model.falloff",
+        "vizlight.engine",
+        "vizlight.scene",
+    ],
+)
+def test_mathematics_and_engine_load_no_pyvista(module):
+    assert "pyvista" not in loaded(f"import {module}")
+    assert "vtk" not in loaded(f"import {module}")
+
+
+def test_the_probe_can_fail():
+    assert "pyvista" in loaded("import vizlight.filters")
+
+
+def test_import_of_the_package_loads_next_to_nothing():
+    assert loaded("import vizlight") == "[]"
+    assert loaded("import vizlight; vizlight.__version__; dir(vizlight)") == "[]"
+    assert "pyvista" not in loaded("import vizlight; vizlight.Light(direction=(0, 0, 1))")
+
+
+def test_every_public_name_is_there():
+    import vizlight
+
+    for name in (*vizlight.__all__, "__version__", "engine", "model", "render"):
+        assert getattr(vizlight, name) is not None
+    assert set(vizlight.__all__) <= set(dir(vizlight))
+    with pytest.raises(AttributeError, match="no attribute 'illuminated'"):
+        vizlight.illuminated  # noqa: B018

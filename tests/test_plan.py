@@ -1,0 +1,120 @@
+"""The plan holds what a scene needs and nothing else, and says so."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from vizlight import DepthCue, Light, Material, Scene, View
+from vizlight.engine import plan
+
+SUN = Light(direction=(1, 1, 1))
+FAR = View(direction=(0, 0, 1))
+
+
+def words(made, part):
+    return [line[9:] for line in made.explain().splitlines() if line.startswith(part)]
+
+
+def test_all_terms():
+    made = plan(Scene(lights=SUN, view=FAR), k=1)
+    assert made.terms == ("ambient", "diffuse", "specular")
+    assert (made.n, made.k, made.dtype) == (3, 1, np.float64)
+    assert made.exponent == pytest.approx(4.7635, abs=1e-4)
+    assert not made.needs_points
+
+
+def test_no_specular_means_no_eye():
+    made = plan(Scene(lights=SUN, material=Material(specular=0)), k=1)
+    assert made.terms == ("ambient", "diffuse")
+    assert "specular: material.specular is 0" in words(made, "skip")
+    assert "eye: no term depends on the view" in words(made, "skip")
+
+
+def test_no_diffuse():
+    made = plan(Scene(lights=SUN, material=Material(diffuse=0), view=FAR), k=1)
+    assert made.terms == ("ambient", "specular")
+
+
+def test_no_light_is_ambient_alone():
+    for lights in ([], [Light(direction=(1, 0, 0), intensity=0)]):
+        made = plan(Scene(lights=lights), k=1)
+        assert made.terms == ("ambient",)
+        assert made.scene.lights == ()
+        assert any("no light has an intensity" in line for line in words(made, "skip"))
+
+
+def test_compensation_leaves_surfaces_as_they_are():
+    scene = Scene(lights=SUN, view=FAR)
+    assert plan(scene, normals=True).exponent == 1.0
+    assert plan(scene, k=2).exponent == 1.0
+    assert plan(scene, k=1, compensate=False).exponent == 1.0
+
+
+def test_words_for_lights_and_views():
+    near = Light(position=(0, 0, 5), attenuation=(1, 0, 1))
+    made = plan(Scene(lights=[SUN, near], view=View(position=(0, 0, 9))), k=1)
+    said = words(made, "compute")
+    assert any(line.startswith("light 0: one direction for all points") for line in said)
+    assert any(line.startswith("light 1: a direction a point") for line in said)
+    assert any("attenuation (1.0, 0.0, 1.0)" in line for line in said)
+    assert any("once a point, shared by all lights" in line for line in said)
+    assert made.needs_points
+
+
+def test_words_for_the_rest():
+    scene = Scene(
+        lights=SUN, view=FAR, material=Material(color="red"), depth_cue=DepthCue(front=0, back=1)
+    )
+    said = "\n".join(words(plan(scene, k=1, normals=True, model="blinn"), "compute"))
+    for part in (
+        "self-shadow: max(0, N.wi)",
+        "rgb: three",
+        "depth cue: linear",
+        "half vector: one for all",
+    ):
+        assert part in said
+    assert "|N.wi|" in plan(scene, normals=True, two_sided=True).explain()
+    assert "by multiplication" in plan(scene, k=1).explain()
+    rough = scene.replace(material=Material(shininess=20.5))
+    assert "by a power" in plan(rough, k=1).explain()
+
+
+def test_block_shrinks_with_the_space():
+    scene = Scene(lights=[])
+    small, large = plan(scene, k=1, n=3), plan(scene, k=5, n=100)
+    assert small.block * 3 == pytest.approx(large.block * 500, rel=1e-2)
+    assert plan(scene, k=1, dtype=np.float32).block == 2 * small.block
+    assert plan(scene, k=1, n=10**8).block == 1
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "message"),
+    [
+        (lambda: plan("scene", k=1), TypeError, "scene: expected a vizlight.Scene"),
+        (lambda: plan(Scene(lights=SUN), k=1), ValueError, "view: .*specular term.*or specular=0"),
+        (lambda: plan(Scene(), k=1), ValueError, "view: expected a View"),
+        (
+            lambda: plan(Scene(lights=[], depth_cue=DepthCue(front=0, back=1)), k=1),
+            ValueError,
+            "view: expected a View, which the depth cue needs",
+        ),
+        (
+            lambda: plan(Scene(lights=[], view=FAR, depth_cue=DepthCue()), k=1),
+            ValueError,
+            "depth_cue: expected front= and back=",
+        ),
+        (lambda: plan(Scene(lights=[])), ValueError, "tangents: expected tangents or normals"),
+        (lambda: plan(Scene(lights=[]), k=3), ValueError, "k: expected fewer than n = 3"),
+        (lambda: plan(Scene(lights=[]), k=1, model="x"), ValueError, "model: expected 'phong'"),
+        (lambda: plan(Scene(lights=[]), k=1, dtype="int32"), ValueError, "dtype: expected float32"),
+        (
+            lambda: plan(Scene(lights=SUN, view=FAR), k=1, n=4),
+            ValueError,
+            "scene: expected vectors of 4 components, as the points have, got 3",
+        ),
+    ],
+)
+def test_bad_input(call, error, message):
+    with pytest.raises(error, match=message):
+        call()

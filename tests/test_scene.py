@@ -1,0 +1,127 @@
+"""Material, view, depth cue and scene: plain values in, plain values out."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from vizlight import DepthCue, Light, Material, Scene, View
+
+
+def full_scene():
+    return Scene(
+        lights=[
+            Light(direction=(1, 0, 0), color="red"),
+            Light.headlight(),
+            Light(position=(0, 0, 9)),
+        ],
+        material=Material(ambient=0.2, color=(1, 0.25, 0.3), specular_color="white"),
+        view=View(position=(0, 0, 5), direction=(0, 0, 1)),
+        ambient_intensity=0.8,
+        ambient_color="navy",
+        depth_cue=DepthCue(front=1, back=9, cue=0.3, smooth=True),
+    )
+
+
+def test_defaults_are_those_documented():
+    assert Material() == Material(ambient=0.1, diffuse=0.5, specular=0.4, shininess=20.0)
+    scene = Scene()
+    assert scene.lights[0].follows_view
+    assert (scene.ambient_intensity, scene.view, scene.depth_cue) == (1.0, None, None)
+    assert not scene.colored
+
+
+def test_survives_json():
+    scene = full_scene()
+    assert Scene.from_dict(json.loads(json.dumps(scene.to_dict()))) == scene
+
+
+def test_replace_and_dimension():
+    scene = full_scene()
+    assert scene.n == 3
+    assert scene.colored
+    assert scene.replace(ambient_intensity=0).ambient_intensity == 0
+    assert Scene(lights=[], view=View(direction=(1, 0, 0, 0))).n == 4
+    assert Scene().n is None
+
+
+def test_view_kinds():
+    assert not View(position=(0, 0, 5)).parallel
+    assert View(direction=(0, 0, 1)).parallel
+    assert not View(position=(0, 0, 5), direction=(0, 0, 1)).parallel
+    assert View(position=(0, 0, 5), direction=(0, 0, 1), parallel=True).parallel
+
+
+@pytest.mark.parametrize("parallel", [False, True])
+def test_view_from_camera(parallel):
+    camera = pv.Camera()
+    camera.position, camera.focal_point = (2, 0, 0), (0, 0, 0)
+    camera.parallel_projection = parallel
+    view = View.from_camera(camera)
+    assert view.position == (2.0, 0.0, 0.0)
+    np.testing.assert_allclose(view.direction, (1, 0, 0))
+    assert view.parallel == parallel
+
+
+def test_scene_from_plotter_reads_camera_and_lights():
+    plotter = pv.Plotter(lighting="none", off_screen=True)
+    plotter.add_mesh(pv.Sphere())
+    plotter.add_light(pv.Light(position=(5, 5, 5), light_type="scene light"))
+    plotter.add_light(pv.Light(light_type="headlight"))
+    plotter.camera_position = [(4, 0, 0), (0, 0, 0), (0, 0, 1)]
+    scene = Scene.from_plotter(plotter, material=Material(specular=0))
+    assert scene.view == View.from_camera(plotter.camera)
+    assert [light.follows_view for light in scene.lights] == [False, True]
+    assert scene.lights[0].direction == (5.0, 5.0, 5.0)
+    assert scene.material.specular == 0
+    plotter.close()
+
+
+def test_scene_from_plotter_with_the_default_light_kit():
+    plotter = pv.Plotter(off_screen=True)
+    plotter.add_mesh(pv.Sphere())
+    scene = Scene.from_plotter(plotter)
+    assert len(scene.lights) == 5
+    assert scene.view is not None
+    plotter.close()
+
+
+@pytest.mark.parametrize(
+    ("make", "error", "words"),
+    [
+        (lambda: Material(diffuse=-0.1), ValueError, "diffuse: expected"),
+        (lambda: Material(shininess=np.inf), ValueError, "shininess: expected a finite"),
+        (lambda: Material(color=(1, 2)), ValueError, "color: expected three channels"),
+        (View, ValueError, "View: expected position= .* or direction="),
+        (lambda: View(position=(0, 0, 1), parallel=True), ValueError, "direction: expected"),
+        (
+            lambda: View(direction=(0, 0, 1), parallel=False),
+            ValueError,
+            "position: expected the eye",
+        ),
+        (
+            lambda: View(position=(0, 0, 1), direction=(0, 1)),
+            ValueError,
+            "direction: expected 3 components",
+        ),
+        (lambda: View.from_camera("camera"), TypeError, "camera: expected a pyvista.Camera"),
+        (lambda: DepthCue(front=1, back=1), ValueError, "front: expected a depth other than back"),
+        (lambda: DepthCue(back_scale=1.5), ValueError, "back_scale: expected a number from 0 to 1"),
+        (lambda: Scene(lights=["sun"]), TypeError, "lights: expected a vizlight.Light, got 'sun'"),
+        (lambda: Scene(view=(0, 0, 1)), TypeError, "view: expected a vizlight.View or None"),
+        (lambda: Scene(material=0.5), TypeError, "material: expected a vizlight.Material"),
+        (lambda: Scene(depth_cue=True), TypeError, "depth_cue: expected a vizlight.DepthCue"),
+        (
+            lambda: Scene(lights=Light(direction=(1, 0)), view=View(direction=(1, 0, 0))),
+            ValueError,
+            r"Scene: expected vectors of one space, got \[2, 3\] components",
+        ),
+        (lambda: Scene.from_plotter("plotter"), TypeError, "plotter: expected a pyvista.Plotter"),
+    ],
+)
+def test_bad_values(make, error, words):
+    with pytest.raises(error, match=words):
+        make()
