@@ -1,15 +1,11 @@
 from __future__ import annotations
 
 import os
-import sys
 from collections import defaultdict
-from pathlib import Path
 
 import hypothesis
 import numpy as np
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parent))
 
 hypothesis.settings.register_profile(
     "suite", deadline=None, derandomize=True, max_examples=60, print_blob=False

@@ -13,8 +13,8 @@ from vizlight import _check
     ("validate", "value", "expected"),
     [
         (lambda n, v: _check.number(n, v, low=0), 2, 2.0),
-        (lambda n, v: _check.number(n, v), np.float32(1.5), 1.5),
-        (lambda n, v: _check.number(n, v), np.array(3.0), 3.0),
+        (_check.number, np.float32(1.5), 1.5),
+        (_check.number, np.array(3.0), 3.0),
         (lambda n, v: _check.integer(n, v, low=1), np.int64(4), 4),
         (_check.vector, np.array([1, 2, 3]), (1.0, 2.0, 3.0)),
         (lambda n, v: _check.vector(n, v, direction=True), [0, 1e-300], (0.0, 1e-300)),

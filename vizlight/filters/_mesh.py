@@ -161,12 +161,14 @@ def surface_normals(mesh: pv.DataSet, view: View | None) -> Array:
     ValueError
         If the mesh has no surface.
     """
+    if mesh.n_points == 0:
+        return np.zeros((0, 3), dtype=np.float32)
     if isinstance(mesh, pv.PolyData):
         surface, origin = mesh, None
     else:
         surface = mesh.extract_surface(algorithm="geometry", pass_pointid=True, pass_cellid=False)
         origin = np.asarray(surface.point_data["vtkOriginalPointIds"])
-    if mesh.n_points and not (surface.GetNumberOfPolys() or surface.GetNumberOfStrips()):
+    if not (surface.GetNumberOfPolys() or surface.GetNumberOfStrips()):
         raise ValueError(
             _check.message(
                 "mesh",
@@ -175,8 +177,6 @@ def surface_normals(mesh: pv.DataSet, view: View | None) -> Array:
                 "name its tangent vectors by tangents=",
             )
         )
-    if surface.n_cells == 0:
-        return np.zeros((mesh.n_points, 3), dtype=np.float32)
     bare = pv.PolyData()
     bare.copy_structure(surface)
     closed = bare.n_open_edges == 0

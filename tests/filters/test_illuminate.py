@@ -1,0 +1,386 @@
+"""The filter on every kind of mesh, with good and bad arrays."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight import DepthCue, Light, Material, Scene, View, engine, illuminate
+
+SCENE = Scene(lights=Light(direction=(0.3, 0.2, 1)), view=View(position=(0, 0, 20)))
+
+
+def image():
+    grid = pv.ImageData(dimensions=(5, 4, 3), spacing=(0.5, 1, 2), origin=(1, 2, 3))
+    grid["V"] = swirl(grid.points)
+    return grid
+
+
+def swirl(points):
+    x, y, z = np.asarray(points, dtype=float).T
+    return np.stack([-y - 1, x + 2, 0.3 * z + 1], axis=1)
+
+
+def meshes():
+    grid = image()
+    plane = pv.Plane(i_resolution=6, j_resolution=5)
+    plane["V"] = swirl(plane.points)
+    return {
+        "PolyData": plane,
+        "UnstructuredGrid": grid.cast_to_unstructured_grid(),
+        "StructuredGrid": grid.cast_to_structured_grid(),
+        "RectilinearGrid": grid.cast_to_rectilinear_grid(),
+        "ImageData": grid,
+    }
+
+
+@pytest.mark.parametrize("kind", meshes())
+def test_tangents_on_every_kind_of_mesh(kind):
+    mesh = meshes()[kind]
+    scene = SCENE.replace(lights=[Light(position=(4, 5, 6))])
+    before = mesh.copy()
+    lit = illuminate(mesh, scene, tangents="V")
+    assert type(lit) is type(mesh)
+    assert lit.active_scalars_name == "luminance"
+    assert set(lit.point_data) - set(mesh.point_data) == {"luminance"}
+    expected = engine.shade(np.asarray(mesh.points), np.asarray(mesh["V"]), scene).luminance
+    np.testing.assert_allclose(lit["luminance"], expected, atol=1e-12)
+    assert mesh == before
+
+
+def test_points_of_a_turned_image_with_an_extent():
+    grid = pv.ImageData(dimensions=(4, 5, 6), spacing=(0.5, 1, 2), origin=(1, 2, 3))
+    angle = np.radians(30)
+    grid.direction_matrix = [
+        [np.cos(angle), -np.sin(angle), 0],
+        [np.sin(angle), np.cos(angle), 0],
+        [0, 0, 1],
+    ]
+    grid.extent = (2, 5, -1, 3, 0, 5)
+    rows = vizlight.filters._mesh.GridPoints(grid)
+    np.testing.assert_allclose(rows[0 : grid.n_points], grid.points, atol=1e-12)
+    np.testing.assert_allclose(rows[7:23], grid.points[7:23], atol=1e-12)
+
+
+def test_normals_decide_without_tangents():
+    sphere = pv.Sphere(theta_resolution=20, phi_resolution=20)
+    lit = illuminate(sphere, SCENE)
+    toward = np.array([0.3, 0.2, 1]) / np.linalg.norm([0.3, 0.2, 1])
+    outward = np.asarray(sphere.points) / 0.5
+    scene = SCENE.replace(material=Material(specular=0))
+    lambert = 0.1 + 0.5 * np.maximum(outward @ toward, 0)
+    np.testing.assert_allclose(illuminate(sphere, scene)["luminance"], lambert, atol=2e-2)
+    dark = outward @ toward < -0.1
+    np.testing.assert_allclose(lit["luminance"][dark], 0.1, rtol=1e-6)
+
+
+@pytest.mark.parametrize("winding", [1, -1])
+def test_normals_of_a_closed_surface_are_outward(winding):
+    mesh = pv.Sphere().copy()
+    mesh.clear_data()
+    faces = mesh.regular_faces[:, ::winding]
+    mesh = pv.PolyData.from_regular_faces(mesh.points, faces)
+    found = vizlight.filters._mesh.surface_normals(mesh, None)
+    outward = np.asarray(mesh.points) / 0.5
+    assert np.einsum("ij,ij->i", found, outward).min() > 0.99
+
+
+@pytest.mark.parametrize("winding", [1, -1])
+def test_normals_of_open_pieces_turn_outward_and_to_the_eye(winding):
+    cup = pv.Sphere(end_phi=150).triangulate()
+    cup.clear_data()
+    both = cup.merge(cup.translate((3, 0, 0), inplace=False), merge_points=False)
+    mesh = pv.PolyData.from_regular_faces(both.points, both.regular_faces[:, ::winding])
+    found = vizlight.filters._mesh.surface_normals(mesh, None)
+    centre = np.where(np.asarray(mesh.points)[:, :1] > 1.5, [[3.0, 0, 0]], [[0.0, 0, 0]])
+    assert np.einsum("ij,ij->i", found, mesh.points - centre).min() > 0.45
+    sheet = pv.Plane(i_resolution=3, j_resolution=3)
+    sheet.clear_data()
+    for side in (1.0, -1.0):
+        for view in (View(direction=(0, 0.1, side)), View(position=(0, 0, 5 * side))):
+            up = vizlight.filters._mesh.surface_normals(sheet, view)[:, 2]
+            np.testing.assert_allclose(up, side)
+
+
+def test_flip_and_two_sides():
+    plane = pv.Plane(i_resolution=2, j_resolution=2)
+    front = illuminate(plane, SCENE)["luminance"]
+    back = illuminate(plane, SCENE, flip_normals=True)["luminance"]
+    both = illuminate(plane, SCENE, flip_normals=True, two_sided=True)["luminance"]
+    np.testing.assert_allclose(back, 0.1)
+    np.testing.assert_allclose(both, front, rtol=1e-6)
+    assert front.min() > 0.3
+
+
+def test_named_normals_win():
+    plane = pv.Plane(i_resolution=2, j_resolution=2)
+    plane["down"] = np.tile([0, 0, -1.0], (plane.n_points, 1))
+    np.testing.assert_allclose(illuminate(plane, SCENE, normals="down")["luminance"], 0.1)
+    given = illuminate(plane, SCENE, normals=-np.asarray(plane["down"]))
+    assert given["luminance"].min() > 0.3
+
+
+def test_a_volume_is_lit_on_its_outside():
+    grid = pv.ImageData(dimensions=(4, 4, 4))
+    with pytest.warns(UserWarning, match="8 of 64 points could not be lit"):
+        lit = illuminate(grid, SCENE)
+    inside = np.all((grid.points > 0) & (grid.points < 3), axis=1)
+    np.testing.assert_array_equal(lit["luminance_valid"].astype(bool), ~inside)
+    np.testing.assert_allclose(lit["luminance"][inside], 0.1)
+
+
+def test_conditioned_inherits_the_self_shadow():
+    sphere = pv.Sphere(theta_resolution=30, phi_resolution=30)
+    normals = np.asarray(sphere["Normals"])
+    sphere["V"] = np.cross(normals, np.float32([0.1, 0.2, 1.0]))
+    free = illuminate(sphere, SCENE, tangents="V", components=True)
+    shadowed = illuminate(sphere, SCENE, tangents="V", conditioned=True, components=True)
+    toward = np.array([0.3, 0.2, 1]) / np.linalg.norm([0.3, 0.2, 1])
+    facing = np.maximum(normals @ toward, 0)
+    for term in ("diffuse", "specular"):
+        np.testing.assert_allclose(shadowed[term], facing * free[term], atol=1e-6)
+    assert np.all(shadowed["luminance"][facing == 0] == np.float32(0.1))
+    assert np.any(free["luminance"][facing == 0] > 0.2)
+
+
+def test_a_frame_of_two_vectors_is_a_surface():
+    plane = pv.Plane(i_resolution=3, j_resolution=3)
+    plane["frame"] = np.tile([2.0, 0, 0, 1, 3, 0], (plane.n_points, 1))
+    by_frame = illuminate(plane, SCENE, tangents="frame", components=True)
+    by_normal = illuminate(plane, SCENE, two_sided=True, components=True)
+    for term in ("ambient", "diffuse", "specular", "luminance"):
+        np.testing.assert_allclose(by_frame[term], by_normal[term], atol=1e-6)
+
+
+def test_a_line_gets_a_surface_contrast_unless_told_otherwise():
+    line = pv.Line((0, 0, 0), (1, 0, 0), resolution=4)
+    line["T"] = np.tile([1.0, 0, 0], (5, 1))
+    scene = Scene(
+        lights=Light(direction=(1, 0, 1)), material=Material(ambient=0, diffuse=1, specular=0)
+    )
+    np.testing.assert_allclose(
+        illuminate(line, scene, tangents="T")["luminance"], 0.5 ** (4.7635 / 2), rtol=1e-4
+    )
+    plain = illuminate(line, scene, tangents="T", compensate=False)
+    np.testing.assert_allclose(plain["luminance"], 0.5**0.5, rtol=1e-12)
+
+
+def test_points_in_4_space():
+    cloud = pv.PolyData(np.zeros((6, 3)))
+    random = np.random.default_rng(1)
+    cloud["x"] = random.standard_normal((6, 4))
+    cloud["frame"] = random.standard_normal((6, 8))
+    scene = Scene(lights=Light(position=(1, 2, 3, 4)), view=View(position=(0, 0, 0, 9)))
+    lit = illuminate(cloud, scene, tangents="frame", positions="x")
+    expected = engine.shade(cloud["x"], np.asarray(cloud["frame"]).reshape(6, 2, 4), scene)
+    np.testing.assert_allclose(lit["luminance"], expected.luminance, atol=1e-14)
+
+
+def test_multiblock_keeps_names_nesting_and_gaps():
+    plane, grid = meshes()["PolyData"], meshes()["ImageData"]
+    blocks = pv.MultiBlock({"plane": plane, "gap": None, "inner": pv.MultiBlock({"grid": grid})})
+    lit = illuminate(blocks, SCENE, tangents="V")
+    assert lit.keys() == ["plane", "gap", "inner"]
+    assert lit["gap"] is None
+    for one, alone in ((lit["plane"], plane), (lit["inner"]["grid"], grid)):
+        expected = illuminate(alone, SCENE, tangents="V")["luminance"]
+        np.testing.assert_array_equal(one["luminance"], expected)
+    assert "luminance" not in blocks["plane"].point_data
+    assert "luminance" not in blocks["inner"]["grid"].point_data
+
+
+def test_multiblock_error_names_the_block_and_changes_nothing():
+    blocks = pv.MultiBlock({"good": meshes()["PolyData"], "bad": pv.Sphere()})
+    with pytest.raises(
+        ValueError, match="block /bad: tangents: expected the name of a point array"
+    ):
+        illuminate(blocks, SCENE, tangents="V", inplace=True)
+    assert "luminance" not in blocks["good"].point_data
+
+
+def test_one_depth_cue_for_all_blocks():
+    near = pv.Plane(center=(0, 0, 4))
+    far = pv.Plane(center=(0, 0, -6))
+    scene = Scene(
+        lights=[],
+        view=View(direction=(0, 0, 1)),
+        material=Material(ambient=1),
+        depth_cue=DepthCue(back_scale=0.25, cue=0),
+    )
+    lit = illuminate(pv.MultiBlock([near, far]), scene)
+    np.testing.assert_allclose(lit[0]["luminance"], 1)
+    np.testing.assert_allclose(lit[1]["luminance"], 0.25)
+    told = vizlight.provenance(lit[0])["scene"]["depth_cue"]
+    assert (told["front"], told["back"]) == (-4, 6)
+    flat = illuminate(near, scene)
+    np.testing.assert_allclose(flat["luminance"], 1)
+
+
+def test_colour_gives_rgb():
+    plane = meshes()["PolyData"]
+    scene = SCENE.replace(material=Material(color=(1, 0.25, 0.5), specular=0))
+    lit = illuminate(plane, scene, tangents="V")
+    np.testing.assert_allclose(
+        lit["rgb"], lit["luminance"][:, np.newaxis] * [1, 0.25, 0.5], rtol=1e-6
+    )
+
+
+def test_names_of_results():
+    plane = meshes()["PolyData"]
+    lit = illuminate(plane, SCENE, tangents="V", name="flow", components=True)
+    assert {"flow", "flow_ambient", "flow_diffuse", "flow_specular"} <= set(lit.point_data)
+    assert "luminance" not in lit.point_data
+    total = lit["flow_ambient"] + lit["flow_diffuse"] + lit["flow_specular"]
+    np.testing.assert_allclose(lit["flow"], total, atol=1e-12)
+
+
+def test_inplace_changes_the_mesh_and_may_be_repeated():
+    plane = meshes()["PolyData"]
+    zero = plane["V"].copy()
+    zero[0] = 0
+    plane["W"] = zero
+    with pytest.warns(UserWarning, match="1 of"):
+        assert illuminate(plane, SCENE, tangents="W", inplace=True, components=True) is plane
+    assert "luminance_valid" in plane.point_data
+    illuminate(plane, SCENE, tangents="V", inplace=True)
+    assert not {"luminance_valid", "diffuse"} & set(plane.point_data)
+
+
+def test_inplace_does_not_lose_the_users_array():
+    plane = meshes()["PolyData"]
+    plane["luminance"] = np.arange(plane.n_points)
+    with pytest.raises(ValueError, match="name: expected one that the mesh has no array of"):
+        illuminate(plane, SCENE, tangents="V", inplace=True)
+    np.testing.assert_array_equal(plane["luminance"], np.arange(plane.n_points))
+
+
+def test_zero_and_nan_vectors_are_marked_with_one_warning():
+    plane = meshes()["PolyData"]
+    plane["V"][3] = 0
+    plane["V"][5] = np.nan
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        lit = illuminate(plane, SCENE, tangents="V")
+    (warning,) = caught
+    assert f"2 of {plane.n_points} points could not be lit" in str(warning.message)
+    assert warning.filename == __file__
+    np.testing.assert_array_equal(np.flatnonzero(~lit["luminance_valid"].astype(bool)), [3, 5])
+    np.testing.assert_allclose(lit["luminance"][[3, 5]], 0.1)
+
+
+def test_cell_data_is_refused_or_averaged():
+    grid = image().cast_to_unstructured_grid()
+    grid.cell_data["C"] = np.tile([1.0, 2, 3], (grid.n_cells, 1))
+    with pytest.raises(ValueError, match="got the cell array 'C'; pass average_cells=True or call"):
+        illuminate(grid, SCENE, tangents="C")
+    lit = illuminate(grid, SCENE, tangents="C", average_cells=True)
+    grid["P"] = np.tile([1.0, 2, 3], (grid.n_points, 1))
+    np.testing.assert_allclose(lit["luminance"], illuminate(grid, SCENE, tangents="P")["luminance"])
+    assert "C" not in lit.point_data
+
+
+def test_precision_follows_the_vectors_unless_asked():
+    plane = meshes()["PolyData"]
+    assert illuminate(plane, SCENE, tangents="V")["luminance"].dtype == np.float64
+    low = illuminate(plane, SCENE, tangents="V", precision="float32")
+    assert low["luminance"].dtype == np.float32
+
+
+@pytest.mark.parametrize("kind", ["PolyData", "UnstructuredGrid", "ImageData"])
+def test_empty_meshes(kind):
+    mesh = {
+        "PolyData": pv.PolyData,
+        "UnstructuredGrid": pv.UnstructuredGrid,
+        "ImageData": pv.ImageData,
+    }[kind]()
+    lit = illuminate(mesh, SCENE)
+    assert lit.n_points == mesh.n_points
+    assert "luminance" in lit.point_data
+
+
+def test_progress_bar_is_drawn_on_standard_error(capfd):
+    illuminate(meshes()["PolyData"], SCENE, tangents="V", progress_bar=True)
+    out, err = capfd.readouterr()
+    assert out == ""
+    assert "light" in err
+    assert "100%" in err
+
+
+def test_result_does_not_hold_the_input_in_memory_twice():
+    plane = meshes()["PolyData"]
+    lit = illuminate(plane, SCENE, tangents="V")
+    assert np.shares_memory(lit["V"], plane["V"])
+    assert np.shares_memory(lit.points, plane.points)
+
+
+@pytest.mark.parametrize(
+    ("options", "error", "words"),
+    [
+        (
+            {"tangents": "U"},
+            ValueError,
+            r"tangents: expected the name of a point array \('.*'V'.*\), got 'U'",
+        ),
+        (
+            {"tangents": "S"},
+            ValueError,
+            "tangents: expected vectors.*got 'S' with 1 component; name",
+        ),
+        (
+            {"tangents": "two"},
+            ValueError,
+            "tangents: expected a point array of 3 or 6 components.*'two' with 2",
+        ),
+        ({"tangents": "nine"}, ValueError, "tangents: .*'nine' with 9"),
+        ({"tangents": np.ones((2, 3))}, ValueError, "tangents: expected 42 rows, one a point"),
+        ({"tangents": "V", "normals": "V"}, ValueError, "normals: expected None beside tangents"),
+        ({"conditioned": True}, ValueError, "conditioned: expected tangents to condition"),
+        ({"normals": "two"}, ValueError, "normals: expected 3 components, got 'two' with 2"),
+        ({"tangents": "V", "model": "x"}, ValueError, "model: expected"),
+        ({"tangents": "V", "name": ""}, ValueError, "name: expected a name"),
+        ({"tangents": "V", "precision": "f4"}, ValueError, "precision: expected"),
+        (
+            {"tangents": "V", "positions": "four"},
+            ValueError,
+            "tangents: expected a point array of 4 or 8",
+        ),
+        ({"tangents": "words"}, TypeError, "tangents: expected real numbers, got 'words'"),
+        (
+            {"positions": "four"},
+            ValueError,
+            "normals: expected a point array of 4 components for 4-space",
+        ),
+    ],
+)
+def test_bad_options(options, error, words):
+    plane = meshes()["PolyData"]
+    plane["S"] = np.ones(42)
+    plane["two"], plane["four"], plane["nine"] = (
+        np.ones((42, 2)),
+        np.ones((42, 4)),
+        np.ones((42, 9)),
+    )
+    plane["words"] = np.array(["a"] * 42)
+    before = plane.copy()
+    with pytest.raises(error, match=words):
+        illuminate(plane, SCENE, **options)
+    assert plane == before
+
+
+def test_bad_meshes_and_scenes():
+    with pytest.raises(
+        TypeError, match="mesh: expected a PyVista mesh, got ndarray; read files by"
+    ):
+        illuminate(np.ones((3, 3)), SCENE)
+    with pytest.raises(TypeError, match=r"scene: expected a vizlight\.Scene, got"):
+        illuminate(pv.Sphere(), Light(direction=(0, 0, 1)))
+    with pytest.raises(
+        ValueError, match=r"mesh: expected a surface.*name its tangent vectors by tangents="
+    ):
+        illuminate(pv.Line(), SCENE)
+    with pytest.raises(ValueError, match="view: expected a View, which the specular term needs"):
+        illuminate(pv.Sphere(), Scene(lights=Light(direction=(0, 0, 1))))

@@ -1,0 +1,55 @@
+"""What made an array is kept with it, through files, and makes it again."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight import Light, Material, Scene, View
+
+SCENE = Scene(
+    lights=[Light(position=(1, 2, 9), color="red"), Light.headlight(intensity=0.5)],
+    material=Material(color="wheat", shininess=12.5),
+    view=View(position=(0, 0, 20)),
+)
+
+
+def lit_mesh():
+    mesh = pv.Sphere()
+    mesh["V"] = np.cross(mesh["Normals"], np.float32([0.3, 0.1, 1]))
+    return vizlight.illuminate(mesh, SCENE, tangents="V", conditioned=True, components=True)
+
+
+@pytest.mark.parametrize("suffix", [".vtp", ".vtk", ".vtu"])
+def test_a_saved_file_can_be_reproduced(suffix, tmp_path):
+    lit = lit_mesh()
+    saved = lit.cast_to_unstructured_grid() if suffix == ".vtu" else lit
+    saved.save(tmp_path / f"lit{suffix}")
+    read = pv.read(tmp_path / f"lit{suffix}")
+    told = vizlight.provenance(read)
+    assert told["vizlight"] == vizlight.__version__
+    assert told["terms"] == ["ambient", "diffuse", "specular"]
+    assert (told["points"], told["invalid"], told["precision"]) == (lit.n_points, 0, "float32")
+    again = vizlight.illuminate(read, Scene.from_dict(told["scene"]), **told["options"])
+    np.testing.assert_array_equal(again["luminance"], lit["luminance"])
+    np.testing.assert_array_equal(again["rgb"], lit["rgb"])
+
+
+def test_each_array_has_its_own():
+    mesh = vizlight.illuminate(lit_mesh(), SCENE, name="plain")
+    assert vizlight.provenance(mesh)["options"]["tangents"] == "V"
+    assert vizlight.provenance(mesh, "plain")["options"]["tangents"] is None
+
+
+def test_an_array_given_as_such_is_described():
+    mesh = pv.Sphere()
+    lit = vizlight.illuminate(mesh, SCENE, tangents=np.ones((mesh.n_points, 3)))
+    told = vizlight.provenance(lit)["options"]["tangents"]
+    assert told == f"an array of shape ({mesh.n_points}, 3) and type float64"
+
+
+def test_unknown_name():
+    with pytest.raises(ValueError, match=r"name: expected one of .*\['luminance'\], got 'other'"):
+        vizlight.provenance(lit_mesh(), "other")

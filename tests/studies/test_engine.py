@@ -1,0 +1,30 @@
+"""The study measures what it says; no time is asserted."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vizlight.studies import engine
+
+
+def test_rows_of_the_study():
+    rows = engine.measure(40_000, repeats=1)
+    script, first = rows[0], rows[1]
+    assert script.way == "NumPy script, float32"
+    assert all(row.seconds > 0 for row in rows)
+    assert first.error < 2e-6
+    high = next(row for row in rows if "float64" in row.way)
+    assert high.error < 1e-13
+    small = next(row for row in rows if "4096" in row.way)
+    assert small.extra_bytes < script.extra_bytes
+
+
+def test_table_is_printed(capsys):
+    engine.main(2000)
+    out = capsys.readouterr().out
+    for part in ("ns a point", "times as fast", "largest error", "NumPy script"):
+        assert part.split()[0] in out
+
+
+def test_extra_memory_counts_numpy():
+    assert engine.extra_memory(lambda: np.ones(100_000), 0) >= 800_000

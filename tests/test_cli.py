@@ -1,0 +1,229 @@
+"""The command line as a user meets it: one line on standard error, an exit code, whole files."""
+
+from __future__ import annotations
+
+import sys
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight import cli, render
+from vizlight.scene import Scene
+
+
+@pytest.fixture
+def volume(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    grid = pv.ImageData(dimensions=(12, 12, 12))
+    x, y, z = (grid.points - 5.5).T
+    grid["r"] = np.sqrt(x * x + y * y + z * z)
+    grid["V"] = np.stack([-y - 0.1, x + 0.1, 0.2 * z + 1], axis=1).astype(np.float32)
+    grid.cell_data["C"] = np.ones((grid.n_cells, 3))
+    grid.save("flow.vti")
+    return "flow.vti"
+
+
+def run(capfd, *arguments):
+    code = cli.main([str(a) for a in arguments])
+    out, err = capfd.readouterr()
+    return code, out, err
+
+
+def test_light_writes_mesh_and_picture(volume, tmp_path, capfd):
+    code, out, err = run(
+        capfd,
+        "light",
+        volume,
+        "--contour",
+        "r",
+        "--level",
+        "4",
+        "--tangents",
+        "V",
+        "--conditioned",
+        "--components",
+        "--light",
+        "-1,-2,3",
+        "--size",
+        "120x90",
+    )
+    assert (code, err) == (0, "")
+    assert "points lit in" in out
+    assert {p.name for p in tmp_path.iterdir()} == {"flow.vti", "flow-lit.vtp", "flow-lit.png"}
+    lit = pv.read("flow-lit.vtp")
+    told = vizlight.provenance(lit)
+    assert told["options"]["conditioned"]
+    scene = Scene.from_dict(told["scene"])
+    assert scene.lights[0].direction == (-1.0, -2.0, 3.0)
+    again = vizlight.illuminate(lit, scene, **told["options"])
+    np.testing.assert_array_equal(again["luminance"], lit["luminance"])
+
+
+@pytest.mark.parametrize("suffix", [".vtp", ".vtu", ".vtk"])
+def test_outputs_by_ending(suffix, volume, tmp_path, capfd):
+    code, _, err = run(
+        capfd, "light", volume, "-o", f"x{suffix}", "--view", "0,-1,0", "--headlight"
+    )
+    assert (code, err) == (0, "")
+    assert "luminance" in pv.read(f"x{suffix}").point_data
+    assert not list(tmp_path.glob("*.png"))
+
+
+def test_all_points_of_a_volume(volume, capfd):
+    code, _, err = run(capfd, "light", volume, "--no-surface", "--tangents", "V", "-o", "x.vti")
+    assert (code, err) == (0, "")
+    assert pv.read("x.vti").n_points == 12**3
+
+
+def test_more_options(volume, capfd):
+    code, out, err = run(
+        capfd,
+        "light",
+        volume,
+        "--tangents",
+        "C",
+        "--average-cells",
+        "--lamp",
+        "9,9,-9",
+        "--color",
+        "tomato",
+        "--depth-cue",
+        "--parallel",
+        "--model",
+        "blinn",
+        "--explain",
+        "--precision",
+        "float64",
+        "--progress",
+        "--no-compensate",
+        "--up",
+        "0,1,0",
+        "-o",
+        "c.png",
+        "--size",
+        "60x60",
+        "--background",
+        "black",
+        "--zoom",
+        "1.2",
+    )
+    assert code == 0
+    assert "compute  specular: blinn" in out
+    assert "depth cue: linear" in out
+    assert "float64" in out
+    assert "100%" in err
+
+
+def test_terrain_is_warped(tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    grid = pv.ImageData(dimensions=(9, 9, 1))
+    grid["elevation"] = np.sin(grid.points[:, 0])
+    grid.save("t.vti")
+    code, _, err = run(
+        capfd, "light", "t.vti", "--warp", "elevation", "--warp-factor", "2", "-o", "t.vtp"
+    )
+    assert (code, err) == (0, "")
+    assert pv.read("t.vtp").bounds.z_max > 1.5
+    assert np.ptp(pv.read("t.vtp")["luminance"]) > 0.1
+
+
+def test_points_that_cannot_be_lit_are_told_and_no_error(volume, capfd):
+    grid = pv.read(volume)
+    grid["V"][:3] = 0
+    grid.save("flow.vti")
+    code, _, err = run(capfd, "light", volume, "--no-surface", "--tangents", "V", "-o", "x.vti")
+    assert code == 0
+    assert err.startswith("vizlight: 3 of 1728 points could not be lit")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["light", "no.vtp"], "file: expected a file that exists, got 'no.vtp'"),
+        (["light", "bad.vtp"], "file: expected a mesh that PyVista reads"),
+        (["light"], "requires an argument"),
+        (["light", "flow.vti", "--tangents", "U"], "tangents: expected the name of a point array"),
+        (["light", "flow.vti", "--tangents", "r"], "tangents: expected vectors"),
+        (
+            ["light", "flow.vti", "--no-surface", "-o", "x.vti", "--tangents", "C"],
+            "got the cell array 'C'",
+        ),
+        (["light", "flow.vti", "--contour", "V"], "contour: expected a point array of one"),
+        (
+            ["light", "flow.vti", "--contour", "r", "--level", "99"],
+            "level: expected a value between",
+        ),
+        (["light", "flow.vti", "-o", "x.gif"], "output: expected a name that ends in"),
+        (["light", "flow.vti", "-o", "none/x.vtp"], "output: expected a folder that exists"),
+        (["light", "flow.vti", "-o", "x.vti"], "output: expected a name that ends in .vtp"),
+        (["light", "flow.vti", "--light", "1,2"], "--light: expected three numbers x,y,z"),
+        (["light", "flow.vti", "--light", "0,0,0"], "direction: expected a direction of non-zero"),
+        (["light", "flow.vti", "--color", "nothing"], "color: expected a colour's name"),
+        (["light", "flow.vti", "--size", "big"], "--size: expected WIDTHxHEIGHT"),
+        (["light", "flow.vti", "--size", "0x5"], "--size: expected WIDTHxHEIGHT"),
+        (["light", "flow.vti", "--shininess", "-1"], "shininess: expected"),
+        (["light", "flow.vti", "--shininess", "x"], "--shininess"),
+        (["light", "flow.vti", "--model", "x"], "--model"),
+        (["light", "flow.vti", "--bogus"], "--bogus"),
+        (["demo", "--out", "bad.vtp"], "out: expected a folder that can be made"),
+        (["nothing"], "nothing"),
+    ],
+)
+def test_bad_input_is_one_line_and_exit_code_2(arguments, words, volume, tmp_path, capfd):
+    (tmp_path / "bad.vtp").write_text("garbage")
+    before = sorted(tmp_path.iterdir())
+    code, out, err = run(capfd, *arguments)
+    assert code == 2
+    assert out == ""
+    assert err.startswith("vizlight: ")
+    assert words in err
+    assert err.count("\n") == 1
+    assert sorted(tmp_path.iterdir()) == before
+
+
+def test_demo(tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    code, out, _ = run(capfd, "demo", "--size", "200x100")
+    assert code == 0
+    for part in ("points", "terms", "time", "largest error", "compute  diffuse: |wi_N|"):
+        assert part in out
+    assert {p.name for p in (tmp_path / "vizlight-demo").iterdir()} == {"flow.vtp", "flow.png"}
+    lit = pv.read("vizlight-demo/flow.vtp")
+    assert {"surface_light", "flow_light"} <= set(lit.point_data)
+
+
+def test_doctor(capfd):
+    code, out, _ = run(capfd, "doctor")
+    assert code == (0 if render.probe("egl").works or render.probe("osmesa").works else 1)
+    for part in ("python", "vtk", "pyvista", "egl", "osmesa", "rotating_disk.vtu"):
+        assert part in out
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="backends are chosen on Linux")
+def test_without_opengl_the_mesh_is_written_and_the_exit_code_is_1(
+    volume, tmp_path, capfd, monkeypatch
+):
+    monkeypatch.delenv("VTK_DEFAULT_OPENGL_WINDOW", raising=False)
+    monkeypatch.setattr(render, "_PROBE", "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)")
+    render.probe.cache_clear()
+    try:
+        code, _, err = run(capfd, "light", volume, "--tangents", "V")
+        doctor = run(capfd, "doctor")
+    finally:
+        render.probe.cache_clear()
+    assert code == 1
+    assert "apt-get install -y libegl1 libgl1-mesa-dri" in err
+    assert err.count("\n") == 1
+    assert {p.name for p in tmp_path.iterdir()} == {"flow.vti", "flow-lit.vtp"}
+    assert doctor[0] == 1
+    assert "apt-get install -y" in doctor[2]
+
+
+def test_help_and_version(capfd):
+    code, out, _ = run(capfd, "--help")
+    assert code == 0
+    assert "demo" in out
+    code, out, _ = run(capfd, "--version")
+    assert out.strip() == vizlight.__version__

@@ -1,0 +1,50 @@
+"""The embedded data are those whose provenance is told, and small."""
+
+from __future__ import annotations
+
+import hashlib
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+import vizlight
+
+DATASETS = Path(__file__).parent.parent / "datasets"
+
+
+def test_every_file_has_the_hash_that_the_readme_tells():
+    told = (DATASETS / "README.md").read_text()
+    files = sorted(DATASETS.glob("*.vt?"))
+    assert files
+    for path in files:
+        assert f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.name}" in told
+    assert sum(path.stat().st_size for path in DATASETS.iterdir() if path.is_file()) < 5e6
+
+
+def test_the_flow_is_what_the_readme_tells():
+    flow = vizlight.load_example()
+    assert (flow.n_points, flow.n_cells) == (8499, 7472)
+    assert set(flow.point_data) == {"V", "Pres", "Temp", "H2", "AsH3", "CH4", "GaMe3"}
+
+
+def test_unknown_data():
+    with pytest.raises(ValueError, match=r"name: expected one of \['rotating_disk.vtu'\], got 'x'"):
+        vizlight.example_path("x")
+
+
+def test_the_wheel_carries_the_data_and_the_marker(tmp_path):
+    pytest.importorskip("hatchling")
+    code = "from hatchling.build import build_wheel; import sys; print(build_wheel(sys.argv[1]))"
+    run = subprocess.run(
+        [sys.executable, "-c", code, str(tmp_path)],
+        cwd=DATASETS.parent,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    names = zipfile.ZipFile(tmp_path / run.stdout.split()[-1]).namelist()
+    for name in ("datasets/rotating_disk.vtu", "datasets/LICENSE-mayavi.txt", "py.typed", "cli.py"):
+        assert f"vizlight/{name}" in names

@@ -1,0 +1,137 @@
+"""Files in and out: clear errors, whole files or none."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from vizlight import files
+
+
+def volume():
+    grid = pv.ImageData(dimensions=(8, 8, 8))
+    grid["r"] = np.linalg.norm(grid.points - 3.5, axis=1)
+    grid["V"] = np.ones((grid.n_points, 3))
+    return grid
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("a.vtp", b"garbage"),
+        ("b.vtk", b"garbage"),
+        ("c.stl", b"solid x"),
+        ("d.nothing", b"q"),
+        ("e.ply", b"ply\nfoo"),
+        ("f.vtu", b'<?xml version="1.0"?><VTKFile type="UnstructuredGrid"><UnstructuredGrid>'),
+        ("g.ex2", b"x"),
+        ("h.vtp", b""),
+    ],
+)
+def test_damaged_files_give_one_clear_error(name, content, tmp_path, capfd):
+    path = tmp_path / name
+    path.write_bytes(content)
+    with pytest.raises(
+        files.FileError, match=rf"file: expected a mesh that PyVista reads, got '.*{name}' \("
+    ):
+        files.read_mesh(path)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_missing_file(tmp_path):
+    with pytest.raises(files.FileError, match="file: expected a file that exists"):
+        files.read_mesh(tmp_path / "no.vtp")
+    with pytest.raises(files.FileError, match="file: expected a file that exists"):
+        files.read_mesh(tmp_path)
+
+
+def test_blocks_become_one_grid_of_their_highest_cells(tmp_path):
+    grid = volume().cast_to_unstructured_grid()
+    blocks = pv.MultiBlock({"solid": grid, "side": grid.extract_surface(algorithm="geometry")})
+    blocks.save(tmp_path / "b.vtm")
+    read = files.read_mesh(tmp_path / "b.vtm")
+    assert isinstance(read, pv.UnstructuredGrid)
+    assert read.n_cells == grid.n_cells
+    assert "V" in read.point_data
+
+
+def test_surfaces():
+    grid = volume()
+    iso = files.surface_of(grid, "r", 2.0)
+    np.testing.assert_allclose(np.linalg.norm(iso.points - 3.5, axis=1), 2.0, atol=0.15)
+    middle = files.surface_of(grid, "r")
+    assert middle.n_points > 0
+    outside = files.surface_of(grid)
+    assert isinstance(outside, pv.PolyData)
+    assert outside.n_points == 8**3 - 6**3
+    assert files.surface_of(iso) is iso
+
+
+def test_warp():
+    plane = pv.ImageData(dimensions=(3, 3, 1))
+    plane["z"] = np.arange(9.0)
+    np.testing.assert_allclose(files.warped(plane, "z", 2.0).points[:, 2], 2 * np.arange(9))
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda g: files.surface_of(g, "s"), r"contour: .*one of \['r'\], got 's'"),
+        (lambda g: files.surface_of(g, "V"), "contour: .*got 'V' with 3 components"),
+        (lambda g: files.surface_of(g, "C"), "contour: .*got the cell array 'C'"),
+        (lambda g: files.surface_of(g, "r", 99.0), "level: expected a value between 0.8.* and 6.0"),
+        (lambda g: files.surface_of(g, "r", np.nan), "level: expected a finite number"),
+        (lambda g: files.warped(g, "V", 1.0), "warp: expected a point array of one component"),
+        (lambda g: files.warped(g, "r", np.inf), "warp_factor: expected a finite number"),
+    ],
+)
+def test_bad_arrays(call, words):
+    grid = volume()
+    grid.cell_data["C"] = np.ones(grid.n_cells)
+    with pytest.raises(ValueError, match=words):
+        call(grid)
+
+
+@pytest.mark.parametrize("suffix", files.FORMATS["PolyData"])
+def test_surfaces_are_written_with_their_arrays(suffix, tmp_path):
+    sphere = pv.Sphere()
+    sphere["x"] = np.arange(sphere.n_points, dtype=float)
+    path = files.write_mesh(sphere, tmp_path / f"s{suffix}")
+    np.testing.assert_array_equal(pv.read(path)["x"], sphere["x"])
+    assert [p.name for p in tmp_path.iterdir()] == [path.name]
+
+
+def test_wrong_endings_and_folders(tmp_path):
+    with pytest.raises(
+        files.FileError, match=r"output: expected a name that ends in \.vti, \.vtk for ImageData"
+    ):
+        files.write_mesh(volume(), tmp_path / "a.vtp")
+    with pytest.raises(files.FileError, match=r"output: expected a name that ends in \.png, got"):
+        files.check_output(tmp_path / "a.gif", (".png",))
+    with pytest.raises(files.FileError, match="output: expected a folder that exists"):
+        files.check_output(tmp_path / "none" / "a.png", (".png",))
+    (tmp_path / "d.png").mkdir()
+    with pytest.raises(files.FileError, match="output: expected a file that can be written"):
+        files.check_output(tmp_path / "d.png", (".png",))
+
+
+def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path):
+    path = tmp_path / "a.vtp"
+    path.write_text("old")
+
+    def write(draft):
+        Path(draft).write_text("half")
+        raise OSError(28, "No space left on device")
+
+    with pytest.raises(files.FileError, match="No space left on device"):
+        files.replace_file(path, write)
+    assert path.read_text() == "old"
+    assert [p.name for p in tmp_path.iterdir()] == ["a.vtp"]
+
+
+def test_a_writer_that_writes_nothing_is_an_error(tmp_path):
+    with pytest.raises(files.FileError, match="output: expected a file that can be written"):
+        files.replace_file(tmp_path / "a.vtp", lambda draft: None)
