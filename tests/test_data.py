@@ -36,7 +36,6 @@ def test_unknown_data():
 
 
 def test_the_wheel_carries_the_data_and_the_marker(tmp_path):
-    pytest.importorskip("hatchling")
     code = "from hatchling.build import build_wheel; import sys; print(build_wheel(sys.argv[1]))"
     run = subprocess.run(
         [sys.executable, "-c", code, str(tmp_path)],
