@@ -31,6 +31,7 @@ def run(capfd, *arguments):
     return code, out, err
 
 
+@pytest.mark.opengl
 def test_light_writes_mesh_and_picture(volume, tmp_path, capfd):
     code, out, err = run(
         capfd,
@@ -77,6 +78,7 @@ def test_all_points_of_a_volume(volume, capfd):
     assert pv.read("x.vti").n_points == 12**3
 
 
+@pytest.mark.opengl
 def test_more_options(volume, capfd):
     code, out, err = run(
         capfd,
@@ -183,6 +185,7 @@ def test_bad_input_is_one_line_and_exit_code_2(arguments, words, volume, tmp_pat
     assert sorted(tmp_path.iterdir()) == before
 
 
+@pytest.mark.opengl
 def test_demo(tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(tmp_path)
     code, out, _ = run(capfd, "demo", "--size", "200x100")

@@ -59,6 +59,7 @@ def camera():
     return made
 
 
+@pytest.mark.opengl
 def test_camera_lights_stand_where_vtk_has_them():
     seen = camera()
     light = pv.Light(position=(0.3, 0.4, 1.0), focal_point=(0, 0, 0), light_type="camera light")

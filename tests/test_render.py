@@ -16,6 +16,8 @@ import pyvista as pv
 import vizlight
 from vizlight import Light, Material, Scene, View, demo, render
 
+pytestmark = pytest.mark.opengl
+
 
 def ball(**material):
     mesh = pv.Sphere(radius=1, theta_resolution=80, phi_resolution=80)

@@ -66,6 +66,7 @@ def test_view_from_camera(parallel):
     assert view.parallel == parallel
 
 
+@pytest.mark.opengl
 def test_scene_from_plotter_reads_camera_and_lights():
     plotter = pv.Plotter(lighting="none", off_screen=True)
     plotter.add_mesh(pv.Sphere())
@@ -80,6 +81,7 @@ def test_scene_from_plotter_reads_camera_and_lights():
     plotter.close()
 
 
+@pytest.mark.opengl
 def test_scene_from_plotter_with_the_default_light_kit():
     plotter = pv.Plotter(off_screen=True)
     plotter.add_mesh(pv.Sphere())
