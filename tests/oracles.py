@@ -193,7 +193,7 @@ def hard_directions(random, frame, dtype):
     normal = other - frame.T.astype(float) @ (frame.astype(float) @ other)
     normal /= np.linalg.norm(normal)
     found = [other / np.linalg.norm(other), tangent, -tangent, normal]
-    for step in (1e-2, 1e-4, 1e-8, 1e-12):
+    for step in (0.03, 1e-2, 1e-3, 1e-4, 1e-8, 1e-12):
         found += [tangent + step * normal, normal + step * tangent]
     found = [np.asarray(v, dtype=dtype) for v in found]
     nudged = found[1].copy()

@@ -252,6 +252,27 @@ def test_light_and_eye_on_the_point(dtype):
     assert eye.diffuse[0] > 0
 
 
+def test_a_light_on_the_point_is_dark_in_any_dimension():
+    """With p(1, 60) = 175 the power is taken through the deficit, which is 0 for no direction."""
+    points, tangents = np.zeros((1, 60)), np.eye(60)[:1]
+    scene = Scene(lights=Light(position=np.zeros(60)), view=View(position=np.ones(60)))
+    shaded = engine.shade(points, tangents, scene, components=True)
+    assert shaded.plan.exponent > 128
+    assert (shaded.diffuse[0], shaded.specular[0]) == (0, 0)
+
+
+def test_vectors_are_made_unit_before_they_are_rounded():
+    tangents = np.array([[1e-150, 0, 0], [1e150, 0, 0], [1, 0, 0]])
+    points, scene = np.zeros((3, 3)), SCENES["sun, far eye"]
+    lines = engine.shade(points, tangents, scene, precision="float32")
+    surface = engine.shade(points, None, scene, normals=tangents, precision="float32")
+    pairs = np.array([[[1, 0, 0], [1, 1e-8, 0]]] * 3)
+    planes = engine.shade(points, pairs, scene, precision="float32")
+    for shaded in (lines, surface, planes):
+        assert shaded.valid.all()
+        np.testing.assert_allclose(shaded.luminance, shaded.luminance[2])
+
+
 def test_lights_very_near_and_very_far(dtype):
     points = np.zeros((1, 3), dtype)
     tangents = np.array([[0, 1, 0]], dtype=dtype)

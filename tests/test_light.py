@@ -28,6 +28,7 @@ def test_plain_values():
         ({"direction": (0, 0, 0)}, ValueError, "direction: expected a direction of non-zero"),
         ({"position": (np.inf, 0, 0)}, ValueError, "position: .*direction="),
         ({"direction": (1, 0, 0), "intensity": -1}, ValueError, "intensity: expected"),
+        ({"direction": (1, 0, 0), "intensity": 1e39}, ValueError, "from 0 to 1e\\+09"),
         ({"position": (1, 0, 0), "attenuation": (0, 0, 0)}, ValueError, "attenuation: expected"),
         ({"direction": (1, 0, 0), "attenuation": (1, 1, 0)}, ValueError, "has no distance"),
         ({"direction": (1, 0, 0), "color": "nothing"}, ValueError, "color: expected"),
@@ -87,6 +88,21 @@ def test_scene_lights_keep_position_attenuation_colour_and_transform():
     assert read.attenuation == (1.0, 0.2, 0.1)
     assert read.color == (0.0, 0.0, 1.0)
     assert read.intensity == 0.7
+
+
+def test_a_headlight_with_a_position_stands_in_the_eye():
+    light = pv.Light(light_type="headlight")
+    light.positional, light.cone_angle = True, 90
+    light.attenuation_values = (1, 0.2, 0.1)
+    (read,) = from_vtk([light], camera())
+    assert read.position == (3.0, -2.0, 4.0)
+    assert read.attenuation == (1.0, 0.2, 0.1)
+
+
+def test_a_light_without_direction_warns_and_is_left_out():
+    light = pv.Light(position=(1, 2, 3), focal_point=(1, 2, 3), light_type="scene light")
+    with pytest.warns(UserWarning, match="shines nowhere"):
+        assert list(from_vtk([light], camera())) == []
 
 
 def test_lights_that_are_off_are_left_out_and_headlights_stay_headlights():

@@ -28,7 +28,7 @@ def test_no_specular_means_no_eye():
     made = plan(Scene(lights=SUN, material=Material(specular=0)), k=1)
     assert made.terms == ("ambient", "diffuse")
     assert "specular: material.specular is 0" in words(made, "skip")
-    assert "eye: no term depends on the view" in words(made, "skip")
+    assert "eye: no term of the light depends on the view" in words(made, "skip")
 
 
 def test_no_diffuse():

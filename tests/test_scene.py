@@ -95,7 +95,7 @@ def test_scene_from_plotter_with_the_default_light_kit():
     ("make", "error", "words"),
     [
         (lambda: Material(diffuse=-0.1), ValueError, "diffuse: expected"),
-        (lambda: Material(shininess=np.inf), ValueError, "shininess: expected a finite"),
+        (lambda: Material(shininess=np.inf), ValueError, "shininess: expected a number from 0"),
         (lambda: Material(color=(1, 2)), ValueError, "color: expected three channels"),
         (View, ValueError, "View: expected position= .* or direction="),
         (lambda: View(position=(0, 0, 1), parallel=True), ValueError, "direction: expected"),

@@ -11,7 +11,7 @@ from vizlight.model import _kernels, falloff, frames
 from vizlight.scene import View
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import DTypeLike, NDArray
 
     from vizlight.plan import Plan
 
@@ -149,12 +149,14 @@ def _shade_block(
     if normals is not None:
         normal, length = _kernels.unit(columns(normals, block, dtype))
         valid &= length > 0
-        manifold = surface = _Surface(normal, two_sided=plan.two_sided)
+        surface = _Surface(normal.astype(dtype, copy=False), two_sided=plan.two_sided)
+        manifold = surface
     if tangents is not None:
         vectors = columns(tangents, block, dtype).reshape(plan.k, plan.n, size)
-        frame, rank = _kernels.orthonormalize(vectors, frames.default_rtol(plan.n, dtype))
+        rtol = frames.default_rtol(plan.n, vectors.dtype)
+        frame, rank = _kernels.orthonormalize(vectors, rtol)
         valid &= rank == plan.k
-        manifold = _Tangents(frame)
+        manifold = _Tangents(frame.astype(dtype, copy=False))
 
     eye: _Split | None = None
     seen: NDArray[np.bool_] | None = None
@@ -175,6 +177,9 @@ def _shade_block(
             valid &= distance >= 0
             if light.attenuation != NO_ATTENUATION:
                 scale = scale * falloff.fading(distance, light.attenuation)
+            if not distance.all():
+                # A light on the point has no direction to come from.
+                scale = scale * (distance > 0)
         if plan.conditioned:
             assert surface is not None
             scale = scale * surface.shadow(toward_light)
@@ -183,19 +188,20 @@ def _shade_block(
         if eye is not None:
             law = manifold.phong if plan.model == "phong" else manifold.blinn
             value = law(lit, eye, scene.material.shininess) * scale
-            if distance is not None and not distance.all():
-                value = value * (distance > 0)
             if seen is not None and not seen.all():
                 value = value * seen
             sums.add("specular", value, light)
     _store(plan, sums, position, valid, block, output)
 
 
-def columns(rows: Rows, block: slice, dtype: np.dtype[Any] | None = None) -> Array:
-    """Return a block of rows component by component; by default float32 stays, else float64."""
+def columns(rows: Rows, block: slice, work: DTypeLike = np.float32) -> Array:
+    """Return a block of rows component by component, in their precision or the work's, the wider.
+
+    Float64 vectors are thus made unit before float32 work rounds them.
+    """
     part = rows[block]
-    if dtype is None:
-        dtype = np.dtype(np.float32 if part.dtype == np.float32 else np.float64)
+    narrow = work == np.float32 and part.dtype in (np.float16, np.float32)
+    dtype = np.float32 if narrow else np.float64
     return np.ascontiguousarray(part.reshape(len(part), -1).T, dtype=dtype)
 
 

@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     VectorLike: TypeAlias = Sequence[float] | NDArray[np.floating[Any]]
     ColorLike: TypeAlias = str | VectorLike | Any
 
+#: The largest intensity, coefficient, channel or power: products of four fit float32.
+LARGEST = 1e9
+
 Vector = tuple[float, ...]
 Color = tuple[float, float, float]
 
@@ -191,17 +194,17 @@ def set_fields(frozen: object, **values: object) -> None:
 
 
 def rgb(name: str, value: object) -> Color:
-    """Return a colour as three linear channels of at least 0.
+    """Return a colour as three linear channels from 0 to 1e9.
 
     Raises
     ------
     TypeError
         If the value does not hold real numbers.
     ValueError
-        If there are not three, or one is negative or not finite.
+        If there are not three, or one is negative, huge or not finite.
     """
     array = floats(name, value)
-    if array.shape != (3,) or not np.all(np.isfinite(array)) or np.any(array < 0):
+    if array.shape != (3,) or not np.all((array >= 0) & (array <= LARGEST)):
         raise ValueError(
             message(name, "three channels (r, g, b) of 0 or more", describe(value), "1 is full")
         )

@@ -41,7 +41,8 @@ class Shading:
     ----------
     luminance : ndarray, shape (N,)
     valid : ndarray of bool, shape (N,)
-        False where a tangent, normal or point cannot be lit; such a point has the ambient light.
+        False where tangents or a normal have no direction, or a point that lights or view ask
+        for is not finite; such a point has the ambient light.
     diffuse, specular : ndarray, shape (N,), or None
         With ``components``; before the depth cue, kd and ks included.
     rgb : ndarray, shape (N, 3), or None
@@ -105,7 +106,7 @@ def shade(
     block : int, optional
         Points in a block. Default: what suits the caches, see :attr:`Plan.block`.
     progress : callable, optional
-        Called as ``progress(points done, N)`` from this thread's pool after each block.
+        Called from the caller's thread as ``progress(points done, N)`` after each block.
     **options
         Of :func:`plan`: model, compensate, two_sided, components.
 
@@ -122,9 +123,9 @@ def shade(
     -----
     The absolute error of the diffuse and the specular term, for one light of intensity 1 and
     coefficients of 1, is within the bounds of :func:`vizlight.model.reflection.diffuse` and
-    :func:`~vizlight.model.reflection.specular`; places and lengths of vectors add nothing to it.
-    Memory beyond the output: about thirty arrays of a block, each of half a megabyte, for each
-    thread, whatever N.
+    :func:`~vizlight.model.reflection.specular`; where points are and how long vectors are adds
+    nothing, but k tangents multiply it by 1 over the sine of the angle between them.
+    Memory beyond the output: about 15 MB for each thread, whatever N.
     """
     points = _rows("points", points)
     if len(points.shape) != 2 or points.shape[1] < 2:

@@ -31,7 +31,7 @@ class Light:
     position : vector of n components, optional
         Where the light stands, in the unit of the mesh.
     intensity : float, default: 1.0
-        Unitless, 0 or more.
+        Unitless, from 0 to 1e9.
     attenuation : (c1, c2, c3), default: (1, 0, 0)
         Coefficients of ``min(1, 1/(c1 + c2 d + c3 d^2))``; only a positional light has a
         distance d. (Lecture, effect of distance.)
@@ -69,7 +69,7 @@ class Light:
             self,
             direction=_check.optional_vector("direction", direction, direction=True),
             position=_check.optional_vector("position", position),
-            intensity=_check.number("intensity", intensity, low=0.0),
+            intensity=_check.number("intensity", intensity, low=0.0, high=_check.LARGEST),
             attenuation=falloff.attenuation("attenuation", attenuation),
             color=_check.color("color", color),
             follows_view=bool(follows_view),
@@ -119,7 +119,10 @@ class Light:
 
 
 def from_vtk(lights: Iterable[Any], camera: Any) -> Iterable[Light]:
-    """Yield the VTK lights that are on; camera lights stay where the camera now has them."""
+    """Yield the VTK lights that are on; what moves with the camera stays where it is now.
+
+    Only headlights at infinity go on following the view.
+    """
     for light in lights:
         if not light.GetSwitch():
             continue
@@ -128,10 +131,12 @@ def from_vtk(lights: Iterable[Any], camera: Any) -> Iterable[Light]:
             "intensity": light.GetIntensity(),
             "color": None if channels == WHITE else channels,
         }
-        if light.LightTypeIsHeadlight():
+        if light.LightTypeIsHeadlight() and not light.GetPositional():
             yield Light.headlight(**common)
             continue
-        if light.LightTypeIsCameraLight():
+        if light.LightTypeIsHeadlight():
+            position, target = tuple(camera.GetPosition()), tuple(camera.GetFocalPoint())
+        elif light.LightTypeIsCameraLight():
             matrix = camera.GetCameraLightTransformMatrix()
             position = _transform(matrix, light.GetPosition())
             target = _transform(matrix, light.GetFocalPoint())
@@ -148,7 +153,13 @@ def from_vtk(lights: Iterable[Any], camera: Any) -> Iterable[Light]:
             yield Light(position=position, attenuation=light.GetAttenuationValues(), **common)
         else:
             toward = tuple(p - t for p, t in zip(position, target, strict=True))
-            yield Light(direction=toward, **common)
+            if any(toward):
+                yield Light(direction=toward, **common)
+            else:
+                warnings.warn(
+                    f"a light at {position} whose focal point is its position shines nowhere",
+                    stacklevel=4,
+                )
 
 
 def _transform(matrix: Any, point: Vector) -> Vector:

@@ -17,8 +17,8 @@ from vizlight.scene import Scene
 if TYPE_CHECKING:
     from numpy.typing import DTypeLike
 
-#: Bytes of three components of a block. Some thirty such arrays are alive at once: small enough
-#: for the last cache, large enough that threads seldom wait for the interpreter.
+#: Bytes of a block's tangents. Some ten times as much is alive at once: small enough for the last
+#: cache, large enough that threads seldom wait for the interpreter.
 BLOCK_BYTES = 3 << 19
 
 
@@ -237,7 +237,7 @@ def _words(plan: Plan) -> tuple[list[str], list[str]]:
             yes.append("eye: its direction and split once a point, shared by all lights")
     else:
         no.append(f"specular: {plan.why_not('specular')}")
-        no.append("eye: no term depends on the view")
+        no.append("eye: no term of the light depends on the view")
     for i, light in enumerate(lights):
         near = light.position is not None
         kind = "a direction a point" if near else "one direction for all points"

@@ -25,12 +25,12 @@ class Material:
     Parameters
     ----------
     ambient, diffuse, specular : float
-        ka, kd and ks, unitless, 0 or more.
+        ka, kd and ks, unitless, from 0 to 1e9.
     shininess : float, default: 20.0
-        The power of the specular term, 0 or more.
+        The power of the specular term, from 0 to 1e9.
     color : (r, g, b) or str, optional
-        Channels of the ambient and diffuse light (Od of the Lecture's wavelengths); with it
-        the array ``rgb`` is made.
+        Channels of the ambient and the diffuse light, one for each wavelength; with it the
+        array ``rgb`` is made.
     specular_color : (r, g, b) or str, optional
         Channels of the highlight; white when not given.
 
@@ -59,10 +59,10 @@ class Material:
     ) -> None:
         _check.set_fields(
             self,
-            ambient=_check.number("ambient", ambient, low=0.0),
-            diffuse=_check.number("diffuse", diffuse, low=0.0),
-            specular=_check.number("specular", specular, low=0.0),
-            shininess=_check.number("shininess", shininess, low=0.0),
+            ambient=_check.number("ambient", ambient, low=0.0, high=_check.LARGEST),
+            diffuse=_check.number("diffuse", diffuse, low=0.0, high=_check.LARGEST),
+            specular=_check.number("specular", specular, low=0.0, high=_check.LARGEST),
+            shininess=_check.number("shininess", shininess, low=0.0, high=_check.LARGEST),
             color=_check.color("color", color),
             specular_color=_check.color("specular_color", specular_color),
         )
@@ -157,7 +157,7 @@ class DepthCue:
     front, back : float, optional
         Depths (distance from the eye, along the view's axis where it has one) between which
         the scale goes from ``front_scale`` to ``back_scale``. On a mesh they default to the
-        nearest and farthest depth of its bounding box.
+        nearest and farthest depth of its points.
     front_scale, back_scale : float
         The scale S at and beyond front and back, in [0, 1].
     cue : float, default: 0.0
@@ -198,7 +198,7 @@ class DepthCue:
             back=None if back is None else _check.number("back", back),
             front_scale=_check.number("front_scale", front_scale, low=0.0, high=1.0),
             back_scale=_check.number("back_scale", back_scale, low=0.0, high=1.0),
-            cue=_check.number("cue", cue, low=0.0),
+            cue=_check.number("cue", cue, low=0.0, high=_check.LARGEST),
             color=_check.color("color", color),
             smooth=bool(smooth),
         )
@@ -218,7 +218,7 @@ class Scene:
     view : View, optional
         Needed for the specular term, a headlight and a depth cue.
     ambient_intensity : float, default: 1.0
-        Ia of the Lecture, unitless, 0 or more.
+        Ia of the Lecture, unitless, from 0 to 1e9.
     ambient_color : (r, g, b) or str, optional
         Channels of the ambient light in ``rgb``.
     depth_cue : DepthCue, optional
@@ -258,7 +258,9 @@ class Scene:
             lights=lights,
             material=Material() if material is None else material,
             view=view,
-            ambient_intensity=_check.number("ambient_intensity", ambient_intensity, low=0.0),
+            ambient_intensity=_check.number(
+                "ambient_intensity", ambient_intensity, low=0.0, high=_check.LARGEST
+            ),
             ambient_color=_check.color("ambient_color", ambient_color),
             depth_cue=depth_cue,
         )
@@ -319,8 +321,9 @@ class Scene:
     def from_plotter(cls, plotter: Any, **fields: Any) -> Scene:
         """Return the scene of a PyVista plotter: its camera and its lights that are on.
 
-        Camera lights are fixed where they stand now; headlights go on following the view. A
-        spotlight lights in all directions here, which a warning says.
+        Camera lights and headlights with a position are fixed where they stand now; headlights
+        at infinity go on following the view. A spotlight lights in all directions here, which a
+        warning says.
 
         Parameters
         ----------

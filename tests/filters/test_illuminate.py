@@ -52,20 +52,6 @@ def test_tangents_on_every_kind_of_mesh(kind):
     assert mesh == before
 
 
-def test_points_of_a_turned_image_with_an_extent():
-    grid = pv.ImageData(dimensions=(4, 5, 6), spacing=(0.5, 1, 2), origin=(1, 2, 3))
-    angle = np.radians(30)
-    grid.direction_matrix = [
-        [np.cos(angle), -np.sin(angle), 0],
-        [np.sin(angle), np.cos(angle), 0],
-        [0, 0, 1],
-    ]
-    grid.extent = (2, 5, -1, 3, 0, 5)
-    rows = vizlight.filters._mesh.GridPoints(grid)
-    np.testing.assert_allclose(rows[0 : grid.n_points], grid.points, atol=1e-12)
-    np.testing.assert_allclose(rows[7:23], grid.points[7:23], atol=1e-12)
-
-
 def test_normals_decide_without_tangents():
     sphere = pv.Sphere(theta_resolution=20, phi_resolution=20)
     lit = illuminate(sphere, SCENE)
@@ -76,34 +62,6 @@ def test_normals_decide_without_tangents():
     np.testing.assert_allclose(illuminate(sphere, scene)["luminance"], lambert, atol=2e-2)
     dark = outward @ toward < -0.1
     np.testing.assert_allclose(lit["luminance"][dark], 0.1, rtol=1e-6)
-
-
-@pytest.mark.parametrize("winding", [1, -1])
-def test_normals_of_a_closed_surface_are_outward(winding):
-    mesh = pv.Sphere().copy()
-    mesh.clear_data()
-    faces = mesh.regular_faces[:, ::winding]
-    mesh = pv.PolyData.from_regular_faces(mesh.points, faces)
-    found = vizlight.filters._mesh.surface_normals(mesh, None)
-    outward = np.asarray(mesh.points) / 0.5
-    assert np.einsum("ij,ij->i", found, outward).min() > 0.99
-
-
-@pytest.mark.parametrize("winding", [1, -1])
-def test_normals_of_open_pieces_turn_outward_and_to_the_eye(winding):
-    cup = pv.Sphere(end_phi=150).triangulate()
-    cup.clear_data()
-    both = cup.merge(cup.translate((3, 0, 0), inplace=False), merge_points=False)
-    mesh = pv.PolyData.from_regular_faces(both.points, both.regular_faces[:, ::winding])
-    found = vizlight.filters._mesh.surface_normals(mesh, None)
-    centre = np.where(np.asarray(mesh.points)[:, :1] > 1.5, [[3.0, 0, 0]], [[0.0, 0, 0]])
-    assert np.einsum("ij,ij->i", found, mesh.points - centre).min() > 0.45
-    sheet = pv.Plane(i_resolution=3, j_resolution=3)
-    sheet.clear_data()
-    for side in (1.0, -1.0):
-        for view in (View(direction=(0, 0.1, side)), View(position=(0, 0, 5 * side))):
-            up = vizlight.filters._mesh.surface_normals(sheet, view)[:, 2]
-            np.testing.assert_allclose(up, side)
 
 
 def test_flip_and_two_sides():
@@ -218,6 +176,25 @@ def test_one_depth_cue_for_all_blocks():
     assert (told["front"], told["back"]) == (-4, 6)
     flat = illuminate(near, scene)
     np.testing.assert_allclose(flat["luminance"], 1)
+
+
+@pytest.mark.parametrize(
+    ("cue", "ends"),
+    [
+        ({"front": -4}, (-4, 6)),
+        ({"front": 0}, (0, 6)),
+        ({"back": 3}, (-4, 3)),
+        ({"front": 6}, (6, 7)),
+        ({"front": 9}, (9, 10)),
+        ({"back": -4}, (-5, -4)),
+        ({"front": 8, "back": 2}, (8, 2)),
+    ],
+)
+def test_one_end_of_a_depth_cue(cue, ends):
+    blocks = pv.MultiBlock([pv.Plane(center=(0, 0, 4)), pv.Plane(center=(0, 0, -6))])
+    scene = Scene(lights=[], view=View(direction=(0, 0, 1)), depth_cue=DepthCue(**cue))
+    told = vizlight.provenance(illuminate(blocks, scene)[0])["scene"]["depth_cue"]
+    assert (told["front"], told["back"]) == ends
 
 
 def test_colour_gives_rgb():

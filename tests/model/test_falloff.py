@@ -49,6 +49,8 @@ def test_distance_at_its_ends():
     assert falloff.distance(np.inf, 1, 0, 1) == 0
     assert falloff.distance(np.inf, 2, 0, 0) == 0.5
     assert falloff.distance(1e200, 1, 0, 1) == 0
+    far = falloff.distance(np.array([np.inf, 1e30], dtype=np.float32), 0, 0, 1e-50)
+    np.testing.assert_allclose(far, [0, 1e-10], rtol=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -110,7 +112,16 @@ def test_smooth_step_is_flat_at_both_ends():
     assert falloff.depth_cue(1.0, 0.5, front=1, back=0, smooth=True) == 0.5
 
 
+def test_depth_cue_with_ends_out_of_range_of_the_type():
+    z = np.array([0.0, 1e30], dtype=np.float32)
+    assert falloff.depth_cue(np.float32(1), z, front=0, back=1e300).tolist() == [1, 1]
+
+
 def test_bad_depth_cue():
+    with pytest.raises(ValueError, match="z: expected depths without NaN"):
+        falloff.depth_cue(1.0, np.nan, front=1, back=0)
+    with pytest.raises(ValueError, match="intensity: expected finite light"):
+        falloff.depth_cue(np.inf, 0.0, front=1, back=0)
     with pytest.raises(ValueError, match="front: expected a depth other than back"):
         falloff.depth_cue(1.0, 0.0, front=1, back=1)
     with pytest.raises(ValueError, match="back_scale: expected a number from 0 to 1, got 2"):

@@ -29,7 +29,7 @@ def test_spans_what_it_was_given(k, n, dtype, random, figure):
     assert np.all(rank == k)
     for v, f in zip(vectors, frame, strict=True):
         figure(
-            "orthonormalize", f"k={k}, n={n}", dtype, orthonormality(f, k) / oracles.eps(dtype), 8
+            "orthonormalize", f"k={k}, n={n}", dtype, orthonormality(f, k) / oracles.eps(dtype), 6
         )
         rest = v - (v @ f.T) @ f
         assert np.abs(rest).max() < 50 * oracles.eps(dtype) * np.abs(v).max()
@@ -52,7 +52,7 @@ def test_nearly_dependent_vectors(apart, random, figure):
             f"{apart:g} apart",
             np.float64,
             orthonormality(f, 2) / oracles.eps(float),
-            8,
+            6,
         )
 
 

@@ -22,7 +22,7 @@ def diffuse_bound(p, dtype):
     """The bound that the docstring claims, in eps."""
     if p < 1:
         return (4 * oracles.eps(dtype)) ** p / oracles.eps(dtype)
-    return 4 + 2 * p if p <= 128 else 8 + np.sqrt(p) / 8
+    return 4 + 2 * p if p <= 128 else 8 + np.sqrt(p)
 
 
 def specular_bound(s):
@@ -168,7 +168,9 @@ def test_zero_directions_are_dark(model, dtype):
     assert reflection.diffuse(zero, frame) == 0
     for pair in ((zero, up), (up, zero), (zero, zero)):
         assert reflection.specular(*pair, frame, shininess=3, model=model) == 0
-    assert reflection.diffuse(np.full(3, np.nan, dtype), frame) == 0
+    for exponent in (0, 1, 129, 200):
+        assert reflection.diffuse(zero, frame, exponent=exponent) == 0
+        assert reflection.diffuse(np.full(3, np.nan, dtype), frame, exponent=exponent) == 0
 
 
 def test_shininess_0_is_bright_everywhere():

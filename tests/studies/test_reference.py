@@ -33,6 +33,13 @@ def test_script(what, random):
         assert abs(found[i] - float(true)) < 1e-13
 
 
+def test_a_headlight_is_taken_from_the_view(random):
+    points, tangents = random.standard_normal((2, 10, 3))
+    fixed = Scene(lights=Light(position=(0, 1, 6)), view=SCENE.view)
+    found = reference.light(points, tangents, Scene(view=SCENE.view))
+    np.testing.assert_array_equal(found, reference.light(points, tangents, fixed))
+
+
 def test_parallel_view_and_single_precision(random):
     points, tangents = random.standard_normal((2, 30, 3))
     scene = SCENE.replace(view=View(position=(0, 0, 1), direction=(0, 1, 1), parallel=True))

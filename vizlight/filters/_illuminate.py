@@ -248,13 +248,14 @@ def _fit_depth_cue(scene: Scene, jobs: list[_Job]) -> Scene:
     if cue is None or scene.view is None or (cue.front is not None and cue.back is not None):
         return scene
     ranges = [engine.depth_range(job.points, scene) for job in jobs]
-    near = min((near for near, _ in ranges), default=np.inf)
-    far = max((far for _, far in ranges), default=-np.inf)
-    if not near < far:
-        far = near = 0.0 if not np.isfinite(near) else near
-        far += 1.0
-    front = near if cue.front is None else cue.front
-    back = far if cue.back is None else cue.back
+    near = min((near for near, _ in ranges if np.isfinite(near)), default=0.0)
+    far = max((far for _, far in ranges if np.isfinite(far)), default=1.0)
+    # An end that is given may lie beyond all points: the other is then put beyond it.
+    front, back = cue.front, cue.back
+    if front is None:
+        front = near if back is None or near < back else back - 1.0
+    if back is None:
+        back = far if far > front else front + 1.0
     return scene.replace(depth_cue=dataclasses.replace(cue, front=front, back=back))
 
 

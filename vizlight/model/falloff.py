@@ -39,7 +39,8 @@ def distance(d: ArrayLike, c1: float, c2: float, c3: float, /) -> Any:
 
     Notes
     -----
-    Relative error at most ``4 eps``. Source: Lecture, effect of distance.
+    Relative error at most ``4 eps`` where the result is a normal number.
+    Source: Lecture, effect of distance.
     """
     lengths = _check.floats("d", d)
     if not np.all(lengths >= 0):
@@ -66,15 +67,16 @@ def attenuation(name: str, value: object) -> tuple[float, float, float]:
 def fading(d: Array, coefficients: tuple[float, float, float]) -> Array:
     """Return :func:`distance` of distances and coefficients that are known to be good."""
     c1, c2, c3 = coefficients
-    # A zero coefficient is left out: 0 times an infinite distance is not a number.
-    denominator = np.full_like(d, c1)
+    # In float64 whatever d is, for coefficients may be out of range of float32. A zero one is
+    # left out: 0 times an infinite distance is not a number.
+    wide = d.astype(np.float64, copy=False)
+    denominator = np.full_like(wide, c1)
     with np.errstate(over="ignore", under="ignore"):
         if c2:
-            denominator += c2 * d
+            denominator += c2 * wide
         if c3:
-            denominator += c3 * d * d
-        result: Array = 1 / np.maximum(denominator, 1)
-    return result
+            denominator += c3 * wide * wide
+        return (1 / np.maximum(denominator, 1)).astype(d.dtype, copy=False)
 
 
 def depth_cue(
@@ -117,7 +119,7 @@ def depth_cue(
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If front equals back, or a scale is outside [0, 1].
+        If front equals back, a scale is outside [0, 1], a depth is NaN, or light is not finite.
 
     Notes
     -----
@@ -127,23 +129,31 @@ def depth_cue(
     front, back = _check.number("front", front), _check.number("back", back)
     if front == back:
         raise ValueError(_check.message("front", "a depth other than back", front))
+    depth, light, fade = (
+        _check.floats(name, value)
+        for name, value in (("z", z), ("intensity", intensity), ("cue", cue))
+    )
+    if np.any(np.isnan(depth)):
+        raise ValueError(_check.message("z", "depths without NaN", _check.describe(z)))
+    for name, value in (("intensity", light), ("cue", fade)):
+        if not np.all(np.isfinite(value)):
+            raise ValueError(_check.message(name, "finite light", _check.describe(value)))
     scale = depth_scale(
-        _check.floats("z", z),
+        depth,
         front=front,
         back=back,
         front_scale=_check.number("front_scale", front_scale, low=0.0, high=1.0),
         back_scale=_check.number("back_scale", back_scale, low=0.0, high=1.0),
         smooth=smooth,
     )
-    return scale * _check.floats("intensity", intensity) + (1 - scale) * _check.floats("cue", cue)
+    return scale * light + (1 - scale) * fade
 
 
 def depth_scale(
     z: Array, *, front: float, back: float, front_scale: float, back_scale: float, smooth: bool
 ) -> Array:
     """Return the scale S of :func:`depth_cue` for arguments that are known to be good."""
-    t = np.clip((z - back) / (front - back), 0, 1)
+    t = np.clip((z.astype(np.float64, copy=False) - back) / (front - back), 0, 1)
     if smooth:
         t = t * t * (3 - 2 * t)
-    result: Array = back_scale + (front_scale - back_scale) * t
-    return result
+    return (back_scale + (front_scale - back_scale) * t).astype(z.dtype, copy=False)

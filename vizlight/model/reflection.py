@@ -25,7 +25,7 @@ def diffuse(wi: ArrayLike, frame: ArrayLike, /, *, exponent: float = 1.0) -> Any
     frame : array_like, shape (..., k, n)
         Orthonormal tangent rows, k < n.
     exponent : float, default: 1.0
-        p of 0 or more, unitless: 1 is the plain law,
+        p from 0 to 1e9, unitless: 1 is the plain law,
         :func:`vizlight.model.brightness.exponent` gives the compensated one.
 
     Returns
@@ -43,17 +43,18 @@ def diffuse(wi: ArrayLike, frame: ArrayLike, /, *, exponent: float = 1.0) -> Any
     Notes
     -----
     ``sin(a)^p`` with ``sin(a) = |wi_N|``; in codimension 1 with p = 1 two-sided Lambert.
-    Source: Banks (1) and (5). Absolute error at most ``(4 + 2 p) eps`` for p from 1 to 128 and
-    ``(8 + sqrt(p)/8) eps`` above. For p < 1 the power is infinitely steep at sin(a) = 0, and
-    the bound is ``(4 eps)^p``.
+    Source: Banks (1) and (5). Absolute error for n up to 8 at most ``(4 + 2 p) eps`` for p from
+    1 to 128 and ``(8 + sqrt(p)) eps`` above; for p < 1, infinitely steep at sin(a) = 0,
+    ``(4 eps)^p``. What the rows miss of being orthonormal comes on top.
     """
-    exponent = _check.number("exponent", exponent, low=0.0)
+    exponent = _check.number("exponent", exponent, low=0.0, high=_check.LARGEST)
     rows = _layout.as_frame(frame)
     light = _check.vectors("wi", wi, n=rows.shape[-1])
     shape, rows, (light,) = _layout.batch(rows, light)
-    light, _ = _kernels.unit(light)
+    light, size = _kernels.unit(light)
     along, sine = _kernels.split(light, rows)
-    return _kernels.diffuse(sine, exponent, along).reshape(shape)
+    value = np.where(size > 0, _kernels.diffuse(sine, exponent, along), 0)
+    return value.astype(sine.dtype, copy=False).reshape(shape)
 
 
 def specular(
@@ -75,7 +76,7 @@ def specular(
     frame : array_like, shape (..., k, n)
         Orthonormal tangent rows, k < n.
     shininess : float
-        The power s (Phong) or q (Blinn), 0 or more, unitless. ``0^0`` is 1.
+        The power s (Phong) or q (Blinn), from 0 to 1e9, unitless. ``0^0`` is 1.
     model : {"phong", "blinn"}
         ``max(0, V.R)^s`` or ``|h_N|^q``.
 
@@ -94,20 +95,21 @@ def specular(
 
     Notes
     -----
-    Phong: ``V.R = |wi_N| |wo_N| - wi_T . wo_T``, R the reflection nearest to the eye. The sign
-    of the second term is that of directions away from the point; the printed equation has it
-    for a light vector that travels, and is wrong for a V toward the eye. It is evaluated as
-    ``1 - (|wi_T + wo_T|^2 + (|wi_N| - |wo_N|)^2) / 2``, which is the same for unit vectors and
-    exact near the highlight.
+    Phong: ``V.R = |wi_N| |wo_N| - wi_T . wo_T``, R the reflection nearest to the eye. Banks (2)
+    prints ``V_T . L_T - |V_N| |L_N|`` with L = -wi, the way the light travels: its first term is
+    the second here, and the sign of ``|V_N| |L_N|`` is wrong for a V toward the eye. It is
+    evaluated as ``1 - (|wi_T + wo_T|^2 + (|wi_N| - |wo_N|)^2) / 2``, which is the same for unit
+    vectors and exact near the highlight.
     Blinn: h = wi + wo normalised, ``|h_N|``; 0 where wi = -wo, which has no half vector.
 
-    Absolute error at most ``(4 + s) eps`` for s up to 128 and ``(8 + 3 sqrt(s)) eps`` above;
-    for Blinn times ``1 / |wi + wo|`` where that is more than 1.
+    Absolute error for n up to 8 at most ``(4 + s) eps`` for s from 1 to 128 and
+    ``(8 + 3 sqrt(s)) eps`` above; for s < 1, infinitely steep at V.R = 0, ``(8 eps)^s``. For
+    Blinn eps is to be divided by ``|wi + wo|`` where that is less than 1.
     Source: Banks (2) and (3); Fisher and Woo's N.H, generalised.
     """
     if model not in get_args(SpecularModel):
         raise ValueError(_check.message("model", "'phong' or 'blinn'", repr(model)))
-    shininess = _check.number("shininess", shininess, low=0.0)
+    shininess = _check.number("shininess", shininess, low=0.0, high=_check.LARGEST)
     rows = _layout.as_frame(frame)
     n = rows.shape[-1]
     light, eye = _check.vectors("wi", wi, n=n), _check.vectors("wo", wo, n=n)

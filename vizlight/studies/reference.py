@@ -57,7 +57,7 @@ def light(
     normal = None if normals is None else _unit(normals.astype(dtype, copy=False))
     wo = _directions(scene.view, points)
     total = np.full(len(points), material.ambient * scene.ambient_intensity, dtype=dtype)
-    for lamp in scene.lights:
+    for lamp in (light.seen_from(scene.view) for light in scene.lights):
         wi = _directions(lamp, points)
         facing = None if normal is None else np.maximum(np.einsum("ij,ij->i", wi, normal), 0)
         if tangent is not None:

@@ -1,0 +1,71 @@
+"""What is taken from a mesh: points by slice, and normals on the right side."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from vizlight import View
+from vizlight.filters import _mesh
+
+
+def test_points_of_a_turned_image_with_an_extent():
+    grid = pv.ImageData(dimensions=(4, 5, 6), spacing=(0.5, 1, 2), origin=(1, 2, 3))
+    angle = np.radians(30)
+    grid.direction_matrix = [
+        [np.cos(angle), -np.sin(angle), 0],
+        [np.sin(angle), np.cos(angle), 0],
+        [0, 0, 1],
+    ]
+    grid.extent = (2, 5, -1, 3, 0, 5)
+    rows = _mesh.GridPoints(grid)
+    np.testing.assert_allclose(rows[0 : grid.n_points], grid.points, atol=1e-12)
+    np.testing.assert_allclose(rows[7:23], grid.points[7:23], atol=1e-12)
+
+
+@pytest.mark.parametrize("winding", [1, -1])
+def test_normals_of_a_closed_surface_are_outward(winding):
+    mesh = pv.Sphere().copy()
+    mesh.clear_data()
+    faces = mesh.regular_faces[:, ::winding]
+    mesh = pv.PolyData.from_regular_faces(mesh.points, faces)
+    found = _mesh.surface_normals(mesh, None)
+    outward = np.asarray(mesh.points) / 0.5
+    assert np.einsum("ij,ij->i", found, outward).min() > 0.99
+
+
+@pytest.mark.parametrize("winding", [1, -1])
+def test_normals_of_open_pieces_turn_outward_and_to_the_eye(winding):
+    cup = pv.Sphere(end_phi=150).triangulate()
+    cup.clear_data()
+    both = cup.merge(cup.translate((3, 0, 0), inplace=False), merge_points=False)
+    mesh = pv.PolyData.from_regular_faces(both.points, both.regular_faces[:, ::winding])
+    found = _mesh.surface_normals(mesh, None)
+    centre = np.where(np.asarray(mesh.points)[:, :1] > 1.5, [[3.0, 0, 0]], [[0.0, 0, 0]])
+    assert np.einsum("ij,ij->i", found, mesh.points - centre).min() > 0.45
+    sheet = pv.Plane(i_resolution=3, j_resolution=3)
+    sheet.clear_data()
+    for side in (1.0, -1.0):
+        for view in (View(direction=(0, 0.1, side)), View(position=(0, 0, 5 * side))):
+            up = _mesh.surface_normals(sheet, view)[:, 2]
+            np.testing.assert_allclose(up, side)
+
+
+def test_points_of_a_rectilinear_grid():
+    grid = pv.RectilinearGrid([0.0, 1, 4], [2.0, 3], [5.0, 7, 8, 9])
+    rows = _mesh.GridPoints(grid)
+    assert rows.shape == (24, 3)
+    np.testing.assert_array_equal(rows[0:24], grid.points)
+    np.testing.assert_array_equal(rows[5:9], grid.points[5:9])
+
+
+def test_strips_and_loose_points_have_their_piece():
+    strip = pv.Plane(i_resolution=4, j_resolution=4).triangulate().strip()
+    strip.clear_data()
+    normals = _mesh.surface_normals(strip, View(direction=(0, 0, -1)))
+    np.testing.assert_allclose(normals[:, 2], -1)
+    loose = pv.PolyData.from_regular_faces(np.vstack([np.eye(3), [[9.0, 9, 9]]]), [[0, 1, 2]])
+    normals = _mesh.surface_normals(loose, View(direction=(1, 1, 1)))
+    np.testing.assert_allclose(normals[:3], 3**-0.5, rtol=1e-6)
+    np.testing.assert_array_equal(normals[3], 0)
