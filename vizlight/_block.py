@@ -128,19 +128,10 @@ def shade_block(
     normals: Rows | None,
     output: Output,
 ) -> None:
-    """Light some rows and write them to the output."""
-    with np.errstate(over="ignore", under="ignore", invalid="ignore", divide="ignore"):
-        _shade_block(plan, block, points, tangents, normals, output)
+    """Light some rows and write them to the output.
 
-
-def _shade_block(
-    plan: Plan,
-    block: slice,
-    points: Rows,
-    tangents: Rows | None,
-    normals: Rows | None,
-    output: Output,
-) -> None:
+    Overflow and underflow are taken care of; the caller silences NumPy's warnings of them.
+    """
     scene, dtype, size = plan.scene, plan.dtype, block.stop - block.start
     valid = np.ones(size, dtype=np.bool_)
     position = columns(points, block) if plan.needs_points else None

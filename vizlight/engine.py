@@ -157,7 +157,8 @@ def shade(
     blocks = [slice(i, min(i + step, count)) for i in range(0, count, step)]
 
     def work(block: slice) -> int:
-        shade_block(made, block, points, tangents, normals, output)
+        with np.errstate(all="ignore"):
+            shade_block(made, block, points, tangents, normals, output)
         return int(block.stop)
 
     for done in _run(work, blocks, min(_workers(threads), len(blocks))):

@@ -166,7 +166,7 @@ def test_rotation_of_everything_changes_nothing(vectors, seed):
             ValueError,
             r"vectors: expected .*shape \(\.\.\., k, n\).*v\[\.\.\., None, :\]",
         ),
-        (np.ones((4, 3)), ValueError, "vectors: expected 0 < k <= n.*k = 4, n = 3"),
+        (np.ones((4, 3)), ValueError, "vectors: expected 0 < k <= n.*shape \\(4, 3\\)"),
         ("abc", TypeError, "vectors: expected real numbers"),
         (np.ones((2, 3), complex), TypeError, "vectors: expected real numbers"),
         ([[1.0], [2.0, 3.0]], TypeError, "vectors: expected numbers of one shape"),
@@ -187,7 +187,7 @@ def test_bad_rtol():
     ("frame", "words"),
     [
         (np.eye(3), "frame: expected 0 < k < n"),
-        ([1.0, 0, 0], r"frame: .*tangent\[\.\.\., None, :\]"),
+        ([1.0, 0, 0], r"frame: .*v\[\.\.\., None, :\]"),
         (
             [[2.0, 0, 0]],
             "frame: expected orthonormal rows, got rows off by 3.*orthonormalize first",

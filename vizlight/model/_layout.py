@@ -31,28 +31,27 @@ def batch(frame: Array, *directions: Array) -> tuple[tuple[int, ...], Array, lis
     )
 
 
+def as_rows(name: str, value: ArrayLike, *, full: bool) -> Array:
+    """Validate k rows of n components, shape (..., k, n): k < n, or with ``full`` k <= n."""
+    array = _check.vectors(name, value)
+    limit = "0 < k <= n" if full else "0 < k < n"
+    k, n = array.shape[-2:] if array.ndim > 1 else (0, array.shape[-1])
+    if not 0 < k < n + full:
+        raise ValueError(
+            _check.message(
+                name,
+                f"{limit} rows of n components, shape (..., k, n)",
+                f"shape {array.shape}",
+                "for one vector a point pass v[..., None, :]",
+            )
+        )
+    return array
+
+
 def as_frame(frame: ArrayLike) -> Array:
     """Validate a tangent frame ``(..., k, n)``: k < n, rows orthonormal or zero."""
-    array = _check.vectors("frame", frame)
-    if array.ndim < 2:
-        raise ValueError(
-            _check.message(
-                "frame",
-                "k tangent rows of n components, shape (..., k, n)",
-                _check.describe(array),
-                "for one tangent a point pass tangent[..., None, :]",
-            )
-        )
-    k, n = array.shape[-2:]
-    if not 0 < k < n:
-        raise ValueError(
-            _check.message(
-                "frame",
-                "0 < k < n tangent rows, shape (..., k, n)",
-                f"k = {k}, n = {n}",
-                "for one tangent a point pass tangent[..., None, :]",
-            )
-        )
+    array = as_rows("frame", frame, full=False)
+    k = array.shape[-2]
     gram = array @ np.swapaxes(array, -1, -2)
     diagonal = np.diagonal(gram, axis1=-2, axis2=-1)
     off = np.abs(gram - np.eye(k) * np.where(diagonal == 0, 0, 1)[..., np.newaxis])

@@ -61,26 +61,8 @@ def orthonormalize(vectors: ArrayLike, /, *, rtol: float | None = None) -> tuple
     >>> int(rank)
     1
     """
-    array = _check.vectors("vectors", vectors)
-    if array.ndim < 2:
-        raise ValueError(
-            _check.message(
-                "vectors",
-                "k vectors of n components, shape (..., k, n)",
-                _check.describe(array),
-                "for one vector a point pass v[..., None, :]",
-            )
-        )
+    array = _layout.as_rows("vectors", vectors, full=True)
     k, n = array.shape[-2:]
-    if not 0 < k <= n:
-        raise ValueError(
-            _check.message(
-                "vectors",
-                "0 < k <= n vectors, shape (..., k, n)",
-                f"k = {k}, n = {n}",
-                "for one vector a point pass v[..., None, :]",
-            )
-        )
     if rtol is None:
         rtol = default_rtol(n, array.dtype)
     rtol = _check.number("rtol", rtol, low=0.0)
