@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import inspect
 import subprocess
 import sys
 
 import numpy as np
+import pytest
 import pyvista as pv
 
 import vizlight
@@ -19,6 +21,22 @@ def test_accessor_lights_as_the_function_does():
     lit = mesh.vizlight.illuminate(SCENE, name="x")
     np.testing.assert_array_equal(lit["x"], vizlight.illuminate(mesh, SCENE, name="x")["x"])
     assert lit.vizlight.provenance("x") == vizlight.provenance(lit, "x")
+
+
+def test_accessor_has_the_signatures_and_words_of_the_functions():
+    for name in ("illuminate", "provenance", "satin", "streamlines"):
+        method, function = getattr(pv.Sphere().vizlight, name), getattr(vizlight, name)
+        assert method.__doc__ == function.__doc__
+        expected = list(inspect.signature(function).parameters)[1:]
+        assert list(inspect.signature(method).parameters) == expected
+
+
+def test_warnings_point_at_the_caller():
+    mesh = pv.Sphere()
+    mesh["V"] = np.zeros((mesh.n_points, 3))
+    with pytest.warns(UserWarning, match="could not be lit") as caught:
+        mesh.vizlight.illuminate(SCENE, tangents="V")
+    assert caught[0].filename == __file__
 
 
 def test_accessor_on_blocks():

@@ -62,6 +62,14 @@ def test_light_writes_mesh_and_picture(volume, tmp_path, capfd):
     np.testing.assert_array_equal(again["luminance"], lit["luminance"])
 
 
+@pytest.mark.opengl
+def test_upper_case_endings(volume, tmp_path, capfd):
+    code, _, err = run(capfd, "light", volume, "-o", "A.VTP", "-o", "B.PNG", "--size", "30x30")
+    assert (code, err) == (0, "")
+    assert (tmp_path / "A.VTP").stat().st_size > 0
+    assert (tmp_path / "B.PNG").stat().st_size > 0
+
+
 @pytest.mark.parametrize("suffix", [".vtp", ".vtu", ".vtk"])
 def test_outputs_by_ending(suffix, volume, tmp_path, capfd):
     code, _, err = run(
@@ -143,7 +151,19 @@ def test_points_that_cannot_be_lit_are_told_and_no_error(volume, capfd):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["light", "no.vtp"], "file: expected a file that exists, got 'no.vtp'"),
+        (["light", "no.vtp"], "file: expected a file, got 'no.vtp' (nothing there)"),
+        (["light", "."], "file: expected a file, got '.' (a folder)"),
+        (["light", "flow.vti", "-o", "flow.vti", "--no-surface"], "another file than the input"),
+        (["light", "flow.vti", "--level", "3"], "--level: expected --contour with it"),
+        (["light", "flow.vti", "--warp-factor", "3"], "--warp-factor: expected --warp with it"),
+        (["light", "flow.vti", "--background", "nocolor"], "background: expected a colour's name"),
+        (["light", "flow.vti", "--line-width", "-1"], "line_width: expected a number from 0.1"),
+        (["light", "flow.vti", "--size", "9000x100"], "size: expected at most 8192 pixels a side"),
+        (
+            ["light", "flow.vti", "--view", "0,0,1", "--up", "0,0,2"],
+            "up: expected a direction across",
+        ),
+        (["light", "flow.vti", "--tangents", "C"], "pass --average-cells or call"),
         (["light", "bad.vtp"], "file: expected a mesh that PyVista reads"),
         (["light"], "requires an argument"),
         (["light", "flow.vti", "--tangents", "U"], "tangents: expected the name of a point array"),
@@ -164,7 +184,7 @@ def test_points_that_cannot_be_lit_are_told_and_no_error(volume, capfd):
         (["light", "flow.vti", "--light", "0,0,0"], "direction: expected a direction of non-zero"),
         (["light", "flow.vti", "--color", "nothing"], "color: expected a colour's name"),
         (["light", "flow.vti", "--size", "big"], "--size: expected WIDTHxHEIGHT"),
-        (["light", "flow.vti", "--size", "0x5"], "--size: expected WIDTHxHEIGHT"),
+        (["light", "flow.vti", "--size", "0x5"], "size: expected an integer of at least 1"),
         (["light", "flow.vti", "--shininess", "-1"], "shininess: expected"),
         (["light", "flow.vti", "--shininess", "x"], "--shininess"),
         (["light", "flow.vti", "--model", "x"], "--model"),

@@ -398,7 +398,7 @@ ONES = np.ones((4, 3))
         ((ONES, np.ones((4, 5))), {}, ValueError, r"tangents: expected shape \(4, k, 3\)"),
         ((ONES, np.ones((3, 3))), {}, ValueError, r"tangents: expected .* got shape \(3, 3\)"),
         ((ONES, np.ones((4, 9))), {}, ValueError, "tangents: expected .* k < 3"),
-        ((ONES, None), {}, ValueError, "tangents: expected tangents or normals, got neither"),
+        ((ONES, None), {}, ValueError, "tangents: expected tangents .* or normals .*, got neither"),
         (
             (ONES, None),
             {"normals": np.ones((4, 2))},

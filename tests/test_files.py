@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -42,10 +43,25 @@ def test_damaged_files_give_one_clear_error(name, content, tmp_path, capfd):
 
 
 def test_missing_file(tmp_path):
-    with pytest.raises(files.FileError, match="file: expected a file that exists"):
+    with pytest.raises(files.FileError, match=r"file: expected a file, got .*\(nothing there\)"):
         files.read_mesh(tmp_path / "no.vtp")
-    with pytest.raises(files.FileError, match="file: expected a file that exists"):
+    with pytest.raises(files.FileError, match=r"file: expected a file, got .*\(a folder\)"):
         files.read_mesh(tmp_path)
+
+
+def test_the_reason_of_a_damaged_file_is_told(tmp_path):
+    path = tmp_path / "a.vtp"
+    path.write_text("garbage")
+    with pytest.raises(files.FileError, match="no points: Error parsing XML"):
+        files.read_mesh(path)
+
+
+def test_a_full_disk_is_seen_before_writing(tmp_path, monkeypatch):
+    usage = shutil.disk_usage(tmp_path)
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: usage._replace(free=100))
+    with pytest.raises(files.FileError, match="output: expected 0.* MB of free disk, got 0.0 MB"):
+        files.write_mesh(pv.Sphere(), tmp_path / "a.vtp")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_blocks_become_one_grid_of_their_highest_cells(tmp_path):
@@ -114,7 +130,7 @@ def test_wrong_endings_and_folders(tmp_path):
     with pytest.raises(files.FileError, match="output: expected a folder that exists"):
         files.check_output(tmp_path / "none" / "a.png", (".png",))
     (tmp_path / "d.png").mkdir()
-    with pytest.raises(files.FileError, match="output: expected a file that can be written"):
+    with pytest.raises(files.FileError, match="output: expected a file, got the folder"):
         files.check_output(tmp_path / "d.png", (".png",))
 
 

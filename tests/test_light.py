@@ -20,6 +20,13 @@ def test_plain_values():
     assert light == Light(position=(1, 2, 3), intensity=2, attenuation=(1, 0.5, 0), color="#ff0000")
 
 
+def test_repr_tells_what_is_not_the_default():
+    assert repr(Light.headlight(intensity=2)) == "Light.headlight(intensity=2)"
+    assert repr(Light(direction=(0, 0, 1))) == "Light(direction=(0.0, 0.0, 1.0))"
+    near = Light(position=(0, 0, 1), color="red", attenuation=(1, 1, 0))
+    assert eval(repr(near)) == near
+
+
 @pytest.mark.parametrize(
     ("arguments", "error", "words"),
     [

@@ -113,6 +113,19 @@ def test_light_over_the_shoulder_is_above_left_of_the_eye():
     assert z > 0
 
 
+def test_blocks_are_drawn_together_and_lines_on_black(tmp_path):
+    blocks = pv.MultiBlock([pv.Plane(center=(-2, 0, 0)), None, pv.Plane(center=(2, 0, 0))])
+    for block, value in ((blocks[0], 0.2), (blocks[2], 0.6)):
+        block["luminance"] = np.full(block.n_points, value)
+    camera = render.camera_on((-2.4, 2.4, -0.4, 0.4, 0, 0), (0, 0, 1), parallel=True)
+    path = render.save_png(blocks, tmp_path / "b.png", camera=camera, size=(60, 60))
+    assert {51, 153, 255} <= set(pixels(path)[30, :, 0])
+    line = pv.Line((-1, 0, 0), (1, 0, 0))
+    line["luminance"] = np.ones(line.n_points)
+    path = render.save_png(line, tmp_path / "l.png", size=(40, 40))
+    np.testing.assert_array_equal(pixels(path)[0, 0], 0)
+
+
 def test_several_panels_stand_side_by_side(tmp_path):
     planes = []
     for value in (0.2, 0.8):
@@ -143,6 +156,22 @@ def test_bad_input(tmp_path):
         render.camera_on(sphere.bounds, zoom=0)
     with pytest.raises(ValueError, match="direction: expected 3 components"):
         render.camera_on(sphere.bounds, (1, 0))
+    for size, words in (
+        ((9000, 10), "at most 8192 pixels a side"),
+        ((8000, 8000), "33 million in all, got 8000x8000"),
+        (3, "size: expected .width, height."),
+    ):
+        with pytest.raises(ValueError, match=words):
+            render.pixels_of(size)
+    lit, camera = ball()
+    with pytest.raises(ValueError, match="clim: expected a lower and a higher number"):
+        render.make_plotter(lit, clim=(1, 0))
+    with pytest.raises(TypeError, match=r"camera: expected a pyvista\.Camera"):
+        render.make_plotter(lit, camera=3)
+    with pytest.raises(ValueError, match="background: expected a colour's name"):
+        render.make_plotter(lit, camera=camera, background="nothing")
+    with pytest.raises(ValueError, match="up: expected a direction across the view"):
+        render.camera_on(sphere.bounds, (1, 1, 1), up=(2, 2, 2))
     empty = pv.PolyData()
     empty["luminance"] = np.empty(0)
     with pytest.raises(ValueError, match="panels: expected a mesh with points"):

@@ -113,6 +113,7 @@ def test_scene_from_plotter_with_the_default_light_kit():
         (lambda: DepthCue(front=1, back=1), ValueError, "front: expected a depth other than back"),
         (lambda: DepthCue(back_scale=1.5), ValueError, "back_scale: expected a number from 0 to 1"),
         (lambda: Scene(lights=["sun"]), TypeError, "lights: expected a vizlight.Light, got 'sun'"),
+        (lambda: Scene(lights=3), TypeError, "lights: expected vizlight.Light or several, got 3"),
         (lambda: Scene(view=(0, 0, 1)), TypeError, "view: expected a vizlight.View or None"),
         (lambda: Scene(material=0.5), TypeError, "material: expected a vizlight.Material"),
         (lambda: Scene(depth_cue=True), TypeError, "depth_cue: expected a vizlight.DepthCue"),

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from vizlight.data import example_path, load_example
-    from vizlight.filters import illuminate, provenance
+    from vizlight.filters import illuminate, provenance, satin, streamlines
     from vizlight.light import Light
     from vizlight.scene import DepthCue, Material, Scene, View
 
@@ -25,6 +25,8 @@ _HOMES = {
     "illuminate": "vizlight.filters",
     "load_example": "vizlight.data",
     "provenance": "vizlight.filters",
+    "satin": "vizlight.filters",
+    "streamlines": "vizlight.filters",
 }
 _MODULES = ("accessor", "engine", "filters", "model", "render", "studies")
 
@@ -38,6 +40,8 @@ __all__ = [
     "illuminate",
     "load_example",
     "provenance",
+    "satin",
+    "streamlines",
 ]
 
 

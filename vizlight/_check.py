@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import numbers
+import sys
+import warnings
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -16,11 +18,19 @@ if TYPE_CHECKING:
     VectorLike: TypeAlias = Sequence[float] | NDArray[np.floating[Any]]
     ColorLike: TypeAlias = str | VectorLike | Any
 
-#: The largest intensity, coefficient, channel or power: products of four fit float32.
+#: The largest intensity, coefficient or power: products of three fit float32.
 LARGEST = 1e9
 
 Vector = tuple[float, ...]
 Color = tuple[float, float, float]
+
+
+def warn(text: str) -> None:
+    """Warn at the line outside this package that called it."""
+    level, frame = 2, sys._getframe(1)
+    while frame.f_back and frame.f_globals.get("__name__", "").partition(".")[0] == "vizlight":
+        level, frame = level + 1, frame.f_back
+    warnings.warn(text, stacklevel=level)
 
 
 def message(name: str, expected: str, got: object, remedy: str = "") -> str:
@@ -194,19 +204,24 @@ def set_fields(frozen: object, **values: object) -> None:
 
 
 def rgb(name: str, value: object) -> Color:
-    """Return a colour as three linear channels from 0 to 1e9.
+    """Return a colour as three linear channels from 0 to 1.
 
     Raises
     ------
     TypeError
         If the value does not hold real numbers.
     ValueError
-        If there are not three, or one is negative, huge or not finite.
+        If there are not three, or one is not from 0 to 1.
     """
     array = floats(name, value)
-    if array.shape != (3,) or not np.all((array >= 0) & (array <= LARGEST)):
+    if array.shape != (3,) or not np.all((array >= 0) & (array <= 1)):
         raise ValueError(
-            message(name, "three channels (r, g, b) of 0 or more", describe(value), "1 is full")
+            message(
+                name,
+                "three channels (r, g, b) from 0 to 1",
+                describe(value),
+                "divide bytes by 255; intensity= makes light brighter",
+            )
         )
     r, g, b = (float(x) for x in array)
     return r, g, b

@@ -5,6 +5,8 @@ Installed as an entry point of PyVista, so that no import is needed.
 
 from __future__ import annotations
 
+import functools
+import inspect
 from typing import TYPE_CHECKING, Any
 
 import pyvista as pv
@@ -12,7 +14,19 @@ import pyvista as pv
 from vizlight import filters
 
 if TYPE_CHECKING:
-    from vizlight.scene import Scene
+    from collections.abc import Callable
+
+
+def _method(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a filter as a method: signature and documentation are the filter's."""
+
+    @functools.wraps(function)
+    def method(self: Accessor, *arguments: Any, **options: Any) -> Any:
+        return function(self._mesh, *arguments, **options)
+
+    mesh, *others = inspect.signature(function).parameters.values()
+    method.__signature__ = inspect.Signature([mesh.replace(name="self"), *others])  # type: ignore[attr-defined]
+    return method
 
 
 @pv.register_dataset_accessor("vizlight", pv.DataObject)
@@ -22,10 +36,7 @@ class Accessor:
     def __init__(self, mesh: Any) -> None:
         self._mesh = mesh
 
-    def illuminate(self, scene: Scene, **options: Any) -> Any:
-        """Return the mesh lit: :func:`vizlight.illuminate` with this mesh."""
-        return filters.illuminate(self._mesh, scene, **options)
-
-    def provenance(self, name: str = "luminance") -> dict[str, Any]:
-        """Return what made an array: :func:`vizlight.provenance` with this mesh."""
-        return filters.provenance(self._mesh, name)
+    illuminate = _method(filters.illuminate)
+    provenance = _method(filters.provenance)
+    satin = _method(filters.satin)
+    streamlines = _method(filters.streamlines)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 import time
 import warnings
@@ -40,7 +41,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             help_on_error=False,
         )
     except CycloptsError as error:
-        return _fail(error)
+        return _fail(str(error).replace("Unused Tokens", "arguments that belong to no option"))
     except (TypeError, ValueError, OSError) as error:
         return _fail(error)
     except KeyboardInterrupt:
@@ -49,9 +50,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _fail(error: object) -> int:
-    lines = [line.strip(" │╭╮╰╯─") for line in str(error).splitlines()]
-    sys.stderr.write(f"vizlight: {' '.join(line for line in lines if line)}\n")
+    text = " ".join(str(error).split())
+    # The library names its options as Python does.
+    text = re.sub(r"\b([a-z]+(?:_[a-z]+)*)=(?:True)?(?=[ ,;.)]|$)", _option, text)
+    sys.stderr.write(f"vizlight: {text}\n")
     return BAD_INPUT
+
+
+def _option(found: re.Match[str]) -> str:
+    return f"--{found[1].replace('_', '-')}"
 
 
 @app.command
@@ -90,7 +97,7 @@ def demo(
     lit, camera, rows, explained = demo.light_flow()
     mesh = files.write_mesh(lit, out / "flow.vtp")
     table = Table(title="Isosurface Temp = 600 of the rotating disk")
-    for heading in ("lit", "points", "terms", "time [ms]", "largest error"):
+    for heading in ("lit", "points", "terms", "time, ms", "largest error"):
         table.add_column(heading, justify="left" if heading in ("lit", "terms") else "right")
     for row in rows:
         table.add_row(
@@ -112,7 +119,7 @@ def light(
     contour: str | None = None,
     level: float | None = None,
     warp: str | None = None,
-    warp_factor: float = 1.0,
+    warp_factor: float | None = None,
     tangents: str | None = None,
     average_cells: bool = False,
     conditioned: bool = False,
@@ -138,7 +145,7 @@ def light(
     output: Annotated[list[Path], Parameter(name=["--output", "-o"], negative=())] | None = None,
     surface: bool = True,
     size: str = "1200x800",
-    background: str = "white",
+    background: str | None = None,
     line_width: float = 1.0,
     backend: Backend | None = None,
     explain: bool = False,
@@ -157,7 +164,7 @@ def light(
     warp
         Raise the points of a grid by this point array, such as a terrain's elevation.
     warp_factor
-        Times the array's values.
+        Times the array's values; default 1.
     tangents
         A point array of vectors to light by; without, the surface's normals.
     average_cells
@@ -178,7 +185,7 @@ def light(
     lamp
         Position x,y,z of a light; may be repeated.
     headlight
-        Add a light that follows the view.
+        Add a light that follows the view; alone it takes the place of the default light.
     ambient
         Coefficient of the ambient term.
     diffuse
@@ -211,7 +218,7 @@ def light(
     size
         Width and height of the picture in pixels.
     background
-        Colour behind the mesh.
+        Colour behind the mesh; default white, or black behind lines.
     line_width
         Of lines, in pixels.
     backend
@@ -224,18 +231,30 @@ def light(
     from vizlight import engine, files, render
     from vizlight.filters import illuminate, provenance
 
+    for option, value, needs, given in (
+        ("level", level, "contour", contour),
+        ("warp-factor", warp_factor, "warp", warp),
+    ):
+        if value is not None and given is None:
+            raise ValueError(_check.message(f"--{option}", f"--{needs} with it", "it alone"))
+    _check.color("background", background)
+    _check.number("line_width", line_width, low=0.1, high=1000.0)
     if output is None:
         output = [Path(f"{file.stem}-lit.vtp"), Path(f"{file.stem}-lit.png")]
         if not surface and contour is None:
             output.pop(0)
     for path in output:
         files.check_output(path, (".png", *files.SUFFIXES))
+        if path.exists() and file.exists() and path.samefile(file):
+            raise files.FileError(
+                _check.message("output", "another file than the input", f"'{path}'")
+            )
     pictures = [path for path in output if path.suffix.lower() == ".png"]
     meshes = [path for path in output if path not in pictures]
     pixels = _size(size)
     mesh = files.read_mesh(file)
     if warp is not None:
-        mesh = files.warped(mesh, warp, warp_factor)
+        mesh = files.warped(mesh, warp, 1.0 if warp_factor is None else warp_factor)
     if surface or contour is not None:
         mesh = files.surface_of(mesh, contour, level)
     for path in meshes:
@@ -370,10 +389,13 @@ def _vector(name: str, text: str) -> tuple[float, ...]:
 
 
 def _size(text: str) -> tuple[int, int]:
+    from vizlight import render
+
     width, _, height = text.lower().partition("x")
-    if not (width.isdigit() and height.isdigit() and int(width) > 0 and int(height) > 0):
+    if not (width.isdigit() and height.isdigit()):
         raise ValueError(_check.message("--size", "WIDTHxHEIGHT in pixels", repr(text)))
-    return int(width), int(height)
+    columns, rows = render.pixels_of((int(width), int(height)))
+    return columns, rows
 
 
 if __name__ == "__main__":

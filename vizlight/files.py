@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
+import shutil
 import sys
 import tempfile
 import warnings
@@ -43,9 +45,12 @@ def read_mesh(path: str | Path, /) -> Any:
     """
     path = Path(path)
     if not path.is_file():
-        raise FileError(_check.message("file", "a file that exists", f"'{path}'"))
+        what = "a folder" if path.is_dir() else "nothing there"
+        raise FileError(_check.message("file", "a file", f"'{path}' ({what})"))
+    if not os.access(path, os.R_OK):
+        raise FileError(_check.message("file", "a file that may be read", f"'{path}'"))
     reason = "no points"
-    with _quiet(), warnings.catch_warnings():
+    with _quiet() as said, warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
             mesh: Any = pv.read(path)
@@ -54,6 +59,8 @@ def read_mesh(path: str | Path, /) -> Any:
         except Exception as error:  # noqa: BLE001 - readers raise whatever they like
             mesh, reason = None, f"{type(error).__name__}: {_first_line(error)}"
     if not isinstance(mesh, pv.DataSet) or mesh.n_points == 0:
+        if said and reason == "no points":
+            reason = f"no points: {said[0]}"
         raise FileError(_check.message("file", "a mesh that PyVista reads", f"'{path}' ({reason})"))
     return mesh
 
@@ -80,18 +87,22 @@ def _samples(grid: pv.UnstructuredGrid) -> Iterator[tuple[int, int]]:
 
 
 @contextlib.contextmanager
-def _quiet() -> Iterator[None]:
-    """Keep what C and C++ readers print on standard error to themselves."""
+def _quiet() -> Iterator[list[str]]:
+    """Catch what C and C++ readers print on standard error; afterwards the errors among it."""
+    said: list[str] = []
     sys.stderr.flush()
     with tempfile.TemporaryFile() as sink:
         kept = os.dup(2)
         os.dup2(sink.fileno(), 2)
         try:
-            yield
+            yield said
         finally:
             sys.stderr.flush()
             os.dup2(kept, 2)
             os.close(kept)
+            sink.seek(0)
+            text = sink.read().decode(errors="replace")
+            said += re.findall(r"ERR\|.*\(0x[0-9a-f]+\): ([^\x1b\n]+)", text)
 
 
 def surface_of(mesh: Any, /, contour: str | None = None, level: float | None = None) -> Any:
@@ -167,8 +178,11 @@ def check_output(path: str | Path, /, formats: tuple[str, ...]) -> Path:
         )
     if not path.parent.is_dir():
         raise FileError(_check.message("output", "a folder that exists", f"'{path.parent}'"))
-    if path.is_dir() or not os.access(path.parent, os.W_OK):
-        raise FileError(_check.message("output", "a file that can be written", f"'{path}'"))
+    if path.is_dir():
+        raise FileError(_check.message("output", "a file", f"the folder '{path}'"))
+    if not os.access(path.parent, os.W_OK):
+        got = f"'{path.parent}', which is read-only"
+        raise FileError(_check.message("output", "a folder that can be written to", got))
     return path
 
 
@@ -197,6 +211,11 @@ def write_mesh(mesh: Any, path: str | Path, /) -> Path:
         If the format does not hold such a mesh, or the file cannot be written.
     """
     path = check_format(mesh, path)
+    # VTK's writers end the process where the disk is full.
+    needed, free = mesh.actual_memory_size * 1024, shutil.disk_usage(path.parent).free
+    if needed > free:
+        got = f"{free / 1e6:.1f} MB in '{path.parent}'"
+        raise FileError(_check.message("output", f"{needed / 1e6:.1f} MB of free disk", got))
     if path.suffix.lower() == ".vtu" and isinstance(mesh, pv.PolyData):
         mesh = mesh.cast_to_unstructured_grid()
     return replace_file(path, mesh.save)
@@ -212,7 +231,7 @@ def replace_file(path: Path, write: Callable[[str], object]) -> Path:
     """
     try:
         with tempfile.TemporaryDirectory(prefix=".vizlight-", dir=path.parent) as folder:
-            draft = Path(folder) / path.name
+            draft = Path(folder) / f"{path.stem}{path.suffix.lower()}"
             write(str(draft))
             draft.replace(path)
     except OSError as error:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +19,7 @@ WHITE = (1.0, 1.0, 1.0)
 NO_ATTENUATION = (1.0, 0.0, 0.0)
 
 
-@dataclass(frozen=True, init=False)
+@dataclass(frozen=True, init=False, repr=False)
 class Light:
     """A point light, far away or near.
 
@@ -54,6 +53,16 @@ class Light:
     attenuation: tuple[float, float, float]
     color: Color | None
     follows_view: bool
+
+    def __repr__(self) -> str:
+        """Say what differs from the defaults."""
+        shown = {"direction": self.direction, "position": self.position, "color": self.color}
+        parts = [f"{name}={value}" for name, value in shown.items() if value is not None]
+        if self.intensity != 1:
+            parts.append(f"intensity={self.intensity:g}")
+        if self.attenuation != NO_ATTENUATION:
+            parts.append(f"attenuation={self.attenuation}")
+        return f"Light{'.headlight' if self.follows_view else ''}({', '.join(parts)})"
 
     def __init__(
         self,
@@ -145,10 +154,9 @@ def from_vtk(lights: Iterable[Any], camera: Any) -> Iterable[Light]:
             target = tuple(light.GetTransformedFocalPoint())
         if light.GetPositional():
             if light.GetConeAngle() < 90:
-                warnings.warn(
+                _check.warn(
                     f"a spotlight of cone angle {light.GetConeAngle():g} degrees lights in all "
-                    "directions in vizlight",
-                    stacklevel=4,
+                    "directions in vizlight"
                 )
             yield Light(position=position, attenuation=light.GetAttenuationValues(), **common)
         else:
@@ -156,9 +164,8 @@ def from_vtk(lights: Iterable[Any], camera: Any) -> Iterable[Light]:
             if any(toward):
                 yield Light(direction=toward, **common)
             else:
-                warnings.warn(
-                    f"a light at {position} whose focal point is its position shines nowhere",
-                    stacklevel=4,
+                _check.warn(
+                    f"a light at {position} whose focal point is its position shines nowhere"
                 )
 
 

@@ -161,7 +161,9 @@ def plan(
         raise ValueError(_check.message("dtype", "float32 or float64", kind))
     n = _check.integer("n", n, low=2)
     if k is None and not normals:
-        raise ValueError(_check.message("tangents", "tangents or normals", "neither"))
+        raise ValueError(
+            _check.message("tangents", "tangents (k=) or normals (normals=True)", "neither")
+        )
     if k is not None and not 0 < _check.integer("k", k, low=1) < n:
         raise ValueError(_check.message("k", f"fewer than n = {n} tangents a point", k))
     if scene.n not in (None, n):
@@ -183,7 +185,7 @@ def plan(
     diffuse = bool(material.diffuse > 0 and lights)
     if scene.view is None and (specular or cue is not None):
         what = "specular term" if specular else "depth cue"
-        remedy = "pass view= or specular=0" if specular else "pass view="
+        remedy = "pass view=, or Material(specular=0)" if specular else "pass view="
         raise ValueError(_check.message("view", f"a View, which the {what} needs", None, remedy))
     lights = tuple(light.seen_from(scene.view) for light in lights) if diffuse or specular else ()
     return Plan(

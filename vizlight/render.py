@@ -16,6 +16,8 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.files import check_output, replace_file
+from vizlight.filters._lines import has_lines_only
+from vizlight.filters._mesh import leaves
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -44,6 +46,10 @@ driver = [value.strip() for name, _, value in lines if name == "OpenGL renderer 
 assert driver and driver[0], "no OpenGL driver"
 print(window.GetClassName(), driver[0], sep="\\t")
 """
+
+
+#: Anti-aliasing draws at twice the size, and drivers end at 16384.
+LARGEST_SIDE, LARGEST_AREA = 8192, 33_000_000
 
 
 class BackendError(RuntimeError):
@@ -170,6 +176,8 @@ def camera_on(
     toward /= np.linalg.norm(toward)
     if up is None:
         up = (0.0, 1.0, 0.0) if abs(toward[2]) > 0.999 else (0.0, 0.0, 1.0)
+    if np.linalg.norm(np.cross(_check.vector("up", up, direction=True), toward)) < 1e-6:
+        raise ValueError(_check.message("up", "a direction across the view", tuple(up)))
     zoom = _check.number("zoom", zoom, low=1e-6)
     box = np.asarray(bounds, dtype=float).reshape(3, 2)
     if not np.all(np.isfinite(box)):
@@ -206,7 +214,7 @@ def make_plotter(
     scalars: str = "luminance",
     cmap: str = "gray",
     clim: tuple[float, float] = (0.0, 1.0),
-    background: Any = "white",
+    background: Any = None,
     line_width: float = 1.0,
     anti_aliasing: AntiAliasing | None = "ssaa",
     backend: Backend | None = None,
@@ -220,14 +228,15 @@ def make_plotter(
     camera : pyvista.Camera, optional
         Default: :func:`camera_on` what is drawn.
     size : (int, int)
-        Width and height in pixels, of all panels together.
+        Width and height in pixels, of all panels together; each at most 8192, 33 million in all.
     scalars : str
         For meshes given without a :class:`Panel`. Three components are taken as a colour.
     cmap : str
         Of arrays of one component.
     clim : (float, float)
         What the ends of the map stand for.
-    background : colour
+    background : colour, optional
+        Default: white, or black behind meshes of lines.
     line_width : float
         In pixels.
     anti_aliasing : {"ssaa", "msaa", "fxaa"}, optional
@@ -251,14 +260,29 @@ def make_plotter(
     if not shown:
         raise ValueError(_check.message("panels", "one mesh or more", "none"))
     for panel in shown:
-        if panel.scalars not in panel.mesh.point_data:
-            there = ", ".join(repr(key) for key in panel.mesh.point_data) or "none"
-            raise ValueError(
-                _check.message("scalars", f"a point array ({there})", repr(panel.scalars))
-            )
+        for mesh in leaves(panel.mesh):
+            if panel.scalars not in mesh.point_data:
+                there = ", ".join(repr(key) for key in mesh.point_data) or "none"
+                raise ValueError(
+                    _check.message("scalars", f"a point array ({there})", repr(panel.scalars))
+                )
     if camera is None:
         camera = camera_on(_bounds(shown))
-    pixels = [_check.integer("size", pixels, low=1) for pixels in size]
+    if not hasattr(camera, "GetPosition"):
+        raise TypeError(_check.message("camera", "a pyvista.Camera", _check.describe(camera)))
+    pixels = pixels_of(size)
+    low, high = _check.vector("clim", clim)
+    if not low < high:
+        raise ValueError(_check.message("clim", "a lower and a higher number", clim))
+    line_width = _check.number("line_width", line_width, low=0.1, high=1000.0)
+    if background is None:
+        background = (
+            "black"
+            if all(has_lines_only(mesh) for panel in shown for mesh in leaves(panel.mesh))
+            else "white"
+        )
+    else:
+        _check.color("background", background)
     with _window_class(choose_backend(backend)):
         plotter = pv.Plotter(
             off_screen=True, shape=(1, len(shown)), window_size=pixels, border=False
@@ -306,16 +330,28 @@ def save_png(panels: Any, path: str | Path, /, **options: Any) -> Path:
         plotter.close()
 
 
+def pixels_of(size: Any) -> list[int]:
+    """Return width and height, if a picture of that size can be drawn with anti-aliasing."""
+    if np.shape(size) != (2,):
+        raise ValueError(_check.message("size", "(width, height) in pixels", size))
+    pixels = [_check.integer("size", int(p) if p == int(p) else p, low=1) for p in size]
+    if max(pixels) > LARGEST_SIDE or pixels[0] * pixels[1] > LARGEST_AREA:
+        limit = f"at most {LARGEST_SIDE} pixels a side and {LARGEST_AREA // 10**6} million in all"
+        raise ValueError(_check.message("size", limit, f"{pixels[0]}x{pixels[1]}"))
+    return pixels
+
+
 def _draw(
     plotter: Any, panel: Panel, cmap: str, clim: tuple[float, float], line_width: float
 ) -> None:
-    mesh = panel.mesh
-    values = np.asarray(mesh.point_data[panel.scalars])
-    colour = values.ndim == 2
-    if colour:
-        # VTK wraps around above 1, so a bright highlight would turn black.
-        values = np.clip(values, 0, 1)
-    if mesh.n_points:
+    for mesh in leaves(panel.mesh):
+        if not mesh.n_points:
+            continue
+        values = np.asarray(mesh.point_data[panel.scalars])
+        colour = values.ndim == 2
+        if colour:
+            # VTK wraps around above 1, so a bright highlight would turn black.
+            values = np.clip(values, 0, 1)
         plotter.add_mesh(
             mesh.copy(deep=False),
             scalars=values,
@@ -331,7 +367,8 @@ def _draw(
 
 
 def _bounds(panels: Sequence[Panel]) -> list[float]:
-    boxes = np.array([panel.mesh.bounds for panel in panels if panel.mesh.n_points])
+    meshes = [mesh for panel in panels for mesh in leaves(panel.mesh)]
+    boxes = np.array([mesh.bounds for mesh in meshes if mesh.n_points])
     if not boxes.size:
         raise ValueError(_check.message("panels", "a mesh with points", "empty meshes"))
     low, high = boxes[:, ::2].min(axis=0), boxes[:, 1::2].max(axis=0)

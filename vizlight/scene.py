@@ -6,6 +6,7 @@ Directions point away from the lit point: toward the light, toward the eye.
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,7 @@ from vizlight import _check
 from vizlight.light import Light, from_vtk
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Mapping
 
     from vizlight._check import Color, ColorLike, Vector, VectorLike
 
@@ -247,6 +248,10 @@ class Scene:
         depth_cue: DepthCue | None = None,
     ) -> None:
         lights = Light.headlight() if lights is None else lights
+        if not isinstance(lights, Light | Iterable):
+            raise TypeError(
+                _check.message("lights", "vizlight.Light or several", _check.describe(lights))
+            )
         lights = (lights,) if isinstance(lights, Light) else tuple(lights)
         for light in lights:
             _check.instance("lights", light, Light)
@@ -306,16 +311,13 @@ class Scene:
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> Scene:
         """Return the scene that :meth:`to_dict` wrote."""
-        view, cue = values["view"], values["depth_cue"]
-        return cls(
-            **{
-                **values,
-                "lights": [Light(**light) for light in values["lights"]],
-                "material": Material(**values["material"]),
-                "view": None if view is None else View(**view),
-                "depth_cue": None if cue is None else DepthCue(**cue),
-            }
-        )
+        parts: dict[str, Any] = dict(values)
+        if parts.get("lights") is not None:
+            parts["lights"] = [Light(**light) for light in parts["lights"]]
+        for name, kind in (("material", Material), ("view", View), ("depth_cue", DepthCue)):
+            if parts.get(name) is not None:
+                parts[name] = kind(**parts[name])
+        return cls(**parts)
 
     @classmethod
     def from_plotter(cls, plotter: Any, **fields: Any) -> Scene:

@@ -230,9 +230,28 @@ def test_inplace_changes_the_mesh_and_may_be_repeated():
 def test_inplace_does_not_lose_the_users_array():
     plane = meshes()["PolyData"]
     plane["luminance"] = np.arange(plane.n_points)
-    with pytest.raises(ValueError, match="name: expected one that the mesh has no array of"):
+    with pytest.raises(
+        ValueError, match="name: expected one under which the mesh has no array of its own"
+    ):
         illuminate(plane, SCENE, tangents="V", inplace=True)
     np.testing.assert_array_equal(plane["luminance"], np.arange(plane.n_points))
+
+
+def test_the_users_own_parts_are_not_overwritten():
+    plane = meshes()["PolyData"]
+    plane["diffuse"] = np.arange(plane.n_points)
+    with pytest.raises(ValueError, match="name: .* got 'diffuse'; pass another name="):
+        illuminate(plane, SCENE, tangents="V", components=True)
+    assert "luminance" in illuminate(plane, SCENE, tangents="V").point_data
+
+
+def test_lines_beside_faces_are_marked():
+    ball = pv.Sphere()
+    mixed = ball.append_polydata(pv.Line((2, 0, 0), (3, 0, 0)))
+    mixed.clear_data()
+    with pytest.warns(UserWarning, match="2 of 844 points could not be lit"):
+        lit = illuminate(mixed, SCENE)
+    np.testing.assert_array_equal(np.flatnonzero(lit["luminance_valid"] == 0), [842, 843])
 
 
 def test_zero_and_nan_vectors_are_marked_with_one_warning():
@@ -314,10 +333,20 @@ def test_result_does_not_hold_the_input_in_memory_twice():
         ),
         ({"tangents": "nine"}, ValueError, "tangents: .*'nine' with 9"),
         ({"tangents": np.ones((2, 3))}, ValueError, "tangents: expected 42 rows, one a point"),
-        ({"tangents": "V", "normals": "V"}, ValueError, "normals: expected None beside tangents"),
+        (
+            {"tangents": "V", "normals": "V"},
+            ValueError,
+            "normals: expected no normals beside tangents",
+        ),
         ({"conditioned": True}, ValueError, "conditioned: expected tangents to condition"),
         ({"normals": "two"}, ValueError, "normals: expected 3 components, got 'two' with 2"),
         ({"tangents": "V", "model": "x"}, ValueError, "model: expected"),
+        (
+            {"tangents": "V", "two_sided": True},
+            ValueError,
+            "two_sided: expected no two_sided beside",
+        ),
+        ({"tangents": "V", "flip_normals": True}, ValueError, "flip_normals: expected no"),
         ({"tangents": "V", "name": ""}, ValueError, "name: expected a name"),
         ({"tangents": "V", "precision": "f4"}, ValueError, "precision: expected"),
         (
@@ -358,6 +387,6 @@ def test_bad_meshes_and_scenes():
     with pytest.raises(
         ValueError, match=r"mesh: expected a surface.*name its tangent vectors by tangents="
     ):
-        illuminate(pv.Line(), SCENE)
+        illuminate(pv.PolyData(np.eye(3)), SCENE)
     with pytest.raises(ValueError, match="view: expected a View, which the specular term needs"):
         illuminate(pv.Sphere(), Scene(lights=Light(direction=(0, 0, 1))))

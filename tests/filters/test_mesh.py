@@ -52,6 +52,22 @@ def test_normals_of_open_pieces_turn_outward_and_to_the_eye(winding):
             np.testing.assert_allclose(up, side)
 
 
+def test_a_bowl_faces_the_eye_that_looks_into_it():
+    bowl = pv.Sphere(end_phi=90, theta_resolution=40, phi_resolution=40)
+    bowl.clear_data()
+    for side in (1, -1):
+        normals = _mesh.surface_normals(bowl, View(direction=(0, 0.3, side)))
+        outward = np.einsum("ij,ij->i", normals, np.asarray(bowl.points)) / 0.5
+        assert (side * outward).min() > 0.9
+
+
+def test_separate_triangles_of_a_closed_surface_face_outward():
+    soup = pv.Sphere().separate_cells().extract_surface(algorithm="geometry")
+    soup.clear_data()
+    normals = _mesh.surface_normals(soup, View(direction=(0, 0, 1)))
+    assert np.einsum("ij,ij->i", normals, np.asarray(soup.points)).min() > 0.4
+
+
 def test_points_of_a_rectilinear_grid():
     grid = pv.RectilinearGrid([0.0, 1, 4], [2.0, 3], [5.0, 7, 8, 9])
     rows = _mesh.GridPoints(grid)

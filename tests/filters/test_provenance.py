@@ -50,6 +50,13 @@ def test_an_array_given_as_such_is_described():
     assert told == f"an array of shape ({mesh.n_points}, 3) and type float64"
 
 
+def test_blocks_tell_too():
+    blocks = vizlight.illuminate(pv.MultiBlock([None, pv.Sphere()]), SCENE)
+    assert vizlight.provenance(blocks)["points"] == 842
+    with pytest.raises(TypeError, match="mesh: expected a PyVista mesh, got NoneType"):
+        vizlight.provenance(None)
+
+
 def test_unknown_name():
     with pytest.raises(ValueError, match=r"name: expected one of .*\['luminance'\], got 'other'"):
         vizlight.provenance(lit_mesh(), "other")

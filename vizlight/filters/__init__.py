@@ -2,5 +2,7 @@
 
 from vizlight.filters._illuminate import illuminate
 from vizlight.filters._provenance import provenance
+from vizlight.filters._satin import satin
+from vizlight.filters._streamlines import streamlines
 
-__all__ = ["illuminate", "provenance"]
+__all__ = ["illuminate", "provenance", "satin", "streamlines"]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -11,11 +10,11 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check, engine
-from vizlight.filters import _mesh, _progress, _provenance
+from vizlight.filters import _lines, _mesh, _progress, _provenance
 from vizlight.scene import Scene
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
     from vizlight._block import Rows
     from vizlight.model.reflection import SpecularModel
@@ -49,7 +48,8 @@ def illuminate(
     """Light a mesh and return it with the light as point scalars.
 
     With ``tangents`` each point is lit as a k-manifold: by one vector a point as a line, by k
-    vectors as what they span. Without, the normals of the mesh's surface decide (codimension 1).
+    vectors as what they span. Without, a mesh of lines is lit by its own tangents, any other by
+    the normals of its surface (codimension 1).
 
     Parameters
     ----------
@@ -64,8 +64,9 @@ def illuminate(
         A point array of n components that places the points in n-space; default the mesh's own.
     normals : str or array_like, optional
         Outward normals, a point array of n components or its values. Default: the mesh's active
-        normals, else those of its surface: outward if it is closed; if it is open, each piece
-        as a whole rather toward the eye and away from its own centroid.
+        normals as they are (clear them after moving points), else those of its surface: outward
+        if it is closed; if it is open, each piece as a whole rather toward the eye and away from
+        its own centroid.
     conditioned : bool, default: False
         Tangents inherit the surface's self-shadow: diffuse and specular of each light times
         ``max(0, N . wi)`` (Banks 6).
@@ -136,17 +137,10 @@ def illuminate(
         raise TypeError(_check.message("mesh", "a PyVista mesh", type(mesh).__name__, remedy))
     if not isinstance(name, str) or not name:
         raise ValueError(_check.message("name", "a name for the point array", repr(name)))
-    if normals is not None and tangents is not None and not conditioned:
-        remedy = "pass conditioned=True, or leave one of them out"
-        raise ValueError(_check.message("normals", "None beside tangents", "normals", remedy))
-    if conditioned and tangents is None:
-        remedy = "a surface without tangents shadows itself as it is"
-        raise ValueError(_check.message("conditioned", "tangents to condition", None, remedy))
 
     out = mesh if inplace else _copy(mesh)
-    leaves = list(_leaves(out))
-    if inplace:
-        _refuse_overwriting(leaves, name)
+    leaves = list(_mesh.named_leaves(out))
+    _refuse_overwriting(leaves, name, components=components, colored=scene.colored)
     jobs = [_prepare(leaf, path, scene, options) for leaf, path in leaves]
     total = sum(leaf.n_points for leaf, _ in leaves)
     fitted = _fit_depth_cue(scene, jobs)
@@ -174,11 +168,10 @@ def illuminate(
         _attach(leaf, shading, name, _provenance.record(shading, "illuminate", fitted, options))
     invalid = sum(shading.invalid for shading in results)
     if invalid:
-        warnings.warn(
+        _check.warn(
             f"{invalid} of {total} points could not be lit (a zero, infinite or NaN vector, "
             "dependent tangents, or no surface normal there) and have the ambient light; "
-            f"the point array {name + VALID!r} marks them",
-            stacklevel=2,
+            f"the point array {name + VALID!r} marks them"
         )
     return out
 
@@ -209,16 +202,6 @@ def _copy(mesh: Any) -> Any:
     return out
 
 
-def _leaves(mesh: Any, path: str = "") -> Iterator[tuple[pv.DataSet, str]]:
-    """Yield the meshes of a MultiBlock, however deep, with where they are."""
-    if not isinstance(mesh, pv.MultiBlock):
-        yield mesh, path
-        return
-    for i in range(mesh.n_blocks):
-        if mesh[i] is not None:
-            yield from _leaves(mesh[i], f"{path}/{mesh.get_block_name(i) or i}")
-
-
 def _prepare(mesh: pv.DataSet, path: str, scene: Scene, options: dict[str, Any]) -> _Job:
     """Take from one mesh what is lit; a block's errors say which block it is."""
     try:
@@ -231,6 +214,17 @@ def _prepare(mesh: pv.DataSet, path: str, scene: Scene, options: dict[str, Any])
             tangents = _mesh.tangents_of(
                 mesh, options["tangents"], n, average_cells=options["average_cells"]
             )
+        elif n == 3 and _lines.has_lines_only(mesh):
+            tangents = _lines.line_tangents(mesh)
+        if tangents is None and options["conditioned"]:
+            remedy = "a surface without tangents shadows itself as it is"
+            raise ValueError(_check.message("conditioned", "tangents to condition", None, remedy))
+        if options["tangents"] is not None and not options["conditioned"]:
+            for option in ("normals", "two_sided", "flip_normals"):
+                if options[option] is not None and options[option] is not False:
+                    remedy = "pass conditioned=True, or leave one of them out"
+                    expected = f"no {option} beside tangents, which have no sides"
+                    raise ValueError(_check.message(option, expected, "both", remedy))
         if tangents is None or options["conditioned"]:
             normals = _mesh.normals_of(mesh, options["normals"], n, scene.view)
             if options["flip_normals"]:
@@ -259,18 +253,24 @@ def _fit_depth_cue(scene: Scene, jobs: list[_Job]) -> Scene:
     return scene.replace(depth_cue=dataclasses.replace(cue, front=front, back=back))
 
 
-def _refuse_overwriting(leaves: list[tuple[pv.DataSet, str]], name: str) -> None:
-    """Refuse to lose the user's own array; one that vizlight made may be made anew."""
+def _refuse_overwriting(
+    leaves: list[tuple[pv.DataSet, str]], name: str, *, components: bool, colored: bool
+) -> None:
+    """Refuse to lose the user's own arrays; those that vizlight made may be made anew."""
+    prefix = "" if name == DEFAULT_NAME else f"{name}_"
+    made = [name]
+    made += [prefix + part for part in PARTS if (colored if part == "rgb" else components)]
     for leaf, _ in leaves:
-        if name in leaf.point_data and _provenance.key(name) not in leaf.field_data:
-            raise ValueError(
-                _check.message(
-                    "name",
-                    "one that the mesh has no array of, with inplace=True",
-                    repr(name),
-                    "pass another name= or inplace=False",
+        for array in made:
+            if array in leaf.point_data and _provenance.key(name) not in leaf.field_data:
+                raise ValueError(
+                    _check.message(
+                        "name",
+                        "one under which the mesh has no array of its own",
+                        repr(array),
+                        "pass another name= or rename that array",
+                    )
                 )
-            )
 
 
 def _attach(mesh: pv.DataSet, shading: engine.Shading, name: str, told: str) -> None:

@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import connected_components
 from vizlight import _check
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
@@ -47,6 +47,22 @@ class GridPoints:
         flat = np.arange(*rows.indices(self.shape[0]))
         ijk = np.stack(np.unravel_index(flat, self._dimensions, order="F"), axis=1)
         return self._place(ijk)
+
+
+def leaves(mesh: Any) -> Iterator[Any]:
+    """Yield the meshes of a MultiBlock, however deep, or the mesh itself."""
+    for leaf, _ in named_leaves(mesh):
+        yield leaf
+
+
+def named_leaves(mesh: Any, path: str = "") -> Iterator[tuple[Any, str]]:
+    """Yield the meshes of a MultiBlock, however deep, with where they are."""
+    if not isinstance(mesh, pv.MultiBlock):
+        yield mesh, path
+        return
+    for i in range(mesh.n_blocks):
+        if mesh[i] is not None:
+            yield from named_leaves(mesh[i], f"{path}/{mesh.get_block_name(i) or i}")
 
 
 def points_of(mesh: pv.DataSet, positions: str | None) -> Rows:
@@ -188,6 +204,9 @@ def surface_normals(mesh: pv.DataSet, view: View | None) -> Array:
         non_manifold_traversal=False,
     )
     computed = np.array(found.point_data["Normals"])
+    used = np.zeros(len(computed), dtype=np.bool_)
+    used[_corners(bare)[0]] = True
+    computed[~used] = 0
     if not closed:
         _turn_open(computed, bare, view)
     if origin is None:
@@ -200,8 +219,8 @@ def surface_normals(mesh: pv.DataSet, view: View | None) -> Array:
 def _turn_open(normals: Array, surface: pv.PolyData, view: View | None) -> None:
     """Turn over each connected piece whose normals rather point inward and away from the eye.
 
-    The mean of N toward the eye decides for a sheet, the mean of N away from the piece's
-    centroid for one that is nearly closed.
+    The mean of N away from the piece's centroid decides for one that is nearly closed; for a
+    sheet or a bowl the mean of N toward the eye, which counts three times.
     """
     points = np.asarray(surface.points, dtype=np.float64)
     piece = _pieces(surface)
@@ -214,23 +233,37 @@ def _turn_open(normals: Array, surface: pv.PolyData, view: View | None) -> None:
             if view.parallel
             else np.asarray(view.position) - points
         )
-        score += np.einsum("ij,ij->i", normals, _unit(toward))
+        score += 3 * np.einsum("ij,ij->i", normals, _unit(toward))
     normals[(np.bincount(piece, score) < 0)[piece]] *= -1
 
 
 def _pieces(surface: pv.PolyData) -> NDArray[np.intp]:
-    """Return for each point the number of the connected piece it belongs to."""
-    joined = []
-    for cells in (surface.GetPolys(), surface.GetStrips()):
-        corners = pv.convert_array(cells.GetConnectivityArray())
-        last = np.zeros(len(corners), dtype=np.bool_)
-        last[pv.convert_array(cells.GetOffsetsArray())[1:] - 1] = True
-        follows = np.flatnonzero(~last)
-        joined.append(np.stack([corners[follows], corners[follows + 1]]))
-    a, b = np.concatenate(joined, axis=1)
+    """Return for each point the number of the connected piece it belongs to.
+
+    Corners of one place belong together, so that separate triangles of one surface do too.
+    """
+    corners, last = _corners(surface)
+    follows = np.flatnonzero(~last)
+    points = np.asarray(surface.points)
+    order = np.lexsort(points.T)
+    same = np.flatnonzero(np.all(points[order[1:]] == points[order[:-1]], axis=1))
+    a = np.concatenate([corners[follows], order[same]])
+    b = np.concatenate([corners[follows + 1], order[same + 1]])
     graph = coo_array((np.ones(len(a), np.bool_), (a, b)), shape=(surface.n_points,) * 2)
     _, piece = connected_components(graph, directed=False)
     return np.asarray(piece, dtype=np.intp)
+
+
+def _corners(surface: pv.PolyData) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
+    """Return the corners of all faces, one after the other, and which are the last of a face."""
+    corners, last = [], []
+    for cells in (surface.GetPolys(), surface.GetStrips()):
+        ids = pv.convert_array(cells.GetConnectivityArray()).astype(np.intp, copy=False)
+        ends = np.zeros(len(ids), dtype=np.bool_)
+        ends[pv.convert_array(cells.GetOffsetsArray())[1:] - 1] = True
+        corners.append(ids)
+        last.append(ends)
+    return np.concatenate(corners), np.concatenate(last)
 
 
 def _unit(vectors: Array) -> Array:

@@ -6,13 +6,13 @@ import json
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pyvista as pv
 
 import vizlight
 from vizlight import _check
+from vizlight.filters import _mesh
 
 if TYPE_CHECKING:
-    import pyvista as pv
-
     from vizlight.engine import Shading
     from vizlight.scene import Scene
 
@@ -47,12 +47,12 @@ def _plain(value: Any) -> Any:
     return _check.describe(np.asarray(value))
 
 
-def provenance(mesh: pv.DataSet, /, name: str = "luminance") -> dict[str, Any]:
+def provenance(mesh: Any, /, name: str = "luminance") -> dict[str, Any]:
     """Return what made a point array: scene, options, terms, precision, version.
 
     Parameters
     ----------
-    mesh : pyvista.DataSet
+    mesh : pyvista.DataSet or pyvista.MultiBlock
         A mesh that a filter of vizlight returned, or one read from a file of it.
     name : str, default: "luminance"
         The array.
@@ -60,17 +60,24 @@ def provenance(mesh: pv.DataSet, /, name: str = "luminance") -> dict[str, Any]:
     Returns
     -------
     dict
-        ``illuminate(mesh, Scene.from_dict(p["scene"]), **p["options"])`` makes the array again.
+        ``illuminate(mesh, Scene.from_dict(p["scene"]), **p["options"])`` makes the array again,
+        if tangents and normals were named; arrays given as such are only described.
 
     Raises
     ------
+    TypeError
+        If it is not a mesh.
     ValueError
         If the mesh tells nothing of such an array.
     """
-    if key(name) not in mesh.field_data:
-        told = [k.removesuffix(key("")) for k in mesh.field_data if k.endswith(key(""))]
-        raise ValueError(
-            _check.message("name", f"one of the arrays made by vizlight, {told}", repr(name))
-        )
-    result: dict[str, Any] = json.loads(str(mesh.field_data[key(name)][0]))
-    return result
+    if not isinstance(mesh, pv.DataSet | pv.MultiBlock):
+        raise TypeError(_check.message("mesh", "a PyVista mesh", type(mesh).__name__))
+    told = set()
+    for leaf in _mesh.leaves(mesh):
+        if key(name) in leaf.field_data:
+            result: dict[str, Any] = json.loads(str(leaf.field_data[key(name)][0]))
+            return result
+        told |= {k.removesuffix(key("")) for k in leaf.field_data if k.endswith(key(""))}
+    raise ValueError(
+        _check.message("name", f"one of the arrays made by vizlight, {sorted(told)}", repr(name))
+    )

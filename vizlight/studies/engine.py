@@ -9,12 +9,12 @@ engine take turns, so that a busy machine slows both.
 from __future__ import annotations
 
 import statistics
-import sys
 import time
 import tracemalloc
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import cyclopts
 import numpy as np
 
 from vizlight import engine
@@ -102,14 +102,20 @@ def measure(count: int, repeats: int = 5) -> list[Row]:
 
 
 def main(count: int = 4_000_000) -> None:
-    """Print the table."""
+    """Print the table.
+
+    Parameters
+    ----------
+    count
+        How many points are lit.
+    """
     from rich.console import Console
     from rich.table import Table
 
     table = Table(title=f"{count} float32 points, positional light, perspective, Phong")
     for heading in (
         "way",
-        "median [s]",
+        "median, s",
         "ns a point",
         "times as fast",
         "largest error",
@@ -130,4 +136,4 @@ def main(count: int = 4_000_000) -> None:
 
 
 if __name__ == "__main__":
-    main(*(int(argument) for argument in sys.argv[1:2]))
+    cyclopts.run(main)

@@ -1,0 +1,100 @@
+"""Lines are lit by their own tangents, whatever cells they come in."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from vizlight import Light, Scene, View, illuminate
+from vizlight.filters import _lines
+
+SCENE = Scene(lights=Light(direction=(1, 0.4, 1)), view=View(direction=(0, 0.2, 1)))
+
+
+def circle(count=40, *, closed=True):
+    s = np.linspace(0, 2 * np.pi, count, endpoint=not closed)
+    points = np.stack([np.cos(s), np.sin(s), 0 * s], axis=1)
+    ids = [*range(count), 0] if closed else [*range(count)]
+    return pv.PolyData(points, lines=[len(ids), *ids])
+
+
+def exact(points):
+    x, y, _ = np.asarray(points).T
+    return np.stack([-y, x, 0 * x], axis=1) / np.hypot(x, y)[:, np.newaxis]
+
+
+def test_a_polyline_is_lit_by_its_tangents():
+    mesh = circle()
+    lit = illuminate(mesh, SCENE)
+    mesh["T"] = exact(mesh.points)
+    np.testing.assert_allclose(
+        lit["luminance"], illuminate(mesh, SCENE, tangents="T")["luminance"], atol=1e-12
+    )
+
+
+def test_a_named_array_wins():
+    mesh = circle()
+    mesh["z"] = np.tile([0, 0, 1.0], (mesh.n_points, 1))
+    lit = illuminate(mesh, SCENE, tangents="z")
+    assert np.ptp(lit["luminance"]) < 1e-12
+
+
+def test_segments_are_joined():
+    mesh = circle()
+    ids = np.arange(40)
+    pairs = np.stack([np.full(40, 2), ids, np.roll(ids, -1)], axis=1)
+    pieces = pv.PolyData(mesh.points, lines=pairs[np.random.default_rng(1).permutation(40)].ravel())
+    tangents = _lines.line_tangents(pieces)
+    np.testing.assert_allclose(np.abs(np.sum(tangents * exact(mesh.points), axis=1)), 1, atol=1e-12)
+
+
+def test_contour_lines_of_a_surface():
+    plane = pv.Plane(i_resolution=60, j_resolution=60).triangulate()
+    plane["r"] = np.hypot(*np.asarray(plane.points[:, :2]).T)
+    lines = plane.contour([0.2, 0.35], scalars="r")
+    tangents = _lines.line_tangents(lines)
+    along = np.abs(np.sum(tangents * exact(lines.points), axis=1))
+    assert along.min() > 0.97
+    assert "luminance" in illuminate(lines, SCENE).point_data
+
+
+def test_grids_of_lines():
+    grid = circle().cast_to_unstructured_grid()
+    np.testing.assert_allclose(
+        illuminate(grid, SCENE)["luminance"], illuminate(circle(), SCENE)["luminance"], atol=1e-12
+    )
+    assert not _lines.has_lines_only(pv.ImageData(dimensions=(2, 2, 2)).cast_to_unstructured_grid())
+    assert not _lines.has_lines_only(pv.ImageData(dimensions=(2, 2, 2)))
+
+
+def test_odd_lines_get_a_defined_light():
+    points = np.array([[0.0, 0, 0], [0, 0, 0], [1, 0, 0], [5, 5, 5], [7, 7, 7]])
+    mesh = pv.PolyData(points, lines=[3, 0, 1, 2, 1, 3])
+    with pytest.warns(UserWarning, match="2 of 5 points could not be lit"):
+        lit = illuminate(mesh, SCENE)
+    np.testing.assert_array_equal(lit["luminance_valid"].astype(bool), [1, 1, 1, 0, 0])
+    assert np.all(np.isfinite(lit["luminance"]))
+    np.testing.assert_allclose(lit["luminance"][[3, 4]], 0.1)
+
+
+def test_a_mesh_with_faces_is_no_mesh_of_lines():
+    both = pv.Plane().append_polydata(pv.Line((0, 0, 1), (1, 0, 1)))
+    assert both.n_lines
+    assert not _lines.has_lines_only(both)
+    assert not _lines.has_lines_only(pv.Plane())
+    assert _lines.has_lines_only(pv.Line())
+
+
+def test_lines_without_length_are_taken_out_with_their_data():
+    points = np.array([[0.0, 0, 0], [0, 0, 0], [1, 0, 0], [2, 0, 0], [5, 5, 5]])
+    mesh = pv.PolyData()
+    mesh.points = points
+    mesh.lines = [2, 0, 1, 2, 2, 3, 1, 4]
+    mesh["i"] = np.arange(5)
+    mesh.cell_data["c"] = [7, 8, 9]
+    clean = _lines.without_degenerate(mesh)
+    np.testing.assert_array_equal(clean["i"], [2, 3])
+    np.testing.assert_array_equal(clean.lines, [2, 0, 1])
+    np.testing.assert_array_equal(clean.cell_data["c"], [8])
+    assert _lines.without_degenerate(clean) is clean

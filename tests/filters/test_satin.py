@@ -1,0 +1,84 @@
+"""The satin ball, as numbers: terminator, brightest point, dark side."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight import Light, Material, Scene, View
+
+TOWARD = np.array([1.0, -1, 0.6]) / np.linalg.norm([1.0, -1, 0.6])
+EYE = np.array([0.0, -1, 0.3]) / np.linalg.norm([0, -1, 0.3])
+SCENE = Scene(
+    lights=Light(direction=TOWARD),
+    view=View(direction=EYE),
+    material=Material(ambient=0.1, diffuse=0.5, specular=1.0, color=(1.0, 0.25, 0.30)),
+)
+
+
+@pytest.fixture(scope="module")
+def made():
+    # An odd number of rings puts no point on a pole's degenerate field but the poles themselves.
+    sphere = pv.Sphere(radius=1, theta_resolution=90, phi_resolution=91, start_phi=2, end_phi=178)
+    normals = np.asarray(sphere.points, dtype=float)
+    sphere["Normals"] = normals
+    sphere.point_data.active_normals_name = "Normals"
+    sphere["V"] = np.array([0, 0, 1.0]) - normals[:, 2:] * normals
+    return sphere, vizlight.satin(sphere, SCENE, tangents="V", seeds=80)
+
+
+def test_four_panels(made):
+    sphere, panels = made
+    assert panels.keys() == ["curves", "surface", "field", "conditioned"]
+    assert all({"luminance", "rgb"} <= set(panel.point_data) for panel in panels)
+    assert "luminance" not in sphere.point_data
+
+
+def test_dark_side_is_exactly_ambient_in_d_and_not_in_c(made):
+    sphere, panels = made
+    dark = np.asarray(sphere.points, float) @ TOWARD < -1e-6
+    ambient = np.float64(0.1)
+    assert np.all(panels["conditioned"]["luminance"][dark] == ambient)
+    assert np.all(panels["surface"]["luminance"][dark] == ambient)
+    assert panels["field"]["luminance"][dark].max() > 0.5
+    np.testing.assert_allclose(
+        panels["conditioned"]["rgb"][dark], np.tile([0.1, 0.025, 0.03], (dark.sum(), 1))
+    )
+
+
+def test_terminator_is_where_the_cosine_vanishes(made):
+    sphere, panels = made
+    cosine = np.asarray(sphere.points, float) @ TOWARD
+    lit = panels["conditioned"]["luminance"] > 0.1
+    assert cosine[lit].min() > -1e-6
+    assert cosine[~lit].max() < 1e-6 + cosine[lit].min() + 0.05
+
+
+def test_brightest_point_is_on_the_cone_of_reflection(made):
+    sphere, panels = made
+    field = np.asarray(sphere["V"], float)
+    tangent = field / np.linalg.norm(field, axis=1, keepdims=True)
+    miss = np.abs(np.arccos(tangent @ TOWARD) + np.arccos(tangent @ EYE) - np.pi)
+    parts = vizlight.illuminate(sphere, SCENE, tangents="V", components=True)
+    assert miss[np.argmax(parts["specular"])] < 0.05
+    assert np.corrcoef(miss, parts["specular"])[0, 1] < -0.5
+    # The satin's highlight is a band along latitudes, the plain ball's a spot.
+    band = parts["specular"] > 0.5
+    assert np.ptp(np.arctan2(*np.asarray(sphere.points)[band, 1::-1].T)) > 3
+    assert panels["field"]["luminance"].max() > 1
+
+
+def test_curves_have_the_light_of_the_field(made):
+    curves = made[1]["curves"]
+    outward = np.asarray(curves.points, float)
+    outward /= np.linalg.norm(outward, axis=1, keepdims=True)
+    tangent = np.array([0, 0, 1.0]) - outward[:, 2:] * outward
+    mesh = pv.PolyData(np.asarray(curves.points))
+    mesh["T"] = tangent
+    expected = vizlight.illuminate(mesh, SCENE, tangents="T")["luminance"]
+    near_pole = np.abs(outward[:, 2]) > 0.98
+    difference = np.abs(curves["luminance"] - expected)[~near_pole]
+    assert np.median(difference) < 0.02
+    assert np.quantile(difference, 0.99) < 0.1

@@ -1,0 +1,177 @@
+"""Streamlines: on the field, on the surface, lit by their tangents, conditioned by normals."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight import Light, Material, Scene, View, streamlines
+
+SCENE = Scene(lights=Light(direction=(1, -1, 0.8)), view=View(direction=(0.2, -1, 0.3)))
+
+
+def ball(resolution=60, radius=0.5):
+    sphere = pv.Sphere(radius=radius, theta_resolution=resolution, phi_resolution=resolution)
+    normals = np.asarray(sphere["Normals"], dtype=float)
+    sphere["V"] = np.array([0, 0, 1.0]) - normals[:, 2:] * normals
+    return sphere
+
+
+def vortex():
+    grid = pv.ImageData(dimensions=(21, 21, 5), origin=(-1, -1, 0), spacing=(0.1, 0.1, 0.1))
+    x, y, _ = grid.points.T
+    grid["V"] = np.stack([-y, x, 0 * x], axis=1)
+    return grid
+
+
+def test_free_lines_follow_the_field():
+    lines = streamlines(
+        vortex(), SCENE, vectors="V", seeds=[[0.5, 0, 0.2], [0, 0.3, 0.2]], max_length=3.0
+    )
+    radius = np.hypot(*np.asarray(lines.points[:, :2]).T)
+    assert np.min([abs(radius - 0.5), abs(radius - 0.3)], axis=0).max() < 1e-3
+    again = vizlight.illuminate(lines, SCENE, tangents="V", name="by_field")
+    np.testing.assert_allclose(lines["luminance"], again["by_field"], atol=5e-3)
+    assert "drift" not in lines.field_data
+
+
+def test_confined_lines_stay_on_the_surface_and_follow_meridians():
+    sphere = ball()
+    before = sphere.copy()
+    lines = streamlines(sphere, SCENE, vectors="V", seeds=50)
+    assert lines.field_data["drift"][0] < 1e-6
+    distance = np.abs(lines.compute_implicit_distance(sphere)["implicit_distance"])
+    assert distance.max() < 1e-6
+    for cell in range(lines.n_cells):
+        x, y, _ = np.asarray(lines.get_cell(cell).points, dtype=float).T
+        away = np.hypot(x, y) > 0.1
+        if away.sum() > 2:
+            turn = np.exp(1j * np.arctan2(y[away], x[away]))
+            assert np.abs(turn - turn[0]).max() < 0.02
+    assert sphere == before
+
+
+def test_drift_is_measured_against_the_true_sphere_as_the_mesh_is_refined():
+    """On triangles of size h a sphere is missed by h^2: order 2."""
+    sizes, misses = [20, 40, 80], []
+    for n in sizes:
+        lines = streamlines(ball(n), SCENE, vectors="V", seeds=40)
+        misses.append(np.abs(np.linalg.norm(lines.points, axis=1) - 0.5).max())
+    order = -np.polyfit(np.log(sizes), np.log(misses), 1)[0]
+    assert abs(order - 2) < 0.3
+
+
+def test_a_surface_conditions_the_lines():
+    sphere = ball()
+    dark = SCENE.replace(material=Material(ambient=0.1))
+    free = streamlines(sphere, dark, vectors="V", conditioned=False, seeds=60)
+    shadowed = streamlines(sphere, dark, vectors="V", seeds=60)
+    np.testing.assert_allclose(free.points, shadowed.points)
+    outward = np.asarray(shadowed.points) / 0.5
+    toward = np.array([1, -1, 0.8]) / np.linalg.norm([1, -1, 0.8])
+    facing = np.maximum(outward @ toward, 0)
+    np.testing.assert_allclose(
+        shadowed["luminance"] - 0.1, facing * (free["luminance"] - 0.1), atol=0.02
+    )
+    np.testing.assert_allclose(shadowed["luminance"][outward @ toward < -0.05], 0.1, rtol=1e-6)
+    assert free["luminance"][outward @ toward < -0.05].max() > 0.2
+
+
+def test_lines_of_a_volume_on_an_isosurface():
+    flow = vizlight.load_example()
+    iso = flow.contour([400.0], scalars="Temp")
+    lines = streamlines(
+        flow, SCENE, vectors="V", surface=iso, confined=True, seeds=40, max_length=10.0
+    )
+    assert lines.field_data["drift"][0] < 1e-5
+    bare = pv.PolyData(np.asarray(iso.points))
+    del iso.point_data["V"]
+    sampled = streamlines(
+        flow, SCENE, vectors="V", surface=iso, confined=True, seeds=40, max_length=10.0
+    )
+    assert sampled.n_points > 0
+    assert bare.n_points == iso.n_points
+
+
+def test_free_lines_near_a_surface_get_its_nearest_normals():
+    flow = vortex()
+    sphere = ball(40, radius=0.7).translate((0, 0, 0.2), inplace=False)
+    lines = streamlines(flow, SCENE, vectors="V", surface=sphere, seeds=30, max_length=1.0)
+    outward = np.asarray(lines.points) - [0, 0, 0.2]
+    size = np.linalg.norm(outward, axis=1)
+    far = size > 0.1
+    cosine = np.sum(lines["Normals"] * outward, axis=1)[far] / size[far]
+    assert cosine.min() > 0.99
+
+
+def test_embedded_flow_is_lit_with_the_active_vectors():
+    flow = vizlight.load_example()
+    flow.set_active_vectors("V")
+    lines = streamlines(flow, SCENE, seeds=30, seed=3)
+    same = streamlines(flow, SCENE, vectors="V", seeds=30, seed=3)
+    other = streamlines(flow, SCENE, vectors="V", seeds=30, seed=4)
+    np.testing.assert_array_equal(lines["luminance"], same["luminance"])
+    assert lines.n_points != other.n_points
+    assert np.ptp(lines["luminance"]) > 0.3
+
+
+def test_options_reach_the_light():
+    lines = streamlines(
+        vortex(), SCENE, vectors="V", seeds=9, name="x", components=True, precision="float64"
+    )
+    assert {"x", "x_diffuse"} <= set(lines.point_data)
+    assert lines["x"].dtype == np.float64
+
+
+@pytest.mark.parametrize(
+    ("make", "options", "error", "words"),
+    [
+        (vortex, {"vectors": "U"}, ValueError, "vectors: expected the name of a point array"),
+        (pv.ImageData, {}, ValueError, "vectors: expected the name of a point array"),
+        (
+            vortex,
+            {"vectors": "V", "confined": True},
+            ValueError,
+            "surface: expected a surface for confined",
+        ),
+        (
+            vortex,
+            {"vectors": "V", "conditioned": True},
+            ValueError,
+            "surface: .* conditioned lines",
+        ),
+        (
+            vortex,
+            {"vectors": "V", "surface": vortex()},
+            TypeError,
+            "surface: expected a pyvista.PolyData surface, got ImageData",
+        ),
+        (
+            vortex,
+            {"vectors": "V", "surface": pv.Line()},
+            ValueError,
+            "surface: expected a surface with faces",
+        ),
+        (
+            vortex,
+            {"vectors": "V", "seeds": 0},
+            ValueError,
+            "seeds: expected an integer of at least 1",
+        ),
+        (vortex, {"vectors": "V", "seeds": [1.0, 2.0]}, ValueError, "seeds: expected"),
+        (
+            vortex,
+            {"vectors": "V", "seeds": [[99.0, 0, 0]]},
+            ValueError,
+            "seeds: expected points inside",
+        ),
+        (vortex, {"vectors": "V", "step": 0}, ValueError, "step: expected"),
+        (vortex, {"vectors": "V", "max_length": -1}, ValueError, "max_length: expected"),
+        (lambda: np.ones(3), {"vectors": "V"}, TypeError, "mesh: expected a PyVista dataset"),
+    ],
+)
+def test_bad_input(make, options, error, words):
+    with pytest.raises(error, match=words):
+        streamlines(make(), SCENE, **options)

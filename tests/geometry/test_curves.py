@@ -1,0 +1,128 @@
+"""Tangents of polylines: exact where theory says so, right where lines are odd."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+
+from vizlight.geometry import curves
+
+
+def helix(s):
+    return np.stack([np.cos(s), np.sin(s), 0.5 * s], axis=1)
+
+
+def helix_tangent(s):
+    t = np.stack([-np.sin(s), np.cos(s), np.full_like(s, 0.5)], axis=1)
+    return t / np.linalg.norm(t, axis=1, keepdims=True)
+
+
+def test_straight_line_is_exact(dtype):
+    points = np.outer([0, 0.5, 3, 3.25, 10], [1, 2, 2]).astype(dtype)
+    tangents = curves.polyline_tangents(points)
+    assert tangents.dtype == dtype
+    np.testing.assert_allclose(tangents, np.tile([1 / 3, 2 / 3, 2 / 3], (5, 1)), rtol=1e-6)
+
+
+def test_parabola_in_its_own_parameter_is_nearly_exact_at_ends_too():
+    s = np.linspace(0, 1e-3, 4)
+    points = np.stack([s, s * s], axis=1)
+    exact = np.stack([np.ones_like(s), 2 * s], axis=1)
+    exact /= np.linalg.norm(exact, axis=1, keepdims=True)
+    np.testing.assert_allclose(curves.polyline_tangents(points), exact, atol=1e-8)
+
+
+@pytest.mark.parametrize("where", ["inside", "ends"])
+@pytest.mark.parametrize("spacing", ["equal", "unequal"])
+def test_order_2(where, spacing):
+    errors, steps = [], np.array([20, 40, 80, 160, 320])
+    for n in steps:
+        s = np.linspace(0, 3, n + 1)
+        if spacing == "unequal":
+            s = s + 0.15 * np.sin(2 * s)
+        error = np.linalg.norm(curves.polyline_tangents(helix(s)) - helix_tangent(s), axis=1)
+        errors.append(error[1:-1].max() if where == "inside" else max(error[0], error[-1]))
+    order = -np.polyfit(np.log(steps), np.log(errors), 1)[0]
+    assert abs(order - 2) < 0.2
+
+
+def test_closed_line_has_no_seam():
+    s = np.linspace(0, 2 * np.pi, 13)
+    circle = np.stack([np.cos(s), np.sin(s), 0 * s], axis=1)
+    circle[-1] = circle[0]
+    exact = np.stack([-np.sin(s), np.cos(s), 0 * s], axis=1)
+    np.testing.assert_allclose(curves.polyline_tangents(circle), exact, atol=1e-12)
+    by_index = curves.polyline_tangents(circle[:12], connectivity=[*range(12), 0], offsets=[0, 13])
+    np.testing.assert_allclose(by_index, exact[:12], atol=1e-12)
+
+
+def test_there_and_back_is_not_closed():
+    tangents = curves.polyline_tangents([[0.0, 0, 0], [1, 0, 0], [0, 0, 0]])
+    np.testing.assert_allclose(tangents[0], [1.0, 0, 0])
+    assert np.all(np.isfinite(tangents))
+
+
+def test_repeated_points_share_a_tangent(random):
+    points = helix(np.linspace(0, 2, 9))
+    repeats = [2, 1, 3, 1, 1, 2, 1, 1, 4]
+    doubled = np.repeat(points, repeats, axis=0)
+    expected = np.repeat(curves.polyline_tangents(points), repeats, axis=0)
+    np.testing.assert_array_equal(curves.polyline_tangents(doubled), expected)
+
+
+def test_lines_of_one_and_two_points_and_none():
+    points = np.array([[0.0, 0, 0], [5, 5, 5], [5, 7, 5], [1, 1, 1], [1, 1, 1], [9, 9, 9]])
+    tangents = curves.polyline_tangents(
+        points, connectivity=[0, 1, 2, 3, 4], offsets=[0, 1, 3, 5, 5]
+    )
+    expected = [[0, 0, 0], [0, 1, 0], [0, 1, 0], [0, 0, 0], [0, 0, 0], [0, 0, 0]]
+    np.testing.assert_array_equal(tangents, expected)
+
+
+def test_many_lines_equal_one_at_a_time(random):
+    sizes = random.integers(0, 9, 60)
+    offsets = np.concatenate([[0], np.cumsum(sizes)])
+    points = random.standard_normal((offsets[-1], 3))
+    ids = random.permutation(len(points))
+    together = curves.polyline_tangents(points, connectivity=ids, offsets=offsets)
+    for a, b in itertools.pairwise(offsets):
+        np.testing.assert_array_equal(
+            together[ids[a:b]], curves.polyline_tangents(points[ids[a:b]])
+        )
+
+
+def test_far_from_the_origin_in_float32():
+    points = (5e6 + np.arange(8, dtype=np.float64)[:, np.newaxis] * [1, 1, 0]).astype(np.float32)
+    np.testing.assert_allclose(
+        curves.polyline_tangents(points), np.tile([0.5**0.5, 0.5**0.5, 0], (8, 1)), rtol=1e-6
+    )
+
+
+def test_turned_over_line_has_opposite_tangents(random):
+    points = random.standard_normal((12, 4))
+    np.testing.assert_allclose(
+        curves.polyline_tangents(points[::-1])[::-1], -curves.polyline_tangents(points), atol=1e-14
+    )
+
+
+def test_nothing():
+    assert curves.polyline_tangents(np.empty((0, 3))).shape == (0, 3)
+    assert curves.polyline_tangents(np.ones((1, 3))).tolist() == [[0, 0, 0]]
+
+
+@pytest.mark.parametrize(
+    ("points", "options", "error", "words"),
+    [
+        (np.ones(3), {}, ValueError, r"points: expected shape \(N, n\)"),
+        (np.ones((3, 3)), {"connectivity": [0, 3]}, ValueError, "connectivity: .* from 0 to 2"),
+        (np.ones((3, 3)), {"connectivity": [0.5]}, TypeError, "connectivity: expected integers"),
+        (np.ones((3, 3)), {"offsets": [0, 2]}, ValueError, "offsets: expected rising numbers"),
+        (np.ones((3, 3)), {"offsets": [0, 2, 1, 3]}, ValueError, "offsets: expected rising"),
+        (np.ones((3, 3)), {"offsets": [0, 4]}, ValueError, "offsets: .* from 0 to 3"),
+    ],
+)
+def test_bad_input(points, options, error, words):
+    with pytest.raises(error, match=words):
+        curves.polyline_tangents(points, **options)

@@ -1,0 +1,53 @@
+"""Satin: a surface covered by fibres, in the four ways to light it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pyvista as pv
+
+from vizlight.filters._illuminate import illuminate
+from vizlight.filters._streamlines import streamlines
+
+if TYPE_CHECKING:
+    from vizlight.scene import Scene
+
+
+def satin(surface: Any, /, scene: Scene, *, tangents: str, seeds: Any = 300, seed: int = 0) -> Any:
+    """Light a surface with a tangent field in four ways: the panels of Banks' illustration 2.
+
+    Parameters
+    ----------
+    surface : pyvista.PolyData
+        Not changed.
+    scene : Scene
+        The seed's material is ``Material(ambient=0.1, diffuse=0.5, specular=1.0,
+        color=(1.0, 0.25, 0.30))``.
+    tangents : str
+        A point array of 3 components, tangent to the surface.
+    seeds, seed
+        Of the integral curves, as in :func:`vizlight.streamlines`.
+
+    Returns
+    -------
+    pyvista.MultiBlock
+        ``curves``: integral curves, lit as lines without self-shadow (A). ``surface``: lit by its
+        normals (B). ``field``: the surface lit by the field alone (C). ``conditioned``: by the
+        field, with the surface's self-shadow (D, Banks 6).
+
+    Raises
+    ------
+    TypeError, ValueError
+        As :func:`vizlight.illuminate` and :func:`vizlight.streamlines`.
+    """
+    curves = streamlines(
+        surface, scene, vectors=tangents, conditioned=False, seeds=seeds, seed=seed
+    )
+    return pv.MultiBlock(
+        {
+            "curves": curves,
+            "surface": illuminate(surface, scene),
+            "field": illuminate(surface, scene, tangents=tangents),
+            "conditioned": illuminate(surface, scene, tangents=tangents, conditioned=True),
+        }
+    )

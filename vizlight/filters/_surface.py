@@ -1,0 +1,65 @@
+"""The nearest place on a surface, and its normal there."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyvista as pv
+
+from vizlight import _check
+from vizlight.filters import _mesh
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from vizlight.scene import View
+
+    Array = NDArray[np.floating[Any]]
+
+
+def with_normals(surface: Any, view: View | None, name: str = "surface") -> pv.PolyData:
+    """Return the triangles of a surface with point normals; it shares nothing that is changed.
+
+    Raises
+    ------
+    TypeError
+        If it is not a PolyData mesh.
+    ValueError
+        If it has no faces.
+    """
+    if not isinstance(surface, pv.PolyData):
+        raise TypeError(
+            _check.message(
+                name,
+                "a pyvista.PolyData surface",
+                type(surface).__name__,
+                "take the mesh's extract_surface() or a contour",
+            )
+        )
+    if not (surface.GetNumberOfPolys() or surface.GetNumberOfStrips()):
+        raise ValueError(_check.message(name, "a surface with faces", "a mesh without"))
+    triangles = surface.copy(deep=False)
+    triangles.point_data["Normals"] = _mesh.normals_of(surface, None, 3, view)
+    triangles.point_data.active_normals_name = "Normals"
+    return triangles if triangles.is_all_triangles else triangles.triangulate()
+
+
+def closest(surface: pv.PolyData, points: Array) -> tuple[Array, Array]:
+    """Return the points of a triangle mesh closest to some points, and its normals there."""
+    if not len(points):
+        return np.empty((0, 3)), np.empty((0, 3))
+    nearest: Any = surface.find_closest_cell(points, return_closest_point=True)  # type: ignore[arg-type]
+    corners = surface.regular_faces[np.atleast_1d(nearest[0])]
+    places: Array = np.atleast_2d(nearest[1])
+    a, b, c = (np.asarray(surface.points, dtype=np.float64)[corners[:, i]] for i in range(3))
+    normal = np.cross(b - a, c - a)
+    area = np.einsum("ij,ij->i", normal, normal)
+    area = np.where(area > 0, area, 1)[:, np.newaxis]
+    weights = [
+        np.einsum("ij,ij->i", np.cross(q - p, places - p), normal)[:, np.newaxis] / area
+        for p, q in ((b, c), (c, a), (a, b))
+    ]
+    normals = np.asarray(surface.point_data["Normals"], dtype=np.float64)
+    found = sum(w * normals[corners[:, i]] for i, w in enumerate(weights))
+    return places, np.asarray(found)

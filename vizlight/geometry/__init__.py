@@ -1,0 +1,1 @@
+"""Shapes as arrays: NumPy and SciPy only, no mesh, no file."""
