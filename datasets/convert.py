@@ -1,6 +1,6 @@
-"""Make the embedded data from their sources: ``python datasets/convert.py mayavi.whl``.
+"""Make the embedded data from their sources: ``python datasets/convert.py mayavi.whl dipy.whl``.
 
-The wheel is fetched by ``pip download --no-deps mayavi==4.9.0``.
+The wheels are fetched by ``pip download --no-deps mayavi==4.9.0 dipy==1.12.1``.
 """
 
 from __future__ import annotations
@@ -16,13 +16,14 @@ import numpy as np
 import pyvista as pv
 
 HERE = Path(__file__).parent
-SOURCE = "mayavi/tests/data/disk_out_ref.ex2"
+DISK = "mayavi/tests/data/disk_out_ref.ex2"
+FIBRES = "dipy/data/files/tracks300.trk"
 
 
 def rotating_disk(wheel: Path) -> Path:
     """Write the volume block of the CFD solution with all its fields, in float32."""
     with tempfile.TemporaryDirectory() as folder, zipfile.ZipFile(wheel) as archive:
-        blocks: Any = pv.read(archive.extract(SOURCE, folder))
+        blocks: Any = pv.read(archive.extract(DISK, folder))
     volume = blocks[0][0]
     out = volume.copy()
     out.clear_cell_data()
@@ -35,6 +36,32 @@ def rotating_disk(wheel: Path) -> Path:
     return path
 
 
+def fibre_bundle(wheel: Path) -> Path:
+    """Write the tracks of a TrackVis file without scalars or properties as lines, in float32."""
+    with zipfile.ZipFile(wheel) as archive:
+        content = archive.read(FIBRES)
+    scalars, properties, count = (
+        int(np.frombuffer(content, kind, 1, offset)[0])
+        for kind, offset in (("<i2", 36), ("<i2", 238), ("<i4", 988))
+    )
+    if (scalars, properties) != (0, 0):
+        raise ValueError("tracks without scalars and properties expected")
+    points, sizes, offset = [], [], 1000
+    for _ in range(count):
+        size = int(np.frombuffer(content, "<i4", 1, offset)[0])
+        points.append(np.frombuffer(content, "<f4", 3 * size, offset + 4).reshape(-1, 3))
+        sizes.append(size)
+        offset += 4 + 12 * size
+    out = pv.PolyData()
+    out.points = np.concatenate(points).astype(np.float32)
+    offsets = np.concatenate([[0], np.cumsum(sizes)])
+    out.SetLines(pv.CellArray.from_arrays(offsets, np.arange(offsets[-1])))
+    path = HERE / "fibre_bundle.vtp"
+    out.save(path)
+    return path
+
+
 if __name__ == "__main__":
-    made = rotating_disk(Path(sys.argv[1]))
-    sys.stdout.write(f"{hashlib.sha256(made.read_bytes()).hexdigest()}  {made.name}\n")
+    for make, source in zip((rotating_disk, fibre_bundle), sys.argv[1:], strict=True):
+        made = make(Path(source))
+        sys.stdout.write(f"{hashlib.sha256(made.read_bytes()).hexdigest()}  {made.name}\n")

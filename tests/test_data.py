@@ -30,8 +30,20 @@ def test_the_flow_is_what_the_readme_tells():
     assert set(flow.point_data) == {"V", "Pres", "Temp", "H2", "AsH3", "CH4", "GaMe3"}
 
 
+def test_the_fibres_are_what_the_readme_tells():
+    fibres = vizlight.load_example("fibre_bundle.vtp")
+    assert (fibres.n_points, fibres.n_lines) == (14576, 300)
+    scene = vizlight.Scene(view=vizlight.View(direction=(1, 1, 1)))
+    lit = vizlight.illuminate(fibres, scene)
+    assert "luminance_valid" not in lit.point_data
+    assert 0.1 <= lit["luminance"].min() < lit["luminance"].max() <= 1.0
+
+
 def test_unknown_data():
-    with pytest.raises(ValueError, match=r"name: expected one of \['rotating_disk.vtu'\], got 'x'"):
+    with pytest.raises(
+        ValueError,
+        match=r"name: expected one of \['fibre_bundle.vtp', 'rotating_disk.vtu'\], got 'x'",
+    ):
         vizlight.example_path("x")
 
 

@@ -92,6 +92,51 @@ def test_every_term_against_50_digits(name, what, model, dtype, random, figure):
         figure("engine.shade", f"{what}, {model}", dtype, error, bound)
 
 
+@pytest.mark.parametrize("what", ["conditioned", "free", "surface"])
+@pytest.mark.parametrize("name", ["sun, far eye", "lamp, near eye"])
+def test_fur_against_50_digits(name, what, dtype, random, figure):
+    scene, density = SCENES[name], 0.4
+    points, tangents, normals = cloud(random, 30, dtype)
+    depth = random.uniform(0, 0.5, 30).astype(dtype)
+    depth[:5] = 0
+    shaded = engine.shade(
+        points, None if what == "surface" else tangents, scene, normals=normals, depth=depth,
+        fur=density, conditioned=what == "conditioned", components=True,
+    )  # fmt: skip
+    exact = oracles.exact
+    for i in range(30):
+        _, diffuse, specular, _, _ = oracles.shade(
+            points[i],
+            None if what == "surface" else tangents[i],
+            None if what == "free" else normals[i],
+            scene,
+            exponent=shaded.plan.exponent,
+        )
+        normal = oracles.unit(exact(normals[i]))
+        wi, _ = oracles.toward(scene.lights[0], exact(points[i]))
+        wo, _ = oracles.toward(scene.view, exact(points[i]))
+        path = sum(exact(depth[i]) / abs(oracles.dot(normal, w)) for w in (wi, wo))
+        passes = (1 - exact(density)) ** path
+        for seen, true in ((shaded.diffuse[i], diffuse), (shaded.specular[i], specular)):
+            error = oracles.units(seen, true * passes, dtype)
+            figure("engine.shade", "fur", dtype, error, 40)
+
+
+def test_bad_depth(random):
+    points, tangents, normals = cloud(random, 4, float)
+    scene = SCENES["sun, far eye"]
+    for options in ({"depth": np.ones(4)}, {"fur": 0.5}):
+        with pytest.raises(ValueError, match="depth: expected depth and fur= together"):
+            engine.shade(points, tangents, scene, normals=normals, **options)
+    with pytest.raises(ValueError, match=r"depth: expected shape \(4,\)"):
+        engine.shade(points, tangents, scene, normals=normals, fur=0.5, depth=np.ones(3))
+    shaded = engine.shade(
+        points, tangents, scene, normals=normals, fur=0.5, depth=[1.0, -1.0, np.nan, 0.0]
+    )
+    np.testing.assert_array_equal(shaded.valid, [True, False, False, True])
+    assert np.isfinite(shaded.luminance).all()
+
+
 @pytest.mark.parametrize(("k", "n"), [(1, 2), (1, 4), (2, 4), (3, 5), (1, 8)])
 def test_n_space_against_50_digits(k, n, dtype, random, figure):
     points, tangents, _ = cloud(random, 5, dtype, k, n)

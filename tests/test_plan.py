@@ -80,6 +80,22 @@ def test_words_for_the_rest():
     assert "by a power" in plan(rough, k=1).explain()
 
 
+def test_fur_needs_normals_an_eye_and_a_density():
+    scene = Scene(lights=SUN, view=FAR)
+    made = plan(scene, k=1, normals=True, fur=0.3)
+    assert "fur: density 0.3, on the way in for each light and out once" in words(made, "compute")
+    assert made.conditioned
+    assert not plan(scene, k=1, normals=True, fur=0.3, conditioned=False).conditioned
+    dull = Scene(lights=SUN, view=View(position=(0, 0, 9)), material=Material(specular=0))
+    assert plan(dull, normals=True, fur=0.3).needs_points
+    with pytest.raises(ValueError, match="normals: expected normals, across which fur stands"):
+        plan(scene, k=1, fur=0.3)
+    with pytest.raises(ValueError, match="fur: expected a number from 0 to 1"):
+        plan(scene, normals=True, fur=2)
+    with pytest.raises(ValueError, match="view: expected a View, which the fur needs"):
+        plan(Scene(lights=SUN, material=Material(specular=0)), normals=True, fur=0.3)
+
+
 def test_block_shrinks_with_the_space():
     scene = Scene(lights=[])
     small, large = plan(scene, k=1, n=3), plan(scene, k=5, n=100)

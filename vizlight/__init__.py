@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from vizlight.data import example_path, load_example
-    from vizlight.filters import illuminate, provenance, satin, streamlines
+    from vizlight.filters import fur, illuminate, provenance, satin, streamlines
     from vizlight.light import Light
     from vizlight.scene import DepthCue, Material, Scene, View
 
@@ -22,6 +22,7 @@ _HOMES = {
     "Scene": "vizlight.scene",
     "View": "vizlight.scene",
     "example_path": "vizlight.data",
+    "fur": "vizlight.filters",
     "illuminate": "vizlight.filters",
     "load_example": "vizlight.data",
     "provenance": "vizlight.filters",
@@ -37,6 +38,7 @@ __all__ = [
     "Scene",
     "View",
     "example_path",
+    "fur",
     "illuminate",
     "load_example",
     "provenance",

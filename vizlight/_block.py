@@ -83,18 +83,19 @@ class _Surface:
     def __init__(self, normal: Array, *, two_sided: bool) -> None:
         self.normal, self.two_sided = normal, two_sided
 
-    def _side(self, cosine: Array) -> Array:
+    def side(self, cosine: Array) -> Array:
+        """Return the cosine clamped to the lit side or sides."""
         return np.abs(cosine) if self.two_sided else np.maximum(cosine, 0)
 
     def split(self, x: Array) -> _Split:
         return _Split(x, x, _kernels.dot(self.normal, x))
 
-    def shadow(self, x: Array) -> Array:
-        """Return the clamped cosine of a direction."""
-        return self._side(_kernels.dot(self.normal, x))
+    def cosine(self, x: Array) -> Array:
+        """Return the cosine of a unit direction to the normal."""
+        return _kernels.dot(self.normal, x)
 
     def diffuse(self, lit: _Split, exponent: float) -> Array:
-        return _kernels.power(self._side(lit.across), exponent)
+        return _kernels.power(self.side(lit.across), exponent)
 
     def phong(self, lit: _Split, eye: _Split, shininess: float) -> Array:
         tangential, _ = self._half(lit, eye)
@@ -105,7 +106,7 @@ class _Surface:
 
     def blinn(self, lit: _Split, eye: _Split, shininess: float) -> Array:
         tangential, up = self._half(lit, eye)
-        up = self._side(up)
+        up = self.side(up)
         return self._cut(lit, _kernels.blinn(tangential, up * up, shininess))
 
     def _half(self, lit: _Split, eye: _Split) -> tuple[Array, Array]:
@@ -126,6 +127,7 @@ def shade_block(
     points: Rows,
     tangents: Rows | None,
     normals: Rows | None,
+    depth: Rows | None,
     output: Output,
 ) -> None:
     """Light some rows and write them to the output.
@@ -151,10 +153,17 @@ def shade_block(
 
     eye: _Split | None = None
     seen: NDArray[np.bool_] | None = None
-    if plan.specular:
+    under: Array | None = None
+    path_out: Any = 0
+    if plan.needs_eye:
         assert scene.view is not None
         toward_eye, distance = _toward(scene.view, position, dtype)
-        eye = manifold.split(toward_eye)
+        if plan.specular:
+            eye = manifold.split(toward_eye)
+        if plan.fur and depth is not None and surface is not None:
+            under = np.asarray(depth[block]).astype(dtype, copy=False)
+            valid &= under >= 0
+            path_out = falloff.fur_path(under, np.abs(surface.cosine(toward_eye)))
         if distance is not None:
             valid &= distance >= 0
             seen = distance > 0
@@ -171,9 +180,13 @@ def shade_block(
             if not distance.all():
                 # A light on the point has no direction to come from.
                 scale = scale * (distance > 0)
-        if plan.conditioned:
-            assert surface is not None
-            scale = scale * surface.shadow(toward_light)
+        if surface is not None and (plan.conditioned or under is not None):
+            cosine = surface.cosine(toward_light)
+            if plan.conditioned:
+                scale = scale * surface.side(cosine)
+            if under is not None:
+                path = falloff.fur_path(under, np.abs(cosine)) + path_out
+                scale = scale * falloff.fur_passes(path, plan.fur)
         if plan.diffuse:
             sums.add("diffuse", manifold.diffuse(lit, plan.exponent) * scale, light)
         if eye is not None:

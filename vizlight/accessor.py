@@ -36,6 +36,7 @@ class Accessor:
     def __init__(self, mesh: Any) -> None:
         self._mesh = mesh
 
+    fur = _method(filters.fur)
     illuminate = _method(filters.illuminate)
     provenance = _method(filters.provenance)
     satin = _method(filters.satin)

@@ -6,21 +6,18 @@ memory beyond the output does not grow with the mesh.
 
 from __future__ import annotations
 
-import os
 import time
-from collections import deque
-from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
-from vizlight import _check
+from vizlight import _check, _pool
 from vizlight._block import Output, Rows, columns, shade_block, view_depth
 from vizlight.plan import Plan, plan
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
     from numpy.typing import NDArray
 
@@ -78,6 +75,7 @@ def shade(
     /,
     *,
     normals: Rows | None = None,
+    depth: Rows | None = None,
     precision: Precision | None = None,
     threads: int | None = None,
     block: int | None = None,
@@ -98,6 +96,8 @@ def shade(
     scene : Scene
     normals : array_like, shape (N, n), optional
         Outward normals, of any length. With tangents they condition the light (Banks 6).
+    depth : array_like, shape (N,), optional
+        With ``fur=``: the height of fur above each point, across the surface.
     precision : {"float32", "float64"}, optional
         Of the work and the result. Default: float32 if the vectors are float32 or less, else
         float64; float64 points keep their differences in float64 either way.
@@ -108,7 +108,7 @@ def shade(
     progress : callable, optional
         Called from the caller's thread as ``progress(points done, N)`` after each block.
     **options
-        Of :func:`plan`: model, compensate, two_sided, components.
+        Of :func:`plan`: model, compensate, conditioned, two_sided, fur, components.
 
     Returns
     -------
@@ -143,6 +143,12 @@ def shade(
             raise ValueError(
                 _check.message("normals", f"shape ({count}, {n})", f"shape {normals.shape}")
             )
+    if (depth is None) == bool(options.get("fur")):
+        raise ValueError(_check.message("depth", "depth and fur= together", "one of them"))
+    if depth is not None:
+        depth = _rows("depth", depth)
+        if tuple(depth.shape) != (count,):
+            raise ValueError(_check.message("depth", f"shape ({count},)", f"shape {depth.shape}"))
     if precision is None:
         given = [rows.dtype for rows in (tangents, normals) if rows is not None]
         small = given and all(kind in (np.float16, np.float32) for kind in given)
@@ -154,14 +160,13 @@ def shade(
     start = time.perf_counter()
     output = Output(made, count)
     step = made.block if block is None else _check.integer("block", block, low=1)
-    blocks = [slice(i, min(i + step, count)) for i in range(0, count, step)]
 
     def work(block: slice) -> int:
         with np.errstate(all="ignore"):
-            shade_block(made, block, points, tangents, normals, output)
+            shade_block(made, block, points, tangents, normals, depth, output)
         return int(block.stop)
 
-    for done in _run(work, blocks, min(_workers(threads), len(blocks))):
+    for done in _pool.run(work, _pool.blocks(count, step), threads):
         if progress is not None:
             progress(done, count)
     return Shading(
@@ -201,34 +206,6 @@ def _tangent_count(shape: tuple[int, ...], count: int, n: int) -> int:
             )
         )
     return k
-
-
-def _workers(threads: int | None) -> int:
-    if threads is not None:
-        return _check.integer("threads", threads, low=1)
-    try:
-        return len(os.sched_getaffinity(0))
-    except AttributeError:  # not on macOS and Windows
-        return os.cpu_count() or 1
-
-
-def _run(work: Callable[[slice], int], blocks: list[slice], workers: int) -> Iterator[int]:
-    """Yield the results of work in order, a few blocks ahead of the reader."""
-    if workers <= 1:
-        yield from map(work, blocks)
-        return
-    with ThreadPoolExecutor(workers) as pool:
-        ahead: deque[Future[int]] = deque()
-        try:
-            for block in blocks:
-                ahead.append(pool.submit(work, block))
-                if len(ahead) > 4 * workers:
-                    yield ahead.popleft().result()
-            while ahead:
-                yield ahead.popleft().result()
-        finally:
-            for future in ahead:
-                future.cancel()
 
 
 def depth_range(points: Rows, scene: Scene, /, *, block: int = 1 << 17) -> tuple[float, float]:

@@ -44,6 +44,8 @@ class Plan:
         Whether tangents inherit the self-shadow of the surface that the normals belong to.
     two_sided : bool
         Whether the far side of normals is lit as the near one.
+    fur : float
+        Density of the fur that light passes on its way in and out, 0 for none.
     diffuse, specular : bool
         Whether the term is computed.
     colored, components : bool
@@ -59,6 +61,7 @@ class Plan:
     surface: bool
     conditioned: bool
     two_sided: bool
+    fur: float
     diffuse: bool
     specular: bool
     colored: bool
@@ -81,9 +84,14 @@ class Plan:
         view = self.scene.view
         return (
             any(light.position is not None for light in self.scene.lights)
-            or (self.specular and view is not None and not view.parallel)
+            or (self.needs_eye and view is not None and not view.parallel)
             or self.scene.depth_cue is not None
         )
+
+    @property
+    def needs_eye(self) -> bool:
+        """Whether anything depends on where the eye is."""
+        return self.specular or (self.fur > 0 and self.diffuse)
 
     @property
     def block(self) -> int:
@@ -121,7 +129,9 @@ def plan(
     dtype: DTypeLike = np.float64,
     model: SpecularModel = "phong",
     compensate: bool = True,
+    conditioned: bool = True,
     two_sided: bool = False,
+    fur: float = 0.0,
     components: bool = False,
 ) -> Plan:
     """Return the terms that a scene needs.
@@ -134,14 +144,18 @@ def plan(
     k : int, optional
         Number of tangents a point. None: the manifold is the surface that has the normals.
     normals : bool, default: False
-        Whether normals are given. With k they condition the light (Banks 6).
+        Whether normals are given. With k they may condition and attenuate the light.
     dtype : dtype, default: float64
         float32 or float64.
     model : {"phong", "blinn"}
     compensate : bool, default: True
         Diffuse with the exponent p(k, n) (Banks 5), else 1.
+    conditioned : bool, default: True
+        Tangents inherit the self-shadow of normals that are given (Banks 6).
     two_sided : bool, default: False
         Light the far side of normals as the near one.
+    fur : float, default: 0.0
+        Density in [0, 1] of fur that attenuates the light (Banks 7, 8); needs normals.
     components : bool, default: False
         Keep the diffuse and the specular term.
 
@@ -178,13 +192,17 @@ def plan(
 
     surface = k is None
     size = n - 1 if k is None else k
-    conditioned = normals and not surface
+    conditioned = bool(conditioned and normals and not surface)
+    fur = _check.number("fur", fur, low=0.0, high=1.0)
+    if fur and not normals:
+        raise ValueError(_check.message("normals", "normals, across which fur stands", None))
     exponent = brightness.exponent(size, n) if compensate else 1.0
     lights = tuple(light for light in scene.lights if light.intensity > 0)
     specular = bool(material.specular > 0 and lights)
     diffuse = bool(material.diffuse > 0 and lights)
-    if scene.view is None and (specular or cue is not None):
-        what = "specular term" if specular else "depth cue"
+    through_fur = bool(fur and diffuse)
+    if scene.view is None and (specular or through_fur or cue is not None):
+        what = "specular term" if specular else "fur" if through_fur else "depth cue"
         remedy = "pass view=, or Material(specular=0)" if specular else "pass view="
         raise ValueError(_check.message("view", f"a View, which the {what} needs", None, remedy))
     lights = tuple(light.seen_from(scene.view) for light in lights) if diffuse or specular else ()
@@ -198,6 +216,7 @@ def plan(
         surface=surface,
         conditioned=conditioned,
         two_sided=bool(two_sided),
+        fur=fur if diffuse or specular else 0.0,
         diffuse=diffuse,
         specular=specular,
         colored=scene.colored,
@@ -253,6 +272,8 @@ def _words(plan: Plan) -> tuple[list[str], list[str]]:
         yes.append(f"self-shadow: {side} of the surface's normals, a factor for each light")
     elif not plan.surface:
         no.append("self-shadow: no surface conditions the tangents")
+    if plan.fur:
+        yes.append(f"fur: density {plan.fur:g}, on the way in for each light and out once")
     if scene.depth_cue is not None:
         yes.append(f"depth cue: {'smooth' if scene.depth_cue.smooth else 'linear'}")
     else:

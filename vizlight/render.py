@@ -291,6 +291,9 @@ def make_plotter(
         plotter.subplot(0, column)
         plotter.set_background(background)
         _draw(plotter, panel, cmap, clim, line_width)
+        if panel.title:
+            ink = "black" if sum(pv.Color(background).float_rgb) > 1.2 else "white"
+            plotter.add_text(panel.title, position="upper_edge", font_size=10, color=ink)
         plotter.camera = camera.copy()
         plotter.reset_camera_clipping_range()
         if anti_aliasing is not None:
@@ -362,8 +365,6 @@ def _draw(
             line_width=line_width,
             show_scalar_bar=False,
         )
-    if panel.title:
-        plotter.add_text(panel.title, position="upper_edge", font_size=10, color="black")
 
 
 def _bounds(panels: Sequence[Panel]) -> list[float]:

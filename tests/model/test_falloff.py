@@ -126,3 +126,45 @@ def test_bad_depth_cue():
         falloff.depth_cue(1.0, 0.0, front=1, back=1)
     with pytest.raises(ValueError, match="back_scale: expected a number from 0 to 1, got 2"):
         falloff.depth_cue(1.0, 0.0, front=1, back=0, back_scale=2)
+
+
+def test_fur_against_50_digits(dtype, random, figure):
+    for _ in range(300):
+        height, sine = dtype(10 ** random.uniform(-6, 3)), dtype(10 ** random.uniform(-6, 0))
+        density = float(random.choice([random.uniform(0, 1), 1e-6, 1 - 1e-6]))
+        path = oracles.exact(height) / oracles.exact(sine)
+        true = oracles.mp.exp(path * oracles.mp.log(1 - oracles.exact(density)))
+        seen = falloff.fur(height, sine, density)
+        assert seen.dtype == dtype
+        figure("fur", "", dtype, oracles.units(seen, true, dtype), 4)
+
+
+def test_fur_at_its_ends(dtype):
+    h, s = np.array([0, 0, 1, 1], dtype), np.array([0, 1, 0, 1], dtype)
+    np.testing.assert_array_equal(falloff.fur(h, s, 0.0), [1, 1, 1, 1])
+    np.testing.assert_array_equal(falloff.fur(h, s, 0.5), [1, 1, 0, 0.5])
+    np.testing.assert_array_equal(falloff.fur(h, s, 1.0), [1, 1, 0, 0])
+    assert falloff.fur(dtype(1e30), dtype(1e-30), 0.02) == 0
+    assert falloff.fur(dtype(np.finfo(dtype).tiny), dtype(1), 1.0) == 0
+
+
+@given(st.floats(0, 10), st.floats(1e-3, 1), st.floats(0, 1))
+def test_fur_falls_with_height_and_grazing(height, sine, density):
+    here = falloff.fur(height, sine, density)
+    assert 0 <= falloff.fur(height + 1, sine, density) <= here <= 1
+    assert falloff.fur(height, sine / 2, density) <= here
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ((-1.0, 1.0, 0.5), "height: expected heights of 0 or more"),
+        ((np.nan, 1.0, 0.5), "height: expected heights"),
+        ((1.0, 1.5, 0.5), "sin_alpha: expected sines from 0 to 1"),
+        ((1.0, -0.5, 0.5), "sin_alpha: expected sines"),
+        ((1.0, 1.0, 1.5), "density: expected a number from 0 to 1"),
+    ],
+)
+def test_bad_fur(arguments, words):
+    with pytest.raises(ValueError, match=words):
+        falloff.fur(*arguments)

@@ -1,8 +1,9 @@
 """PyVista in, PyVista out: arrays are taken from a mesh, lit, and attached to a new mesh."""
 
+from vizlight.filters._fur import fur
 from vizlight.filters._illuminate import illuminate
 from vizlight.filters._provenance import provenance
 from vizlight.filters._satin import satin
 from vizlight.filters._streamlines import streamlines
 
-__all__ = ["illuminate", "provenance", "satin", "streamlines"]
+__all__ = ["fur", "illuminate", "provenance", "satin", "streamlines"]

@@ -165,14 +165,8 @@ def illuminate(
             )
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
     for (leaf, _), shading in zip(leaves, results, strict=True):
-        _attach(leaf, shading, name, _provenance.record(shading, "illuminate", fitted, options))
-    invalid = sum(shading.invalid for shading in results)
-    if invalid:
-        _check.warn(
-            f"{invalid} of {total} points could not be lit (a zero, infinite or NaN vector, "
-            "dependent tangents, or no surface normal there) and have the ambient light; "
-            f"the point array {name + VALID!r} marks them"
-        )
+        attach(leaf, shading, name, _provenance.record(shading, "illuminate", fitted, options))
+    warn_unlit(sum(shading.invalid for shading in results), total, name)
     return out
 
 
@@ -273,7 +267,18 @@ def _refuse_overwriting(
                 )
 
 
-def _attach(mesh: pv.DataSet, shading: engine.Shading, name: str, told: str) -> None:
+def warn_unlit(invalid: int, total: int, name: str) -> None:
+    """Warn once, with the count, if points could not be lit."""
+    if invalid:
+        _check.warn(
+            f"{invalid} of {total} points could not be lit (a zero, infinite or NaN vector, "
+            "dependent tangents, or no surface normal there) and have the ambient light; "
+            f"the point array {name + VALID!r} marks them"
+        )
+
+
+def attach(mesh: pv.DataSet, shading: engine.Shading, name: str, told: str) -> None:
+    """Attach a result to a mesh, in place of one of the same name."""
     prefix = "" if name == DEFAULT_NAME else f"{name}_"
     data: Any = mesh.point_data
     for stale in (name + VALID, *(prefix + part for part in PARTS)):

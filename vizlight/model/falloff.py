@@ -1,4 +1,4 @@
-"""How light fades: with distance from its source, and with depth from the eye."""
+"""How light fades: with distance, with depth from the eye, and in fur."""
 
 from __future__ import annotations
 
@@ -157,3 +157,64 @@ def depth_scale(
     if smooth:
         t = t * t * (3 - 2 * t)
     return (back_scale + (front_scale - back_scale) * t).astype(z.dtype, copy=False)
+
+
+def fur(height: ArrayLike, sin_alpha: ArrayLike, density: float, /) -> Any:
+    """Return what fur lets pass of light, once on its way in or out.
+
+    Parameters
+    ----------
+    height : array_like, shape (...)
+        h of 0 or more, the depth of fur above the point, across the surface; in the unit in
+        which the density is meant.
+    sin_alpha : array_like, shape (...)
+        Sine of the angle between the tangent plane and the light (in) or the eye (out), in
+        [0, 1].
+    density : float
+        rho in [0, 1], the share that is absorbed over a unit of length.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        ``(1 - rho)^(h / sin a)`` in [0, 1]: 1 at h = 0 whatever the angle and the density; 0 at
+        grazing light under any depth of fur that absorbs.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If a height is negative or NaN, or a sine or the density outside [0, 1].
+
+    Notes
+    -----
+    Absolute error at most ``4 eps``. Source: Banks (7) and (8).
+    """
+    density = _check.number("density", density, low=0.0, high=1.0)
+    heights, sines = _check.floats("height", height), _check.floats("sin_alpha", sin_alpha)
+    if not np.all(heights >= 0):
+        raise ValueError(_check.message("height", "heights of 0 or more", _check.describe(height)))
+    if not np.all((sines >= 0) & (sines <= 1 + 8 * np.finfo(sines.dtype).eps)):
+        got = _check.describe(sin_alpha)
+        raise ValueError(_check.message("sin_alpha", "sines from 0 to 1", got))
+    return fur_passes(fur_path(heights, sines), density)
+
+
+def fur_path(height: Array, sine: Array) -> Array:
+    """Return d = h / sin(a) of Banks (7), 0 at h = 0 even where sin(a) is 0."""
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        path: Array = height / sine
+    if not height.all():
+        path = np.where(height == 0, path.dtype.type(0), path)
+    return path
+
+
+def fur_passes(path: Array, density: float) -> Array:
+    """Return (1 - rho)^d of Banks (8); log 0 is never taken."""
+    if density == 0:
+        return np.ones_like(path)
+    if density == 1:
+        opaque: Array = (path == 0).astype(path.dtype)
+        return opaque
+    with np.errstate(under="ignore", over="ignore"):
+        return np.exp(path * path.dtype.type(np.log1p(-density)))

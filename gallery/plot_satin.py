@@ -1,0 +1,40 @@
+"""
+A satin ball, lit in four ways
+==============================
+
+A sphere with a field in north-south directions, as on a ball wound with satin thread: the four
+panels of illustration 2 of Banks, *Illumination in Diverse Codimensions*.
+
+A: integral curves, each lit as a line. B: the sphere, lit by its normals. C: the sphere lit by the
+field alone, also where the light cannot reach. D: lit by the field, conditioned by the sphere's
+normals; its dark side is as dark as that of B.
+"""
+
+import numpy as np
+import pyvista as pv
+
+import vizlight
+from vizlight import Light, Material, Scene, View, render
+
+ball = pv.Sphere(theta_resolution=120, phi_resolution=121, start_phi=0.5, end_phi=179.5)
+normals = 2 * np.asarray(ball.points)
+ball["Normals"] = normals
+ball.point_data.active_normals_name = "Normals"
+ball["satin"] = np.array([0, 0, 1], dtype=np.float32) - normals[:, 2:] * normals
+
+camera = render.camera_on(ball.bounds, (0.2, -1, 0.35), zoom=1.3)
+scene = Scene(
+    lights=Light(direction=(1, -1, 0.8)),
+    view=View.from_camera(camera),
+    material=Material(ambient=0.1, diffuse=0.5, specular=1.0, color=(1.0, 0.25, 0.30)),
+)
+panels = vizlight.satin(ball, scene, tangents="satin", seeds=1500)
+
+plotter = render.make_plotter(
+    [render.Panel(panel, "rgb", title) for panel, title in zip(panels, "ABCD", strict=True)],
+    camera=camera,
+    size=(1600, 440),
+    background="#101010",
+    line_width=1.5,
+)
+plotter.show()

@@ -1,0 +1,285 @@
+"""Fur as numbers: where it stands, what attenuates it, what is told of it; illustration 3."""
+
+from __future__ import annotations
+
+import tracemalloc
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight import Light, Material, Scene, View, fur
+
+TOWARD = np.array([-1.0, -0.6, 0.9]) / np.linalg.norm([-1.0, -0.6, 0.9])
+EYE = np.array([0.3, -1, 0.8]) / np.linalg.norm([0.3, -1, 0.8])
+SCENE = Scene(
+    lights=Light(direction=TOWARD),
+    view=View(direction=EYE),
+    material=Material(ambient=0.1, diffuse=0.9, specular=0.1),
+)
+
+
+def torus(n=48, r1=1.5, r2=0.75):
+    a = np.linspace(0, 2 * np.pi, n, endpoint=False)
+    u, v = np.meshgrid(a, a, indexing="ij")
+    out = np.stack([np.cos(v) * np.cos(u), np.cos(v) * np.sin(u), np.sin(v)], axis=-1)
+    ring = np.stack([np.cos(u), np.sin(u), 0 * u], axis=-1)
+    i = np.arange(n * n).reshape(n, n)
+    right, up = np.roll(i, -1, 0), np.roll(i, -1, 1)
+    both = np.roll(right, -1, 1)
+    faces = np.concatenate([np.stack([i, right, both], -1), np.stack([i, both, up], -1)])
+    points = (r1 * ring + r2 * out).reshape(-1, 3).astype(np.float32)
+    mesh = pv.PolyData.from_regular_faces(points, faces.reshape(-1, 3))
+    mesh["Normals"] = out.reshape(-1, 3).astype(np.float32)
+    mesh.point_data.active_normals_name = "Normals"
+    return mesh
+
+
+def strands(coat, segments=3):
+    return np.asarray(coat["fibres"].points).reshape(-1, segments + 1, 3)
+
+
+def outward(points, r1=1.5):
+    ring = points * [1, 1, 0]
+    ring *= r1 / np.linalg.norm(ring, axis=-1, keepdims=True)
+    normal = points - ring
+    return normal / np.linalg.norm(normal, axis=-1, keepdims=True)
+
+
+def test_fibres_stand_on_the_surface_along_its_normals():
+    mesh = torus(96)
+    before = mesh.copy()
+    coat = fur(mesh, SCENE, density=0.02, fibres=4000, length=0.2)
+    root, tip = strands(coat)[:, 0], strands(coat)[:, -1]
+    ring = np.hypot(root[:, 0], root[:, 1]) - 1.5
+    np.testing.assert_allclose(np.hypot(ring, root[:, 2]), 0.75, atol=2e-3)
+    np.testing.assert_allclose(np.linalg.norm(tip - root, axis=1), 0.2, rtol=1e-5)
+    along = np.sum((tip - root) / 0.2 * outward(root.astype(float)), axis=1)
+    assert along.min() > 0.999
+    assert mesh == before
+    assert coat.keys() == ["fibres", "skin"]
+    assert coat["fibres"].n_lines == 4000
+    assert coat["fibres"].n_points == 16_000
+
+
+def test_attenuation_is_the_closed_form_from_base_to_tip():
+    """(1 - rho)^(h/sin a) in and out: base h = length, tip 0, between what stands above."""
+    density, length = 0.6, 0.3
+    mesh = torus()
+    with_fur = fur(mesh, SCENE, density=density, fibres=2000, length=length)
+    bare = fur(mesh, SCENE, density=density, fibres=2000, length=length, attenuated=False)
+    root = strands(bare)[:, 0].astype(float)
+    normal = np.asarray(strands(bare)[:, -1] - strands(bare)[:, 0], dtype=float) / length
+    lit = (bare["fibres"]["luminance"].reshape(-1, 4) - 0.1).astype(float)
+    thick = (with_fur["fibres"]["luminance"].reshape(-1, 4) - 0.1).astype(float)
+    sine_in, sine_out = normal @ TOWARD, np.abs(normal @ EYE)
+    seen = (sine_in > 0.05) & (sine_out > 0.05) & (lit[:, 0] > 0.01)
+    assert seen.sum() > 300
+    for j, remaining in enumerate(np.linspace(length, 0, 4)):
+        expected = (1 - density) ** (remaining / sine_in[seen] + remaining / sine_out[seen])
+        np.testing.assert_allclose(thick[seen, j] / lit[seen, j], expected, atol=2e-4)
+    np.testing.assert_allclose(thick[:, 3], lit[:, 3], atol=1e-6)
+    assert root.shape == (2000, 3)
+
+
+def test_skin_is_attenuated_by_the_fur_above_it():
+    density, length = 0.6, 0.3
+    mesh = torus()
+    coat = fur(mesh, SCENE, density=density, fibres=10, length=length)
+    bare = vizlight.illuminate(mesh, SCENE)
+    normal = np.asarray(mesh["Normals"], dtype=float)
+    sine_in, sine_out = np.maximum(normal @ TOWARD, 1e-9), np.maximum(np.abs(normal @ EYE), 1e-9)
+    expected = 0.1 + (bare["luminance"] - 0.1) * (1 - density) ** (
+        length / sine_in + length / sine_out
+    )
+    np.testing.assert_allclose(coat["skin"]["luminance"], expected, atol=2e-6)
+
+
+def test_illustration_3_as_numbers():
+    """A: lit by the fibres alone. B: conditioned. C: conditioned and attenuated."""
+    mesh = torus()
+    options = {"fibres": 3000, "length": 0.3, "density": 0.9}
+    a = fur(mesh, SCENE, conditioned=False, attenuated=False, **options)["fibres"]
+    b = fur(mesh, SCENE, attenuated=False, **options)["fibres"]
+    c = fur(mesh, SCENE, **options)["fibres"]
+    np.testing.assert_array_equal(a.points, c.points)
+    root = strands({"fibres": a})[:, 0].astype(float)
+    normal = (strands({"fibres": a})[:, -1] - root) / 0.3
+    dark = np.repeat(normal @ TOWARD < -1e-3, 4)
+    assert a["luminance"][dark].max() > 0.5
+    for conditioned in (b, c):
+        np.testing.assert_allclose(conditioned["luminance"][dark], 0.1, rtol=1e-6)
+    by_height = c["luminance"].reshape(-1, 4)
+    assert np.all(np.diff(by_height, axis=1) >= -1e-6)
+    difference = (b["luminance"] - c["luminance"]).reshape(-1, 4)
+    np.testing.assert_allclose(difference[:, 3], 0, atol=1e-6)
+    # Near the terminator, where light grazes, base and tip differ most in proportion.
+    near = (normal @ TOWARD > 0.05) & (normal @ TOWARD < 0.2)
+    high = normal @ TOWARD > 0.7
+    ratio = (by_height[:, 0] - 0.1) / np.maximum(by_height[:, 3] - 0.1, 1e-6)
+    assert np.median(ratio[near]) < 0.1 * np.median(ratio[high])
+
+
+@pytest.mark.parametrize("density", [0.0, 1.0])
+def test_no_fur_and_opaque_fur(density):
+    mesh = torus()
+    coat = fur(mesh, SCENE, density=density, fibres=500, length=0.2)
+    plain = fur(mesh, SCENE, density=0.5, fibres=500, length=0.2, attenuated=False)
+    light = coat["fibres"]["luminance"].reshape(-1, 4)
+    free = plain["fibres"]["luminance"].reshape(-1, 4)
+    np.testing.assert_array_equal(light[:, 3], free[:, 3])
+    if density:
+        np.testing.assert_allclose(light[:, :3], 0.1, rtol=1e-6)
+        np.testing.assert_allclose(coat["skin"]["luminance"], 0.1, rtol=1e-6)
+    else:
+        np.testing.assert_array_equal(light, free)
+
+
+def test_fibres_of_no_length_are_marked():
+    with pytest.warns(UserWarning, match="could not be lit") as caught:
+        coat = fur(torus(), SCENE, density=0.5, fibres=100, length=0.0)
+    assert len(caught) == 1
+    assert np.all(np.isfinite(coat["fibres"]["luminance"]))
+
+
+def test_lengths_by_point():
+    mesh = torus()
+    mesh["hair"] = np.where(np.asarray(mesh.points[:, 2]) > 0, 0.3, 0.1)
+    coat = fur(mesh, SCENE, density=0.02, fibres=3000, length="hair")
+    root, tip = strands(coat)[:, 0], strands(coat)[:, -1]
+    size = np.linalg.norm(tip - root, axis=1)
+    np.testing.assert_allclose(size[root[:, 2] > 0.1], 0.3, rtol=1e-5)
+    np.testing.assert_allclose(size[root[:, 2] < -0.1], 0.1, rtol=1e-5)
+
+
+def test_bent_and_curled_fibres_lean_where_they_are_told():
+    mesh = torus()
+    straight = strands(fur(mesh, SCENE, density=0.02, fibres=500, length=0.2, segments=6), 6)
+    options = {"density": 0.02, "fibres": 500, "length": 0.2, "segments": 6}
+    down = strands(fur(mesh, SCENE, toward=(0, 0, -1), bend=2.0, **options), 6)
+    assert np.all(down[:, -1, 2] < straight[:, -1, 2] + 1e-6)
+    np.testing.assert_array_equal(down[:, 0], straight[:, 0])
+    mesh["field"] = np.tile([0, 0, -5.0], (mesh.n_points, 1))
+    np.testing.assert_allclose(
+        strands(fur(mesh, SCENE, toward="field", bend=2.0, **options), 6), down, atol=1e-6
+    )
+    curled = strands(fur(mesh, SCENE, curl=1.0, turns=2.0, **options), 6)
+    assert np.linalg.norm(curled[:, -1] - straight[:, -1], axis=1).min() > 0.01
+    # Bent fibres are lit by their own tangents.
+    lit = fur(
+        mesh, SCENE, toward=(0, 0, -1), bend=2.0, conditioned=False, attenuated=False, **options
+    )
+    again = vizlight.illuminate(lit["fibres"], SCENE, name="again")
+    np.testing.assert_allclose(again["again"], lit["fibres"]["luminance"], atol=1e-4)
+
+
+def test_vectors_that_point_inward():
+    mesh = torus()
+    mesh["up"] = np.tile([0, 0, 1.0], (mesh.n_points, 1))
+    options = {"density": 0.02, "fibres": 1000, "vectors": "up", "length": 0.2}
+    counts = {}
+    for inward, words in (("flip", "turned over"), ("keep", "kept"), ("drop", "left out")):
+        with pytest.warns(
+            UserWarning, match=rf"(\d+) of 1000 fibres point into .* were {words}"
+        ) as caught:
+            coat = fur(mesh, SCENE, inward=inward, **options)
+        counts[inward] = int(str(caught[0].message).split()[0])
+        rise = (strands(coat)[:, -1] - strands(coat)[:, 0])[:, 2]
+        if inward == "flip":
+            assert (rise > 0).sum() == 1000 - counts[inward]
+        if inward == "keep":
+            assert np.all(rise > 0)
+        if inward == "drop":
+            assert len(rise) == 1000 - counts[inward]
+    assert len(set(counts.values())) == 1
+    assert 400 < counts["flip"] < 600
+
+
+def test_zero_vectors_follow_the_normals():
+    mesh = torus()
+    mesh["none"] = np.zeros((mesh.n_points, 3))
+    by_vectors = fur(mesh, SCENE, density=0.02, fibres=100, vectors="none")
+    by_normals = fur(mesh, SCENE, density=0.02, fibres=100)
+    np.testing.assert_array_equal(by_vectors["fibres"].points, by_normals["fibres"].points)
+
+
+def test_reproducible_whatever_the_threads():
+    mesh = torus()
+    options = {"density": 0.5, "fibres": 70_000, "curl": 0.5}
+    one = fur(mesh, SCENE, threads=1, **options)["fibres"]
+    two = fur(mesh, SCENE, threads=3, **options)["fibres"]
+    other = fur(mesh, SCENE, seed=1, **options)["fibres"]
+    np.testing.assert_array_equal(one.points, two.points)
+    np.testing.assert_allclose(one["luminance"], two["luminance"], atol=1e-6)
+    assert not np.array_equal(one.points, other.points)
+
+
+def test_memory_is_at_most_half_above_the_output():
+    mesh = torus()
+    options = {"density": 0.02, "fibres": 600_000, "length": 0.2, "segments": 3}
+    fur(mesh, SCENE, density=0.02, fibres=1000)
+    tracemalloc.start()
+    try:
+        coat = fur(mesh, SCENE, **options)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    output = 1024 * sum(block.actual_memory_size for block in coat)
+    assert peak <= 1.5 * output
+
+
+def test_colour_name_and_provenance():
+    scene = SCENE.replace(material=Material(color="tan"))
+    coat = fur(torus(), scene, density=0.02, fibres=10, name="x")
+    for block in coat:
+        assert {"x", "x_rgb"} <= set(block.point_data)
+        told = vizlight.provenance(block, "x")
+        assert told["filter"] == "fur"
+        assert told["options"]["density"] == 0.02
+
+
+def test_no_fibres():
+    coat = fur(torus(), SCENE, density=0.02, fibres=0)
+    assert coat["fibres"].n_points == 0
+    assert "luminance" in coat["skin"].point_data
+
+
+@pytest.mark.parametrize(
+    ("options", "error", "words"),
+    [
+        ({"density": 1.5}, ValueError, "density: expected a number from 0 to 1, got 1.5"),
+        ({"density": -0.1}, ValueError, "density: expected a number from 0 to 1"),
+        ({"length": -0.1}, ValueError, "length: expected a finite number of at least 0"),
+        ({"length": "hair"}, ValueError, "length: expected a point array of one component"),
+        ({"length": np.ones(3)}, ValueError, "length: expected 2304 lengths of 0 or more"),
+        ({"fibres": -1}, ValueError, "fibres: expected an integer of at least 0"),
+        ({"segments": 0}, ValueError, "segments: expected an integer of at least 1"),
+        ({"vectors": "U"}, ValueError, "vectors: expected the name of a point array"),
+        ({"inward": "cut"}, ValueError, "inward: expected 'keep', 'flip' or 'drop'"),
+        ({"bend": 1.0}, ValueError, "toward: expected what fibres bend to"),
+        (
+            {"bend": 1.0, "toward": (0, 0, 0)},
+            ValueError,
+            "toward: expected a direction of non-zero",
+        ),
+        ({"bend": 1.0, "toward": (0, 1)}, ValueError, "toward: expected 3 components"),
+        ({"curl": np.nan}, ValueError, "curl: expected a finite number"),
+    ],
+)
+def test_bad_input(options, error, words):
+    mesh = torus()
+    before = mesh.copy()
+    with pytest.raises(error, match=words):
+        fur(mesh, SCENE, **{"density": 0.02, "fibres": 10, **options})
+    assert mesh == before
+
+
+def test_bad_surfaces_and_scenes():
+    with pytest.raises(TypeError, match=r"surface: expected a pyvista\.PolyData surface"):
+        fur(pv.ImageData(dimensions=(2, 2, 2)), SCENE, density=0.02)
+    with pytest.raises(ValueError, match="surface: expected a surface with faces"):
+        fur(pv.Line(), SCENE, density=0.02)
+    scene = Scene(lights=Light(direction=(0, 0, 1)), material=Material(specular=0))
+    with pytest.raises(ValueError, match="view: expected a View, which the fur needs"):
+        fur(torus(), scene, density=0.02, fibres=10)

@@ -1,0 +1,144 @@
+"""Seeds uniform in area, and fibres that grow as told."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from vizlight.geometry import fur
+
+
+def square(n, *, skewed=False):
+    """Return a unit square in n x n x 2 triangles, equal or very unequal."""
+    s = np.linspace(0, 1, n + 1)
+    if skewed:
+        s = s**3
+    x, y = np.meshgrid(s, s, indexing="ij")
+    points = np.stack([x, y, 0 * x], axis=-1).reshape(-1, 3)
+    i = np.arange((n + 1) ** 2).reshape(n + 1, n + 1)
+    a, b, c, d = (q.ravel() for q in (i[:-1, :-1], i[1:, :-1], i[1:, 1:], i[:-1, 1:]))
+    return points, np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
+
+
+def places(points, faces, count, seed=0):
+    face, weights = fur.seeds(points, faces, count, seed=seed)
+    return np.einsum("fi,fij->fj", weights, points[faces[face]])
+
+
+@pytest.mark.parametrize(("n", "skewed"), [(1, False), (7, False), (40, False), (9, True)])
+def test_equal_areas_have_equal_numbers(n, skewed):
+    """Whatever the triangles: 64 squares share 64,000 seeds by chance at worst."""
+    found = places(*square(n, skewed=skewed), 64_000)
+    number, _, _ = np.histogram2d(found[:, 0], found[:, 1], bins=8, range=[[0, 1], [0, 1]])
+    chi2 = np.sum((number - 1000) ** 2 / 1000)
+    assert chi2 < 63 + 5 * np.sqrt(2 * 63)
+    assert number.sum() == 64_000
+
+
+def test_each_triangle_has_its_share_to_within_two():
+    points, faces = square(9, skewed=True)
+    face, _ = fur.seeds(points, faces, 10_000)
+    a, b, c = (points[faces[:, i]] for i in range(3))
+    share = 10_000 * 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    assert np.abs(np.bincount(face, minlength=len(faces)) - share).max() <= 2
+
+
+def test_uniform_within_a_triangle():
+    points, faces = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]])
+    x, y, _ = places(points, faces, 100_000).T
+    assert x.mean() == pytest.approx(1 / 3, abs=2e-3)
+    assert y.mean() == pytest.approx(1 / 3, abs=2e-3)
+    assert np.mean(x * y) == pytest.approx(1 / 12, abs=1e-3)
+    assert min(x.min(), y.min()) >= 0
+    assert (x + y).max() <= 1 + 1e-6
+
+
+def test_reproducible_by_seed():
+    points, faces = square(3)
+    for one, other in zip(
+        fur.seeds(points, faces, 500), fur.seeds(points, faces, 500), strict=True
+    ):
+        np.testing.assert_array_equal(one, other)
+    assert not np.array_equal(
+        fur.seeds(points, faces, 500, seed=1)[1], fur.seeds(points, faces, 500)[1]
+    )
+
+
+def test_more_than_a_block():
+    points, faces = square(4)
+    face, weights = fur.seeds(points, faces, fur.SEED_BLOCK + 100)
+    assert np.all(np.diff(face) >= 0)
+    np.testing.assert_allclose(weights.sum(axis=1), 1, atol=1e-6)
+
+
+def test_triangles_without_area_have_no_seeds():
+    points = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [2, 0, 0], [np.nan, 0, 0]])
+    faces = np.array([[0, 1, 3], [0, 1, 2], [0, 1, 4], [3, 3, 3]])
+    face, _ = fur.seeds(points, faces, 1000)
+    assert set(face) == {1}
+
+
+@pytest.mark.parametrize(
+    ("points", "faces", "count", "words"),
+    [
+        (np.eye(3), [[0, 1]], 5, r"faces: expected integers of shape \(T, 3\)"),
+        (np.eye(3), [[0.0, 1, 2]], 5, "faces: expected integers"),
+        (np.eye(3), [[0, 1, 1]], 5, "faces: expected a surface of some area"),
+        (np.eye(3), np.empty((0, 3), int), 5, "faces: expected a surface of some area"),
+        (np.eye(3), [[0, 1, 2]], -1, "count: expected an integer of at least 0"),
+    ],
+)
+def test_bad_seeds(points, faces, count, words):
+    with pytest.raises(ValueError, match=words):
+        fur.seeds(points, faces, count)
+
+
+def test_no_seeds():
+    face, weights = fur.seeds(np.eye(3), [[0, 1, 2]], 0)
+    assert face.shape == (0,)
+    assert weights.shape == (0, 3)
+
+
+def test_straight_fibres(random):
+    roots = random.standard_normal((20, 3))
+    direction = random.standard_normal((20, 3))
+    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+    length = random.uniform(0.1, 2, 20)
+    strand = fur.grow(roots, direction, length, segments=4)
+    assert strand.shape == (20, 5, 3)
+    expected = (
+        roots[:, None] + np.linspace(0, 1, 5)[:, None] * (length[:, None] * direction)[:, None]
+    )
+    np.testing.assert_allclose(strand, expected, atol=1e-14)
+
+
+@pytest.mark.parametrize(
+    "shape", [{"bend": 2.0}, {"curl": 1.5, "turns": 3.0}, {"bend": -1.0, "curl": 0.5}]
+)
+def test_segments_keep_their_length(shape, random):
+    roots = np.zeros((30, 3))
+    direction, toward = random.standard_normal((2, 30, 3))
+    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+    toward /= np.linalg.norm(toward, axis=1, keepdims=True)
+    phase = random.uniform(0, 6, 30)
+    strand = fur.grow(roots, direction, 0.7, segments=5, toward=toward, phase=phase, **shape)
+    step = np.linalg.norm(np.diff(strand, axis=1), axis=2)
+    np.testing.assert_allclose(step, 0.7 / 5, rtol=1e-12)
+
+
+def test_bend_goes_toward_more_and_more():
+    up, right = np.array([[0.0, 0, 1]]), np.array([[1.0, 0, 0]])
+    strand = fur.grow(np.zeros((1, 3)), up, 1.0, segments=8, toward=right, bend=1.5)[0]
+    step = np.diff(strand, axis=0)
+    lean = step[:, 0] / step[:, 2]
+    np.testing.assert_allclose(lean, 1.5 * (np.arange(8) + 0.5) / 8)
+    np.testing.assert_allclose(strand[:, 1], 0)
+
+
+def test_curl_turns_about_the_direction():
+    up = np.array([[0.0, 0, 1]])
+    strand = fur.grow(np.zeros((1, 3)), up, 1.0, segments=40, curl=1.0, turns=2.0)[0]
+    step = np.diff(strand, axis=0)
+    angle = np.unwrap(np.arctan2(step[:, 1], step[:, 0]))
+    assert abs(angle[-1] - angle[0]) == pytest.approx(2 * 2 * np.pi * 39 / 40)
+    np.testing.assert_allclose(step[:, 2], step[0, 2])

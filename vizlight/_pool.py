@@ -1,0 +1,48 @@
+"""Threads for work in blocks: results in order, a few blocks ahead of the reader."""
+
+from __future__ import annotations
+
+import os
+from collections import deque
+from concurrent.futures import Future, ThreadPoolExecutor
+from typing import TYPE_CHECKING
+
+from vizlight import _check
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+
+def blocks(count: int, size: int) -> list[slice]:
+    """Cut ``count`` rows into slices of at most ``size``."""
+    return [slice(i, min(i + size, count)) for i in range(0, count, size)]
+
+
+def workers(threads: int | None) -> int:
+    """Return the number of threads asked for, or of processors that this process may use."""
+    if threads is not None:
+        return _check.integer("threads", threads, low=1)
+    try:
+        return len(os.sched_getaffinity(0))
+    except AttributeError:  # not on macOS and Windows
+        return os.cpu_count() or 1
+
+
+def run(work: Callable[[slice], int], parts: list[slice], threads: int | None) -> Iterator[int]:
+    """Yield what work returns for each part, in order."""
+    count = min(workers(threads), len(parts))
+    if count <= 1:
+        yield from map(work, parts)
+        return
+    with ThreadPoolExecutor(count) as pool:
+        ahead: deque[Future[int]] = deque()
+        try:
+            for part in parts:
+                ahead.append(pool.submit(work, part))
+                if len(ahead) > 4 * count:
+                    yield ahead.popleft().result()
+            while ahead:
+                yield ahead.popleft().result()
+        finally:
+            for future in ahead:
+                future.cancel()
