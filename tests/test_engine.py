@@ -8,7 +8,7 @@ import pytest
 
 from vizlight import DepthCue, Light, Material, Scene, View, engine
 from vizlight.model import reflection
-from vizlight.studies.engine import extra_memory
+from vizlight.studies._measure import peak_memory
 
 SUN = Light(direction=(1, 2, 0.5))
 LAMP = Light(position=(0.5, 4, 2), intensity=0.7, attenuation=(0.5, 0.2, 0.05), color="red")
@@ -376,7 +376,7 @@ def test_memory_beyond_the_output_does_not_grow(random):
             engine.shade(points[:count], tangents[:count], scene, threads=threads, block=2000)
 
         # luminance, validity, rgb
-        return extra_memory(work, count * (4 + 1 + 12))
+        return peak_memory(work) - count * (4 + 1 + 12)
 
     extra(2000, 1)
     small, large = extra(15_000, 1), extra(60_000, 1)

@@ -333,26 +333,14 @@ def light(
 @app.command
 def doctor() -> int:
     """Say what is installed, what draws here, what is missing and how to get it."""
-    import platform
-    from importlib.metadata import PackageNotFoundError, version
-
     from rich.console import Console
     from rich.table import Table
 
-    from vizlight import data, render
+    from vizlight import doctor, render
 
     table = Table("part", "found", title="vizlight doctor")
-    table.add_row("python", f"{platform.python_version()}, {platform.platform()}")
-    for package in ("vizlight", "numpy", "scipy", "vtk", "pyvista"):
-        try:
-            table.add_row(package, version(package))
-        except PackageNotFoundError:
-            table.add_row(package, f"missing (try: pip install {package})")
-    table.add_row("data", str(data.example_path()))
-    backends: tuple[Backend, ...] = ("egl", "osmesa")
-    probes = [render.probe(backend) for backend in backends]
-    for found in probes:
-        table.add_row(f"draws by {found.backend}", found.detail)
+    for part, found in doctor.findings():
+        table.add_row(part, found)
     Console().print(table)
     try:
         render.choose_backend()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vizlight.studies import engine
+from vizlight.studies import _measure, engine
 
 
 def test_rows_of_the_study():
@@ -26,5 +26,12 @@ def test_table_is_printed(capsys):
         assert part.split()[0] in out
 
 
-def test_extra_memory_counts_numpy():
-    assert engine.extra_memory(lambda: np.ones(100_000), 0) >= 800_000
+def test_peak_memory_counts_numpy():
+    assert _measure.peak_memory(lambda: np.ones(100_000)) >= 800_000
+
+
+def test_turns():
+    seen = []
+    seconds = _measure.take_turns({"a": lambda: seen.append(1), "b": lambda: seen.append(2)}, 3)
+    assert seen == [1, 2] * 3
+    assert all(value > 0 for value in seconds.values())

@@ -10,11 +10,10 @@ import pyvista as pv
 from vizlight import _check, _pool, engine
 from vizlight.filters import _mesh, _progress, _provenance, _surface
 from vizlight.filters._illuminate import attach, warn_unlit
+from vizlight.filters._strands import Strands
 from vizlight.geometry import fur as geometry
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import NDArray
 
     from vizlight.model.reflection import SpecularModel
@@ -253,7 +252,7 @@ class _Coat:
 
 def _grow(
     coat: _Coat, count: int, segments: int, seed: int, threads: int | None, **shape: Any
-) -> tuple[_Strands, int]:
+) -> tuple[Strands, int]:
     """Return the fibres, and how many point into the surface."""
     if count and not (len(coat.total) and coat.total[-1] > 0):
         raise ValueError(_check.message("surface", "faces of some area", "none"))
@@ -281,88 +280,7 @@ def _grow(
     if coat.inward == "drop" and found:
         points, normals = points[~inside], normals[~inside]
     straight = not (shape["bend"] or shape["curl"])
-    return _Strands(points, normals, straight=straight), found
-
-
-class _Strands:
-    """Fibres of one number of points each, (F, m, 3), with the normals at their roots."""
-
-    def __init__(self, points: Array, root_normals: Array, *, straight: bool) -> None:
-        self.points, self._normals = points, root_normals
-        self._straight = straight or points.shape[1] == 2
-        self.n_points = points.shape[0] * points.shape[1]
-
-    def normals(self) -> _Rows:
-        """Return the root's normal for each point."""
-        m = self.points.shape[1]
-        return _Rows(self.points, lambda f: np.repeat(self._normals[f], m, axis=0), 3)
-
-    def tangents(self) -> _Rows:
-        """Return tangents by the parabola through three points, of no particular length."""
-
-        def rows(f: slice) -> Array:
-            part = self.points[f]
-            m = part.shape[1]
-            if self._straight:
-                return np.repeat(part[:, -1] - part[:, 0], m, axis=0)
-            step = part[:, 1:] - part[:, :-1]
-            tangent = np.empty_like(part)
-            tangent[:, 1:-1] = step[:, 1:] + step[:, :-1]
-            tangent[:, 0] = 3 * step[:, 0] - step[:, 1]
-            tangent[:, -1] = 3 * step[:, -1] - step[:, -2]
-            return tangent.reshape(-1, 3)
-
-        return _Rows(self.points, rows, 3)
-
-    def depth(self) -> _Rows:
-        """Return how far the highest point of its fibre stands above each point."""
-
-        def rows(f: slice) -> Array:
-            part, normal = self.points[f], self._normals[f]
-            last = part.shape[1] - 1
-            depth = np.zeros(part.shape[:2], part.dtype)
-            top = np.zeros(len(part), part.dtype)
-            if self._straight:
-                tip = np.einsum("ij,ij->i", part[:, last] - part[:, 0], normal)
-            for j in range(1, last + 1):
-                if self._straight:
-                    height = tip * part.dtype.type(j / last)
-                else:
-                    height = np.einsum("ij,ij->i", part[:, j] - part[:, 0], normal)
-                depth[:, j] = height
-                np.maximum(top, height, out=top)
-            for j in range(last + 1):
-                np.subtract(top, depth[:, j], out=depth[:, j])
-            return depth.reshape(-1)
-
-        return _Rows(self.points, rows, None)
-
-    def mesh(self) -> pv.PolyData:
-        """Return the fibres as lines; their points are not copied."""
-        count, m, _ = self.points.shape
-        # Numbers of 32 bits, where they suffice, take half the memory.
-        number = np.int32 if self.n_points < 2**31 else np.int64
-        offsets = np.arange(0, count * m + 1, m, dtype=number)
-        out = pv.PolyData()
-        out.points = self.points.reshape(-1, 3)
-        out.SetLines(pv.CellArray.from_arrays(offsets, np.arange(count * m, dtype=number)))
-        return out
-
-
-class _Rows:
-    """Rows that are made fibre by fibre when the engine asks for them."""
-
-    def __init__(self, points: Array, make: Callable[[slice], Array], n: int | None) -> None:
-        count, self._m, _ = points.shape
-        self.dtype = points.dtype
-        self.shape: tuple[int, ...] = (count * self._m,) if n is None else (count * self._m, n)
-        self._make = make
-
-    def __getitem__(self, rows: slice, /) -> Array:
-        start, stop, _ = rows.indices(self.shape[0])
-        first = start // self._m
-        made = self._make(slice(first, -(-stop // self._m)))
-        return made[start - first * self._m : stop - first * self._m]
+    return Strands(points, normals, straight=straight), found
 
 
 def _three(mesh: pv.PolyData, name: str, value: str) -> Array:

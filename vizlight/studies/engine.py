@@ -8,9 +8,6 @@ engine take turns, so that a busy machine slows both.
 
 from __future__ import annotations
 
-import statistics
-import time
-import tracemalloc
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +19,7 @@ from vizlight.light import Light
 from vizlight.model import brightness
 from vizlight.scene import Scene, View
 from vizlight.studies import reference
+from vizlight.studies._measure import peak_memory, print_table, take_turns
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -47,16 +45,6 @@ def lines(count: int, dtype: Any = np.float32) -> tuple[Array, Array]:
     """Return points around the origin and tangents of any length, seeded."""
     random = np.random.default_rng(20)
     return tuple(random.standard_normal((count, 3)).astype(dtype) for _ in range(2))  # type: ignore[return-value]
-
-
-def extra_memory(work: Callable[[], Any], output: int) -> int:
-    """Return the bytes that Python and NumPy allocate at the peak of work beyond its output."""
-    tracemalloc.start()
-    try:
-        work()
-        return tracemalloc.get_traced_memory()[1] - output
-    finally:
-        tracemalloc.stop()
 
 
 def measure(count: int, repeats: int = 5) -> list[Row]:
@@ -86,18 +74,12 @@ def measure(count: int, repeats: int = 5) -> list[Row]:
     }
     for block in (1 << 12, 1 << 15, 1 << 20):
         ways[f"engine, float32, blocks of {block}"] = run(block=block)
-    taken: dict[str, list[float]] = {way: [] for way in ways}
-    for _ in range(repeats):
-        for way, work in ways.items():
-            start = time.perf_counter()
-            work()
-            taken[way].append(time.perf_counter() - start)
+    seconds = take_turns(ways, repeats)
     rows = []
     for way, work in ways.items():
         result = work()
         error = float(np.abs(result - exact).max())
-        extra = extra_memory(work, result.nbytes)
-        rows.append(Row(way, statistics.median(taken[way]), error, extra))
+        rows.append(Row(way, seconds[way], error, peak_memory(work) - result.nbytes))
     return rows
 
 
@@ -109,30 +91,22 @@ def main(count: int = 4_000_000) -> None:
     count
         How many points are lit.
     """
-    from rich.console import Console
-    from rich.table import Table
-
-    table = Table(title=f"{count} float32 points, positional light, perspective, Phong")
-    for heading in (
-        "way",
-        "median, s",
-        "ns a point",
-        "times as fast",
-        "largest error",
-        "extra MB",
-    ):
-        table.add_column(heading, justify="left" if heading == "way" else "right")
     rows = measure(count)
-    for row in rows:
-        table.add_row(
-            row.way,
-            f"{row.seconds:.3f}",
-            f"{1e9 * row.seconds / count:.1f}",
-            f"{rows[0].seconds / row.seconds:.1f}",
-            f"{row.error:.1e}",
-            f"{row.extra_bytes / 1e6:.1f}",
-        )
-    Console().print(table)
+    print_table(
+        f"{count} float32 points, positional light, perspective, Phong",
+        ("way", "median, s", "ns a point", "times as fast", "largest error", "extra MB"),
+        [
+            (
+                row.way,
+                f"{row.seconds:.3f}",
+                f"{1e9 * row.seconds / count:.1f}",
+                f"{rows[0].seconds / row.seconds:.1f}",
+                f"{row.error:.1e}",
+                f"{row.extra_bytes / 1e6:.1f}",
+            )
+            for row in rows
+        ],
+    )
 
 
 if __name__ == "__main__":

@@ -7,9 +7,6 @@ filter makes the same fibres' geometry alone, unlit. Both take turns in one run.
 
 from __future__ import annotations
 
-import statistics
-import time
-import tracemalloc
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,6 +18,7 @@ from vizlight import render
 from vizlight.filters import fur
 from vizlight.light import Light
 from vizlight.scene import Material, Scene, View
+from vizlight.studies._measure import peak_memory, print_table, take_turns
 from vizlight.studies.tubes import time_to_draw
 
 SEGMENTS_A_POINT = 147
@@ -72,28 +70,13 @@ def measure(n: int, segments: int, repeats: int = 5) -> Row:
     roots = pv.PolyData(np.asarray(coat.points)[:: segments + 1].copy())
     roots["way"] = np.asarray(coat.points)[segments :: segments + 1] - roots.points
     fibre = pv.MultipleLines(np.outer(np.linspace(0, 0.3, segments + 1), [1, 0, 0]))
-    taken: dict[str, list[float]] = {"fur": [], "glyph": []}
-    for _ in range(repeats):
-        for way, work in (
-            ("fur", cover),
-            ("glyph", lambda: roots.glyph(orient="way", scale=False, geom=fibre)),
-        ):
-            start = time.perf_counter()
-            work()
-            taken[way].append(time.perf_counter() - start)
-    tracemalloc.start()
-    made = cover()
-    peak = tracemalloc.get_traced_memory()[1]
-    tracemalloc.stop()
-    output = 1024 * sum(block.actual_memory_size for block in made)
-    return Row(
-        segments,
-        count,
-        statistics.median(taken["fur"]),
-        statistics.median(taken["glyph"]),
-        time_to_draw(coat, camera, repeats),
-        peak / output,
+    seconds = take_turns(
+        {"fur": cover, "glyph": lambda: roots.glyph(orient="way", scale=False, geom=fibre)}, repeats
     )
+    output = 1024 * sum(block.actual_memory_size for block in cover())
+    draw = time_to_draw(coat, camera, repeats)
+    memory = peak_memory(cover) / output
+    return Row(segments, count, seconds["fur"], seconds["glyph"], draw, memory)
 
 
 def main(n: int = 128) -> None:
@@ -104,27 +87,26 @@ def main(n: int = 128) -> None:
     n
         The torus has n x n points.
     """
-    from rich.console import Console
-    from rich.table import Table
-
-    table = Table(title=f"Fur of {n * n * SEGMENTS_A_POINT} segments")
-    for heading in (
-        "segments a fibre", "fibres", "make and light, s", "VTK glyphs unlit, s", "times as fast",
-        "draw a frame, s", "peak memory / output",
-    ):  # fmt: skip
-        table.add_column(heading, justify="right")
-    for segments in (1, 3, 7):
-        row = measure(n, segments)
-        table.add_row(
-            f"{row.segments}",
-            f"{row.fibres}",
-            f"{row.fur:.2f}",
-            f"{row.glyph:.2f}",
-            f"{row.glyph / row.fur:.1f}",
-            f"{row.draw:.2f}",
-            f"{row.memory:.2f}",
-        )
-    Console().print(table)
+    rows = [measure(n, segments) for segments in (1, 3, 7)]
+    print_table(
+        f"Fur of {n * n * SEGMENTS_A_POINT} segments",
+        (
+            "segments a fibre", "fibres", "make and light, s", "VTK glyphs unlit, s",
+            "times as fast", "draw a frame, s", "peak memory / output",
+        ),
+        [
+            (
+                f"{row.segments}",
+                f"{row.fibres}",
+                f"{row.fur:.2f}",
+                f"{row.glyph:.2f}",
+                f"{row.glyph / row.fur:.1f}",
+                f"{row.draw:.2f}",
+                f"{row.memory:.2f}",
+            )
+            for row in rows
+        ],
+    )  # fmt: skip
 
 
 if __name__ == "__main__":

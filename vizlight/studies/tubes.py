@@ -6,8 +6,6 @@ by side: the lines lit by vizlight, the tubes of 20 sides by the same light, als
 
 from __future__ import annotations
 
-import statistics
-import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +16,7 @@ from vizlight.data import load_example
 from vizlight.filters import illuminate, streamlines
 from vizlight.light import Light
 from vizlight.scene import Scene, View
+from vizlight.studies._measure import print_table, take_turns
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -44,30 +43,19 @@ def measure(seeds: int = 300, repeats: int = 5) -> tuple[list[Row], list[Any], A
     scene = Scene(lights=Light(direction=(1, 0.9, 0.5)), view=View.from_camera(camera))
     bare = streamlines(flow, scene, vectors="V", seeds=seeds)
     bare.clear_data()
-    radius = float(flow.length) / 400
+    radius = float(flow.length) / 800
     ways: dict[str, Callable[[], Any]] = {
         "lit lines": lambda: illuminate(bare, scene),
         f"tubes, {SIDES} sides": lambda: illuminate(bare.tube(radius=radius, n_sides=SIDES), scene),
     }
+    seconds = take_turns(ways, repeats)
     rows, meshes = [], []
-    taken: dict[str, list[float]] = {way: [] for way in ways}
-    for _ in range(repeats):
-        for way, build in ways.items():
-            start = time.perf_counter()
-            build()
-            taken[way].append(time.perf_counter() - start)
     for way, build in ways.items():
         mesh = build()
         meshes.append(mesh)
-        rows.append(
-            Row(
-                way,
-                mesh.n_points,
-                mesh.actual_memory_size / 1e3,
-                statistics.median(taken[way]),
-                time_to_draw(mesh, camera, repeats),
-            )
-        )
+        size = mesh.actual_memory_size / 1e3
+        draw = time_to_draw(mesh, camera, repeats)
+        rows.append(Row(way, mesh.n_points, size, seconds[way], draw))
     return rows, meshes, camera
 
 
@@ -78,13 +66,12 @@ def time_to_draw(mesh: Any, camera: Any, repeats: int = 5, **options: Any) -> fl
     )
     try:
         plotter.show(auto_close=False)
-        taken = []
-        for _ in range(repeats):
+
+        def turn() -> None:
             plotter.camera.azimuth += 1.0
-            start = time.perf_counter()
             plotter.render()
-            taken.append(time.perf_counter() - start)
-        return statistics.median(taken)
+
+        return take_turns({"frame": turn}, repeats)["frame"]
     finally:
         plotter.close()
 
@@ -99,25 +86,26 @@ def main(seeds: int = 300, *, picture: Path | None = None) -> None:
     picture
         A .png file for both ways side by side.
     """
-    from rich.console import Console
-    from rich.table import Table
-
     rows, meshes, camera = measure(seeds)
-    table = Table(title=f"{seeds} streamlines of the rotating disk")
-    for heading in ("way", "points", "MB", "build and light, ms", "draw a frame, ms"):
-        table.add_column(heading, justify="left" if heading == "way" else "right")
-    for row in rows:
-        table.add_row(
-            row.way,
-            f"{row.points}",
-            f"{row.megabytes:.1f}",
-            f"{1e3 * row.build:.0f}",
-            f"{1e3 * row.draw:.0f}",
-        )
-    Console().print(table)
+    print_table(
+        f"{seeds} streamlines of the rotating disk",
+        ("way", "points", "MB", "build and light, ms", "draw a frame, ms"),
+        [
+            (
+                row.way,
+                f"{row.points}",
+                f"{row.megabytes:.1f}",
+                f"{1e3 * row.build:.0f}",
+                f"{1e3 * row.draw:.0f}",
+            )
+            for row in rows
+        ],
+    )
     if picture is not None:
         panels = [render.Panel(mesh, title=row.way) for mesh, row in zip(meshes, rows, strict=True)]
-        render.save_png(panels, picture, camera=camera, size=(1600, 800), line_width=2)
+        render.save_png(
+            panels, picture, camera=camera, size=(1600, 800), line_width=2, background="black"
+        )
 
 
 if __name__ == "__main__":
