@@ -230,6 +230,7 @@ def light(
     """
     from vizlight import engine, files, render
     from vizlight.filters import illuminate, provenance
+    from vizlight.filters._lines import has_lines_only
 
     for option, value, needs, given in (
         ("level", level, "contour", contour),
@@ -302,11 +303,13 @@ def light(
     terms = " + ".join(told["terms"])
     _say(f"{lit.n_points} points lit in {seconds:.3f} s, {told['precision']}: {terms}")
     if explain:
-        given = lit.point_data[tangents].shape[1] // 3 if tangents in lit.point_data else None
+        k: int | None = 1 if has_lines_only(lit) else None
+        if tangents in lit.point_data:
+            k = lit.point_data[tangents].shape[1] // 3
         plan = engine.plan(
             vizlight.Scene.from_dict(told["scene"]),
-            k=given,
-            normals=given is None or conditioned,
+            k=k,
+            normals=k is None or conditioned,
             dtype=told["precision"],
             model=model,
             compensate=compensate,

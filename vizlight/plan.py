@@ -258,7 +258,8 @@ def _words(plan: Plan) -> tuple[list[str], list[str]]:
             yes.append("eye: its direction and split once a point, shared by all lights")
     else:
         no.append(f"specular: {plan.why_not('specular')}")
-        no.append("eye: no term of the light depends on the view")
+        if not plan.needs_eye:
+            no.append("eye: no term of the light depends on the view")
     for i, light in enumerate(lights):
         near = light.position is not None
         kind = "a direction a point" if near else "one direction for all points"

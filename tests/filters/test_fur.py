@@ -222,6 +222,15 @@ def test_colour_name_and_provenance():
         assert told["options"]["density"] == 0.02
 
 
+def test_the_users_own_array_is_not_replaced():
+    mesh = torus()
+    mesh["luminance"] = np.arange(mesh.n_points)
+    with pytest.raises(ValueError, match="name: expected one under which the mesh has no array"):
+        fur(mesh, SCENE, density=0.02, fibres=10)
+    with pytest.raises(TypeError, match=r"scene: expected a vizlight\.Scene, got None"):
+        fur(torus(), None, density=0.02)
+
+
 def test_no_fibres():
     coat = fur(torus(), SCENE, density=0.02, fibres=0)
     assert coat["fibres"].n_points == 0

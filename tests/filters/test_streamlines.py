@@ -175,3 +175,32 @@ def test_options_reach_the_light():
 def test_bad_input(make, options, error, words):
     with pytest.raises(error, match=words):
         streamlines(make(), SCENE, **options)
+
+
+def test_arrays_of_words_and_active_arrays_stay_as_they_are():
+    flow = vortex()
+    flow["words"] = np.array(["a"] * flow.n_points)
+    flow["s"] = np.arange(flow.n_points, dtype=float)
+    flow.set_active_scalars("s")
+    lines = streamlines(flow, SCENE, vectors="V", seeds=9)
+    assert lines.n_points
+    assert flow.active_scalars_name == "s"
+    assert "words" in flow.point_data
+
+
+def test_loose_cells_of_a_surface_do_not_matter():
+    sphere = ball(30)
+    mixed = sphere.append_polydata(pv.Line((2, 0, 0), (3, 0, 0)))
+    mixed["Normals"] = np.vstack([sphere["Normals"], np.zeros((2, 3), np.float32)])
+    mixed.point_data.active_normals_name = "Normals"
+    mixed["V"] = np.vstack([sphere["V"], np.zeros((2, 3))])
+    lines = streamlines(mixed, SCENE, vectors="V", seeds=np.asarray(sphere.points)[100:110])
+    outward = np.asarray(lines.points) / 0.5
+    assert np.sum(lines["Normals"] * outward, axis=1).min() > 0.97
+
+
+def test_no_line_at_all():
+    flow = vortex()
+    flow["V"] = np.zeros((flow.n_points, 3))
+    with pytest.raises(ValueError, match="seeds: expected points inside the mesh"):
+        streamlines(flow, SCENE, vectors="V", seeds=9)

@@ -145,6 +145,8 @@ def test_fur_at_its_ends(dtype):
     np.testing.assert_array_equal(falloff.fur(h, s, 0.5), [1, 1, 0, 0.5])
     np.testing.assert_array_equal(falloff.fur(h, s, 1.0), [1, 1, 0, 0])
     assert falloff.fur(dtype(1e30), dtype(1e-30), 0.02) == 0
+    assert falloff.fur(dtype(1), dtype(0), 1e-50) == 0
+    assert falloff.fur(dtype(1), dtype(1), 1e-50) == 1
     assert falloff.fur(dtype(np.finfo(dtype).tiny), dtype(1), 1.0) == 0
 
 

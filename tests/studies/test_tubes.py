@@ -21,3 +21,10 @@ def test_table_and_picture(tmp_path, capsys):
     tubes.main(5, picture=tmp_path / "both.png")
     assert "lit lines" in capsys.readouterr().out
     assert (tmp_path / "both.png").stat().st_size > 1000
+
+
+def test_command_line(capsys):
+    with pytest.raises(SystemExit) as stop:
+        tubes.cyclopts.App(default_command=tubes.main, result_action="return_value")(["--bogus"])
+    assert stop.value.code
+    assert "bogus" in "".join(capsys.readouterr())

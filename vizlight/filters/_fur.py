@@ -9,15 +9,15 @@ import pyvista as pv
 
 from vizlight import _check, _pool, engine
 from vizlight.filters import _mesh, _progress, _provenance, _surface
-from vizlight.filters._illuminate import attach, warn_unlit
+from vizlight.filters._illuminate import attach, refuse_overwriting, warn_unlit
 from vizlight.filters._strands import Strands
 from vizlight.geometry import fur as geometry
+from vizlight.scene import Scene
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vizlight.model.reflection import SpecularModel
-    from vizlight.scene import Scene
 
     Array = NDArray[np.floating[Any]]
 
@@ -118,7 +118,11 @@ def fur(
         _check.number(option, value)
     if bend and toward is None:
         raise ValueError(_check.message("toward", "what fibres bend to, with bend=", None))
+    _check.instance("scene", scene, Scene)
+    if not isinstance(name, str) or not name:
+        raise ValueError(_check.message("name", "a name for the point array", repr(name)))
     skin = _surface.with_normals(surface, scene.view)
+    refuse_overwriting([(surface, "")], name, components=False, colored=scene.colored)
     coat = _Coat(skin, length, vectors, toward, inward)
     strands, inside = _grow(
         coat, fibres, segments, seed, threads, bend=bend, curl=curl, turns=turns

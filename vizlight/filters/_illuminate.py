@@ -140,7 +140,7 @@ def illuminate(
 
     out = mesh if inplace else _copy(mesh)
     leaves = list(_mesh.named_leaves(out))
-    _refuse_overwriting(leaves, name, components=components, colored=scene.colored)
+    refuse_overwriting(leaves, name, components=components, colored=scene.colored)
     jobs = [_prepare(leaf, path, scene, options) for leaf, path in leaves]
     total = sum(leaf.n_points for leaf, _ in leaves)
     fitted = _fit_depth_cue(scene, jobs)
@@ -247,7 +247,7 @@ def _fit_depth_cue(scene: Scene, jobs: list[_Job]) -> Scene:
     return scene.replace(depth_cue=dataclasses.replace(cue, front=front, back=back))
 
 
-def _refuse_overwriting(
+def refuse_overwriting(
     leaves: list[tuple[pv.DataSet, str]], name: str, *, components: bool, colored: bool
 ) -> None:
     """Refuse to lose the user's own arrays; those that vizlight made may be made anew."""

@@ -53,12 +53,17 @@ def without_degenerate(mesh: pv.PolyData) -> pv.PolyData:
     """Return a mesh of lines without those whose points all coincide; each point has one line."""
     ids, offsets = _cells(mesh.GetLines())
     tangents = polyline_tangents(np.asarray(mesh.points), connectivity=ids, offsets=offsets)
-    keep = np.any(tangents != 0, axis=1)
+    size = np.diff(offsets)
+    line = np.repeat(np.arange(len(size)), size)
+    moving = np.any(tangents[ids] != 0, axis=1)
+    line_keep = np.bincount(line[moving], minlength=len(size)) > 0
+    keep = np.zeros(mesh.n_points, dtype=np.bool_)
+    keep[ids[np.repeat(line_keep, size)]] = True
     if keep.all():
         return mesh
-    size = np.diff(offsets)
-    line_keep = (size > 0) & keep[ids[np.minimum(offsets[:-1], len(ids) - 1)]]
-    number = np.cumsum(keep) - 1
+    if not keep.any():
+        return pv.PolyData()
+    number: Any = np.cumsum(keep) - 1
     out = pv.PolyData()
     out.points = np.asarray(mesh.points)[keep]
     out.SetLines(

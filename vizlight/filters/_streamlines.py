@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pyvista as pv
@@ -10,9 +10,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.filters import _lines, _mesh, _surface
 from vizlight.filters._illuminate import illuminate
-
-if TYPE_CHECKING:
-    from vizlight.scene import Scene
+from vizlight.scene import Scene
 
 
 def streamlines(
@@ -92,8 +90,11 @@ def streamlines(
     """
     if not isinstance(mesh, pv.DataSet):
         raise TypeError(_check.message("mesh", "a PyVista dataset", type(mesh).__name__))
+    _check.instance("scene", scene, Scene)
     vectors = _vectors_name(mesh, vectors)
-    is_surface = isinstance(mesh, pv.PolyData) and bool(mesh.GetNumberOfPolys())
+    is_surface = isinstance(mesh, pv.PolyData) and bool(
+        mesh.GetNumberOfPolys() or mesh.GetNumberOfStrips()
+    )
     if confined is None:
         confined = is_surface and surface is None
     if surface is None and is_surface:
@@ -106,6 +107,7 @@ def streamlines(
         surface = _surface.with_normals(surface, scene.view)
         if confined:
             surface = carrier = _tangential(surface, mesh, vectors)
+    carrier = _traceable(carrier)
     lines = carrier.streamlines_from_source(
         _seeds(carrier, seeds, seed),
         vectors=vectors,
@@ -114,7 +116,7 @@ def streamlines(
         initial_step_length=_check.number("step", step, low=1e-6),
         max_step_length=step,
         min_step_length=min(0.01, step),
-        max_steps=_check.integer("max_steps", max_steps, low=1),
+        max_steps=int(_check.number("max_steps", max_steps, low=1, high=1e9)),
         max_length=_max_length(carrier, max_length),
         terminal_speed=1e-6 * _largest(carrier, vectors),
         compute_vorticity=False,
@@ -166,6 +168,15 @@ def _tangential(surface: pv.PolyData, mesh: pv.DataSet, vectors: str) -> pv.Poly
     along = array - np.einsum("ij,ij->i", array, normal)[:, np.newaxis] * normal
     surface.point_data[vectors] = along
     return surface
+
+
+def _traceable(mesh: Any) -> Any:
+    """Return a mesh that the tracer may change, without arrays of words, which end its process."""
+    bare = mesh.copy(deep=False)
+    for key in list(bare.point_data):
+        if np.asarray(bare.point_data[key]).dtype.kind not in "biuf":
+            del bare.point_data[key]
+    return bare
 
 
 def _largest(mesh: pv.DataSet, vectors: str) -> float:

@@ -39,7 +39,14 @@ def with_normals(surface: Any, view: View | None, name: str = "surface") -> pv.P
         )
     if not (surface.GetNumberOfPolys() or surface.GetNumberOfStrips()):
         raise ValueError(_check.message(name, "a surface with faces", "a mesh without"))
-    triangles = surface.copy(deep=False)
+    # Faces alone: with loose points or lines beside them, cells would not be triangles.
+    triangles = pv.PolyData()
+    triangles.SetPoints(surface.GetPoints())
+    triangles.SetPolys(surface.GetPolys())
+    triangles.SetStrips(surface.GetStrips())
+    for key, array in surface.point_data.items():
+        if np.asarray(array).dtype.kind in "biuf":
+            triangles.point_data[key] = np.asarray(array)
     triangles.point_data["Normals"] = _mesh.normals_of(surface, None, 3, view)
     triangles.point_data.active_normals_name = "Normals"
     return triangles if triangles.is_all_triangles else triangles.triangulate()

@@ -217,4 +217,6 @@ def fur_passes(path: Array, density: float) -> Array:
         opaque: Array = (path == 0).astype(path.dtype)
         return opaque
     with np.errstate(under="ignore", over="ignore"):
-        return np.exp(path * path.dtype.type(np.log1p(-density)))
+        # Below the smallest number of the type it would be 0, and 0 times infinity no number.
+        rate = min(path.dtype.type(np.log1p(-density)), -np.finfo(path.dtype).tiny)
+        return np.exp(path * rate)

@@ -7,6 +7,7 @@ by side: the lines lit by vizlight, the tubes of 20 sides by the same light, als
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path  # noqa: TC003 - read by the command line at run time
 from typing import TYPE_CHECKING, Any
 
 import cyclopts
@@ -20,7 +21,6 @@ from vizlight.studies._measure import print_table, take_turns
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from pathlib import Path
 
 SIDES = 20
 
