@@ -126,3 +126,19 @@ def test_nothing():
 def test_bad_input(points, options, error, words):
     with pytest.raises(error, match=words):
         curves.polyline_tangents(points, **options)
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_points_that_are_not_finite_spoil_only_their_neighbours(bad):
+    points = np.outer(np.arange(9.0), [1, 0, 0])
+    points[4, 1] = bad
+    tangents = curves.polyline_tangents(points)
+    assert np.all(np.isfinite(tangents))
+    np.testing.assert_array_equal(tangents[[0, 1, 2, 6, 7, 8]], np.tile([1.0, 0, 0], (6, 1)))
+    np.testing.assert_array_equal(tangents[4], 0)
+
+
+def test_a_hairpin_has_no_tangent_at_its_turn():
+    tangents = curves.polyline_tangents([[0.0, 0], [1, 0], [2, 0], [1, 0], [0, 0]])
+    np.testing.assert_array_equal(tangents[2], 0)
+    np.testing.assert_array_equal(tangents[1], [1, 0])

@@ -33,7 +33,8 @@ def polyline_tangents(
     -------
     ndarray, shape (N, n)
         Unit tangents in the direction of the line, of the type of the points. Zero at points
-        without a tangent: of no line, or of a line whose points all coincide. A point of
+        without a tangent: of no line, of a line whose points all coincide, beside a point
+        that is not finite, or where a line turns back on itself. A point of
         several lines has the tangent of the last of them.
 
     Raises
@@ -76,7 +77,9 @@ def polyline_tangents(
     fresh = np.ones(len(ids), dtype=np.bool_)
     fresh[1:] = (line[1:] != line[:-1]) | np.any(place[1:] != place[:-1], axis=1)
     vertex = np.cumsum(fresh) - 1
-    found = _vertex_tangents(place[fresh], line[fresh])
+    with np.errstate(all="ignore"):
+        found = _vertex_tangents(place[fresh], line[fresh])
+    found[~np.all(np.isfinite(found), axis=1)] = 0
     tangents[ids] = found[vertex]
     return tangents
 
