@@ -21,7 +21,7 @@ def satin(surface: Any, /, scene: Scene, *, tangents: str, seeds: Any = 300, see
     surface : pyvista.PolyData
         Not changed.
     scene : Scene
-        The seed's material is ``Material(ambient=0.1, diffuse=0.5, specular=1.0,
+        Banks' material is ``Material(ambient=0.1, diffuse=0.5, specular=1.0,
         color=(1.0, 0.25, 0.30))``.
     tangents : str
         A point array of 3 components, tangent to the surface.

@@ -1,7 +1,7 @@
 """Fur against VTK's glyph filter: time to make and light, time to draw, memory.
 
 ``python -m vizlight.studies.fur`` covers a torus of 128 x 128 points with 2,408,448 segments, 147 a
-point, as the seed of this work did in 1994 (22 s to light and generate, 16 s to draw). The glyph
+point, as Banks did in 1994 (22 s to light and generate, 16 s to draw). The glyph
 filter makes the same fibres' geometry alone, unlit. Both take turns in one run.
 """
 
