@@ -10,6 +10,7 @@ import pyvista as pv
 from vizlight import _check, _pool, engine
 from vizlight.filters import _mesh, _progress, _provenance, _surface
 from vizlight.filters._illuminate import attach, refuse_overwriting, warn_unlit
+from vizlight.filters._mesh import unit_rows
 from vizlight.filters._strands import Strands
 from vizlight.geometry import fur as geometry
 from vizlight.scene import Scene
@@ -119,8 +120,6 @@ def fur(
     if bend and toward is None:
         raise ValueError(_check.message("toward", "what fibres bend to, with bend=", None))
     _check.instance("scene", scene, Scene)
-    if not isinstance(name, str) or not name:
-        raise ValueError(_check.message("name", "a name for the point array", repr(name)))
     skin = _surface.with_normals(surface, scene.view)
     refuse_overwriting([(surface, "")], name, components=False, colored=scene.colored)
     coat = _Coat(skin, length, vectors, toward, inward)
@@ -183,15 +182,19 @@ class _Coat:
         self.inward = inward
         self.vectors: Array | None = None
         if vectors is not None:
-            self.vectors = _three(skin, "vectors", vectors)
+            self.vectors = _mesh.vectors_of(skin, "vectors", vectors, 3).astype(
+                np.float32, copy=False
+            )
         self.toward: Array | None = None
         if isinstance(toward, str):
-            self.toward = _unit(_three(skin, "toward", toward))
+            self.toward = unit_rows(
+                _mesh.vectors_of(skin, "toward", toward, 3).astype(np.float32, copy=False)
+            )
         elif toward is not None:
             direction = _check.vector("toward", toward, direction=True)
             if len(direction) != 3:
                 raise ValueError(_check.message("toward", "3 components", len(direction)))
-            self.toward = _unit(np.array([direction], dtype=np.float32))
+            self.toward = unit_rows(np.array([direction], dtype=np.float32))
         self.length: Array | float = _lengths(skin, length)
         self.total = geometry.areas(np.asarray(skin.points), self.faces)
         # All that is interpolated stands in one table, so that it is looked up once.
@@ -219,11 +222,11 @@ class _Coat:
             part *= weights[:, i : i + 1]
             found += part
         columns = iter(np.split(found, self._cuts, axis=1))
-        root, normal = next(columns), _unit(next(columns))
+        root, normal = next(columns), unit_rows(next(columns))
         vector = None if self.vectors is None else next(columns)
         toward, length = self.toward, self.length
         if toward is not None:
-            toward = _unit(next(columns)) if len(toward) > 1 else toward
+            toward = unit_rows(next(columns)) if len(toward) > 1 else toward
         if isinstance(length, np.ndarray):
             length = next(columns)[:, 0]
         return root, normal, *self._directions(normal, vector), length, toward
@@ -231,7 +234,7 @@ class _Coat:
     def _directions(self, normal: Array, vector: Array | None) -> tuple[Array, Any]:
         if vector is None:
             return normal, None
-        direction = _unit(vector)
+        direction = unit_rows(vector)
         lost = ~np.any(direction, axis=1)
         direction[lost] = normal[lost]
         inside = np.einsum("ij,ij->i", direction, normal) < 0
@@ -287,13 +290,6 @@ def _grow(
     return Strands(points, normals, straight=straight), found
 
 
-def _three(mesh: pv.PolyData, name: str, value: str) -> Array:
-    array = _mesh.array_of(mesh, name, value, average_cells=False)
-    if array.shape[1] != 3:
-        raise ValueError(_check.message(name, "3 components", f"{value!r} with {array.shape[1]}"))
-    return array.astype(np.float32, copy=False)
-
-
 def _lengths(mesh: pv.PolyData, length: Any) -> Array | float:
     if isinstance(length, str):
         if length not in mesh.point_data or mesh.point_data[length].ndim != 1:
@@ -314,11 +310,3 @@ def _lengths(mesh: pv.PolyData, length: Any) -> Array | float:
             )
         )
     return array.astype(np.float32, copy=False)
-
-
-def _unit(vectors: Array) -> Array:
-    """Return unit vectors, zero where there is no direction."""
-    size = np.sqrt(np.einsum("ij,ij->i", vectors, vectors))[:, np.newaxis]
-    good = (size > 0) & np.isfinite(size)
-    result: Array = np.divide(vectors, size, out=np.zeros_like(vectors), where=good)
-    return result

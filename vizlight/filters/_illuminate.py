@@ -135,8 +135,6 @@ def illuminate(
     if not isinstance(mesh, pv.DataSet | pv.MultiBlock):
         remedy = "read files by pyvista.read, wrap VTK objects by pyvista.wrap"
         raise TypeError(_check.message("mesh", "a PyVista mesh", type(mesh).__name__, remedy))
-    if not isinstance(name, str) or not name:
-        raise ValueError(_check.message("name", "a name for the point array", repr(name)))
 
     out = mesh if inplace else _copy(mesh)
     leaves = list(_mesh.named_leaves(out))
@@ -251,6 +249,8 @@ def refuse_overwriting(
     leaves: list[tuple[pv.DataSet, str]], name: str, *, components: bool, colored: bool
 ) -> None:
     """Refuse to lose the user's own arrays; those that vizlight made may be made anew."""
+    if not isinstance(name, str) or not name:
+        raise ValueError(_check.message("name", "a name for the point array", repr(name)))
     prefix = "" if name == DEFAULT_NAME else f"{name}_"
     made = [name]
     made += [prefix + part for part in PARTS if (colored if part == "rgb" else components)]

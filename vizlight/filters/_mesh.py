@@ -130,6 +130,15 @@ def _named(mesh: pv.DataSet, name: str, value: str, *, average_cells: bool) -> A
     raise ValueError(_check.message(name, f"the name of a point array ({there})", repr(value)))
 
 
+def vectors_of(mesh: pv.DataSet, name: str, value: Any, n: int) -> Array:
+    """Return a point array of n components, by name or given as such."""
+    array = array_of(mesh, name, value, average_cells=False)
+    if array.shape[1] != n:
+        what = f"{value!r} with {array.shape[1]}" if isinstance(value, str) else array.shape[1]
+        raise ValueError(_check.message(name, f"{n} components", what))
+    return array
+
+
 def tangents_of(mesh: pv.DataSet, value: Any, n: int, *, average_cells: bool) -> Array:
     """Return tangents as (n_points, k n), 0 < k < n."""
     array = array_of(mesh, "tangents", value, average_cells=average_cells)
@@ -150,11 +159,7 @@ def tangents_of(mesh: pv.DataSet, value: Any, n: int, *, average_cells: bool) ->
 def normals_of(mesh: pv.DataSet, value: Any, n: int, view: View | None) -> Array:
     """Return outward normals: those given, those the mesh carries, or those of its surface."""
     if value is not None:
-        array = array_of(mesh, "normals", value, average_cells=False)
-        if array.shape[1] != n:
-            what = f"{value!r} with {array.shape[1]}" if isinstance(value, str) else array.shape[1]
-            raise ValueError(_check.message("normals", f"{n} components", what))
-        return array
+        return vectors_of(mesh, "normals", value, n)
     if n != 3:
         raise ValueError(
             _check.message("normals", f"a point array of {n} components for {n}-space", None)
@@ -226,14 +231,14 @@ def _turn_open(normals: Array, surface: pv.PolyData, view: View | None) -> None:
     piece = _pieces(surface)
     size = np.bincount(piece)
     centroids = np.stack([np.bincount(piece, axis) / size for axis in points.T], axis=1)
-    score = np.einsum("ij,ij->i", normals, _unit(points - centroids[piece]))
+    score = np.einsum("ij,ij->i", normals, unit_rows(points - centroids[piece]))
     if view is not None and len(view.position or view.direction or ()) == 3:
         toward = (
             np.broadcast_to(np.asarray(view.direction), points.shape)
             if view.parallel
             else np.asarray(view.position) - points
         )
-        score += 3 * np.einsum("ij,ij->i", normals, _unit(toward))
+        score += 3 * np.einsum("ij,ij->i", normals, unit_rows(toward))
     normals[(np.bincount(piece, score) < 0)[piece]] *= -1
 
 
@@ -266,7 +271,9 @@ def _corners(surface: pv.PolyData) -> tuple[NDArray[np.intp], NDArray[np.bool_]]
     return np.concatenate(corners), np.concatenate(last)
 
 
-def _unit(vectors: Array) -> Array:
-    size = np.linalg.norm(vectors, axis=1, keepdims=True)
-    result: Array = vectors / np.where(size > 0, size, 1)
+def unit_rows(vectors: Array) -> Array:
+    """Return unit vectors, zero where there is no direction."""
+    size = np.sqrt(np.einsum("ij,ij->i", vectors, vectors))[:, np.newaxis]
+    good = (size > 0) & np.isfinite(size)
+    result: Array = np.divide(vectors, size, out=np.zeros_like(vectors), where=good)
     return result

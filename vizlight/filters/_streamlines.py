@@ -150,11 +150,7 @@ def _vectors_name(mesh: pv.DataSet, vectors: str | None) -> str:
             raise ValueError(
                 _check.message("vectors", f"the name of a point array ({there})", None)
             )
-    array = _mesh.array_of(mesh, "vectors", vectors, average_cells=False)
-    if array.shape[1] != 3:
-        raise ValueError(
-            _check.message("vectors", "3 components", f"{vectors!r} with {array.shape[1]}")
-        )
+    _mesh.vectors_of(mesh, "vectors", vectors, 3)
     return vectors
 
 
