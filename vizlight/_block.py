@@ -80,8 +80,8 @@ class _Surface:
     The tangential part is kept as what is left of the vector, and only where it is needed.
     """
 
-    def __init__(self, normal: Array, *, two_sided: bool) -> None:
-        self.normal, self.two_sided = normal, two_sided
+    def __init__(self, normal: Array, good: NDArray[np.bool_], *, two_sided: bool) -> None:
+        self.normal, self.good, self.two_sided = normal, good, two_sided
 
     def side(self, cosine: Array) -> Array:
         """Return the cosine clamped to the lit side or sides."""
@@ -121,36 +121,91 @@ class _Surface:
         return value if self.two_sided else value * (lit.across > 0)
 
 
+class _Lit(NamedTuple):
+    """The direction toward a light: split, how far it is (None at infinity), and N . wi."""
+
+    split: _Split
+    distance: Array | None
+    cosine: Array | None
+
+
+class _Shape:
+    """The manifold at some rows, and the directions toward lights at infinity that it has split."""
+
+    def __init__(
+        self, plan: Plan, surface: _Surface | None, tangents: Rows | None, rows: slice
+    ) -> None:
+        self.plan, self.surface = plan, surface
+        self.manifold: Any = surface
+        self.good: NDArray[np.bool_] | None = None
+        self._distant: dict[int, _Lit] = {}
+        if tangents is not None:
+            vectors = columns(tangents, rows, plan.dtype)
+            vectors = vectors.reshape(plan.k, plan.n, vectors.shape[1])
+            rtol = frames.default_rtol(plan.n, vectors.dtype)
+            frame, rank = _kernels.orthonormalize(vectors, rtol)
+            self.good = rank == plan.k
+            self.manifold = _Tangents(frame.astype(plan.dtype, copy=False))
+
+    @property
+    def valid(self) -> NDArray[np.bool_]:
+        """Where there is a manifold of the right dimension, and a normal if one is asked for."""
+        masks = [self.good] if self.good is not None else []
+        masks += [self.surface.good] if self.surface is not None else []
+        both: NDArray[np.bool_] = np.logical_and.reduce(masks)
+        return both
+
+    def toward(self, number: int, position: Array | None) -> _Lit:
+        """Return the direction toward a light, found once for a light at infinity."""
+        if number in self._distant:
+            return self._distant[number]
+        vector, distance = _toward(self.plan.scene.lights[number], position, self.plan.dtype)
+        split, cosine = self.manifold.split(vector), None
+        if self.surface is self.manifold:
+            cosine = split.across
+        elif self.surface is not None:
+            cosine = self.surface.cosine(vector)
+        lit = _Lit(split, distance, cosine)
+        if distance is None:
+            self._distant[number] = lit
+        return lit
+
+
 def shade_block(
     plan: Plan,
-    block: slice,
+    rows: slice,
     points: Rows,
     tangents: Rows | None,
     normals: Rows | None,
     depth: Rows | None,
     output: Output,
+    repeat: int = 1,
 ) -> None:
-    """Light some rows and write them to the output.
+    """Light the points of some rows of normals or tangents, ``repeat`` points a row.
 
     Overflow and underflow are taken care of; the caller silences NumPy's warnings of them.
     """
-    scene, dtype, size = plan.scene, plan.dtype, block.stop - block.start
-    valid = np.ones(size, dtype=np.bool_)
-    position = columns(points, block) if plan.needs_points else None
-    manifold: Any = None
-    surface: _Surface | None = None
+    surface, shape = None, None
     if normals is not None:
-        normal, length = _kernels.unit(columns(normals, block, dtype))
-        valid &= length > 0
-        surface = _Surface(normal.astype(dtype, copy=False), two_sided=plan.two_sided)
-        manifold = surface
-    if tangents is not None:
-        vectors = columns(tangents, block, dtype).reshape(plan.k, plan.n, size)
-        rtol = frames.default_rtol(plan.n, vectors.dtype)
-        frame, rank = _kernels.orthonormalize(vectors, rtol)
-        valid &= rank == plan.k
-        manifold = _Tangents(frame.astype(dtype, copy=False))
+        normal, length = _kernels.unit(columns(normals, rows, plan.dtype))
+        normal = normal.astype(plan.dtype, copy=False)
+        surface = _Surface(normal, length > 0, two_sided=plan.two_sided)
+    each = tangents is not None and tangents.shape[0] == points.shape[0]
+    for j in range(repeat):
+        at = rows if repeat == 1 else slice(rows.start * repeat + j, rows.stop * repeat, repeat)
+        if shape is None or each:
+            shape = _Shape(plan, surface, tangents, at if each else rows)
+        _shade_points(plan, shape, at, points, depth, output)
 
+
+def _shade_points(
+    plan: Plan, shape: _Shape, block: slice, points: Rows, depth: Rows | None, output: Output
+) -> None:
+    """Light one point of each row of a shape and write it to the output."""
+    scene, dtype = plan.scene, plan.dtype
+    manifold, surface = shape.manifold, shape.surface
+    valid = shape.valid
+    position = columns(points, block) if plan.needs_points else None
     eye: _Split | None = None
     seen: NDArray[np.bool_] | None = None
     under: Array | None = None
@@ -169,9 +224,8 @@ def shade_block(
             seen = distance > 0
 
     sums = _Sums(plan)
-    for light in scene.lights:
-        toward_light, distance = _toward(light, position, dtype)
-        lit = manifold.split(toward_light)
+    for number, light in enumerate(scene.lights):
+        lit, distance, cosine = shape.toward(number, position)
         scale: Any = dtype.type(light.intensity)
         if distance is not None:
             valid &= distance >= 0
@@ -180,8 +234,7 @@ def shade_block(
             if not distance.all():
                 # A light on the point has no direction to come from.
                 scale = scale * (distance > 0)
-        if surface is not None and (plan.conditioned or under is not None):
-            cosine = surface.cosine(toward_light)
+        if surface is not None and cosine is not None:
             if plan.conditioned:
                 scale = scale * surface.side(cosine)
             if under is not None:

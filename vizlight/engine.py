@@ -76,6 +76,7 @@ def shade(
     *,
     normals: Rows | None = None,
     depth: Rows | None = None,
+    repeat: int = 1,
     precision: Precision | None = None,
     threads: int | None = None,
     block: int | None = None,
@@ -94,17 +95,20 @@ def shade(
         Vectors that span the tangent space, of any length; orthonormalised here block by block.
         None: the manifold is the surface that has the normals.
     scene : Scene
-    normals : array_like, shape (N, n), optional
+    normals : array_like, shape (M, n), optional
         Outward normals, of any length. With tangents they condition the light (Banks 6).
     depth : array_like, shape (N,), optional
         With ``fur=``: the height of fur above each point, across the surface.
+    repeat : int, default: 1
+        How many points, one after the other, share a normal, such as those of a fibre:
+        N = M repeat. Tangents have N rows or M. What depends on the row alone is computed once.
     precision : {"float32", "float64"}, optional
         Of the work and the result. Default: float32 if the vectors are float32 or less, else
         float64; float64 points keep their differences in float64 either way.
     threads : int, optional
         Default: the processors that this process may use.
     block : int, optional
-        Points in a block. Default: what suits the caches, see :attr:`Plan.block`.
+        Rows in a block. Default: what suits the caches, see :attr:`Plan.block`.
     progress : callable, optional
         Called from the caller's thread as ``progress(points done, N)`` after each block.
     **options
@@ -133,15 +137,18 @@ def shade(
             _check.message("points", "shape (N, n), n of 2 or more", f"shape {points.shape}")
         )
     count, n = points.shape
+    rows, rest = divmod(count, _check.integer("repeat", repeat, low=1))
+    if rest:
+        raise ValueError(_check.message("repeat", f"a divisor of {count} points", repeat))
     k = None
     if tangents is not None:
         tangents = _rows("tangents", tangents)
-        k = _tangent_count(tangents.shape, count, n)
+        k = _tangent_count(tangents.shape, {count, rows}, n)
     if normals is not None:
         normals = _rows("normals", normals)
-        if tuple(normals.shape) != (count, n):
+        if tuple(normals.shape) != (rows, n):
             raise ValueError(
-                _check.message("normals", f"shape ({count}, {n})", f"shape {normals.shape}")
+                _check.message("normals", f"shape ({rows}, {n})", f"shape {normals.shape}")
             )
     if (depth is None) == bool(options.get("fur")):
         raise ValueError(_check.message("depth", "depth and fur= together", "one of them"))
@@ -163,10 +170,10 @@ def shade(
 
     def work(block: slice) -> int:
         with np.errstate(all="ignore"):
-            shade_block(made, block, points, tangents, normals, depth, output)
-        return int(block.stop)
+            shade_block(made, block, points, tangents, normals, depth, output, repeat)
+        return int(block.stop) * repeat
 
-    for done in _pool.run(work, _pool.blocks(count, step), threads):
+    for done in _pool.run(work, _pool.blocks(rows, step), threads):
         if progress is not None:
             progress(done, count)
     return Shading(
@@ -190,14 +197,15 @@ def _rows(name: str, rows: Any) -> Any:
     return rows
 
 
-def _tangent_count(shape: tuple[int, ...], count: int, n: int) -> int:
-    if len(shape) == 3 and shape[0] == count and shape[2] == n:
+def _tangent_count(shape: tuple[int, ...], counts: set[int], n: int) -> int:
+    if len(shape) == 3 and shape[0] in counts and shape[2] == n:
         k = shape[1]
-    elif len(shape) == 2 and shape[0] == count and shape[1] % n == 0:
+    elif len(shape) == 2 and shape[0] in counts and shape[1] % n == 0:
         k = shape[1] // n
     else:
         k = 0
     if not 0 < k < n:
+        count = " or ".join(str(number) for number in sorted(counts))
         raise ValueError(
             _check.message(
                 "tangents",

@@ -10,11 +10,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from vizlight import _check
 from vizlight.light import Light, from_vtk
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from vizlight._check import Color, ColorLike, Vector, VectorLike
 
@@ -303,6 +305,20 @@ class Scene:
     def replace(self, **changes: Any) -> Scene:
         """Return a scene with some fields changed."""
         return dataclasses.replace(self, **changes)
+
+    def moved(self, offset: Sequence[float], /) -> Scene:
+        """Return the scene with lights and eye moved by an offset; depths stay as they are."""
+        lights = tuple(
+            dataclasses.replace(light, position=tuple(np.add(light.position, offset)))
+            if light.position is not None
+            else light
+            for light in self.lights
+        )
+        view = self.view
+        if view is not None:
+            position = offset if view.position is None else np.add(view.position, offset)
+            view = View(position=position, direction=view.direction, parallel=view.parallel)
+        return self.replace(lights=lights, view=view)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the scene as plain values that JSON can hold."""

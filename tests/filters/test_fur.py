@@ -124,11 +124,20 @@ def test_no_fur_and_opaque_fur(density):
         np.testing.assert_array_equal(light, free)
 
 
-def test_fibres_of_no_length_are_marked():
-    with pytest.warns(UserWarning, match="could not be lit") as caught:
-        coat = fur(torus(), SCENE, density=0.5, fibres=100, length=0.0)
-    assert len(caught) == 1
-    assert np.all(np.isfinite(coat["fibres"]["luminance"]))
+@pytest.mark.parametrize("length", [0.0, 1e-20, 1e-7])
+def test_bald_and_downy_skin_is_lit_like_long_hair(length):
+    """A direction is not what is left of the difference of two points."""
+    mesh = torus()
+    mesh["way"] = np.asarray(mesh["Normals"]) + np.array([0, 0, 0.3], np.float32)
+    for shape in ({}, {"vectors": "way"}, {"vectors": "way", "toward": (0, 0, -1), "bend": 0.5}):
+        options = {"density": 0.5, "fibres": 400, "attenuated": False, **shape}
+        coat = fur(mesh, SCENE, length=length, **options)
+        long = fur(mesh, SCENE, length=0.3, **options)
+        hair, down = (block["fibres"]["luminance"].reshape(-1, 4) for block in (long, coat))
+        if "bend" in shape and length == 0:
+            np.testing.assert_allclose(down[:, 0], hair[:, 0], atol=0.2)
+        else:
+            np.testing.assert_allclose(down, hair, atol=2e-6)
 
 
 def test_lengths_by_point():
@@ -182,6 +191,54 @@ def test_vectors_that_point_inward():
             assert len(rise) == 1000 - counts[inward]
     assert len(set(counts.values())) == 1
     assert 400 < counts["flip"] < 600
+
+
+@pytest.mark.parametrize("kind", [np.float32, np.float64])
+def test_far_from_the_origin(kind):
+    """Terrain in metres north of the equator has the light that it has at the origin."""
+    offset = np.array([4e5, 5e6, 1e3])
+    mesh = torus()
+    near = pv.PolyData.from_regular_faces(
+        (np.round(np.asarray(mesh.points, np.float64) * 256) * 4).astype(kind), mesh.regular_faces
+    )
+    far = near.copy()
+    far.points = (np.asarray(near.points, np.float64) + offset).astype(kind)
+    for block in (near, far):
+        block["Normals"] = mesh["Normals"]
+        block.point_data.active_normals_name = "Normals"
+    light, eye = np.array([-2000.0, -1500, 1800]), np.array([500, -5000, 4000])
+    cue = vizlight.DepthCue(back_scale=0.5)
+    for view in ({"position": eye}, {"direction": (0.3, -1, 0.8)}):
+        scene = Scene(lights=Light(position=light), view=View(**view), depth_cue=cue)
+        moved = (
+            scene.moved(offset)
+            if "position" in view
+            else scene.replace(lights=Light(position=light + offset))
+        )
+        options = {"density": 0.001, "fibres": 2000, "length": 100, "curl": 0.3}
+        here, there = fur(near, scene, **options), fur(far, moved, **options)
+        for block in ("fibres", "skin"):
+            np.testing.assert_allclose(
+                there[block]["luminance"], here[block]["luminance"], atol=3e-4
+            )
+        assert there["fibres"].points.dtype == kind
+        np.testing.assert_allclose(
+            np.asarray(there["fibres"].points, np.float64) - offset,
+            here["fibres"].points,
+            atol=0.6 if kind == np.float32 else 1e-3,
+        )
+
+
+@pytest.mark.parametrize("scale", [1e-150, 1e-24, 1e20, 1e150])
+def test_vectors_of_any_size(scale):
+    mesh = torus()
+    mesh["way"] = np.asarray(mesh["Normals"], np.float64) + [0, 0, 0.3]
+    options = {"density": 0.5, "fibres": 300, "bend": 1.0}
+    expected = fur(mesh, SCENE, vectors="way", toward="way", **options)["fibres"]
+    mesh["way"] = mesh["way"] * scale
+    found = fur(mesh, SCENE, vectors="way", toward="way", **options)["fibres"]
+    np.testing.assert_allclose(found.points, expected.points, atol=1e-6)
+    np.testing.assert_allclose(found["luminance"], expected["luminance"], atol=1e-5)
 
 
 def test_zero_vectors_follow_the_normals():

@@ -7,24 +7,24 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 import numpy as np
 import pyvista as pv
 
-from vizlight import _check, _pool, engine
-from vizlight.filters import _mesh, _progress, _provenance, _surface
-from vizlight.filters._illuminate import attach, refuse_overwriting, warn_unlit
+from vizlight import _check
+from vizlight.filters import _light, _mesh, _surface
+from vizlight.filters._light import Job
 from vizlight.filters._mesh import unit_rows
-from vizlight.filters._strands import Strands
+from vizlight.filters._strands import Grown, Strands
 from vizlight.geometry import fur as geometry
+from vizlight.model import _kernels
 from vizlight.scene import Scene
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from vizlight._check import Vector
     from vizlight.model.reflection import SpecularModel
 
     Array = NDArray[np.floating[Any]]
 
 Inward = Literal["keep", "flip", "drop"]
-#: Points that the engine lights at once: its buffers stay small beside the fibres.
-LIT_AT_ONCE = 3 << 15
 
 
 def fur(
@@ -113,6 +113,7 @@ def fur(
     density = _check.number("density", density, low=0.0, high=1.0)
     fibres = _check.integer("fibres", fibres, low=0)
     segments = _check.integer("segments", segments, low=1)
+    seed = _check.integer("seed", seed, low=0)
     if inward not in get_args(Inward):
         raise ValueError(_check.message("inward", "'keep', 'flip' or 'drop'", repr(inward)))
     for option, value in (("bend", bend), ("curl", curl), ("turns", turns)):
@@ -121,84 +122,96 @@ def fur(
         raise ValueError(_check.message("toward", "what fibres bend to, with bend=", None))
     _check.instance("scene", scene, Scene)
     skin = _surface.with_normals(surface, scene.view)
-    refuse_overwriting([(surface, "")], name, components=False, colored=scene.colored)
-    coat = _Coat(skin, length, vectors, toward, inward)
-    strands, inside = _grow(
-        coat, fibres, segments, seed, threads, bend=bend, curl=curl, turns=turns
-    )
-    if inside:
-        what = {"flip": "were turned over", "keep": "were kept", "drop": "were left out"}[inward]
-        _check.warn(f"{inside} of {fibres} fibres point into the surface and {what}")
-
-    through = {"fur": density} if attenuated and density else {}
-    shared: dict[str, Any] = {"compensate": compensate, "model": model, **through}
+    _light.refuse_overwriting([(surface, "")], name, components=False, colored=scene.colored)
     told = {
         "density": density, "fibres": fibres, "length": length, "segments": segments,
         "vectors": vectors, "inward": inward, "toward": toward, "bend": bend, "curl": curl,
         "turns": turns, "seed": seed, "conditioned": conditioned, "attenuated": attenuated,
         "compensate": compensate, "model": model, "name": name,
     }  # fmt: skip
-    normals = strands.normals() if conditioned or through else None
-    with _progress.progress("light fur", strands.n_points, show=progress_bar) as report:
-        lit = engine.shade(
-            strands.points.reshape(-1, 3),
-            strands.tangents(),
-            scene,
-            normals=normals,
-            depth=strands.depth() if through else None,
-            conditioned=conditioned,
-            threads=threads,
-            block=LIT_AT_ONCE,
-            progress=lambda done, _: report(done),
-            **shared,
-        )
-    lines, unlit = strands.mesh(), lit.invalid
-    attach(lines, lit, name, _provenance.record(lit, "fur", scene, told))
-    below = coat.skin_depth(segments, bend=bend, curl=curl, turns=turns) if through else None
-    lit = engine.shade(
-        np.asarray(skin.points),
-        None,
-        scene,
-        normals=np.asarray(skin.point_data["Normals"]),
-        depth=below,
-        threads=threads,
-        **shared,
+    coat = _Coat(skin, length, vectors, toward, inward)
+    if fibres and not (len(coat.total) and coat.total[-1] > 0):
+        raise ValueError(_check.message("surface", "faces of some area", "none"))
+    shape = {"segments": segments, "bend": bend, "curl": curl, "turns": turns}
+    strands = Strands(
+        lambda block: coat.grow(block, fibres, seed, **shape),
+        fibres,
+        segments + 1,
+        skin.points.dtype,
+        straight=not (bend or curl),
     )
-    warn_unlit(unlit + lit.invalid, lines.n_points + skin.n_points, name)
-    skin = surface.copy(deep=False)
-    attach(skin, lit, name, _provenance.record(lit, "fur", scene, told))
-    return pv.MultiBlock({"fibres": lines, "skin": skin})
+    rows, through = strands.rows(), bool(attenuated and density)
+    across = conditioned or through
+    jobs = [
+        Job(
+            rows["points"],
+            rows["tangents"],
+            rows["normals"] if across else None,
+            depth=rows["depth"] if through else None,
+            repeat=strands.m,
+            block=strands.block,
+            origin=coat.origin,
+            made_on_the_fly=True,
+        ),
+        Job(
+            np.asarray(skin.points),
+            None,
+            np.asarray(skin.point_data["Normals"]),
+            depth=coat.skin_depth(**shape) if through else None,
+        ),
+    ]
+    results, scene = _light.light(
+        jobs,
+        scene,
+        threads=threads,
+        progress_bar=progress_bar,
+        compensate=compensate,
+        model=model,
+        conditioned=conditioned,
+        fur=density if through else 0.0,
+    )
+    if any(coat.origin):
+        strands.points += np.array(coat.origin, strands.points.dtype)
+    inside = int(np.count_nonzero(strands.inside))
+    if inside:
+        what = {"flip": "were turned over", "keep": "were kept", "drop": "were left out"}[inward]
+        _check.warn(f"{inside} of {fibres} fibres point into the surface and {what}")
+        if inward == "drop":
+            results[0] = strands.drop(results[0])
+    meshes = [strands.mesh(), surface.copy(deep=False)]
+    _light.finish(meshes, results, "fur", scene, told, name)
+    return pv.MultiBlock(dict(zip(("fibres", "skin"), meshes, strict=True)))
 
 
 class _Coat:
-    """What fibres are made from: point arrays of a triangulated surface, in float32."""
+    """What fibres are made from: point arrays of a triangulated surface, in float32.
+
+    Points are less ``origin``, which is not 0 where the surface is far from there.
+    """
 
     def __init__(
         self, skin: pv.PolyData, length: Any, vectors: str | None, toward: Any, inward: Inward
     ) -> None:
-        self.points = np.asarray(skin.points, dtype=np.float32)
+        self.origin = _origin(skin)
         self.faces: NDArray[np.intp] = np.asarray(skin.regular_faces, dtype=np.intp)
         self.normals = np.asarray(skin.point_data["Normals"], dtype=np.float32)
         self.inward = inward
         self.vectors: Array | None = None
         if vectors is not None:
-            self.vectors = _mesh.vectors_of(skin, "vectors", vectors, 3).astype(
-                np.float32, copy=False
-            )
+            self.vectors = _narrow(_mesh.vectors_of(skin, "vectors", vectors, 3))
         self.toward: Array | None = None
         if isinstance(toward, str):
-            self.toward = unit_rows(
-                _mesh.vectors_of(skin, "toward", toward, 3).astype(np.float32, copy=False)
-            )
+            self.toward = unit_rows(_mesh.vectors_of(skin, "toward", toward, 3)).astype(np.float32)
         elif toward is not None:
             direction = _check.vector("toward", toward, direction=True)
             if len(direction) != 3:
                 raise ValueError(_check.message("toward", "3 components", len(direction)))
-            self.toward = unit_rows(np.array([direction], dtype=np.float32))
+            self.toward = unit_rows(np.array([direction])).astype(np.float32)
         self.length: Array | float = _lengths(skin, length)
         self.total = geometry.areas(np.asarray(skin.points), self.faces)
         # All that is interpolated stands in one table, so that it is looked up once.
-        parts = [self.points, self.normals]
+        local = np.asarray(skin.points) - np.array(self.origin)
+        parts: list[Array] = [local.astype(np.float32), self.normals]
         if self.vectors is not None:
             parts.append(self.vectors)
         if self.toward is not None and len(self.toward) > 1:
@@ -208,86 +221,70 @@ class _Coat:
         self._table = np.concatenate(parts, axis=1)
         self._cuts = np.cumsum([part.shape[1] for part in parts])[:-1]
 
-    def roots(self, block: slice, count: int, seed: int) -> tuple[Any, ...]:
-        """Return roots, unit normals, directions, lengths and bends of some fibres, and ``inside``.
-
-        ``inside`` marks fibres whose vector points into the surface.
-        """
-        face, weights = geometry.seed_block(self.total, block, count, seed)
+    def grow(self, block: slice, count: int, seed: int, **shape: Any) -> Grown:
+        """Return some of the fibres."""
+        start = block.start // geometry.SEED_BLOCK * geometry.SEED_BLOCK
+        part = slice(block.start - start, block.stop - start)
+        face, weights = geometry.seed_block(self.total, start, count, seed)
+        face, weights = face[part], weights[part]
         corners = self.faces.take(face, axis=0)
         found: Array = self._table.take(corners[:, 0], axis=0)
         found *= weights[:, :1]
         for i in (1, 2):
-            part = self._table.take(corners[:, i], axis=0)
-            part *= weights[:, i : i + 1]
-            found += part
-        columns = iter(np.split(found, self._cuts, axis=1))
-        root, normal = next(columns), unit_rows(next(columns))
-        vector = None if self.vectors is None else next(columns)
-        toward, length = self.toward, self.length
-        if toward is not None:
-            toward = unit_rows(next(columns)) if len(toward) > 1 else toward
-        if isinstance(length, np.ndarray):
-            length = next(columns)[:, 0]
-        return root, normal, *self._directions(normal, vector), length, toward
-
-    def _directions(self, normal: Array, vector: Array | None) -> tuple[Array, Any]:
-        if vector is None:
-            return normal, None
-        direction = unit_rows(vector)
-        lost = ~np.any(direction, axis=1)
-        direction[lost] = normal[lost]
-        inside = np.einsum("ij,ij->i", direction, normal) < 0
-        if self.inward == "flip":
-            direction[inside] *= -1
-        return direction, inside
-
-    def skin_depth(self, segments: int, **shape: Any) -> Array:
-        """Return the height of a fibre that stood on each point of the skin."""
-        direction, inside = self._directions(self.normals, self.vectors)
-        toward = self.toward
-        strand = geometry.grow(
-            np.zeros_like(self.points), direction, self.length, segments=segments, toward=toward,
-            **shape,
-        )  # fmt: skip
-        height = np.einsum("ijk,ik->ij", strand, self.normals).max(axis=1)
-        if self.inward == "drop" and inside is not None:
-            height[inside] = 0
-        depth: Array = np.maximum(height, 0)
-        return depth
-
-
-def _grow(
-    coat: _Coat, count: int, segments: int, seed: int, threads: int | None, **shape: Any
-) -> tuple[Strands, int]:
-    """Return the fibres, and how many point into the surface."""
-    if count and not (len(coat.total) and coat.total[-1] > 0):
-        raise ValueError(_check.message("surface", "faces of some area", "none"))
-    points = np.empty((count, segments + 1, 3), np.float32)
-    normals = np.empty((count, 3), np.float32)
-    inside = np.zeros(count, np.bool_)
-
-    def work(block: slice) -> int:
-        root, normal, direction, into, length, toward = coat.roots(block, count, seed)
+            corner = self._table.take(corners[:, i], axis=0)
+            corner *= weights[:, i : i + 1]
+            found += corner
+        columns = iter(np.split(np.ascontiguousarray(found.T), self._cuts))
+        root, normal = next(columns), _kernels.unit(next(columns))[0]
+        way, inside = self._ways(normal, None if self.vectors is None else next(columns))
+        toward = None if self.toward is None else self.toward.T
+        if toward is not None and toward.shape[1] > 1:
+            toward = _kernels.unit(next(columns))[0]
+        length = next(columns)[0] if isinstance(self.length, np.ndarray) else self.length
         phase = None
         if shape["curl"]:
-            phase = np.random.default_rng([seed, block.start, 1]).random(len(root)) * 2 * np.pi
-        geometry.grow(
-            root, direction, length, segments=segments, toward=toward, phase=phase,
-            out=points[block], **shape,
-        )  # fmt: skip
-        normals[block] = normal
-        if into is not None:
-            inside[block] = into
-        return int(block.stop)
+            random = np.random.default_rng([seed, start, 1])
+            phase = random.random(part.stop)[part] * 2 * np.pi
+        offsets = geometry.strands(way, length, toward=toward, phase=phase, **shape)
+        return Grown(root, offsets, way, normal, inside)
 
-    for _ in _pool.run(work, _pool.blocks(count, geometry.SEED_BLOCK), threads):
-        pass
-    found = int(np.count_nonzero(inside))
-    if coat.inward == "drop" and found:
-        points, normals = points[~inside], normals[~inside]
-    straight = not (shape["bend"] or shape["curl"])
-    return Strands(points, normals, straight=straight), found
+    def _ways(self, normal: Array, vector: Array | None) -> tuple[Array, NDArray[np.bool_] | None]:
+        """Return unit directions at the root, and which of the vectors point into the surface."""
+        if vector is None:
+            return normal, None
+        way, size = _kernels.unit(vector)
+        way = np.where(size > 0, way, normal)
+        inside = _kernels.dot(way, normal) < 0
+        if self.inward == "flip":
+            way[:, inside] *= -1
+        return way, inside
+
+    def skin_depth(self, **shape: Any) -> Array:
+        """Return the height of a fibre that stood on each point of the skin."""
+        normal = _kernels.unit(np.ascontiguousarray(self.normals.T))[0]
+        way, inside = self._ways(normal, None if self.vectors is None else self.vectors.T)
+        toward = None if self.toward is None else self.toward.T
+        offsets = geometry.strands(way, self.length, toward=toward, **shape)
+        height: Array = np.einsum("jib,ib->jb", offsets, normal).max(axis=0)
+        if self.inward == "drop" and inside is not None:
+            height[inside] = 0
+        return height
+
+
+def _origin(skin: pv.PolyData) -> Vector:
+    """Return a place near the surface, 0 where that is near enough not to lose digits."""
+    low, high = np.reshape(skin.bounds, (3, 2)).T
+    middle, size = (low + high) / 2, np.linalg.norm(high - low)
+    far = bool(np.linalg.norm(middle) > size)
+    return tuple(float(x) if far and np.isfinite(x) else 0.0 for x in middle)
+
+
+def _narrow(vectors: Array) -> Array:
+    """Return vectors in float32, all by one scale so that the largest are in its range."""
+    wide = np.asarray(vectors, dtype=np.float64)
+    largest = np.max(np.abs(wide), initial=0.0, where=np.isfinite(wide))
+    with np.errstate(under="ignore", over="ignore"):
+        return np.asarray(wide / (largest or 1.0), dtype=np.float32)
 
 
 def _lengths(mesh: pv.PolyData, length: Any) -> Array | float:

@@ -2,26 +2,17 @@
 
 from __future__ import annotations
 
-import dataclasses
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 import pyvista as pv
 
 from vizlight import _check, engine
-from vizlight.filters import _lines, _mesh, _progress, _provenance
+from vizlight.filters import _light, _lines, _mesh
+from vizlight.filters._light import Job
 from vizlight.scene import Scene
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from vizlight._block import Rows
     from vizlight.model.reflection import SpecularModel
-
-DEFAULT_NAME = "luminance"
-VALID = "_valid"
-PARTS = ("ambient", "diffuse", "specular", "rgb")
 
 
 def illuminate(
@@ -41,7 +32,7 @@ def illuminate(
     components: bool = False,
     precision: engine.Precision | None = None,
     threads: int | None = None,
-    name: str = DEFAULT_NAME,
+    name: str = _light.DEFAULT_NAME,
     inplace: bool = False,
     progress_bar: bool = False,
 ) -> Any:
@@ -138,47 +129,22 @@ def illuminate(
 
     out = mesh if inplace else _copy(mesh)
     leaves = list(_mesh.named_leaves(out))
-    refuse_overwriting(leaves, name, components=components, colored=scene.colored)
+    _light.refuse_overwriting(leaves, name, components=components, colored=scene.colored)
     jobs = [_prepare(leaf, path, scene, options) for leaf, path in leaves]
-    total = sum(leaf.n_points for leaf, _ in leaves)
-    fitted = _fit_depth_cue(scene, jobs)
-    results: list[engine.Shading] = []
-    with _progress.progress("light", total, show=progress_bar) as report:
-        for job in jobs:
-            done = sum(shading.luminance.size for shading in results)
-            results.append(
-                engine.shade(
-                    job.points,
-                    job.tangents,
-                    fitted,
-                    normals=job.normals,
-                    precision=precision,
-                    threads=threads,
-                    progress=_after(done, report),
-                    model=model,
-                    compensate=compensate,
-                    two_sided=two_sided,
-                    components=components,
-                )
-            )
+    results, fitted = _light.light(
+        jobs,
+        scene,
+        threads=threads,
+        progress_bar=progress_bar,
+        precision=precision,
+        model=model,
+        compensate=compensate,
+        two_sided=two_sided,
+        components=components,
+    )
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
-    for (leaf, _), shading in zip(leaves, results, strict=True):
-        attach(leaf, shading, name, _provenance.record(shading, "illuminate", fitted, options))
-    warn_unlit(sum(shading.invalid for shading in results), total, name)
+    _light.finish([leaf for leaf, _ in leaves], results, "illuminate", fitted, options, name)
     return out
-
-
-def _after(done: int, report: Callable[[int], None]) -> Callable[[int, int], None]:
-    return lambda now, _: report(done + now)
-
-
-@dataclass(frozen=True)
-class _Job:
-    """The rows of one mesh that the engine lights."""
-
-    points: Rows
-    tangents: Rows | None
-    normals: Rows | None
 
 
 def _copy(mesh: Any) -> Any:
@@ -194,7 +160,7 @@ def _copy(mesh: Any) -> Any:
     return out
 
 
-def _prepare(mesh: pv.DataSet, path: str, scene: Scene, options: dict[str, Any]) -> _Job:
+def _prepare(mesh: pv.DataSet, path: str, scene: Scene, options: dict[str, Any]) -> Job:
     """Take from one mesh what is lit; a block's errors say which block it is."""
     try:
         if not isinstance(mesh, pv.DataSet):
@@ -221,77 +187,8 @@ def _prepare(mesh: pv.DataSet, path: str, scene: Scene, options: dict[str, Any])
             normals = _mesh.normals_of(mesh, options["normals"], n, scene.view)
             if options["flip_normals"]:
                 normals = -normals
-        return _Job(points, tangents, normals)
+        return Job(points, tangents, normals)
     except (TypeError, ValueError) as error:
         if not path:
             raise
         raise type(error)(f"block {path}: {error}") from error
-
-
-def _fit_depth_cue(scene: Scene, jobs: list[_Job]) -> Scene:
-    """Return the scene with the ends of its depth cue taken from the points where not given."""
-    cue = scene.depth_cue
-    if cue is None or scene.view is None or (cue.front is not None and cue.back is not None):
-        return scene
-    ranges = [engine.depth_range(job.points, scene) for job in jobs]
-    near = min((near for near, _ in ranges if np.isfinite(near)), default=0.0)
-    far = max((far for _, far in ranges if np.isfinite(far)), default=1.0)
-    # An end that is given may lie beyond all points: the other is then put beyond it.
-    front, back = cue.front, cue.back
-    if front is None:
-        front = near if back is None or near < back else back - 1.0
-    if back is None:
-        back = far if far > front else front + 1.0
-    return scene.replace(depth_cue=dataclasses.replace(cue, front=front, back=back))
-
-
-def refuse_overwriting(
-    leaves: list[tuple[pv.DataSet, str]], name: str, *, components: bool, colored: bool
-) -> None:
-    """Refuse to lose the user's own arrays; those that vizlight made may be made anew."""
-    if not isinstance(name, str) or not name:
-        raise ValueError(_check.message("name", "a name for the point array", repr(name)))
-    prefix = "" if name == DEFAULT_NAME else f"{name}_"
-    made = [name]
-    made += [prefix + part for part in PARTS if (colored if part == "rgb" else components)]
-    for leaf, _ in leaves:
-        for array in made:
-            if array in leaf.point_data and _provenance.key(name) not in leaf.field_data:
-                raise ValueError(
-                    _check.message(
-                        "name",
-                        "one under which the mesh has no array of its own",
-                        repr(array),
-                        "pass another name= or rename that array",
-                    )
-                )
-
-
-def warn_unlit(invalid: int, total: int, name: str) -> None:
-    """Warn once, with the count, if points could not be lit."""
-    if invalid:
-        _check.warn(
-            f"{invalid} of {total} points could not be lit (a zero, infinite or NaN vector, "
-            "dependent tangents, or no surface normal there) and have the ambient light; "
-            f"the point array {name + VALID!r} marks them"
-        )
-
-
-def attach(mesh: pv.DataSet, shading: engine.Shading, name: str, told: str) -> None:
-    """Attach a result to a mesh, in place of one of the same name."""
-    prefix = "" if name == DEFAULT_NAME else f"{name}_"
-    data: Any = mesh.point_data
-    for stale in (name + VALID, *(prefix + part for part in PARTS)):
-        if stale in data and _provenance.key(name) in mesh.field_data:
-            del data[stale]
-    if shading.diffuse is not None:
-        data[f"{prefix}ambient"] = np.full_like(shading.luminance, shading.plan.ambient)
-        data[f"{prefix}diffuse"] = shading.diffuse
-        data[f"{prefix}specular"] = shading.specular
-    if shading.rgb is not None:
-        data[f"{prefix}rgb"] = shading.rgb
-    if shading.invalid:
-        data[name + VALID] = shading.valid
-    data.set_array(shading.luminance, name)
-    data.active_scalars_name = name
-    mesh.field_data[_provenance.key(name)] = [told]

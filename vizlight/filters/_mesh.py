@@ -10,6 +10,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from vizlight import _check
+from vizlight.model import _kernels
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -272,8 +273,7 @@ def _corners(surface: pv.PolyData) -> tuple[NDArray[np.intp], NDArray[np.bool_]]
 
 
 def unit_rows(vectors: Array) -> Array:
-    """Return unit vectors, zero where there is no direction."""
-    size = np.sqrt(np.einsum("ij,ij->i", vectors, vectors))[:, np.newaxis]
-    good = (size > 0) & np.isfinite(size)
-    result: Array = np.divide(vectors, size, out=np.zeros_like(vectors), where=good)
+    """Return unit vectors in float64, of whatever length they were; zero without a direction."""
+    columns = np.ascontiguousarray(np.asarray(vectors, dtype=np.float64).T)
+    result: Array = _kernels.unit(columns)[0].T
     return result

@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from vizlight.scene import Scene
 
 
+#: Arrays of no more numbers than this are told in full.
+WRITTEN_OUT = 100
+
+
 def key(name: str) -> str:
     """Return the name of the field array that tells of a point array."""
     return f"{name}_provenance"
@@ -41,10 +45,15 @@ def record(shading: Shading, filter_name: str, scene: Scene, options: dict[str, 
 
 
 def _plain(value: Any) -> Any:
-    """Return a value that JSON can hold; an array given as such is only described."""
+    """Return a value that JSON can hold; a mesh or a long array is only described."""
     if value is None or isinstance(value, str | bool | int | float):
         return value
-    return _check.describe(np.asarray(value))
+    if isinstance(value, pv.DataObject):
+        return f"{type(value).__name__} of {getattr(value, 'n_points', 0)} points"
+    array = np.asarray(value)
+    if array.size <= WRITTEN_OUT and array.dtype.kind in "biufU":
+        return array.tolist()
+    return _check.describe(array)
 
 
 def provenance(mesh: Any, /, name: str = "luminance") -> dict[str, Any]:
@@ -60,8 +69,9 @@ def provenance(mesh: Any, /, name: str = "luminance") -> dict[str, Any]:
     Returns
     -------
     dict
-        ``illuminate(mesh, Scene.from_dict(p["scene"]), **p["options"])`` makes the array again,
-        if tangents and normals were named; arrays given as such are only described.
+        ``p["filter"]`` names the filter, which makes the array again from the mesh it was given:
+        ``illuminate(mesh, Scene.from_dict(p["scene"]), **p["options"])``. Meshes and arrays of
+        more than 100 numbers among the options are only described.
 
     Raises
     ------
