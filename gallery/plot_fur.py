@@ -7,7 +7,8 @@ in Diverse Codimensions*, with its coefficients.
 
 A: the fibres alone are lit. B: conditioned by the torus' normals. C: also attenuated by the fur on
 the way in and out, so that the base of a fibre is darker than its tip and single fibres can be told
-apart near the shadow's edge. Fur of density 0.02 to the unit of the torus would hardly show at a
+apart near the shadow's edge. All with the plain cosine law of the paper (``compensate=False``).
+Fur of density 0.02 to the unit of the torus would hardly show at a
 length of 0.3, so lengths are meant in hundredths here.
 """
 
@@ -38,6 +39,7 @@ scene = Scene(
     material=Material(ambient=0.1, diffuse=0.9, specular=0.1),
 )
 hair = {"fibres": 200_000, "length": 0.3, "segments": 6, "toward": (0, 0, -1), "bend": 0.8}
+hair["compensate"] = False
 density = 1 - (1 - 0.02) ** 100
 bare = vizlight.fur(torus, scene, density=density, conditioned=False, attenuated=False, **hair)
 shadowed = vizlight.fur(torus, scene, density=density, attenuated=False, **hair)
@@ -50,6 +52,6 @@ plotter = render.make_plotter(
     ],
     camera=camera,
     size=(1650, 560),
-    background="white",
+    background="#5a6570",
 )
 plotter.show()

@@ -7,7 +7,8 @@ panels of illustration 2 of Banks, *Illumination in Diverse Codimensions*.
 
 A: integral curves, each lit as a line. B: the sphere, lit by its normals. C: the sphere lit by the
 field alone, also where the light cannot reach. D: lit by the field, conditioned by the sphere's
-normals; its dark side is as dark as that of B.
+normals; its dark side is as dark as that of B. All with the plain cosine law of the paper
+(``compensate=False``); a dark ball hides the threads on the far side of A.
 """
 
 import numpy as np
@@ -28,7 +29,10 @@ scene = Scene(
     view=View.from_camera(camera),
     material=Material(ambient=0.1, diffuse=0.5, specular=1.0, color=(1.0, 0.25, 0.30)),
 )
-panels = vizlight.satin(ball, scene, tangents="satin", seeds=1500)
+panels = vizlight.satin(ball, scene, tangents="satin", seeds=2500, compensate=False)
+dark = pv.Sphere(radius=0.496, theta_resolution=120, phi_resolution=120)
+dark["rgb"] = np.full((dark.n_points, 3), 0.02)
+panels["curves"] = pv.MultiBlock([panels["curves"], dark])
 
 plotter = render.make_plotter(
     [render.Panel(panel, "rgb", title) for panel, title in zip(panels, "ABCD", strict=True)],

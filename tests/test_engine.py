@@ -460,3 +460,29 @@ ONES = np.ones((4, 3))
 def test_bad_input(arguments, options, error, words):
     with pytest.raises(error, match=words):
         engine.shade(*arguments, SCENES["sun, far eye"], **options)
+
+
+@pytest.mark.parametrize("kind", [np.float32, np.float64])
+def test_points_that_share_a_normal(kind, random):
+    """As if each row of tangents and normals stood there once for each of its points."""
+    points = random.standard_normal((300, 3)).astype(kind)
+    tangents, normals = random.standard_normal((2, 100, 3)).astype(kind)
+    depth = random.random(300).astype(kind)
+    lights = [Light(direction=(1, 2, 3)), Light(position=(4, 0, 1), attenuation=(1, 0.1, 0))]
+    scene = Scene(lights=lights, view=View(position=(0, 0, 9)))
+    whole = {"normals": np.repeat(normals, 3, axis=0), "depth": depth, "fur": 0.3}
+    expected = engine.shade(points, np.repeat(tangents, 3, axis=0), scene, **whole)
+    shared = {**whole, "normals": normals, "repeat": 3, "block": 7}
+    for rows in (tangents, np.repeat(tangents, 3, axis=0)):
+        found = engine.shade(points, rows, scene, **shared)
+        np.testing.assert_allclose(found.luminance, expected.luminance, rtol=1e-5)
+    alone = engine.shade(points, None, scene, normals=normals, repeat=3)
+    np.testing.assert_allclose(
+        alone.luminance,
+        engine.shade(points, None, scene, normals=whole["normals"]).luminance,
+        rtol=1e-5,
+    )
+    with pytest.raises(ValueError, match="repeat: expected a divisor of 300 points, got 7"):
+        engine.shade(points, tangents, scene, normals=normals, repeat=7)
+    with pytest.raises(ValueError, match=r"tangents: expected shape \(100 or 300, k, 3\)"):
+        engine.shade(points, tangents[:50], scene, normals=normals, repeat=3)

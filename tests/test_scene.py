@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from vizlight import DepthCue, Light, Material, Scene, View
+from vizlight import DepthCue, Light, Material, Scene, View, engine
 
 
 def full_scene():
@@ -128,3 +128,18 @@ def test_scene_from_plotter_with_the_default_light_kit():
 def test_bad_values(make, error, words):
     with pytest.raises(error, match=words):
         make()
+
+
+def test_a_moved_scene_lights_moved_points_the_same(random):
+    points, tangents = random.standard_normal((2, 50, 3))
+    offset = np.array([3.0, -2, 1])
+    for view in (View(direction=(0, 1, 2)), View(position=(0, 5, 2), direction=(0, 5, 2))):
+        scene = Scene(
+            lights=[Light(position=(1, 1, 4)), Light(direction=(1, 0, 0)), Light.headlight()],
+            view=view,
+            depth_cue=DepthCue(front=-2, back=5),
+        )
+        found = engine.shade(points + offset, tangents, scene.moved(offset)).luminance
+        np.testing.assert_allclose(
+            found, engine.shade(points, tangents, scene).luminance, rtol=1e-12
+        )

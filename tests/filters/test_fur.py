@@ -232,7 +232,7 @@ def test_far_from_the_origin(kind):
 @pytest.mark.parametrize("scale", [1e-150, 1e-24, 1e20, 1e150])
 def test_vectors_of_any_size(scale):
     mesh = torus()
-    mesh["way"] = np.asarray(mesh["Normals"], np.float64) + [0, 0, 0.3]
+    mesh["way"] = np.asarray(mesh["Normals"], np.float64) + np.array([0, 0, 0.3])
     options = {"density": 0.5, "fibres": 300, "bend": 1.0}
     expected = fur(mesh, SCENE, vectors="way", toward="way", **options)["fibres"]
     mesh["way"] = mesh["way"] * scale
@@ -279,6 +279,28 @@ def test_colour_name_and_provenance():
         assert told["options"]["density"] == 0.02
 
 
+def test_provenance_makes_the_fur_again():
+    coat = fur(torus(), SCENE, density=0.02, fibres=50, bend=1.0, toward=np.array([0, 0, -1.0]))
+    told = vizlight.provenance(coat["fibres"])
+    again = fur(torus(), Scene.from_dict(told["scene"]), **told["options"])
+    for block in ("fibres", "skin"):
+        np.testing.assert_array_equal(again[block]["luminance"], coat[block]["luminance"])
+
+
+def test_an_array_called_normals_that_is_none():
+    mesh = torus()
+    normals = np.array(mesh["Normals"])
+    mesh.point_data.clear()
+    mesh.point_data["Normals"] = np.tile([0.0, 0, 1], (mesh.n_points, 1))
+    mesh.point_data["n"] = normals
+    mesh.point_data.active_normals_name = "n"
+    options = {"vectors": "Normals", "inward": "keep", "length": 0.1}
+    with pytest.warns(UserWarning, match="fibres point into the surface and were kept"):
+        coat = fur(mesh, SCENE, density=0.02, fibres=100, **options)
+    tip = strands(coat)[:, -1] - strands(coat)[:, 0]
+    np.testing.assert_allclose(tip, np.tile([0, 0, 0.1], (len(tip), 1)), atol=1e-6)
+
+
 def test_the_users_own_array_is_not_replaced():
     mesh = torus()
     mesh["luminance"] = np.arange(mesh.n_points)
@@ -313,6 +335,8 @@ def test_no_fibres():
             "toward: expected a direction of non-zero",
         ),
         ({"bend": 1.0, "toward": (0, 1)}, ValueError, "toward: expected 3 components"),
+        ({"seed": -1}, ValueError, "seed: expected an integer of at least 0"),
+        ({"vectors": np.ones((2304, 3))}, TypeError, "vectors: expected the name of a point"),
         ({"curl": np.nan}, ValueError, "curl: expected a finite number"),
     ],
 )

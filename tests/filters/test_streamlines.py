@@ -167,6 +167,16 @@ def test_options_reach_the_light():
             ValueError,
             "seeds: expected points inside",
         ),
+        (vortex, {"vectors": "V", "seeds": [[np.nan, 0, 0]]}, ValueError, "seeds: expected finite"),
+        (vortex, {"vectors": "V", "seed": -1}, ValueError, "seed: expected an integer of at"),
+        (vortex, {"vectors": np.ones((2205, 3))}, TypeError, "vectors: expected the name of a"),
+        (vortex, {"vectors": "V", "inplace": True}, TypeError, "inplace: expected no such option"),
+        (
+            vortex,
+            {"vectors": "V", "normals": "V"},
+            ValueError,
+            "normals: expected no normals beside tangents",
+        ),
         (vortex, {"vectors": "V", "step": 0}, ValueError, "step: expected"),
         (vortex, {"vectors": "V", "max_length": -1}, ValueError, "max_length: expected"),
         (lambda: np.ones(3), {"vectors": "V"}, TypeError, "mesh: expected a PyVista dataset"),
@@ -175,6 +185,45 @@ def test_options_reach_the_light():
 def test_bad_input(make, options, error, words):
     with pytest.raises(error, match=words):
         streamlines(make(), SCENE, **options)
+
+
+def test_far_from_the_origin():
+    """Metres north of the equator: lines are traced near the mesh, not at 5e6 in float32."""
+    offset = np.array([4e5, 5e6, 1e3])
+    seeds = np.array([[0.5, 0, 0.2], [0, 0.3, 0.2]])
+    near = streamlines(vortex(), SCENE, vectors="V", seeds=seeds)
+    flow = vortex()
+    flow.origin = tuple(np.array(flow.origin) + offset)
+    far = streamlines(flow, SCENE, vectors="V", seeds=seeds + offset)
+    assert far.points.dtype == np.float64
+    np.testing.assert_allclose(far.points - offset, near.points, atol=1e-6)
+    np.testing.assert_allclose(far["luminance"], near["luminance"], atol=1e-4)
+
+    sphere = ball()
+    moved = sphere.copy()
+    moved.points = np.asarray(sphere.points, float) + offset
+    here = streamlines(sphere, SCENE, vectors="V", seeds=sphere.points[100:110])
+    there = streamlines(moved, SCENE, vectors="V", seeds=np.asarray(moved.points)[100:110])
+    assert there.field_data["drift"][0] < 1e-6
+    np.testing.assert_allclose(there.points - offset, here.points, atol=1e-5)
+    np.testing.assert_allclose(there["luminance"], here["luminance"], atol=1e-3)
+
+
+def test_vectors_that_are_not_finite_stop_a_line():
+    sphere = ball()
+    sphere["V"][np.asarray(sphere.points)[:, 2] > 0.2] = np.nan
+    lines = streamlines(sphere, SCENE, vectors="V", seeds=40)
+    assert np.all(np.isfinite(lines["luminance"]))
+    assert np.asarray(lines.points)[:, 2].max() < 0.25
+
+
+def test_provenance_makes_the_lines_again():
+    sphere = ball()
+    lines = streamlines(sphere, SCENE, vectors="V", seeds=20, compensate=False)
+    told = vizlight.provenance(lines)
+    assert told["filter"] == "streamlines"
+    again = streamlines(sphere, Scene.from_dict(told["scene"]), **told["options"])
+    np.testing.assert_array_equal(again["luminance"], lines["luminance"])
 
 
 def test_arrays_of_words_and_active_arrays_stay_as_they_are():

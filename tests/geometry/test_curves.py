@@ -142,3 +142,10 @@ def test_a_hairpin_has_no_tangent_at_its_turn():
     tangents = curves.polyline_tangents([[0.0, 0], [1, 0], [2, 0], [1, 0], [0, 0]])
     np.testing.assert_array_equal(tangents[2], 0)
     np.testing.assert_array_equal(tangents[1], [1, 0])
+
+
+@pytest.mark.parametrize("scale", [1e-300, 1e-160, 1e155, 1e300])
+def test_steps_of_any_size(scale, random):
+    points = np.cumsum(random.random((30, 3)), axis=0)
+    expected = curves.polyline_tangents(points)
+    np.testing.assert_allclose(curves.polyline_tangents(points * scale), expected, atol=1e-12)

@@ -19,7 +19,6 @@ from vizlight.scene import Scene
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vizlight._check import Vector
     from vizlight.model.reflection import SpecularModel
 
     Array = NDArray[np.floating[Any]]
@@ -118,6 +117,7 @@ def fur(
         raise ValueError(_check.message("inward", "'keep', 'flip' or 'drop'", repr(inward)))
     for option, value in (("bend", bend), ("curl", curl), ("turns", turns)):
         _check.number(option, value)
+    _mesh.refuse_unnamed("vectors", vectors)
     if bend and toward is None:
         raise ValueError(_check.message("toward", "what fibres bend to, with bend=", None))
     _check.instance("scene", scene, Scene)
@@ -156,7 +156,7 @@ def fur(
         Job(
             np.asarray(skin.points),
             None,
-            np.asarray(skin.point_data["Normals"]),
+            np.asarray(skin.point_data[_surface.NORMALS]),
             depth=coat.skin_depth(**shape) if through else None,
         ),
     ]
@@ -192,9 +192,9 @@ class _Coat:
     def __init__(
         self, skin: pv.PolyData, length: Any, vectors: str | None, toward: Any, inward: Inward
     ) -> None:
-        self.origin = _origin(skin)
+        self.origin = _mesh.near_origin(skin)
         self.faces: NDArray[np.intp] = np.asarray(skin.regular_faces, dtype=np.intp)
-        self.normals = np.asarray(skin.point_data["Normals"], dtype=np.float32)
+        self.normals = np.asarray(skin.point_data[_surface.NORMALS], dtype=np.float32)
         self.inward = inward
         self.vectors: Array | None = None
         if vectors is not None:
@@ -269,14 +269,6 @@ class _Coat:
         if self.inward == "drop" and inside is not None:
             height[inside] = 0
         return height
-
-
-def _origin(skin: pv.PolyData) -> Vector:
-    """Return a place near the surface, 0 where that is near enough not to lose digits."""
-    low, high = np.reshape(skin.bounds, (3, 2)).T
-    middle, size = (low + high) / 2, np.linalg.norm(high - low)
-    far = bool(np.linalg.norm(middle) > size)
-    return tuple(float(x) if far and np.isfinite(x) else 0.0 for x in middle)
 
 
 def _narrow(vectors: Array) -> Array:

@@ -177,7 +177,7 @@ def _prepare(mesh: pv.DataSet, path: str, scene: Scene, options: dict[str, Any])
         if tangents is None and options["conditioned"]:
             remedy = "a surface without tangents shadows itself as it is"
             raise ValueError(_check.message("conditioned", "tangents to condition", None, remedy))
-        if options["tangents"] is not None and not options["conditioned"]:
+        if tangents is not None and not options["conditioned"]:
             for option in ("normals", "two_sided", "flip_normals"):
                 if options[option] is not None and options[option] is not False:
                     remedy = "pass conditioned=True, or leave one of them out"

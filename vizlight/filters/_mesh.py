@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vizlight._block import Rows
+    from vizlight._check import Vector
     from vizlight.scene import View
 
     Array = NDArray[np.floating[Any]]
@@ -64,6 +65,31 @@ def named_leaves(mesh: Any, path: str = "") -> Iterator[tuple[Any, str]]:
     for i in range(mesh.n_blocks):
         if mesh[i] is not None:
             yield from named_leaves(mesh[i], f"{path}/{mesh.get_block_name(i) or i}")
+
+
+def near_origin(mesh: pv.DataSet) -> Vector:
+    """Return a place near a mesh, 0 where that is near enough not to lose digits of float32."""
+    low, high = np.reshape(mesh.bounds, (3, 2)).T
+    middle, size = (low + high) / 2, np.linalg.norm(high - low)
+    far = np.linalg.norm(middle) > size and bool(np.all(np.isfinite(middle)))
+    return tuple(float(x) if far else 0.0 for x in middle)
+
+
+def moved(mesh: Any, offset: Array) -> Any:
+    """Return a mesh moved by an offset, with points in float64; itself where the offset is 0."""
+    if not np.any(offset):
+        return mesh
+    out = mesh.copy(deep=False)
+    if isinstance(mesh, pv.ImageData):
+        out.origin = tuple(np.array(mesh.origin) + offset)
+    elif isinstance(mesh, pv.RectilinearGrid):
+        for i, axis in enumerate("xyz"):
+            setattr(out, axis, np.asarray(getattr(mesh, axis), dtype=np.float64) + offset[i])
+    else:
+        # Not by assigning to points, which would move those that the copy shares.
+        points: Any = np.asarray(mesh.points, dtype=np.float64) + offset
+        out.SetPoints(pv.vtk_points(points))
+    return out
 
 
 def points_of(mesh: pv.DataSet, positions: str | None) -> Rows:
@@ -129,6 +155,15 @@ def _named(mesh: pv.DataSet, name: str, value: str, *, average_cells: bool) -> A
         )
     there = ", ".join(repr(key) for key in mesh.point_data) or "none"
     raise ValueError(_check.message(name, f"the name of a point array ({there})", repr(value)))
+
+
+def refuse_unnamed(name: str, value: Any) -> None:
+    """Refuse anything but the name of an array, or None."""
+    if value is not None and not isinstance(value, str):
+        remedy = "attach it to the mesh and name it"
+        raise TypeError(
+            _check.message(name, "the name of a point array", _check.describe(value), remedy)
+        )
 
 
 def vectors_of(mesh: pv.DataSet, name: str, value: Any, n: int) -> Array:

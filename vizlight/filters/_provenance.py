@@ -44,6 +44,13 @@ def record(shading: Shading, filter_name: str, scene: Scene, options: dict[str, 
     )
 
 
+def retell(mesh: pv.DataSet, name: str, filter_name: str, options: dict[str, Any]) -> None:
+    """Tell of an array that another filter made it, by the help of the one that is told."""
+    told = json.loads(str(mesh.field_data[key(name)][0]))
+    plain = {name: _plain(value) for name, value in options.items()}
+    mesh.field_data[key(name)] = [json.dumps(told | {"filter": filter_name, "options": plain})]
+
+
 def _plain(value: Any) -> Any:
     """Return a value that JSON can hold; a mesh or a long array is only described."""
     if value is None or isinstance(value, str | bool | int | float):

@@ -13,7 +13,17 @@ if TYPE_CHECKING:
     from vizlight.scene import Scene
 
 
-def satin(surface: Any, /, scene: Scene, *, tangents: str, seeds: Any = 300, seed: int = 0) -> Any:
+def satin(
+    surface: Any,
+    /,
+    scene: Scene,
+    *,
+    tangents: str,
+    seeds: Any = 300,
+    seed: int = 0,
+    compensate: bool = True,
+    **options: Any,
+) -> Any:
     """Light a surface with a tangent field in four ways: the panels of Banks' illustration 2.
 
     Parameters
@@ -27,6 +37,10 @@ def satin(surface: Any, /, scene: Scene, *, tangents: str, seeds: Any = 300, see
         A point array of 3 components, tangent to the surface.
     seeds, seed
         Of the integral curves, as in :func:`vizlight.streamlines`.
+    compensate : bool, default: True
+        Diffuse with the exponent p(k, n); Banks' panels are without.
+    **options
+        Of :func:`vizlight.illuminate`, for all panels.
 
     Returns
     -------
@@ -40,14 +54,17 @@ def satin(surface: Any, /, scene: Scene, *, tangents: str, seeds: Any = 300, see
     TypeError, ValueError
         As :func:`vizlight.illuminate` and :func:`vizlight.streamlines`.
     """
+    options["compensate"] = compensate
     curves = streamlines(
-        surface, scene, vectors=tangents, conditioned=False, seeds=seeds, seed=seed
+        surface, scene, vectors=tangents, conditioned=False, seeds=seeds, seed=seed, **options
     )
     return pv.MultiBlock(
         {
             "curves": curves,
-            "surface": illuminate(surface, scene),
-            "field": illuminate(surface, scene, tangents=tangents),
-            "conditioned": illuminate(surface, scene, tangents=tangents, conditioned=True),
+            "surface": illuminate(surface, scene, **options),
+            "field": illuminate(surface, scene, tangents=tangents, **options),
+            "conditioned": illuminate(
+                surface, scene, tangents=tangents, conditioned=True, **options
+            ),
         }
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista as pv
@@ -10,7 +10,15 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.filters import _lines, _mesh, _surface
 from vizlight.filters._illuminate import illuminate
+from vizlight.filters._light import DEFAULT_NAME
+from vizlight.filters._provenance import retell
+from vizlight.geometry import fur
 from vizlight.scene import Scene
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.floating[Any]]
 
 
 def streamlines(
@@ -47,8 +55,8 @@ def streamlines(
     conditioned : bool, optional
         Default: whether there is a surface.
     seeds : int or array_like, shape (M, 3), or mesh, default: 200
-        Where lines start; a number is of points of the mesh (of the surface for confined
-        lines), drawn without repetition.
+        Where lines start; a number is of points of the mesh, drawn without repetition, or, for
+        confined lines, of places on the surface, uniform in area.
     seed : int, default: 0
         Of the drawing.
     step : float, default: 0.3
@@ -76,8 +84,9 @@ def streamlines(
     Notes
     -----
     Confined lines are moved to the closest point of the surface after tracing, so that they lie
-    on its triangles to rounding: 1e-6 of the surface's size in float32. Sources: Banks 4.1 and
-    (6).
+    on its triangles to rounding: 1e-6 of the surface's size. VTK traces in float32; a mesh far
+    from the origin is therefore traced near it, and its lines come back in float64. Vectors that
+    are not finite end a line as zero ones do. Sources: Banks 4.1 and (6).
 
     Examples
     --------
@@ -88,9 +97,13 @@ def streamlines(
     >>> "luminance" in lines.point_data
     True
     """
+    told = {name: value for name, value in locals().items() if name not in ("mesh", "scene")}
     if not isinstance(mesh, pv.DataSet):
         raise TypeError(_check.message("mesh", "a PyVista dataset", type(mesh).__name__))
     _check.instance("scene", scene, Scene)
+    if "inplace" in options:
+        remedy = "the lines are always a new mesh"
+        raise TypeError(_check.message("inplace", "no such option", options["inplace"], remedy))
     vectors = _vectors_name(mesh, vectors)
     is_surface = isinstance(mesh, pv.PolyData) and bool(
         mesh.GetNumberOfPolys() or mesh.GetNumberOfStrips()
@@ -107,9 +120,11 @@ def streamlines(
         surface = _surface.with_normals(surface, scene.view)
         if confined:
             surface = carrier = _tangential(surface, mesh, vectors)
-    carrier = _traceable(carrier)
+    origin = np.array(_mesh.near_origin(carrier))
+    starts = _seeds(carrier, seeds, seed, on_surface=confined) - origin
+    carrier = _mesh.moved(_traceable(carrier), -origin)
     lines = carrier.streamlines_from_source(
-        _seeds(carrier, seeds, seed),
+        pv.PolyData(starts),
         vectors=vectors,
         surface_streamlines=confined,
         integration_direction="both",
@@ -122,6 +137,8 @@ def streamlines(
         compute_vorticity=False,
     )
     lines = _lines.without_degenerate(lines)
+    if _surface.NORMALS in lines.point_data:
+        del lines.point_data[_surface.NORMALS]
     if not lines.n_points:
         raise ValueError(
             _check.message(
@@ -129,20 +146,25 @@ def streamlines(
             )
         )
     if surface is not None:
-        places, normals = _surface.closest(surface, np.asarray(lines.points))
+        places, normals = _surface.closest(_mesh.moved(surface, -origin), np.asarray(lines.points))
         if confined:
             drift = np.linalg.norm(places - lines.points, axis=1).max()
             lines.points = places.astype(lines.points.dtype)
             lines.field_data["drift"] = [drift]
         lines.point_data["Normals"] = normals.astype(lines.points.dtype)
+    lines = _mesh.moved(lines, origin)
     if conditioned is None:
         conditioned = surface is not None
     if conditioned:
         options.setdefault("normals", "Normals")
-    return illuminate(lines, scene, conditioned=conditioned, inplace=True, **options)
+    lit = illuminate(lines, scene, conditioned=conditioned, inplace=True, **options)
+    told |= {"vectors": vectors, **told.pop("options")}
+    retell(lit, options.get("name", DEFAULT_NAME), "streamlines", told)
+    return lit
 
 
 def _vectors_name(mesh: pv.DataSet, vectors: str | None) -> str:
+    _mesh.refuse_unnamed("vectors", vectors)
     if vectors is None:
         vectors = mesh.point_data.active_vectors_name
         if vectors is None:
@@ -159,8 +181,9 @@ def _tangential(surface: pv.PolyData, mesh: pv.DataSet, vectors: str) -> pv.Poly
     if vectors not in surface.point_data:
         field = pv.PolyData(surface.points).sample(mesh)
         surface.point_data[vectors] = np.asarray(field.point_data[vectors])
-    array = np.asarray(surface.point_data[vectors], dtype=np.float64)
-    normal = np.asarray(surface.point_data["Normals"], dtype=np.float64)
+    array = np.array(surface.point_data[vectors], dtype=np.float64)
+    array[~np.all(np.isfinite(array), axis=1)] = 0
+    normal = np.asarray(surface.point_data[_surface.NORMALS], dtype=np.float64)
     along = array - np.einsum("ij,ij->i", array, normal)[:, np.newaxis] * normal
     surface.point_data[vectors] = along
     return surface
@@ -181,17 +204,24 @@ def _largest(mesh: pv.DataSet, vectors: str) -> float:
     return float(np.max(speed, initial=0.0, where=np.isfinite(speed)))
 
 
-def _seeds(mesh: pv.DataSet, seeds: Any, seed: int) -> pv.PolyData:
-    if isinstance(seeds, pv.DataSet):
-        return pv.PolyData(np.asarray(seeds.points))
-    if np.ndim(seeds) == 0:
-        count = min(_check.integer("seeds", seeds, low=1), mesh.n_points)
+def _seeds(mesh: pv.DataSet, seeds: Any, seed: int, *, on_surface: bool) -> Array:
+    """Return where lines start, in float64."""
+    if np.ndim(seeds) == 0 and not isinstance(seeds, pv.DataSet):
+        count, seed = _check.integer("seeds", seeds, low=1), _check.integer("seed", seed, low=0)
+        points = np.asarray(mesh.points, dtype=np.float64)
+        if on_surface:
+            faces = np.asarray(mesh.regular_faces)
+            face, weights = fur.seeds(points, faces, count, seed=seed)
+            return np.asarray(np.einsum("fi,fij->fj", weights, points[faces[face]]))
+        count = min(count, mesh.n_points)
         chosen = np.random.default_rng(seed).choice(mesh.n_points, count, replace=False)
-        return pv.PolyData(np.asarray(mesh.points)[np.sort(chosen)])
-    points = _check.vectors("seeds", seeds, n=3)
-    if points.ndim != 2:
-        raise ValueError(_check.message("seeds", "shape (M, 3)", _check.describe(points)))
-    return pv.PolyData(points)
+        return points[np.sort(chosen)]
+    given = seeds.points if isinstance(seeds, pv.DataSet) else seeds
+    places = _check.vectors("seeds", given, n=3).astype(np.float64)
+    if places.ndim != 2 or not np.all(np.isfinite(places)):
+        what = "finite points of shape (M, 3)"
+        raise ValueError(_check.message("seeds", what, _check.describe(given)))
+    return places
 
 
 def _max_length(mesh: pv.DataSet, max_length: float | None) -> float:

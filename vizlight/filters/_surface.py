@@ -18,8 +18,14 @@ if TYPE_CHECKING:
     Array = NDArray[np.floating[Any]]
 
 
+#: The array that :func:`with_normals` adds, under a name that no user's array has.
+NORMALS = "vizlight normals"
+
+
 def with_normals(surface: Any, view: View | None, name: str = "surface") -> pv.PolyData:
     """Return the triangles of a surface with point normals; it shares nothing that is changed.
+
+    Normals stand under the name NORMALS, so that an array of the user's is not lost.
 
     Raises
     ------
@@ -47,8 +53,7 @@ def with_normals(surface: Any, view: View | None, name: str = "surface") -> pv.P
     for key, array in surface.point_data.items():
         if np.asarray(array).dtype.kind in "biuf":
             triangles.point_data[key] = np.asarray(array)
-    triangles.point_data["Normals"] = _mesh.normals_of(surface, None, 3, view)
-    triangles.point_data.active_normals_name = "Normals"
+    triangles.point_data[NORMALS] = _mesh.normals_of(surface, None, 3, view)
     return triangles if triangles.is_all_triangles else triangles.triangulate()
 
 
@@ -67,6 +72,6 @@ def closest(surface: pv.PolyData, points: Array) -> tuple[Array, Array]:
         np.einsum("ij,ij->i", np.cross(q - p, places - p), normal)[:, np.newaxis] / area
         for p, q in ((b, c), (c, a), (a, b))
     ]
-    normals = np.asarray(surface.point_data["Normals"], dtype=np.float64)
+    normals = np.asarray(surface.point_data[NORMALS], dtype=np.float64)
     found = sum(w * normals[corners[:, i]] for i, w in enumerate(weights))
     return places, np.asarray(found)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vizlight import _check
+from vizlight.model import _kernels
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -107,9 +108,8 @@ def _vertex_tangents(place: Array, line: Index) -> Array:
         return tangent
     step = place[1:] - place[:-1]
     inside = line[1:] == line[:-1]
-    size = np.linalg.norm(step, axis=1)
-    size[~inside] = 1
-    unit = step / size[:, np.newaxis]
+    direction, size = _kernels.unit(np.ascontiguousarray(step.T))
+    unit = direction.T
 
     # Segment i runs from vertex i to i + 1; -1 where a vertex has no segment on a side.
     after, before = np.full(count, -1), np.full(count, -1)
@@ -122,11 +122,18 @@ def _vertex_tangents(place: Array, line: Index) -> Array:
     after[last[closed]] = after[first[closed]]
 
     both = np.flatnonzero((before >= 0) & (after >= 0))
-    h0, h1 = size[before[both], np.newaxis], size[after[both], np.newaxis]
-    tangent[both] = (h1 * unit[before[both]] + h0 * unit[after[both]]) / (h0 + h1)
+    part = _share(size[before[both]], size[after[both]])
+    tangent[both] = (1 - part) * unit[before[both]] + part * unit[after[both]]
     _ends(tangent, unit, size, first[~closed], last[~closed])
     length = np.linalg.norm(tangent, axis=1, keepdims=True)
     return tangent / np.where(length > 0, length, 1)
+
+
+def _share(h0: Array, h1: Array) -> Array:
+    """Return h0 / (h0 + h1) as a column; the sum may be out of range."""
+    larger = np.maximum(h0, h1)
+    share: Array = (h0 / larger) / (h0 / larger + h1 / larger)
+    return share[:, np.newaxis]
 
 
 def _ends(tangent: Array, unit: Array, size: Array, first: Index, last: Index) -> None:
@@ -135,5 +142,5 @@ def _ends(tangent: Array, unit: Array, size: Array, first: Index, last: Index) -
     for end, near, far in ((first, first, first + 1), (last, last - 1, last - 2)):
         tangent[end] = unit[near]
         near, far = near[long], far[long]
-        part = (size[near] / (size[near] + size[far]))[:, np.newaxis]
+        part = _share(size[near], size[far])
         tangent[end[long]] += (unit[near] - unit[far]) * part
