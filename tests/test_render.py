@@ -172,6 +172,22 @@ def test_bad_input(tmp_path):
         render.make_plotter(lit, camera=camera, background="nothing")
     with pytest.raises(ValueError, match="up: expected a direction across the view"):
         render.camera_on(sphere.bounds, (1, 1, 1), up=(2, 2, 2))
+    for options, words in (
+        ({"clim": (0, 1, 2)}, "clim: expected a lower and a higher number"),
+        ({"cmap": "greyish"}, "cmap: expected a colour map's name, got 'greyish'"),
+        ({"anti_aliasing": "best"}, "anti_aliasing: expected 'ssaa', 'msaa', 'fxaa' or None"),
+        ({"size": (np.nan, 5)}, "size: expected finite components"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            render.make_plotter(lit, camera=camera, **options)
+    with pytest.raises(TypeError, match="size: expected real numbers"):
+        render.make_plotter(lit, camera=camera, size=("a", "b"))
+    with pytest.raises(TypeError, match="panels: expected PyVista meshes or Panels, got None"):
+        render.make_plotter([lit, None], camera=camera)
+    with pytest.raises(TypeError, match="title: expected words, got 3"):
+        render.make_plotter(render.Panel(lit, title=3), camera=camera)
+    with pytest.raises(ValueError, match="bounds: expected six finite numbers"):
+        render.camera_on((0, 1))
     empty = pv.PolyData()
     empty["luminance"] = np.empty(0)
     with pytest.raises(ValueError, match="panels: expected a mesh with points"):

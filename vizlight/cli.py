@@ -383,7 +383,7 @@ def _size(text: str) -> tuple[int, int]:
     from vizlight import render
 
     width, _, height = text.lower().partition("x")
-    if not (width.isdigit() and height.isdigit()):
+    if not (width.isdecimal() and height.isdecimal()):
         raise ValueError(_check.message("--size", "WIDTHxHEIGHT in pixels", repr(text)))
     columns, rows = render.pixels_of((int(width), int(height)))
     return columns, rows

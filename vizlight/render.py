@@ -179,9 +179,10 @@ def camera_on(
     if np.linalg.norm(np.cross(_check.vector("up", up, direction=True), toward)) < 1e-6:
         raise ValueError(_check.message("up", "a direction across the view", tuple(up)))
     zoom = _check.number("zoom", zoom, low=1e-6)
-    box = np.asarray(bounds, dtype=float).reshape(3, 2)
-    if not np.all(np.isfinite(box)):
-        raise ValueError(_check.message("bounds", "six finite numbers", list(bounds)))
+    box = _check.floats("bounds", bounds).astype(np.float64)
+    if box.shape != (6,) or not np.all(np.isfinite(box)):
+        raise ValueError(_check.message("bounds", "six finite numbers", _check.describe(bounds)))
+    box = box.reshape(3, 2)
     centre = box.mean(axis=1)
     radius = 0.5 * float(np.linalg.norm(box[:, 1] - box[:, 0])) or 1.0
     camera: Any = pv.Camera()  # type: ignore[no-untyped-call]
@@ -260,6 +261,11 @@ def make_plotter(
     if not shown:
         raise ValueError(_check.message("panels", "one mesh or more", "none"))
     for panel in shown:
+        if not isinstance(panel.mesh, pv.DataSet | pv.MultiBlock):
+            got = _check.describe(panel.mesh)
+            raise TypeError(_check.message("panels", "PyVista meshes or Panels", got))
+        if not isinstance(panel.title, str):
+            raise TypeError(_check.message("title", "words", _check.describe(panel.title)))
         for mesh in leaves(panel.mesh):
             if panel.scalars not in mesh.point_data:
                 there = ", ".join(repr(key) for key in mesh.point_data) or "none"
@@ -271,9 +277,16 @@ def make_plotter(
     if not hasattr(camera, "GetPosition"):
         raise TypeError(_check.message("camera", "a pyvista.Camera", _check.describe(camera)))
     pixels = pixels_of(size)
-    low, high = _check.vector("clim", clim)
-    if not low < high:
+    ends = _check.vector("clim", clim)
+    if len(ends) != 2 or not ends[0] < ends[1]:
         raise ValueError(_check.message("clim", "a lower and a higher number", clim))
+    try:
+        pv.LookupTable(cmap)
+    except ValueError as error:
+        raise ValueError(_check.message("cmap", "a colour map's name", repr(cmap))) from error
+    if anti_aliasing is not None and anti_aliasing not in get_args(AntiAliasing):
+        kinds = "'ssaa', 'msaa', 'fxaa' or None"
+        raise ValueError(_check.message("anti_aliasing", kinds, repr(anti_aliasing)))
     line_width = _check.number("line_width", line_width, low=0.1, high=1000.0)
     if background is None:
         background = (
@@ -287,17 +300,21 @@ def make_plotter(
         plotter = pv.Plotter(
             off_screen=True, shape=(1, len(shown)), window_size=pixels, border=False
         )
-    for column, panel in enumerate(shown):
-        plotter.subplot(0, column)
-        plotter.set_background(background)
-        _draw(plotter, panel, cmap, clim, line_width)
-        if panel.title:
-            ink = "black" if sum(pv.Color(background).float_rgb) > 1.2 else "white"
-            plotter.add_text(panel.title, position="upper_edge", font_size=10, color=ink)
-        plotter.camera = camera.copy()
-        plotter.reset_camera_clipping_range()
-        if anti_aliasing is not None:
-            plotter.enable_anti_aliasing(anti_aliasing)
+    try:
+        for column, panel in enumerate(shown):
+            plotter.subplot(0, column)
+            plotter.set_background(background)
+            _draw(plotter, panel, cmap, clim, line_width)
+            if panel.title:
+                ink = "black" if sum(pv.Color(background).float_rgb) > 1.2 else "white"
+                plotter.add_text(panel.title, position="upper_edge", font_size=10, color=ink)
+            plotter.camera = camera.copy()
+            plotter.reset_camera_clipping_range()
+            if anti_aliasing is not None:
+                plotter.enable_anti_aliasing(anti_aliasing)
+    except BaseException:
+        plotter.close()
+        raise
     return plotter
 
 
@@ -337,7 +354,8 @@ def pixels_of(size: Any) -> list[int]:
     """Return width and height, if a picture of that size can be drawn with anti-aliasing."""
     if np.shape(size) != (2,):
         raise ValueError(_check.message("size", "(width, height) in pixels", size))
-    pixels = [_check.integer("size", int(p) if p == int(p) else p, low=1) for p in size]
+    sides = _check.vector("size", size)
+    pixels = [_check.integer("size", int(p) if p == int(p) else p, low=1) for p in sides]
     if max(pixels) > LARGEST_SIDE or pixels[0] * pixels[1] > LARGEST_AREA:
         limit = f"at most {LARGEST_SIDE} pixels a side and {LARGEST_AREA // 10**6} million in all"
         raise ValueError(_check.message("size", limit, f"{pixels[0]}x{pixels[1]}"))
