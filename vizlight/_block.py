@@ -127,6 +127,7 @@ def shade_block(
     points: Rows,
     tangents: Rows | None,
     normals: Rows | None,
+    carrier: Rows | None,
     depth: Rows | None,
     output: Output,
 ) -> None:
@@ -145,11 +146,10 @@ def shade_block(
         surface = _Surface(normal.astype(dtype, copy=False), two_sided=plan.two_sided)
         manifold = surface
     if tangents is not None:
-        vectors = columns(tangents, block, dtype).reshape(plan.k, plan.n, size)
-        rtol = frames.default_rtol(plan.n, vectors.dtype)
-        frame, rank = _kernels.orthonormalize(vectors, rtol)
-        valid &= rank == plan.k
-        manifold = _Tangents(frame.astype(dtype, copy=False))
+        manifold = _spanned(plan, plan.k, tangents, block, valid)
+    sheet: _Tangents | None = None
+    if carrier is not None:
+        sheet = _spanned(plan, plan.carrier, carrier, block, valid)
 
     eye: _Split | None = None
     seen: NDArray[np.bool_] | None = None
@@ -187,6 +187,8 @@ def shade_block(
             if under is not None:
                 path = falloff.fur_path(under, np.abs(cosine)) + path_out
                 scale = scale * falloff.fur_passes(path, plan.fur)
+        if sheet is not None:
+            scale = scale * sheet.diffuse(sheet.split(toward_light), plan.carrier_exponent)
         if plan.diffuse:
             sums.add("diffuse", manifold.diffuse(lit, plan.exponent) * scale, light)
         if eye is not None:
@@ -196,6 +198,17 @@ def shade_block(
                 value = value * seen
             sums.add("specular", value, light)
     _store(plan, sums, position, valid, block, output)
+
+
+def _spanned(
+    plan: Plan, k: int, tangents: Rows, block: slice, valid: NDArray[np.bool_]
+) -> _Tangents:
+    """Return what k tangents a point span; where they are dependent, ``valid`` becomes False."""
+    vectors = columns(tangents, block, plan.dtype).reshape(k, plan.n, -1)
+    rtol = frames.default_rtol(plan.n, vectors.dtype)
+    frame, rank = _kernels.orthonormalize(vectors, rtol)
+    valid &= rank == k
+    return _Tangents(frame.astype(plan.dtype, copy=False))
 
 
 def columns(rows: Rows, block: slice, work: DTypeLike = np.float32) -> Array:

@@ -75,6 +75,7 @@ def shade(
     /,
     *,
     normals: Rows | None = None,
+    carrier: Rows | None = None,
     depth: Rows | None = None,
     precision: Precision | None = None,
     threads: int | None = None,
@@ -96,6 +97,10 @@ def shade(
     scene : Scene
     normals : array_like, shape (N, n), optional
         Outward normals, of any length. With tangents they condition the light (Banks 6).
+    carrier : array_like, shape (N, j, n) or (N, j n), optional
+        Instead of normals, where codimension 2 or more has none: what spans the manifold that
+        the tangents lie in. Diffuse and specular of each light are multiplied by its own
+        brightness ``sin(a)^p(j, n)``.
     depth : array_like, shape (N,), optional
         With ``fur=``: the height of fur above each point, across the surface.
     precision : {"float32", "float64"}, optional
@@ -143,6 +148,10 @@ def shade(
             raise ValueError(
                 _check.message("normals", f"shape ({count}, {n})", f"shape {normals.shape}")
             )
+    spans = None
+    if carrier is not None:
+        carrier = _rows("carrier", carrier)
+        spans = _tangent_count(carrier.shape, count, n, "carrier")
     if (depth is None) == bool(options.get("fur")):
         raise ValueError(_check.message("depth", "depth and fur= together", "one of them"))
     if depth is not None:
@@ -155,7 +164,9 @@ def shade(
         precision = "float32" if small else "float64"
     if precision not in get_args(Precision):
         raise ValueError(_check.message("precision", "'float32' or 'float64'", repr(precision)))
-    made = plan(scene, n=n, k=k, normals=normals is not None, dtype=precision, **options)
+    made = plan(
+        scene, n=n, k=k, normals=normals is not None, carrier=spans, dtype=precision, **options
+    )
 
     start = time.perf_counter()
     output = Output(made, count)
@@ -163,7 +174,7 @@ def shade(
 
     def work(block: slice) -> int:
         with np.errstate(all="ignore"):
-            shade_block(made, block, points, tangents, normals, depth, output)
+            shade_block(made, block, points, tangents, normals, carrier, depth, output)
         return int(block.stop)
 
     for done in _pool.run(work, _pool.blocks(count, step), threads):
@@ -190,7 +201,7 @@ def _rows(name: str, rows: Any) -> Any:
     return rows
 
 
-def _tangent_count(shape: tuple[int, ...], count: int, n: int) -> int:
+def _tangent_count(shape: tuple[int, ...], count: int, n: int, name: str = "tangents") -> int:
     if len(shape) == 3 and shape[0] == count and shape[2] == n:
         k = shape[1]
     elif len(shape) == 2 and shape[0] == count and shape[1] % n == 0:
@@ -200,7 +211,7 @@ def _tangent_count(shape: tuple[int, ...], count: int, n: int) -> int:
     if not 0 < k < n:
         raise ValueError(
             _check.message(
-                "tangents",
+                name,
                 f"shape ({count}, k, {n}) or ({count}, {n} k) with k < {n}",
                 f"shape {tuple(shape)}",
             )

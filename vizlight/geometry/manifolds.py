@@ -72,7 +72,8 @@ def torus(*radii: float, resolution: Any = 64) -> Manifold:
 
     Notes
     -----
-    The tangents are unit and orthogonal as they come; error 1 eps a component.
+    The tangents are unit and orthogonal as they come. Error of points, as a part of the largest
+    radius, and of tangents: 8 eps a component, that of the angle included.
     Source: Banks, section 3.
     """
     if not 1 <= len(radii) <= 3:
@@ -143,7 +144,8 @@ def torus_curve(
 
     Notes
     -----
-    Error of the unit tangent: 4 eps a component, plus eps times the angle ``2 pi A turns``.
+    Error of points and tangents: ``8 eps`` a component and eps times the larger of the angles,
+    ``2 pi turns max(1, A)``, on top.
     Source: Banks, section 3.
     """
     number = _check.number("ratio", float(ratio) if isinstance(ratio, Fraction) else ratio)
@@ -204,7 +206,7 @@ def hopf_fibres(
     With a point (a, b, c) of the unit sphere and ``z1 = sqrt((1 + c)/2)``,
     ``z2 = sqrt((1 - c)/2) (a - i b)/|a - i b|`` the fibre is ``e^(i t) (z1, z2)``; the Hopf map
     ``(2 Re(z1 z2*), 2 Im(z1 z2*), |z1|^2 - |z2|^2)`` takes it to (a, b, c). The tangent is i
-    times the point, unit as it comes; error 4 eps a component.
+    times the point, unit as it comes; error of both 8 eps a component.
     """
     radius = _radius("radius", radius)
     if base is None:
@@ -254,7 +256,7 @@ def klein_bottle(*, major: float = 2.0, minor: float = 1.0, resolution: Any = (9
 
     Notes
     -----
-    Error of the frame: 6 eps a component.
+    Error of points and of what the frame spans: 12 eps a component.
     """
     major, minor = _radius("major", major), _radius("minor", minor)
     if minor >= major:
@@ -302,7 +304,7 @@ def veronese(*, radius: float = 1.0, resolution: int = 24) -> Manifold:
 
     Notes
     -----
-    Error of the frame: 8 eps a component.
+    Error of points and of what the frame spans: 12 eps a component.
     """
     radius = _radius("radius", radius)
     size = _check.integer("resolution", resolution, low=2)
@@ -423,7 +425,7 @@ def sphere3(*, radius: float = 1.0, resolution: int = 8) -> Manifold:
     Notes
     -----
     The frame is the point, as a quaternion, times i, j and k: orthonormal and the same function
-    everywhere, which no 2-sphere has. Error 2 eps a component.
+    everywhere, which no 2-sphere has. Error 4 eps a component.
     """
     radius = _radius("radius", radius)
     size = _check.integer("resolution", resolution, low=1)
