@@ -9,6 +9,7 @@ import pyvista as pv
 from scipy.sparse import coo_array
 
 from vizlight import _check
+from vizlight.filters import _mesh
 from vizlight.geometry import slices
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ def cut(mesh: Any, heights: Array, /) -> Any:
     -------
     pyvista.PolyData
         Points, lines or triangles. Arrays of numbers are interpolated along the cut edges; a
-        hexahedron is cut as 12 tetrahedra around its mean point.
+        hexahedron is cut as 12 tetrahedra around its mean point. Triangles go either way around.
 
     Raises
     ------
@@ -71,7 +72,7 @@ def cut(mesh: Any, heights: Array, /) -> Any:
         array = np.asarray(value)
         if array.dtype.kind in "biuf":
             kind = array.dtype if array.dtype.kind == "f" else np.float64
-            out.point_data[key] = (between @ array.astype(np.float64)).astype(kind)
+            _mesh.attach_rows(out, key, (between @ array.astype(np.float64)).astype(kind))
     for key, value in mesh.field_data.items():
         out.field_data[key] = value
     return out

@@ -139,6 +139,14 @@ def vectors_of(mesh: pv.DataSet, name: str, value: Any, n: int) -> Array:
     return array
 
 
+def attach_rows(mesh: Any, name: str, array: Array) -> None:
+    """Attach a point array, also one of no rows, which PyVista refuses."""
+    if len(array):
+        mesh.point_data[name] = array
+    else:
+        mesh.GetPointData().AddArray(pv.convert_array(array, name))
+
+
 def tangents_of(
     mesh: pv.DataSet, value: Any, n: int, *, average_cells: bool, argument: str = "tangents"
 ) -> Array:

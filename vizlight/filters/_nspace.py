@@ -60,6 +60,7 @@ class Turning:
         arrays = self._arrays(out)
         n = arrays[self.positions].shape[1]
         matrix = None if self.rotation is None else projection.rotation(n, self.rotation)
+        plane = None if self.hyperplane is None else _plane(self.hyperplane, n)
         record = _record(self, mesh, matrix)
         for name, array in arrays.items():
             if matrix is not None:
@@ -67,10 +68,9 @@ class Turning:
                 array = _blocks(
                     lambda x, rows=rows: projection.turn(x.reshape(-1, rows, n), matrix), array
                 )
-            if out.point_data[name] is not array:
-                out.point_data[name] = array
-        if self.hyperplane is not None:
-            out = self._sliced(out, n)
+            _mesh.attach_rows(out, name, array)
+        if plane is not None:
+            out = self._sliced(out, *plane)
         out.field_data[_provenance.key(RECORD)] = [record]
         done.add(mesh.n_points)
         return out
@@ -105,8 +105,7 @@ class Turning:
             for name, array in found.items()
         }
 
-    def _sliced(self, mesh: Any, n: int) -> Any:
-        normal, offset = _plane(self.hyperplane, n)
+    def _sliced(self, mesh: Any, normal: Array, offset: float) -> Any:
         position = np.asarray(mesh.point_data[self.positions])
         heights = np.empty(len(position))
         with np.errstate(all="ignore"):
@@ -115,12 +114,14 @@ class Turning:
         out = _cut.cut(mesh, heights)
         if self.frame is not None:
             tangents = np.asarray(out.point_data[self.frame])
+            n = len(normal)
             k = tangents.shape[1] // n
             del out.point_data[self.frame]
             if k > 1:
-                out.point_data[self.frame] = _blocks(
+                rows = _blocks(
                     lambda x: slices.slice_frame(x.reshape(-1, k, n), normal), tangents, k - 1, n
                 )
+                _mesh.attach_rows(out, self.frame, rows)
         return out
 
     def projected(self, mesh: Any, done: Counter, lost: Counter) -> Any:
@@ -146,16 +147,15 @@ class Turning:
         )
         out.SetPoints(pv.vtk_points(points))
         for name in self.vectors:
-            out.point_data[PROJECTED + name] = self._image(out, name, position)
+            _mesh.attach_rows(out, PROJECTED + name, self._image(out, name, position))
         if self.frame is not None:
             name = PROJECTED + self.frame
             out.point_data.pop(name, None)
             # Three directions fill 3-space: there is no frame that light could use.
             if self.frame in out.point_data and out.point_data[self.frame].shape[1] < 3 * n:
                 image = self._image(out, self.frame, position)
-                out.point_data[name] = _blocks(
-                    lambda x: orthonormalize(x.reshape(len(x), -1, 3))[0], image
-                )
+                rows = _blocks(lambda x: orthonormalize(x.reshape(len(x), -1, 3))[0], image)
+                _mesh.attach_rows(out, name, rows)
         done.add(mesh.n_points)
         return out
 
@@ -215,6 +215,8 @@ def _without(mesh: Any, lost: NDArray[np.bool_]) -> Any:
     for data, kept in zip((grid.point_data, grid.cell_data), before, strict=True):
         for name in set(data) - kept:
             del data[name]
+    for name in before[0] - set(grid.point_data):  # where no point is left
+        _mesh.attach_rows(grid, name, np.asarray(mesh.point_data[name])[:0])
     for key, value in mesh.field_data.items():
         grid.field_data[key] = value
     return grid
