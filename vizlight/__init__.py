@@ -11,7 +11,15 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from vizlight.data import example_path, load_example
-    from vizlight.filters import fur, illuminate, provenance, satin, streamlines
+    from vizlight.filters import (
+        fur,
+        illuminate,
+        manifold,
+        project,
+        provenance,
+        satin,
+        streamlines,
+    )
     from vizlight.light import Light
     from vizlight.scene import DepthCue, Material, Scene, View
 
@@ -25,6 +33,8 @@ _HOMES = {
     "fur": "vizlight.filters",
     "illuminate": "vizlight.filters",
     "load_example": "vizlight.data",
+    "manifold": "vizlight.filters",
+    "project": "vizlight.filters",
     "provenance": "vizlight.filters",
     "satin": "vizlight.filters",
     "streamlines": "vizlight.filters",
@@ -41,6 +51,8 @@ __all__ = [
     "fur",
     "illuminate",
     "load_example",
+    "manifold",
+    "project",
     "provenance",
     "satin",
     "streamlines",

@@ -54,10 +54,10 @@ class _Split(NamedTuple):
 
 
 class _Tangents:
-    """A k-manifold given by its tangents; it has no sides."""
+    """A k-manifold given by its tangents, good where these are independent; it has no sides."""
 
-    def __init__(self, frame: Array) -> None:
-        self.frame = frame
+    def __init__(self, frame: Array, good: NDArray[np.bool_]) -> None:
+        self.frame, self.good = frame, good
 
     def split(self, x: Array) -> _Split:
         return _Split(x, *_kernels.split(x, self.frame))
@@ -121,91 +121,94 @@ class _Surface:
         return value if self.two_sided else value * (lit.across > 0)
 
 
+class Given(NamedTuple):
+    """The rows that are lit; normals, carrier and perhaps tangents serve ``repeat`` points each."""
+
+    points: Rows
+    tangents: Rows | None
+    normals: Rows | None
+    carrier: Rows | None
+    depth: Rows | None
+    repeat: int
+
+
 class _Lit(NamedTuple):
-    """The direction toward a light: split, how far it is (None at infinity), and N . wi."""
+    """The direction toward a light, split, how far it is (None at infinity), and what it meets.
+
+    ``cosine`` is N . wi of the normals, ``carried`` the brightness of the carrier.
+    """
 
     split: _Split
     distance: Array | None
     cosine: Array | None
+    carried: Array | None
 
 
 class _Shape:
     """The manifold at some rows, and the directions toward lights at infinity that it has split."""
 
     def __init__(
-        self, plan: Plan, surface: _Surface | None, tangents: Rows | None, rows: slice
+        self,
+        plan: Plan,
+        surface: _Surface | None,
+        sheet: _Tangents | None,
+        tangents: Rows | None,
+        rows: slice,
     ) -> None:
-        self.plan, self.surface = plan, surface
+        self.plan, self.surface, self.sheet = plan, surface, sheet
         self.manifold: Any = surface
-        self.good: NDArray[np.bool_] | None = None
-        self._distant: dict[int, _Lit] = {}
+        masks = [part.good for part in (surface, sheet) if part is not None]
         if tangents is not None:
-            vectors = columns(tangents, rows, plan.dtype)
-            vectors = vectors.reshape(plan.k, plan.n, vectors.shape[1])
-            rtol = frames.default_rtol(plan.n, vectors.dtype)
-            frame, rank = _kernels.orthonormalize(vectors, rtol)
-            self.good = rank == plan.k
-            self.manifold = _Tangents(frame.astype(plan.dtype, copy=False))
-
-    @property
-    def valid(self) -> NDArray[np.bool_]:
-        """Where there is a manifold of the right dimension, and a normal if one is asked for."""
-        masks = [self.good] if self.good is not None else []
-        masks += [self.surface.good] if self.surface is not None else []
-        both: NDArray[np.bool_] = np.logical_and.reduce(masks)
-        return both
+            self.manifold = _spanned(plan, plan.k, tangents, rows)
+            masks.append(self.manifold.good)
+        self.good: NDArray[np.bool_] = np.logical_and.reduce(masks)
+        self._distant: dict[int, _Lit] = {}
 
     def toward(self, number: int, position: Array | None) -> _Lit:
         """Return the direction toward a light, found once for a light at infinity."""
         if number in self._distant:
             return self._distant[number]
         vector, distance = _toward(self.plan.scene.lights[number], position, self.plan.dtype)
-        split, cosine = self.manifold.split(vector), None
+        split, cosine, carried = self.manifold.split(vector), None, None
         if self.surface is self.manifold:
             cosine = split.across
         elif self.surface is not None:
             cosine = self.surface.cosine(vector)
-        lit = _Lit(split, distance, cosine)
+        if self.sheet is not None:
+            carried = self.sheet.diffuse(self.sheet.split(vector), self.plan.carrier_exponent)
+        lit = _Lit(split, distance, cosine, carried)
         if distance is None:
             self._distant[number] = lit
         return lit
 
 
-def shade_block(
-    plan: Plan,
-    rows: slice,
-    points: Rows,
-    tangents: Rows | None,
-    normals: Rows | None,
-    depth: Rows | None,
-    output: Output,
-    repeat: int = 1,
-) -> None:
-    """Light the points of some rows of normals or tangents, ``repeat`` points a row.
+def shade_block(plan: Plan, rows: slice, given: Given, output: Output) -> None:
+    """Light the points of some rows of normals or tangents.
 
     Overflow and underflow are taken care of; the caller silences NumPy's warnings of them.
     """
-    surface, shape = None, None
-    if normals is not None:
-        normal, length = _kernels.unit(columns(normals, rows, plan.dtype))
+    surface = sheet = shape = None
+    tangents, repeat = given.tangents, given.repeat
+    if given.normals is not None:
+        normal, length = _kernels.unit(columns(given.normals, rows, plan.dtype))
         normal = normal.astype(plan.dtype, copy=False)
         surface = _Surface(normal, length > 0, two_sided=plan.two_sided)
-    each = tangents is not None and tangents.shape[0] == points.shape[0]
+    if given.carrier is not None:
+        sheet = _spanned(plan, plan.carrier, given.carrier, rows)
+    each = tangents is not None and tangents.shape[0] == given.points.shape[0]
     for j in range(repeat):
         at = rows if repeat == 1 else slice(rows.start * repeat + j, rows.stop * repeat, repeat)
         if shape is None or each:
-            shape = _Shape(plan, surface, tangents, at if each else rows)
-        _shade_points(plan, shape, at, points, depth, output)
+            shape = _Shape(plan, surface, sheet, tangents, at if each else rows)
+        _shade_points(plan, shape, at, given, output)
 
 
-def _shade_points(
-    plan: Plan, shape: _Shape, block: slice, points: Rows, depth: Rows | None, output: Output
-) -> None:
+def _shade_points(plan: Plan, shape: _Shape, block: slice, given: Given, output: Output) -> None:
     """Light one point of each row of a shape and write it to the output."""
     scene, dtype = plan.scene, plan.dtype
     manifold, surface = shape.manifold, shape.surface
-    valid = shape.valid
-    position = columns(points, block) if plan.needs_points else None
+    valid = shape.good.copy()
+    position = columns(given.points, block) if plan.needs_points else None
     eye: _Split | None = None
     seen: NDArray[np.bool_] | None = None
     under: Array | None = None
@@ -215,8 +218,8 @@ def _shade_points(
         toward_eye, distance = _toward(scene.view, position, dtype)
         if plan.specular:
             eye = manifold.split(toward_eye)
-        if plan.fur and depth is not None and surface is not None:
-            under = np.asarray(depth[block]).astype(dtype, copy=False)
+        if plan.fur and given.depth is not None and surface is not None:
+            under = np.asarray(given.depth[block]).astype(dtype, copy=False)
             valid &= under >= 0
             path_out = falloff.fur_path(under, np.abs(surface.cosine(toward_eye)))
         if distance is not None:
@@ -225,7 +228,7 @@ def _shade_points(
 
     sums = _Sums(plan)
     for number, light in enumerate(scene.lights):
-        lit, distance, cosine = shape.toward(number, position)
+        lit, distance, cosine, carried = shape.toward(number, position)
         scale: Any = dtype.type(light.intensity)
         if distance is not None:
             valid &= distance >= 0
@@ -240,6 +243,8 @@ def _shade_points(
             if under is not None:
                 path = falloff.fur_path(under, np.abs(cosine)) + path_out
                 scale = scale * falloff.fur_passes(path, plan.fur)
+        if carried is not None:
+            scale = scale * carried
         if plan.diffuse:
             sums.add("diffuse", manifold.diffuse(lit, plan.exponent) * scale, light)
         if eye is not None:
@@ -249,6 +254,15 @@ def _shade_points(
                 value = value * seen
             sums.add("specular", value, light)
     _store(plan, sums, position, valid, block, output)
+
+
+def _spanned(plan: Plan, k: int, tangents: Rows, rows: slice) -> _Tangents:
+    """Return what k tangents a point span."""
+    vectors = columns(tangents, rows, plan.dtype)
+    vectors = vectors.reshape(k, plan.n, vectors.shape[1])
+    rtol = frames.default_rtol(plan.n, vectors.dtype)
+    frame, rank = _kernels.orthonormalize(vectors, rtol)
+    return _Tangents(frame.astype(plan.dtype, copy=False), rank == k)
 
 
 def columns(rows: Rows, block: slice, work: DTypeLike = np.float32) -> Array:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 import numpy as np
 
 from vizlight import _check, _pool
-from vizlight._block import Output, Rows, columns, shade_block, view_depth
+from vizlight._block import Given, Output, Rows, columns, shade_block, view_depth
 from vizlight.plan import Plan, plan
 
 if TYPE_CHECKING:
@@ -75,6 +75,7 @@ def shade(
     /,
     *,
     normals: Rows | None = None,
+    carrier: Rows | None = None,
     depth: Rows | None = None,
     repeat: int = 1,
     precision: Precision | None = None,
@@ -97,6 +98,10 @@ def shade(
     scene : Scene
     normals : array_like, shape (M, n), optional
         Outward normals, of any length. With tangents they condition the light (Banks 6).
+    carrier : array_like, shape (M, j, n) or (M, j n), optional
+        Instead of normals, where codimension 2 or more has none: what spans the manifold that
+        the tangents lie in. Diffuse and specular of each light are multiplied by its own
+        brightness ``sin(a)^p(j, n)``.
     depth : array_like, shape (N,), optional
         With ``fur=``: the height of fur above each point, across the surface.
     repeat : int, default: 1
@@ -150,6 +155,10 @@ def shade(
             raise ValueError(
                 _check.message("normals", f"shape ({rows}, {n})", f"shape {normals.shape}")
             )
+    spans = None
+    if carrier is not None:
+        carrier = _rows("carrier", carrier)
+        spans = _tangent_count(carrier.shape, {rows}, n, "carrier")
     if (depth is None) == bool(options.get("fur")):
         raise ValueError(_check.message("depth", "depth and fur= together", "one of them"))
     if depth is not None:
@@ -162,15 +171,18 @@ def shade(
         precision = "float32" if small else "float64"
     if precision not in get_args(Precision):
         raise ValueError(_check.message("precision", "'float32' or 'float64'", repr(precision)))
-    made = plan(scene, n=n, k=k, normals=normals is not None, dtype=precision, **options)
+    made = plan(
+        scene, n=n, k=k, normals=normals is not None, carrier=spans, dtype=precision, **options
+    )
 
     start = time.perf_counter()
     output = Output(made, count)
+    lit = Given(points, tangents, normals, carrier, depth, repeat)
     step = made.block if block is None else _check.integer("block", block, low=1)
 
     def work(block: slice) -> int:
         with np.errstate(all="ignore"):
-            shade_block(made, block, points, tangents, normals, depth, output, repeat)
+            shade_block(made, block, lit, output)
         return int(block.stop) * repeat
 
     for done in _pool.run(work, _pool.blocks(rows, step), threads):
@@ -197,7 +209,7 @@ def _rows(name: str, rows: Any) -> Any:
     return rows
 
 
-def _tangent_count(shape: tuple[int, ...], counts: set[int], n: int) -> int:
+def _tangent_count(shape: tuple[int, ...], counts: set[int], n: int, name: str = "tangents") -> int:
     if len(shape) == 3 and shape[0] in counts and shape[2] == n:
         k = shape[1]
     elif len(shape) == 2 and shape[0] in counts and shape[1] % n == 0:
@@ -208,7 +220,7 @@ def _tangent_count(shape: tuple[int, ...], counts: set[int], n: int) -> int:
         count = " or ".join(str(number) for number in sorted(counts))
         raise ValueError(
             _check.message(
-                "tangents",
+                name,
                 f"shape ({count}, k, {n}) or ({count}, {n} k) with k < {n}",
                 f"shape {tuple(shape)}",
             )

@@ -44,6 +44,11 @@ class Plan:
         Whether tangents inherit the self-shadow of the surface that the normals belong to.
     two_sided : bool
         Whether the far side of normals is lit as the near one.
+    carrier : int
+        Dimension of the manifold that the tangents lie in and whose own brightness is a factor,
+        0 for none.
+    carrier_exponent : float
+        Of that factor.
     fur : float
         Density of the fur that light passes on its way in and out, 0 for none.
     diffuse, specular : bool
@@ -61,6 +66,8 @@ class Plan:
     surface: bool
     conditioned: bool
     two_sided: bool
+    carrier: int
+    carrier_exponent: float
     fur: float
     diffuse: bool
     specular: bool
@@ -131,6 +138,7 @@ def plan(
     compensate: bool = True,
     conditioned: bool = True,
     two_sided: bool = False,
+    carrier: int | None = None,
     fur: float = 0.0,
     components: bool = False,
 ) -> Plan:
@@ -154,6 +162,8 @@ def plan(
         Tangents inherit the self-shadow of normals that are given (Banks 6).
     two_sided : bool, default: False
         Light the far side of normals as the near one.
+    carrier : int, optional
+        Tangents of the manifold that carries the field, how many a point: k or more, less than n.
     fur : float, default: 0.0
         Density in [0, 1] of fur that attenuates the light (Banks 7, 8); needs normals.
     components : bool, default: False
@@ -193,6 +203,12 @@ def plan(
     surface = k is None
     size = n - 1 if k is None else k
     conditioned = bool(conditioned and normals and not surface)
+    if carrier is not None and (k is None or normals):
+        expected = "tangents (k=) and no normals beside it"
+        raise ValueError(_check.message("carrier", expected, "normals" if normals else "neither"))
+    if carrier is not None and not size <= _check.integer("carrier", carrier, low=1) < n:
+        expected = f"from k = {size} to less than n = {n} tangents a point"
+        raise ValueError(_check.message("carrier", expected, carrier))
     fur = _check.number("fur", fur, low=0.0, high=1.0)
     if fur and not normals:
         raise ValueError(_check.message("normals", "normals, across which fur stands", None))
@@ -216,6 +232,8 @@ def plan(
         surface=surface,
         conditioned=conditioned,
         two_sided=bool(two_sided),
+        carrier=carrier or 0,
+        carrier_exponent=brightness.exponent(carrier, n) if carrier and compensate else 1.0,
         fur=fur if diffuse or specular else 0.0,
         diffuse=diffuse,
         specular=specular,
@@ -271,6 +289,11 @@ def _words(plan: Plan) -> tuple[list[str], list[str]]:
     if plan.conditioned:
         side = "|N.wi|" if plan.two_sided else "max(0, N.wi)"
         yes.append(f"self-shadow: {side} of the surface's normals, a factor for each light")
+    elif plan.carrier:
+        yes.append(
+            f"carrier: brightness |wi_N| to the power {plan.carrier_exponent:.6g} of the "
+            f"{plan.carrier}-manifold that the tangents lie in, a factor for each light"
+        )
     elif not plan.surface:
         no.append("self-shadow: no surface conditions the tangents")
     if plan.fur:

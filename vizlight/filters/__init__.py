@@ -2,8 +2,10 @@
 
 from vizlight.filters._fur import fur
 from vizlight.filters._illuminate import illuminate
+from vizlight.filters._manifold import manifold
+from vizlight.filters._project import project
 from vizlight.filters._provenance import provenance
 from vizlight.filters._satin import satin
 from vizlight.filters._streamlines import streamlines
 
-__all__ = ["fur", "illuminate", "provenance", "satin", "streamlines"]
+__all__ = ["fur", "illuminate", "manifold", "project", "provenance", "satin", "streamlines"]

@@ -23,7 +23,7 @@ def illuminate(
     tangents: Any = None,
     positions: str | None = None,
     normals: Any = None,
-    conditioned: bool = False,
+    conditioned: bool | str = False,
     two_sided: bool = False,
     flip_normals: bool = False,
     compensate: bool = True,
@@ -58,9 +58,11 @@ def illuminate(
         normals as they are (clear them after moving points), else those of its surface: outward
         if it is closed; if it is open, each piece as a whole rather toward the eye and away from
         its own centroid.
-    conditioned : bool, default: False
+    conditioned : bool or str, default: False
         Tangents inherit the surface's self-shadow: diffuse and specular of each light times
-        ``max(0, N . wi)`` (Banks 6).
+        ``max(0, N . wi)`` (Banks 6). A surface of codimension 2 or more has no sides and no such
+        shadow: give the name of a point array with its j tangents, ``"frame"`` for one, and its
+        own brightness ``sin(a)^p(j, n)`` is the factor. In codimension 1 that is ``|N . wi|``.
     two_sided : bool, default: False
         Light the far side of a surface as the near one: ``|N . wi|``.
     flip_normals : bool, default: False
@@ -167,27 +169,37 @@ def _prepare(mesh: pv.DataSet, path: str, scene: Scene, options: dict[str, Any])
             raise TypeError(_check.message("mesh", "a PyVista mesh", type(mesh).__name__))
         points = _mesh.points_of(mesh, options["positions"])
         n = points.shape[1]
-        tangents = normals = None
+        tangents = normals = carrier = None
+        conditioned = options["conditioned"]
         if options["tangents"] is not None:
             tangents = _mesh.tangents_of(
                 mesh, options["tangents"], n, average_cells=options["average_cells"]
             )
         elif n == 3 and _lines.has_lines_only(mesh):
             tangents = _lines.line_tangents(mesh)
-        if tangents is None and options["conditioned"]:
+        if tangents is None and conditioned:
             remedy = "a surface without tangents shadows itself as it is"
             raise ValueError(_check.message("conditioned", "tangents to condition", None, remedy))
-        if tangents is not None and not options["conditioned"]:
+        if isinstance(conditioned, str):
+            carrier = _mesh.tangents_of(
+                mesh,
+                conditioned,
+                n,
+                average_cells=options["average_cells"],
+                argument="conditioned",
+            )
+            conditioned = False
+        if tangents is not None and not conditioned:
             for option in ("normals", "two_sided", "flip_normals"):
                 if options[option] is not None and options[option] is not False:
                     remedy = "pass conditioned=True, or leave one of them out"
                     expected = f"no {option} beside tangents, which have no sides"
                     raise ValueError(_check.message(option, expected, "both", remedy))
-        if tangents is None or options["conditioned"]:
+        if tangents is None or conditioned:
             normals = _mesh.normals_of(mesh, options["normals"], n, scene.view)
             if options["flip_normals"]:
                 normals = -normals
-        return Job(points, tangents, normals)
+        return Job(points, tangents, normals, carrier)
     except (TypeError, ValueError) as error:
         if not path:
             raise

@@ -35,6 +35,7 @@ class Job:
     points: engine.Rows
     tangents: engine.Rows | None
     normals: engine.Rows | None
+    carrier: engine.Rows | None = None
     depth: engine.Rows | None = None
     repeat: int = 1
     block: int | None = None
@@ -64,6 +65,7 @@ def light(
                     job.tangents,
                     fitted if job.origin is None else fitted.moved([-x for x in job.origin]),
                     normals=job.normals,
+                    carrier=job.carrier,
                     depth=job.depth,
                     repeat=job.repeat,
                     block=job.block,

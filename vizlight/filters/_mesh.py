@@ -175,15 +175,25 @@ def vectors_of(mesh: pv.DataSet, name: str, value: Any, n: int) -> Array:
     return array
 
 
-def tangents_of(mesh: pv.DataSet, value: Any, n: int, *, average_cells: bool) -> Array:
+def attach_rows(mesh: Any, name: str, array: Array) -> None:
+    """Attach a point array, also one of no rows, which PyVista refuses."""
+    if len(array):
+        mesh.point_data[name] = array
+    else:
+        mesh.GetPointData().AddArray(pv.convert_array(array, name))
+
+
+def tangents_of(
+    mesh: pv.DataSet, value: Any, n: int, *, average_cells: bool, argument: str = "tangents"
+) -> Array:
     """Return tangents as (n_points, k n), 0 < k < n."""
-    array = array_of(mesh, "tangents", value, average_cells=average_cells)
+    array = array_of(mesh, argument, value, average_cells=average_cells)
     if array.shape[1] % n or not 0 < array.shape[1] // n < n:
         allowed = " or ".join(str(k * n) for k in range(1, min(n, 5)))
         what = f"{value!r} with {array.shape[1]}" if isinstance(value, str) else array.shape[1]
         raise ValueError(
             _check.message(
-                "tangents",
+                argument,
                 f"a point array of {allowed} components, rows of {n}",
                 what,
                 "name another array, or the points in n-space by positions=",
@@ -198,7 +208,13 @@ def normals_of(mesh: pv.DataSet, value: Any, n: int, view: View | None) -> Array
         return vectors_of(mesh, "normals", value, n)
     if n != 3:
         raise ValueError(
-            _check.message("normals", f"a point array of {n} components for {n}-space", None)
+            _check.message(
+                "normals",
+                f"a point array of {n} components for {n}-space",
+                None,
+                "where there are none, light by tangents=, "
+                "conditioned by the name of the surface's tangents",
+            )
         )
     carried = mesh.point_data.active_normals
     if carried is not None:

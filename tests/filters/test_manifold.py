@@ -1,0 +1,93 @@
+"""Shapes as meshes: cells by dimension, arrays kept, light on them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight import Light, Scene, View
+from vizlight.geometry import manifolds
+
+
+@pytest.mark.parametrize(
+    ("shape", "kind", "cells"),
+    [
+        (manifolds.torus_curve(3, resolution=50), pv.PolyData, {pv.CellType.LINE: 50}),
+        (manifolds.torus(1.0, resolution=9), pv.PolyData, {pv.CellType.LINE: 9}),
+        (manifolds.klein_bottle(resolution=(6, 5)), pv.PolyData, {pv.CellType.QUAD: 30}),
+        (manifolds.veronese(resolution=3), pv.PolyData, {pv.CellType.QUAD: 27}),
+        (
+            manifolds.sphere3(resolution=2),
+            pv.UnstructuredGrid,
+            {pv.CellType.HEXAHEDRON: 64},
+        ),
+    ],
+)
+def test_cells_and_arrays(shape, kind, cells):
+    mesh = vizlight.manifold(shape)
+    assert isinstance(mesh, kind)
+    grid = mesh.cast_to_unstructured_grid()
+    kinds, numbers = np.unique(grid.celltypes, return_counts=True)
+    assert dict(zip(kinds.tolist(), numbers.tolist(), strict=True)) == cells
+    np.testing.assert_array_equal(grid.cells_dict[next(iter(cells))], shape.cells)
+    np.testing.assert_array_equal(mesh["position"], shape.points)
+    np.testing.assert_array_equal(mesh["frame"], shape.frame.reshape(mesh.n_points, -1))
+    assert mesh.n_points == len(shape.points)
+    width = min(shape.n, 3)
+    np.testing.assert_array_equal(mesh.points[:, :width], shape.points[:, :width])
+
+
+def test_every_array_survives_a_file(tmp_path):
+    for shape, name in (
+        (manifolds.klein_bottle(resolution=8), "a.vtp"),
+        (manifolds.sphere3(resolution=2), "a.vtu"),
+    ):
+        mesh = vizlight.manifold(shape, rotation=("xw", 0.4))
+        mesh.save(tmp_path / name)
+        again = pv.read(tmp_path / name)
+        for key in mesh.point_data:
+            np.testing.assert_array_equal(again[key], mesh[key])
+        assert vizlight.provenance(again, "projection") == vizlight.provenance(mesh, "projection")
+
+
+def test_every_shape_is_lit_in_its_own_space():
+    for shape in (
+        manifolds.torus_curve(3, resolution=50),
+        manifolds.hopf_fibres(fibres=3, resolution=8),
+        manifolds.klein_bottle(resolution=8),
+        manifolds.veronese(resolution=3),
+        manifolds.complex_curve(np.exp, resolution=5),
+        manifolds.sphere3(resolution=2),
+        manifolds.torus(1.0, 1.0, 1.0, resolution=4),
+    ):
+        toward = np.arange(1.0, shape.n + 1)
+        scene = Scene(lights=Light(direction=toward), view=View(direction=toward[::-1]))
+        mesh = vizlight.manifold(shape, scene=scene)
+        assert "luminance_valid" not in mesh.point_data
+        assert mesh["luminance"].min() >= 0.1
+        assert np.ptp(mesh["luminance"]) > 0.05
+
+
+def test_order_2_in_the_size_of_cells():
+    """Light in the middle of a cell, by the mean of its corners, against the exact light there."""
+    errors, sizes = [], np.array([32, 64, 128, 256])
+    scene = Scene(
+        lights=Light(direction=(0.7, 0.6, 0.38, 0.2)), view=View(direction=(0, 0.2, 1, 0))
+    )
+    for size in sizes:
+        mesh = vizlight.manifold(manifolds.torus(1.5, 0.75, resolution=int(size)), scene=scene)
+        between = mesh["luminance"][mesh.regular_faces].mean(axis=1)
+        middle = vizlight.manifold(
+            manifolds.torus(1.5, 0.75, resolution=2 * int(size)), scene=scene
+        )
+        exact = middle["luminance"].reshape(2 * size, 2 * size)[1::2, 1::2].ravel()
+        errors.append(np.abs(between - exact).max())
+    order = -np.polyfit(np.log(sizes), np.log(errors), 1)[0]
+    assert abs(order - 2) < 0.2
+
+
+def test_not_a_shape():
+    with pytest.raises(TypeError, match="shape: expected a vizlight.Manifold"):
+        vizlight.manifold(pv.Sphere())

@@ -1,0 +1,409 @@
+"""Positions and frames turn, are cut and projected together; light comes before or after."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+from scipy.stats import special_ortho_group
+
+import vizlight
+from vizlight import Light, Material, Scene, View, illuminate, project
+from vizlight.geometry import manifolds, projection
+
+TURN = special_ortho_group.rvs(4, random_state=3)
+SCENE4 = Scene(lights=Light(direction=(0.7, 0.6, 0.38, 0.1)), view=View(direction=(0, 0.3, 1, 0.2)))
+SCENE3 = Scene(lights=Light(direction=(0.7, 0.6, 0.38)), view=View(direction=(0, 0.3, 1)))
+
+
+@pytest.fixture
+def torus():
+    return vizlight.manifold(manifolds.torus(1.5, 0.75, resolution=(24, 16)))
+
+
+def frames(mesh, name, n):
+    return np.asarray(mesh[name]).reshape(mesh.n_points, -1, n)
+
+
+def test_positions_and_frames_turn_together(torus):
+    before = {key: np.array(value) for key, value in torus.point_data.items()}
+    points = np.array(torus.points)
+    out = project(torus, rotation=TURN)
+    np.testing.assert_allclose(out["position"], before["position"] @ TURN.T, atol=1e-14)
+    np.testing.assert_allclose(
+        frames(out, "frame", 4), frames(torus, "frame", 4) @ TURN.T, atol=1e-14
+    )
+    np.testing.assert_array_equal(out.points, out["position"][:, :3])
+    for key, value in before.items():
+        np.testing.assert_array_equal(torus[key], value)
+    np.testing.assert_array_equal(torus.points, points)
+    np.testing.assert_array_equal(out.faces, torus.faces)
+
+
+def test_pushed_frame_is_tangent_to_what_is_seen():
+    """To the projected mesh's own edges, to first order, and orthonormal."""
+    mesh = vizlight.manifold(manifolds.torus(1.0, 1.0, resolution=120), distance=2.0)
+    frame = frames(mesh, "projected_frame", 3)
+    gram = np.einsum("bki,bli->bkl", frame, frame)
+    np.testing.assert_allclose(gram, np.tile(np.eye(2), (mesh.n_points, 1, 1)), atol=1e-14)
+    normals = np.cross(frame[:, 0], frame[:, 1])
+    computed = mesh.triangulate().compute_normals(cell_normals=False, split_vertices=False)[
+        "Normals"
+    ]
+    along = np.abs(np.sum(normals * np.asarray(computed, float), axis=1))
+    assert along.min() > 0.999
+
+
+def test_vtk_transforms_leave_positions_alone_and_project_does_not(torus):
+    """Why the filter is there."""
+    moved = torus.rotate_z(30, transform_all_input_vectors=True, inplace=False)
+    np.testing.assert_array_equal(moved["position"], torus["position"])
+    turned = project(torus, rotation=("xy", np.pi / 6))
+    np.testing.assert_allclose(turned.points, moved.points, atol=1e-12)
+    assert np.abs(turned["position"] - torus["position"]).max() > 0.3
+
+
+def test_light_before_is_the_light_in_four_space(torus):
+    lit = project(torus, rotation=TURN, distance=3.0, scene=SCENE4, light="before")
+    turned = project(torus, rotation=TURN)
+    expected = illuminate(turned, SCENE4, tangents="frame", positions="position")
+    np.testing.assert_array_equal(lit["luminance"], expected["luminance"])
+    back = Scene(
+        lights=Light(direction=TURN.T @ SCENE4.lights[0].direction),
+        view=View(direction=TURN.T @ SCENE4.view.direction),
+    )
+    still = illuminate(torus, back, tangents="frame", positions="position")
+    np.testing.assert_allclose(lit["luminance"], still["luminance"], atol=1e-12)
+
+
+def test_light_after_is_the_light_in_three_space(torus):
+    lit = project(torus, rotation=TURN, distance=3.0, scene=SCENE3, light="after")
+    placed = project(torus, rotation=TURN, distance=3.0)
+    frame = frames(placed, "projected_frame", 3)
+    placed["N"] = np.cross(frame[:, 0], frame[:, 1])
+    expected = illuminate(placed, SCENE3, normals="N", two_sided=True)
+    np.testing.assert_allclose(lit["luminance"], expected["luminance"], atol=1e-12)
+    assert (
+        np.abs(lit["luminance"] - project(torus, rotation=TURN, scene=SCENE4)["luminance"]).max()
+        > 0.1
+    )
+
+
+def test_positional_light_and_eye_in_four_space(torus):
+    """A light near the surface: in 4-space it is 4-space distances that count."""
+    scene = Scene(
+        lights=Light(position=(0, 0, 0, 1.5), attenuation=(0, 0, 1)),
+        view=View(position=(5, 0, 0, 2)),
+        material=Material(ambient=0, diffuse=1, specular=0),
+    )
+    lit = project(torus, scene=scene, compensate=False)
+    x, frame = np.asarray(torus["position"]), frames(torus, "frame", 4)
+    away = np.array([0, 0, 0, 1.5]) - x
+    d = np.linalg.norm(away, axis=1)
+    wi = away / d[:, None]
+    sine = np.sqrt(1 - np.sum(np.einsum("bki,bi->bk", frame, wi) ** 2, axis=1))
+    np.testing.assert_allclose(lit["luminance"], sine * np.minimum(1, 1 / d**2), atol=1e-12)
+
+
+def test_silhouette_has_the_ambient_light_and_is_marked():
+    """A plane seen edge-on in 4-space: its image is a line, of rank 1."""
+    mesh = pv.Plane(i_resolution=2, j_resolution=2)
+    x, y, _ = np.asarray(mesh.points, float).T
+    mesh["position"] = np.stack([x, 0 * x, 0 * x, y], axis=1)
+    mesh["frame"] = np.tile([1.0, 0, 0, 0, 0, 0, 0, 1], (9, 1))
+    with pytest.warns(UserWarning, match="9 of 9 points could not be lit"):
+        out = project(mesh, scene=SCENE3, light="after")
+    np.testing.assert_allclose(out["projected_frame"], np.tile([1, 0, 0, 0, 0, 0.0], (9, 1)))
+    np.testing.assert_array_equal(out["luminance"], 0.1)
+    assert not out["luminance_valid"].any()
+    before = project(mesh, scene=SCENE4, light="before")
+    assert before["luminance"].min() > 0.11
+    assert "luminance_valid" not in before.point_data
+
+
+def test_near_a_silhouette_light_is_defined_and_continuous_along_the_frame():
+    """The frame is known to eps over the angle: 1e-6 from edge-on loses 10 digits at most."""
+    for tilt in (1e-2, 1e-6):
+        mesh = pv.PolyData(np.zeros((1, 3)))
+        mesh["position"] = np.zeros((1, 4))
+        mesh["frame"] = [[1.0, 0, 0, 0, 0, np.sin(tilt), 0, np.cos(tilt)]]
+        out = project(mesh, scene=SCENE3, light="after", compensate=False)
+        flat = illuminate(out, SCENE3, tangents=np.array([[1.0, 0, 0, 0, 1, 0]]), compensate=False)
+        np.testing.assert_allclose(out["luminance"], flat["luminance"], atol=1e-9)
+
+
+def test_a_sphere_cut_by_a_hyperplane():
+    sphere = vizlight.manifold(manifolds.sphere3(resolution=10))
+    assert isinstance(sphere, pv.UnstructuredGrid)
+    assert "projected_frame" not in sphere.point_data
+    cut = project(sphere, rotation=TURN, hyperplane=((1, 1, 0, 2), 0.4))
+    x, normal = np.asarray(cut["position"]), np.array([1, 1, 0, 2]) / np.sqrt(6)
+    np.testing.assert_allclose(x @ normal, 0.4, atol=1e-14)
+    assert np.abs(np.linalg.norm(x, axis=1) - 1).max() < 0.02
+    frame = frames(cut, "frame", 4)
+    assert frame.shape[1] == 2
+    assert np.abs(frame @ normal).max() < 1e-13
+    # A 2-sphere: closed, V - E + F = 2, of radius sqrt(1 - 0.4^2).
+    flat = pv.PolyData(x @ np.linalg.svd(normal[None])[2][1:].T, cut.faces)
+    assert flat.n_open_edges == 0
+    assert cut.n_points - 3 * cut.n_cells // 2 + cut.n_cells == 2
+    flat = flat.compute_normals(consistent_normals=True, auto_orient_normals=True)
+    assert flat.volume == pytest.approx(4 / 3 * np.pi * 0.84**1.5, rel=0.02)
+    # Its normals in the hyperplane are along the radius.
+    centre = x - 0.4 * normal
+    centre /= np.linalg.norm(centre, axis=1, keepdims=True)
+    assert np.abs(np.einsum("bki,bi->bk", frame, centre)).max() < 0.05
+
+
+def test_sheets_that_fall_on_each_other_stay_apart_in_a_cut():
+    """Both halves of the 3-sphere project to one ball: places in 3-space must join nothing."""
+    shape = manifolds.sphere3(resolution=4)
+    for height in (0.3, -0.3):
+        cut = vizlight.manifold(shape, hyperplane=((0, 0, 1, 0), height))
+        assert len(np.unique(np.round(np.asarray(cut["position"]), 9), axis=0)) == cut.n_points
+        assert cut.n_points - 3 * cut.n_cells // 2 + cut.n_cells == 2
+        w = np.asarray(cut["position"])[:, 3]
+        assert w.min() < -0.8
+        assert w.max() > 0.8
+
+
+def test_a_cut_of_a_surface_is_a_curve_and_of_a_curve_points(torus):
+    curve = project(torus, hyperplane=((1, 0, 0, 0.3), 0.2))
+    assert curve.n_lines
+    assert curve["frame"].shape[1] == 4
+    assert "projected_frame" in curve.point_data
+    _, count = np.unique(curve.lines.reshape(-1, 3)[:, 1:], return_counts=True)
+    assert set(count) == {2}
+    lit = project(torus, hyperplane=((1, 0, 0, 0.3), 0.2), scene=SCENE4)
+    np.testing.assert_allclose(
+        lit["luminance"],
+        illuminate(curve, SCENE4, tangents="frame", positions="position")["luminance"],
+    )
+    points = project(curve, hyperplane=((0, 0, 0, 1), 0.0))
+    assert points.n_verts == points.n_points > 0
+    assert "frame" not in points.point_data
+    with pytest.raises(ValueError, match="scene: expected a mesh that can be lit"):
+        project(curve, hyperplane=((0, 0, 0, 1), 0.0), scene=SCENE4)
+
+
+def test_points_behind_the_eye_are_an_error_or_left_out(torus):
+    torus["number"] = np.arange(torus.n_points)
+    w = np.asarray(torus["position"])[:, 3]
+    with pytest.raises(ValueError, match=f"{np.sum(w >= 0.5)} of 384 points.*cut=True"):
+        project(torus, distance=0.5)
+    with pytest.warns(
+        UserWarning, match=f"{np.sum(w >= 0.5)} points cannot be projected"
+    ) as caught:
+        out = project(torus, distance=0.5, cut=True)
+    assert len(caught) == 1
+    assert isinstance(out, pv.PolyData)
+    np.testing.assert_array_equal(np.sort(out["number"]), np.flatnonzero(w < 0.5))
+    assert np.all(np.isfinite(out.points))
+    expected = projection.perspective(np.asarray(out["position"]), distance=0.5)
+    np.testing.assert_allclose(out.points, expected)
+    assert not {key for key in out.point_data if key.startswith("vtk")}
+    faces = out.regular_faces
+    assert np.asarray(out["position"])[faces][..., 3].max() < 0.5
+
+
+def test_all_points_behind_the_eye(torus):
+    with pytest.warns(UserWarning, match="384 points cannot be projected"):
+        out = project(_up(torus), distance=0.5, cut=True)
+    assert out.n_points == 0
+
+
+def _up(mesh):
+    mesh = mesh.copy()
+    mesh["position"] = np.asarray(mesh["position"]) + np.array([0, 0, 0, 9.0])
+    return mesh
+
+
+def test_points_that_are_not_finite(torus):
+    position = np.array(torus["position"])
+    position[3], position[50] = np.nan, np.inf
+    torus["position"] = position
+    for options in ({}, {"distance": 4.0}, {"rotation": TURN}):
+        with pytest.raises(ValueError, match="2 of 384 points"):
+            project(torus, **options)
+        with pytest.warns(UserWarning, match="2 points cannot be projected"):
+            out = project(torus, cut=True, **options)
+        assert out.n_points == 382
+    cut = project(torus, hyperplane=((1, 0, 0, 0), 0.1))
+    assert np.all(np.isfinite(cut["position"]))
+
+
+def test_vectors_turn_and_are_pushed_forward(torus):
+    torus["V"] = torus["frame"][:, :4]
+    out = project(torus, rotation=TURN, distance=3.0, vectors="V")
+    np.testing.assert_allclose(out["V"], np.asarray(torus["V"]) @ TURN.T, atol=1e-14)
+    expected = projection.push_forward(
+        np.asarray(out["V"])[:, None], np.asarray(out["position"]), distance=3.0
+    )
+    np.testing.assert_allclose(out["projected_V"], expected[:, 0], atol=1e-14)
+    # The first row of the frame is along it.
+    unit = np.asarray(out["projected_V"])
+    unit = unit / np.linalg.norm(unit, axis=1, keepdims=True)
+    np.testing.assert_allclose(frames(out, "projected_frame", 3)[:, 0], unit, atol=1e-14)
+
+
+def test_a_field_on_a_surface_in_four_space(torus):
+    """Codimension 2 has no sides: the surface's own brightness is the factor."""
+    torus["V"] = torus["frame"][:, :4]
+    matte = SCENE4.replace(material=Material(ambient=0.1, diffuse=0.5, specular=0.4))
+    options = {"tangents": "V", "positions": "position"}
+    free = illuminate(torus, matte, **options)
+    lit = illuminate(torus, matte, conditioned="frame", **options)
+    own = illuminate(
+        torus,
+        matte.replace(material=Material(ambient=0, diffuse=1, specular=0)),
+        tangents="frame",
+        positions="position",
+    )
+    np.testing.assert_allclose(
+        lit["luminance"] - 0.1, (free["luminance"] - 0.1) * own["luminance"], atol=1e-14
+    )
+    again = project(torus, scene=matte, tangents="V", conditioned="frame")
+    np.testing.assert_array_equal(again["luminance"], lit["luminance"])
+    with pytest.raises(ValueError, match="normals: .*conditioned by the name of the surface's tan"):
+        illuminate(torus, matte, conditioned=True, **options)
+    with pytest.raises(ValueError, match="conditioned: expected the name of a point array"):
+        illuminate(torus, matte, conditioned="farme", **options)
+    torus["short"] = torus["frame"][:, :6]
+    with pytest.raises(ValueError, match="conditioned: expected a point array of 4 or 8"):
+        illuminate(torus, matte, conditioned="short", **options)
+    with pytest.raises(ValueError, match="two_sided: expected no two_sided beside tangents"):
+        illuminate(torus, matte, conditioned="frame", two_sided=True, **options)
+
+
+def test_provenance(torus):
+    one = project(torus, rotation=("xw", 0.3), distance=4.0)
+    two = project(one, hyperplane=((0, 0, 0, 1), 0.1), scene=SCENE4)
+    told = vizlight.provenance(two, "projection")
+    assert told["hyperplane"] == [[0, 0, 0, 1], 0.1]
+    assert told["earlier"]["distance"] == 4.0
+    np.testing.assert_allclose(told["earlier"]["rotation"], projection.rotation(4, ("xw", 0.3)))
+    assert vizlight.provenance(two)["options"]["tangents"] == "frame"
+    again = project(torus, rotation=told["earlier"]["rotation"], distance=4.0)
+    np.testing.assert_array_equal(again.points, one.points)
+
+
+def test_blocks_grids_and_points(torus):
+    grid = pv.ImageData(dimensions=(4, 3, 1))
+    grid["position"] = np.pad(grid.points, [(0, 0), (0, 1)])
+    cloud = pv.PointSet(np.zeros((5, 3)))
+    cloud["position"] = np.arange(20.0).reshape(5, 4)
+    blocks = pv.MultiBlock({"grid": grid, "cloud": cloud, "none": None})
+    blocks = pv.MultiBlock({"inner": blocks, "torus": torus})
+    out = blocks.vizlight.project(rotation=("xw", np.pi / 2), frame=None)
+    assert out.keys() == ["inner", "torus"]
+    assert isinstance(out["inner"]["grid"], pv.StructuredGrid)
+    np.testing.assert_allclose(out["inner"]["grid"].points[:, 0], 0, atol=1e-15)
+    np.testing.assert_allclose(out["inner"]["cloud"].points[:, 0], -cloud["position"][:, 3])
+    assert out["inner"][2] is None
+    assert isinstance(grid, pv.ImageData)
+    with pytest.raises(ValueError, match="block /inner/grid: frame: expected the name of a point"):
+        project(blocks)
+
+
+def test_types_are_kept(torus, dtype):
+    for name in ("position", "frame"):
+        torus[name] = np.asarray(torus[name]).astype(dtype)
+    out = project(torus, rotation=TURN, distance=3.0)
+    for name in ("position", "frame", "projected_frame"):
+        assert out[name].dtype == dtype
+    assert out.points.dtype == dtype
+    exact = np.asarray(torus["position"]).astype(float) @ TURN.T
+    np.testing.assert_allclose(out["position"], exact, atol=2 * np.finfo(dtype).eps)
+    torus["position"] = np.round(np.asarray(torus["position"]) * 10).astype(np.int16)
+    assert project(torus)["position"].dtype == np.float64
+
+
+def test_far_from_the_origin():
+    """A perspective far away in float32: the eye's distance is the same size."""
+    mesh = pv.PointSet(np.zeros((2, 3)))
+    mesh["position"] = np.float32([[5e6, 5e6, 5e6, 1], [5e6 + 0.5, 5e6, 5e6, 2]])
+    out = project(mesh, frame=None, distance=1e7)
+    assert np.abs(np.diff(out.points[:, 0])) == pytest.approx(1.0, abs=0.6)
+
+
+def test_normals_that_were_active_are_not_those_of_the_result():
+    sphere = pv.Sphere()
+    sphere["position"] = np.pad(np.asarray(sphere.points, float), [(0, 0), (0, 1)])
+    out = project(sphere, rotation=("xw", 1.0), frame=None)
+    assert out.point_data.active_normals_name is None
+    assert sphere.point_data.active_normals_name == "Normals"
+    assert "Normals" in out.point_data
+
+
+def test_surfaces_in_three_space_turn_too():
+    sphere = pv.Sphere()
+    sphere["position"] = sphere.points
+    out = project(sphere, rotation=("xz", np.pi / 2), frame=None, distance=5.0)
+    np.testing.assert_allclose(out.points[:, 2], sphere.points[:, 0], atol=1e-6)
+
+
+def test_empty_mesh():
+    mesh = pv.PolyData()
+    mesh.points = np.empty((0, 3))
+    mesh.GetPointData().AddArray(pv.convert_array(np.empty((0, 4)), "position"))
+    assert project(mesh, frame=None, rotation=TURN, distance=2.0).n_points == 0
+
+
+def test_progress(torus, capsys):
+    project(torus, scene=SCENE4, progress_bar=True)
+    assert "project" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("options", "error", "words"),
+    [
+        ({"positions": "x"}, ValueError, "positions: expected the name of a point array"),
+        ({"positions": "odd"}, ValueError, "frame: expected a point array of 5 k components"),
+        ({"positions": "number"}, ValueError, "positions: expected vectors"),
+        ({"frame": "x"}, ValueError, "frame: expected the name of a point array"),
+        ({"frame": "odd"}, ValueError, "frame: expected a point array of 4 k components"),
+        ({"frame": "full"}, ValueError, "frame: expected a point array of 4 k components"),
+        ({"frame": 3}, TypeError, "frame: expected the name of a point array"),
+        ({"vectors": "odd"}, ValueError, "vectors: expected a point array of 4 k components"),
+        ({"vectors": ("V",)}, ValueError, "vectors: expected the name of a point array"),
+        ({"rotation": np.eye(3)}, ValueError, "rotation: expected a matrix of shape"),
+        ({"rotation": ("xw", np.nan)}, ValueError, "angle: expected a finite number"),
+        ({"rotation": 2 * np.eye(4)}, ValueError, "rotation: expected an orthogonal matrix"),
+        ({"distance": 0}, ValueError, "distance: expected a number above 0"),
+        ({"distance": "far"}, TypeError, "distance: expected a number"),
+        ({"hyperplane": (0, 0, 0, 1)}, TypeError, "hyperplane: expected"),
+        ({"hyperplane": ((0, 0, 1), 0)}, ValueError, "hyperplane: expected .*a normal of 3"),
+        ({"hyperplane": ((0, 0, 0, 0), 0)}, ValueError, "hyperplane: expected a direction"),
+        ({"hyperplane": ((0, 0, 0, 1), np.nan)}, ValueError, "hyperplane: expected a finite"),
+        ({"light": "during"}, ValueError, "light: expected 'before' or 'after'"),
+        ({"scene": "sun"}, TypeError, "scene: expected a vizlight.Scene"),
+        ({"compensate": False}, TypeError, "compensate: expected a scene beside it"),
+        ({"scene": SCENE3}, ValueError, "scene: expected vectors of 4 components"),
+        ({"scene": SCENE4, "light": "after"}, ValueError, "scene: expected vectors of 3"),
+        ({"scene": SCENE4, "frame": None}, ValueError, "frame: expected tangents to light by"),
+    ],
+)
+def test_bad_arguments(torus, options, error, words):
+    torus["odd"] = np.ones((torus.n_points, 5))
+    torus["full"] = np.ones((torus.n_points, 16))
+    torus["number"] = np.ones(torus.n_points)
+    with pytest.raises(error, match=words):
+        project(torus, **options)
+
+
+def test_a_3_manifold_has_no_light_after_the_projection():
+    shape = manifolds.torus(1.0, 1.0, 1.0, resolution=4)
+    with pytest.raises(ValueError, match="light: expected a curve or a surface, got a 3-manifold"):
+        vizlight.manifold(shape, scene=SCENE3, light="after")
+
+
+def test_not_a_mesh():
+    with pytest.raises(TypeError, match="mesh: expected a PyVista mesh"):
+        project(np.zeros((3, 4)))
+
+
+def test_a_users_own_array_is_not_overwritten(torus):
+    del torus.point_data["projected_frame"], torus.field_data["projection_provenance"]
+    torus["projected_frame"] = np.zeros((torus.n_points, 6))
+    with pytest.raises(ValueError, match="mesh: expected a mesh without an array"):
+        project(torus)

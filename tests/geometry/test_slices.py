@@ -1,0 +1,129 @@
+"""A hyperplane cuts simplices without cracks, and frames to what lies in it."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import oracles
+import pytest
+
+from vizlight.geometry import slices
+
+
+def test_every_pattern_of_a_tetrahedron():
+    """The area of the cut, and that its corners are where the function is zero."""
+    corners = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    for signs in itertools.product([-1, 1], repeat=4):
+        heights = np.array(signs) * [0.3, 0.7, 0.5, 0.9]
+        edges, weights, cells = slices.cut(heights, [[0, 1, 2, 3]])
+        number = signs.count(1)
+        assert len(cells) == {0: 0, 1: 1, 2: 2, 3: 1, 4: 0}[number]
+        points = (1 - weights)[:, None] * corners[edges[:, 0]] + weights[:, None] * corners[
+            edges[:, 1]
+        ]
+        np.testing.assert_allclose(
+            (1 - weights) * heights[edges[:, 0]] + weights * heights[edges[:, 1]], 0, atol=1e-15
+        )
+        if number == 2:
+            # Two triangles that share a diagonal make the whole quadrilateral: the areas add up
+            # to that of the hull, which the other diagonal would give too.
+            a, b = cells
+            shared = set(a) & set(b)
+            assert len(shared) == 2
+            ring = [*shared, *(set(a) ^ set(b))]
+            p, q, r, s = points[[ring[0], ring[2], ring[1], ring[3]]]
+            whole = 0.5 * np.linalg.norm(np.cross(r - p, s - q))
+            assert area(points, cells) == pytest.approx(whole, rel=1e-12)
+
+
+def area(points, cells):
+    a, b, c = (points[cells[:, i]] for i in range(3))
+    return 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()
+
+
+def test_a_corner_at_zero_is_one_point():
+    # A fan of triangles around point 0, which lies in the hyperplane with points 1 and 4.
+    heights = [0.0, 0.0, 1.0, 1.0, 0.0, -1.0, -1.0]
+    fan = [[0, i, i % 6 + 1] for i in range(1, 7)]
+    edges, weights, cells = slices.cut(heights, fan)
+    assert sorted(map(tuple, edges.tolist())) == [(0, 0), (1, 1), (4, 4)]
+    np.testing.assert_array_equal(weights, 0)
+    assert len(cells) == 2
+
+
+def test_what_lies_in_the_hyperplane_or_touches_it():
+    assert len(slices.cut([0.0, 0, 0], [[0, 1, 2]])[2]) == 0
+    assert len(slices.cut([0.0, 1, 1], [[0, 1, 2]])[2]) == 0
+    assert len(slices.cut([0.0, -1, -1], [[0, 1, 2]])[2]) == 0
+    # An edge in the hyperplane is found once, from whichever side.
+    assert len(slices.cut([0.0, 0, -1, 1], [[0, 1, 2], [0, 1, 3]])[2]) == 1
+    assert len(slices.cut([0.0, 0, -1, -1], [[0, 1, 2], [0, 1, 3]])[2]) == 1
+
+
+def test_values_that_are_not_finite_or_extreme():
+    _, weights, cells = slices.cut([1e308, -1e308, np.nan, np.inf], [[0, 1], [0, 2], [1, 3]])
+    assert len(cells) == 1
+    assert weights == pytest.approx(0.5)
+    edges, weights, cells = slices.cut([], np.empty((0, 3), int))
+    assert edges.shape == (0, 2)
+    assert cells.shape == (0, 2)
+
+
+def test_a_circle_is_cut_in_two_points():
+    t = np.linspace(0, 2 * np.pi, 40, endpoint=False)
+    edges, weights, cells = slices.cut(
+        np.cos(t) - 0.3, np.stack([np.arange(40), np.roll(np.arange(40), -1)], 1)
+    )
+    assert cells.shape == (2, 1)
+    x = (1 - weights) * np.cos(t)[edges[:, 0]] + weights * np.cos(t)[edges[:, 1]]
+    np.testing.assert_allclose(x, 0.3, atol=1e-15)
+
+
+def test_frames_of_a_slice(random, figure):
+    for k, n in [(2, 3), (2, 4), (3, 4), (5, 8)]:
+        frame = oracles.frames(random, 40, k, n, np.float64)
+        normal = random.standard_normal(n)
+        found = slices.slice_frame(frame, normal)
+        assert found.shape == (40, k - 1, n)
+        gram = np.einsum("bki,bli->bkl", found, found)
+        worst = np.abs(gram - np.eye(k - 1)).max() / oracles.eps(float)
+        figure("slice_frame", "orthonormal", float, worst, 8)
+        assert np.abs(found @ normal).max() < 1e-14
+        inside = np.einsum("bki,bji,bjm->bkm", found, frame, frame)
+        np.testing.assert_allclose(inside, found, atol=1e-14)
+
+
+def test_where_the_manifold_touches_the_hyperplane_there_is_no_frame():
+    flat = np.eye(4)[:2]
+    tilted = np.array([[1, 0, 0, 0.0], [0, 1, 0, 1e-3]])
+    found = slices.slice_frame(np.stack([flat, tilted, 0 * flat]), (0, 0, 0, 2.0))
+    np.testing.assert_array_equal(found[[0, 2]], 0)
+    np.testing.assert_allclose(np.abs(found[1]), [[1, 0, 0, 0]], atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("values", "simplices", "words"),
+    [
+        ([1.0, -1], [[0, 1, 1, 1, 1]], "simplices: expected integers of shape"),
+        ([1.0, -1], [[0.0, 1]], "simplices: expected integers of shape"),
+        ([1.0, -1], [[0, 2]], "simplices: expected numbers of points, from 0 to 1"),
+        ([1.0, -1], [[-1, 0]], "simplices: expected numbers of points"),
+    ],
+)
+def test_bad_simplices(values, simplices, words):
+    with pytest.raises(ValueError, match=words):
+        slices.cut(values, simplices)
+
+
+@pytest.mark.parametrize(
+    ("frame", "normal", "words"),
+    [
+        (np.eye(4)[:1], (0, 0, 0, 1), "frame: expected 2 tangents or more"),
+        (np.eye(4)[:2], (0, 0, 1), "normal: expected 4 components"),
+        (np.eye(4)[:2], (0, 0, 0, 0), "normal: expected a direction of non-zero length"),
+    ],
+)
+def test_bad_slices(frame, normal, words):
+    with pytest.raises(ValueError, match=words):
+        slices.slice_frame(frame, normal)

@@ -1,0 +1,184 @@
+"""Laws of light in n-space that no formula of this package is needed to state."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import oracles
+import pytest
+from scipy.stats import special_ortho_group
+
+from vizlight import Light, Material, Scene, View, engine
+from vizlight.geometry import manifolds
+from vizlight.model import brightness
+
+MATTE = Material(ambient=0.0, diffuse=1.0, specular=0.0)
+PAIRS = [(1, 2), (1, 3), (2, 3), (1, 4), (2, 4), (3, 4), (2, 5), (3, 6), (4, 8), (7, 8), (5, 12)]
+
+
+def scene_of(random, n, turn, **options):
+    """Return lights near and far and an eye, all turned."""
+    near, far, eye, back = 5 * random.standard_normal((4, n))
+    return Scene(
+        lights=[Light(position=turn @ near, attenuation=(1, 0.1, 0)), Light(direction=turn @ far)],
+        view=View(position=turn @ eye) if options.get("near") else View(direction=turn @ back),
+        material=Material(ambient=0.1, diffuse=0.6, specular=0.7, shininess=15),
+    )
+
+
+@pytest.mark.parametrize("model", ["phong", "blinn"])
+@pytest.mark.parametrize(("k", "n"), PAIRS)
+def test_turning_object_light_and_eye_changes_nothing(k, n, model):
+    turn = (
+        special_ortho_group.rvs(n, random_state=n) if n > 2 else np.array([[0.6, -0.8], [0.8, 0.6]])
+    )
+    for near in (True, False):
+        light = []
+        for matrix in (np.eye(n), turn):
+            random = np.random.default_rng(k)
+            points, tangents = random.standard_normal((300, n)), random.standard_normal((300, k, n))
+            scene = scene_of(random, n, matrix, near=near)
+            light.append(
+                engine.shade(points @ matrix.T, tangents @ matrix.T, scene, model=model).luminance
+            )
+        assert np.ptp(light[0]) > 0.1
+        # Rounding alone is left; where points are must not matter beyond it.
+        assert np.abs(light[1] - light[0]).max() < 1e-12
+
+
+@pytest.mark.parametrize(("k", "n"), PAIRS)
+def test_another_dimension_changes_nothing_while_light_and_eye_stay(k, n, random):
+    points, tangents = random.standard_normal((300, n)), random.standard_normal((300, k, n))
+    scene = scene_of(random, n, np.eye(n), near=True)
+    wider = Scene(
+        lights=[
+            Light(position=(*scene.lights[0].position, 0), attenuation=(1, 0.1, 0)),
+            Light(direction=(*scene.lights[1].direction, 0)),
+        ],
+        view=View(position=(*scene.view.position, 0)),
+        material=scene.material,
+    )
+    one = engine.shade(points, tangents, scene, compensate=False).luminance
+    pad = np.pad(points, [(0, 0), (0, 1)]), np.pad(tangents, [(0, 0), (0, 0), (0, 1)])
+    other = engine.shade(*pad, wider, compensate=False).luminance
+    np.testing.assert_allclose(other, one, atol=1e-13)
+
+
+@pytest.mark.parametrize("n", [2, 3, 4, 8])
+def test_codimension_1_is_two_sided_lambert(n, random):
+    tangents = random.standard_normal((300, n - 1, n))
+    normal = np.linalg.svd(tangents)[2][:, -1]
+    toward = random.standard_normal(n)
+    scene = Scene(lights=Light(direction=toward), material=MATTE)
+    light = engine.shade(np.zeros((300, n)), tangents, scene, compensate=False).luminance
+    # The normal is known to eps over the angle between the tangents.
+    worst = np.linalg.cond(tangents).max()
+    lambert = np.abs(normal @ toward) / np.linalg.norm(toward)
+    np.testing.assert_allclose(light, lambert, atol=1e-14 * worst)
+
+
+@pytest.mark.parametrize("n", range(2, 13))
+def test_the_exponent_gives_a_mean_of_one_half(n):
+    """Quadrature and uniform directions, each for all k < n up to 12."""
+    count = 100_000
+    x = np.random.default_rng(n).standard_normal((count, n)) ** 2
+    nodes, weights = np.polynomial.legendre.leggauss(2000)
+    a = np.pi / 4 * (nodes + 1)
+    for k in range(1, n):
+        p = brightness.exponent(k, n)
+        sine = np.sqrt(x[:, k:].sum(axis=1) / x.sum(axis=1)) ** p
+        assert abs(sine.mean() - 0.5) < 5 * sine.std() / math.sqrt(count)
+        # a is spread as sin^(c-1) cos^(k-1) where directions are uniform.
+        density = weights * np.sin(a) ** (n - k - 1) * np.cos(a) ** (k - 1)
+        mean = np.sum(density * np.sin(a) ** p) / np.sum(density)
+        assert mean == pytest.approx(0.5, abs=1e-9)
+
+
+@pytest.mark.parametrize("k", [1, 2, 3, 7])
+def test_the_exponent_for_large_n(k):
+    """sin^2(a) tends to 1 - chi^2_k / n, so the mean to (1 + p/n)^(-k/2), p to n (4^(1/k) - 1)."""
+    slope = 4 ** (1 / k) - 1
+    errors = [abs(brightness.exponent(k, n) / n / slope - 1) for n in (10**3, 10**4, 10**5)]
+    for n, error in zip((10**3, 10**4, 10**5), errors, strict=True):
+        # The next term is of order 1/n.
+        assert error < 5 * k / n
+
+
+def test_the_mean_over_lights_is_one_half_on_the_torus_too():
+    """Whatever the frame: each point sees uniform light with a mean of 1/2."""
+    random = np.random.default_rng(4)
+    shape = manifolds.torus(1.5, 0.75, resolution=8)
+    means, count = [], 4000
+    for toward in random.standard_normal((count, 4)):
+        scene = Scene(lights=Light(direction=toward), material=MATTE)
+        means.append(engine.shade(shape.points, shape.frame, scene, threads=1).luminance[:8])
+    means = np.array(means)
+    sigma = means.std(axis=0) / math.sqrt(count)
+    assert np.all(np.abs(means.mean(axis=0) - 0.5) < 5 * sigma)
+
+
+def test_a_field_takes_the_brightness_of_what_carries_it(random):
+    """Light of the field alone times that of the carrier alone, light by light."""
+    n = 4
+    carrier = random.standard_normal((200, 2, n))
+    field = np.einsum("bk,bkn->bn", random.standard_normal((200, 2)), carrier)
+    points, view = random.standard_normal((200, n)), View(direction=(1, 0.2, -0.4, 0.3))
+    lights = [Light(direction=(1, 2, 0.5, -1)), Light(position=(3, 1, -2, 4), intensity=0.7)]
+    parts = Material(ambient=0.0, diffuse=0.5, specular=0.4)
+    expected = 0.0
+    for light in lights:
+        own = engine.shade(points, field, Scene(lights=light, view=view, material=parts))
+        white = Light(position=light.position, direction=light.direction)
+        factor = engine.shade(points, carrier, Scene(lights=white, material=MATTE))
+        expected = expected + own.luminance * factor.luminance
+    scene = Scene(lights=lights, view=view, material=parts)
+    found = engine.shade(points, field, scene, carrier=carrier)
+    np.testing.assert_allclose(found.luminance, expected, rtol=1e-12)
+    assert "carrier: brightness |wi_N| to the power 2" in found.plan.explain()
+
+
+def test_in_codimension_1_the_carrier_is_the_surface_seen_from_both_sides(random):
+    frame = oracles.frames(random, 300, 2, 3, np.float64)
+    normal = np.cross(frame[:, 0], frame[:, 1])
+    field = np.einsum("bk,bkn->bn", random.standard_normal((300, 2)), frame)
+    scene = Scene(
+        lights=Light(direction=(1, 0.4, 0.8)), view=View(direction=(0, 0.3, 1)), material=Material()
+    )
+    points = np.zeros((300, 3))
+    by_frame = engine.shade(points, field, scene, carrier=frame)
+    by_normal = engine.shade(points, field, scene, normals=normal, two_sided=True)
+    np.testing.assert_allclose(by_frame.luminance, by_normal.luminance, atol=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("k", "carrier", "normals", "words"),
+    [
+        (None, (5, 8), True, "carrier: expected tangents"),
+        (1, (5, 8), True, "carrier: expected tangents .* no normals"),
+        (2, (5, 4), False, "carrier: expected from k = 2"),
+        (1, (5, 16), False, "carrier: expected shape"),
+        (1, (5, 7), False, "carrier: expected shape"),
+        (1, (4, 8), False, "carrier: expected shape"),
+    ],
+)
+def test_bad_carriers(k, carrier, normals, words):
+    scene = Scene(lights=Light(direction=(1, 0, 0, 0)), material=MATTE)
+    with pytest.raises(ValueError, match=words):
+        engine.shade(
+            np.zeros((5, 4)),
+            None if k is None else np.ones((5, 4 * k)),
+            scene,
+            carrier=np.ones(carrier),
+            normals=np.ones((5, 4)) if normals else None,
+        )
+
+
+def test_dependent_tangents_of_a_carrier_are_marked(random):
+    carrier = random.standard_normal((4, 2, 4))
+    carrier[1, 1] = 3 * carrier[1, 0]
+    carrier[2] = np.nan
+    scene = Scene(lights=Light(direction=(1, 2, 0.5, -1)), material=Material(specular=0))
+    lit = engine.shade(np.zeros((4, 4)), carrier[[0, 0, 0, 0], 0], scene, carrier=carrier)
+    np.testing.assert_array_equal(lit.valid, [True, False, False, True])
+    np.testing.assert_array_equal(lit.luminance[1:3], 0.1)

@@ -1,0 +1,257 @@
+"""Arrays in n-space on a mesh: turned, cut by a hyperplane and projected, block by block."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyvista as pv
+
+import vizlight
+from vizlight import _check, _pool
+from vizlight.filters import _cut, _mesh, _provenance
+from vizlight.geometry import projection, slices
+from vizlight.model.frames import orthonormalize
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.floating[Any]]
+
+POSITION, FRAME, PROJECTED, RECORD = "position", "frame", "projected_", "projection"
+#: Rows worked on at once, in float64.
+BLOCK = 1 << 15
+
+
+class Counter:
+    """A number that grows and is told of."""
+
+    def __init__(self, report: Callable[[int], None]) -> None:
+        self.count, self._report = 0, report
+
+    def add(self, more: int) -> None:
+        self.count += more
+        self._report(self.count)
+
+
+@dataclass(frozen=True)
+class Turning:
+    """What :func:`project` does to each mesh, with its options."""
+
+    rotation: Any
+    hyperplane: Any
+    distance: float | None
+    positions: str
+    frame: str | None
+    vectors: tuple[str, ...]
+    cut: bool
+
+    def turned(self, mesh: Any, done: Counter) -> Any:
+        """Return a mesh turned and cut; its points are still where they were."""
+        if isinstance(mesh, pv.ImageData | pv.RectilinearGrid):
+            mesh = mesh.cast_to_structured_grid()
+        out = mesh.copy(deep=False)
+        # The mesh that came shows its own points; its normals are not those of the result.
+        out.point_data.active_normals_name = None
+        arrays = self._arrays(out)
+        n = arrays[self.positions].shape[1]
+        matrix = None if self.rotation is None else projection.rotation(n, self.rotation)
+        plane = None if self.hyperplane is None else _plane(self.hyperplane, n)
+        record = _record(self, mesh, matrix)
+        for name, array in arrays.items():
+            if matrix is not None:
+                rows = array.shape[1] // n
+                array = _blocks(
+                    lambda x, rows=rows: projection.turn(x.reshape(-1, rows, n), matrix), array
+                )
+            _mesh.attach_rows(out, name, array)
+        if plane is not None:
+            out = self._sliced(out, *plane)
+        out.field_data[_provenance.key(RECORD)] = [record]
+        done.add(mesh.n_points)
+        return out
+
+    def _arrays(self, mesh: Any) -> dict[str, Array]:
+        """Return the arrays that turn, by name, each checked."""
+        position = _mesh.array_of(mesh, "positions", self.positions, average_cells=False)
+        n = position.shape[1]
+        if n < 2:
+            got = f"{self.positions!r} with 1"
+            raise ValueError(_check.message("positions", "2 components or more", got))
+        found = {self.positions: position}
+        given = [("vectors", name) for name in self.vectors]
+        if self.frame is not None:
+            given.append(("frame", self.frame))
+        for argument, name in given:
+            array = _named(mesh, argument, name)
+            most = n - 1 if argument == "frame" else array.shape[1]
+            if array.shape[1] % n or not 0 < array.shape[1] // n <= most:
+                expected = f"a point array of {n} k components, rows of {n}, as positions have"
+                got = f"{name!r} with {array.shape[1]}"
+                raise ValueError(_check.message(argument, expected, got))
+            found[name] = array
+        ours = _provenance.key(RECORD) in mesh.field_data
+        for name in list(found)[1:]:
+            if PROJECTED + name in mesh.point_data and not ours:
+                expected = "a mesh without an array of that name of its own"
+                remedy = "rename that array"
+                raise ValueError(_check.message("mesh", expected, repr(PROJECTED + name), remedy))
+        return {
+            name: array if array.dtype.kind == "f" else array.astype(np.float64)
+            for name, array in found.items()
+        }
+
+    def _sliced(self, mesh: Any, normal: Array, offset: float) -> Any:
+        position = np.asarray(mesh.point_data[self.positions])
+        heights = np.empty(len(position))
+        with np.errstate(all="ignore"):
+            for block in _pool.blocks(len(position), BLOCK):
+                heights[block] = position[block].astype(np.float64) @ normal - offset
+        out = _cut.cut(mesh, heights)
+        if self.frame is not None:
+            tangents = np.asarray(out.point_data[self.frame])
+            n = len(normal)
+            k = tangents.shape[1] // n
+            del out.point_data[self.frame]
+            if k > 1:
+                rows = _blocks(
+                    lambda x: slices.slice_frame(x.reshape(-1, k, n), normal), tangents, k - 1, n
+                )
+                _mesh.attach_rows(out, self.frame, rows)
+        return out
+
+    def projected(self, mesh: Any, done: Counter, lost: Counter) -> Any:
+        """Return a mesh projected to 3-space."""
+        position = np.asarray(mesh.point_data[self.positions])
+        n = position.shape[1]
+        good = np.empty(len(position), dtype=np.bool_)
+        for block in _pool.blocks(len(position), BLOCK):
+            good[block] = _seen(position[block], self.distance)
+        if not good.all():
+            count = int(np.count_nonzero(~good))
+            if not self.cut:
+                expected = "points before the eye's hyperplane, and finite"
+                got = f"{count} of {len(good)} points that are not"
+                remedy = "move the eye away by distance=, or leave them out by cut=True"
+                raise ValueError(_check.message("mesh", expected, got, remedy))
+            lost.add(count)
+            mesh = _without(mesh, ~good)
+            position = np.asarray(mesh.point_data[self.positions])
+        out = mesh.copy(deep=False)
+        points: Any = _blocks(
+            lambda x: projection.perspective(x, distance=self.distance), position, 1, 3
+        )
+        out.SetPoints(pv.vtk_points(points))
+        for name in self.vectors:
+            _mesh.attach_rows(out, PROJECTED + name, self._image(out, name, position))
+        if self.frame is not None:
+            name = PROJECTED + self.frame
+            out.point_data.pop(name, None)
+            # Three directions fill 3-space: there is no frame that light could use.
+            if self.frame in out.point_data and out.point_data[self.frame].shape[1] < 3 * n:
+                image = self._image(out, self.frame, position)
+                rows = _blocks(lambda x: orthonormalize(x.reshape(len(x), -1, 3))[0], image)
+                _mesh.attach_rows(out, name, rows)
+        done.add(mesh.n_points)
+        return out
+
+    def _image(self, mesh: Any, name: str, position: Array) -> Array:
+        """Return the vectors of an array as the projection's derivative takes them to 3-space."""
+        vectors, n = np.asarray(mesh.point_data[name]), position.shape[1]
+        rows = vectors.shape[1] // n
+        return _blocks(
+            lambda x, p: projection.push_forward(x.reshape(-1, rows, n), p, distance=self.distance),
+            vectors,
+            rows,
+            3,
+            position,
+        )
+
+
+def _blocks(
+    work: Callable[..., Array], array: Array, rows: int | None = None, n: int = 1, *others: Array
+) -> Array:
+    """Return work done on float64 blocks of an array, in the array's own type.
+
+    The result has ``rows`` vectors of n components a point, or as many numbers as the array.
+    """
+    width = array.shape[1] if rows is None else rows * n
+    out = np.empty((len(array), width), dtype=array.dtype)
+    with np.errstate(all="ignore"):
+        for block in _pool.blocks(len(array), BLOCK):
+            parts = [part[block].astype(np.float64, copy=False) for part in (array, *others)]
+            out[block] = work(*parts).reshape(-1, width)
+    return out
+
+
+def _named(mesh: Any, argument: str, name: Any) -> Array:
+    if not isinstance(name, str):
+        raise TypeError(_check.message(argument, "the name of a point array", repr(name)))
+    return _mesh.array_of(mesh, argument, name, average_cells=False)
+
+
+def _seen(points: Array, distance: float | None) -> NDArray[np.bool_]:
+    """Return which points can be projected: finite, and clearly before the eye's hyperplane."""
+    positions = points.astype(np.float64, copy=False)
+    good: NDArray[np.bool_] = np.all(np.isfinite(positions), axis=1)
+    if distance is not None:
+        with np.errstate(all="ignore"):
+            good &= projection.depth(positions, distance) > 4 * np.finfo(points.dtype).eps
+            image = projection.perspective(positions, distance=distance).astype(points.dtype)
+        good &= np.all(np.isfinite(image), axis=1)
+    return good
+
+
+def _without(mesh: Any, lost: NDArray[np.bool_]) -> Any:
+    """Return a mesh without some points and the cells that have one."""
+    before = set(mesh.point_data), set(mesh.cell_data)
+    grid = mesh.extract_points(~lost, adjacent_cells=False, progress_bar=False)
+    if isinstance(mesh, pv.PolyData):
+        grid = grid.extract_surface(algorithm="geometry", pass_pointid=False, pass_cellid=False)
+    for data, kept in zip((grid.point_data, grid.cell_data), before, strict=True):
+        for name in set(data) - kept:
+            del data[name]
+    for name in before[0] - set(grid.point_data):  # where no point is left
+        _mesh.attach_rows(grid, name, np.asarray(mesh.point_data[name])[:0])
+    for key, value in mesh.field_data.items():
+        grid.field_data[key] = value
+    return grid
+
+
+def _plane(hyperplane: Any, n: int) -> tuple[Array, float]:
+    """Return a hyperplane's unit normal and its offset."""
+    expected = f"(normal of {n} components, offset)"
+    if not isinstance(hyperplane, tuple | list) or len(hyperplane) != 2:
+        raise TypeError(_check.message("hyperplane", expected, _check.describe(hyperplane)))
+    normal = np.array(_check.vector("hyperplane", hyperplane[0], direction=True))
+    if len(normal) != n:
+        got = f"a normal of {len(normal)}"
+        raise ValueError(_check.message("hyperplane", expected, got))
+    normal /= np.abs(normal).max()
+    return normal / np.linalg.norm(normal), _check.number("hyperplane", hyperplane[1])
+
+
+def _record(job: Turning, mesh: Any, matrix: Array | None) -> str:
+    """Return what is done to a mesh, and what was before, as a line of JSON."""
+    earlier = mesh.field_data.get(_provenance.key(RECORD))
+    plane = job.hyperplane
+    return json.dumps(
+        {
+            "vizlight": vizlight.__version__,
+            "filter": "project",
+            "rotation": None if matrix is None else matrix.tolist(),
+            "hyperplane": None
+            if plane is None
+            else [[float(x) for x in plane[0]], float(plane[1])],
+            "distance": job.distance,
+            "positions": job.positions,
+            "frame": job.frame,
+            "vectors": list(job.vectors),
+            "cut": job.cut,
+            "earlier": None if earlier is None else json.loads(str(earlier[0])),
+        }
+    )

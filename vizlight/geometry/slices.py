@@ -1,0 +1,155 @@
+"""Cutting a k-manifold made of simplices by a hyperplane: what is left is a (k - 1)-manifold."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from vizlight import _check
+from vizlight.model.frames import orthonormalize
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Array = NDArray[np.floating[Any]]
+    Index = NDArray[np.intp]
+
+_EDGES = {
+    2: ((0, 1),),
+    3: ((0, 1), (1, 2), (2, 0)),
+    4: ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)),
+}
+
+
+def _cases(corners: int) -> dict[int, tuple[tuple[int, ...], ...]]:
+    """Return for each pattern of corners above 0 the simplices of the cut, as edges."""
+    edges = _EDGES[corners]
+    cases: dict[int, tuple[tuple[int, ...], ...]] = {}
+    for pattern in range(1, 2**corners - 1):
+        cut = [i for i, (a, b) in enumerate(edges) if (pattern >> a & 1) != (pattern >> b & 1)]
+        if len(cut) < 4:
+            cases[pattern] = (tuple(cut),)
+            continue
+        # Four edges of a tetrahedron in a ring: neighbours share a corner.
+        a, b, c, d = cut
+        far = next(e for e in (b, c, d) if not set(edges[a]) & set(edges[e]))
+        near = [e for e in (b, c, d) if e != far]
+        cases[pattern] = ((a, near[0], far), (a, far, near[1]))
+    return cases
+
+
+def cut(values: ArrayLike, simplices: ArrayLike, /) -> tuple[Any, Any, Any]:
+    """Return where a function, linear on each simplex, is zero.
+
+    Parameters
+    ----------
+    values : array_like, shape (N,)
+        Of the function at the points.
+    simplices : array_like of int, shape (M, k + 1)
+        Segments, triangles or tetrahedra, k = 1, 2, 3.
+
+    Returns
+    -------
+    edges : ndarray of int, shape (E, 2)
+        The two points that each point of the cut lies between; the same one twice where the
+        function is 0 at it.
+    weights : ndarray, shape (E,)
+        How far it is from the first of them to the second, from 0 to 1.
+    cells : ndarray of int, shape (C, k)
+        Points, segments or triangles of the cut, each once.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If shapes do not fit or an index is out of range.
+
+    Notes
+    -----
+    Neighbours share the points of the cut, whatever their coordinates. A simplex that lies in
+    the hyperplane as a whole is no part of the cut; one with a value that is not finite neither.
+    """
+    height = _check.floats("values", values).astype(np.float64)
+    corners = np.asarray(simplices)
+    if corners.ndim != 2 or corners.shape[1] not in _EDGES or corners.dtype.kind not in "iu":
+        expected = "integers of shape (M, 2), (M, 3) or (M, 4)"
+        raise ValueError(_check.message("simplices", expected, _check.describe(corners)))
+    if height.ndim != 1 or (corners.size and not 0 <= corners.min() <= corners.max() < len(height)):
+        expected = f"numbers of points, from 0 to {len(height) - 1}"
+        raise ValueError(_check.message("simplices", expected, _check.describe(corners)))
+    size = corners.shape[1]
+    corners = corners[np.all(np.isfinite(height[corners]), axis=1)]
+    above = height[corners] >= 0
+    pattern = above @ (1 << np.arange(size))
+    found = []
+    for case, parts in _cases(size).items():
+        rows = corners[pattern == case]
+        for part in parts:
+            pairs = rows[:, np.array([_EDGES[size][edge] for edge in part])]
+            found.append(np.sort(pairs, axis=2))
+    pairs = np.concatenate(found) if found else np.empty((0, size - 1, 2), np.intp)
+    # A corner at 0 is one point of the cut, from whichever edge it is reached.
+    for end in (0, 1):
+        at = height[pairs[..., end]] == 0
+        pairs[at, 1 - end] = pairs[at, end]
+    edges, number = np.unique(pairs.reshape(-1, 2), axis=0, return_inverse=True)
+    cells = np.asarray(number, dtype=np.intp).reshape(-1, size - 1)
+    ordered = np.sort(cells, axis=1)
+    whole = np.all(ordered[:, 1:] != ordered[:, :-1], axis=1)
+    _, first = np.unique(ordered[whole], axis=0, return_index=True)
+    cells = cells[whole][np.sort(first)]
+    used, cells_of = np.unique(cells, return_inverse=True)
+    edges = edges[used]
+    low, high = height[edges[:, 0]], height[edges[:, 1]]
+    same = edges[:, 0] == edges[:, 1]
+    # Halves, so that the difference of the largest numbers is one.
+    weights = np.where(same, 0.0, (low / 2) / np.where(same, 1.0, low / 2 - high / 2))
+    return edges, weights, np.asarray(cells_of, dtype=np.intp).reshape(cells.shape)
+
+
+def slice_frame(frame: ArrayLike, normal: ArrayLike, /) -> Any:
+    """Return the tangent frame of a manifold's cut by a hyperplane.
+
+    Parameters
+    ----------
+    frame : array_like, shape (..., k, n)
+        Tangents of the manifold, k of 2 or more; orthonormalised here.
+    normal : array_like, shape (n,)
+        Of the hyperplane, any length but 0.
+
+    Returns
+    -------
+    ndarray, shape (..., k - 1, n)
+        Orthonormal rows, tangent to the manifold and to the hyperplane; zero where the manifold
+        touches the hyperplane, or its own frame has rows of zero.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If shapes do not fit.
+
+    Notes
+    -----
+    With a the normal's coefficients on the frame, a reflection of the frame takes its first row
+    to a; the others are what is wanted. ``|F F^T - 1| <= 8 eps``; what they span is known to
+    eps over the angle between manifold and hyperplane.
+    """
+    rows, rank = orthonormalize(frame)
+    k, n = rows.shape[-2:]
+    if k < 2:
+        raise ValueError(_check.message("frame", "2 tangents or more", k))
+    across = np.array(_check.vector("normal", normal, direction=True))
+    if len(across) != n:
+        raise ValueError(_check.message("normal", f"{n} components", len(across)))
+    across /= np.abs(across).max()
+    a = rows @ (across / np.linalg.norm(across))
+    size = np.linalg.norm(a, axis=-1)
+    good = (size > 8 * np.sqrt(n) * np.finfo(rows.dtype).eps) & (rank == k)
+    mirror = a / np.where(good, size, 1)[..., np.newaxis]
+    mirror[..., 0] += np.where(mirror[..., 0] < 0, -1, 1)
+    square = np.sum(mirror**2, axis=-1)
+    along = np.einsum("...k,...kn->...n", mirror, rows)
+    factor = 2 * mirror[..., 1:] / np.where(good, square, 1)[..., np.newaxis]
+    result = rows[..., 1:, :] - factor[..., np.newaxis] * along[..., np.newaxis, :]
+    result[~good] = 0
+    return result
