@@ -39,7 +39,7 @@ _HOMES = {
     "satin": "vizlight.filters",
     "streamlines": "vizlight.filters",
 }
-_MODULES = ("accessor", "engine", "filters", "model", "render", "studies")
+_MODULES = ("accessor", "engine", "filters", "geometry", "model", "movie", "render", "studies")
 
 __all__ = [
     "DepthCue",

@@ -20,8 +20,10 @@ from vizlight.filters._lines import has_lines_only
 from vizlight.filters._mesh import leaves
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
     from pathlib import Path
+
+    from numpy.typing import NDArray
 
 Backend = Literal["egl", "osmesa"]
 AntiAliasing = Literal["ssaa", "msaa", "fxaa"]
@@ -211,6 +213,7 @@ def make_plotter(
     /,
     *,
     camera: Any = None,
+    rows: int = 1,
     size: tuple[int, int] = (1200, 800),
     scalars: str = "luminance",
     cmap: str = "gray",
@@ -220,7 +223,7 @@ def make_plotter(
     anti_aliasing: AntiAliasing | None = "ssaa",
     backend: Backend | None = None,
 ) -> pv.Plotter:
-    """Return an offscreen plotter with lit meshes side by side, seen by one camera.
+    """Return an offscreen plotter with lit meshes side by side or in rows, seen by one camera.
 
     Parameters
     ----------
@@ -228,6 +231,8 @@ def make_plotter(
         What to draw, from left to right.
     camera : pyvista.Camera, optional
         Default: :func:`camera_on` what is drawn.
+    rows : int, default: 1
+        In which the pictures stand, filled one row after the other.
     size : (int, int)
         Width and height in pixels, of all panels together; each at most 8192, 33 million in all.
     scalars : str
@@ -277,6 +282,8 @@ def make_plotter(
     if not hasattr(camera, "GetPosition"):
         raise TypeError(_check.message("camera", "a pyvista.Camera", _check.describe(camera)))
     pixels = pixels_of(size)
+    rows = min(_check.integer("rows", rows, low=1), len(shown))
+    columns = math.ceil(len(shown) / rows)
     ends = _check.vector("clim", clim)
     if len(ends) != 2 or not ends[0] < ends[1]:
         raise ValueError(_check.message("clim", "a lower and a higher number", clim))
@@ -298,11 +305,11 @@ def make_plotter(
         _check.color("background", background)
     with _window_class(choose_backend(backend)):
         plotter = pv.Plotter(
-            off_screen=True, shape=(1, len(shown)), window_size=pixels, border=False
+            off_screen=True, shape=(rows, columns), window_size=pixels, border=False
         )
     try:
-        for column, panel in enumerate(shown):
-            plotter.subplot(0, column)
+        for number, panel in enumerate(shown):
+            plotter.subplot(*divmod(number, columns))
             plotter.set_background(background)
             _draw(plotter, panel, cmap, clim, line_width)
             if panel.title:
@@ -328,7 +335,7 @@ def save_png(panels: Any, path: str | Path, /, **options: Any) -> Path:
     path : path
         The picture; its folder must exist.
     **options
-        Of :func:`make_plotter`: camera, size, scalars, cmap, clim, background, line_width,
+        Of :func:`make_plotter`: camera, rows, size, scalars, cmap, clim, background, line_width,
         anti_aliasing, backend.
 
     Returns
@@ -348,6 +355,34 @@ def save_png(panels: Any, path: str | Path, /, **options: Any) -> Path:
         return replace_file(path, plotter.screenshot)
     finally:
         plotter.close()
+
+
+def pictures(sequence: Iterable[Any], /, **options: Any) -> Iterator[NDArray[np.uint8]]:
+    """Yield pictures, one after the other, all drawn alike.
+
+    Parameters
+    ----------
+    sequence : iterable
+        Of what :func:`make_plotter` draws.
+    **options
+        Of :func:`make_plotter`; with ``camera=`` the eye stays where it is.
+
+    Yields
+    ------
+    ndarray of uint8, shape (height, width, 3)
+
+    Raises
+    ------
+    BackendError, ValueError
+        As :func:`make_plotter`.
+    """
+    for panels in sequence:
+        plotter = make_plotter(panels, **options)
+        try:
+            picture = np.array(plotter.screenshot(return_img=True))
+        finally:
+            plotter.close()
+        yield picture
 
 
 def pixels_of(size: Any) -> list[int]:

@@ -82,12 +82,10 @@ def rotation(n: int, turns: Any, /) -> Array:
 
 
 def _is_row(part: Any) -> bool:
-    """Tell whether a part of a list is a row of a matrix, and no turn of its own."""
-    return np.ndim(part) == 1 if not isinstance(part, tuple) else not _is_turn(part)
-
-
-def _is_turn(part: Any) -> bool:
-    return len(part) == 2 and (isinstance(part[0], str) or not np.isscalar(part[0]))
+    """Tell whether a part of a list is a row of a matrix: numbers, and no turn of its own."""
+    return isinstance(part, list | tuple | np.ndarray) and all(
+        isinstance(number, numbers.Real) for number in part
+    )
 
 
 def _special_orthogonal(n: int, value: Any) -> Array:

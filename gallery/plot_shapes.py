@@ -1,0 +1,57 @@
+"""
+Shapes in 4-space
+=================
+
+What ``vizlight.geometry.manifolds`` makes, seen in 3-space and lit in 4-space. From left to right:
+the Klein bottle and the Veronese surface (a projective plane), neither of which meets itself in
+4-space although what is seen of it does; the graph of w = z^2; fibres of the Hopf map, circles of
+the 3-sphere no two of which meet; and a piece of the 3-sphere that a hyperplane cuts out.
+"""
+
+import numpy as np
+
+import vizlight
+from vizlight import Light, Material, Scene, View, render
+from vizlight.geometry import manifolds
+
+camera = render.camera_on((-1, 1, -1, 1, -1, 1), (0.4, -1, 0.5), zoom=1.45)
+scene = Scene(
+    lights=Light(direction=(0.3, -0.6, 0.8, 0.5)),
+    view=View(direction=(0.4, -1, 0.5, 0)),
+    material=Material(ambient=0.1, diffuse=0.6, specular=0.3),
+)
+slanted = [("xw", 0.5), ("yw", 0.3)]
+shapes = {
+    "Klein bottle": (
+        manifolds.klein_bottle(major=0.75, minor=0.35, resolution=(240, 120)),
+        {"rotation": [("zw", 0.6), ("xw", 0.3)]},
+    ),
+    "Veronese surface": (
+        manifolds.veronese(radius=1.35, resolution=96),
+        {"rotation": [("zw", 0.9), ("xw", 0.4)]},
+    ),
+    "w = z^2": (
+        manifolds.complex_curve(np.square, domain=((-0.9, 0.9),) * 2, resolution=160),
+        {"rotation": [("xw", 0.7), ("yz", 0.5)]},
+    ),
+    "Hopf fibres": (
+        manifolds.hopf_fibres(fibres=160, radius=0.75, resolution=160),
+        {"distance": 2.0, "rotation": slanted},
+    ),
+    "3-sphere, cut": (
+        manifolds.sphere3(radius=1.0, resolution=32),
+        {"hyperplane": ((0.2, 0, 0.5, 1), 0.3)},
+    ),
+}
+
+plotter = render.make_plotter(
+    [
+        render.Panel(vizlight.manifold(shape, scene=scene, **options), title=title)
+        for title, (shape, options) in shapes.items()
+    ],
+    camera=camera,
+    size=(2000, 420),
+    background="#203048",
+    line_width=1.5,
+)
+plotter.show()

@@ -1,0 +1,193 @@
+"""A mesh that turns in n-space, as a sequence of PNGs or a movie: camera fixed, light moving."""
+
+from __future__ import annotations
+
+import importlib
+import warnings
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from PIL import Image
+
+from vizlight import _check, render
+from vizlight.files import check_output, replace_file
+from vizlight.filters import project
+from vizlight.filters._mesh import leaves
+from vizlight.filters._progress import progress
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    Picture = NDArray[np.uint8]
+
+FORMATS = (".png", ".gif", ".mp4")
+TURN = 2 * np.pi
+#: The options of a projection that decide where points come to be.
+PLACING = ("positions", "frame", "distance", "hyperplane", "cut")
+
+
+class MovieError(RuntimeError):
+    """The package that writes movies is not installed; the message says how to install it."""
+
+
+def turn(
+    mesh: Any,
+    path: str | Path,
+    /,
+    *,
+    plane: Any = "xw",
+    frames: int = 72,
+    angle: float = TURN,
+    fps: float = 24.0,
+    camera: Any = None,
+    picture: Mapping[str, Any] | None = None,
+    progress_bar: bool = False,
+    **options: Any,
+) -> list[Path]:
+    """Turn a mesh in a plane of n-space, light it at every step, and write what is seen.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet or pyvista.MultiBlock
+        With positions and a frame in n-space, as :func:`vizlight.project` takes it. Not changed.
+    path : path
+        A movie, ``.gif`` or ``.mp4``, or ``turn.png`` for ``turn_0000.png`` and so on; the
+        folder must exist.
+    plane : str or (int, int), default: "xw"
+        Of the turn, as for :func:`vizlight.geometry.projection.plane_rotation`.
+    frames : int, default: 72
+        How many; the one after the last would be at ``angle``.
+    angle : float, default: 2 pi
+        Of the whole turn, in radians.
+    fps : float, default: 24.0
+        Frames a second of a movie, up to 100.
+    camera : pyvista.Camera, optional
+        The eye, which stays. Default: one that sees the mesh at every step.
+    picture : mapping, optional
+        Further options of :func:`vizlight.render.make_plotter`: size, scalars, cmap, background.
+    progress_bar : bool, default: False
+        Show progress on standard error.
+    **options
+        Of :func:`vizlight.project`: ``scene=``, which stays as the mesh turns; ``light=`` before
+        or after the projection; distance, hyperplane, cut. ``rotation=`` comes before the turn.
+        Without a scene, scalars that the mesh has are drawn.
+
+    Returns
+    -------
+    list of pathlib.Path
+        The files.
+
+    Raises
+    ------
+    MovieError
+        If a movie is asked for and imageio is not installed; before anything is drawn.
+    BackendError
+        If no OpenGL library draws here.
+    TypeError, ValueError
+        If an argument does not fit, or a file cannot be written. No partial file is left: of a
+        sequence the files that are whole, of a movie none.
+
+    Warns
+    -----
+    UserWarning
+        Once, with the number of frames, if :func:`vizlight.project` warns.
+    """
+    path = check_output(path, FORMATS)
+    count = _check.integer("frames", frames, low=1)
+    whole = _check.number("angle", angle)
+    fps = _check.number("fps", fps, low=0.01, high=100.0)
+    drawing = dict(picture or {})
+    drawing["size"] = drawing.get("size", (640, 480))
+    if "camera" in drawing:
+        raise ValueError(_check.message("picture", "no camera", "one", "pass it as camera="))
+    drawing.setdefault("scalars", options.get("name", "luminance"))
+    writer = _writer(path, fps, drawing["size"])
+    before = options.pop("rotation", None)
+    said: list[str] = []
+
+    def steps(settings: dict[str, Any]) -> Iterator[Any]:
+        for i in range(count):
+            turned = (plane, whole * i / count)
+            rotation = turned if before is None else [before, turned]
+            with warnings.catch_warnings(record=True) as caught:
+                warnings.simplefilter("always")
+                step = project(mesh, rotation=rotation, **settings)
+            said.extend(str(warning.message) for warning in caught[:1])
+            yield step
+
+    with progress("turn", count if camera else 2 * count, show=progress_bar) as report:
+        done = 0
+        if camera is None:
+            # What light there is makes no difference to where things are.
+            where = {name: options[name] for name in PLACING if name in options}
+            camera = render.camera_on(_bounds(_counted(steps(where), report, done)))
+            done = count
+            said.clear()
+        seen = render.pictures(steps(options), camera=camera, **drawing)
+        files = writer(_counted(seen, report, done))
+    if said:
+        _check.warn(f"in {len(said)} of {count} frames: {said[0]}")
+    return files
+
+
+def _counted(items: Iterable[Any], report: Callable[[int], None], done: int) -> Iterator[Any]:
+    """Yield items and tell how many there were."""
+    for item in items:
+        done += 1
+        report(done)
+        yield item
+
+
+def _bounds(meshes: Iterable[Any]) -> list[float]:
+    """Return the box around all meshes."""
+    boxes = [leaf.bounds for mesh in meshes for leaf in leaves(mesh) if leaf.n_points]
+    if not boxes:
+        raise ValueError(_check.message("mesh", "points to draw", "none at any step"))
+    low, high = np.array(boxes)[:, ::2].min(axis=0), np.array(boxes)[:, 1::2].max(axis=0)
+    return [float(x) for pair in zip(low, high, strict=True) for x in pair]
+
+
+def _writer(path: Path, fps: float, size: Any) -> Callable[[Iterator[Picture]], list[Path]]:
+    """Return what writes pictures to files, if all that it needs is there."""
+    pixels = render.pixels_of(size)
+    if path.suffix.lower() == ".png":
+        return lambda pictures: _write_sequence(path, pictures)
+    _need("imageio")
+    options: dict[str, Any] = {"duration": 1000 / fps, "loop": 0}
+    if path.suffix.lower() == ".mp4":
+        _need("imageio_ffmpeg")
+        if any(side % 2 for side in pixels):
+            expected = "an even width and height for MP4"
+            raise ValueError(_check.message("size", expected, f"{pixels[0]}x{pixels[1]}"))
+        options = {"fps": fps, "macro_block_size": 2}
+    return lambda pictures: [replace_file(path, lambda to: _write_movie(to, pictures, options))]
+
+
+def _need(package: str) -> None:
+    try:
+        importlib.import_module(package)
+    except ImportError as error:
+        raise MovieError(
+            f"no movie: {package} is not installed; pip install 'vizlight[movie]', "
+            "or write a sequence of PNGs: a path that ends in .png"
+        ) from error
+
+
+def _write_sequence(path: Path, pictures: Iterable[Picture]) -> list[Path]:
+    files = []
+    for i, picture in enumerate(pictures):
+        name = path.with_name(f"{path.stem}_{i:04d}.png")
+        files.append(replace_file(name, Image.fromarray(picture).save))
+    return files
+
+
+def _write_movie(path: str, pictures: Iterable[Picture], options: dict[str, Any]) -> None:
+    """Write one picture after the other, so that a long movie needs no more memory."""
+    import imageio.v2
+
+    with imageio.v2.get_writer(path, mode="I", **options) as movie:
+        for picture in pictures:
+            movie.append_data(picture)

@@ -1,0 +1,153 @@
+"""Brightness and contrast of curves and surfaces in 3- and 4-space: Banks' illustration 1.
+
+``python -m vizlight.studies.codimension`` lights the torus of Banks' section 3 and a curve wound
+on it in eight ways: k = 1 and 2, n = 3 and 4, plain and compensated; and a uniform sample of
+directions for each (k, n), for which the mean of compensated light is 1/2.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import cyclopts
+import numpy as np
+
+from vizlight.filters import manifold
+from vizlight.geometry import manifolds
+from vizlight.light import Light
+from vizlight.model import brightness, reflection
+from vizlight.scene import Material, Scene
+from vizlight.studies._measure import print_table
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.floating[Any]]
+
+#: The light of illustration 1; it names no coefficients or colours, so they are those of Banks'
+#: section 3: kd = Isource = 1, no other term, no colour.
+LIGHT = (0.7, 0.6, 0.38)
+MATTE = Material(ambient=0.0, diffuse=1.0, specular=0.0)
+#: The radii are not given either: those of illustration 3. The curve runs as fast around one
+#: circle as around the other, so that its tangents have many directions.
+R1, R2 = 1.5, 0.75
+WINDING = Fraction(161, 80)
+#: From here a torus with circles for sections is seen: the projection is stereographic.
+DISTANCE = math.hypot(R1, R2)
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One panel: a lit mesh, its mean luminance and its contrast, std over mean."""
+
+    k: int
+    n: int
+    compensated: bool
+    mesh: Any
+    mean: float
+    contrast: float
+
+    @property
+    def title(self) -> str:
+        """What the panel shows."""
+        p = brightness.exponent(self.k, self.n) if self.compensated else 1.0
+        return f"k = {self.k}, n = {self.n}, p = {p:.5g}"
+
+
+def panels(resolution: int = 192) -> list[Panel]:
+    """Return the eight panels: plain above, compensated below.
+
+    Parameters
+    ----------
+    resolution : int, default: 192
+        Of the torus on each circle; the curve has 64 times as many points in all.
+
+    Notes
+    -----
+    n = 4: light before the projection, by the light (0.7, 0.6, 0.38, 0); n = 3: after it.
+    """
+    shapes = {
+        1: manifolds.torus_curve(WINDING, r1=R1, r2=R2, resolution=64 * resolution),
+        2: manifolds.torus(R1, R2, resolution=resolution),
+    }
+    found = []
+    for compensated in (False, True):
+        for k, n in ((1, 3), (1, 4), (2, 3), (2, 4)):
+            light = Light(direction=LIGHT if n == 3 else (*LIGHT, 0.0))
+            mesh = manifold(
+                shapes[k],
+                distance=DISTANCE,
+                scene=Scene(lights=light, material=MATTE),
+                light="after" if n == 3 else "before",
+                compensate=compensated,
+            )
+            places = np.asarray(mesh.points) if n == 3 else shapes[k].points
+            size = measures(places, shapes[k].cells)
+            mean, contrast = statistics(np.asarray(mesh["luminance"]), size)
+            found.append(Panel(k, n, compensated, mesh, mean, contrast))
+    return found
+
+
+def statistics(values: Array, weights: Array) -> tuple[float, float]:
+    """Return the weighted mean of values, and their contrast: standard deviation over mean."""
+    mean = float(np.average(values, weights=weights))
+    return mean, math.sqrt(np.average((values - mean) ** 2, weights=weights)) / mean
+
+
+def measures(points: Array, cells: NDArray[np.intp]) -> Array:
+    """Return the length or area at each point: an even share of each cell that it is a corner of.
+
+    Parameters
+    ----------
+    points : ndarray, shape (N, n)
+    cells : ndarray of int, shape (M, 2) or (M, 4)
+        Segments or quadrilaterals, the latter as two triangles.
+    """
+    corners = points[cells]
+    if cells.shape[1] == 2:
+        size = np.linalg.norm(corners[:, 1] - corners[:, 0], axis=1)
+    else:
+        size = np.zeros(len(cells))
+        for b, c in ((1, 2), (2, 3)):
+            u, v = corners[:, b] - corners[:, 0], corners[:, c] - corners[:, 0]
+            uu, vv, uv = (np.einsum("ij,ij->i", *pair) for pair in ((u, u), (v, v), (u, v)))
+            size += 0.5 * np.sqrt(np.maximum(uu * vv - uv**2, 0))
+    share = np.repeat(size / cells.shape[1], cells.shape[1])
+    shares: Any = np.bincount(cells.ravel(), share, minlength=len(points))
+    return np.asarray(shares, dtype=np.float64)
+
+
+def uniform(k: int, n: int, count: int = 200_000, *, seed: int = 0) -> tuple[float, float, float]:
+    """Return mean, its standard error and contrast of compensated light from all directions."""
+    toward = np.random.default_rng(seed).standard_normal((count, n))
+    light = reflection.diffuse(toward, np.eye(n)[:k], exponent=brightness.exponent(k, n))
+    mean, contrast = statistics(light, np.ones(count))
+    return mean, contrast * mean / math.sqrt(count), contrast
+
+
+def main(resolution: int = 192) -> None:
+    """Print the tables.
+
+    Parameters
+    ----------
+    resolution
+        Of the torus on each circle.
+    """
+    print_table(
+        "Torus and curve of illustration 1: luminance by length or area",
+        ("panel", "mean", "contrast (std / mean)"),
+        [(p.title, f"{p.mean:.3f}", f"{p.contrast:.3f}") for p in panels(resolution)],
+    )
+    rows = []
+    for k, n in ((1, 2), (1, 3), (1, 4), (2, 3), (2, 4), (2, 5), (3, 4), (1, 12)):
+        mean, sigma, contrast = uniform(k, n)
+        name = f"k = {k}, n = {n}, p = {brightness.exponent(k, n):.5g}"
+        rows.append((name, f"{mean:.4f}", f"{sigma:.4f}", f"{contrast:.3f}"))
+    print_table("Uniform directions, compensated", ("case", "mean", "its error", "contrast"), rows)
+
+
+if __name__ == "__main__":
+    cyclopts.run(main)
