@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 import numpy as np
 
 from vizlight.light import NO_ATTENUATION, WHITE, Light
-from vizlight.model import _kernels, falloff, frames
+from vizlight.model import _cylinder, _kernels, falloff, frames
 from vizlight.scene import View
 
 if TYPE_CHECKING:
     from numpy.typing import DTypeLike, NDArray
 
+    from vizlight._check import Vector
+    from vizlight._highlight import Highlight
     from vizlight.plan import Plan
 
     Array = NDArray[np.floating[Any]]
@@ -53,6 +55,14 @@ class _Split(NamedTuple):
     across: Array
 
 
+class _Pair(NamedTuple):
+    """A light and the eye as the manifold sees them; no eye where nothing needs its split."""
+
+    lit: _Split
+    eye: Any
+    met: Any = None
+
+
 class _Tangents:
     """A k-manifold given by its tangents; it has no sides."""
 
@@ -62,16 +72,45 @@ class _Tangents:
     def split(self, x: Array) -> _Split:
         return _Split(x, *_kernels.split(x, self.frame))
 
-    def diffuse(self, lit: _Split, exponent: float) -> Array:
-        return _kernels.diffuse(lit.across, exponent, lit.along)
+    def pair(self, lit: _Split, eye: _Split | None) -> _Pair:
+        return _Pair(lit, eye)
 
-    def phong(self, lit: _Split, eye: _Split, shininess: float) -> Array:
-        along = lit.along + eye.along
-        return _kernels.phong(_kernels.dot(along, along), lit.across, eye.across, shininess)
+    def diffuse(self, pair: _Pair, exponent: float) -> Array:
+        return _kernels.diffuse(pair.lit.across, exponent, pair.lit.along)
 
-    def blinn(self, lit: _Split, eye: _Split, shininess: float) -> Array:
+    def specular(self, pair: _Pair, highlight: Highlight) -> Array:
+        lit, eye, shininess = pair.lit, pair.eye, highlight.shininess
+        if highlight.half is not None:
+            along = _kernels.coefficients(_column(highlight.half, self.frame), self.frame)
+            return _kernels.blinn_of_unit(_kernels.dot(along, along), shininess)
+        if highlight.model == "phong":
+            along = lit.along + eye.along
+            return _kernels.phong(_kernels.dot(along, along), lit.across, eye.across, shininess)
         along, across = _kernels.split(lit.vector + eye.vector, self.frame)
         return _kernels.blinn(_kernels.dot(along, along), across * across, shininess)
+
+
+class _Line:
+    """A line in 3-space as a thin cylinder; the vector of a split is its normal part."""
+
+    def __init__(self, frame: Array) -> None:
+        self.tangent = frame[0]
+
+    def split(self, x: Array) -> _Split:
+        along, rest, across = _cylinder.across(x, self.tangent)
+        return _Split(rest, along, across)
+
+    def pair(self, lit: _Split, eye: _Split) -> _Pair:
+        met = _cylinder.meet(lit.vector, lit.across, eye.vector, eye.across, self.tangent)
+        return _Pair(lit, eye, met)
+
+    def diffuse(self, pair: _Pair, _: float) -> Array:
+        return _cylinder.diffuse(pair.met)
+
+    def specular(self, pair: _Pair, highlight: Highlight) -> Array:
+        lit, eye, met = pair
+        along, normal = lit.along + eye.along, _kernels.length(lit.vector + eye.vector)
+        return _cylinder.specular(met, along * along, normal, highlight.shininess)
 
 
 class _Surface:
@@ -80,8 +119,8 @@ class _Surface:
     The tangential part is kept as what is left of the vector, and only where it is needed.
     """
 
-    def __init__(self, normal: Array, *, two_sided: bool) -> None:
-        self.normal, self.two_sided = normal, two_sided
+    def __init__(self, normal: Array, *, two_sided: bool, terminator: float) -> None:
+        self.normal, self.two_sided, self.terminator = normal, two_sided, terminator
 
     def side(self, cosine: Array) -> Array:
         """Return the cosine clamped to the lit side or sides."""
@@ -90,24 +129,37 @@ class _Surface:
     def split(self, x: Array) -> _Split:
         return _Split(x, x, _kernels.dot(self.normal, x))
 
+    def pair(self, lit: _Split, eye: _Split | None) -> _Pair:
+        return _Pair(lit, eye)
+
     def cosine(self, x: Array) -> Array:
         """Return the cosine of a unit direction to the normal."""
         return _kernels.dot(self.normal, x)
 
-    def diffuse(self, lit: _Split, exponent: float) -> Array:
-        return _kernels.power(self.side(lit.across), exponent)
+    def diffuse(self, pair: _Pair, exponent: float) -> Array:
+        return _kernels.power(self.side(pair.lit.across), exponent)
 
-    def phong(self, lit: _Split, eye: _Split, shininess: float) -> Array:
-        tangential, _ = self._half(lit, eye)
-        cosines = (lit.across, eye.across)
-        if self.two_sided:
-            cosines = (np.abs(lit.across), np.abs(eye.across))
-        return self._cut(lit, _kernels.phong(tangential, *cosines, shininess))
-
-    def blinn(self, lit: _Split, eye: _Split, shininess: float) -> Array:
+    def specular(self, pair: _Pair, highlight: Highlight) -> Array:
+        lit, eye, shininess = pair.lit, pair.eye, highlight.shininess
+        if highlight.half is not None:
+            return self._cut(lit, self._fixed_half(highlight.half, shininess))
         tangential, up = self._half(lit, eye)
+        if highlight.model == "phong":
+            cosines = (lit.across, eye.across)
+            if self.two_sided:
+                cosines = (np.abs(lit.across), np.abs(eye.across))
+            return self._cut(lit, _kernels.phong(tangential, *cosines, shininess))
         up = self.side(up)
         return self._cut(lit, _kernels.blinn(tangential, up * up, shininess))
+
+    def _fixed_half(self, half: Vector, shininess: float) -> Array:
+        column = _column(half, self.normal)
+        cosine = _kernels.dot(self.normal, column)
+        if shininess <= _kernels.DEFICIT_FROM:
+            return _kernels.power(self.side(cosine), shininess)
+        rest = column - cosine * self.normal
+        value = _kernels.blinn_of_unit(_kernels.dot(rest, rest), shininess)
+        return value if self.two_sided else value * (cosine > 0)
 
     def _half(self, lit: _Split, eye: _Split) -> tuple[Array, Array]:
         """Return |(wi + wo)_T|^2 and (wi + wo) . N."""
@@ -117,8 +169,17 @@ class _Surface:
         return _kernels.dot(rest, rest), up
 
     def _cut(self, lit: _Split, value: Array) -> Array:
-        """Take the highlight from the side that the light does not reach."""
-        return value if self.two_sided else value * (lit.across > 0)
+        """Take the highlight from the side that the light does not reach, sharply or smoothly."""
+        if self.two_sided:
+            return value
+        if self.terminator:
+            return value * _kernels.smooth_step(lit.across / value.dtype.type(self.terminator))
+        return value * (lit.across > 0)
+
+
+def _column(vector: Vector, like: Array) -> Array:
+    """Return one vector as a batch of one that broadcasts, in the precision of another array."""
+    return np.array(vector, dtype=like.dtype)[:, np.newaxis]
 
 
 def shade_block(
@@ -142,14 +203,19 @@ def shade_block(
     if normals is not None:
         normal, length = _kernels.unit(columns(normals, block, dtype))
         valid &= length > 0
-        surface = _Surface(normal.astype(dtype, copy=False), two_sided=plan.two_sided)
+        surface = _Surface(
+            normal.astype(dtype, copy=False),
+            two_sided=plan.two_sided,
+            terminator=plan.terminator,
+        )
         manifold = surface
     if tangents is not None:
         vectors = columns(tangents, block, dtype).reshape(plan.k, plan.n, size)
         rtol = frames.default_rtol(plan.n, vectors.dtype)
         frame, rank = _kernels.orthonormalize(vectors, rtol)
         valid &= rank == plan.k
-        manifold = _Tangents(frame.astype(dtype, copy=False))
+        kind = _Line if plan.model == "cylinder" else _Tangents
+        manifold = kind(frame.astype(dtype, copy=False))
 
     eye: _Split | None = None
     seen: NDArray[np.bool_] | None = None
@@ -158,7 +224,7 @@ def shade_block(
     if plan.needs_eye:
         assert scene.view is not None
         toward_eye, distance = _toward(scene.view, position, dtype)
-        if plan.specular:
+        if plan.splits_eye:
             eye = manifold.split(toward_eye)
         if plan.fur and depth is not None and surface is not None:
             under = np.asarray(depth[block]).astype(dtype, copy=False)
@@ -169,9 +235,9 @@ def shade_block(
             seen = distance > 0
 
     sums = _Sums(plan)
-    for light in scene.lights:
+    for light, highlight in zip(scene.lights, plan.highlights, strict=True):
         toward_light, distance = _toward(light, position, dtype)
-        lit = manifold.split(toward_light)
+        pair = manifold.pair(manifold.split(toward_light), eye)
         scale: Any = dtype.type(light.intensity)
         if distance is not None:
             valid &= distance >= 0
@@ -188,10 +254,9 @@ def shade_block(
                 path = falloff.fur_path(under, np.abs(cosine)) + path_out
                 scale = scale * falloff.fur_passes(path, plan.fur)
         if plan.diffuse:
-            sums.add("diffuse", manifold.diffuse(lit, plan.exponent) * scale, light)
-        if eye is not None:
-            law = manifold.phong if plan.model == "phong" else manifold.blinn
-            value = law(lit, eye, scene.material.shininess) * scale
+            sums.add("diffuse", manifold.diffuse(pair, plan.exponent) * scale, light)
+        if plan.specular:
+            value = manifold.specular(pair, highlight) * scale
             if seen is not None and not seen.all():
                 value = value * seen
             sums.add("specular", value, light)

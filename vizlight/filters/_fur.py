@@ -13,12 +13,11 @@ from vizlight.filters._illuminate import attach, refuse_overwriting, warn_unlit
 from vizlight.filters._mesh import unit_rows
 from vizlight.filters._strands import Strands
 from vizlight.geometry import fur as geometry
+from vizlight.plan import surface_model
 from vizlight.scene import Scene
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-    from vizlight.model.reflection import SpecularModel
 
     Array = NDArray[np.floating[Any]]
 
@@ -46,7 +45,7 @@ def fur(
     conditioned: bool = True,
     attenuated: bool = True,
     compensate: bool = True,
-    model: SpecularModel = "phong",
+    model: engine.Model = "phong",
     threads: int | None = None,
     name: str = "luminance",
     progress_bar: bool = False,
@@ -86,7 +85,7 @@ def fur(
         Attenuate by the fur above a point on the light's way in and out (Banks 7, 8): most at
         the base, not at all at the tip.
     compensate, model, threads, name, progress_bar
-        As for :func:`vizlight.illuminate`.
+        As for :func:`vizlight.illuminate`; with ``model="cylinder"`` the skin's law is Blinn's.
 
     Returns
     -------
@@ -154,6 +153,7 @@ def fur(
         )
     lines, unlit = strands.mesh(), lit.invalid
     attach(lines, lit, name, _provenance.record(lit, "fur", scene, told))
+    shared["model"] = surface_model(model)
     below = coat.skin_depth(segments, bend=bend, curl=curl, turns=turns) if through else None
     lit = engine.shade(
         np.asarray(skin.points),

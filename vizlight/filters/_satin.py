@@ -8,12 +8,23 @@ import pyvista as pv
 
 from vizlight.filters._illuminate import illuminate
 from vizlight.filters._streamlines import streamlines
+from vizlight.plan import surface_model
 
 if TYPE_CHECKING:
+    from vizlight.plan import Model
     from vizlight.scene import Scene
 
 
-def satin(surface: Any, /, scene: Scene, *, tangents: str, seeds: Any = 300, seed: int = 0) -> Any:
+def satin(
+    surface: Any,
+    /,
+    scene: Scene,
+    *,
+    tangents: str,
+    seeds: Any = 300,
+    seed: int = 0,
+    model: Model = "phong",
+) -> Any:
     """Light a surface with a tangent field in four ways: the panels of Banks' illustration 2.
 
     Parameters
@@ -27,6 +38,8 @@ def satin(surface: Any, /, scene: Scene, *, tangents: str, seeds: Any = 300, see
         A point array of 3 components, tangent to the surface.
     seeds, seed
         Of the integral curves, as in :func:`vizlight.streamlines`.
+    model : {"phong", "blinn", "cylinder"}
+        As for :func:`vizlight.illuminate`; with ``"cylinder"`` the surface's law is Blinn's.
 
     Returns
     -------
@@ -40,14 +53,15 @@ def satin(surface: Any, /, scene: Scene, *, tangents: str, seeds: Any = 300, see
     TypeError, ValueError
         As :func:`vizlight.illuminate` and :func:`vizlight.streamlines`.
     """
+    own: dict[str, Any] = {"tangents": tangents, "model": model}
     curves = streamlines(
-        surface, scene, vectors=tangents, conditioned=False, seeds=seeds, seed=seed
+        surface, scene, vectors=tangents, conditioned=False, seeds=seeds, seed=seed, model=model
     )
     return pv.MultiBlock(
         {
             "curves": curves,
-            "surface": illuminate(surface, scene),
-            "field": illuminate(surface, scene, tangents=tangents),
-            "conditioned": illuminate(surface, scene, tangents=tangents, conditioned=True),
+            "surface": illuminate(surface, scene, model=surface_model(model)),
+            "field": illuminate(surface, scene, **own),
+            "conditioned": illuminate(surface, scene, conditioned=True, **own),
         }
     )

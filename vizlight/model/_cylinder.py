@@ -111,7 +111,7 @@ def specular(met: Meeting, tangential: Array, normal: Array, shininess: float) -
     mean = integral(cos_b)
     mean += integral(cos_c)
     mean *= cos_b
-    ends = _kernels.power(sin_b, shininess + 1) - _kernels.power(sin_c, shininess + 1)
+    ends = _gentle_power(sin_b, shininess + 1) - _gentle_power(sin_c, shininess + 1)
     ends *= sin_b
     ends /= number(shininess + 1)
     mean += ends
@@ -191,6 +191,16 @@ def _table(shininess: float) -> tuple[float, Array]:
     powers = np.linalg.solve(np.vander(t, increasing=True), integrand(t).T)
     slopes = width * powers / np.arange(1, DEGREE + 1)[:, np.newaxis]
     return count / reach, np.concatenate([start[np.newaxis], slopes])
+
+
+def _gentle_power(x: Array, exponent: float) -> Array:
+    """Return x^e, e of 1 or more, to eps of 1: where digits of the exponent go, x^e is small."""
+    if exponent == int(exponent) and exponent <= _kernels.DEFICIT_FROM:
+        return _kernels.power(x, exponent)
+    with np.errstate(divide="ignore", under="ignore"):
+        result: Array = np.log(x)
+        result *= x.dtype.type(exponent)
+        return np.exp(result, out=result)
 
 
 def _least(x: Array) -> Any:

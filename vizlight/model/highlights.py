@@ -490,7 +490,8 @@ def _angles(name: str, value: ArrayLike) -> Array:
         raise ValueError(
             _check.message(name, "angles from 0 to pi, in radians", _check.describe(value))
         )
-    return np.minimum(angle, angle.dtype.type(np.pi))
+    clamped: Array = np.minimum(angle, angle.dtype.type(np.pi))
+    return clamped
 
 
 def _powers(name: str, value: ArrayLike, low: float = 0.0, high: float = _check.LARGEST) -> Array:
