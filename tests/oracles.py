@@ -213,3 +213,40 @@ def reflections(random, wi, frame, dtype):
     found += [mirror + step * other for step in (1e-1, 1e-3, 1e-5)]
     found += [-w + 1e-3 * other]
     return [np.asarray(v, dtype=dtype) for v in found]
+
+
+def line_light(wi, wo, tangent, shininess):
+    """Diffuse and specular of a thin cylinder: both laws averaged over its visible half.
+
+    The integrals themselves, by mpmath's quadrature over normals, without a closed form.
+    """
+    wi, wo, t = (unit(exact(v)) for v in (wi, wo, tangent))
+    eye = [x - dot(wo, t) * y for x, y in zip(wo, t, strict=True)]
+    e1 = unit(eye)
+    e2 = [
+        t[1] * e1[2] - t[2] * e1[1],
+        t[2] * e1[0] - t[0] * e1[2],
+        t[0] * e1[1] - t[1] * e1[0],
+    ]
+    lx, ly = dot(wi, e1), dot(wi, e2)
+    half = [x + y for x, y in zip(wi, wo, strict=True)]
+    half = unit(half) if any(half) else half
+    hx, hy = dot(half, e1), dot(half, e2)
+    # A normal at angle x faces the light within a quarter turn of it, and the eye likewise.
+    at = mp.atan2(ly, lx)
+    low, high = max(-mp.pi / 2, at - mp.pi / 2), min(mp.pi / 2, at + mp.pi / 2)
+    if low >= high or not (lx or ly):
+        return mp.mpf(0), mp.mpf(0)
+    s, peak = exact(shininess), mp.atan2(hy, hx)
+
+    def lambert(x):
+        return (lx * mp.cos(x) + ly * mp.sin(x)) * mp.cos(x) / 2
+
+    def blinn(x):
+        return max(hx * mp.cos(x) + hy * mp.sin(x), mp.mpf(0)) ** s * mp.cos(x) / 2
+
+    # Cut at the highlight's place and width, which the quadrature must not miss.
+    width = 1 / mp.sqrt(1 + s)
+    inner = [peak + j * width for j in (-8, -4, -2, -1, 0, 1, 2, 4, 8)]
+    cuts = [low, *(x for x in inner if low < x < high), high]
+    return mp.quad(lambert, [low, high]), mp.quad(blinn, cuts)

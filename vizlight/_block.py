@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 import numpy as np
 
 from vizlight.light import NO_ATTENUATION, WHITE, Light
-from vizlight.model import _kernels, falloff, frames
+from vizlight.model import _cylinder, _kernels, falloff, frames
 from vizlight.scene import View
 
 if TYPE_CHECKING:
     from numpy.typing import DTypeLike, NDArray
 
+    from vizlight._check import Vector
+    from vizlight._highlight import Highlight
     from vizlight.plan import Plan
 
     Array = NDArray[np.floating[Any]]
@@ -53,6 +55,14 @@ class _Split(NamedTuple):
     across: Array
 
 
+class _Pair(NamedTuple):
+    """A light and the eye as the manifold sees them; no eye where nothing needs its split."""
+
+    lit: _Split
+    eye: Any
+    met: Any = None
+
+
 class _Tangents:
     """A k-manifold given by its tangents, good where these are independent; it has no sides."""
 
@@ -62,16 +72,45 @@ class _Tangents:
     def split(self, x: Array) -> _Split:
         return _Split(x, *_kernels.split(x, self.frame))
 
-    def diffuse(self, lit: _Split, exponent: float) -> Array:
-        return _kernels.diffuse(lit.across, exponent, lit.along)
+    def pair(self, lit: _Split, eye: _Split | None) -> _Pair:
+        return _Pair(lit, eye)
 
-    def phong(self, lit: _Split, eye: _Split, shininess: float) -> Array:
-        along = lit.along + eye.along
-        return _kernels.phong(_kernels.dot(along, along), lit.across, eye.across, shininess)
+    def diffuse(self, pair: _Pair, exponent: float) -> Array:
+        return _kernels.diffuse(pair.lit.across, exponent, pair.lit.along)
 
-    def blinn(self, lit: _Split, eye: _Split, shininess: float) -> Array:
+    def specular(self, pair: _Pair, highlight: Highlight) -> Array:
+        lit, eye, shininess = pair.lit, pair.eye, highlight.shininess
+        if highlight.half is not None:
+            along = _kernels.coefficients(_column(highlight.half, self.frame), self.frame)
+            return _kernels.blinn_of_unit(_kernels.dot(along, along), shininess)
+        if highlight.model == "phong":
+            along = lit.along + eye.along
+            return _kernels.phong(_kernels.dot(along, along), lit.across, eye.across, shininess)
         along, across = _kernels.split(lit.vector + eye.vector, self.frame)
         return _kernels.blinn(_kernels.dot(along, along), across * across, shininess)
+
+
+class _Line:
+    """A line in 3-space as a thin cylinder; the vector of a split is its normal part."""
+
+    def __init__(self, frame: Array, good: NDArray[np.bool_]) -> None:
+        self.tangent, self.good = frame[0], good
+
+    def split(self, x: Array) -> _Split:
+        along, rest, across = _cylinder.across(x, self.tangent)
+        return _Split(rest, along, across)
+
+    def pair(self, lit: _Split, eye: _Split) -> _Pair:
+        met = _cylinder.meet(lit.vector, lit.across, eye.vector, eye.across, self.tangent)
+        return _Pair(lit, eye, met)
+
+    def diffuse(self, pair: _Pair, _: float) -> Array:
+        return _cylinder.diffuse(pair.met)
+
+    def specular(self, pair: _Pair, highlight: Highlight) -> Array:
+        lit, eye, met = pair
+        along, normal = lit.along + eye.along, _kernels.length(lit.vector + eye.vector)
+        return _cylinder.specular(met, along * along, normal, highlight.shininess)
 
 
 class _Surface:
@@ -80,8 +119,11 @@ class _Surface:
     The tangential part is kept as what is left of the vector, and only where it is needed.
     """
 
-    def __init__(self, normal: Array, good: NDArray[np.bool_], *, two_sided: bool) -> None:
-        self.normal, self.good, self.two_sided = normal, good, two_sided
+    def __init__(
+        self, normal: Array, good: NDArray[np.bool_], *, two_sided: bool, terminator: float
+    ) -> None:
+        self.normal, self.good = normal, good
+        self.two_sided, self.terminator = two_sided, terminator
 
     def side(self, cosine: Array) -> Array:
         """Return the cosine clamped to the lit side or sides."""
@@ -90,24 +132,37 @@ class _Surface:
     def split(self, x: Array) -> _Split:
         return _Split(x, x, _kernels.dot(self.normal, x))
 
+    def pair(self, lit: _Split, eye: _Split | None) -> _Pair:
+        return _Pair(lit, eye)
+
     def cosine(self, x: Array) -> Array:
         """Return the cosine of a unit direction to the normal."""
         return _kernels.dot(self.normal, x)
 
-    def diffuse(self, lit: _Split, exponent: float) -> Array:
-        return _kernels.power(self.side(lit.across), exponent)
+    def diffuse(self, pair: _Pair, exponent: float) -> Array:
+        return _kernels.power(self.side(pair.lit.across), exponent)
 
-    def phong(self, lit: _Split, eye: _Split, shininess: float) -> Array:
-        tangential, _ = self._half(lit, eye)
-        cosines = (lit.across, eye.across)
-        if self.two_sided:
-            cosines = (np.abs(lit.across), np.abs(eye.across))
-        return self._cut(lit, _kernels.phong(tangential, *cosines, shininess))
-
-    def blinn(self, lit: _Split, eye: _Split, shininess: float) -> Array:
+    def specular(self, pair: _Pair, highlight: Highlight) -> Array:
+        lit, eye, shininess = pair.lit, pair.eye, highlight.shininess
+        if highlight.half is not None:
+            return self._cut(lit, self._fixed_half(highlight.half, shininess))
         tangential, up = self._half(lit, eye)
+        if highlight.model == "phong":
+            cosines = (lit.across, eye.across)
+            if self.two_sided:
+                cosines = (np.abs(lit.across), np.abs(eye.across))
+            return self._cut(lit, _kernels.phong(tangential, *cosines, shininess))
         up = self.side(up)
         return self._cut(lit, _kernels.blinn(tangential, up * up, shininess))
+
+    def _fixed_half(self, half: Vector, shininess: float) -> Array:
+        column = _column(half, self.normal)
+        cosine = _kernels.dot(self.normal, column)
+        if shininess <= _kernels.DEFICIT_FROM:
+            return _kernels.power(self.side(cosine), shininess)
+        rest = column - cosine * self.normal
+        value = _kernels.blinn_of_unit(_kernels.dot(rest, rest), shininess)
+        return value if self.two_sided else value * (cosine > 0)
 
     def _half(self, lit: _Split, eye: _Split) -> tuple[Array, Array]:
         """Return |(wi + wo)_T|^2 and (wi + wo) . N."""
@@ -117,8 +172,17 @@ class _Surface:
         return _kernels.dot(rest, rest), up
 
     def _cut(self, lit: _Split, value: Array) -> Array:
-        """Take the highlight from the side that the light does not reach."""
-        return value if self.two_sided else value * (lit.across > 0)
+        """Take the highlight from the side that the light does not reach, sharply or smoothly."""
+        if self.two_sided:
+            return value
+        if self.terminator:
+            return value * _kernels.smooth_step(lit.across / value.dtype.type(self.terminator))
+        return value * (lit.across > 0)
+
+
+def _column(vector: Vector, like: Array) -> Array:
+    """Return one vector as a batch of one that broadcasts, in the precision of another array."""
+    return np.array(vector, dtype=like.dtype)[:, np.newaxis]
 
 
 class Given(NamedTuple):
@@ -159,7 +223,8 @@ class _Shape:
         self.manifold: Any = surface
         masks = [part.good for part in (surface, sheet) if part is not None]
         if tangents is not None:
-            self.manifold = _spanned(plan, plan.k, tangents, rows)
+            kind = _Line if plan.model == "cylinder" else _Tangents
+            self.manifold = kind(*_spanned(plan, plan.k, tangents, rows))
             masks.append(self.manifold.good)
         self.good: NDArray[np.bool_] = np.logical_and.reduce(masks)
         self._distant: dict[int, _Lit] = {}
@@ -175,7 +240,8 @@ class _Shape:
         elif self.surface is not None:
             cosine = self.surface.cosine(vector)
         if self.sheet is not None:
-            carried = self.sheet.diffuse(self.sheet.split(vector), self.plan.carrier_exponent)
+            pair = _Pair(self.sheet.split(vector), None)
+            carried = self.sheet.diffuse(pair, self.plan.carrier_exponent)
         lit = _Lit(split, distance, cosine, carried)
         if distance is None:
             self._distant[number] = lit
@@ -192,9 +258,9 @@ def shade_block(plan: Plan, rows: slice, given: Given, output: Output) -> None:
     if given.normals is not None:
         normal, length = _kernels.unit(columns(given.normals, rows, plan.dtype))
         normal = normal.astype(plan.dtype, copy=False)
-        surface = _Surface(normal, length > 0, two_sided=plan.two_sided)
+        surface = _Surface(normal, length > 0, two_sided=plan.two_sided, terminator=plan.terminator)
     if given.carrier is not None:
-        sheet = _spanned(plan, plan.carrier, given.carrier, rows)
+        sheet = _Tangents(*_spanned(plan, plan.carrier, given.carrier, rows))
     each = tangents is not None and tangents.shape[0] == given.points.shape[0]
     for j in range(repeat):
         at = rows if repeat == 1 else slice(rows.start * repeat + j, rows.stop * repeat, repeat)
@@ -216,7 +282,7 @@ def _shade_points(plan: Plan, shape: _Shape, block: slice, given: Given, output:
     if plan.needs_eye:
         assert scene.view is not None
         toward_eye, distance = _toward(scene.view, position, dtype)
-        if plan.specular:
+        if plan.splits_eye:
             eye = manifold.split(toward_eye)
         if plan.fur and given.depth is not None and surface is not None:
             under = np.asarray(given.depth[block]).astype(dtype, copy=False)
@@ -227,8 +293,9 @@ def _shade_points(plan: Plan, shape: _Shape, block: slice, given: Given, output:
             seen = distance > 0
 
     sums = _Sums(plan)
-    for number, light in enumerate(scene.lights):
+    for number, (light, highlight) in enumerate(zip(scene.lights, plan.highlights, strict=True)):
         lit, distance, cosine, carried = shape.toward(number, position)
+        pair = manifold.pair(lit, eye)
         scale: Any = dtype.type(light.intensity)
         if distance is not None:
             valid &= distance >= 0
@@ -246,23 +313,22 @@ def _shade_points(plan: Plan, shape: _Shape, block: slice, given: Given, output:
         if carried is not None:
             scale = scale * carried
         if plan.diffuse:
-            sums.add("diffuse", manifold.diffuse(lit, plan.exponent) * scale, light)
-        if eye is not None:
-            law = manifold.phong if plan.model == "phong" else manifold.blinn
-            value = law(lit, eye, scene.material.shininess) * scale
+            sums.add("diffuse", manifold.diffuse(pair, plan.exponent) * scale, light)
+        if plan.specular:
+            value = manifold.specular(pair, highlight) * scale
             if seen is not None and not seen.all():
                 value = value * seen
             sums.add("specular", value, light)
     _store(plan, sums, position, valid, block, output)
 
 
-def _spanned(plan: Plan, k: int, tangents: Rows, rows: slice) -> _Tangents:
-    """Return what k tangents a point span."""
+def _spanned(plan: Plan, k: int, tangents: Rows, rows: slice) -> tuple[Array, NDArray[np.bool_]]:
+    """Return an orthonormal frame of what k tangents a point span, and where these are k."""
     vectors = columns(tangents, rows, plan.dtype)
     vectors = vectors.reshape(k, plan.n, vectors.shape[1])
     rtol = frames.default_rtol(plan.n, vectors.dtype)
     frame, rank = _kernels.orthonormalize(vectors, rtol)
-    return _Tangents(frame.astype(plan.dtype, copy=False), rank == k)
+    return frame.astype(plan.dtype, copy=False), rank == k
 
 
 def columns(rows: Rows, block: slice, work: DTypeLike = np.float32) -> Array:

@@ -126,7 +126,7 @@ def light(
     two_sided: bool = False,
     flip_normals: bool = False,
     compensate: bool = True,
-    model: Literal["phong", "blinn"] = "phong",
+    model: Literal["phong", "blinn", "cylinder"] = "phong",
     light: Vectors | None = None,
     lamp: Vectors | None = None,
     headlight: bool = False,
@@ -178,7 +178,7 @@ def light(
     compensate
         Give lines a surface's contrast.
     model
-        Law of the highlight.
+        Law of the highlight; cylinder, for lines, of all their light.
     light
         Direction x,y,z toward a light at infinity; may be repeated. Default: over the left
         shoulder of the eye.

@@ -14,7 +14,7 @@ import numpy as np
 
 from vizlight import _check, _pool
 from vizlight._block import Given, Output, Rows, columns, shade_block, view_depth
-from vizlight.plan import Plan, plan
+from vizlight.plan import Model, Plan, plan
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.floating[Any]]
 
-__all__ = ["Plan", "Precision", "Rows", "Shading", "depth_range", "plan", "shade"]
+__all__ = ["Model", "Plan", "Precision", "Rows", "Shading", "depth_range", "plan", "shade"]
 
 Precision = Literal["float32", "float64"]
 
@@ -117,7 +117,8 @@ def shade(
     progress : callable, optional
         Called from the caller's thread as ``progress(points done, N)`` after each block.
     **options
-        Of :func:`plan`: model, compensate, conditioned, two_sided, fur, components.
+        Of :func:`plan`: model, highlight_error, compensate, conditioned, two_sided, terminator,
+        fur, components.
 
     Returns
     -------
@@ -133,7 +134,8 @@ def shade(
     The absolute error of the diffuse and the specular term, for one light of intensity 1 and
     coefficients of 1, is within the bounds of :func:`vizlight.model.reflection.diffuse` and
     :func:`~vizlight.model.reflection.specular`; where points are and how long vectors are adds
-    nothing, but k tangents multiply it by 1 over the sine of the angle between them.
+    nothing, but k tangents multiply it by 1 over the sine of the angle between them. For
+    ``model="cylinder"`` see :mod:`vizlight.model.cylinder`.
     Memory beyond the output: about 15 MB for each thread, whatever N.
     """
     points = _rows("points", points)

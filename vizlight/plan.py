@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
-from vizlight import _check
+from vizlight import _check, _highlight
 from vizlight.light import NO_ATTENUATION
 from vizlight.model import brightness
 from vizlight.model._kernels import DEFICIT_FROM
-from vizlight.model.reflection import SpecularModel
 from vizlight.scene import Scene
 
 if TYPE_CHECKING:
     from numpy.typing import DTypeLike
 
+Model = Literal["phong", "blinn", "cylinder"]
 #: Bytes of a block's tangents. Some ten times as much is alive at once: small enough for the last
 #: cache, large enough that threads seldom wait for the interpreter.
 BLOCK_BYTES = 3 << 19
@@ -36,8 +36,10 @@ class Plan:
         With headlights fixed and lights that give nothing left out.
     exponent : float
         Of the diffuse term.
-    model : str
-        Of the specular term.
+    model : {"phong", "blinn", "cylinder"}
+        That was asked for: of the specular term, for a cylinder also of the diffuse one.
+    highlights : tuple of Highlight
+        How each light's specular term is computed, and what that costs in error.
     surface : bool
         Whether the manifold is given by its normals (k = n - 1), not by tangents.
     conditioned : bool
@@ -49,6 +51,8 @@ class Plan:
         0 for none.
     carrier_exponent : float
         Of that factor.
+    terminator : float
+        N.wi below which a surface's highlight fades, 0 for a sharp end.
     fur : float
         Density of the fur that light passes on its way in and out, 0 for none.
     diffuse, specular : bool
@@ -62,12 +66,14 @@ class Plan:
     dtype: np.dtype[Any]
     scene: Scene
     exponent: float
-    model: SpecularModel
+    model: Model
+    highlights: tuple[_highlight.Highlight, ...]
     surface: bool
     conditioned: bool
     two_sided: bool
     carrier: int
     carrier_exponent: float
+    terminator: float
     fur: float
     diffuse: bool
     specular: bool
@@ -98,19 +104,24 @@ class Plan:
     @property
     def needs_eye(self) -> bool:
         """Whether anything depends on where the eye is."""
-        return self.specular or (self.fur > 0 and self.diffuse)
+        return self.splits_eye or (self.fur > 0 and self.diffuse)
+
+    @property
+    def splits_eye(self) -> bool:
+        """Whether a term depends on how the eye stands to the manifold, at each point."""
+        if self.model == "cylinder":
+            return self.specular or self.diffuse
+        return self.specular and any(h.half is None for h in self.highlights)
+
+    @property
+    def highlight_error(self) -> float:
+        """The most that the specular term differs from the model asked for, of 255."""
+        return sum(h.error for h in self.highlights)
 
     @property
     def block(self) -> int:
         """Points in a block, unless the caller says."""
         return max(BLOCK_BYTES // (self.n * self.k * self.dtype.itemsize), 1)
-
-    @property
-    def multiplies(self) -> bool:
-        """Whether the specular power is taken by multiplication."""
-        shininess = self.scene.material.shininess
-        power = shininess / 2 if self.model == "blinn" else shininess
-        return power == int(power) and power <= DEFICIT_FROM
 
     def why_not(self, term: str) -> str:
         """Say why the diffuse or the specular term is left out."""
@@ -134,11 +145,13 @@ def plan(
     k: int | None = None,
     normals: bool = False,
     dtype: DTypeLike = np.float64,
-    model: SpecularModel = "phong",
+    model: Model = "phong",
+    highlight_error: float = 0.0,
     compensate: bool = True,
     conditioned: bool = True,
     two_sided: bool = False,
     carrier: int | None = None,
+    terminator: float = 0.0,
     fur: float = 0.0,
     components: bool = False,
 ) -> Plan:
@@ -155,15 +168,23 @@ def plan(
         Whether normals are given. With k they may condition and attenuate the light.
     dtype : dtype, default: float64
         float32 or float64.
-    model : {"phong", "blinn"}
+    model : {"phong", "blinn", "cylinder"}
+        The last for lines in 3-space alone: the exact line light.
+    highlight_error : float, default: 0.0
+        How far, in pixel values of 255, Phong's specular term may differ from what it is: where
+        the half vector is the same at all points, Blinn's law with the best power then takes its
+        place, light by light, while the errors' bounds add up to no more.
     compensate : bool, default: True
-        Diffuse with the exponent p(k, n) (Banks 5), else 1.
+        Diffuse with the exponent p(k, n) (Banks 5), else 1; nothing to a cylinder.
     conditioned : bool, default: True
         Tangents inherit the self-shadow of normals that are given (Banks 6).
     two_sided : bool, default: False
         Light the far side of normals as the near one.
     carrier : int, optional
         Tangents of the manifold that carries the field, how many a point: k or more, less than n.
+    terminator : float, default: 0.0
+        N.wi, up to 1, below which a one-sided surface's highlight fades smoothly to the
+        terminator, where it otherwise ends sharply.
     fur : float, default: 0.0
         Density in [0, 1] of fur that attenuates the light (Banks 7, 8); needs normals.
     components : bool, default: False
@@ -178,8 +199,10 @@ def plan(
         option is unknown.
     """
     _check.instance("scene", scene, Scene)
-    if model not in get_args(SpecularModel):
-        raise ValueError(_check.message("model", "'phong' or 'blinn'", repr(model)))
+    if model not in get_args(Model):
+        raise ValueError(_check.message("model", "'phong', 'blinn' or 'cylinder'", repr(model)))
+    highlight_error = _check.number("highlight_error", highlight_error, low=0.0)
+    terminator = _check.number("terminator", terminator, low=0.0, high=1.0)
     kind = np.dtype(dtype)
     if kind not in (np.dtype(np.float32), np.dtype(np.float64)):
         raise ValueError(_check.message("dtype", "float32 or float64", kind))
@@ -190,6 +213,13 @@ def plan(
         )
     if k is not None and not 0 < _check.integer("k", k, low=1) < n:
         raise ValueError(_check.message("k", f"fewer than n = {n} tangents a point", k))
+    if model == "cylinder" and (k, n) != (1, 3):
+        got = f"a surface of {n}-space" if k is None else f"{k} tangent(s) a point in {n}-space"
+        remedy = "model='blinn' is its like for other manifolds"
+        raise ValueError(_check.message("model", "lines in 3-space for 'cylinder'", got, remedy))
+    if terminator and k is not None:
+        remedy = "conditioned= shadows tangents smoothly"
+        raise ValueError(_check.message("terminator", "0 beside tangents", terminator, remedy))
     if scene.n not in (None, n):
         raise ValueError(
             _check.message(
@@ -212,28 +242,37 @@ def plan(
     fur = _check.number("fur", fur, low=0.0, high=1.0)
     if fur and not normals:
         raise ValueError(_check.message("normals", "normals, across which fur stands", None))
-    exponent = brightness.exponent(size, n) if compensate else 1.0
+    exponent = brightness.exponent(size, n) if compensate and model != "cylinder" else 1.0
     lights = tuple(light for light in scene.lights if light.intensity > 0)
     specular = bool(material.specular > 0 and lights)
     diffuse = bool(material.diffuse > 0 and lights)
     through_fur = bool(fur and diffuse)
-    if scene.view is None and (specular or through_fur or cue is not None):
-        what = "specular term" if specular else "fur" if through_fur else "depth cue"
+    round_line = bool(model == "cylinder" and diffuse)
+    if scene.view is None and (specular or through_fur or round_line or cue is not None):
+        what = (
+            "specular term" if specular
+            else "fur" if through_fur
+            else "cylinder's visible half" if round_line
+            else "depth cue"
+        )  # fmt: skip
         remedy = "pass view=, or Material(specular=0)" if specular else "pass view="
         raise ValueError(_check.message("view", f"a View, which the {what} needs", None, remedy))
     lights = tuple(light.seen_from(scene.view) for light in lights) if diffuse or specular else ()
+    scene = scene.replace(lights=lights)
     return Plan(
         n=n,
         k=size,
         dtype=kind,
-        scene=scene.replace(lights=lights),
+        scene=scene,
         exponent=exponent,
         model=model,
+        highlights=_highlight.choose(scene, model, highlight_error if specular else 0.0),
         surface=surface,
         conditioned=conditioned,
         two_sided=bool(two_sided),
         carrier=carrier or 0,
         carrier_exponent=brightness.exponent(carrier, n) if carrier and compensate else 1.0,
+        terminator=terminator,
         fur=fur if diffuse or specular else 0.0,
         diffuse=diffuse,
         specular=specular,
@@ -242,10 +281,15 @@ def plan(
     )
 
 
+def surface_model(model: Model) -> Model:
+    """Return the law of a surface's highlight beside lines of a model: a cylinder's is Blinn's."""
+    return "blinn" if model == "cylinder" else model
+
+
 def _words(plan: Plan) -> tuple[list[str], list[str]]:
     """Return what is computed and what is skipped, in words."""
     scene = plan.scene
-    material, view, lights = scene.material, scene.view, scene.lights
+    view, lights = scene.view, scene.lights
     yes, no = [f"ambient: the constant {plan.ambient:g}"], []
     if plan.surface:
         sides = "both sides alike" if plan.two_sided else "the outer side only"
@@ -258,20 +302,19 @@ def _words(plan: Plan) -> tuple[list[str], list[str]]:
             f"codimension {plan.n - plan.k}"
         )
         law = "|wi_N|"
-    if plan.diffuse:
+    if plan.diffuse and plan.model == "cylinder":
+        yes.append("diffuse: Lambert's law averaged over the visible half of a thin cylinder")
+        no.append("compensation: the round of a cylinder has it in the mean")
+    elif plan.diffuse:
         yes.append(f"diffuse: {law} to the power {plan.exponent:.6g}")
     else:
         no.append(f"diffuse: {plan.why_not('diffuse')}")
     if plan.specular and view is not None:
-        yes.append(
-            f"specular: {plan.model}, shininess {material.shininess:g} by "
-            + ("multiplication" if plan.multiplies else "a power")
-        )
-        distant = sum(light.position is None for light in lights)
+        said, unsaid = _highlight_words(plan)
+        yes += said
+        no += unsaid
         if view.parallel:
             no.append("eye: no direction a point, the parallel view has one for all")
-            if plan.model == "blinn" and distant:
-                yes.append(f"half vector: one for all points for {distant} light(s)")
         else:
             yes.append("eye: its direction and split once a point, shared by all lights")
     else:
@@ -296,6 +339,8 @@ def _words(plan: Plan) -> tuple[list[str], list[str]]:
         )
     elif not plan.surface:
         no.append("self-shadow: no surface conditions the tangents")
+    if plan.terminator:
+        yes.append(f"terminator: highlights fade smoothly below N.wi = {plan.terminator:g}")
     if plan.fur:
         yes.append(f"fur: density {plan.fur:g}, on the way in for each light and out once")
     if scene.depth_cue is not None:
@@ -306,4 +351,39 @@ def _words(plan: Plan) -> tuple[list[str], list[str]]:
         yes.append("rgb: three channels")
     else:
         no.append("rgb: nothing in the scene has a colour")
+    return yes, no
+
+
+def _highlight_words(plan: Plan) -> tuple[list[str], list[str]]:
+    """Return in words how highlights are computed, and what was not taken for them."""
+    yes, no = [], []
+    shininess = plan.scene.material.shininess
+    own = [h for h in plan.highlights if h.model == plan.model]
+    if own:
+        if plan.model == "cylinder":
+            how = "averaged over the visible half of a thin cylinder"
+        else:
+            power = shininess / 2 if plan.model == "blinn" else shininess
+            multiplies = power == int(power) and power <= DEFICIT_FROM
+            how = "by multiplication" if multiplies else "by a power"
+        yes.append(f"specular: {plan.model}, shininess {shininess:g} {how}")
+    fixed = sum(h.half is not None for h in own)
+    if fixed:
+        yes.append(f"half vector: one for all points for {fixed} light(s)")
+    for i, h in enumerate(plan.highlights):
+        if h.model != plan.model:
+            yes.append(
+                f"light {i}: Blinn's law of power {h.shininess:.6g} for {plan.model}'s of "
+                f"{shininess:g}, one half vector for all points, "
+                f"within {h.error:.3g} of 255"
+            )
+        elif h.refused:
+            no.append(
+                f"light {i}: Blinn's law in place of {plan.model}'s, "
+                f"it would differ by up to {h.refused:.3g} of 255"
+            )
+    if plan.highlight_error:
+        yes.append(f"specular: in all within {plan.highlight_error:.3g} of 255 of {plan.model}'s")
+        if not plan.splits_eye:
+            no.append("eye: no split a point, all half vectors are fixed")
     return yes, no

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
+import vizlight
 from vizlight import Light, Scene, View, illuminate
 from vizlight.filters import _lines
 
@@ -98,3 +99,21 @@ def test_lines_without_length_are_taken_out_with_their_data():
     np.testing.assert_array_equal(clean.lines, [2, 0, 1])
     np.testing.assert_array_equal(clean.cell_data["c"], [8])
     assert _lines.without_degenerate(clean) is clean
+
+
+def test_lines_as_thin_cylinders():
+    """The exact line light through every filter of lines; refused where there are no lines."""
+    flow = vizlight.load_example()
+    scene = Scene(lights=Light(direction=(1, 0.9, 0.5)), view=View(direction=(0.2, 1, 0.3)))
+    lines = vizlight.streamlines(flow, scene, vectors="V", seeds=10, model="cylinder")
+    assert vizlight.provenance(lines)["options"]["model"] == "cylinder"
+    again = vizlight.illuminate(lines, scene, model="cylinder", name="again")
+    np.testing.assert_array_equal(again["again"], lines["luminance"])
+    cheap = vizlight.illuminate(lines, scene, compensate=False, name="cheap")["cheap"]
+    assert np.corrcoef(cheap, lines["luminance"])[0, 1] > 0.5
+    assert np.abs(cheap - lines["luminance"]).max() > 0.05
+    coat = vizlight.fur(pv.Sphere(), scene, density=0.1, fibres=50, model="cylinder")
+    assert coat["fibres"]["luminance"].max() > coat["fibres"]["luminance"].min()
+    blocks = pv.MultiBlock({"lines": lines, "ball": pv.Sphere()})
+    with pytest.raises(ValueError, match="block /ball: model: expected lines in 3-space"):
+        vizlight.illuminate(blocks, scene, model="cylinder")

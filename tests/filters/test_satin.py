@@ -82,3 +82,9 @@ def test_curves_have_the_light_of_the_field(made):
     difference = np.abs(curves["luminance"] - expected)[~near_pole]
     assert np.median(difference) < 0.02
     assert np.quantile(difference, 0.99) < 0.1
+
+
+def test_satin_of_thin_cylinders(made):
+    panels = vizlight.satin(made[0], SCENE, tangents="V", seeds=5, model="cylinder")
+    told = [vizlight.provenance(panel)["options"]["model"] for panel in panels]
+    assert told == ["cylinder", "blinn", "cylinder", "cylinder"]

@@ -7,19 +7,18 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 import numpy as np
 import pyvista as pv
 
-from vizlight import _check
+from vizlight import _check, engine
 from vizlight.filters import _light, _mesh, _surface
 from vizlight.filters._light import Job
 from vizlight.filters._mesh import unit_rows
 from vizlight.filters._strands import Grown, Strands
 from vizlight.geometry import fur as geometry
 from vizlight.model import _kernels
+from vizlight.plan import surface_model
 from vizlight.scene import Scene
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-    from vizlight.model.reflection import SpecularModel
 
     Array = NDArray[np.floating[Any]]
 
@@ -45,7 +44,7 @@ def fur(
     conditioned: bool = True,
     attenuated: bool = True,
     compensate: bool = True,
-    model: SpecularModel = "phong",
+    model: engine.Model = "phong",
     threads: int | None = None,
     name: str = "luminance",
     progress_bar: bool = False,
@@ -85,7 +84,7 @@ def fur(
         Attenuate by the fur above a point on the light's way in and out (Banks 7, 8): most at
         the base, not at all at the tip.
     compensate, model, threads, name, progress_bar
-        As for :func:`vizlight.illuminate`.
+        As for :func:`vizlight.illuminate`; with ``model="cylinder"`` the skin's law is Blinn's.
 
     Returns
     -------
@@ -158,6 +157,7 @@ def fur(
             None,
             np.asarray(skin.point_data[_surface.NORMALS]),
             depth=coat.skin_depth(**shape) if through else None,
+            own={"model": surface_model(model)},
         ),
     ]
     results, scene = _light.light(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pyvista as pv
 
@@ -10,9 +10,6 @@ from vizlight import _check, engine
 from vizlight.filters import _light, _lines, _mesh
 from vizlight.filters._light import Job
 from vizlight.scene import Scene
-
-if TYPE_CHECKING:
-    from vizlight.model.reflection import SpecularModel
 
 
 def illuminate(
@@ -27,7 +24,9 @@ def illuminate(
     two_sided: bool = False,
     flip_normals: bool = False,
     compensate: bool = True,
-    model: SpecularModel = "phong",
+    model: engine.Model = "phong",
+    highlight_error: float = 0.0,
+    terminator: float = 0.0,
     average_cells: bool = False,
     components: bool = False,
     precision: engine.Precision | None = None,
@@ -69,8 +68,17 @@ def illuminate(
         Turn the normals over.
     compensate : bool, default: True
         Diffuse with the exponent p(k, n), which gives lines a surface's contrast (Banks 5).
-    model : {"phong", "blinn"}
-        The law of the highlight.
+    model : {"phong", "blinn", "cylinder"}
+        The law of the highlight. ``"cylinder"``, for lines in 3-space, is the exact light of a
+        thin cylinder, diffuse and specular, by which the others are measured.
+    highlight_error : float, default: 0.0
+        How far, in pixel values of 255, Phong's highlight may be off for speed: under a parallel
+        view and lights at infinity Blinn's, of the best power, may then take its place.
+        :meth:`vizlight.engine.Plan.explain` tells what was chosen, and the bound.
+    terminator : float, default: 0.0
+        A surface's highlight ends sharply where the light does. This is the ``N . wi``, up to 1,
+        below which it fades smoothly instead; what that takes from it at most is
+        :func:`vizlight.model.highlights.terminator_error`.
     average_cells : bool, default: False
         Allow cell data as tangents, averaged to the points.
     components : bool, default: False
@@ -140,8 +148,10 @@ def illuminate(
         progress_bar=progress_bar,
         precision=precision,
         model=model,
+        highlight_error=highlight_error,
         compensate=compensate,
         two_sided=two_sided,
+        terminator=terminator,
         components=components,
     )
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
@@ -177,6 +187,12 @@ def _prepare(mesh: pv.DataSet, path: str, scene: Scene, options: dict[str, Any])
             )
         elif n == 3 and _lines.has_lines_only(mesh):
             tangents = _lines.line_tangents(mesh)
+        one_line = tangents is not None and n == 3 and tangents.shape[1:] == (3,)
+        if options["model"] == "cylinder" and not one_line:
+            remedy = "model='blinn' is its like for other manifolds"
+            raise ValueError(
+                _check.message("model", "lines in 3-space for 'cylinder'", "another mesh", remedy)
+            )
         if tangents is None and conditioned:
             remedy = "a surface without tangents shadows itself as it is"
             raise ValueError(_check.message("conditioned", "tangents to condition", None, remedy))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -29,7 +29,7 @@ class Job:
     """The rows of one mesh that the engine lights.
 
     Points are given less ``origin``, where one is named; ``made_on_the_fly`` are those that are
-    not there before they are lit.
+    not there before they are lit; ``own`` are options of the engine for this mesh alone.
     """
 
     points: engine.Rows
@@ -41,6 +41,7 @@ class Job:
     block: int | None = None
     origin: Vector | None = None
     made_on_the_fly: bool = False
+    own: dict[str, Any] = field(default_factory=dict)
 
 
 def light(
@@ -71,7 +72,7 @@ def light(
                     block=job.block,
                     threads=threads,
                     progress=_after(done, report),
-                    **options,
+                    **(options | job.own),
                 )
             )
     return results, fitted

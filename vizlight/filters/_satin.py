@@ -8,8 +8,10 @@ import pyvista as pv
 
 from vizlight.filters._illuminate import illuminate
 from vizlight.filters._streamlines import streamlines
+from vizlight.plan import surface_model
 
 if TYPE_CHECKING:
+    from vizlight.plan import Model
     from vizlight.scene import Scene
 
 
@@ -22,6 +24,7 @@ def satin(
     seeds: Any = 300,
     seed: int = 0,
     compensate: bool = True,
+    model: Model = "phong",
     **options: Any,
 ) -> Any:
     """Light a surface with a tangent field in four ways: the panels of Banks' illustration 2.
@@ -39,6 +42,8 @@ def satin(
         Of the integral curves, as in :func:`vizlight.streamlines`.
     compensate : bool, default: True
         Diffuse with the exponent p(k, n); Banks' panels are without.
+    model : {"phong", "blinn", "cylinder"}
+        As for :func:`vizlight.illuminate`; with ``"cylinder"`` the surface's law is Blinn's.
     **options
         Of :func:`vizlight.illuminate`, for all panels.
 
@@ -55,16 +60,22 @@ def satin(
         As :func:`vizlight.illuminate` and :func:`vizlight.streamlines`.
     """
     options["compensate"] = compensate
+    own: dict[str, Any] = {"tangents": tangents, "model": model, **options}
     curves = streamlines(
-        surface, scene, vectors=tangents, conditioned=False, seeds=seeds, seed=seed, **options
+        surface,
+        scene,
+        vectors=tangents,
+        conditioned=False,
+        seeds=seeds,
+        seed=seed,
+        model=model,
+        **options,
     )
     return pv.MultiBlock(
         {
             "curves": curves,
-            "surface": illuminate(surface, scene, **options),
-            "field": illuminate(surface, scene, tangents=tangents, **options),
-            "conditioned": illuminate(
-                surface, scene, tangents=tangents, conditioned=True, **options
-            ),
+            "surface": illuminate(surface, scene, model=surface_model(model), **options),
+            "field": illuminate(surface, scene, **own),
+            "conditioned": illuminate(surface, scene, conditioned=True, **own),
         }
     )
