@@ -38,7 +38,7 @@ scene = Scene(
     view=View.from_camera(camera),
     material=Material(ambient=0.1, diffuse=0.9, specular=0.1),
 )
-hair = {"fibres": 200_000, "length": 0.3, "segments": 6, "toward": (0, 0, -1), "bend": 0.8}
+hair = {"fibres": 401_408, "length": 0.3, "segments": 6, "toward": (0, 0, -1), "bend": 0.8}
 hair["compensate"] = False
 density = 1 - (1 - 0.02) ** 100
 bare = vizlight.fur(torus, scene, density=density, conditioned=False, attenuated=False, **hair)

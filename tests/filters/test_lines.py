@@ -94,11 +94,11 @@ def test_lines_without_length_are_taken_out_with_their_data():
     mesh.lines = [2, 0, 1, 2, 2, 3, 1, 4]
     mesh["i"] = np.arange(5)
     mesh.cell_data["c"] = [7, 8, 9]
-    clean = _lines.without_degenerate(mesh)
+    clean = _lines.before_turning_back(mesh)
     np.testing.assert_array_equal(clean["i"], [2, 3])
     np.testing.assert_array_equal(clean.lines, [2, 0, 1])
     np.testing.assert_array_equal(clean.cell_data["c"], [8])
-    assert _lines.without_degenerate(clean) is clean
+    assert _lines.before_turning_back(clean) is clean
 
 
 def test_lines_as_thin_cylinders():

@@ -88,3 +88,17 @@ def test_satin_of_thin_cylinders(made):
     panels = vizlight.satin(made[0], SCENE, tangents="V", seeds=5, model="cylinder")
     told = [vizlight.provenance(panel)["options"]["model"] for panel in panels]
     assert told == ["cylinder", "blinn", "cylinder", "cylinder"]
+
+
+def test_options_go_to_the_panels_that_they_fit():
+    ball = pv.Sphere(theta_resolution=20, phi_resolution=20, start_phi=5, end_phi=175)
+    ball["way"] = np.array([0, 0, 1.0]) - 4 * ball.points[:, 2:] * ball.points
+    options = {"flip_normals": True, "components": True, "max_length": 0.5, "name": "x"}
+    panels = vizlight.satin(ball, SCENE, tangents="way", seeds=5, **options)
+    for panel in panels:
+        assert "x_diffuse" in panel.point_data
+    away = np.asarray(ball.points) @ (1, -1, 0.8) < -0.1
+    assert panels["surface"]["x_diffuse"][away].max() > 0.1
+    assert panels["conditioned"]["x_diffuse"][away].max() > 0.1
+    with pytest.raises(TypeError, match="conditioned: expected no such option, got True"):
+        vizlight.satin(ball, SCENE, tangents="way", conditioned=True)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+from pathlib import Path
+
 import numpy as np
 import pytest
 import pyvista as pv
@@ -168,6 +171,7 @@ def test_options_reach_the_light():
             "seeds: expected points inside",
         ),
         (vortex, {"vectors": "V", "seeds": [[np.nan, 0, 0]]}, ValueError, "seeds: expected finite"),
+        (vortex, {"vectors": "V", "seeds": [[1, 2, 3], [1, 2]]}, TypeError, "seeds: expected num"),
         (vortex, {"vectors": "V", "seed": -1}, ValueError, "seed: expected an integer of at"),
         (vortex, {"vectors": np.ones((2205, 3))}, TypeError, "vectors: expected the name of a"),
         (vortex, {"vectors": "V", "inplace": True}, TypeError, "inplace: expected no such option"),
@@ -205,6 +209,9 @@ def test_far_from_the_origin():
     here = streamlines(sphere, SCENE, vectors="V", seeds=sphere.points[100:110])
     there = streamlines(moved, SCENE, vectors="V", seeds=np.asarray(moved.points)[100:110])
     assert there.field_data["drift"][0] < 1e-6
+    drawn = streamlines(moved, SCENE, vectors="V", seeds=50)
+    assert drawn.n_lines == streamlines(sphere, SCENE, vectors="V", seeds=50).n_lines
+    assert drawn.field_data["drift"][0] < 1e-6
     np.testing.assert_allclose(there.points - offset, here.points, atol=1e-5)
     np.testing.assert_allclose(there["luminance"], here["luminance"], atol=1e-3)
 
@@ -215,6 +222,67 @@ def test_vectors_that_are_not_finite_stop_a_line():
     lines = streamlines(sphere, SCENE, vectors="V", seeds=40)
     assert np.all(np.isfinite(lines["luminance"]))
     assert np.asarray(lines.points)[:, 2].max() < 0.25
+
+
+@pytest.mark.parametrize("scale", [1e-30, 1e-7, 1e12, 1e30])
+def test_lines_do_not_depend_on_the_unit(scale):
+    """Neither of the lengths nor of the speeds."""
+    sphere = ball(30)
+    places = np.asarray(sphere.points, float)
+    places = places[np.abs(places[:, 2]) < 0.1][:20]
+    expected = streamlines(sphere, SCENE, vectors="V", seeds=places, max_length=0.3)
+    other = sphere.copy()
+    other.points = np.asarray(sphere.points, float) * scale
+    other["V"] = sphere["V"] / scale**5
+    found = streamlines(other, SCENE, vectors="V", seeds=places * scale, max_length=0.3 * scale)
+    assert found.n_lines == expected.n_lines
+    lengths = [
+        np.linalg.norm(np.diff(lines.get_cell(i).points / unit, axis=0), axis=1).sum()
+        for lines, unit in ((expected, 1.0), (found, scale))
+        for i in range(lines.n_lines)
+    ]
+    np.testing.assert_allclose(*np.reshape(lengths, (2, -1)), atol=1e-3)
+    np.testing.assert_allclose(found.field_data["drift"] / scale, 0, atol=1e-6)
+
+
+def test_one_large_vector_does_not_stop_the_lines():
+    flow = vortex()
+    few = streamlines(flow, SCENE, vectors="V", seeds=20, max_length=1.0)
+    flow["V"][0] = 1e20
+    assert streamlines(flow, SCENE, vectors="V", seeds=20, max_length=1.0).n_lines == few.n_lines
+
+
+def test_a_line_ends_where_it_turns_back():
+    """Where the flow meets itself a line would jump from one side to the other for ever."""
+    grid = pv.ImageData(dimensions=(21, 5, 5), origin=(-1, 0, 0), spacing=(0.1, 0.1, 0.1))
+    x = grid.points[:, 0]
+    grid["V"] = np.stack([-np.sign(x), 0 * x, 0 * x], axis=1)
+    lines = streamlines(grid, SCENE, vectors="V", seeds=[[0.52, 0.2, 0.2], [-0.71, 0.2, 0.2]])
+    assert lines.n_points < 200
+    for i in range(lines.n_lines):
+        along = np.diff(lines.get_cell(i).points[:, 0])
+        assert np.all(along > 0) or np.all(along < 0)
+
+
+def test_a_mesh_that_was_lit_before():
+    sphere = vizlight.illuminate(ball(30), SCENE, components=True)
+    lines = streamlines(sphere, SCENE, vectors="V", seeds=20)
+    assert "luminance" in lines.point_data
+    assert "diffuse" not in lines.point_data
+
+
+def test_carotid_artery():
+    """Measured flow with walls: every point of a line is lit."""
+    if not Path(os.environ.get("PYVISTA_DATA", "")).is_dir() or "PYVISTA_DATA" not in os.environ:
+        pytest.skip("PYVISTA_DATA names no folder with carotid.vtk")
+    flow = pv.examples.download_carotid()
+    lines = streamlines(flow, SCENE, vectors="vectors", seeds=60)
+    assert lines.n_lines > 60
+    assert "luminance_valid" not in lines.point_data
+    wall = flow.contour([150.0], scalars="scalars")
+    lines = streamlines(flow, SCENE, vectors="vectors", surface=wall, confined=True, seeds=30)
+    assert lines.field_data["drift"][0] < 1e-2 * wall.length
+    assert np.all(np.isfinite(lines["luminance"]))
 
 
 def test_provenance_makes_the_lines_again():

@@ -53,6 +53,26 @@ def test_uniform_within_a_triangle():
     assert (x + y).max() <= 1 + 1e-6
 
 
+def test_few_places_in_one_triangle_are_uniform_over_seeds():
+    """Each of the four like triangles in it has its quarter, however few places there are."""
+    points, faces = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]])
+    for count in (1, 2, 5):
+        found = np.concatenate([places(points, faces, count, seed) for seed in range(800)])
+        x, y = found[:, 0], found[:, 1]
+        part = np.select([x > 0.5, y > 0.5, x + y < 0.5], [0, 1, 2], 3)
+        number = np.bincount(part, minlength=4)
+        chi2 = np.sum((number - len(found) / 4) ** 2) / (len(found) / 4)
+        assert chi2 < 3 + 6 * np.sqrt(6)
+
+
+def test_no_pattern_runs_over_the_triangles_of_a_grid():
+    """The structure factor has no peak such as one lattice for all triangles would have."""
+    found = places(*square(32), 32 * 32 * 34)[:, :2]
+    waves = np.stack(np.meshgrid(np.arange(100, 140), np.arange(80, 120)), -1).reshape(-1, 2)
+    power = [abs(np.exp(2j * np.pi * (found @ wave)).sum()) ** 2 / len(found) for wave in waves]
+    assert max(power) < 25
+
+
 def test_reproducible_by_seed():
     points, faces = square(3)
     for one, other in zip(

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     Array = NDArray[np.floating[Any]]
 
 Inward = Literal["keep", "flip", "drop"]
+#: Of a fibre: differences of longer ones leave the range of float32.
+LONGEST = 1e30
 
 
 def fur(
@@ -67,8 +69,8 @@ def fur(
     segments : int, default: 3
         Of a fibre, all of one length.
     vectors : str, optional
-        A point array of 3 components along which fibres grow; default the normals, also where
-        a vector is zero.
+        A point array of 3 components along which fibres grow, whatever their length; default the
+        normals, also where a vector is zero.
     inward : {"flip", "keep", "drop"}
         What becomes of fibres whose vector points into the surface; a warning counts them.
     toward : str or vector of 3 components, optional
@@ -89,7 +91,8 @@ def fur(
     Returns
     -------
     pyvista.MultiBlock
-        ``fibres``: lines from root to tip, in float32. ``skin``: the surface, lit by its
+        ``fibres``: lines from root to tip, points in the surface's precision, in float64 where it
+        is far from the origin. ``skin``: the surface, lit by its
         normals and attenuated by the fur that stands on it. Both with the point array
         ``luminance``, and ``rgb`` where the scene has a colour.
 
@@ -101,7 +104,8 @@ def fur(
     Warns
     -----
     UserWarning
-        Once, with the count, if vectors point into the surface, and if points could not be lit.
+        Once each, with the count, if vectors point into the surface or are not finite, and if
+        points could not be lit.
 
     Notes
     -----
@@ -115,11 +119,13 @@ def fur(
     if inward not in get_args(Inward):
         raise ValueError(_check.message("inward", "'keep', 'flip' or 'drop'", repr(inward)))
     for option, value in (("bend", bend), ("curl", curl), ("turns", turns)):
-        _check.number(option, value)
+        _check.number(option, value, low=-_check.LARGEST, high=_check.LARGEST)
     _mesh.refuse_unnamed("vectors", vectors)
     if bend and toward is None:
         raise ValueError(_check.message("toward", "what fibres bend to, with bend=", None))
     _check.instance("scene", scene, Scene)
+    if scene.n not in (None, 3):
+        raise ValueError(_check.message("scene", "vectors of 3 components", scene.n))
     skin = _surface.with_normals(surface, scene.view)
     _light.refuse_overwriting([(surface, "")], name, components=False, colored=scene.colored)
     told = {
@@ -128,7 +134,7 @@ def fur(
         "turns": turns, "seed": seed, "conditioned": conditioned, "attenuated": attenuated,
         "compensate": compensate, "model": model, "name": name,
     }  # fmt: skip
-    coat = _Coat(skin, length, vectors, toward, inward)
+    coat = _Coat(surface, skin, length, vectors, toward, inward)
     if fibres and not (len(coat.total) and coat.total[-1] > 0):
         raise ValueError(_check.message("surface", "faces of some area", "none"))
     shape = {"segments": segments, "bend": bend, "curl": curl, "turns": turns}
@@ -136,8 +142,9 @@ def fur(
         lambda block: coat.grow(block, fibres, seed, **shape),
         fibres,
         segments + 1,
-        skin.points.dtype,
+        np.float64 if any(coat.origin) else skin.points.dtype,
         straight=not (bend or curl),
+        threads=threads,
     )
     rows, through = strands.rows(), bool(attenuated and density)
     across = conditioned or through
@@ -190,27 +197,45 @@ class _Coat:
     """
 
     def __init__(
-        self, skin: pv.PolyData, length: Any, vectors: str | None, toward: Any, inward: Inward
+        self,
+        surface: pv.PolyData,
+        skin: pv.PolyData,
+        length: Any,
+        vectors: str | None,
+        toward: Any,
+        inward: Inward,
     ) -> None:
         self.origin = _mesh.near_origin(skin)
+        size = float(skin.length)
+        if not 1e-30 <= size <= 1e30 and skin.n_points:
+            remedy = "scale the mesh"
+            raise ValueError(_check.message("surface", "a size from 1e-30 to 1e30", size, remedy))
         self.faces: NDArray[np.intp] = np.asarray(skin.regular_faces, dtype=np.intp)
         self.normals = np.asarray(skin.point_data[_surface.NORMALS], dtype=np.float32)
         self.inward = inward
         self.vectors: Array | None = None
         if vectors is not None:
-            self.vectors = _narrow(_mesh.vectors_of(skin, "vectors", vectors, 3))
+            given = _mesh.vectors_of(surface, "vectors", vectors, 3)
+            lost = len(given) - int(np.count_nonzero(np.all(np.isfinite(given), axis=1)))
+            if lost:
+                what = "the vectors are not finite: fibres there follow the normals"
+                _check.warn(f"{lost} of {len(given)} of {what}")
+            self.vectors = unit_rows(given).astype(np.float32)
         self.toward: Array | None = None
         if isinstance(toward, str):
-            self.toward = unit_rows(_mesh.vectors_of(skin, "toward", toward, 3)).astype(np.float32)
+            self.toward = unit_rows(_mesh.vectors_of(surface, "toward", toward, 3)).astype(
+                np.float32
+            )
         elif toward is not None:
             direction = _check.vector("toward", toward, direction=True)
             if len(direction) != 3:
                 raise ValueError(_check.message("toward", "3 components", len(direction)))
             self.toward = unit_rows(np.array([direction])).astype(np.float32)
-        self.length: Array | float = _lengths(skin, length)
+        self.length: Array | float = _lengths(surface, length)
         self.total = geometry.areas(np.asarray(skin.points), self.faces)
         # All that is interpolated stands in one table, so that it is looked up once.
-        local = np.asarray(skin.points) - np.array(self.origin)
+        with np.errstate(invalid="ignore"):
+            local = np.asarray(skin.points) - np.array(self.origin)
         parts: list[Array] = [local.astype(np.float32), self.normals]
         if self.vectors is not None:
             parts.append(self.vectors)
@@ -271,14 +296,6 @@ class _Coat:
         return height
 
 
-def _narrow(vectors: Array) -> Array:
-    """Return vectors in float32, all by one scale so that the largest are in its range."""
-    wide = np.asarray(vectors, dtype=np.float64)
-    largest = np.max(np.abs(wide), initial=0.0, where=np.isfinite(wide))
-    with np.errstate(under="ignore", over="ignore"):
-        return np.asarray(wide / (largest or 1.0), dtype=np.float32)
-
-
 def _lengths(mesh: pv.PolyData, length: Any) -> Array | float:
     if isinstance(length, str):
         if length not in mesh.point_data or mesh.point_data[length].ndim != 1:
@@ -289,10 +306,12 @@ def _lengths(mesh: pv.PolyData, length: Any) -> Array | float:
                 )
             )
         length = mesh.point_data[length]
-    if np.ndim(length) == 0:
-        return _check.number("length", length, low=0.0)
+    if not isinstance(length, np.ndarray):
+        length = _check.floats("length", length)
+    if length.ndim == 0:
+        return _check.number("length", length, low=0.0, high=LONGEST)
     array = _check.floats("length", length)
-    if array.shape != (mesh.n_points,) or not np.all((array >= 0) & np.isfinite(array)):
+    if array.shape != (mesh.n_points,) or not np.all((array >= 0) & (array <= LONGEST)):
         raise ValueError(
             _check.message(
                 "length", f"{mesh.n_points} lengths of 0 or more", _check.describe(array)

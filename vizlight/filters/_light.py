@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vizlight import _check, engine
-from vizlight.filters import _progress, _provenance
+from vizlight.filters import _mesh, _progress, _provenance
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -121,6 +121,17 @@ def refuse_overwriting(
                 )
 
 
+def made_here(mesh: Any) -> set[str]:
+    """Return the names of the arrays that vizlight attached to a mesh."""
+    names = [key.removesuffix(_provenance.key("")) for key in getattr(mesh, "field_data", ())]
+    made = set()
+    for name in names:
+        if _provenance.key(name) in mesh.field_data:
+            prefix = "" if name == DEFAULT_NAME else f"{name}_"
+            made |= {name, name + VALID, *(prefix + part for part in PARTS)}
+    return made
+
+
 def finish(
     meshes: Sequence[pv.DataSet],
     results: Sequence[engine.Shading],
@@ -149,12 +160,13 @@ def _attach(mesh: pv.DataSet, shading: engine.Shading, name: str, told: str) -> 
     for stale in (name + VALID, *(prefix + part for part in PARTS)):
         if stale in data and _provenance.key(name) in mesh.field_data:
             del data[stale]
-    if shading.diffuse is not None:
-        data[f"{prefix}ambient"] = np.full_like(shading.luminance, shading.plan.ambient)
-        data[f"{prefix}diffuse"] = shading.diffuse
-        data[f"{prefix}specular"] = shading.specular
+    if shading.diffuse is not None and shading.specular is not None:
+        ambient = np.full_like(shading.luminance, shading.plan.ambient)
+        _mesh.attach_rows(mesh, f"{prefix}ambient", ambient)
+        _mesh.attach_rows(mesh, f"{prefix}diffuse", shading.diffuse)
+        _mesh.attach_rows(mesh, f"{prefix}specular", shading.specular)
     if shading.rgb is not None:
-        data[f"{prefix}rgb"] = shading.rgb
+        _mesh.attach_rows(mesh, f"{prefix}rgb", shading.rgb)
     if shading.invalid:
         data[name + VALID] = shading.valid
     data.set_array(shading.luminance, name)

@@ -49,33 +49,42 @@ def line_tangents(mesh: pv.DataSet) -> Array:
     return found
 
 
-def without_degenerate(mesh: pv.PolyData) -> pv.PolyData:
-    """Return a mesh of lines without those whose points all coincide; each point has one line."""
+def before_turning_back(mesh: pv.PolyData) -> pv.PolyData:
+    """Return a mesh of lines up to where each turns back or, at its end, moves no more.
+
+    A line turns back where two steps that follow each other are more than a right angle apart.
+    Lines without a step are left out; each point is expected to have one line.
+    """
     ids, offsets = _cells(mesh.GetLines())
-    tangents = polyline_tangents(np.asarray(mesh.points), connectivity=ids, offsets=offsets)
     size = np.diff(offsets)
     line = np.repeat(np.arange(len(size)), size)
-    moving = np.any(tangents[ids] != 0, axis=1)
-    line_keep = np.bincount(line[moving], minlength=len(size)) > 0
-    keep = np.zeros(mesh.n_points, dtype=np.bool_)
-    keep[ids[np.repeat(line_keep, size)]] = True
-    if keep.all():
+    place = np.asarray(mesh.points, dtype=np.float64)[ids]
+    step = place[1:] - place[:-1]
+    same = line[1:] == line[:-1]
+    moving = np.any(step != 0, axis=1) & same
+    # Steps that move, each after the one before it on its line.
+    at = np.flatnonzero(moving)
+    back = np.einsum("ij,ij->i", step[at[1:]], step[at[:-1]]) <= 0
+    back &= line[at[1:]] == line[at[:-1]]
+    last = np.full(len(size), -1)
+    np.maximum.at(last, line[at], at + 1)
+    np.minimum.at(last, line[at[1:][back]], at[1:][back])
+    keep_line = last >= 0
+    kept = (np.arange(len(ids)) <= np.repeat(last, size)) & np.repeat(keep_line, size)
+    if kept.size == mesh.n_points and kept.all():
         return mesh
-    if not keep.any():
+    if not kept.any():
         return pv.PolyData()
-    number: Any = np.cumsum(keep) - 1
     out = pv.PolyData()
-    out.points = np.asarray(mesh.points)[keep]
-    out.SetLines(
-        pv.CellArray.from_arrays(
-            np.concatenate([[0], np.cumsum(size[line_keep])]),
-            number[ids[np.repeat(line_keep, size)]],
-        )
-    )
+    out.points = np.asarray(mesh.points)[ids[kept]]
+    length = np.bincount(line[kept], minlength=len(size))[keep_line]
+    ends: Any = np.concatenate([[0], np.cumsum(length)])
+    numbers: Any = np.arange(len(out.points))
+    out.SetLines(pv.CellArray.from_arrays(ends, numbers))
     for key, array in mesh.point_data.items():
-        out.point_data[key] = np.asarray(array)[keep]
+        out.point_data[key] = np.asarray(array)[ids[kept]]
     for key, array in mesh.cell_data.items():
-        out.cell_data[key] = np.asarray(array)[line_keep]
+        out.cell_data[key] = np.asarray(array)[keep_line]
     return out
 
 

@@ -67,27 +67,40 @@ def named_leaves(mesh: Any, path: str = "") -> Iterator[tuple[Any, str]]:
             yield from named_leaves(mesh[i], f"{path}/{mesh.get_block_name(i) or i}")
 
 
+def box(mesh: pv.DataSet) -> tuple[Array, float]:
+    """Return the middle of a mesh's finite points and its longest side, 1 where it has none."""
+    low, high = np.reshape(mesh.bounds, (3, 2)).T
+    if not np.all(np.isfinite([low, high])) and isinstance(mesh, pv.PointSet | pv.PolyData):
+        points = np.asarray(mesh.points, dtype=np.float64)
+        points = points[np.all(np.isfinite(points), axis=1)]
+        low, high = points.min(axis=0, initial=np.inf), points.max(axis=0, initial=-np.inf)
+    side = float(np.max(high / 2 - low / 2)) * 2
+    if not (np.isfinite(side) and side > 0):
+        return np.nan_to_num(low / 2 + high / 2, posinf=0.0, neginf=0.0), 1.0
+    return low / 2 + high / 2, side
+
+
 def near_origin(mesh: pv.DataSet) -> Vector:
     """Return a place near a mesh, 0 where that is near enough not to lose digits of float32."""
-    low, high = np.reshape(mesh.bounds, (3, 2)).T
-    middle, size = (low + high) / 2, np.linalg.norm(high - low)
-    far = np.linalg.norm(middle) > size and bool(np.all(np.isfinite(middle)))
+    middle, side = box(mesh)
+    far = np.abs(middle).max() > side
     return tuple(float(x) if far else 0.0 for x in middle)
 
 
-def moved(mesh: Any, offset: Array) -> Any:
-    """Return a mesh moved by an offset, with points in float64; itself where the offset is 0."""
-    if not np.any(offset):
-        return mesh
+def moved(mesh: Any, offset: Array, scale: float = 1.0) -> Any:
+    """Return a mesh with its points p at ``scale (p + offset)``, in float64."""
     out = mesh.copy(deep=False)
     if isinstance(mesh, pv.ImageData):
-        out.origin = tuple(np.array(mesh.origin) + offset)
+        out.origin = tuple(scale * (np.array(mesh.origin) + offset))
+        out.spacing = tuple(scale * np.array(mesh.spacing))
     elif isinstance(mesh, pv.RectilinearGrid):
         for i, axis in enumerate("xyz"):
-            setattr(out, axis, np.asarray(getattr(mesh, axis), dtype=np.float64) + offset[i])
+            ticks = np.asarray(getattr(mesh, axis), dtype=np.float64)
+            setattr(out, axis, scale * (ticks + offset[i]))
     else:
+        points: Any = scale * (np.asarray(mesh.points, dtype=np.float64) + offset)
+        points[~np.isfinite(points)] = np.nan
         # Not by assigning to points, which would move those that the copy shares.
-        points: Any = np.asarray(mesh.points, dtype=np.float64) + offset
         out.SetPoints(pv.vtk_points(points))
     return out
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import pyvista as pv
 
+from vizlight import _check
 from vizlight.filters._illuminate import illuminate
 from vizlight.filters._streamlines import streamlines
 from vizlight.plan import surface_model
@@ -13,6 +14,11 @@ from vizlight.plan import surface_model
 if TYPE_CHECKING:
     from vizlight.plan import Model
     from vizlight.scene import Scene
+
+
+#: Options of the integral curves alone, and of the panels that have sides.
+TRACED = ("step", "max_length", "max_steps")
+SIDES = ("normals", "two_sided", "flip_normals")
 
 
 def satin(
@@ -45,7 +51,8 @@ def satin(
     model : {"phong", "blinn", "cylinder"}
         As for :func:`vizlight.illuminate`; with ``"cylinder"`` the surface's law is Blinn's.
     **options
-        Of :func:`vizlight.illuminate`, for all panels.
+        Of :func:`vizlight.illuminate`, for all panels that they fit; step, max_length and
+        max_steps of :func:`vizlight.streamlines`.
 
     Returns
     -------
@@ -59,8 +66,14 @@ def satin(
     TypeError, ValueError
         As :func:`vizlight.illuminate` and :func:`vizlight.streamlines`.
     """
+    for own in ("conditioned", "inplace", "vectors"):
+        if own in options:
+            remedy = "the four panels differ in it" if own == "conditioned" else "leave it out"
+            raise TypeError(_check.message(own, "no such option", repr(options[own]), remedy))
+    traced = {key: options.pop(key) for key in TRACED if key in options}
+    sides = {key: options.pop(key) for key in SIDES if key in options}
     options["compensate"] = compensate
-    own: dict[str, Any] = {"tangents": tangents, "model": model, **options}
+    own_light: dict[str, Any] = {"tangents": tangents, "model": model, **options}
     curves = streamlines(
         surface,
         scene,
@@ -69,13 +82,14 @@ def satin(
         seeds=seeds,
         seed=seed,
         model=model,
+        **traced,
         **options,
     )
     return pv.MultiBlock(
         {
             "curves": curves,
-            "surface": illuminate(surface, scene, model=surface_model(model), **options),
-            "field": illuminate(surface, scene, **own),
-            "conditioned": illuminate(surface, scene, conditioned=True, **own),
+            "surface": illuminate(surface, scene, model=surface_model(model), **sides, **options),
+            "field": illuminate(surface, scene, **own_light),
+            "conditioned": illuminate(surface, scene, conditioned=True, **sides, **own_light),
         }
     )

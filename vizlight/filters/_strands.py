@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import pyvista as pv
 
+from vizlight import _pool
 from vizlight.geometry.fur import SEED_BLOCK
 
 if TYPE_CHECKING:
@@ -20,8 +21,8 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.floating[Any]]
 
-#: Points grown at once: few beside what is kept, many enough that threads seldom wait for the
-#: interpreter.
+#: Points grown at once by all threads: few beside what is kept, many enough that threads seldom
+#: wait for the interpreter.
 POINTS_AT_ONCE = 1 << 18
 
 
@@ -45,9 +46,16 @@ class Strands:
     """
 
     def __init__(
-        self, grow: Callable[[slice], Grown], count: int, m: int, kind: Any, *, straight: bool
+        self,
+        grow: Callable[[slice], Grown],
+        count: int,
+        m: int,
+        kind: Any,
+        *,
+        straight: bool,
+        threads: int | None,
     ) -> None:
-        self._grow, self._straight = grow, straight
+        self._grow, self._straight, self._threads = grow, straight, threads
         self._block = threading.local()
         self.points = np.empty((count, m, 3), kind)
         self.inside = np.zeros(count, np.bool_)
@@ -60,7 +68,8 @@ class Strands:
     @property
     def block(self) -> int:
         """Fibres in a block, a power of two so that no block has seeds of two."""
-        return min(SEED_BLOCK, 1 << max(POINTS_AT_ONCE // self.m, 1).bit_length() - 1)
+        share = POINTS_AT_ONCE // (self.m * _pool.workers(self._threads))
+        return min(SEED_BLOCK, 1 << max(share, 1).bit_length() - 1)
 
     def rows(self) -> dict[str, engine.Rows]:
         """Return points, tangents, normals and depth, as the engine takes them."""
@@ -107,7 +116,9 @@ class Strands:
         """
         block, j = self._at(rows)
         offset, last = block.offsets, self.m - 1
-        if j in (0, last):
+        if last == 1:
+            tangent = offset[1].copy()
+        elif j in (0, last):
             near, far = (1, 2) if j == 0 else (last - 1, last - 2)
             tangent = (3 * (offset[near] - offset[j]) - (offset[far] - offset[near])) * (
                 1 if j == 0 else -1

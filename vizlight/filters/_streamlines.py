@@ -10,15 +10,20 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.filters import _lines, _mesh, _surface
 from vizlight.filters._illuminate import illuminate
-from vizlight.filters._light import DEFAULT_NAME
+from vizlight.filters._light import DEFAULT_NAME, made_here
 from vizlight.filters._provenance import retell
 from vizlight.geometry import fur
+from vizlight.model import _kernels
 from vizlight.scene import Scene
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array = NDArray[np.floating[Any]]
+
+
+#: The array that is traced, under a name that no user's array has.
+TRACED = "vizlight vectors"
 
 
 def streamlines(
@@ -85,8 +90,10 @@ def streamlines(
     -----
     Confined lines are moved to the closest point of the surface after tracing, so that they lie
     on its triangles to rounding: 1e-6 of the surface's size. VTK traces in float32; a mesh far
-    from the origin is therefore traced near it, and its lines come back in float64. Vectors that
-    are not finite end a line as zero ones do. Sources: Banks 4.1 and (6).
+    from the origin is therefore traced near it, and its lines come back in float64. Lines end
+    where vectors are less than a millionth of the median, zero or not finite, and where a line
+    turns back by more than a right angle from one step to the next, as it does at a wall.
+    Sources: Banks 4.1 and (6).
 
     Examples
     --------
@@ -115,44 +122,48 @@ def streamlines(
     if surface is None and (confined or conditioned):
         what = "confined" if confined else "conditioned"
         raise ValueError(_check.message("surface", f"a surface for {what} lines", None))
-    carrier = mesh
+    carrier, own = mesh, made_here(mesh)
     if surface is not None:
+        own |= made_here(surface)
         surface = _surface.with_normals(surface, scene.view)
         if confined:
             surface = carrier = _tangential(surface, mesh, vectors)
-    origin = np.array(_mesh.near_origin(carrier))
-    starts = _seeds(carrier, seeds, seed, on_surface=confined) - origin
-    carrier = _mesh.moved(_traceable(carrier), -origin)
+    # VTK traces in float32 to an absolute error: near the origin, in a box of size 1.
+    origin, size = np.array(_mesh.near_origin(carrier)), _mesh.box(carrier)[1]
+    carrier = _mesh.moved(_traceable(carrier, vectors, own), -origin, 1 / size)
     lines = carrier.streamlines_from_source(
-        pv.PolyData(starts),
-        vectors=vectors,
+        pv.PolyData(_seeds(carrier, seeds, seed, origin, size, on_surface=confined)),
+        vectors=TRACED,
         surface_streamlines=confined,
         integration_direction="both",
         initial_step_length=_check.number("step", step, low=1e-6),
         max_step_length=step,
         min_step_length=min(0.01, step),
         max_steps=int(_check.number("max_steps", max_steps, low=1, high=1e9)),
-        max_length=_max_length(carrier, max_length),
-        terminal_speed=1e-6 * _largest(carrier, vectors),
+        max_length=_max_length(carrier, max_length, size),
+        terminal_speed=1e-6,
         compute_vorticity=False,
     )
-    lines = _lines.without_degenerate(lines)
-    if _surface.NORMALS in lines.point_data:
-        del lines.point_data[_surface.NORMALS]
+    lines = _lines.before_turning_back(lines)
+    for key in (_surface.NORMALS, TRACED):
+        if key in lines.point_data:
+            del lines.point_data[key]
     if not lines.n_points:
         raise ValueError(
             _check.message(
                 "seeds", "points inside the mesh where the vectors are not zero", "no line"
             )
         )
+    places: Array = np.asarray(lines.points, dtype=np.float64)
     if surface is not None:
-        places, normals = _surface.closest(_mesh.moved(surface, -origin), np.asarray(lines.points))
+        nearest, normals = _surface.closest(_mesh.moved(surface, -origin, 1 / size), places)
         if confined:
-            drift = np.linalg.norm(places - lines.points, axis=1).max()
-            lines.points = places.astype(lines.points.dtype)
+            drift = size * np.linalg.norm(nearest - places, axis=1).max()
             lines.field_data["drift"] = [drift]
-        lines.point_data["Normals"] = normals.astype(lines.points.dtype)
-    lines = _mesh.moved(lines, origin)
+            places = nearest
+        lines.point_data["Normals"] = normals.astype(np.float32)
+    far = np.any(origin) or not 1e-30 < size < 1e30
+    lines.points = (size * places + origin).astype(np.float64 if far else np.float32)
     if conditioned is None:
         conditioned = surface is not None
     if conditioned:
@@ -189,42 +200,54 @@ def _tangential(surface: pv.PolyData, mesh: pv.DataSet, vectors: str) -> pv.Poly
     return surface
 
 
-def _traceable(mesh: Any) -> Any:
-    """Return a mesh that the tracer may change, without arrays of words, which end its process."""
+def _traceable(mesh: Any, vectors: str, own: set[str]) -> Any:
+    """Return a mesh that the tracer may change, with the vectors as TRACED.
+
+    Arrays of words, which end the tracer's process, and vizlight's own are left out. The vectors
+    are scaled to a median speed of 1: where it is below a millionth a line has come to rest.
+    """
     bare = mesh.copy(deep=False)
     for key in list(bare.point_data):
-        if np.asarray(bare.point_data[key]).dtype.kind not in "biuf":
+        if key in own or np.asarray(bare.point_data[key]).dtype.kind not in "biuf":
             del bare.point_data[key]
+    array = np.array(mesh.point_data[vectors], dtype=np.float64)
+    array[~np.all(np.isfinite(array), axis=1)] = 0
+    speed = _kernels.length(np.ascontiguousarray(array.T))
+    moving = speed[(speed > 0) & np.isfinite(speed)]
+    scale = float(np.median(moving)) if len(moving) else 1.0
+    bare.point_data[TRACED] = np.clip(array / scale, -1e30, 1e30)
     return bare
 
 
-def _largest(mesh: pv.DataSet, vectors: str) -> float:
-    """Return the largest speed: below a millionth of it a line has come to rest."""
-    speed = np.linalg.norm(mesh.point_data[vectors], axis=1)
-    return float(np.max(speed, initial=0.0, where=np.isfinite(speed)))
-
-
-def _seeds(mesh: pv.DataSet, seeds: Any, seed: int, *, on_surface: bool) -> Array:
-    """Return where lines start, in float64."""
-    if np.ndim(seeds) == 0 and not isinstance(seeds, pv.DataSet):
-        count, seed = _check.integer("seeds", seeds, low=1), _check.integer("seed", seed, low=0)
-        points = np.asarray(mesh.points, dtype=np.float64)
-        if on_surface:
-            faces = np.asarray(mesh.regular_faces)
-            face, weights = fur.seeds(points, faces, count, seed=seed)
-            return np.asarray(np.einsum("fi,fij->fj", weights, points[faces[face]]))
+def _seeds(
+    mesh: pv.DataSet, seeds: Any, seed: int, origin: Array, size: float, *, on_surface: bool
+) -> Array:
+    """Return where lines start in a mesh that was moved to the origin and scaled to size 1."""
+    if isinstance(seeds, pv.DataSet):
+        given: Array = np.asarray(seeds.points, dtype=np.float64)
+    else:
+        given = _check.floats("seeds", seeds).astype(np.float64)
+    if given.ndim:
+        places = (_check.vectors("seeds", given, n=3) - origin) / size
+        if places.ndim != 2 or not np.all(np.isfinite(places)):
+            what = "finite points of shape (M, 3)"
+            raise ValueError(_check.message("seeds", what, _check.describe(seeds)))
+        return places
+    count, seed = _check.integer("seeds", seeds, low=1), _check.integer("seed", seed, low=0)
+    points = np.asarray(mesh.points, dtype=np.float64)
+    if not on_surface:
         count = min(count, mesh.n_points)
         chosen = np.random.default_rng(seed).choice(mesh.n_points, count, replace=False)
         return points[np.sort(chosen)]
-    given = seeds.points if isinstance(seeds, pv.DataSet) else seeds
-    places = _check.vectors("seeds", given, n=3).astype(np.float64)
-    if places.ndim != 2 or not np.all(np.isfinite(places)):
-        what = "finite points of shape (M, 3)"
-        raise ValueError(_check.message("seeds", what, _check.describe(given)))
-    return places
+    faces = np.asarray(mesh.regular_faces)
+    face, weights = fur.seeds(points, faces, count, seed=seed)
+    b, c = weights[:, 1:, np.newaxis].astype(np.float64).transpose(1, 0, 2)
+    corner = points[faces[face]]
+    places = (1 - b - c) * corner[:, 0] + b * corner[:, 1] + c * corner[:, 2]
+    return np.asarray(places)
 
 
-def _max_length(mesh: pv.DataSet, max_length: float | None) -> float:
+def _max_length(mesh: pv.DataSet, max_length: float | None, size: float) -> float:
     if max_length is None:
         return 4 * float(mesh.length)
-    return _check.number("max_length", max_length, low=np.finfo(float).tiny)
+    return _check.number("max_length", max_length, low=np.finfo(float).tiny) / size

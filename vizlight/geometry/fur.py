@@ -53,7 +53,8 @@ def seeds(points: ArrayLike, faces: ArrayLike, count: int, /, *, seed: int = 0) 
     -----
     A place has the share f of its triangle's area before it: the weights are
     ``(1 - sqrt(f), sqrt(f) (1 - r), sqrt(f) r)``, which keeps areas, and r turns by the golden
-    ratio from place to place, jittered by ``1 / sqrt(m)`` where a triangle has m places.
+    ratio from place to place, from a random start in each triangle, jittered by ``1 / sqrt(m)``
+    where a triangle has m places.
     Source: Banks, section 5 (jittered interpolated samples).
     """
     vertices = _check.vectors("points", points, n=3)
@@ -85,7 +86,8 @@ def seeds(points: ArrayLike, faces: ArrayLike, count: int, /, *, seed: int = 0) 
 def areas(vertices: Array, triangles: Index) -> Array:
     """Return the running sum of the areas of triangles, 0 for those that are not finite."""
     a, b, c = (vertices[triangles[:, i]].astype(np.float64) for i in range(3))
-    area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    with np.errstate(all="ignore"):
+        area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
     return np.cumsum(np.where(np.isfinite(area), area, 0))
 
 
@@ -105,12 +107,12 @@ def seed_block(total: Array, start: int, count: int, seed: int) -> tuple[Index, 
     area = np.diff(edges)
     share = (place - np.repeat(edges[:-1], counts)) / np.repeat(np.where(area > 0, area, 1), counts)
     root = np.sqrt(np.clip(share, 0, 1)).astype(np.float32)
+    # A lattice of its own for each triangle, turned at random, so that no pattern runs over many.
     number *= TURN
+    number += np.repeat(random.random(len(area)), counts)
     # The part of a triangle that is in another block has as many places for its area.
-    jitter = np.sqrt(
-        np.repeat(np.minimum(total[-1] / (count * np.where(area > 0, area, 1)), 1), counts)
-    )
-    number += jitter * random.random(len(place), dtype=np.float32)
+    spread = np.minimum(total[-1] / (count * np.where(area > 0, area, 1)), 1)
+    number += np.repeat(np.sqrt(spread), counts) * random.random(len(place), dtype=np.float32)
     weights = np.empty((len(place), 3), np.float32)
     weights[:, 0] = 1 - root
     weights[:, 2] = (number - np.floor(number)) * root
