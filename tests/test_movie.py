@@ -196,6 +196,9 @@ def test_a_movie_that_fails_leaves_no_file(torus, tmp_path, writers):
 
 
 @pytest.mark.opengl
+# imageio leaves the pipes to ffmpeg to the garbage collector.
+@pytest.mark.filterwarnings("ignore::ResourceWarning")
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 @pytest.mark.parametrize(("name", "package"), [("t.gif", "imageio"), ("t.mp4", "imageio_ffmpeg")])
 def test_a_real_movie(torus, tmp_path, name, package):
     """Runs where the extra is installed."""
