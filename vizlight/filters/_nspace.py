@@ -77,7 +77,7 @@ class Turning:
 
     def _arrays(self, mesh: Any) -> dict[str, Array]:
         """Return the arrays that turn, by name, each checked."""
-        position = _mesh.array_of(mesh, "positions", self.positions, average_cells=False)
+        position = _named(mesh, "positions", self.positions)
         n = position.shape[1]
         if n < 2:
             got = f"{self.positions!r} with 1"
