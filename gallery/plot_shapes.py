@@ -14,13 +14,16 @@ import vizlight
 from vizlight import Light, Material, Scene, View, render
 from vizlight.geometry import manifolds
 
-camera = render.camera_on((-1, 1, -1, 1, -1, 1), (0.4, -1, 0.5), zoom=1.45)
+camera = render.camera_on((-1, 1, -1, 1, -1, 1), (0.4, -1, 0.5), zoom=1.35)
 scene = Scene(
     lights=Light(direction=(0.3, -0.6, 0.8, 0.5)),
     view=View(direction=(0.4, -1, 0.5, 0)),
     material=Material(ambient=0.1, diffuse=0.6, specular=0.3),
 )
-slanted = [("xw", 0.5), ("yw", 0.3)]
+slanted = ("xw", 0.08)
+# Over three circles of latitude the fibres cover three tori, one in the other.
+t = np.linspace(0, 2 * np.pi, 36, endpoint=False)
+base = np.concatenate([np.stack([np.cos(t), np.sin(t), z + 0 * t], 1) for z in (0.4, 1.2, 5)])
 shapes = {
     "Klein bottle": (
         manifolds.klein_bottle(major=0.75, minor=0.35, resolution=(240, 120)),
@@ -31,12 +34,12 @@ shapes = {
         {"rotation": [("zw", 0.9), ("xw", 0.4)]},
     ),
     "w = z^2": (
-        manifolds.complex_curve(np.square, domain=((-0.9, 0.9),) * 2, resolution=160),
+        manifolds.complex_curve(np.square, domain=((-0.65, 0.65),) * 2, resolution=160),
         {"rotation": [("xw", 0.7), ("yz", 0.5)]},
     ),
     "Hopf fibres": (
-        manifolds.hopf_fibres(fibres=160, radius=0.75, resolution=160),
-        {"distance": 2.0, "rotation": slanted},
+        manifolds.hopf_fibres(base, radius=0.55, resolution=160),
+        {"distance": 0.55, "rotation": slanted},
     ),
     "3-sphere, cut": (
         manifolds.sphere3(radius=1.0, resolution=32),

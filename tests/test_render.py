@@ -245,6 +245,33 @@ def test_the_environment_is_left_as_it_was(tmp_path, monkeypatch):
     assert "VTK_DEFAULT_OPENGL_WINDOW" not in os.environ
 
 
+def test_pictures_stand_in_rows():
+    """Five pictures in two rows: filled one row after the other, the last place empty."""
+    plane = pv.Plane(i_resolution=1, j_resolution=1)
+    shown = []
+    for value in (0.1, 0.3, 0.5, 0.7, 0.9):
+        mesh = plane.copy()
+        mesh["luminance"] = np.full(4, value)
+        shown.append(mesh)
+    camera = render.camera_on((-0.1, 0.1, -0.1, 0.1, 0, 0), (0, 0, 1))
+    options = {"camera": camera, "rows": 2, "size": (90, 60), "anti_aliasing": None}
+    (picture,) = render.pictures([shown], background="white", **options)
+    assert picture.shape == (60, 90, 3)
+    expected = [[25, 77, 128, 178, 230], [255]]
+    seen = picture[15::30, 15::30, 0].ravel().astype(int)
+    np.testing.assert_allclose(seen, [*expected[0], *expected[1]], atol=1)
+    with pytest.raises(ValueError, match="rows: expected an integer of at least 1"):
+        render.make_plotter(shown, rows=0)
+
+
+def test_more_rows_than_pictures_are_as_many_as_these():
+    lit, camera = ball()
+    one, other = (
+        next(render.pictures([lit], camera=camera, size=(40, 40), rows=rows)) for rows in (1, 5)
+    )
+    np.testing.assert_array_equal(one, other)
+
+
 @pytest.mark.skipif(not render.probe("osmesa").works, reason="libosmesa6 is not installed")
 def test_egl_and_osmesa_draw_the_same(tmp_path):
     """In two processes, for one process keeps to one library."""

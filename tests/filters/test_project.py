@@ -357,6 +357,7 @@ def test_progress(torus, capsys):
 @pytest.mark.parametrize(
     ("options", "error", "words"),
     [
+        ({"positions": None}, TypeError, "positions: expected the name of a point array"),
         ({"positions": "x"}, ValueError, "positions: expected the name of a point array"),
         ({"positions": "odd"}, ValueError, "frame: expected a point array of 5 k components"),
         ({"positions": "number"}, ValueError, "positions: expected vectors"),
@@ -377,7 +378,7 @@ def test_progress(torus, capsys):
         ({"hyperplane": ((0, 0, 0, 1), np.nan)}, ValueError, "hyperplane: expected a finite"),
         ({"light": "during"}, ValueError, "light: expected 'before' or 'after'"),
         ({"scene": "sun"}, TypeError, "scene: expected a vizlight.Scene"),
-        ({"compensate": False}, TypeError, "compensate: expected a scene beside it"),
+        ({"compensate": False}, TypeError, "compensate: expected an option of project, or"),
         ({"scene": SCENE3}, ValueError, "scene: expected vectors of 4 components"),
         ({"scene": SCENE4, "light": "after"}, ValueError, "scene: expected vectors of 3"),
         ({"scene": SCENE4, "frame": None}, ValueError, "frame: expected tangents to light by"),

@@ -287,6 +287,17 @@ def test_winding_numbers():
         (lambda: manifolds.sphere3(radius=1e200), ValueError, "radius: expected a number from"),
         (lambda: manifolds.complex_curve(np.conj), ValueError, "function: expected an analytic"),
         (lambda: manifolds.complex_curve(lambda z: 1 / z, resolution=5), ValueError, "finite"),
+        (lambda: manifolds.complex_curve(3), TypeError, "function: expected a function"),
+        (
+            lambda: manifolds.complex_curve(np.exp, derivative=3),
+            TypeError,
+            "derivative: expected a function",
+        ),
+        (
+            lambda: manifolds.complex_curve(np.sqrt, resolution=9),
+            ValueError,
+            "function: expected an analytic",
+        ),
         (lambda: manifolds.complex_curve(lambda z: "w"), TypeError, "function: expected one that"),
         (
             lambda: manifolds.complex_curve(np.exp, domain=[0, 1]),

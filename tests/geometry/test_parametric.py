@@ -121,6 +121,8 @@ def test_constants_and_volumes():
         ({"function": lambda t: ("x", t, t)}, TypeError, "function: .*real numbers"),
         ({"function": lambda t: (t, 1j * t, t)}, TypeError, "function: .*real numbers"),
         ({"function": lambda t: (t, t, np.where(t > 0.5, np.nan, t))}, ValueError, "finite coord"),
+        ({"function": lambda t: (1 / t, np.log(t), t)}, ValueError, "finite coordinates"),
+        ({"function": "x"}, TypeError, "function: expected a function"),
         ({"domain": [(1, 0)]}, ValueError, "domain: expected finite pairs"),
         ({"domain": [(0, np.inf)]}, ValueError, "domain: expected finite pairs"),
         ({"domain": (0, 1)}, ValueError, "domain: expected 1 to 3 pairs"),

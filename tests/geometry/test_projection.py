@@ -144,15 +144,13 @@ def test_a_vector_at_the_eye_vanishes():
 
 def test_depth():
     points = np.array([[0, 0, 0, 0.0], [0, 0, 0, 1], [5, 0, 0, 2], [1, 1, 1, 3], [0, 0, 0, np.nan]])
-    found = projection.depth(points, 2.0)
+    _, found = projection.image_and_depth(points, distance=2.0)
     np.testing.assert_allclose(found[:4], [1, 0.5, 0, -0.5])
     assert np.isnan(found[4])
     # In more dimensions each step has an eye of its own.
-    assert (
-        projection.depth(np.array([0, 0, 0, 0.8, 0.5]), 1.0)
-        < 0
-        < projection.depth(np.array([0, 0, 0, 0.4, 0.5]), 1.0)
-    )
+    both = np.array([[0, 0, 0, 0.8, 0.5], [0, 0, 0, 0.4, 0.5]])
+    _, found = projection.image_and_depth(both, distance=1.0)
+    np.testing.assert_allclose(found, [-0.6, 0.2])
 
 
 @pytest.mark.parametrize(

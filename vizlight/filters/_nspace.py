@@ -77,7 +77,7 @@ class Turning:
 
     def _arrays(self, mesh: Any) -> dict[str, Array]:
         """Return the arrays that turn, by name, each checked."""
-        position = _mesh.array_of(mesh, "positions", self.positions, average_cells=False)
+        position = _named(mesh, "positions", self.positions)
         n = position.shape[1]
         if n < 2:
             got = f"{self.positions!r} with 1"
@@ -128,9 +128,7 @@ class Turning:
         """Return a mesh projected to 3-space."""
         position = np.asarray(mesh.point_data[self.positions])
         n = position.shape[1]
-        good = np.empty(len(position), dtype=np.bool_)
-        for block in _pool.blocks(len(position), BLOCK):
-            good[block] = _seen(position[block], self.distance)
+        points, good = self._points(position)
         if not good.all():
             count = int(np.count_nonzero(~good))
             if not self.cut:
@@ -141,10 +139,8 @@ class Turning:
             lost.add(count)
             mesh = _without(mesh, ~good)
             position = np.asarray(mesh.point_data[self.positions])
+            points, _ = self._points(position)
         out = mesh.copy(deep=False)
-        points: Any = _blocks(
-            lambda x: projection.perspective(x, distance=self.distance), position, 1, 3
-        )
         out.SetPoints(pv.vtk_points(points))
         for name in self.vectors:
             _mesh.attach_rows(out, PROJECTED + name, self._image(out, name, position))
@@ -153,23 +149,42 @@ class Turning:
             out.point_data.pop(name, None)
             # Three directions fill 3-space: there is no frame that light could use.
             if self.frame in out.point_data and out.point_data[self.frame].shape[1] < 3 * n:
-                image = self._image(out, self.frame, position)
-                rows = _blocks(lambda x: orthonormalize(x.reshape(len(x), -1, 3))[0], image)
-                _mesh.attach_rows(out, name, rows)
+                _mesh.attach_rows(out, name, self._image(out, self.frame, position, unit=True))
         done.add(mesh.n_points)
         return out
 
-    def _image(self, mesh: Any, name: str, position: Array) -> Array:
-        """Return the vectors of an array as the projection's derivative takes them to 3-space."""
+    def _points(self, position: Array) -> tuple[Any, NDArray[np.bool_]]:
+        """Return places in 3-space, and which of them can be seen.
+
+        These are finite, and before the eye's hyperplane by more than rounding.
+        """
+        points = np.empty((len(position), 3), dtype=position.dtype)
+        good = np.empty(len(position), dtype=np.bool_)
+        rounding = 4 * np.finfo(position.dtype).eps
+        with np.errstate(all="ignore"):
+            for block in _pool.blocks(len(position), BLOCK):
+                part = position[block].astype(np.float64, copy=False)
+                image, depth = projection.image_and_depth(part, distance=self.distance)
+                points[block] = image
+                good[block] = np.all(np.isfinite(part), axis=1) & (depth > rounding)
+                good[block] &= np.all(np.isfinite(points[block]), axis=1)
+        return points, good
+
+    def _image(self, mesh: Any, name: str, position: Array, *, unit: bool = False) -> Array:
+        """Return the vectors of an array as the projection's derivative takes them to 3-space.
+
+        With ``unit`` they are orthonormalised.
+        """
         vectors, n = np.asarray(mesh.point_data[name]), position.shape[1]
         rows = vectors.shape[1] // n
-        return _blocks(
-            lambda x, p: projection.push_forward(x.reshape(-1, rows, n), p, distance=self.distance),
-            vectors,
-            rows,
-            3,
-            position,
-        )
+
+        def work(x: Array, p: Array) -> Array:
+            image: Array = projection.push_forward(
+                x.reshape(-1, rows, n), p, distance=self.distance
+            )
+            return orthonormalize(image)[0] if unit else image
+
+        return _blocks(work, vectors, rows, 3, position)
 
 
 def _blocks(
@@ -192,18 +207,6 @@ def _named(mesh: Any, argument: str, name: Any) -> Array:
     if not isinstance(name, str):
         raise TypeError(_check.message(argument, "the name of a point array", repr(name)))
     return _mesh.array_of(mesh, argument, name, average_cells=False)
-
-
-def _seen(points: Array, distance: float | None) -> NDArray[np.bool_]:
-    """Return which points can be projected: finite, and clearly before the eye's hyperplane."""
-    positions = points.astype(np.float64, copy=False)
-    good: NDArray[np.bool_] = np.all(np.isfinite(positions), axis=1)
-    if distance is not None:
-        with np.errstate(all="ignore"):
-            good &= projection.depth(positions, distance) > 4 * np.finfo(points.dtype).eps
-            image = projection.perspective(positions, distance=distance).astype(points.dtype)
-        good &= np.all(np.isfinite(image), axis=1)
-    return good
 
 
 def _without(mesh: Any, lost: NDArray[np.bool_]) -> Any:

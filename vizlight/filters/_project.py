@@ -28,7 +28,7 @@ def project(
     distance: float | None = None,
     positions: str = POSITION,
     frame: str | None = FRAME,
-    vectors: str | Sequence[str] = (),
+    vectors: str | Sequence[str] | None = None,
     cut: bool = False,
     scene: Scene | None = None,
     light: LightWhen = "before",
@@ -109,9 +109,10 @@ def project(
         raise ValueError(_check.message("light", "'before' or 'after'", repr(light)))
     _check.instance("scene", scene, Scene, optional=True)
     if scene is None and options:
-        raise TypeError(_check.message(next(iter(options)), "a scene beside it", "no scene="))
+        expected = "an option of project, or scene= beside an option of illuminate"
+        raise TypeError(_check.message(next(iter(options)), expected, "neither"))
     distance = None if distance is None else projection.check_distance(distance)
-    names = (vectors,) if isinstance(vectors, str) else tuple(vectors)
+    names = (vectors,) if isinstance(vectors, str) else tuple(vectors or ())
     job = Turning(rotation, hyperplane, distance, positions, frame, names, bool(cut))
 
     total = 2 * sum(leaf.n_points for leaf in _mesh.leaves(mesh))

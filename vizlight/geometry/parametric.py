@@ -133,6 +133,7 @@ def parametric(
     >>> circle.points.shape, circle.frame.shape, circle.cells.shape
     ((64, 3), (64, 1, 3), (64, 2))
     """
+    check_callable("function", function)
     ends, sizes, wraps = _domain(domain, closed)
     k = len(ends)
     n = _check.integer("n", n, low=k + 1)
@@ -156,6 +157,12 @@ def parametric(
             expected = f"a function that comes back in direction {axis}"
             raise ValueError(_check.message("closed", expected, "one that does not"))
     return manifold(points, rows, lattice.cells(shape, wraps))
+
+
+def check_callable(name: str, value: Any) -> None:
+    """Check that a value can be called."""
+    if not callable(value):
+        raise TypeError(_check.message(name, "a function", _check.describe(value)))
 
 
 def _domain(domain: Any, closed: Any) -> tuple[Array, Array, tuple[bool, ...] | None]:
@@ -189,7 +196,8 @@ def _values(
     function: Function, u: Sequence[Any], n: int, name: str = "function", kind: Any = np.float64
 ) -> Any:
     """Return n coordinates a point, (N, n), at some parameters."""
-    given = function(*u)
+    with np.errstate(all="ignore"):
+        given = function(*u)
     expected = f"one that returns {n} coordinates of the parameters' shape, or numbers"
     try:
         rows = [np.broadcast_to(np.asarray(row), u[0].shape) for row in given]
@@ -220,7 +228,8 @@ def _tangents(
     if tangents == "complex":
         central = _central(function, u, n, CENTRAL_STEP * sizes)
         return _complex_step(function, u, n, step * sizes, central)
-    rows = list(tangents(*u))
+    with np.errstate(all="ignore"):
+        rows = list(tangents(*u))
     if len(rows) != len(u):
         raise ValueError(_check.message("tangents", f"{len(u)} rows of {n}", len(rows)))
     return np.stack([_values(lambda *_, row=row: row, u, n, "tangents") for row in rows], axis=1)

@@ -155,27 +155,6 @@ def turn(vectors: ArrayLike, matrix: ArrayLike, /) -> Any:
     return rows @ square.T
 
 
-def depth(points: ArrayLike, distance: float, /) -> Any:
-    """Return how far before the eye the points are, as a part of its distance.
-
-    Parameters
-    ----------
-    points : array_like, shape (..., n)
-    distance : float
-        Of the eye from the origin, along each axis that is projected away; above 0.
-
-    Returns
-    -------
-    ndarray, shape (...)
-        The least of ``(d - x)/d`` over the steps of :func:`perspective`: 0 or less on or behind
-        the eye's hyperplane, NaN where a point is not finite.
-    """
-    found = np.ones(np.shape(points)[:-1])
-    for factor, _ in _steps(np.asarray(points), distance):
-        found = np.minimum(found, 1 / factor)
-    return found
-
-
 def perspective(points: ArrayLike, /, *, distance: float | None = None) -> Any:
     """Project points to 3-space.
 
@@ -192,7 +171,7 @@ def perspective(points: ArrayLike, /, *, distance: float | None = None) -> Any:
     Returns
     -------
     ndarray, shape (..., 3)
-        Not finite on the eye's hyperplane; turned over behind it (see :func:`depth`).
+        Not finite on the eye's hyperplane; turned over behind it (see :func:`image_and_depth`).
 
     Raises
     ------
@@ -205,14 +184,41 @@ def perspective(points: ArrayLike, /, *, distance: float | None = None) -> Any:
     projection from its pole. Relative error 3 eps for each axis projected away, over the depth
     ``(d - x_n)/d`` where that is small.
     """
+    return image_and_depth(points, distance=distance)[0]
+
+
+def image_and_depth(points: ArrayLike, /, *, distance: float | None = None) -> tuple[Any, Any]:
+    """Project points to 3-space and say how far before the eye they are.
+
+    Parameters
+    ----------
+    points, distance
+        As for :func:`perspective`.
+
+    Returns
+    -------
+    image : ndarray, shape (..., 3)
+    depth : ndarray, shape (...)
+        The least of ``(d - x)/d`` over the axes projected away: 0 or less on or behind the
+        eye's hyperplane, 1 at most; NaN where a point is not finite.
+
+    Raises
+    ------
+    TypeError, ValueError
+        As :func:`perspective`.
+    """
     positions = _check.vectors("points", points)
+    near = np.ones(positions.shape[:-1], dtype=positions.dtype)
     if positions.shape[-1] == 2:
-        return np.concatenate([positions, np.zeros_like(positions[..., :1])], axis=-1)
+        flat = np.concatenate([positions, np.zeros_like(positions[..., :1])], axis=-1)
+        return flat, near
     image = positions[..., :3]
     if distance is not None:
-        for step in _steps(positions, check_distance(distance)):
-            image = step[1]
-    return np.array(image[..., :3])
+        for factor, seen in _steps(positions, check_distance(distance)):
+            image = seen
+            with np.errstate(all="ignore"):
+                near = np.minimum(near, 1 / factor)
+    return np.array(image[..., :3]), near
 
 
 def push_forward(vectors: ArrayLike, points: ArrayLike, /, *, distance: float | None = None) -> Any:

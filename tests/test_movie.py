@@ -1,0 +1,253 @@
+"""A turning torus as pictures and as movies: one camera, whole files, clear words."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+import types
+
+import numpy as np
+import pytest
+import pyvista as pv
+from PIL import Image
+
+import vizlight
+from vizlight import Light, Material, Scene, View, movie, project, render
+from vizlight.files import FileError
+from vizlight.geometry import manifolds, projection
+
+SCENE = Scene(
+    lights=Light(direction=(0.7, 0.6, 0.38, 0.2)),
+    view=View(direction=(0, -1, 0.5, 0.3)),
+    material=Material(ambient=0.1, diffuse=0.6, specular=0.3),
+)
+SMALL = {"size": (80, 60), "anti_aliasing": None}
+
+
+@pytest.fixture
+def torus():
+    return vizlight.manifold(manifolds.torus(1.5, 0.75, resolution=24))
+
+
+def lit(mesh, angle, **options):
+    return project(mesh, rotation=("xw", angle), scene=SCENE, **options)
+
+
+def test_light_moves_over_the_surface_as_over_a_rigid_body(torus):
+    """Turning the torus is turning light and eye the other way, at every step of the turn."""
+    for angle in np.linspace(0, 2 * np.pi, 7):
+        back = projection.plane_rotation(4, "xw", -angle)
+        still = Scene(
+            lights=Light(direction=back @ SCENE.lights[0].direction),
+            view=View(direction=back @ SCENE.view.direction),
+            material=SCENE.material,
+        )
+        expected = vizlight.illuminate(torus, still, tangents="frame", positions="position")
+        found = lit(torus, angle, distance=3.0)
+        assert np.abs(found["luminance"] - expected["luminance"]).max() < 1e-12
+    moved = lit(torus, np.pi / 2, distance=3.0)
+    assert np.abs(np.array(moved.bounds) - lit(torus, 0, distance=3.0).bounds).max() > 0.3
+
+
+@pytest.mark.opengl
+def test_a_sequence(torus, tmp_path):
+    files = movie.turn(
+        torus, tmp_path / "t.png", scene=SCENE, distance=3.0, frames=4, picture=SMALL
+    )
+    assert [file.name for file in files] == [f"t_{i:04d}.png" for i in range(4)]
+    assert sorted(tmp_path.iterdir()) == files
+    pictures = [np.asarray(Image.open(file)) for file in files]
+    assert all(picture.shape == (60, 80, 3) for picture in pictures)
+    # All of it is in the picture at every step, and it does not fill a corner only.
+    for picture in pictures:
+        ink = np.any(picture != 255, axis=2)
+        assert not ink[[0, -1]].any()
+        assert not ink[:, [0, -1]].any()
+        assert ink.mean() > 0.05
+    again = movie.turn(
+        torus, tmp_path / "u.png", scene=SCENE, distance=3.0, frames=4, picture=SMALL
+    )
+    for one, other in zip(files, again, strict=True):
+        assert one.read_bytes() == other.read_bytes()
+
+
+@pytest.mark.opengl
+def test_the_camera_stays(torus, tmp_path):
+    camera = render.camera_on((-3, 3, -3, 3, -1, 1))
+    options = {"scene": SCENE, "distance": 3.0, "frames": 3, "angle": 1.5}
+    files = movie.turn(torus, tmp_path / "t.png", camera=camera, picture=SMALL, **options)
+    for i, file in enumerate(files):
+        expected = next(
+            render.pictures([lit(torus, 0.5 * i, distance=3.0)], camera=camera, **SMALL)
+        )
+        np.testing.assert_array_equal(np.asarray(Image.open(file)), expected)
+
+
+@pytest.mark.opengl
+def test_rotation_comes_before_the_turn(torus, tmp_path):
+    camera = render.camera_on((-3, 3, -3, 3, -1, 1))
+    first = projection.rotation(4, [("yz", 0.4), ("xw", 0.3)])
+    for rotation in (first, first.tolist(), [("yz", 0.4), ("xw", 0.3)]):
+        movie.turn(
+            torus, tmp_path / "t.png", scene=SCENE, frames=2, angle=1.0, rotation=rotation,
+            plane="zw", camera=camera, picture=SMALL,
+        )  # fmt: skip
+        expected = project(torus, rotation=[first, ("zw", 0.5)], scene=SCENE)
+        seen = next(render.pictures([expected], camera=camera, **SMALL))
+        difference = np.asarray(Image.open(tmp_path / "t_0001.png"), int) - seen
+        assert np.abs(difference).max() <= 1
+
+
+@pytest.mark.opengl
+def test_progress_and_names(torus, tmp_path, capsys):
+    movie.turn(
+        torus, tmp_path / "t.png", scene=SCENE, frames=2, picture=SMALL, name="glow",
+        progress_bar=True,
+    )  # fmt: skip
+    assert "turn" in capsys.readouterr().err
+
+
+@pytest.mark.opengl
+def test_points_behind_the_eye_are_told_of_once(torus, tmp_path):
+    with pytest.warns(UserWarning, match="in 2 of 2 frames: .* points cannot be projected") as said:
+        movie.turn(
+            torus, tmp_path / "t.png", scene=SCENE, frames=2, picture=SMALL, distance=0.7, cut=True
+        )
+    assert len(said) == 1
+    with pytest.raises(ValueError, match="points before the eye's hyperplane"):
+        movie.turn(torus, tmp_path / "u.png", scene=SCENE, frames=2, distance=0.7)
+    assert not list(tmp_path.glob("u*"))
+
+
+@pytest.mark.opengl
+def test_a_failure_leaves_whole_files_only(torus, tmp_path, monkeypatch):
+    real, calls = movie.project, []
+
+    def project_twice(*arguments, **options):
+        calls.append(1)
+        if len(calls) > 2:
+            raise ValueError("the disk is on fire")
+        return real(*arguments, **options)
+
+    monkeypatch.setattr(movie, "project", project_twice)
+    camera = render.camera_on((-3, 3, -3, 3, -1, 1))
+    with pytest.raises(ValueError, match="on fire"):
+        movie.turn(torus, tmp_path / "t.png", scene=SCENE, frames=4, camera=camera, picture=SMALL)
+    assert [p.name for p in sorted(tmp_path.iterdir())] == ["t_0000.png", "t_0001.png"]
+
+
+class Writer:
+    """Stands for imageio's writer: keeps what it is told, writes at the end."""
+
+    def __init__(self, path, **options):
+        self.path, self.options, self.pictures = path, options, []
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error):
+        with open(self.path, "wb") as file:  # noqa: PTH123 - as a library would
+            file.write(b"movie")
+
+    def append_data(self, picture):
+        self.pictures.append(picture)
+
+
+@pytest.fixture
+def writers(monkeypatch):
+    made = []
+
+    def get_writer(path, **options):
+        made.append(Writer(path, **options))
+        return made[-1]
+
+    package, v2 = types.ModuleType("imageio"), types.ModuleType("imageio.v2")
+    v2.get_writer, package.v2 = get_writer, v2
+    for name, module in (("imageio", package), ("imageio.v2", v2), ("imageio_ffmpeg", package)):
+        monkeypatch.setitem(sys.modules, name, module)
+    return made
+
+
+@pytest.mark.opengl
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [
+        ("t.gif", {"mode": "I", "duration": 50.0, "loop": 0}),
+        ("t.mp4", {"mode": "I", "fps": 20.0, "macro_block_size": 2}),
+    ],
+)
+def test_what_a_movie_writer_is_told(torus, tmp_path, writers, name, options):
+    files = movie.turn(torus, tmp_path / name, scene=SCENE, frames=3, fps=20, picture=SMALL)
+    assert files == [tmp_path / name]
+    assert files[0].read_bytes() == b"movie"
+    assert writers[0].options == options
+    assert [p.shape for p in writers[0].pictures] == [(60, 80, 3)] * 3
+
+
+@pytest.mark.opengl
+def test_a_movie_that_fails_leaves_no_file(torus, tmp_path, writers):
+    camera = render.camera_on((-3, 3, -3, 3, -1, 1))
+    with pytest.raises(ValueError, match="points before the eye's hyperplane"):
+        movie.turn(
+            torus, tmp_path / "t.gif", scene=SCENE, frames=3, distance=0.7, camera=camera,
+            picture=SMALL,
+        )  # fmt: skip
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.opengl
+# imageio leaves the pipes to ffmpeg to the garbage collector.
+@pytest.mark.filterwarnings("ignore::ResourceWarning")
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+@pytest.mark.parametrize(("name", "package"), [("t.gif", "imageio"), ("t.mp4", "imageio_ffmpeg")])
+def test_a_real_movie(torus, tmp_path, name, package):
+    """Runs where the extra is installed."""
+    pytest.importorskip(package)
+    movie.turn(torus, tmp_path / name, scene=SCENE, frames=4, distance=3.0, picture=SMALL)
+    frames = importlib.import_module("imageio.v2").mimread(tmp_path / name)
+    assert len(frames) == 4
+    assert frames[0].shape[:2] == (60, 80)
+
+
+@pytest.mark.parametrize(
+    ("name", "missing", "words"),
+    [
+        ("t.gif", "imageio", "imageio is not installed; pip install 'vizlight.movie.'"),
+        ("t.mp4", "imageio_ffmpeg", "imageio_ffmpeg is not installed"),
+    ],
+)
+def test_a_missing_package_is_named_before_anything_is_drawn(
+    torus, tmp_path, monkeypatch, writers, name, missing, words
+):
+    monkeypatch.setitem(sys.modules, missing, None)
+    with pytest.raises(movie.MovieError, match=words):
+        movie.turn(torus, tmp_path / name, scene=SCENE)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "error", "words"),
+    [
+        ("t.avi", {}, FileError, "output: expected a name that ends in .png, .gif, .mp4"),
+        ("none/t.png", {}, FileError, "output: expected a folder that exists"),
+        ("t.png", {"frames": 0}, ValueError, "frames: expected an integer of at least 1"),
+        ("t.png", {"fps": 0}, ValueError, "fps: expected a number from 0.01 to 100"),
+        ("t.png", {"angle": np.nan}, ValueError, "angle: expected a finite number"),
+        ("t.png", {"plane": "xx"}, ValueError, "plane: expected two different axes"),
+        ("t.png", {"picture": {"size": (0, 5)}}, ValueError, "size: expected an integer"),
+        ("t.png", {"picture": {"camera": 1}}, ValueError, "picture: expected no camera"),
+        ("t.mp4", {"picture": {"size": (81, 60)}}, ValueError, "size: expected an even width"),
+    ],
+)
+def test_bad_arguments(torus, tmp_path, writers, name, options, error, words):
+    with pytest.raises(error, match=words):
+        movie.turn(torus, tmp_path / name, scene=SCENE, **options)
+    assert not list(tmp_path.iterdir())
+
+
+def test_nothing_to_draw(tmp_path):
+    mesh = pv.PolyData()
+    mesh.points = np.empty((0, 3))
+    mesh.GetPointData().AddArray(pv.convert_array(np.empty((0, 4)), "position"))
+    with pytest.raises(ValueError, match="mesh: expected points to draw"):
+        movie.turn(mesh, tmp_path / "t.png", frame=None)
