@@ -8,7 +8,7 @@ eye, theta away from it; height and colour are the error in pixel values of 255.
 
 Left: f = 4. Two bumps of 63.75 stand off the plane, on both sides of the highlight at phi = 45
 degrees, where Blinn's falls off more rapidly; in the plane the two agree. Right:
-``f = 4 cos(beta) = 2.83``: the bumps are half as high, and a dent, as deep, lies between them.
+``f = 4 cos(beta) = 2.83``: the bumps are half as high, and in the plane are two dents, as deep.
 The spheres mark the largest error and where :func:`vizlight.model.highlights.max_pixel_error`
 finds it.
 """
@@ -38,8 +38,10 @@ for column, factor in enumerate((4.0, float(highlights.simple_factor(ANGLE)))):
     plotter.background_color = "white"
     plotter.add_mesh(
         surface, scalars="error", cmap="PuOr_r", clim=(-64, 64), smooth_shading=True,
-        specular=0.2, scalar_bar_args={"title": f"error, f = {factor:.2f}", "color": "black"},
+        specular=0.2,
+        scalar_bar_args={"title": "Phong minus Blinn\n", "color": "black", "position_y": 0.84},
     )  # fmt: skip
+    plotter.add_text(f"f = {factor:.2f}", color="black", font_size=14)
     worst = highlights.max_pixel_error(ANGLE, POWER, factor=factor)
     place = (np.rad2deg(worst.phi), np.rad2deg(worst.theta), worst.error)
     plotter.add_mesh(pv.Sphere(radius=3, center=place), color="black")
@@ -48,5 +50,5 @@ for column, factor in enumerate((4.0, float(highlights.simple_factor(ANGLE)))):
         xtitle="phi", ytitle="theta", ztitle="error", color="black", location="outer",
         n_xlabels=5, n_ylabels=5, n_zlabels=5, fmt="%.0f", font_size=11,
     )  # fmt: skip
-    plotter.camera_position = [(-330, -270, 250), (90, 90, -10), (0, 0, 1)]
+    plotter.camera_position = [(-330, -300, 90), (90, 90, 5), (0, 0, 1)]
 plotter.show()

@@ -45,14 +45,17 @@ plotter = render.make_plotter(spheres, camera=camera, size=(1100, 1200), backgro
 for column, degrees in enumerate((0, 45, 90, 135, 160)):
     plotter.add_point_labels(
         [(1.08 * column, 0.62, 0)], [f"{degrees}°"], shape=None, show_points=False,
+        always_visible=True,
         text_color="white", justification_horizontal="center", font_size=22,
     )  # fmt: skip
-for row, name in enumerate(("R.E", "f = 1", "f = 2", "f = 4", "f = 6", "4 cos β")):
+for row, name in enumerate(("R.E", "f = 1", "f = 2", "f = 4", "f = 6", "4 cos beta")):
     plotter.add_point_labels(
         [(-0.6, -1.08 * row, 0)], [name], shape=None, show_points=False,
+        always_visible=True,
         text_color="white", justification_horizontal="right", font_size=22,
     )  # fmt: skip
 plotter.camera.parallel_scale = 3.6
 plotter.camera.focal_point = (1.95, -2.6, 0)
 plotter.camera.position = (1.95, -2.6, 10)
+plotter.reset_camera_clipping_range()
 plotter.show()

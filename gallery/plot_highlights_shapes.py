@@ -37,15 +37,16 @@ def turned(radius, height):
 
 edge = np.linspace(0, np.pi / 2, 40)
 skirt = np.linspace(1, 0, 30)
-cap = turned(
-    np.concatenate(
-        [0.5 + 0.06 * skirt**2, 0.33 + 0.17 * np.cos(edge[1:]), np.linspace(0.32, 0, 30)]
-    ),
-    np.concatenate([-0.22 * skirt, 0.17 * np.sin(edge[1:]), np.linspace(0.17, 0.172, 30)]),
-)
+profile = [
+    (0.5 + 0.06 * skirt**2, -0.22 * skirt),
+    (0.33 + 0.17 * np.cos(edge[1:]), 0.17 * np.sin(edge[1:])),
+    (np.linspace(0.32, 0, 30), np.linspace(0.17, 0.172, 30)),
+]
+cap = turned(*np.concatenate(profile, axis=1))
 cap = cap.rotate_x(35, transform_all_input_vectors=True)
 cylinder = turned(np.full(40, 0.33), np.linspace(-0.45, 0.45, 40))
-cylinder = cylinder.rotate_x(20, transform_all_input_vectors=True)
+# Across the half vector, so that the highlight runs along it.
+cylinder = cylinder.rotate_z(-50, transform_all_input_vectors=True)
 angle = np.linspace(-np.pi / 2, np.pi / 2, 91)
 sphere = turned(0.5 * np.cos(angle), 0.5 * np.sin(angle))
 for shape in (cap, cylinder, sphere):
@@ -66,15 +67,11 @@ for model, factor in (("phong", 1), ("blinn", 4)):
             half.append(lit.translate((1.2 * column, -1.12 * row, 0)))
     halves.append(half)
 
+titles = ("R.E, powers 4 to 32", "N.H, powers 16 to 128")
 plotter = render.make_plotter(
-    [
-        render.Panel(half, title=title)
-        for half, title in zip(
-            halves, ("R.E, powers 4 to 32", "N.H, powers 16 to 128"), strict=True
-        )
-    ],
-    camera=render.camera_on(halves[0].bounds, (0, 0, 1), parallel=True, zoom=1.25),
-    size=(1600, 700),
+    [render.Panel(half, title=title) for half, title in zip(halves, titles, strict=True)],
+    camera=render.camera_on(halves[0].bounds, (0, 0, 1), parallel=True, zoom=1.3),
+    size=(1600, 640),
     background="#203040",
 )
 plotter.show()

@@ -8,10 +8,11 @@ eyes that point anywhere; highlights to the power 20.
 
 Tubes come nearer with the square of their sides, at a cost for each side. Left: no law that knows
 only the angle to the light gets the diffuse term right, since a line shows its dark side too.
-Right: Blinn's highlight is as good as a tube of some 4 sides, and ``model="cylinder"`` is exact.
+Right: Blinn's highlight is about as good as a tube of 3 sides, and ``model="cylinder"`` is exact.
 """
 
 import pyvista as pv
+from vtkmodules.vtkChartsCore import vtkChartLegend
 
 from vizlight.studies import lines
 
@@ -30,6 +31,9 @@ for column, term in enumerate(("diffuse", "specular")):
         ends = (lines.SIDES[0], lines.SIDES[-1])
         chart.line(ends, [row.scaled_rms] * 2, color=color, width=3, label=row.model)
     chart.legend_visible = True
+    chart.GetLegend().SetHorizontalAlignment(vtkChartLegend.LEFT)
+    chart.GetLegend().SetVerticalAlignment(vtkChartLegend.BOTTOM)
+    chart.y_range = (1e-4, 0.5)
     plotter.subplot(0, column)
     plotter.background_color = "white"
     plotter.add_chart(chart)
