@@ -23,7 +23,10 @@ TELLING = 2.0
 
 
 def vtk_law(lights: Sequence[Light]) -> Law:
-    """Return the law of VTK's specular term: Blinn for one headlight alone, Phong otherwise."""
+    """Return the law of VTK's specular term: Blinn for one headlight alone, Phong otherwise.
+
+    A light of intensity 0 counts: VTK asks only which lights are switched on.
+    """
     return "blinn" if len(lights) == 1 and lights[0].follows_view else "phong"
 
 
@@ -91,12 +94,12 @@ def from_property(
 
 
 def _lights(lights: Any) -> tuple[Light, ...]:
-    """Return the lights that are given, one headlight by default, without those that are dark."""
+    """Return the lights that are given, one headlight by default."""
     given = (Light.headlight(),) if lights is None else lights
     given = (given,) if isinstance(given, Light) else tuple(given)
     for light in given:
         _check.instance("lights", light, Light)
-    return tuple(light for light in given if light.intensity > 0)
+    return given
 
 
 def _law(model: str) -> str:
@@ -146,7 +149,7 @@ def _tell(
         angle = _angle(lights, view)
         error = abs(float(highlights.max_pixel_error(angle, phong, factor=blinn / phong).error))
         if law == "blinn":
-            remedy = "; a camera light at the eye in place of the headlight gives Phong's"
+            remedy = "; a second light, were it of intensity 0, gives Phong's"
     else:
         # The same law with a clamped power: x^a - x^b is largest where both slopes are equal.
         x = (shown / wanted) ** (1 / (wanted - shown))

@@ -107,8 +107,9 @@ class Material:
         Notes
         -----
         What VTK 9 does: with exactly one light, a headlight at infinity, its specular term is
-        ``(N . view axis)^power``, Blinn's; with any other lights, several headlights among them,
-        Phong's, and the eye is at the camera's position **also under a parallel projection**.
+        ``(N . view axis)^power``, Blinn's; with any other lights, several headlights or a second
+        light of intensity 0 among them, Phong's, and the eye is at the camera's position **also
+        under a parallel projection**.
         The same scene here thus has a perspective view, or the camera is far away.
         """
         from vizlight._property import to_property
