@@ -25,13 +25,19 @@ def test_codimensions(k, c):
     assert simple.rms < 0.8 * four.rms
 
 
+def test_exchange():
+    row = highlights.exchange(40.0, 20.0, count=20_000, repeats=1)
+    assert min(row.phong, row.blinn) > 0
+    assert 0.5 * row.bound < row.error <= row.bound + 0.1
+
+
 def test_tables(capsys, monkeypatch):
     monkeypatch.setattr(highlights, "DEGREES", (60.0,))
     monkeypatch.setattr(highlights, "POWERS", (10.0,))
     full = highlights.codimension
     monkeypatch.setattr(highlights, "codimension", lambda k, c: full(k, c, count=500))
     monkeypatch.setenv("COLUMNS", "150")
-    highlights.main()
+    highlights.main(1000)
     said = capsys.readouterr().out
     for number in ("4.0038", "7.668", "198.52", "best by volume"):
         assert number in said

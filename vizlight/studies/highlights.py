@@ -11,8 +11,11 @@ from typing import Any
 import cyclopts
 import numpy as np
 
+from vizlight import engine
+from vizlight.light import Light
 from vizlight.model import highlights, reflection
-from vizlight.studies._measure import print_table
+from vizlight.scene import Material, Scene, View
+from vizlight.studies._measure import print_table, take_turns
 
 DEGREES = (0.0, 30.0, 60.0, 90.0, 120.0, 150.0)
 POWERS = (10.0, 40.0, 200.0)
@@ -92,8 +95,55 @@ def codimension(
     return found
 
 
-def main() -> None:
-    """Print the tables."""
+@dataclass(frozen=True)
+class Exchange:
+    """Phong's highlight of lines, as asked for and by Blinn's within an error."""
+
+    degrees: float
+    shininess: float
+    phong: float
+    blinn: float
+    bound: float
+    error: float
+
+
+def exchange(
+    degrees: float, shininess: float, count: int = 1_000_000, repeats: int = 5
+) -> Exchange:
+    """Return ns a point of both, one thread, float32, and the bound and the error seen."""
+    random = np.random.default_rng(20)
+    points, tangents = (random.standard_normal((count, 3)).astype(np.float32) for _ in range(2))
+    angle = np.deg2rad(degrees)
+    scene = Scene(
+        lights=Light(direction=(np.sin(angle), 0, np.cos(angle))),
+        view=View(direction=(0, 0, 1)),
+        material=Material(ambient=0, diffuse=0, specular=1, shininess=shininess),
+    )
+
+    def light(allowed: float) -> Any:
+        return engine.shade(points, tangents, scene, threads=1, highlight_error=allowed)
+
+    ways = {"phong": lambda: light(0.0), "blinn": lambda: light(255.0)}
+    seconds = take_turns(ways, repeats)
+    asked, made = light(0.0), light(255.0)
+    return Exchange(
+        degrees,
+        shininess,
+        phong=1e9 * seconds["phong"] / count,
+        blinn=1e9 * seconds["blinn"] / count,
+        bound=made.plan.highlight_error,
+        error=255 * float(np.abs(asked.luminance - made.luminance).max()),
+    )
+
+
+def main(count: int = 1_000_000) -> None:
+    """Print the tables.
+
+    Parameters
+    ----------
+    count
+        How many points are lit where time is taken.
+    """
     rho = (5, 20, 40, 60, 80, 85, 87, 89, 89.5, 89.9)
     required = highlights.required_factor(np.deg2rad(rho))
     print_table(
@@ -155,6 +205,38 @@ def main() -> None:
             for c in (1, 2, 3)
             for k in (1, 2, 3)
             for row in codimension(k, c)
+        ],
+    )
+    print_table(
+        f"highlight_error=: specular term of {count} lines, float32, one thread, H constant",
+        ("[L, E]", "power", "Phong, ns a point", "Blinn, ns a point", "bound", "error seen"),
+        [
+            (
+                f"{row.degrees:g}",
+                f"{row.shininess:g}",
+                f"{row.phong:.1f}",
+                f"{row.blinn:.1f}",
+                f"{row.bound:.2f}",
+                f"{row.error:.2f}",
+            )
+            for degrees in (10.0, 30.0, 60.0)
+            for s in (20.0, 100.0)
+            for row in [exchange(degrees, s, count)]
+        ],
+    )
+    widths = (0.02, 0.05, 0.1, 0.2)
+    print_table(
+        "terminator=: the most that a smooth end takes from a highlight of Phong of power 20",
+        ("[L, E]", *(f"{width:g}" for width in widths)),
+        [
+            (
+                f"{degrees}",
+                *(
+                    f"{highlights.terminator_error(np.deg2rad(degrees), 20.0, width):.2f}"
+                    for width in widths
+                ),
+            )
+            for degrees in (60, 90, 120, 150, 170)
         ],
     )
 
