@@ -125,6 +125,34 @@ def test_cylinder_of_the_engine_is_the_model(light, view, shininess, dtype, rand
         assert shading.specular[i] == pytest.approx(0.3 * float(true[1]), abs=slack)
 
 
+def test_hard_points_of_cylinders(dtype):
+    """Zero, NaN and infinite tangents and points, light and eye on a point, along the line."""
+    points = np.array(
+        [
+            [0, 0, 0],
+            [0, 0, 0],
+            [0, 0, 0],
+            [np.nan, 0, 0],
+            [3, 2, 4],
+            [0, 1, 9],
+            [1, 1, 1],
+            [0, 0, 0],
+        ]
+    ).astype(dtype)
+    tangents = np.array(
+        [[0, 0, 0], [np.nan, 1, 0], [np.inf, 0, 0], [1, 0, 0], [1, 0, 0], [1, 0, 0], [0, 1, 0],
+         [0, 1, 9]]
+    ).astype(dtype)  # fmt: skip
+    scene = Scene(lights=[NEAR, SUN], view=View(position=(0, 1, 9)))
+    for shininess in (0.0, 5.0, 1e6):
+        here = scene.replace(material=Material(shininess=shininess))
+        shading = engine.shade(points, tangents, here, model="cylinder")
+        assert shading.valid.tolist() == [False] * 4 + [True] * 4
+        assert np.isfinite(shading.luminance).all()
+        assert shading.luminance[:4] == pytest.approx(0.1)
+        assert np.all(shading.luminance[4:] > 0.1)
+
+
 def test_cylinder_in_words_and_what_it_needs():
     said = plan(Scene(lights=SUN, view=FAR), k=1, model="cylinder").explain()
     assert "diffuse: Lambert's law averaged over the visible half of a thin cylinder" in said

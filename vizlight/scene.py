@@ -70,6 +70,91 @@ class Material:
             specular_color=_check.color("specular_color", specular_color),
         )
 
+    def to_property(
+        self,
+        *,
+        lights: Light | Iterable[Light] | None = None,
+        view: View | None = None,
+        model: str = "phong",
+    ) -> Any:
+        """Return the ``pyvista.Property`` with which VTK shows this material's highlight.
+
+        Parameters
+        ----------
+        lights : Light or sequence of Light, optional
+            Of the scene that VTK will light, all of them: they decide its law. Default: one
+            headlight, as in :class:`Scene`.
+        view : View, optional
+            With a direction it tells the angle between light and eye, which an exchange between
+            the laws depends on.
+        model : {"phong", "blinn"}
+            The law that ``shininess`` belongs to in vizlight.
+
+        Returns
+        -------
+        pyvista.Property
+            For surfaces; its power is exchanged where VTK's law is not the model's.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If an argument does not fit, or a coefficient is above 1, which VTK clamps.
+
+        Warns
+        -----
+        UserWarning
+            If VTK's highlight can differ by more than 2 of 255: it has no law between, and
+            clamps the power to 128.
+
+        Notes
+        -----
+        What VTK 9 does: with exactly one light, a headlight at infinity, its specular term is
+        ``(N . view axis)^power``, Blinn's; with any other lights, several headlights or a second
+        light of intensity 0 among them, Phong's, and the eye is at the camera's position **also
+        under a parallel projection**.
+        The same scene here thus has a perspective view, or the camera is far away.
+        """
+        from vizlight._property import to_property
+
+        return to_property(self, lights, view, model)
+
+    @classmethod
+    def from_property(
+        cls,
+        source: Any,
+        /,
+        *,
+        lights: Light | Iterable[Light] | None = None,
+        view: View | None = None,
+        model: str = "phong",
+    ) -> Material:
+        """Return the material of a ``pyvista.Property`` or ``vtkProperty``.
+
+        Parameters
+        ----------
+        source : pyvista.Property or vtkProperty
+        lights, view, model
+            As for :meth:`to_property`, of which this is the inverse.
+
+        Returns
+        -------
+        Material
+
+        Raises
+        ------
+        TypeError, ValueError
+            If an argument does not fit.
+
+        Warns
+        -----
+        UserWarning
+            If the ambient colour is not the diffuse one, which stands for both here.
+        """
+        from vizlight._property import from_property
+
+        material: Material = from_property(cls, source, lights, view, model)
+        return material
+
 
 @dataclass(frozen=True, init=False)
 class View:

@@ -185,6 +185,17 @@ def test_the_better_rule_is_better(r):
             np.testing.assert_allclose(worst(factor), limit, atol=0.1)
 
 
+def test_the_rule_for_small_powers():
+    angle = np.deg2rad(np.arange(0, 121, 5))
+    for r in (10.0, 20.0, 50.0, 300.0):
+        factors = (highlights.simple_factor(angle, r), 4.0, highlights.best_factor(angle, r))
+        ours, four, best = (
+            np.abs(highlights.max_pixel_error(angle, r, factor=f, lit=True).error) for f in factors
+        )
+        assert np.all(ours <= np.maximum(1.1 * best, best + 0.5) + 1e-9)
+        assert np.all(ours <= four + 0.1)
+
+
 @pytest.mark.parametrize("by", ["rms", "volume"])
 def test_best_factor_by_the_sphere(by):
     for degrees, r in ((30.0, 10.0), (90.0, 20.0), (120.0, 40.0)):

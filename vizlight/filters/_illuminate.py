@@ -70,7 +70,8 @@ def illuminate(
         Diffuse with the exponent p(k, n), which gives lines a surface's contrast (Banks 5).
     model : {"phong", "blinn", "cylinder"}
         The law of the highlight. ``"cylinder"``, for lines in 3-space, is the exact light of a
-        thin cylinder, diffuse and specular, by which the others are measured.
+        thin cylinder, diffuse and specular (Blinn's), by which the others are measured.
+        A mean over the width is dimmer than a line's brightest normal: raise the coefficients.
     highlight_error : float, default: 0.0
         How far, in pixel values of 255, Phong's highlight may be off for speed: under a parallel
         view and lights at infinity Blinn's, of the best power, may then take its place.

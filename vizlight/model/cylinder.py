@@ -133,7 +133,8 @@ def diffuse_gradient(wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike, /) -> Gra
     Notes
     -----
     The value depends on ``wi.t``, ``wo.t`` and ``wi.wo`` alone; the chain rule does the rest.
-    Absolute error for unit vectors at most ``32 eps / d^3``, d the smaller of |wi_N| and |wo_N|.
+    Within 1e-8 of a complex step through quadrature for directions in general; the derivatives
+    themselves, and their errors, grow as 1 over |wi_N| and |wo_N|.
     """
     x = _Invariants(wi, wo, tangent)
     by_dot = x.rest / (4 * x.b)
@@ -166,8 +167,8 @@ def specular_gradient(
 
     Notes
     -----
-    Absolute error for unit vectors at most ``64 (1 + s) eps / d^3``, d the smallest of |wi_N|,
-    |wo_N|, |(wi + wo)_N| and |wi + wo|.
+    Within 1e-8 of a complex step through quadrature for directions in general; the derivatives
+    themselves, and their errors, grow as 1 over |wi_N|, |wo_N| and |wi + wo|.
     """
     s = _check.number("shininess", shininess, low=0.0, high=_check.LARGEST)
     x = _Invariants(wi, wo, tangent)

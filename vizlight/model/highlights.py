@@ -231,18 +231,21 @@ def best_factor(light_eye_angle: ArrayLike, r: ArrayLike, /, *, by: Measure = "w
     return result[()]
 
 
-def simple_factor(light_eye_angle: ArrayLike, /) -> Any:
+def simple_factor(light_eye_angle: ArrayLike, r: ArrayLike | None = None, /) -> Any:
     """Return 4 cos(beta), beta half the angle between light and eye: a better rule than 4.
 
     Parameters
     ----------
     light_eye_angle : array_like, shape (...)
         In radians, from 0 to pi.
+    r : array_like, shape (...), optional
+        Phong's shininess, from 0.5 to 1e9: with it the rule is corrected for small powers, to
+        ``4 cos(beta) (1 + (2 cos(beta) - 1) / (3 r))``.
 
     Returns
     -------
     ndarray, shape (...)
-        From 4 to 0; ``2 |wi + wo|``, without an angle.
+        From 4 to 0 without r: ``2 |wi + wo|``, which needs no angle.
 
     Raises
     ------
@@ -254,9 +257,14 @@ def simple_factor(light_eye_angle: ArrayLike, /) -> Any:
     For large powers Phong's highlight lies between the Gaussians of 4 cos^2(beta) and of 4; their
     geometric mean makes the errors to both sides equal, ``255 (1 - c) c^(c / (1 - c))`` with
     c = cos(beta) in place of cos^2(beta): 63.75 at 120 degrees in place of 120.5. On a surface it
-    is also the factor for which both highlights hold the same light.
+    is also the factor for which both highlights hold the same light. The correction is fitted to
+    :func:`best_factor`: from r = 10 on and up to 120 degrees its worst error is within a tenth, or
+    half a pixel value, of the least, and no more than 0.1 above that of 4.
     """
-    return (4 * np.cos(_angles("light_eye_angle", light_eye_angle) / 2))[()]
+    cosine = np.cos(_angles("light_eye_angle", light_eye_angle) / 2)
+    if r is None:
+        return (4 * cosine)[()]
+    return (4 * cosine * (1 + (2 * cosine - 1) / (3 * _powers("r", r, low=0.5))))[()]
 
 
 def sphere_error(

@@ -1,0 +1,40 @@
+"""
+Line models against the exact line light
+========================================
+
+A line drawn one pixel wide ought to show the mean light of a thin cylinder. Root mean square errors
+of the cheap models, each with its best factor, and of tubes of 3 to 40 sides, for lines, lights and
+eyes that point anywhere; highlights to the power 20.
+
+Tubes come nearer with the square of their sides, at a cost for each side. Left: no law that knows
+only the angle to the light gets the diffuse term right, since a line shows its dark side too.
+Right: Blinn's highlight is about as good as a tube of 3 sides, and ``model="cylinder"`` is exact.
+"""
+
+import pyvista as pv
+from vtkmodules.vtkChartsCore import vtkChartLegend
+
+from vizlight.studies import lines
+
+rows = [row for row in lines.measure(5000, repeats=1) if row.setting == "random"]
+plotter = pv.Plotter(shape=(1, 2), window_size=(1500, 620), border=False)
+colors = ("#d55e00", "#0072b2")
+for column, term in enumerate(("diffuse", "specular")):
+    own = [row for row in rows if row.term == term and row.model != "exact"]
+    chart = pv.Chart2D(x_label="sides of the tube", y_label="RMS error")
+    chart.title = term
+    chart.x_axis.log_scale = chart.y_axis.log_scale = True
+    errors = [row.scaled_rms for row in own if row.model.startswith("tube")]
+    chart.line(lines.SIDES, errors, color="black", width=2, label="tube")
+    chart.scatter(lines.SIDES, errors, color="black", size=9)
+    for color, row in zip(colors, (r for r in own if not r.model.startswith("tube")), strict=True):
+        ends = (lines.SIDES[0], lines.SIDES[-1])
+        chart.line(ends, [row.scaled_rms] * 2, color=color, width=3, label=row.model)
+    chart.legend_visible = True
+    chart.GetLegend().SetHorizontalAlignment(vtkChartLegend.LEFT)
+    chart.GetLegend().SetVerticalAlignment(vtkChartLegend.BOTTOM)
+    chart.y_range = (1e-4, 0.5)
+    plotter.subplot(0, column)
+    plotter.background_color = "white"
+    plotter.add_chart(chart)
+plotter.show()

@@ -1,0 +1,50 @@
+"""The error meter measures what it says; no time is asserted."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from vizlight.model import cylinder
+from vizlight.studies import lines
+
+
+@pytest.fixture(scope="module")
+def rows():
+    found = lines.measure(2000, repeats=1)
+    return {(row.setting, row.term, row.model): row for row in found}
+
+
+def test_what_is_exact_up_to_a_factor_and_what_is_not(rows):
+    for term, model in (("diffuse", "Banks, p = 1"), ("specular", "Blinn")):
+        assert rows["headlight", term, model].scaled_worst < 1e-13
+        assert rows["random", term, model].scaled_worst > 0.1
+    assert rows["headlight", "diffuse", "Banks, p(1, 3)"].scaled_rms > 0.1
+    assert rows["random", "diffuse", "exact"].worst == 0
+
+
+def test_tubes_near_the_cylinder_at_second_order(rows):
+    for term in ("diffuse", "specular"):
+        rough, fine = (rows["random", term, f"tube of {n} sides"].rms for n in (8, 40))
+        assert np.log(rough / fine) / np.log(5) == pytest.approx(2, abs=0.2)
+    sizes = [rows["random", "diffuse", f"tube of {n} sides"].bytes for n in lines.SIDES]
+    assert sizes == sorted(sizes)
+    assert sizes[0] > 3 * rows["random", "diffuse", "exact"].bytes
+    assert all(row.nanoseconds > 0 for row in rows.values())
+
+
+def test_a_tube_of_many_sides_is_the_cylinder():
+    wi, wo, t = lines.directions(50, headlight=False)
+    diffuse, specular = lines.tube(wi, wo, t, 300, shininess=10.0)
+    np.testing.assert_allclose(diffuse, cylinder.diffuse(wi, wo, t), atol=2e-4)
+    exact = cylinder.specular(wi, wo, t, shininess=10.0)
+    np.testing.assert_allclose(specular, exact, atol=2e-4)
+
+
+def test_table(capsys, monkeypatch):
+    monkeypatch.setattr(lines, "SIDES", (3,))
+    monkeypatch.setenv("COLUMNS", "150")
+    lines.main(200)
+    said = capsys.readouterr().out
+    assert "tube of 3 sides" in said
+    assert "Banks, p(1, 3)" in said

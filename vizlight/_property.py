@@ -1,0 +1,162 @@
+"""A material as a VTK property and back: the same highlight where VTK's law allows it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from vizlight import _check
+from vizlight.light import WHITE, Light
+from vizlight.model import highlights
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from vizlight.scene import Material, View
+
+Law = Literal["phong", "blinn"]
+#: VTK clamps the power to this.
+LARGEST_POWER = 128.0
+#: A highlight that may be off by more than this many pixel values of 255 is worth a warning.
+TELLING = 2.0
+
+
+def vtk_law(lights: Sequence[Light]) -> Law:
+    """Return the law of VTK's specular term: Blinn for one headlight alone, Phong otherwise.
+
+    A light of intensity 0 counts: VTK asks only which lights are switched on.
+    """
+    return "blinn" if len(lights) == 1 and lights[0].follows_view else "phong"
+
+
+def to_property(material: Material, lights: Any, view: View | None, model: str) -> Any:
+    """Return the ``pyvista.Property`` of a material; see :meth:`vizlight.Material.to_property`."""
+    import pyvista as pv
+
+    given = _lights(lights)
+    for name in ("ambient", "diffuse", "specular"):
+        value = getattr(material, name)
+        if value > 1:
+            remedy = "make the lights brighter instead"
+            raise ValueError(_check.message(name, "at most 1, as VTK has it", value, remedy))
+    law, power = vtk_law(given), material.shininess
+    if _law(model) != law:
+        angle = _angle(given, view)
+        power = _exchanged(power, angle, model)
+    shown = min(power, LARGEST_POWER)
+    _tell(material, given, view, model, shown)
+    made = pv.Property(
+        ambient=material.ambient,
+        diffuse=material.diffuse,
+        specular=material.specular,
+        specular_power=shown,
+        interpolation="phong",
+        lighting=True,
+    )
+    made.color = made.ambient_color = made.diffuse_color = material.color or WHITE
+    made.specular_color = material.specular_color or WHITE
+    return made
+
+
+def from_property(
+    kind: type[Material], source: Any, lights: Any, view: View | None, model: str
+) -> Any:
+    """Return the material of a property; see :meth:`vizlight.Material.from_property`."""
+    if not hasattr(source, "GetSpecularPower"):
+        raise TypeError(
+            _check.message("source", "a pyvista.Property or vtkProperty", _check.describe(source))
+        )
+    given = _lights(lights)
+    power = float(source.GetSpecularPower())
+    if _law(model) != vtk_law(given):
+        angle = _angle(given, view)
+        other = "phong" if model == "blinn" else "blinn"
+        # The inverse of the exchange, whose factor depends little on the power: a fixed point.
+        target, power = power, _exchanged(power, angle, other)
+        for _ in range(20):
+            ratio = target / _exchanged(power, angle, model) if power else 1.0
+            power *= ratio
+            if abs(ratio - 1) < 1e-9:
+                break
+    own = (source.GetDiffuseColor, source.GetSpecularColor)
+    colors = [tuple(float(channel) for channel in get()) for get in own]
+    if tuple(source.GetAmbientColor()) != colors[0]:
+        _check.warn("the property's ambient colour is not its diffuse one, which is kept for both")
+    return kind(
+        ambient=source.GetAmbient(),
+        diffuse=source.GetDiffuse(),
+        specular=source.GetSpecular(),
+        shininess=power,
+        color=None if colors[0] == WHITE else colors[0],
+        specular_color=None if colors[1] == WHITE else colors[1],
+    )
+
+
+def _lights(lights: Any) -> tuple[Light, ...]:
+    """Return the lights that are given, one headlight by default."""
+    given = (Light.headlight(),) if lights is None else lights
+    given = (given,) if isinstance(given, Light) else tuple(given)
+    for light in given:
+        _check.instance("lights", light, Light)
+    return given
+
+
+def _law(model: str) -> str:
+    if model not in ("phong", "blinn"):
+        raise ValueError(
+            _check.message("model", "'phong' or 'blinn', which VTK can come near", repr(model))
+        )
+    return model
+
+
+def _angle(lights: Sequence[Light], view: View | None) -> float:
+    """Return the angle from the eye to the brightest light, 0 where it is not known."""
+    far = [light for light in lights if light.direction is not None]
+    if not far or view is None or view.direction is None:
+        return 0.0
+    brightest = max(far, key=lambda light: light.intensity)
+    a, b = (np.asarray(v, dtype=np.float64) for v in (brightest.direction, view.direction))
+    a, b = a / np.linalg.norm(a), b / np.linalg.norm(b)
+    return 2 * float(np.arctan2(np.linalg.norm(a - b), np.linalg.norm(a + b)))
+
+
+def _exchanged(power: float, angle: float, model: str) -> float:
+    """Return the power of the other law for one of the model asked for."""
+    if power < 1:
+        rule = float(highlights.simple_factor(angle))
+        return power * rule if model == "phong" else power / max(rule, 1e-3)
+    if model == "phong":
+        return power * float(highlights.best_factor(angle, power))
+    phong = power / max(float(highlights.simple_factor(angle)), 1e-3)
+    for _ in range(3):
+        phong = power / float(highlights.best_factor(angle, float(np.clip(phong, 0.5, 1e6))))
+    return phong
+
+
+def _tell(
+    material: Material, lights: Sequence[Light], view: View | None, model: str, shown: float
+) -> None:
+    """Warn by how much VTK's highlight can be off, where that can be seen."""
+    wanted, law = material.shininess, vtk_law(lights)
+    if not lights or not material.specular or (law == model and shown == wanted):
+        return
+    remedy = ""
+    if law != model:
+        phong, blinn = (wanted, shown) if model == "phong" else (shown, wanted)
+        if phong == 0:
+            return
+        angle = _angle(lights, view)
+        error = abs(float(highlights.max_pixel_error(angle, phong, factor=blinn / phong).error))
+        if law == "blinn":
+            remedy = "; a second light, were it of intensity 0, gives Phong's"
+    else:
+        # The same law with a clamped power: x^a - x^b is largest where both slopes are equal.
+        x = (shown / wanted) ** (1 / (wanted - shown))
+        error = 255 * abs(x**wanted - x**shown)
+    error *= material.specular * max(light.intensity for light in lights)
+    if error > TELLING:
+        _check.warn(
+            f"VTK lights this scene by {law}'s law of power {shown:.4g}: its highlight can differ "
+            f"by {error:.1f} of 255 from {model}'s of {wanted:g}{remedy}"
+        )

@@ -1,0 +1,235 @@
+"""The error meter of line models: every cheap one against the exact line light.
+
+``python -m vizlight.studies.lines [COUNT]`` prints one table. Lines, lights and eyes point
+anywhere, or the light is the eye's own; the exact light is that of :mod:`vizlight.model.cylinder`,
+specular with N.H to the power 20. Tubes of N sides are shaded as VTK shades them: normals of the
+corners, interpolated along a face and made unit at each pixel; what a pixel that holds the whole
+tube shows is the mean over its width, and each tube is turned at random about its line. A factor
+for all points, which a coefficient of the material can hold, is taken out in the last two columns.
+
+Where they are exact: for a headlight, and wherever light, line and eye lie in one plane on one
+side of the line, Banks' diffuse term with p = 1 and Blinn's highlight are the exact light up to a
+factor, pi / 4 and ``B(s/2 + 1, 1/2) / 2``. Nowhere else, and the compensated exponent nowhere.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import cyclopts
+import numpy as np
+import pyvista as pv
+
+from vizlight import engine
+from vizlight.light import Light
+from vizlight.model import brightness, cylinder, highlights, reflection
+from vizlight.scene import Material, Scene, View
+from vizlight.studies._measure import print_table, take_turns
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.floating[Any]]
+
+SHININESS = 20.0
+SIDES = (3, 4, 6, 8, 12, 20, 40)
+#: Nodes of the quadrature along a face.
+NODES = 16
+
+
+@dataclass(frozen=True)
+class Row:
+    """One model of one term: errors in the term's own unit, cost for a point of the line."""
+
+    setting: str
+    term: str
+    model: str
+    worst: float
+    rms: float
+    scaled_worst: float
+    scaled_rms: float
+    nanoseconds: float
+    bytes: float
+
+
+def directions(count: int, *, headlight: bool) -> tuple[Array, Array, Array]:
+    """Return unit directions toward light and eye and tangents, seeded."""
+    random = np.random.default_rng(2005)
+    v: Array = random.standard_normal((3, count, 3))
+    v /= np.linalg.norm(v, axis=-1, keepdims=True)
+    return (v[1] if headlight else v[0]), v[1], v[2]
+
+
+def tube(
+    wi: Array, wo: Array, tangent: Array, sides: int, *, shininess: float = SHININESS
+) -> tuple[Array, Array]:
+    """Return the mean diffuse and specular light over the width of tubes of N sides."""
+    random = np.random.default_rng(sides)
+
+    def across(v: Array) -> Array:
+        rest: Array = v - np.sum(v * tangent, axis=1, keepdims=True) * tangent
+        return rest
+
+    first = across(wo)
+    first /= np.linalg.norm(first, axis=1, keepdims=True)
+    second = np.cross(tangent, first)
+    half = wi + wo
+    half /= np.linalg.norm(half, axis=1, keepdims=True)
+    (lx, ly), (hx, hy) = (
+        (np.sum(v * first, axis=1), np.sum(v * second, axis=1)) for v in (wi, half)
+    )
+    nodes, weights = np.polynomial.legendre.leggauss(NODES)
+    turn = random.uniform(0, 2 * np.pi, len(wi))
+    width, diffuse, specular = np.zeros((3, len(wi)))
+    for face in range(sides):
+        middle = turn + 2 * np.pi * face / sides
+        facing = np.maximum(np.cos(middle), 0)
+        width += 2 * facing
+        for u, w in zip(nodes, weights, strict=True):
+            angle = middle + np.arctan(u * np.tan(np.pi / sides))
+            x, y = np.cos(angle), np.sin(angle)
+            lit = lx * x + ly * y
+            diffuse += facing * w * np.maximum(lit, 0)
+            shine = np.maximum(hx * x + hy * y, 0) ** shininess
+            specular += facing * w * np.where(lit > 0, shine, 0)
+    return diffuse / width, specular / width
+
+
+def measure(count: int = 20_000, repeats: int = 3) -> list[Row]:
+    """Return the rows of the study."""
+    rows = []
+    costs = _costs(repeats)
+    for setting in ("random", "headlight"):
+        wi, wo, t = directions(count, headlight=setting == "headlight")
+        frame = t[:, np.newaxis]
+        exact = {
+            "diffuse": cylinder.diffuse(wi, wo, t),
+            "specular": cylinder.specular(wi, wo, t, shininess=SHININESS),
+        }
+        phong = float(highlights.phong_from_blinn(SHININESS))
+        found: list[tuple[str, str, str, Array]] = [
+            ("diffuse", "Banks, p = 1", "line", reflection.diffuse(wi, frame)),
+            (
+                "diffuse",
+                "Banks, p(1, 3)",
+                "line",
+                reflection.diffuse(wi, frame, exponent=brightness.exponent(1, 3)),
+            ),
+            (
+                "specular",
+                "Blinn",
+                "line, Blinn",
+                reflection.specular(wi, wo, frame, shininess=SHININESS, model="blinn"),
+            ),
+            (
+                "specular",
+                f"Banks' Phong, power {phong:g}",
+                "line",
+                reflection.specular(wi, wo, frame, shininess=phong),
+            ),
+        ]
+        for sides in SIDES:
+            pair = tube(wi, wo, t, sides)
+            for term, value in zip(("diffuse", "specular"), pair, strict=True):
+                found.append((term, f"tube of {sides} sides", f"tube {sides}", value))
+        for term in ("diffuse", "specular"):
+            found.append((term, "exact", "cylinder", exact[term]))
+        for term in ("diffuse", "specular"):
+            rows += [
+                _row(setting, term, model, value, exact[term], costs[cost])
+                for own, model, cost, value in found
+                if own == term
+            ]
+    return rows
+
+
+def _row(
+    setting: str, term: str, model: str, value: Array, exact: Array, cost: tuple[float, float]
+) -> Row:
+    factor = float(np.sum(value * exact) / np.sum(value * value))
+    plain, scaled = value - exact, factor * value - exact
+    return Row(
+        setting,
+        term,
+        model,
+        float(np.abs(plain).max()),
+        float(np.sqrt(np.mean(plain * plain))),
+        float(np.abs(scaled).max()),
+        float(np.sqrt(np.mean(scaled * scaled))),
+        *cost,
+    )
+
+
+def _costs(repeats: int, count: int = 200_000) -> dict[str, tuple[float, float]]:
+    """Return ns (both terms, one thread, float32, a light and an eye nearby) and bytes a point."""
+    random = np.random.default_rng(20)
+    points, tangents = (random.standard_normal((count, 3)).astype(np.float32) for _ in range(2))
+    scene = Scene(
+        lights=Light(position=(4.0, 5.0, 6.0)),
+        view=View(position=(0.0, 1.0, 9.0)),
+        material=Material(shininess=SHININESS),
+    )
+
+    def light(**options: Any) -> Callable[[], Any]:
+        return lambda: engine.shade(points, tangents, scene, threads=1, **options)
+
+    ways: dict[str, Callable[[], Any]] = {
+        "line": light(),
+        "line, Blinn": light(model="blinn"),
+        "cylinder": light(model="cylinder"),
+        "surface": lambda: engine.shade(
+            points, None, scene, normals=tangents, threads=1, model="blinn"
+        ),
+    }
+    seconds = take_turns(ways, repeats)
+    each = {way: 1e9 * spent / count for way, spent in seconds.items()}
+    line = pv.Spline(np.cumsum(random.standard_normal((20, 3)), axis=0), 2000)
+    line.clear_data()
+
+    def size(mesh: Any) -> float:
+        """Bytes for a point of the line, with the float32 light of each point of the mesh."""
+        whole = 1024 * mesh.actual_memory_size + 4 * mesh.n_points
+        return float(whole / line.n_points)
+
+    costs = {way: (each[way], size(line)) for way in ("line", "line, Blinn", "cylinder")}
+    for sides in SIDES:
+        costs[f"tube {sides}"] = (sides * each["surface"], size(line.tube(n_sides=sides)))
+    return costs
+
+
+def main(count: int = 20_000) -> None:
+    """Print the table.
+
+    Parameters
+    ----------
+    count
+        How many lines are lit in each setting.
+    """
+    print_table(
+        f"Line models against the exact line light, {count} lines, power {SHININESS:g}",
+        (
+            "model", "setting", "term", "worst", "RMS", "worst, scaled", "RMS, scaled",
+            "ns a point", "bytes a point",
+        ),
+        [
+            (
+                row.model,
+                row.setting,
+                row.term,
+                f"{row.worst:.4f}",
+                f"{row.rms:.4f}",
+                f"{row.scaled_worst:.4f}",
+                f"{row.scaled_rms:.4f}",
+                f"{row.nanoseconds:.0f}",
+                f"{row.bytes:.0f}",
+            )
+            for row in measure(count)
+        ],
+    )  # fmt: skip
+
+
+if __name__ == "__main__":
+    cyclopts.run(main)
