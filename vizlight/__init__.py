@@ -11,7 +11,15 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from vizlight.data import example_path, load_example
-    from vizlight.filters import fur, illuminate, provenance, satin, streamlines
+    from vizlight.filters import (
+        fur,
+        illuminate,
+        provenance,
+        relief_day,
+        relief_shadow,
+        satin,
+        streamlines,
+    )
     from vizlight.light import Light
     from vizlight.scene import DepthCue, Material, Scene, View
 
@@ -26,6 +34,8 @@ _HOMES = {
     "illuminate": "vizlight.filters",
     "load_example": "vizlight.data",
     "provenance": "vizlight.filters",
+    "relief_day": "vizlight.filters",
+    "relief_shadow": "vizlight.filters",
     "satin": "vizlight.filters",
     "streamlines": "vizlight.filters",
 }
@@ -42,6 +52,8 @@ __all__ = [
     "illuminate",
     "load_example",
     "provenance",
+    "relief_day",
+    "relief_shadow",
     "satin",
     "streamlines",
 ]

@@ -128,6 +128,7 @@ def shade_block(
     tangents: Rows | None,
     normals: Rows | None,
     depth: Rows | None,
+    shadow: Rows | None,
     output: Output,
 ) -> None:
     """Light some rows and write them to the output.
@@ -169,7 +170,7 @@ def shade_block(
             seen = distance > 0
 
     sums = _Sums(plan)
-    for light in scene.lights:
+    for index, light in enumerate(scene.lights):
         toward_light, distance = _toward(light, position, dtype)
         lit = manifold.split(toward_light)
         scale: Any = dtype.type(light.intensity)
@@ -180,18 +181,30 @@ def shade_block(
             if not distance.all():
                 # A light on the point has no direction to come from.
                 scale = scale * (distance > 0)
+        passed: Array | None = None
+        if shadow is not None:
+            passed = np.asarray(shadow[block])[:, index].astype(dtype, copy=False)
+            valid &= passed >= 0
         if surface is not None and (plan.conditioned or under is not None):
             cosine = surface.cosine(toward_light)
             if plan.conditioned:
-                scale = scale * surface.side(cosine)
+                scale = scale * (surface.side(cosine) if passed is None else passed)
             if under is not None:
                 path = falloff.fur_path(under, np.abs(cosine)) + path_out
                 scale = scale * falloff.fur_passes(path, plan.fur)
         if plan.diffuse:
-            sums.add("diffuse", manifold.diffuse(lit, plan.exponent) * scale, light)
+            if plan.surface and passed is not None:
+                value = passed
+            else:
+                value = manifold.diffuse(lit, plan.exponent)
+            sums.add("diffuse", value * scale, light)
         if eye is not None:
             law = manifold.phong if plan.model == "phong" else manifold.blinn
             value = law(lit, eye, scene.material.shininess) * scale
+            if passed is not None and surface is not None and plan.surface:
+                # A highlight keeps the share that t has of the cosine which it stands for.
+                value = value * np.minimum(passed / surface.side(lit.across), 1)
+                value[lit.across == 0] = 0
             if seen is not None and not seen.all():
                 value = value * seen
             sums.add("specular", value, light)

@@ -39,5 +39,7 @@ class Accessor:
     fur = _method(filters.fur)
     illuminate = _method(filters.illuminate)
     provenance = _method(filters.provenance)
+    relief_day = _method(filters.relief_day)
+    relief_shadow = _method(filters.relief_shadow)
     satin = _method(filters.satin)
     streamlines = _method(filters.streamlines)

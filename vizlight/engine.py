@@ -76,6 +76,7 @@ def shade(
     *,
     normals: Rows | None = None,
     depth: Rows | None = None,
+    shadow: Rows | None = None,
     precision: Precision | None = None,
     threads: int | None = None,
     block: int | None = None,
@@ -98,6 +99,10 @@ def shade(
         Outward normals, of any length. With tangents they condition the light (Banks 6).
     depth : array_like, shape (N,), optional
         With ``fur=``: the height of fur above each point, across the surface.
+    shadow : array_like, shape (N, L), optional
+        t of the cos-theta shadow for each of the L lights of intensity above 0. It takes the
+        place of the cosine of normals in the diffuse term and where they condition; a surface's
+        highlight keeps ``min(1, t / cos)``.
     precision : {"float32", "float64"}, optional
         Of the work and the result. Default: float32 if the vectors are float32 or less, else
         float64; float64 points keep their differences in float64 either way.
@@ -149,13 +154,27 @@ def shade(
         depth = _rows("depth", depth)
         if tuple(depth.shape) != (count,):
             raise ValueError(_check.message("depth", f"shape ({count},)", f"shape {depth.shape}"))
+    if shadow is not None:
+        shadow = _rows("shadow", shadow)
+        bright = sum(light.intensity > 0 for light in scene.lights)
+        if tuple(shadow.shape) != (count, bright) or normals is None:
+            got = f"shape {tuple(shadow.shape)}" if normals is not None else "no normals"
+            raise ValueError(_check.message("shadow", f"shape ({count}, {bright}), normals", got))
     if precision is None:
         given = [rows.dtype for rows in (tangents, normals) if rows is not None]
         small = given and all(kind in (np.float16, np.float32) for kind in given)
         precision = "float32" if small else "float64"
     if precision not in get_args(Precision):
         raise ValueError(_check.message("precision", "'float32' or 'float64'", repr(precision)))
-    made = plan(scene, n=n, k=k, normals=normals is not None, dtype=precision, **options)
+    made = plan(
+        scene,
+        n=n,
+        k=k,
+        normals=normals is not None,
+        dtype=precision,
+        shadowed=shadow is not None,
+        **options,
+    )
 
     start = time.perf_counter()
     output = Output(made, count)
@@ -163,7 +182,7 @@ def shade(
 
     def work(block: slice) -> int:
         with np.errstate(all="ignore"):
-            shade_block(made, block, points, tangents, normals, depth, output)
+            shade_block(made, block, points, tangents, normals, depth, shadow, output)
         return int(block.stop)
 
     for done in _pool.run(work, _pool.blocks(count, step), threads):

@@ -44,6 +44,8 @@ class Plan:
         Whether tangents inherit the self-shadow of the surface that the normals belong to.
     two_sided : bool
         Whether the far side of normals is lit as the near one.
+    shadowed : bool
+        Whether t of the cos-theta shadow takes the place of the cosine of normals.
     fur : float
         Density of the fur that light passes on its way in and out, 0 for none.
     diffuse, specular : bool
@@ -61,6 +63,7 @@ class Plan:
     surface: bool
     conditioned: bool
     two_sided: bool
+    shadowed: bool
     fur: float
     diffuse: bool
     specular: bool
@@ -131,6 +134,7 @@ def plan(
     compensate: bool = True,
     conditioned: bool = True,
     two_sided: bool = False,
+    shadowed: bool = False,
     fur: float = 0.0,
     components: bool = False,
 ) -> Plan:
@@ -154,6 +158,8 @@ def plan(
         Tangents inherit the self-shadow of normals that are given (Banks 6).
     two_sided : bool, default: False
         Light the far side of normals as the near one.
+    shadowed : bool, default: False
+        t of a cos-theta shadow is given for each light.
     fur : float, default: 0.0
         Density in [0, 1] of fur that attenuates the light (Banks 7, 8); needs normals.
     components : bool, default: False
@@ -216,6 +222,7 @@ def plan(
         surface=surface,
         conditioned=conditioned,
         two_sided=bool(two_sided),
+        shadowed=bool(shadowed),
         fur=fur if diffuse or specular else 0.0,
         diffuse=diffuse,
         specular=specular,
@@ -240,7 +247,9 @@ def _words(plan: Plan) -> tuple[list[str], list[str]]:
             f"codimension {plan.n - plan.k}"
         )
         law = "|wi_N|"
-    if plan.diffuse:
+    if plan.diffuse and plan.shadowed and plan.surface:
+        yes.append("diffuse: t = d/r of the cos-theta shadow in place of the cosine")
+    elif plan.diffuse:
         yes.append(f"diffuse: {law} to the power {plan.exponent:.6g}")
     else:
         no.append(f"diffuse: {plan.why_not('diffuse')}")
@@ -270,6 +279,7 @@ def _words(plan: Plan) -> tuple[list[str], list[str]]:
             no.append(f"light {i}: attenuation, its coefficients are {NO_ATTENUATION}")
     if plan.conditioned:
         side = "|N.wi|" if plan.two_sided else "max(0, N.wi)"
+        side = "t = d/r in place" if plan.shadowed else side
         yes.append(f"self-shadow: {side} of the surface's normals, a factor for each light")
     elif not plan.surface:
         no.append("self-shadow: no surface conditions the tangents")

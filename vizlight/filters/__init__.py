@@ -3,7 +3,16 @@
 from vizlight.filters._fur import fur
 from vizlight.filters._illuminate import illuminate
 from vizlight.filters._provenance import provenance
+from vizlight.filters._relief import relief_day, relief_shadow
 from vizlight.filters._satin import satin
 from vizlight.filters._streamlines import streamlines
 
-__all__ = ["fur", "illuminate", "provenance", "satin", "streamlines"]
+__all__ = [
+    "fur",
+    "illuminate",
+    "provenance",
+    "relief_day",
+    "relief_shadow",
+    "satin",
+    "streamlines",
+]
