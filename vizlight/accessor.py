@@ -40,6 +40,7 @@ class Accessor:
     illuminate = _method(filters.illuminate)
     provenance = _method(filters.provenance)
     relief_day = _method(filters.relief_day)
+    relief_from_mesh = _method(filters.relief_from_mesh)
     relief_shadow = _method(filters.relief_shadow)
     satin = _method(filters.satin)
     streamlines = _method(filters.streamlines)

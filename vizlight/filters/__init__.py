@@ -1,5 +1,6 @@
 """PyVista in, PyVista out: arrays are taken from a mesh, lit, and attached to a new mesh."""
 
+from vizlight.filters._bas_relief import relief_from_mesh
 from vizlight.filters._fur import fur
 from vizlight.filters._illuminate import illuminate
 from vizlight.filters._provenance import provenance
@@ -12,6 +13,7 @@ __all__ = [
     "illuminate",
     "provenance",
     "relief_day",
+    "relief_from_mesh",
     "relief_shadow",
     "satin",
     "streamlines",

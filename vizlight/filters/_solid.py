@@ -11,6 +11,7 @@ from vtkmodules.vtkCommonCore import vtkIdList
 from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 
 from vizlight import _check
+from vizlight.filters import _embree
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,12 +28,16 @@ NEAR = 1e-10
 
 @dataclass(frozen=True)
 class Solid:
-    """Triangles of a closed surface in float64, relative to an origin, and VTK's search tree."""
+    """Triangles of a closed surface in float64, relative to an origin, and a search tree.
+
+    The tree is Embree's where the package embreex is installed, else VTK's.
+    """
 
     vertices: Array
     triangles: Index
     normals: Array
     locator: Any
+    embree: Any = None
 
     @property
     def size(self) -> float:
@@ -84,6 +89,8 @@ def closed(surface: Any, name: str = "mesh") -> tuple[Array, Index]:
         alike = _mesh_of(vertices, triangles).compute_normals(
             cell_normals=False, split_vertices=False, auto_orient_normals=True
         )
+        # VTK drops points without faces, so the points are taken from it too.
+        vertices = np.asarray(alike.points, dtype=np.float64)
         triangles = np.asarray(alike.regular_faces, dtype=np.intp)
         if len(_open_edges(triangles, directed=True)):
             raise ValueError(
@@ -127,26 +134,34 @@ def _open_edges(triangles: Index, *, directed: bool) -> Index:
     return np.concatenate(one)
 
 
-def solid(vertices: Array, triangles: Index, origin: Array) -> Solid:
+def solid(vertices: Array, triangles: Index, origin: Array, *, embree: bool = True) -> Solid:
     """Return a solid ready for rays."""
     place = vertices - origin
+    a, b, c = (place[triangles[:, k]] for k in range(3))
+    normals = np.cross(b - a, c - a)
+    scene = _embree.tree(place[triangles]) if embree else None
+    if scene is not None:
+        return Solid(place, triangles, normals, None, scene)
     mesh = _mesh_of(place, triangles)
     locator = vtkStaticCellLocator()
     locator.SetDataSet(mesh)
     locator.BuildLocator()
-    a, b, c = (place[triangles[:, k]] for k in range(3))
-    return Solid(place, triangles, np.cross(b - a, c - a), locator)
+    return Solid(place, triangles, normals, locator)
 
 
 def _mesh_of(vertices: Any, triangles: Any) -> Any:
     return pv.PolyData.from_regular_faces(vertices, triangles)
 
 
-def hits(body: Solid, start: Array, end: Array) -> tuple[Index, Index]:
-    """Return which segments (rows of start and end) hit which triangles, all of them.
+def hits(body: Solid, start: Array, way: Array, reach: Array) -> tuple[Index, Index]:
+    """Return which rays hit which triangles, all of them.
 
-    VTK takes one ray a call, some 7 microseconds each.
+    VTK takes one ray a call, some 7 microseconds each; Embree takes all, some 0.8 each.
     """
+    if body.embree is not None:
+        corner = body.vertices[body.triangles[:, 0]]
+        return _embree.hits(body.embree, corner, body.normals, body.size, start, way, reach)
+    end = start + way * reach[:, np.newaxis]
     find, found = body.locator.IntersectWithLine, vtkIdList()
     tolerance = NEAR * body.size
     rays: list[int] = []
@@ -199,13 +214,14 @@ def _events(body: Solid, start: Array, way: Array, reach: Array) -> tuple[Index,
 
     Every ray has a last event at 0 that undoes what is still open.
     """
-    ray, cell = hits(body, start, start + way * np.minimum(reach, _beyond(body, start))[:, None])
+    reach = np.minimum(reach, _beyond(body, start))
+    ray, cell = hits(body, start, way, reach)
     normal = body.normals[cell]
     against = np.einsum("ij,ij->i", way[ray], normal)
     corner = body.vertices[body.triangles[cell, 0]] - start[ray]
     flat = against == 0
     s = np.einsum("ij,ij->i", corner, normal) / np.where(flat, 1, against)
-    good = ~flat & (s > 0)
+    good = ~flat & (s > 0) & (s < reach[ray])
     ray, s, sense = ray[good], s[good], np.sign(against[good]).astype(np.intp)
 
     order = np.lexsort((s, sense, ray))
