@@ -202,7 +202,7 @@ def test_open_surface_with_thickness():
     with pytest.raises(ValueError, match="mesh: expected a closed surface.*thickness="):
         relief_shadow(plane, scene)
     out = relief_shadow(plane, scene, depth=0.1, thickness=0.3)
-    inner = np.abs(np.asarray(plane.points)[:, 1]) < 0.5
+    inner = (np.abs(np.asarray(plane.points)[:, :2]) < [0.95, 0.5]).all(axis=1)
     np.testing.assert_allclose(out["t"][inner], 0.8, atol=1e-6)
 
 
