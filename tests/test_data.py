@@ -56,7 +56,8 @@ def test_the_relief_is_what_the_readme_tells():
 def test_unknown_data():
     with pytest.raises(
         ValueError,
-        match=r"name: expected one of \['earth_relief.vti', 'fibre_bundle.vtp', 'rotating_disk.vtu'\], got 'x'",
+        match=r"name: expected one of \['earth_relief.vti', 'fibre_bundle.vtp', "
+        r"'rotating_disk.vtu'\], got 'x'",
     ):
         vizlight.example_path("x")
 

@@ -100,6 +100,21 @@ def test_large_squares_change_nothing(random):
     assert one.max() > 3
 
 
+@pytest.mark.parametrize("border", ["extend", "wall"])
+def test_fast_rays_may_start_anywhere(border, random):
+    """Far beside and below the field, above it, light at any height."""
+    x, y, z = hills(40, 30)
+    points = random.uniform([-6, -6, -6], [16, 16, 3], (500, 3))
+    for way in (sun(12, 20), sun(70, 110), sun(30, 200), sun(45, 305), sun(5, 0), sun(60, 90)):
+        fast, exact = (
+            relief.inside_length(x, y, z, points, direction=way, border=border, method=method)
+            for method in METHODS
+        )
+        assert np.all(np.isfinite(fast))
+        assert np.median(np.abs(fast - exact)) < 2e-3
+        assert np.mean(np.abs(fast - exact)) < 0.1
+
+
 def test_a_batch_is_a_loop_and_shapes_are_kept(random):
     x, y, z = hills(20)
     points = places(x, y, z, 24, random).reshape(2, 3, 4, 3)

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 STEEP = 3.0
 #: More profiles than this many times the rows are not made, however uneven the rows.
 PROFILES = 4
+#: Stands for a level without solid: weighed by a rounded 0 it stays a number.
+NO_SOLID = -1e6
 
 
 def profiles(field: Field, way: Array, below: float) -> Profiles | None:
@@ -55,7 +57,7 @@ class Profiles:
     """
 
     def __init__(self, field: Field, way: Array, below: float) -> None:
-        self._field, self.relief = field, field.top + below
+        self._field = field
         nodes = [field.x, field.y]
         size = [abs(way[a]) / np.mean(np.diff(nodes[a])) for a in (0, 1)]
         #: The axis that profiles step along, and the other.
@@ -72,14 +74,13 @@ class Profiles:
         self.columns, inner = self._padded(columns, rows, field.top + below, below, solid=solid)
 
         step = max(np.diff(rows).min(), (rows[-1] - rows[0]) / (PROFILES * len(rows)))
-        reach = np.sort(self.slope * self.columns[[0, inner.stop]])
+        reach = np.sort(self.slope * np.array([self.columns[0], columns[-1] + below]))
         self.first = rows[0] - reach[1] - below - step
         self.spacing = step
         count = int(np.ceil((rows[-1] - reach[0] + below + step - self.first) / step)) + 2
-        #: What stands for no solid: weighed by a rounded 0 it stays a number.
-        lowest = -1e6 * (field.top + below + self.rise * np.ptp(self.columns))
-        level = self._level(heights, rows, inner, count, lowest, solid=solid)
-        self._bounds(level, lowest)
+        #: Levels are in this unit, so that they fit float32 whatever the field's size.
+        self.unit = field.top + below + self.rise * float(np.ptp(self.columns))
+        self._bounds(self._level(heights, rows, inner, count, solid=solid))
 
     def _padded(
         self, columns: Array, rows: Array, relief: float, below: float, *, solid: bool
@@ -93,17 +94,17 @@ class Profiles:
         # Beyond the border only the rows change: one column a row is enough of them.
         stride = max(far / len(rows), step)
         after = columns[-1] + stride * np.arange(1, int(np.ceil(far / stride)) + 1)
-        last = max(relief / self.rise, 2 * step) + columns[-1] + 2 * stride
-        after = np.append(after, last) if solid else columns[-1:] + step
+        last = columns[-1] + below + relief / self.rise + 2 * stride
+        after = np.append(after, last) if solid else columns[-1:] + [step, below + 2 * step]
         inner = slice(len(before), len(before) + len(columns))
         return np.concatenate([before, columns, after]), inner
 
     def _level(
-        self, heights: Array, rows: Array, inner: slice, count: int, lowest: float, *, solid: bool
+        self, heights: Array, rows: Array, inner: slice, count: int, *, solid: bool
     ) -> Array:
-        """Return heights less the ray's rise, shape (columns, count)."""
+        """Return heights less the ray's rise, in units, shape (columns, count)."""
         offsets = self.first + self.spacing * np.arange(count)
-        result = np.full((len(self.columns), count), lowest)
+        result = np.full((len(self.columns), count), NO_SOLID)
         for k, column in enumerate(self.columns):
             own = min(max(k - inner.start, 0), len(heights) - 1)
             if not solid and own != k - inner.start:
@@ -111,21 +112,24 @@ class Profiles:
             beyond = {} if solid else {"left": np.nan, "right": np.nan}
             result[k] = np.interp(offsets + self.slope * column, rows, heights[own], **beyond)
             result[k] -= self.rise * column
-        np.copyto(result, lowest, where=np.isnan(result))
+            result[k] /= self.unit
+        np.copyto(result, NO_SOLID, where=np.isnan(result))
         return result
 
-    def _bounds(self, level: Array, lowest: float) -> None:
+    def _bounds(self, level: Array) -> None:
         """Keep what the steps ask for: heights, bounds by level, the highest still to come."""
         # The two profiles of a ray stand side by side in memory.
         self.steps, self.count = len(level) - 1, level.shape[1]
         self.level = level.ravel()
-        self.coming = np.maximum.accumulate(level[::-1], axis=0)[::-1].ravel()
-        largest, least = (f(level[:-1], level[1:]) for f in (np.maximum, np.minimum))
+        # Bounds are rounded outward to float32, which costs no accuracy and half the memory.
+        up, down = _rounded(level, np.inf), _rounded(level, -np.inf)
+        self.coming = np.maximum.accumulate(up[::-1], axis=0)[::-1].ravel()
+        largest, least = np.maximum(up[:-1], up[1:]), np.minimum(down[:-1], down[1:])
         bounds = [(largest, least)]
         while len(largest) > 1:
             if len(largest) % 2:
                 largest, least = (
-                    np.pad(a, [(0, 1), (0, 0)], constant_values=lowest) for a in (largest, least)
+                    np.pad(a, [(0, 1), (0, 0)], constant_values=NO_SOLID) for a in (largest, least)
                 )
             largest = np.maximum(largest[::2], largest[1::2])
             least = np.minimum(least[::2], least[1::2])
@@ -139,11 +143,12 @@ class Profiles:
         """Return the length inside the solid of rays that start at places, shape (3, N)."""
         x = self.sign * start[self.main]
         beside = (start[self.side] - self.slope * x - self.first) / self.spacing
-        rays = _Level(self, x, beside, start[2] - self.rise * x)
+        rays = _Level(self, x, beside, (start[2] - self.rise * x) / self.unit)
         length = np.zeros(len(x))
         row = np.arange(len(x))
         # The surface at the start is the field's own, however shallow the start is below it.
-        length += rays.begin(self._field.height(start[0], start[1]) - self.rise * x)
+        surface = self._field.height(start[0], start[1]) - self.rise * x
+        length += rays.begin(surface / self.unit)
         while True:
             going = rays.going()
             if not np.all(going):
@@ -178,14 +183,16 @@ class _Level:
         part = (self.x - first) / (last - first)
         low = low + part * (high - low)
         shift = low - surface
-        self.z += np.where(np.abs(shift) < self.world.relief, shift, 0.0)
+        self.z += np.where(np.abs(shift) < 1, shift, 0.0)
         self.at += 1
         return _above(low, high, self.z) * (last - self.x)
 
     def going(self) -> NDArray[np.bool_]:
         """Return which rays have something above them still to come."""
-        at = np.minimum(self.at << self.scale, self.world.steps)
-        return self._mix(self.world.coming, at * self.world.count + self.profile) > self.z
+        at = self.at << self.scale
+        inner = at < self.world.steps
+        place = np.minimum(at, self.world.steps) * self.world.count + self.profile
+        return inner & (self._mix(self.world.coming, place) > self.z)
 
     def step(self) -> Array:
         """Take each ray through 2^l steps, or into the first half of them."""
@@ -225,6 +232,11 @@ class _Level:
         low = values[place]
         result: Array = low + self.share * (values[place + 1] - low)
         return result
+
+
+def _rounded(values: Array, toward: float) -> Array:
+    """Return float32 values, not below or not above those given."""
+    return np.asarray(np.nextafter(values.astype(np.float32), np.float32(toward)))
 
 
 def _above(low: Array, high: Array, z: Array) -> Array:
