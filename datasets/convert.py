@@ -1,6 +1,8 @@
-"""Make the embedded data from their sources: ``python datasets/convert.py mayavi.whl dipy.whl``.
+"""Make the embedded data: ``python datasets/convert.py mayavi.whl dipy.whl etopo20.cdf``.
 
-The wheels are fetched by ``pip download --no-deps mayavi==4.9.0 dipy==1.12.1``.
+The wheels are fetched by ``pip download --no-deps mayavi==4.9.0 dipy==1.12.1``; the relief is
+``usr/share/ferret-vis/data/etopo20.cdf`` of Debian's package ferret-datasets, which
+``apt-get download ferret-datasets`` fetches and ``dpkg-deb -x`` unpacks.
 """
 
 from __future__ import annotations
@@ -14,6 +16,7 @@ from typing import Any
 
 import numpy as np
 import pyvista as pv
+from scipy.io import netcdf_file
 
 HERE = Path(__file__).parent
 DISK = "mayavi/tests/data/disk_out_ref.ex2"
@@ -61,7 +64,32 @@ def fibre_bundle(wheel: Path) -> Path:
     return path
 
 
+def earth_relief(source: Path) -> Path:
+    """Write the heights of the earth from 180 degrees west to east, to the nearest metre."""
+    with netcdf_file(source, "r", mmap=False) as file:
+        east, north, heights = (
+            np.array(file.variables[name].data) for name in ("ETOPO20X1_1081", "ETOPO20Y", "ROSE")
+        )
+    # The last column is the first again; the columns from 180 degrees on come before the others.
+    east, heights = east[:-1], np.rint(heights[:, :-1]).astype(np.int16)
+    first = int(np.searchsorted(east, 180))
+    heights = np.roll(heights, -first, axis=1)
+    out = pv.ImageData(
+        dimensions=(len(east), len(north), 1),
+        spacing=(1 / 3, 1 / 3, 1.0),
+        origin=(-180 + 1 / 6, -90 + 1 / 6, 0.0),
+    )
+    west = np.sort((east + 180) % 360 - 180)
+    grid = [out.origin[axis] + np.arange(out.dimensions[axis]) / 3 for axis in (0, 1)]
+    if not (np.allclose(west, grid[0], atol=1e-3) and np.allclose(north, grid[1], atol=1e-3)):
+        raise ValueError("a grid of 20 minutes of arc expected")
+    out.point_data["elevation"] = heights.ravel()
+    path = HERE / "earth_relief.vti"
+    out.save(path)
+    return path
+
+
 if __name__ == "__main__":
-    for make, source in zip((rotating_disk, fibre_bundle), sys.argv[1:], strict=True):
+    for make, source in zip((rotating_disk, fibre_bundle, earth_relief), sys.argv[1:], strict=True):
         made = make(Path(source))
         sys.stdout.write(f"{hashlib.sha256(made.read_bytes()).hexdigest()}  {made.name}\n")

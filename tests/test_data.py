@@ -39,10 +39,25 @@ def test_the_fibres_are_what_the_readme_tells():
     assert 0.1 <= lit["luminance"].min() < lit["luminance"].max() <= 1.0
 
 
+def test_the_relief_is_what_the_readme_tells():
+    """The highest is in the Himalaya, the deepest in the Mariana trench."""
+    earth = vizlight.load_example("earth_relief.vti")
+    assert earth.dimensions == (1080, 540, 1)
+    height = earth["elevation"]
+    assert (height.min(), height.max()) == (-9027, 6229)
+    top, bottom = (earth.points[i, :2] for i in (height.argmax(), height.argmin()))
+    assert 27 < top[1] < 40
+    assert 70 < top[0] < 105
+    assert 10 < bottom[1] < 42
+    assert 140 < bottom[0] < 147
+    assert earth.bounds[:4] == pytest.approx((-179.8333, 179.8333, -89.8333, 89.8333), abs=1e-3)
+
+
 def test_unknown_data():
     with pytest.raises(
         ValueError,
-        match=r"name: expected one of \['fibre_bundle.vtp', 'rotating_disk.vtu'\], got 'x'",
+        match=r"name: expected one of \['earth_relief.vti', 'fibre_bundle.vtp', "
+        r"'rotating_disk.vtu'\], got 'x'",
     ):
         vizlight.example_path("x")
 

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
         manifold,
         project,
         provenance,
+        relief_day,
+        relief_from_mesh,
+        relief_shadow,
         satin,
         streamlines,
     )
@@ -36,6 +39,9 @@ _HOMES = {
     "manifold": "vizlight.filters",
     "project": "vizlight.filters",
     "provenance": "vizlight.filters",
+    "relief_day": "vizlight.filters",
+    "relief_from_mesh": "vizlight.filters",
+    "relief_shadow": "vizlight.filters",
     "satin": "vizlight.filters",
     "streamlines": "vizlight.filters",
 }
@@ -54,6 +60,9 @@ __all__ = [
     "manifold",
     "project",
     "provenance",
+    "relief_day",
+    "relief_from_mesh",
+    "relief_shadow",
     "satin",
     "streamlines",
 ]

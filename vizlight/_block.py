@@ -193,6 +193,7 @@ class Given(NamedTuple):
     normals: Rows | None
     carrier: Rows | None
     depth: Rows | None
+    shadow: Rows | None
     repeat: int
 
 
@@ -304,18 +305,30 @@ def _shade_points(plan: Plan, shape: _Shape, block: slice, given: Given, output:
             if not distance.all():
                 # A light on the point has no direction to come from.
                 scale = scale * (distance > 0)
+        passed: Array | None = None
+        if given.shadow is not None:
+            passed = np.asarray(given.shadow[block])[:, number].astype(dtype, copy=False)
+            valid &= passed >= 0
         if surface is not None and cosine is not None:
             if plan.conditioned:
-                scale = scale * surface.side(cosine)
+                scale = scale * (surface.side(cosine) if passed is None else passed)
             if under is not None:
                 path = falloff.fur_path(under, np.abs(cosine)) + path_out
                 scale = scale * falloff.fur_passes(path, plan.fur)
         if carried is not None:
             scale = scale * carried
         if plan.diffuse:
-            sums.add("diffuse", manifold.diffuse(pair, plan.exponent) * scale, light)
+            if plan.surface and passed is not None:
+                value = passed
+            else:
+                value = manifold.diffuse(pair, plan.exponent)
+            sums.add("diffuse", value * scale, light)
         if plan.specular:
             value = manifold.specular(pair, highlight) * scale
+            if passed is not None and surface is not None and plan.surface:
+                # A highlight keeps the share that t has of the cosine which it stands for.
+                value = value * np.minimum(passed / surface.side(lit.across), 1)
+                value[lit.across == 0] = 0
             if seen is not None and not seen.all():
                 value = value * seen
             sums.add("specular", value, light)

@@ -40,5 +40,8 @@ class Accessor:
     illuminate = _method(filters.illuminate)
     project = _method(filters.project)
     provenance = _method(filters.provenance)
+    relief_day = _method(filters.relief_day)
+    relief_from_mesh = _method(filters.relief_from_mesh)
+    relief_shadow = _method(filters.relief_shadow)
     satin = _method(filters.satin)
     streamlines = _method(filters.streamlines)

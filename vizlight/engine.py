@@ -77,6 +77,7 @@ def shade(
     normals: Rows | None = None,
     carrier: Rows | None = None,
     depth: Rows | None = None,
+    shadow: Rows | None = None,
     repeat: int = 1,
     precision: Precision | None = None,
     threads: int | None = None,
@@ -104,6 +105,10 @@ def shade(
         brightness ``sin(a)^p(j, n)``.
     depth : array_like, shape (N,), optional
         With ``fur=``: the height of fur above each point, across the surface.
+    shadow : array_like, shape (N, L), optional
+        t of the cos-theta shadow for each of the L lights of intensity above 0. It takes the
+        place of the cosine of normals in the diffuse term and where they condition; a surface's
+        highlight keeps ``min(1, t / cos)``.
     repeat : int, default: 1
         How many points, one after the other, share a normal, such as those of a fibre:
         N = M repeat. Tangents have N rows or M. What depends on the row alone is computed once.
@@ -167,6 +172,12 @@ def shade(
         depth = _rows("depth", depth)
         if tuple(depth.shape) != (count,):
             raise ValueError(_check.message("depth", f"shape ({count},)", f"shape {depth.shape}"))
+    if shadow is not None:
+        shadow = _rows("shadow", shadow)
+        bright = sum(light.intensity > 0 for light in scene.lights)
+        if tuple(shadow.shape) != (count, bright) or normals is None:
+            got = f"shape {tuple(shadow.shape)}" if normals is not None else "no normals"
+            raise ValueError(_check.message("shadow", f"shape ({count}, {bright}), normals", got))
     if precision is None:
         given = [rows.dtype for rows in (tangents, normals) if rows is not None]
         small = given and all(kind in (np.float16, np.float32) for kind in given)
@@ -174,12 +185,19 @@ def shade(
     if precision not in get_args(Precision):
         raise ValueError(_check.message("precision", "'float32' or 'float64'", repr(precision)))
     made = plan(
-        scene, n=n, k=k, normals=normals is not None, carrier=spans, dtype=precision, **options
+        scene,
+        n=n,
+        k=k,
+        normals=normals is not None,
+        carrier=spans,
+        dtype=precision,
+        shadowed=shadow is not None,
+        **options,
     )
 
     start = time.perf_counter()
     output = Output(made, count)
-    lit = Given(points, tangents, normals, carrier, depth, repeat)
+    lit = Given(points, tangents, normals, carrier, depth, shadow, repeat)
     step = made.block if block is None else _check.integer("block", block, low=1)
 
     def work(block: slice) -> int:

@@ -53,6 +53,8 @@ class Plan:
         Of that factor.
     terminator : float
         N.wi below which a surface's highlight fades, 0 for a sharp end.
+    shadowed : bool
+        Whether t of the cos-theta shadow takes the place of the cosine of normals.
     fur : float
         Density of the fur that light passes on its way in and out, 0 for none.
     diffuse, specular : bool
@@ -74,6 +76,7 @@ class Plan:
     carrier: int
     carrier_exponent: float
     terminator: float
+    shadowed: bool
     fur: float
     diffuse: bool
     specular: bool
@@ -152,6 +155,7 @@ def plan(
     two_sided: bool = False,
     carrier: int | None = None,
     terminator: float = 0.0,
+    shadowed: bool = False,
     fur: float = 0.0,
     components: bool = False,
 ) -> Plan:
@@ -185,6 +189,8 @@ def plan(
     terminator : float, default: 0.0
         N.wi, up to 1, below which a one-sided surface's highlight fades smoothly to the
         terminator, where it otherwise ends sharply.
+    shadowed : bool, default: False
+        t of a cos-theta shadow is given for each light.
     fur : float, default: 0.0
         Density in [0, 1] of fur that attenuates the light (Banks 7, 8); needs normals.
     components : bool, default: False
@@ -273,6 +279,7 @@ def plan(
         carrier=carrier or 0,
         carrier_exponent=brightness.exponent(carrier, n) if carrier and compensate else 1.0,
         terminator=terminator,
+        shadowed=bool(shadowed),
         fur=fur if diffuse or specular else 0.0,
         diffuse=diffuse,
         specular=specular,
@@ -302,7 +309,9 @@ def _words(plan: Plan) -> tuple[list[str], list[str]]:
             f"codimension {plan.n - plan.k}"
         )
         law = "|wi_N|"
-    if plan.diffuse and plan.model == "cylinder":
+    if plan.diffuse and plan.shadowed and plan.surface:
+        yes.append("diffuse: t = d/r of the cos-theta shadow in place of the cosine")
+    elif plan.diffuse and plan.model == "cylinder":
         yes.append("diffuse: Lambert's law averaged over the visible half of a thin cylinder")
         no.append("compensation: the round of a cylinder has it in the mean")
     elif plan.diffuse:
@@ -331,6 +340,7 @@ def _words(plan: Plan) -> tuple[list[str], list[str]]:
             no.append(f"light {i}: attenuation, its coefficients are {NO_ATTENUATION}")
     if plan.conditioned:
         side = "|N.wi|" if plan.two_sided else "max(0, N.wi)"
+        side = "t = d/r in place" if plan.shadowed else side
         yes.append(f"self-shadow: {side} of the surface's normals, a factor for each light")
     elif plan.carrier:
         yes.append(

@@ -142,7 +142,7 @@ def finish(
 ) -> None:
     """Attach the light to the meshes, with what made it; warn once if points could not be lit."""
     for mesh, shading in zip(meshes, results, strict=True):
-        _attach(mesh, shading, name, _provenance.record(shading, filter_name, scene, options))
+        attach(mesh, shading, name, _provenance.record(shading, filter_name, scene, options))
     invalid = sum(shading.invalid for shading in results)
     if invalid:
         total = sum(shading.luminance.size for shading in results)
@@ -153,7 +153,7 @@ def finish(
         )
 
 
-def _attach(mesh: pv.DataSet, shading: engine.Shading, name: str, told: str) -> None:
+def attach(mesh: pv.DataSet, shading: engine.Shading, name: str, told: str) -> None:
     """Attach a result to a mesh, in place of one of the same name."""
     prefix = "" if name == DEFAULT_NAME else f"{name}_"
     data: Any = mesh.point_data

@@ -29,16 +29,24 @@ def key(name: str) -> str:
 def record(shading: Shading, filter_name: str, scene: Scene, options: dict[str, Any]) -> str:
     """Return what made an array as a line of JSON."""
     plan = shading.plan
+    return tell(
+        filter_name, scene, options,
+        precision=plan.dtype.name,
+        terms=list(plan.terms),
+        exponent=plan.exponent,
+        highlight_error=plan.highlight_error,
+        points=int(shading.luminance.size),
+        invalid=shading.invalid,
+    )  # fmt: skip
+
+
+def tell(filter_name: str, scene: Scene, options: dict[str, Any], **facts: Any) -> str:
+    """Return what made an array that is no sum of an engine's terms, as a line of JSON."""
     return json.dumps(
         {
             "vizlight": vizlight.__version__,
             "filter": filter_name,
-            "precision": plan.dtype.name,
-            "terms": list(plan.terms),
-            "exponent": plan.exponent,
-            "highlight_error": plan.highlight_error,
-            "points": int(shading.luminance.size),
-            "invalid": shading.invalid,
+            **facts,
             "options": {name: _plain(value) for name, value in options.items()},
             "scene": scene.to_dict(),
         }

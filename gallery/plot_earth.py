@@ -1,0 +1,46 @@
+"""
+The earth in the light of a morning
+===================================
+
+The embedded relief of the earth, land and sea floor, heights times 60, lit from the west at 20
+degrees with ``t`` in place of the cosine: trenches and the walls of plateaus cast shadows, and
+ridges under the sea stand out. Left shallow, right with light gathered twenty times deeper, which
+rounds what is small.
+"""
+
+import numpy as np
+
+import vizlight
+from vizlight import Light, Material, Scene, render
+
+earth = vizlight.load_example("earth_relief.vti")
+e = np.radians(20)
+scene = Scene(
+    lights=Light(direction=(-np.cos(e), 0.3 * np.cos(e), np.sin(e))),
+    material=Material(ambient=0.05, diffuse=1.5, specular=0),
+)
+# x and y are in degrees of 111 km.
+metre = 60 / 111_195
+panels = []
+for depth in (0.1, 2.0):
+    lit = vizlight.relief_shadow(
+        earth, scene, depth=depth, elevation="elevation", factor=metre, lit=True
+    )
+    height = np.array(lit["elevation"], dtype=float)
+    land = np.clip(height / 5000, 0, 1)[:, np.newaxis]
+    sea = np.clip(-height / 6000, 0, 1)[:, np.newaxis]
+    colour = np.where(
+        height[:, np.newaxis] > 0,
+        (1 - land) * [0.55, 0.65, 0.4] + land * [0.95, 0.93, 0.9],
+        (1 - sea) * [0.45, 0.65, 0.8] + sea * [0.12, 0.2, 0.45],
+    )
+    lit["rgb"] = np.clip(colour * np.asarray(lit["luminance"])[:, np.newaxis] * 1.5, 0, 1)
+    panels.append(render.Panel(lit, "rgb", f"depth {depth} degrees"))
+
+plotter = render.make_plotter(
+    panels,
+    camera=render.camera_on(earth.bounds, (0, 0, 1), parallel=True, zoom=1.95),
+    size=(2000, 520),
+    background="white",
+)
+plotter.show()

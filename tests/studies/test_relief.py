@@ -1,0 +1,34 @@
+"""The study's numbers are those of a short run: errors, not times."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vizlight.studies import relief
+
+
+def test_error_and_memory_of_the_fast_method():
+    row = relief.measure(256, repeats=1)
+    assert 0 < row.mean < 3e-2
+    assert row.memory < 250
+    assert min(row.fast, row.exact) > 0
+
+
+def test_hemisphere():
+    for method in ("fast", "exact"):
+        coarse, fine = (relief.hemisphere(n, method)[0] for n in (151, 601))
+        assert fine < 1e-3
+        assert fine < coarse / 4
+
+
+def test_hills_are_the_same_again():
+    np.testing.assert_array_equal(relief.hills(64), relief.hills(64))
+    assert abs(np.ptp(relief.hills(64)) - relief.HIGH) < 1e-12
+
+
+def test_a_short_table(capsys):
+    assert relief.day(40, 30, heights=3) > 0
+    relief.main((32, 64), repeats=1, heights=1)
+    printed = capsys.readouterr().out
+    assert "64 x 64" in printed
+    assert "550 x 505" in printed.replace("\n", " ")

@@ -1,0 +1,409 @@
+"""Cos-theta shadows as point scalars: on height fields, on closed surfaces, over a day."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+import pyvista as pv
+
+from vizlight import _check, engine
+from vizlight.filters import _mesh, _progress, _provenance, _solid
+from vizlight.filters._heights import heights_of
+from vizlight.filters._light import DEFAULT_NAME, VALID, attach, refuse_overwriting
+from vizlight.geometry import _field, relief, sun
+from vizlight.light import Light
+from vizlight.scene import Material, Scene
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from numpy.typing import NDArray
+
+    from vizlight.geometry._field import Border
+    from vizlight.geometry.relief import Method
+
+    Array = NDArray[np.floating[Any]]
+
+#: A depth that is not given, as a share of the diagonal.
+DEPTH = 0.01
+GRIDS = pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid
+
+
+def relief_shadow(
+    mesh: Any,
+    /,
+    scene: Scene,
+    *,
+    depth: float | None = None,
+    elevation: str | None = None,
+    factor: float = 1.0,
+    base: float | None = None,
+    border: Border = "extend",
+    method: Method = "fast",
+    thickness: float | None = None,
+    occluders: Sequence[Any] = (),
+    angular_diameter: float = 0.0,
+    samples: int = 16,
+    lit: bool = False,
+    components: bool = False,
+    threads: int | None = None,
+    name: str = "t",
+    inplace: bool = False,
+    progress_bar: bool = False,
+) -> Any:
+    """Return a mesh with its cos-theta shadow: cosine, shadow and scattering in one number.
+
+    Parameters
+    ----------
+    mesh : pyvista.ImageData, RectilinearGrid, StructuredGrid or PolyData
+        A height field of one layer, columns of one x and rows of one y; or a closed surface.
+        Not changed, unless ``inplace``.
+    scene : Scene
+        Its lights, at infinity or near, in the mesh's unit.
+    depth : float, optional
+        d of 0 or more, how far below the surface the light is gathered, in the mesh's unit: the
+        deeper, the softer. Default: 0.01 of the diagonal of the mesh, a field's in x and y.
+    elevation : str, optional
+        A point array of heights. Default: z of a StructuredGrid, else the active scalars. NaN
+        is a hole.
+    factor : float, default: 1.0
+        By which heights are multiplied.
+    base, border, method
+        As for :func:`vizlight.geometry.relief.inside_length`: height fields alone.
+    thickness : float, optional
+        Light an open surface as a shell of that thickness below its normals.
+    occluders : sequence of pyvista.PolyData
+        Further closed surfaces that stand between a surface and the light.
+    angular_diameter : float, default: 0.0
+        Of the lights at infinity, in radians: the sun's 0.53 degrees are 0.00925.
+    samples : int, default: 16
+        Directions that stand for a light of some diameter, equal in area.
+    lit : bool, default: False
+        Add ``luminance``, and ``rgb`` where the scene has a colour: the engine's light with t in
+        place of the cosine; a highlight keeps ``min(1, t / cos)``.
+    components : bool, default: False
+        Add ``t_0``, ``t_1``, ..., one for each light, and with ``lit`` the engine's terms.
+    threads : int, optional
+        Default: the processors that this process may use.
+    name : str, default: "t"
+    inplace, progress_bar
+        As for :func:`vizlight.illuminate`.
+
+    Returns
+    -------
+    pyvista.DataSet
+        With the point array ``t`` in [0, 1], the mean of all lights weighed by their intensity,
+        and ``t_provenance``. ``t_valid`` marks points without height or normal, where t is 0.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument does not fit; if the mesh is open, a grid has several layers or one row,
+        or a light is inside the solid.
+
+    Warns
+    -----
+    UserWarning
+        Once, with the count, if points have no height or no normal.
+
+    Notes
+    -----
+    ``t = d / r``, r the length inside the solid of the segment from ``p' = p - d n`` to the
+    light; 1 where r is less than d. A field of cells of size h errs by h^2 / d, in the mean
+    where shadows begin. A closed surface is followed by VTK's StaticCellLocator in float64.
+    Source: cos-theta, section 2, which prints ``t = r/d`` once; it is d/r.
+
+    Examples
+    --------
+    >>> import pyvista as pv, vizlight
+    >>> sun = vizlight.Scene(lights=vizlight.Light(direction=(0, 3, 4)))
+    >>> flat = pv.ImageData(dimensions=(5, 5, 1))
+    >>> flat["height"] = [0.0] * 25
+    >>> float(vizlight.relief_shadow(flat, sun)["t"][7])
+    0.8
+    """
+    options = dict(locals())
+    for own in ("mesh", "scene", "threads", "inplace", "progress_bar"):
+        del options[own]
+    options["occluders"] = len(list(occluders))
+    lights = _lights(scene)
+    shadow = _caster(mesh, scene, options, occluders, threads)
+    given = [name, *(f"{name}_{i}" for i in range(len(lights)) if components)]
+    refuse_overwriting([(mesh, "")], name, components=False, colored=False)
+    if lit:
+        refuse_overwriting([(mesh, "")], DEFAULT_NAME, components=components, colored=scene.colored)
+    for array in given:
+        if array in mesh.point_data and _provenance.key(name) not in mesh.field_data:
+            expected = "one under which the mesh has no array of its own"
+            raise ValueError(_check.message("name", expected, repr(array)))
+
+    t = np.empty((len(shadow.points), len(lights)))
+    with _progress.progress("shadow", len(lights), show=progress_bar) as report:
+        for i, light in enumerate(lights):
+            discs = _disc(light, angular_diameter, samples)
+            t[:, i] = sum(shadow.of(one) for one in discs) / len(discs)
+            report(i + 1)
+    weight = np.array([light.intensity for light in lights])
+    told = _provenance.tell(
+        "relief_shadow", scene, options, precision="float64", points=len(t),
+        invalid=int(np.count_nonzero(~shadow.valid)), depth=shadow.depth,
+    )  # fmt: skip
+    shading = None
+    if lit:
+        fixed = scene.replace(lights=lights)
+        shading = engine.shade(
+            shadow.points, None, fixed, normals=shadow.normals, shadow=t, threads=threads,
+            components=components,
+        )  # fmt: skip
+
+    # Nothing is attached before all is computed: a failure leaves the mesh as it was.
+    out = mesh if inplace else mesh.copy(deep=False)
+    if shading is not None:
+        record = _provenance.record(shading, "relief_shadow", scene, options)
+        attach(out, shading, DEFAULT_NAME, record)
+    _attach(out, name, t @ (weight / weight.sum()), told, shadow.valid)
+    for i in range(len(lights) if components else 0):
+        out.point_data[f"{name}_{i}"] = t[:, i].copy()
+    out.point_data.active_scalars_name = DEFAULT_NAME if lit else name
+    return out
+
+
+def relief_day(
+    mesh: Any,
+    /,
+    *,
+    latitude: float | None = None,
+    day: float | None = None,
+    hours: Any = None,
+    directions: Any = None,
+    name: str = "t",
+    progress_bar: bool = False,
+    **options: Any,
+) -> Any:
+    """Return a mesh with its cos-theta shadow at several hours of a day.
+
+    Parameters
+    ----------
+    mesh
+        As for :func:`relief_shadow`; x is east, y north.
+    latitude : float, optional
+        In radians, north positive.
+    day : float, optional
+        Of the year, 1 for the first of January.
+    hours : array_like, shape (H,), optional
+        Of true solar time, 12 when the sun is highest; default: each hour from 4 to 20.
+    directions : array_like, shape (H, 3), optional
+        Toward the sun, in place of latitude, day and hours.
+    name : str, default: "t"
+    progress_bar : bool, default: False
+    **options
+        Of :func:`relief_shadow`: depth, elevation, factor, angular_diameter and others.
+
+    Returns
+    -------
+    pyvista.DataSet
+        With the point array ``t`` of H components, 0 where the sun is below the horizon, and
+        ``t_mean``, their mean, which is active.
+
+    Raises
+    ------
+    TypeError, ValueError
+        As :func:`relief_shadow` and :func:`vizlight.geometry.sun.directions`.
+    """
+    if directions is None:
+        if latitude is None or day is None:
+            got = _check.message("latitude, day", "both, or directions=", (latitude, day))
+            raise ValueError(got)
+        hours = np.arange(4.0, 21.0) if hours is None else hours
+        toward = sun.directions(latitude, day, hours)
+    elif latitude is not None or day is not None or hours is not None:
+        expected = "directions alone, or latitude, day and hours"
+        raise ValueError(_check.message("directions", expected, "both"))
+    else:
+        toward = np.atleast_2d(_check.vectors("directions", directions, n=3))
+    for own in ("lit", "components", "inplace"):
+        if own in options:
+            raise TypeError(_check.message(own, "no such option", repr(options[own])))
+    up = [way for way in toward if way[2] > 0]
+    if not up:
+        raise ValueError(_check.message("hours", "the sun above the horizon", "night"))
+    scene = Scene(lights=[Light(direction=way) for way in up], material=Material(specular=0.0))
+    found = relief_shadow(
+        mesh, scene, name=name, components=True, progress_bar=progress_bar, **options
+    )
+    t, seen = np.zeros((mesh.n_points, len(toward))), 0
+    for hour, way in enumerate(toward):
+        if way[2] > 0:
+            t[:, hour] = found.point_data.pop(f"{name}_{seen}")
+            seen += 1
+    found.point_data[name] = t
+    found.point_data[f"{name}_mean"] = t.mean(axis=1)
+    found.point_data.active_scalars_name = f"{name}_mean"
+    return found
+
+
+class _Caster(Protocol):
+    """What casts shadows on itself: points, unit normals, which of them count, the depth."""
+
+    points: Array
+    normals: Array
+    valid: NDArray[np.bool_]
+    depth: float
+
+    def of(self, light: Light) -> Array:
+        """Return t at the points."""
+
+
+def _caster(
+    mesh: Any,
+    scene: Scene,
+    options: dict[str, Any],
+    occluders: Iterable[Any],
+    threads: int | None,
+) -> _Caster:
+    if isinstance(mesh, GRIDS):
+        for option in ("thickness", "occluders"):
+            if options[option]:
+                remedy = "pass the grid's surface, made closed, to have them"
+                raise ValueError(
+                    _check.message(option, "none on a height field", options[option], remedy)
+                )
+        return _FieldCaster(mesh, options, threads)
+    if isinstance(mesh, pv.PolyData):
+        for option, default in (("elevation", None), ("base", None)):
+            if options[option] is not default:
+                raise ValueError(_check.message(option, "none on a surface", repr(options[option])))
+        return _SolidCaster(mesh, scene, options, list(occluders))
+    raise TypeError(
+        _check.message(
+            "mesh",
+            "a height field (ImageData, RectilinearGrid, StructuredGrid) or a closed PolyData",
+            type(mesh).__name__,
+            "take the mesh's extract_surface()",
+        )
+    )
+
+
+class _FieldCaster:
+    """The shadows of a height field."""
+
+    def __init__(self, grid: Any, options: dict[str, Any], threads: int | None) -> None:
+        found = heights_of(grid, options["elevation"], options["factor"])
+        border: Any = options["border"]
+        self._field = _field.make(found.x, found.y, found.z, base=options["base"], border=border)
+        self._normal = _field.normals(self._field)
+        self._holes = np.isnan(found.z)
+        self._to_points, self._method, self._threads = found.to_points, options["method"], threads
+        side = float(np.hypot(self._field.x[-1], self._field.y[-1]))
+        self.depth = _depth(options["depth"], side)
+        self.points = found.points()
+        self.normals = found.to_points(np.where(self._holes[..., np.newaxis], 0, self._normal))
+        self.valid: Any = found.to_points(~self._holes)
+
+    def of(self, light: Light) -> Array:
+        ray = relief.toward(self._field, direction=light.direction, position=light.position)
+        t = relief.ratio(
+            self._field, self._normal, self.depth, ray, method=self._method, threads=self._threads
+        )
+        t[self._holes] = 0
+        return self._to_points(t)
+
+
+class _SolidCaster:
+    """The shadows of a closed surface, and of others beside it."""
+
+    def __init__(
+        self, mesh: pv.PolyData, scene: Scene, options: dict[str, Any], others: list[Any]
+    ) -> None:
+        thickness = options["thickness"]
+        if thickness is None:
+            body = _solid.closed(mesh)
+        vectors = _mesh.normals_of(mesh, None, 3, scene.view) if mesh.n_points else np.zeros((0, 3))
+        self.normals = _mesh.unit_rows(np.asarray(vectors, dtype=np.float64))
+        if thickness is not None:
+            thickness = _check.number("thickness", thickness, low=0.0)
+            if not thickness:
+                raise ValueError(_check.message("thickness", "more than 0", thickness))
+            body = _solid.shell(mesh, thickness, self.normals)
+        bodies = [body] + [_solid.closed(o, f"occluders[{i}]") for i, o in enumerate(others)]
+        self._origin = body[0].mean(axis=0)
+        self._solids = [_solid.solid(*one, self._origin) for one in bodies]
+        self.depth = _depth(options["depth"], self._solids[0].size)
+        self.points: Array = np.asarray(mesh.points, dtype=np.float64)
+        self.valid = np.any(self.normals, axis=1) & np.all(np.isfinite(self.points), axis=1)
+
+    def of(self, light: Light) -> Array:
+        good = self.valid
+        limit = self.depth <= relief.LEAST_DEPTH * self._solids[0].size
+        inset = 1e-7 * self._solids[0].size if limit else self.depth
+        # The limit of a depth of 0 is seen from just outside, where nothing of the facet is.
+        place = self.points[good] - self._origin
+        normal = self.normals[good]
+        start = place + inset * normal if limit else place - inset * normal
+        way, reach = self._toward(light, start)
+        length = _solid.inside_length(self._solids, start, way, reach)
+        t = np.zeros(len(good))
+        if limit:
+            cosine = np.clip(np.einsum("ij,ij->i", normal, way), 0, 1)
+            t[good] = np.where(length > 0, 0.0, cosine)
+        else:
+            t[good] = self.depth / np.maximum(length, self.depth)
+        return t
+
+    def _toward(self, light: Light, start: Array) -> tuple[Array, Array]:
+        if light.direction is not None:
+            way = np.array(light.direction) / max(abs(c) for c in light.direction)
+            way = np.repeat(way[np.newaxis] / np.linalg.norm(way), len(start), axis=0)
+            return way, np.full(len(start), np.inf)
+        place = np.array(light.position) - self._origin
+        for body in self._solids:
+            if _solid.is_inside(body, place):
+                raise ValueError(
+                    _check.message(
+                        "position", "a light outside the solid", light.position, "move it out"
+                    )
+                )
+        reach = np.linalg.norm(place - start, axis=1)
+        return (place - start) / np.where(reach > 0, reach, 1)[:, np.newaxis], reach
+
+
+def _depth(depth: float | None, size: float) -> float:
+    return DEPTH * size if depth is None else _check.number("depth", depth, low=0.0)
+
+
+def _lights(scene: Scene) -> list[Light]:
+    """Return the lights that give light, fixed where they are."""
+    _check.instance("scene", scene, Scene)
+    lights = [light.seen_from(scene.view) for light in scene.lights if light.intensity > 0]
+    if not lights:
+        raise ValueError(_check.message("scene", "a light of intensity above 0", "none"))
+    if scene.n != 3:
+        raise ValueError(_check.message("scene", "vectors of 3 components", f"{scene.n}"))
+    return lights
+
+
+def _disc(light: Light, diameter: float, samples: int) -> list[Light]:
+    """Return lights that stand for a disc of some angular diameter, of equal area each."""
+    diameter = _check.number("angular_diameter", diameter, low=0.0, high=1.0)
+    samples = _check.integer("samples", samples, low=1)
+    if light.direction is None or diameter == 0 or samples == 1:
+        return [light]
+    return [
+        Light(direction=way, intensity=light.intensity)
+        for way in sun.disc(light.direction, diameter, samples)
+    ]
+
+
+def _attach(mesh: Any, name: str, t: Array, told: str, valid: NDArray[np.bool_]) -> None:
+    if name + VALID in mesh.point_data and _provenance.key(name) in mesh.field_data:
+        del mesh.point_data[name + VALID]
+    mesh.point_data.set_array(t, name)
+    mesh.field_data[_provenance.key(name)] = [told]
+    missing = int(np.count_nonzero(~valid))
+    if missing:
+        mesh.point_data[name + VALID] = valid
+        _check.warn(
+            f"{missing} of {len(valid)} points have no height or no normal and t = 0; "
+            f"the point array {name + VALID!r} marks them"
+        )
