@@ -30,6 +30,7 @@ def loaded(code):
         "vizlight.model.reflection",
         "vizlight.model.brightness",
         "vizlight.model.falloff",
+        "vizlight.geometry.relief",
         "vizlight.engine",
         "vizlight.scene",
     ],

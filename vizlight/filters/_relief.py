@@ -327,18 +327,21 @@ class _SolidCaster:
                 raise ValueError(_check.message("thickness", "more than 0", thickness))
             body = _solid.shell(mesh, thickness, self.normals)
         bodies = [body] + [_solid.closed(o, f"occluders[{i}]") for i, o in enumerate(others)]
+        # In units of the surface's own size products neither overflow nor vanish.
         self._origin = body[0].mean(axis=0)
-        self._solids = [_solid.solid(*one, self._origin) for one in bodies]
-        self.depth = _depth(options["depth"], self._solids[0].size)
+        self._unit = float(np.linalg.norm(np.ptp(body[0], axis=0))) or 1.0
+        self._solids = [_solid.solid(*one, self._origin, self._unit) for one in bodies]
+        self.depth = _depth(options["depth"], self._unit)
         self.points: Array = np.asarray(mesh.points, dtype=np.float64)
         self.valid = np.any(self.normals, axis=1) & np.all(np.isfinite(self.points), axis=1)
 
     def of(self, light: Light) -> Array:
         good = self.valid
-        limit = self.depth <= relief.LEAST_DEPTH * self._solids[0].size
-        inset = 1e-7 * self._solids[0].size if limit else self.depth
+        depth = self.depth / self._unit
+        limit = depth <= relief.LEAST_DEPTH
+        inset = 1e-7 if limit else depth
         # The limit of a depth of 0 is seen from just outside, where nothing of the facet is.
-        place = self.points[good] - self._origin
+        place = (self.points[good] - self._origin) / self._unit
         normal = self.normals[good]
         start = place + inset * normal if limit else place - inset * normal
         way, reach = self._toward(light, start)
@@ -348,7 +351,7 @@ class _SolidCaster:
             cosine = np.clip(np.einsum("ij,ij->i", normal, way), 0, 1)
             t[good] = np.where(length > 0, 0.0, cosine)
         else:
-            t[good] = self.depth / np.maximum(length, self.depth)
+            t[good] = depth / np.maximum(length, depth)
         return t
 
     def _toward(self, light: Light, start: Array) -> tuple[Array, Array]:
@@ -356,7 +359,7 @@ class _SolidCaster:
             way = np.array(light.direction) / max(abs(c) for c in light.direction)
             way = np.repeat(way[np.newaxis] / np.linalg.norm(way), len(start), axis=0)
             return way, np.full(len(start), np.inf)
-        place = np.array(light.position) - self._origin
+        place = (np.array(light.position) - self._origin) / self._unit
         for body in self._solids:
             if _solid.is_inside(body, place):
                 raise ValueError(

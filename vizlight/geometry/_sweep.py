@@ -95,7 +95,9 @@ class Profiles:
         stride = max(far / len(rows), step)
         after = columns[-1] + stride * np.arange(1, int(np.ceil(far / stride)) + 1)
         last = columns[-1] + below + relief / self.rise + 2 * stride
-        after = np.append(after, last) if solid else columns[-1:] + [step, below + 2 * step]
+        after = (
+            np.append(after, last) if solid else columns[-1] + np.array([step, below + 2 * step])
+        )
         inner = slice(len(before), len(before) + len(columns))
         return np.concatenate([before, columns, after]), inner
 
