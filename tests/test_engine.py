@@ -122,6 +122,47 @@ def test_fur_against_50_digits(name, what, dtype, random, figure):
             figure("engine.shade", "fur", dtype, error, 40)
 
 
+def test_shadow_takes_the_place_of_the_cosine(random):
+    """Of a surface's diffuse term, and where normals condition tangents."""
+    points, normals = random.standard_normal((2, 50, 3))
+    tangents = random.standard_normal((50, 3))
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    dark = Light(direction=(0, 0, 1), intensity=0)
+    scene = Scene(lights=[SUN, dark, LAMP], view=NEAR, material=WHITE)
+    way = np.array(LAMP.position) - points
+    distance = np.linalg.norm(way, axis=1)
+    fade = 0.7 * np.minimum(1, 1 / (0.5 + 0.2 * distance + 0.05 * distance**2))
+    toward = np.array(SUN.direction) / np.linalg.norm(SUN.direction)
+    cosine = np.stack([normals @ toward, np.sum(normals * way, axis=1) / distance], axis=1)
+    t = random.random((50, 2))
+    lit = engine.shade(points, None, scene, normals=normals, shadow=t, components=True)
+    np.testing.assert_allclose(lit.diffuse, t[:, 0] + fade * t[:, 1], atol=1e-12)
+    # The cosine itself changes nothing; half of it halves all but the ambient light.
+    free = engine.shade(points, None, scene, normals=normals, components=True)
+    for share in (1, 0.5):
+        same = np.maximum(cosine, 0) * share
+        lit = engine.shade(points, None, scene, normals=normals, shadow=same, components=True)
+        np.testing.assert_allclose(lit.diffuse, share * free.diffuse, atol=1e-12)
+        np.testing.assert_allclose(lit.specular, share * free.specular, atol=1e-12)
+        fibre = engine.shade(points, tangents, scene, normals=normals, shadow=same)
+        bare = engine.shade(points, tangents, scene, normals=normals)
+        expected = bare.ambient + share * (bare.luminance - bare.ambient)
+        np.testing.assert_allclose(fibre.luminance, expected, atol=1e-12)
+
+
+def test_bad_shadow(random):
+    points, normals = random.standard_normal((2, 5, 3))
+    scene = Scene(lights=SUN, view=NEAR)
+    with pytest.raises(ValueError, match=r"shadow: expected shape \(5, 1\), normals, got shape"):
+        engine.shade(points, None, scene, normals=normals, shadow=np.ones((5, 2)))
+    with pytest.raises(ValueError, match="shadow: .* got no normals"):
+        engine.shade(points, normals, scene, shadow=np.ones((5, 1)))
+    t = np.array([[1.0], [0.5], [np.nan], [0.5], [0.5]])
+    lit = engine.shade(points, None, scene, normals=normals, shadow=t)
+    assert lit.invalid == 1
+    assert np.all(np.isfinite(lit.luminance))
+
+
 def test_bad_depth(random):
     points, tangents, normals = cloud(random, 4, float)
     scene = SCENES["sun, far eye"]

@@ -36,6 +36,7 @@ def loaded(code):
         "vizlight.geometry.manifolds",
         "vizlight.geometry.projection",
         "vizlight.geometry.slices",
+        "vizlight.geometry.relief",
         "vizlight.engine",
         "vizlight.scene",
     ],

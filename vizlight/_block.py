@@ -327,8 +327,9 @@ def _shade_points(plan: Plan, shape: _Shape, block: slice, given: Given, output:
             value = manifold.specular(pair, highlight) * scale
             if passed is not None and surface is not None and plan.surface:
                 # A highlight keeps the share that t has of the cosine which it stands for.
-                value = value * np.minimum(passed / surface.side(lit.across), 1)
-                value[lit.across == 0] = 0
+                side = surface.side(lit.across)
+                kept = np.divide(passed, side, out=np.zeros_like(passed), where=side > 0)
+                value = value * np.minimum(kept, 1)
             if seen is not None and not seen.all():
                 value = value * seen
             sums.add("specular", value, light)

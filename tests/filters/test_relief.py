@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import os
+from pathlib import Path
+
 import numpy as np
 import pytest
 import pyvista as pv
+from scipy.interpolate import RegularGridInterpolator
 
 import vizlight
 from vizlight import Light, Material, Scene, View, relief_day, relief_from_mesh, relief_shadow
@@ -157,6 +161,23 @@ def test_sphere_has_its_closed_form():
         assert np.abs(out["t"] - depth / np.maximum(r, depth)).max() < 1e-3
 
 
+@pytest.mark.parametrize(("scale", "moved"), [(1e-120, 0.0), (1e120, 0.0), (1e3, 4e6)])
+def test_closed_mesh_of_any_size_and_place(scale, moved):
+    """Far from the origin float32 rounds the points; what it kept has the same shadow."""
+    ball = pv.Sphere(theta_resolution=30, phi_resolution=30)
+    faces, points = ball.regular_faces, np.asarray(ball.points, dtype=float) * scale
+    if moved:
+        points = (points + moved).astype(np.float32)
+    far = pv.PolyData.from_regular_faces(points, faces)
+    near = pv.PolyData.from_regular_faces((points.astype(float) - moved) / scale, faces)
+    for mesh in (far, near):
+        mesh["Normals"] = np.asarray(ball.point_normals)
+        mesh.point_data.active_normals_name = "Normals"
+    t = relief_shadow(far, SCENE, depth=0.1 * scale)["t"]
+    np.testing.assert_allclose(t, relief_shadow(near, SCENE, depth=0.1)["t"], atol=1e-9)
+    assert 0 < t.min() < t.max()
+
+
 def test_depth_to_zero_on_a_closed_mesh():
     mesh = pv.Sphere(theta_resolution=60, phi_resolution=60)
     normals = np.asarray(mesh.point_normals, dtype=float)
@@ -204,6 +225,47 @@ def test_open_surface_with_thickness():
     out = relief_shadow(plane, scene, depth=0.1, thickness=0.3)
     inner = (np.abs(np.asarray(plane.points)[:, :2]) < [0.95, 0.5]).all(axis=1)
     np.testing.assert_allclose(out["t"][inner], 0.8, atol=1e-6)
+
+
+def terrains():
+    """Real terrain: the Himalaya in kilometres, times 10, and a volcano where it is at hand."""
+    part = vizlight.load_example("earth_relief.vti").extract_subset((750, 850, 340, 390, 0, 0))
+    himalaya = pv.ImageData(dimensions=part.dimensions, spacing=(32.1, 37.1, 1))
+    himalaya["height"] = np.asarray(part["elevation"], dtype=float) / 100
+    yield "himalaya", himalaya
+    path = Path(os.environ.get("PYVISTA_DATA", ".")) / "Data" / "SainteHelens.dem"
+    if path.is_file():
+        volcano = pv.read(path).extract_subset((20, 300, 20, 440, 0, 0), rate=(2, 2, 1))
+        volcano["height"] = np.asarray(volcano["Elevation"], dtype=float)
+        yield "volcano", volcano
+
+
+@pytest.mark.parametrize(("name", "terrain"), list(terrains()))
+def test_hard_shadows_of_real_terrain_are_those_of_the_horizon(name, terrain):
+    """The highest angle on the way to the sun, sampled: no cells, no rays."""
+    columns, rows = terrain.dimensions[:2]
+    z = np.asarray(terrain["height"]).reshape(rows, columns)
+    x, y = (np.arange(n) * s for n, s in zip((columns, rows), terrain.spacing, strict=False))
+    surface = RegularGridInterpolator((y, x), z)
+    gx, gy = np.meshgrid(x, y)
+    across = np.array([-1.0, 0.7]) / np.hypot(1, 0.7)
+    horizon = np.full(z.shape, -np.inf)
+    for k in np.arange(0.02, 1.5 * max(columns, rows), 0.25) * terrain.spacing[0]:
+        place = [np.clip(gy + k * across[1], 0, y[-1]), np.clip(gx + k * across[0], 0, x[-1])]
+        horizon = np.maximum(horizon, (surface(np.stack(place, axis=-1)) - z) / k)
+    down, right = np.gradient(z, y, x)
+    for elevation in (8, 15, 30):
+        rise = np.tan(np.radians(elevation))
+        scene = Scene(lights=Light(direction=(*across, rise)))
+        options = {"elevation": "height", "method": "exact"}
+        t = relief_shadow(terrain, scene, depth=0, **options)["t"].reshape(z.shape)
+        facing = rise > right * across[0] + down * across[1]
+        expected = (horizon < rise) & facing
+        assert np.mean((t > 0) != expected) < 2e-3
+        # Softened over a depth the dark is dark still, the light the cosine.
+        soft = relief_shadow(terrain, scene, depth=0.02 * terrain.spacing[0], **options)
+        deep = horizon > np.tan(np.radians(elevation + 10))
+        assert np.all(soft["t"].reshape(z.shape)[deep] < 0.2)
 
 
 def test_a_disc_softens_the_edge_and_keeps_the_middle():

@@ -477,6 +477,7 @@ UP = {"direction": (0, 0, 1)}
     ("field", "options", "error", "words"),
     [
         (FLAT, {**UP, "depth": -1}, ValueError, "depth: expected a finite number of at least 0"),
+        (FLAT, {**UP, "depth": 1e300}, ValueError, "depth: expected at most 2e.09, 1e9 times"),
         (FLAT, {**UP, "depth": "1"}, TypeError, "depth: expected a number"),
         (FLAT, {"depth": 1}, ValueError, "direction, position: expected one of them, got neither"),
         (FLAT, {"depth": 1, **UP, "position": (0, 0, 9)}, ValueError, "got both"),

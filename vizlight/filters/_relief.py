@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pyvista as pv
 
 from vizlight import _check, engine
-from vizlight.filters import _mesh, _progress, _provenance, _solid
-from vizlight.filters._heights import heights_of
+from vizlight.filters import _progress, _provenance
+from vizlight.filters._casters import caster
 from vizlight.filters._light import DEFAULT_NAME, VALID, attach, refuse_overwriting
-from vizlight.geometry import _field, relief, sun
+from vizlight.geometry import sun
 from vizlight.light import Light
 from vizlight.scene import Material, Scene
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
@@ -24,10 +23,6 @@ if TYPE_CHECKING:
     from vizlight.geometry.relief import Method
 
     Array = NDArray[np.floating[Any]]
-
-#: A depth that is not given, as a share of the diagonal.
-DEPTH = 0.01
-GRIDS = pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid
 
 
 def relief_shadow(
@@ -128,7 +123,7 @@ def relief_shadow(
         del options[own]
     options["occluders"] = len(list(occluders))
     lights = _lights(scene)
-    shadow = _caster(mesh, scene, options, occluders, threads)
+    shadow = caster(mesh, scene, options, occluders, threads)
     given = [name, *(f"{name}_{i}" for i in range(len(lights)) if components)]
     refuse_overwriting([(mesh, "")], name, components=False, colored=False)
     if lit:
@@ -241,135 +236,6 @@ def relief_day(
     found.point_data[f"{name}_mean"] = t.mean(axis=1)
     found.point_data.active_scalars_name = f"{name}_mean"
     return found
-
-
-class _Caster(Protocol):
-    """What casts shadows on itself: points, unit normals, which of them count, the depth."""
-
-    points: Array
-    normals: Array
-    valid: NDArray[np.bool_]
-    depth: float
-
-    def of(self, light: Light) -> Array:
-        """Return t at the points."""
-
-
-def _caster(
-    mesh: Any,
-    scene: Scene,
-    options: dict[str, Any],
-    occluders: Iterable[Any],
-    threads: int | None,
-) -> _Caster:
-    if isinstance(mesh, GRIDS):
-        for option in ("thickness", "occluders"):
-            if options[option]:
-                remedy = "pass the grid's surface, made closed, to have them"
-                raise ValueError(
-                    _check.message(option, "none on a height field", options[option], remedy)
-                )
-        return _FieldCaster(mesh, options, threads)
-    if isinstance(mesh, pv.PolyData):
-        for option, default in (("elevation", None), ("base", None)):
-            if options[option] is not default:
-                raise ValueError(_check.message(option, "none on a surface", repr(options[option])))
-        return _SolidCaster(mesh, scene, options, list(occluders))
-    raise TypeError(
-        _check.message(
-            "mesh",
-            "a height field (ImageData, RectilinearGrid, StructuredGrid) or a closed PolyData",
-            type(mesh).__name__,
-            "take the mesh's extract_surface()",
-        )
-    )
-
-
-class _FieldCaster:
-    """The shadows of a height field."""
-
-    def __init__(self, grid: Any, options: dict[str, Any], threads: int | None) -> None:
-        found = heights_of(grid, options["elevation"], options["factor"])
-        border: Any = options["border"]
-        self._field = _field.make(found.x, found.y, found.z, base=options["base"], border=border)
-        self._normal = _field.normals(self._field)
-        self._holes = np.isnan(found.z)
-        self._to_points, self._method, self._threads = found.to_points, options["method"], threads
-        side = float(np.hypot(self._field.x[-1], self._field.y[-1]))
-        self.depth = _depth(options["depth"], side)
-        self.points = found.points()
-        self.normals = found.to_points(np.where(self._holes[..., np.newaxis], 0, self._normal))
-        self.valid: Any = found.to_points(~self._holes)
-
-    def of(self, light: Light) -> Array:
-        ray = relief.toward(self._field, direction=light.direction, position=light.position)
-        t = relief.ratio(
-            self._field, self._normal, self.depth, ray, method=self._method, threads=self._threads
-        )
-        t[self._holes] = 0
-        return self._to_points(t)
-
-
-class _SolidCaster:
-    """The shadows of a closed surface, and of others beside it."""
-
-    def __init__(
-        self, mesh: pv.PolyData, scene: Scene, options: dict[str, Any], others: list[Any]
-    ) -> None:
-        thickness = options["thickness"]
-        if thickness is None:
-            body = _solid.closed(mesh)
-        vectors = _mesh.normals_of(mesh, None, 3, scene.view) if mesh.n_points else np.zeros((0, 3))
-        self.normals = _mesh.unit_rows(np.asarray(vectors, dtype=np.float64))
-        if thickness is not None:
-            thickness = _check.number("thickness", thickness, low=0.0)
-            if not thickness:
-                raise ValueError(_check.message("thickness", "more than 0", thickness))
-            body = _solid.shell(mesh, thickness, self.normals)
-        bodies = [body] + [_solid.closed(o, f"occluders[{i}]") for i, o in enumerate(others)]
-        self._origin = body[0].mean(axis=0)
-        self._solids = [_solid.solid(*one, self._origin) for one in bodies]
-        self.depth = _depth(options["depth"], self._solids[0].size)
-        self.points: Array = np.asarray(mesh.points, dtype=np.float64)
-        self.valid = np.any(self.normals, axis=1) & np.all(np.isfinite(self.points), axis=1)
-
-    def of(self, light: Light) -> Array:
-        good = self.valid
-        limit = self.depth <= relief.LEAST_DEPTH * self._solids[0].size
-        inset = 1e-7 * self._solids[0].size if limit else self.depth
-        # The limit of a depth of 0 is seen from just outside, where nothing of the facet is.
-        place = self.points[good] - self._origin
-        normal = self.normals[good]
-        start = place + inset * normal if limit else place - inset * normal
-        way, reach = self._toward(light, start)
-        length = _solid.inside_length(self._solids, start, way, reach)
-        t = np.zeros(len(good))
-        if limit:
-            cosine = np.clip(np.einsum("ij,ij->i", normal, way), 0, 1)
-            t[good] = np.where(length > 0, 0.0, cosine)
-        else:
-            t[good] = self.depth / np.maximum(length, self.depth)
-        return t
-
-    def _toward(self, light: Light, start: Array) -> tuple[Array, Array]:
-        if light.direction is not None:
-            way = np.array(light.direction) / max(abs(c) for c in light.direction)
-            way = np.repeat(way[np.newaxis] / np.linalg.norm(way), len(start), axis=0)
-            return way, np.full(len(start), np.inf)
-        place = np.array(light.position) - self._origin
-        for body in self._solids:
-            if _solid.is_inside(body, place):
-                raise ValueError(
-                    _check.message(
-                        "position", "a light outside the solid", light.position, "move it out"
-                    )
-                )
-        reach = np.linalg.norm(place - start, axis=1)
-        return (place - start) / np.where(reach > 0, reach, 1)[:, np.newaxis], reach
-
-
-def _depth(depth: float | None, size: float) -> float:
-    return DEPTH * size if depth is None else _check.number("depth", depth, low=0.0)
 
 
 def _lights(scene: Scene) -> list[Light]:

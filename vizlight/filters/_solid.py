@@ -134,9 +134,11 @@ def _open_edges(triangles: Index, *, directed: bool) -> Index:
     return np.concatenate(one)
 
 
-def solid(vertices: Array, triangles: Index, origin: Array, *, embree: bool = True) -> Solid:
-    """Return a solid ready for rays."""
-    place = vertices - origin
+def solid(
+    vertices: Array, triangles: Index, origin: Array, unit: float = 1.0, *, embree: bool = True
+) -> Solid:
+    """Return a solid ready for rays, its corners less an origin and over a unit of length."""
+    place = (vertices - origin) / unit
     a, b, c = (place[triangles[:, k]] for k in range(3))
     normals = np.cross(b - a, c - a)
     scene = _embree.tree(place[triangles]) if embree else None

@@ -158,6 +158,8 @@ def normals(field: Field) -> Array:
 
 def _slope(heights: Array, nodes: Array, axis: int) -> Array:
     """Return the slope at the nodes of one axis, 0 where no neighbour is."""
+    if not np.isnan(heights).any():
+        return np.asarray(np.gradient(heights, nodes, axis=axis))
     z = np.moveaxis(heights, axis, -1)
     step = np.diff(nodes)
     rise = np.diff(z, axis=-1) / step

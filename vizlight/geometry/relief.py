@@ -143,7 +143,7 @@ def shadow(
     Raises
     ------
     TypeError, ValueError
-        As :func:`inside_length`; if the depth is negative.
+        As :func:`inside_length`; if the depth is negative or 1e9 times the field's size.
 
     Notes
     -----
@@ -226,6 +226,9 @@ def ratio(
 ) -> Array:
     """Return :func:`shadow` for a field and its normals."""
     size = max(field.x[-1], field.y[-1], field.top)
+    if depth * LEAST_DEPTH > size:
+        expected = f"at most {size / LEAST_DEPTH:g}, 1e9 times the field"
+        raise ValueError(_check.message("depth", expected, depth))
     limit = depth <= LEAST_DEPTH * size
     inset = 0.0 if limit else depth
     shape = field.heights.shape

@@ -2,20 +2,24 @@
 
 ``python -m vizlight.studies.relief`` lights fields of random hills, whose power falls with the
 frequency as that of terrain does, and a hemisphere on a plane, whose shadow is known in closed
-form. All ways take turns in one run.
+form. Times are those of one processor, which a busy machine changes little.
 """
 
 from __future__ import annotations
 
+import statistics
 import time
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import cyclopts
 import numpy as np
 
 from vizlight.geometry import relief
-from vizlight.studies._measure import peak_memory, print_table, take_turns
+from vizlight.studies._measure import peak_memory, print_table
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 #: Of random hills: how fast the amplitude falls with the frequency, and the highest, both as of
 #: rough mountains of 15 km.
@@ -25,7 +29,7 @@ DEPTH = 0.005
 
 @dataclass(frozen=True)
 class Row:
-    """Seconds of the fast and the exact method on side^2 points, errors in t, bytes a point."""
+    """Seconds of one processor by method on side^2 points, errors in t, bytes a point."""
 
     side: int
     fast: float
@@ -52,19 +56,28 @@ def sun(height: float, azimuth: float = 40.0) -> Any:
     return np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
 
 
+def processor_seconds(work: Callable[[], Any], repeats: int) -> float:
+    """Return the median seconds that this process computes."""
+    taken = []
+    for _ in range(repeats):
+        start = time.process_time()
+        work()
+        taken.append(time.process_time() - start)
+    return statistics.median(taken)
+
+
 def measure(side: int, height: float = 20.0, repeats: int = 3) -> Row:
     """Return one row of the first table."""
     x, z = np.linspace(0, 1, side), hills(side)
 
     def light(method: relief.Method) -> Any:
-        return relief.shadow(x, x, z, depth=DEPTH, direction=sun(height), method=method)
+        return relief.shadow(x, x, z, depth=DEPTH, direction=sun(height), method=method, threads=1)
 
-    seconds = take_turns({"fast": lambda: light("fast"), "exact": lambda: light("exact")}, repeats)
+    fast = processor_seconds(lambda: light("fast"), repeats)
+    exact = processor_seconds(lambda: light("exact"), repeats)
     error = np.abs(light("fast") - light("exact"))
     memory = peak_memory(lambda: light("fast")) / side**2
-    return Row(
-        side, seconds["fast"], seconds["exact"], float(error.mean()), float(error.max()), memory
-    )
+    return Row(side, fast, exact, float(error.mean()), float(error.max()), memory)
 
 
 def hemisphere(side: int, method: relief.Method, depth: float = 0.1) -> tuple[float, float]:
@@ -86,13 +99,15 @@ def hemisphere(side: int, method: relief.Method, depth: float = 0.1) -> tuple[fl
 
 
 def day(columns: int = 550, rows: int = 505, heights: int = 25) -> float:
-    """Return the seconds of the fast method for so many heights of the sun over one field."""
+    """Return one processor's seconds for so many heights of the sun over one field, fast."""
     z = hills(max(columns, rows))[:rows, :columns]
     x, y = np.arange(columns) / columns, np.arange(rows) / columns
-    start = time.perf_counter()
-    for height in np.linspace(4, 76, heights):
-        relief.shadow(x, y, z, depth=DEPTH, direction=sun(height))
-    return time.perf_counter() - start
+
+    def work() -> None:
+        for height in np.linspace(4, 76, heights):
+            relief.shadow(x, y, z, depth=DEPTH, direction=sun(height), threads=1)
+
+    return processor_seconds(work, 1)
 
 
 def main(sides: tuple[int, ...] = (512, 1024, 2048), repeats: int = 3, heights: int = 25) -> None:

@@ -1,0 +1,160 @@
+"""What casts shadows on itself: a height field, or a closed surface and others beside it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+import pyvista as pv
+
+from vizlight import _check
+from vizlight.filters import _mesh, _solid
+from vizlight.filters._heights import heights_of
+from vizlight.geometry import _field, relief
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+    from vizlight.light import Light
+    from vizlight.scene import Scene
+
+    Array = NDArray[np.floating[Any]]
+
+#: A depth that is not given, as a share of the diagonal.
+DEPTH = 0.01
+GRIDS = pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid
+
+
+class Caster(Protocol):
+    """What casts shadows on itself: points, unit normals, which of them count, the depth."""
+
+    points: Array
+    normals: Array
+    valid: NDArray[np.bool_]
+    depth: float
+
+    def of(self, light: Light) -> Array:
+        """Return t at the points."""
+
+
+def caster(
+    mesh: Any,
+    scene: Scene,
+    options: dict[str, Any],
+    occluders: Iterable[Any],
+    threads: int | None,
+) -> Caster:
+    """Return what casts shadows, from a mesh and the options of the filter."""
+    if isinstance(mesh, GRIDS):
+        for option in ("thickness", "occluders"):
+            if options[option]:
+                remedy = "pass the grid's surface, made closed, to have them"
+                raise ValueError(
+                    _check.message(option, "none on a height field", options[option], remedy)
+                )
+        return _FieldCaster(mesh, options, threads)
+    if isinstance(mesh, pv.PolyData):
+        for option, default in (("elevation", None), ("base", None)):
+            if options[option] is not default:
+                raise ValueError(_check.message(option, "none on a surface", repr(options[option])))
+        return _SolidCaster(mesh, scene, options, list(occluders))
+    raise TypeError(
+        _check.message(
+            "mesh",
+            "a height field (ImageData, RectilinearGrid, StructuredGrid) or a closed PolyData",
+            type(mesh).__name__,
+            "take the mesh's extract_surface()",
+        )
+    )
+
+
+class _FieldCaster:
+    """The shadows of a height field."""
+
+    def __init__(self, grid: Any, options: dict[str, Any], threads: int | None) -> None:
+        found = heights_of(grid, options["elevation"], options["factor"])
+        border: Any = options["border"]
+        self._field = _field.make(found.x, found.y, found.z, base=options["base"], border=border)
+        self._normal = _field.normals(self._field)
+        self._holes = np.isnan(found.z)
+        self._to_points, self._method, self._threads = found.to_points, options["method"], threads
+        side = float(np.hypot(self._field.x[-1], self._field.y[-1]))
+        self.depth = _depth(options["depth"], side)
+        self.points = found.points()
+        self.normals = found.to_points(np.where(self._holes[..., np.newaxis], 0, self._normal))
+        self.valid: Any = found.to_points(~self._holes)
+
+    def of(self, light: Light) -> Array:
+        ray = relief.toward(self._field, direction=light.direction, position=light.position)
+        t = relief.ratio(
+            self._field, self._normal, self.depth, ray, method=self._method, threads=self._threads
+        )
+        t[self._holes] = 0
+        return self._to_points(t)
+
+
+class _SolidCaster:
+    """The shadows of a closed surface, and of others beside it."""
+
+    def __init__(
+        self, mesh: pv.PolyData, scene: Scene, options: dict[str, Any], others: list[Any]
+    ) -> None:
+        thickness = options["thickness"]
+        if thickness is None:
+            body = _solid.closed(mesh)
+        vectors = _mesh.normals_of(mesh, None, 3, scene.view) if mesh.n_points else np.zeros((0, 3))
+        self.normals = _mesh.unit_rows(np.asarray(vectors, dtype=np.float64))
+        if thickness is not None:
+            thickness = _check.number("thickness", thickness, low=0.0)
+            if not thickness:
+                raise ValueError(_check.message("thickness", "more than 0", thickness))
+            body = _solid.shell(mesh, thickness, self.normals)
+        bodies = [body] + [_solid.closed(o, f"occluders[{i}]") for i, o in enumerate(others)]
+        # In units of the surface's own size products neither overflow nor vanish.
+        self._origin = body[0].mean(axis=0)
+        self._unit = float(np.linalg.norm(np.ptp(body[0], axis=0))) or 1.0
+        self._solids = [_solid.solid(*one, self._origin, self._unit) for one in bodies]
+        self.depth = _depth(options["depth"], self._unit)
+        self.points: Array = np.asarray(mesh.points, dtype=np.float64)
+        self.valid = np.any(self.normals, axis=1) & np.all(np.isfinite(self.points), axis=1)
+
+    def of(self, light: Light) -> Array:
+        good = self.valid
+        depth = self.depth / self._unit
+        limit = depth <= relief.LEAST_DEPTH
+        inset = 1e-7 if limit else depth
+        # The limit of a depth of 0 is seen from just outside, where nothing of the facet is.
+        place = (self.points[good] - self._origin) / self._unit
+        normal = self.normals[good]
+        start = place + inset * normal if limit else place - inset * normal
+        way, reach = self._toward(light, start)
+        length = _solid.inside_length(self._solids, start, way, reach)
+        t = np.zeros(len(good))
+        if limit:
+            cosine = np.clip(np.einsum("ij,ij->i", normal, way), 0, 1)
+            t[good] = np.where(length > 0, 0.0, cosine)
+        else:
+            t[good] = depth / np.maximum(length, depth)
+        return t
+
+    def _toward(self, light: Light, start: Array) -> tuple[Array, Array]:
+        if light.direction is not None:
+            way = np.array(light.direction) / max(abs(c) for c in light.direction)
+            way = np.repeat(way[np.newaxis] / np.linalg.norm(way), len(start), axis=0)
+            return way, np.full(len(start), np.inf)
+        place = (np.array(light.position) - self._origin) / self._unit
+        for body in self._solids:
+            if _solid.is_inside(body, place):
+                raise ValueError(
+                    _check.message(
+                        "position", "a light outside the solid", light.position, "move it out"
+                    )
+                )
+        reach = np.linalg.norm(place - start, axis=1)
+        return (place - start) / np.where(reach > 0, reach, 1)[:, np.newaxis], reach
+
+
+def _depth(depth: float | None, size: float) -> float:
+    return DEPTH * size if depth is None else _check.number("depth", depth, low=0.0)
