@@ -11,19 +11,24 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from vizlight.data import example_path, load_example
-    from vizlight.filters import fur, illuminate, provenance, satin, streamlines
+    from vizlight.filters import fur, illuminate, isoluminance, provenance, satin, streamlines
+    from vizlight.geometry.primitives import Block, Sphere, Truncus
     from vizlight.light import Light
     from vizlight.scene import DepthCue, Material, Scene, View
 
 _HOMES = {
+    "Block": "vizlight.geometry.primitives",
     "DepthCue": "vizlight.scene",
     "Light": "vizlight.light",
     "Material": "vizlight.scene",
     "Scene": "vizlight.scene",
+    "Sphere": "vizlight.geometry.primitives",
+    "Truncus": "vizlight.geometry.primitives",
     "View": "vizlight.scene",
     "example_path": "vizlight.data",
     "fur": "vizlight.filters",
     "illuminate": "vizlight.filters",
+    "isoluminance": "vizlight.filters",
     "load_example": "vizlight.data",
     "provenance": "vizlight.filters",
     "satin": "vizlight.filters",
@@ -32,14 +37,18 @@ _HOMES = {
 _MODULES = ("accessor", "engine", "filters", "model", "render", "studies")
 
 __all__ = [
+    "Block",
     "DepthCue",
     "Light",
     "Material",
     "Scene",
+    "Sphere",
+    "Truncus",
     "View",
     "example_path",
     "fur",
     "illuminate",
+    "isoluminance",
     "load_example",
     "provenance",
     "satin",

@@ -38,6 +38,7 @@ class Accessor:
 
     fur = _method(filters.fur)
     illuminate = _method(filters.illuminate)
+    isoluminance = _method(filters.isoluminance)
     provenance = _method(filters.provenance)
     satin = _method(filters.satin)
     streamlines = _method(filters.streamlines)

@@ -2,8 +2,9 @@
 
 from vizlight.filters._fur import fur
 from vizlight.filters._illuminate import illuminate
+from vizlight.filters._isoluminance import isoluminance
 from vizlight.filters._provenance import provenance
 from vizlight.filters._satin import satin
 from vizlight.filters._streamlines import streamlines
 
-__all__ = ["fur", "illuminate", "provenance", "satin", "streamlines"]
+__all__ = ["fur", "illuminate", "isoluminance", "provenance", "satin", "streamlines"]

@@ -34,10 +34,15 @@ def record(shading: Shading, filter_name: str, scene: Scene, options: dict[str, 
             "exponent": plan.exponent,
             "points": int(shading.luminance.size),
             "invalid": shading.invalid,
-            "options": {name: _plain(value) for name, value in options.items()},
+            "options": plain(options),
             "scene": scene.to_dict(),
         }
     )
+
+
+def plain(options: dict[str, Any]) -> dict[str, Any]:
+    """Return options as values that JSON can hold."""
+    return {name: _plain(value) for name, value in options.items()}
 
 
 def _plain(value: Any) -> Any:
