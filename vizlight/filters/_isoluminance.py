@@ -41,7 +41,7 @@ def isoluminance(
     scene: Scene,
     *,
     levels: Levels = 16,
-    tolerance: float = 1e-3,
+    tolerance: float = 3e-3,
     model: SpecularModel = "phong",
     two_sided: bool = False,
     flip_normals: bool = False,
@@ -65,8 +65,8 @@ def isoluminance(
     levels : int, float or sequence of float, default: 16
         A count of equal steps, an allowed luminance error (solids) or half step (meshes), or
         the luminance of the contours.
-    tolerance : float, default: 1e-3
-        Of a combined solid: how far chords may be from its curves and surfaces, as a share of
+    tolerance : float, default: 3e-3
+        Of a combined solid: how far triangles may be from its curves and surfaces, as a share of
         its size.
     model : {"phong", "blinn"}
         The law of the highlight: ``R . E`` or ``N . H``. Both are drawn exactly.

@@ -89,7 +89,8 @@ def truncus(
     rulings, exact for a light at infinity.
     The source's laminae for ``0 <= i < N`` begin with one of no area and never close the far
     side; here they are the chords through both rulings of each contour, on both sides.
-    The luminance at a ruling misses its level by at most ``(8 + 4 power) eps`` of ``diffuse``.
+    The luminance at a ruling misses its level by at most ``(8 + 4 power) eps`` of ``diffuse``,
+    and by what rounding of long thin shapes turns the rulings: ``H / max(R1, R2) eps``.
     Source: Isoluminance, Representing a Generalised Truncus, and appendix.
     """
     solid = primitives.Truncus(center, axis, radii, height=height)
@@ -221,6 +222,9 @@ def _bands(law: _Rulings, steps: Steps, segments: int) -> Bands:
     has_side = max(law.solid.radii) > 0 and (
         law.solid.height > 0 or law.solid.radii[0] != law.solid.radii[1]
     )
+    if not has_side and law.solid.height == 0:
+        # Two discs back to back have one rim.
+        points, bottom = upper, top
     cells: list[Any] = []
     parts: list[tuple[int, int, float]] = []
     if has_side:

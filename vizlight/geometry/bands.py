@@ -348,6 +348,8 @@ def _walk(
 
 def _polygons(triangle: Index, band: Index, corner: Index) -> tuple[Index, Index, Index]:
     """Return offsets, corners and the first row of the polygons with three corners or more."""
+    if not len(triangle):
+        return np.zeros(1, np.intp), corner, triangle
     new = np.ones(len(triangle), np.bool_)
     new[1:] = (triangle[1:] != triangle[:-1]) | (band[1:] != band[:-1])
     group = np.cumsum(new) - 1

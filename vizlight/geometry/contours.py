@@ -65,12 +65,16 @@ def draw(mesh: Mesh, luminance: Luminance, levels: Levels, /, *, low: float | No
     """
     _levels.check(levels)
     bound = _levels.allowed(levels)
+    if not len(mesh.triangles):
+        none = _levels.steps(levels, low or 0.0, low or 0.0)
+        empty, _ = _bands.cut(mesh.points[:0], mesh.triangles, np.empty((0, 3)), none)
+        return dataclasses.replace(empty, error=0.0)
     surface = _Lit(open_apexes(mesh), luminance)
     for last in (*range(ROUNDS), None):
         values = surface.corners()
-        bottom = float(values.min(initial=np.inf)) if low is None else low
-        top = float(values.max(initial=-np.inf))
-        steps = _levels.steps(levels, bottom if len(values) else 0.0, top)
+        bottom = float(values.min()) if low is None else low
+        top = float(values.max())
+        steps = _levels.steps(levels, bottom, top)
         allowed = (1 + CURVED) * steps.error if bound is None else bound
         rough, triangle = surface.cut(values, steps, ROUGH)
         error = surface.measure(rough, triangle)

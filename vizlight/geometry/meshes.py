@@ -105,6 +105,9 @@ def _truncus(unit: Truncus, segments: int) -> tuple[Any, Any, Any]:
         indices.append((start + np.arange(segments) % len(there), start + len(there)))
         start += len(there) + 1
     (top, top_middle), (bottom, bottom_middle) = indices
+    if unit.height == 0 and unit.radii[0] == unit.radii[1]:
+        # Two discs back to back have one rim.
+        bottom = top
     after, below = np.roll(top, -1), np.roll(bottom, -1)
     cells, patch = [], []
     side = unit.height > 0 or unit.radii[0] != unit.radii[1]

@@ -5,6 +5,7 @@ A solid is what is inside of all its surfaces, or a combination of two solids.
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
@@ -72,6 +73,10 @@ class Primitive(Solid):
         """Return the surfaces."""
         raise NotImplementedError
 
+    @functools.cached_property
+    def _faces(self) -> tuple[Surface, ...]:
+        return self.surfaces()
+
     def moved(self, shift: Array, scale: float) -> Any:
         """Return the solid ``(x - shift) / scale``."""
         raise NotImplementedError
@@ -98,7 +103,7 @@ class Primitive(Solid):
         if self.empty:
             return np.zeros(len(points), np.bool_)
         found = np.ones(len(points), np.bool_)
-        for surface in self.surfaces():
+        for surface in self._faces:
             found &= surface.distance(points) < 0
         return found
 

@@ -12,6 +12,8 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import Delaunay, cKDTree
 
 from vizlight import _check
@@ -34,19 +36,23 @@ if TYPE_CHECKING:
 PROBE = 1e-6
 #: Points farther from a surface than this are not on it.
 ON = 1e-9
+#: How far points are moved for Delaunay's sake, in units of their spacing.
+JOGGLE = 1e-7
+#: Tetrahedra of less height, in units of the points' spacing, have no side of their own.
+FLAT = 1e-3
 #: The most points: beyond, tetrahedra fill gigabytes.
 MOST = 400_000
 
 
-def tessellate(solid: Any, /, *, tolerance: float = 1e-3) -> Mesh:
+def tessellate(solid: Any, /, *, tolerance: float = 3e-3) -> Mesh:
     """Return a closed mesh of a solid.
 
     Parameters
     ----------
     solid : Solid
         Primitives, or what ``|``, ``&`` and ``-`` made of them.
-    tolerance : float, default: 1e-3
-        How far chords may be from curves and surfaces, as a share of the radius of a ball that
+    tolerance : float, default: 3e-3
+        How far triangles may be from curves and surfaces, as a share of the radius of a ball that
         holds all primitives, from 1e-6 to 0.1.
 
     Returns
@@ -60,7 +66,7 @@ def tessellate(solid: Any, /, *, tolerance: float = 1e-3) -> Mesh:
     TypeError, ValueError
         If an argument does not fit, the tolerance asks for more than 400,000 points, or
         something is too thin for it: two surfaces closer than about the spacing of the points,
-        ``sqrt(8 tolerance r)`` for the smallest radius r.
+        ``sqrt(2 tolerance r)`` for the smallest radius r.
 
     Notes
     -----
@@ -82,14 +88,13 @@ def tessellate(solid: Any, /, *, tolerance: float = 1e-3) -> Mesh:
     if not unit.surfaces:
         return _empty(shift, scale)
     spacing = _spacing(unit.surfaces, tolerance)
-    for _ in range(3):
-        found = _mesh(unit, spacing)
+    for attempt, finer in enumerate((1.0, 1.0, 1.7, 2.9)):
+        found = _mesh(unit, spacing / finer, attempt)
         if found is not None:
             triangles, patch, points = found
             signs = np.ones(len(unit.surfaces))
             mesh = Mesh(points, triangles, patch, tuple(unit.surfaces), signs, shift, scale)
             return _signed(mesh)
-        spacing /= 1.7
     raise ValueError(
         _check.message(
             "tolerance", "one fine enough for the thinnest part of the solid", f"{tolerance:g}",
@@ -120,10 +125,17 @@ class _Unit:
         tests = [none if part is None else part.inside(points) for part in self.parts]
         return np.asarray(self.solid.combine(iter(tests)))
 
-    def edge(self, points: Array, which: Index) -> Bools:
-        """Return which points on k surfaces each have inside and outside around them.
+    def on(self, points: Array) -> Bools:
+        """Return which surfaces each point is on."""
+        if not len(points):
+            return np.zeros((0, len(self.surfaces)), np.bool_)
+        return np.stack([np.abs(s.distance(points)) < 1e3 * ON for s in self.surfaces], axis=1)
 
-        Each is asked in the 2^k sectors that its surfaces make.
+    def edge(self, points: Array, which: Index) -> Bools:
+        """Return at which points, on k surfaces each, all these bound the solid.
+
+        Each is asked in the 2^k sectors that its surfaces make: a surface bounds the solid where
+        one side of it is inside and the other is not.
         """
         k = which.shape[1]
         normal = np.zeros((len(points), k, 3))
@@ -132,15 +144,18 @@ class _Unit:
                 on = which[:, j] == i
                 normal[on, j] = self.surfaces[i].normal(points[on])
         gram = normal @ normal.transpose(0, 2, 1) + 1e-9 * np.eye(k)
-        some, every = np.zeros(len(points), np.bool_), np.ones(len(points), np.bool_)
-        for signs in itertools.product((-1.0, 1.0), repeat=k):
-            weight = np.linalg.solve(gram, np.tile(np.array(signs)[:, None], (len(points), 1, 1)))
+        inside = np.empty((len(points), *(2,) * k), np.bool_)
+        for sector in itertools.product((0, 1), repeat=k):
+            signs = np.tile(2.0 * np.array(sector)[:, np.newaxis] - 1, (len(points), 1, 1))
+            weight = np.linalg.solve(gram, signs)
             step = np.einsum("nji,nj->ni", normal, weight[:, :, 0])
-            step /= np.sqrt(np.einsum("ij,ij->i", step, step))[:, None]
-            inside = self.inside(points + PROBE * step)
-            some |= inside
-            every &= inside
-        return some & ~every
+            step /= np.sqrt(np.einsum("ij,ij->i", step, step))[:, np.newaxis]
+            inside[(slice(None), *sector)] = self.inside(points + PROBE * step)
+        matter = np.ones(len(points), np.bool_)
+        for axis in range(1, k + 1):
+            differ = np.diff(inside, axis=axis)
+            matter &= differ.any(axis=tuple(range(1, k + 1)))
+        return matter
 
 
 def _frame(parts: list[Primitive]) -> tuple[Array, float]:
@@ -162,29 +177,30 @@ def _spacing(surfaces: list[Surface], tolerance: float) -> float:
     sizes = []
     for surface in surfaces:
         if isinstance(surface, Plane):
-            sizes.append(min(0.7 * min(surface.extent), 0.35))
+            sizes.append(min(0.7 * min(surface.extent), 6.4 * math.sqrt(tolerance)))
             continue
         radius = getattr(surface, "radius", None) or max(surface.radii)  # type: ignore[union-attr]
-        sizes.append(min(math.sqrt(8 * tolerance * radius), 0.6 * radius))
+        sizes.append(min(math.sqrt(2 * tolerance * radius), 0.6 * radius))
         height = getattr(surface, "height", None)
         if height is not None:
             sizes.append(0.7 * height)
     return min(sizes)
 
 
-def _mesh(unit: _Unit, spacing: float) -> tuple[Index, Index, Array] | None:
+def _mesh(unit: _Unit, spacing: float, attempt: int) -> tuple[Index, Index, Array] | None:
     """Return triangles, their surfaces and points; None where they do not fit the surfaces."""
-    points, on = _points(unit, spacing)
+    random = np.random.default_rng([1990, attempt])
+    points, on = _points(unit, spacing, random)
     if len(points) < 5:
         return np.empty((0, 3), np.intp), np.empty(0, np.intp), np.empty((0, 3))
     # Points on planes, circles and spheres are degenerate for Delaunay; moved by a little at
     # random they are not, and any choice among tetrahedra without volume is as good.
-    random = np.random.default_rng(1990)
-    moved = points + 1e-4 * spacing * random.standard_normal(points.shape)
+    moved = points + JOGGLE * spacing * random.standard_normal(points.shape)
     tetrahedra = Delaunay(moved)
     cells = tetrahedra.simplices.astype(np.intp)
     inside = _inside(unit, points[cells], spacing)
-    beyond = tetrahedra.neighbors
+    beyond = np.asarray(tetrahedra.neighbors, dtype=np.intp)
+    _smooth(inside, points[cells], beyond, spacing, random)
     open_face = inside[:, np.newaxis] & ((beyond < 0) | ~inside[beyond])
     cell, slot = np.nonzero(open_face)
     faces = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])
@@ -195,10 +211,75 @@ def _mesh(unit: _Unit, spacing: float) -> tuple[Index, Index, Array] | None:
     # Corner 3 is where the determinant looks from: positive means faces as listed look inward.
     triangles = triangles[:, ::-1]
     patch, fits = _patches(unit, points, triangles, on, spacing)
-    if not fits:
+    # A point that no triangle has is of a wall or a gap that tetrahedra reach through.
+    lost = len(points) - len(np.unique(triangles))
+    if not fits or lost > max(2, 0.003 * len(points)):
         return None
-    used, triangles = np.unique(triangles, return_inverse=True)
-    return triangles.reshape(-1, 3).astype(np.intp), patch, points[used]
+    partner = _partners(cells, beyond, inside, cell, slot, triangles)
+    corner = _sheets(partner)
+    _, first = np.unique(corner, return_index=True)
+    places = points[triangles.ravel()[first]]
+    # A pair of points may still have two edges, each with two triangles of its own: all but the
+    # first get a point in the middle.
+    ends = np.sort(np.stack([corner, np.roll(corner, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
+    own = np.minimum(np.arange(corner.size), partner.ravel())
+    edge, one, which = np.unique(own, return_index=True, return_inverse=True)
+    _, once = np.unique(ends[one], axis=0, return_index=True)
+    again = np.setdiff1d(np.arange(len(edge)), once)
+    number = np.full(len(edge), -1)
+    number[again] = len(places) + np.arange(len(again))
+    middle = places[ends[one][again]].mean(axis=1)
+    both = np.stack([patch[one[again] // 3], patch[partner.ravel()[one[again]] // 3]], axis=1)
+    middle = contours.onto(tuple(unit.surfaces), middle, both)
+    corner, owner = contours.split(corner, number[which.reshape(-1, 3)])
+    return corner, patch[owner], np.concatenate([places, middle])
+
+
+def _partners(
+    cells: Index, beyond: Index, inside: Bools, cell: Index, slot: Index, triangles: Index
+) -> Index:
+    """Return for the edge that begins at each corner the edge it meets, as 3 triangle + corner.
+
+    Around an edge a triangle meets the one that bounds the same wedge of the inside, so that
+    just two meet, also where a solid touches itself.
+    """
+    face = np.full(cells.size, -1)
+    face[cell * 4 + slot] = np.arange(len(cell))
+    partners = np.empty((len(cell), 3), np.intp)
+    for start in range(3):
+        # Turn about the edge through the inside, from tetrahedron to tetrahedron.
+        third = triangles[:, (start + 2) % 3]
+        tetrahedron, left = cell.copy(), slot.copy()
+        over = np.argmax(cells[tetrahedron] == third[:, np.newaxis], axis=1)
+        going = np.arange(len(cell))
+        while len(going):
+            ahead = beyond[tetrahedron[going], over[going]]
+            going = going[(ahead >= 0) & inside[ahead]]
+            at = tetrahedron[going]
+            ahead, kept = beyond[at, over[going]], cells[at, left[going]]
+            over[going] = np.argmax(cells[ahead] == kept[:, np.newaxis], axis=1)
+            left[going] = np.argmax(beyond[ahead] == at[:, np.newaxis], axis=1)
+            tetrahedron[going] = ahead
+        other = face[tetrahedron * 4 + over]
+        # There the edge runs the other way: it begins where this one ends.
+        end = triangles[:, (start + 1) % 3]
+        begins = np.argmax(triangles[other] == end[:, np.newaxis], axis=1)
+        partners[:, start] = 3 * other + begins
+    return partners
+
+
+def _sheets(partners: Index) -> Index:
+    """Return triangles numbered anew by the corners that hang together across edges.
+
+    Where a solid touches itself in an edge or a corner, points are taken once for each part.
+    """
+    here = np.arange(partners.size)
+    there = partners.ravel()
+    after, beyond = (3 * (i // 3) + (i + 1) % 3 for i in (here, there))
+    links = np.concatenate([np.stack([here, beyond]), np.stack([after, there])], axis=1)
+    graph = coo_array((np.ones(links.shape[1], np.bool_), tuple(links)), shape=(len(here),) * 2)
+    _, number = connected_components(graph, directed=False)
+    return np.asarray(number, dtype=np.intp).reshape(-1, 3)
 
 
 def _inside(unit: _Unit, corners: Array, spacing: float) -> Bools:
@@ -217,16 +298,40 @@ def _inside(unit: _Unit, corners: Array, spacing: float) -> Bools:
     return inside
 
 
-def _points(unit: _Unit, spacing: float) -> tuple[Array, Bools]:
+def _smooth(
+    inside: Bools, corners: Array, beyond: Index, spacing: float, random: np.random.Generator
+) -> None:
+    """Give tetrahedra of next to no height the side that most of their faces are on.
+
+    They lie on a surface; either side is as good, but a patchwork of both would be folded.
+    """
+    opposite = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]])
+    a, b, c = (corners[:, opposite[:, i]] for i in range(3))
+    across = np.cross(b - a, c - a)
+    area = np.sqrt(np.einsum("ijk,ijk->ij", across, across))
+    volume = np.abs(np.einsum("ij,ij->i", across[:, 0], corners[:, 0] - corners[:, 1]))
+    thin = np.flatnonzero(volume < FLAT * spacing * area.max(axis=1))
+    for _ in range(40):
+        side = (beyond[thin] >= 0) & inside[beyond[thin]]
+        wanted = (area[thin] * np.where(side, 1, -1)).sum(axis=1)
+        turn = np.where(inside[thin], wanted < 0, wanted > 0)
+        if not np.any(turn):
+            break
+        # Not all at once: neighbours would change places for ever.
+        turn &= random.random(len(thin)) < 0.5
+        inside[thin[turn]] ^= True
+
+
+def _points(unit: _Unit, spacing: float, random: np.random.Generator) -> tuple[Array, Bools]:
     """Return points on the solid: corners, edges and faces; and which surfaces each is on."""
-    fine = [surface.samples(spacing / 2) for surface in unit.surfaces]
-    if sum(map(len, fine)) > 4 * MOST:
+    if sum(surface.area for surface in unit.surfaces) / spacing**2 > MOST:
         raise ValueError(
             _check.message(
                 "tolerance", f"one that {MOST} points can keep",
                 f"a spacing of {spacing:g} of the solid's size", "raise it",
             )
         )  # fmt: skip
+    fine = [surface.samples(spacing / 2, random) for surface in unit.surfaces]
     edges, pairs = _meetings(unit, fine, spacing)
     corners = _corners(unit, edges, pairs, spacing)
     for surface in unit.surfaces:
@@ -237,17 +342,41 @@ def _points(unit: _Unit, spacing: float) -> tuple[Array, Bools]:
         inside = unit.inside(ring)
         if inside.any() and not inside.all():
             corners = np.concatenate([corners, apex[np.newaxis]])
-    corners = _thin(corners, 1e-5)
-    lines = _thin(_away(edges, corners, 0.5 * spacing), 0.5 * spacing)
+    corners = _thin(corners, 1e-5, None)
+    lines = _away(edges, corners, 0.5 * spacing)
+    lines = _thin(lines, 0.5 * spacing, unit.on(lines), shared=2)
     faces: list[Array] = []
     for i, surface in enumerate(unit.surfaces):
-        found = surface.samples(spacing)
+        found = surface.samples(spacing, random)
         found = found[unit.edge(found, np.full((len(found), 1), i))]
         faces.append(_away(_away(found, edges, 0.7 * spacing), corners, 0.7 * spacing))
     # Where faces of two primitives coincide their points come twice.
-    points = np.concatenate([corners, lines, _thin(np.concatenate(faces), 0.6 * spacing)])
-    on = np.stack([np.abs(s.distance(points)) < 1e3 * ON for s in unit.surfaces], axis=1)
-    return points, on
+    known = np.concatenate([corners, lines])
+    found = np.concatenate(faces)
+    found = _thin(found, 0.6 * spacing, unit.on(found))
+    points = np.concatenate([known, found, _opposite(unit, found, edges, corners, spacing)])
+    return points, unit.on(points)
+
+
+def _opposite(unit: _Unit, points: Array, edges: Array, corners: Array, spacing: float) -> Array:
+    """Return the places opposite some points, on surfaces closer than the points' spacing.
+
+    Tetrahedra then fill a thin wall or gap from side to side and do not reach through it.
+    """
+    found = [np.empty((0, 3))]
+    on = unit.on(points)
+    for i, surface in enumerate(unit.surfaces):
+        near = (np.abs(surface.distance(points)) < spacing) & ~on[:, i]
+        if np.any(near):
+            which = np.full((np.count_nonzero(near), 1), i)
+            places = contours.onto(tuple(unit.surfaces), points[near], which)
+            found.append(places[unit.edge(places, which)])
+    places = np.concatenate(found)
+    places = _away(_away(places, edges, 0.7 * spacing), corners, 0.7 * spacing)
+    places = _away(places, points, 1e-3 * spacing)
+    here = np.concatenate([points, places])
+    kept = _thin(here, 0.3 * spacing, unit.on(here), first=len(points))
+    return kept[len(points) :]
 
 
 def _meetings(unit: _Unit, fine: list[Array], spacing: float) -> tuple[Array, Index]:
@@ -308,14 +437,26 @@ def _away(points: Array, others: Array, radius: float) -> Array:
     return np.asarray(points[np.isinf(gap)])
 
 
-def _thin(points: Array, radius: float) -> Array:
-    """Return points no two of which are within a radius, and none of which could be added."""
+def _thin(
+    points: Array, radius: float, on: Bools | None, *, shared: int = 1, first: int = 0
+) -> Array:
+    """Return points no two of which are within a radius, and none of which could be added.
+
+    With ``on``, which tells the surfaces of each, only points that share so many of them keep
+    each other away. The first points stay, whatever is near.
+    """
     if not len(points):
         return points
-    points = points[np.unique(np.round(points / (1e-3 * radius)), axis=0, return_index=True)[1]]
     pairs = cKDTree(points).query_pairs(radius, output_type="ndarray")
+    if on is not None:
+        pairs = pairs[np.count_nonzero(on[pairs[:, 0]] & on[pairs[:, 1]], axis=1) >= shared]
+    pairs = pairs[~(pairs < first).all(axis=1)]
     rank = np.random.default_rng(1990).permutation(len(points))
+    rank[:first] = -1
     state = np.zeros(len(points), np.int8)
+    state[:first] = 1
+    state[pairs[(pairs[:, 0] < first), 1]] = 2
+    state[pairs[(pairs[:, 1] < first), 0]] = 2
     while np.any(state == 0):
         # Of the points left, those that come before all their neighbours stay.
         live = (state[pairs] == 0).all(axis=1)
@@ -350,9 +491,10 @@ def _patches(
         score += 0.1 * np.where(size > 1e-4 * spacing**2, lean, 0)
         patch = np.where(score < best, i, patch)
         best = np.minimum(score, best)
-    # Where two surfaces touch, triangles across both are as close to each as any other.
-    stray = np.count_nonzero((best > 9) & (best % 10 > 0.05) & (size > 1e-4 * spacing**2))
-    return patch, bool(stray <= 0.002 * len(triangles))
+    # A triangle whose corners share no surface cuts an edge off, or reaches through a wall or
+    # gap; a few are where two surfaces touch.
+    stray = size[best > 9].sum() > 0.004 * size.sum()
+    return patch, not stray
 
 
 def _signed(mesh: Mesh) -> Mesh:

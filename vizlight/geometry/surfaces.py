@@ -23,6 +23,11 @@ class Ball:
     center: Array
     radius: float
 
+    @property
+    def area(self) -> float:
+        """Its area."""
+        return 4 * math.pi * self.radius**2
+
     def distance(self, points: Array) -> Array:
         """Return signed distances, negative inside."""
         return _sizes(points - self.center) - self.radius
@@ -31,7 +36,7 @@ class Ball:
         """Return outward unit normals."""
         return _unit_rows(points - self.center)
 
-    def samples(self, spacing: float) -> Array:
+    def samples(self, spacing: float, _: np.random.Generator) -> Array:
         """Return points of about that spacing."""
         count = max(int(4 * np.pi * self.radius**2 / (0.85 * spacing**2)), 12)
         return np.asarray(self.center + self.radius * fibonacci(count))
@@ -46,6 +51,11 @@ class Plane:
     extent: tuple[float, float]
     across: tuple[Array, Array]
 
+    @property
+    def area(self) -> float:
+        """The area of the rectangle of its extent."""
+        return 4 * self.extent[0] * self.extent[1]
+
     def distance(self, points: Array) -> Array:
         """Return signed distances, negative inside."""
         return np.asarray((points - self.center) @ self.outward)
@@ -54,7 +64,7 @@ class Plane:
         """Return the outward unit normal for each point."""
         return np.broadcast_to(self.outward, points.shape)
 
-    def samples(self, spacing: float) -> Array:
+    def samples(self, spacing: float, random: np.random.Generator) -> Array:
         """Return points of about that spacing on the rectangle of the extent."""
         rows = [
             np.arange(-s - spacing, s + spacing, f * spacing)
@@ -62,6 +72,8 @@ class Plane:
         ]
         u, v = np.meshgrid(*rows, indexing="ij")
         u = u + 0.5 * spacing * (np.arange(len(rows[1])) % 2)
+        # No three in one line: tetrahedra along it would have no volume.
+        u, v = (x + spacing * random.uniform(-0.15, 0.15, x.shape) for x in (u, v))
         return np.asarray(
             self.center + u.reshape(-1, 1) * self.across[0] + v.reshape(-1, 1) * self.across[1]
         )
@@ -75,6 +87,12 @@ class Cone:
     axis: Array
     height: float
     radii: tuple[float, float]
+
+    @property
+    def area(self) -> float:
+        """The area of the side."""
+        slant = math.hypot(self.height, self.radii[0] - self.radii[1])
+        return math.pi * sum(self.radii) * slant
 
     @property
     def apex(self) -> Array | None:
@@ -102,7 +120,7 @@ class Cone:
         unit = across / np.where(size > 0, size, 1)[:, np.newaxis]
         return np.asarray(_unit_rows(cosine * (unit - slope * self.axis)))
 
-    def samples(self, spacing: float) -> Array:
+    def samples(self, spacing: float, random: np.random.Generator) -> Array:
         """Return points of about that spacing."""
         slant = math.hypot(self.height, self.radii[0] - self.radii[1])
         rows = max(int(slant / (0.866 * spacing)), 1)
@@ -111,6 +129,8 @@ class Cone:
         count = np.maximum((2 * np.pi * radius / spacing).astype(int), 5)
         row = np.repeat(np.arange(rows), count)
         turn = (np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)) / count[row]
+        # No two on one ruling: tetrahedra along it would have no volume.
+        turn += random.uniform(-0.15, 0.15, len(row)) / count[row]
         angle = 2 * np.pi * (turn + 0.382 * row)
         first, second = _axial.frame(self.axis)
         ring = np.cos(angle)[:, None] * first + np.sin(angle)[:, None] * second
