@@ -182,17 +182,22 @@ def _of_mesh(
     mesh: pv.DataSet, scene: Scene, levels: Levels, threads: int | None, options: dict[str, Any]
 ) -> pv.MultiBlock:
     """Return bands and contours of a mesh."""
+    surface, triangles, ids = _surface(mesh)
     own = ("levels", "tolerance", "name")
     given = {key: value for key, value in options.items() if key not in own}
-    lit = illuminate(mesh, scene, threads=threads, precision="float64", name=HIDDEN, **given)
+    if ids is not None:
+        for key in ("normals", "tangents"):
+            if given[key] is not None and not isinstance(given[key], str):
+                given[key] = _mesh.array_of(mesh, key, given[key], average_cells=False)[ids]
+    lit = illuminate(surface, scene, threads=threads, precision="float64", name=HIDDEN, **given)
     values = np.asarray(lit.point_data[HIDDEN], dtype=np.float64)
-    points, triangles = _triangles(mesh)
+    points = np.array(surface.points, dtype=np.float64)
     luminance = None
     if options["tangents"] is None:
         light = _Light(
             scene, options["model"], options["two_sided"], options["flip_normals"], threads
         )
-        found = _mesh.normals_of(mesh, options["normals"], 3, scene.view)
+        found = _mesh.normals_of(surface, given["normals"], 3, scene.view)
         unit = unit_rows(np.asarray(found, dtype=np.float64))
 
         def luminance(a: Index, b: Index, share: Array, _: Index) -> Array:
@@ -210,9 +215,8 @@ def _of_mesh(
     return _blocks(bands, options["name"], json.dumps(told), patches=False)
 
 
-def _triangles(mesh: pv.DataSet) -> tuple[Array, Index]:
-    """Return the points of a mesh, and the triangles of its surface with finite corners."""
-    points = np.array(mesh.points, dtype=np.float64)
+def _surface(mesh: Any) -> tuple[pv.PolyData, Index, Any]:
+    """Return the surface of a mesh, its triangles with finite corners, and whose points it has."""
     surface, ids = mesh, None
     if not isinstance(mesh, pv.PolyData):
         surface = mesh.extract_surface(algorithm="geometry", pass_pointid=True, pass_cellid=False)
@@ -230,9 +234,8 @@ def _triangles(mesh: pv.DataSet) -> tuple[Array, Index]:
     bare.SetStrips(surface.GetStrips())
     bare = bare if bare.is_all_triangles else bare.triangulate()
     triangles = np.asarray(bare.regular_faces, dtype=np.intp)
-    triangles = triangles if ids is None else np.asarray(ids, dtype=np.intp)[triangles]
-    finite: Any = np.isfinite(points).all(axis=1)
-    return points, triangles[finite[triangles].all(axis=1)]
+    finite: Any = np.isfinite(np.asarray(surface.points)).all(axis=1)
+    return surface, triangles[finite[triangles].all(axis=1)], ids
 
 
 def _blocks(bands: Bands, name: str, told: str, *, patches: bool) -> pv.MultiBlock:
