@@ -25,11 +25,8 @@ near = dull.replace(lights=Light(position=(1.0, -1.2, 0.6)))
 
 flange = Truncus((0, 0, -0.5), (0, 0, 0.35), (1, 1))
 neck = Truncus((0, 0, 0), (0, 0, 0.9), (0.4, 0.55))
-part = (
-    (flange | neck)
-    - Truncus((0, 0, 0), (0, 0, 3), (0.25, 0.25))
-    - Block((0, 0, 0.5), (2, 0.2, 0.3))
-)
+part = (flange | neck) - Truncus((0, 0, 0), (0, 0, 3), (0.25, 0.25))
+part = part - Block((0, 0, 0.5), (2, 0.2, 0.3))
 for angle in np.arange(6) * np.pi / 3:
     place = (0.77 * np.cos(angle), 0.77 * np.sin(angle), -0.5)
     part = part - Truncus(place, (0, 0, 1), (0.11, 0.11))
@@ -53,5 +50,8 @@ plotter = render.make_plotter(
 )
 for column, found in enumerate(drawn):
     plotter.subplot(0, column)
-    plotter.add_mesh(found["contours"], color="black", line_width=1)
+    lines = plotter.add_mesh(found["contours"], color="black", line_width=1)
+    # Lines lie in the bands: they are drawn as if a little nearer.
+    lines.mapper.SetResolveCoincidentTopologyToPolygonOffset()
+    lines.mapper.SetRelativeCoincidentTopologyLineOffsetParameters(-4, -4)
 plotter.show()

@@ -2,7 +2,7 @@
 Laminae and bands
 =================
 
-The source fills plane polygons, the laminae, farthest first. Top left: seen from the light that is
+The source fills plane polygons, the laminae, farthest first. Left: seen from the light that is
 as good as bands. Where the light stands across the view each lamina is seen as a line, and no
 order of painting helps: the middle picture has gaps. Bands (right) are a closed surface, right
 from any view.

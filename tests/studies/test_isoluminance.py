@@ -52,6 +52,13 @@ def test_highlights():
     assert 0.05 < far.mirror < 0.2
 
 
+@pytest.mark.parametrize("shape", study.SHAPES)
+def test_facets_need_more_vertices_for_the_same_worst_error(shape):
+    """Facets lie across the terminator: their worst error falls with their size, not its square."""
+    row = study.count(shape, 0.02)
+    assert row.facets > row.contours
+
+
 @pytest.mark.opengl
 def test_table(capsys):
     study.main(levels=12, largest=600)

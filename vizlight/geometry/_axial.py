@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 #: Segments of a circle: as few as look round, and the most that are tried.
-FEWEST, MOST = 24, 1 << 13
+FEWEST, MOST = 36, 1 << 13
 
 
 @dataclass(frozen=True)

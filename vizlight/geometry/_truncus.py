@@ -61,7 +61,7 @@ def truncus(
         As for :func:`sphere`; the steps are those of the side. Each end has the one value that
         it has under a light at infinity, exactly.
     segments : int, optional
-        Fewest points of an end's circle, 3 or more; default 24.
+        Fewest points of an end's circle, 3 or more; default 36.
     form : {"bands", "laminae"}
         Bands are a closed surface; laminae are quadrilaterals and the two ends, for
         :meth:`Laminae.order`.
