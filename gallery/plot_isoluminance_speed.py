@@ -11,6 +11,7 @@ their number. The figures are those of the machine that builds this page.
 """
 
 import matplotlib.pyplot as plt
+from matplotlib.ticker import NullFormatter
 
 from vizlight.studies import isoluminance as study
 
@@ -35,6 +36,7 @@ for shape, axis in zip(study.SHAPES, axes, strict=True):
         axis.axhline(1e3 * cast.model, color="#888888", lw=0.8, ls=":")
         axis.annotate(f"ray cast, {area} pixels", (0.01, 1e3 * cast.model), fontsize=8, va="bottom")
     axis.set(xscale="log", yscale="log", xlabel="mean error of luminance", title=f"a {shape}")
+    axis.xaxis.set_minor_formatter(NullFormatter())
     axis.grid(alpha=0.3)
 axes[0].set_ylabel("ms to model and to draw a picture")
 axes[0].legend()

@@ -220,13 +220,8 @@ def test_single_primitives(solid, random):
 
 
 def test_too_thin_or_too_fine_is_refused():
-    # Along its equator the ball leaves a wall of no thickness; the box is thinner than points
-    # are apart.
-    for solid in (
-        Truncus((0, 0, 0), (0, 0, 2), (1, 1)) - Sphere(),
-        Block() - Block(size=(0.998, 0.998, 0.998)),
-        Block() | Block((1.001, 0, 0)),
-    ):
+    # Walls and gaps thinner than points are apart.
+    for solid in (Block() - Block(size=(0.998, 0.998, 0.998)), Block() | Block((1.001, 0, 0))):
         with pytest.raises(ValueError, match="tolerance: expected one fine enough for the thinn"):
             solids.tessellate(solid)
     with pytest.raises(ValueError, match="tolerance: expected one that 400000 points"):

@@ -61,7 +61,7 @@ def test_facets_need_more_vertices_for_the_same_worst_error(shape):
 
 @pytest.mark.opengl
 def test_table(capsys):
-    study.main(levels=12, largest=600)
+    study.main(levels=12, largest=600, finest=0.02)
     out = capsys.readouterr().out
     assert "A sphere: seconds" in out
     assert "virtual light" in out

@@ -82,7 +82,9 @@ def sphere(
     from the centre, ``N . wi = (1 - r - 2 q) / sqrt((1 - r)^2 + 4 r q)``: the terminator is at
     cos = R/d, and r = 0 is a light at infinity. The luminance falls with q, so each contour has
     one q, found by halving. The luminance at a contour's points misses its level by at most
-    ``(16 + 4 power) eps`` of the range, for the points as they are in units of the radius.
+    ``(16 + 4 power) eps`` of the range, for the points as they are in units of the radius; a
+    light close to the sphere multiplies that by ``R / (d - R)``, where rounding of the points
+    turns the direction to it.
     Source: Isoluminance, Representing a Sphere; Specular Reflectors for ``power``.
     """
     middle = _axial.triple("center", center)
@@ -184,10 +186,10 @@ class _Latitudes:
 
     def chord(self, places: Array, segments: int) -> float:
         """Return the most that chords in place of circles change the luminance."""
-        sine2 = 4 * places * (1 - places)
-        cosine = 1 - 2 * places
-        bend = np.sqrt(1 - sine2 * math.sin(math.pi / segments) ** 2)
-        middle = np.clip((1 - cosine / bend) / 2, 0, 1)
+        # With angles, so that small circles below a close light lose nothing.
+        angle = 2 * np.arcsin(np.sqrt(places))
+        within = np.arctan2(np.sin(angle) * math.cos(math.pi / segments), np.cos(angle))
+        middle = np.sin(within / 2) ** 2
         return float(np.abs(self.luminance(middle) - self.luminance(places)).max(initial=0))
 
 
@@ -235,7 +237,8 @@ def _bands(
     q, contour = q[order], contour[order]
     # Circles between contours that are far apart keep the surface round; they are no contours.
     angle = 2 * np.arcsin(np.sqrt(np.concatenate([[0.0], q, [1.0]])))
-    pieces = np.maximum(np.ceil(np.diff(angle) * count / (2 * np.pi) - 1e-9), 1).astype(int)
+    turn = min(count, 400) / (2 * np.pi)
+    pieces = np.maximum(np.ceil(np.diff(angle) * turn - 1e-9), 1).astype(int)
     extra = np.concatenate(
         [
             np.linspace(a, b, n + 1)[1:-1]

@@ -265,7 +265,7 @@ def highlight(distance: float, angle: float, power: float = 20.0) -> Highlight:
     )
 
 
-def main(*, levels: int = 200, largest: int = SIZES[-1]) -> None:
+def main(*, levels: int = 200, largest: int = SIZES[-1], finest: float = 0.005) -> None:
     """Print the tables.
 
     Parameters
@@ -274,6 +274,8 @@ def main(*, levels: int = 200, largest: int = SIZES[-1]) -> None:
         Of the contours; the source had 200 intensities.
     largest
         Leave out pictures of more pixels.
+    finest
+        The least worst error for which vertices are counted.
     """
     for shape in SHAPES:
         rows = [row for area in SIZES if area <= largest for row in measure(shape, area, levels)]
@@ -293,7 +295,8 @@ def main(*, levels: int = 200, largest: int = SIZES[-1]) -> None:
                 for row in rows
             ],
         )
-    counts = [count(shape, error) for shape in SHAPES for error in (0.05, 0.02, 0.01, 0.005)]
+    errors = [error for error in (0.05, 0.02, 0.01, 0.005) if error >= finest]
+    counts = [count(shape, error) for shape in SHAPES for error in errors]
     print_table(
         "Vertices for one worst error anywhere on the surface",
         ("shape", "worst error", "contours", "facets", "times as many"),
