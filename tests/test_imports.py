@@ -30,6 +30,8 @@ def loaded(code):
         "vizlight.model.reflection",
         "vizlight.model.brightness",
         "vizlight.model.falloff",
+        "vizlight.geometry.isoluminance",
+        "vizlight.geometry.solids",
         "vizlight.engine",
         "vizlight.scene",
     ],
