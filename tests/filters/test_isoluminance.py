@@ -83,15 +83,17 @@ def test_closed_forms_and_halved_edges_agree():
 def test_a_highlight_on_a_cylinder(model, random):
     """Far light and eye: the highlight's contours are rulings, by either law."""
     scene = SHINY.replace(material=Material(ambient=0.1, diffuse=0, specular=0.9, shininess=12))
-    found = isoluminance(Truncus(), scene, levels=[0.3, 0.6], model=model)
+    axis = np.cross(TOWARD, EYE) / np.linalg.norm(np.cross(TOWARD, EYE))
+    found = isoluminance(Truncus(axis=axis), scene, levels=[0.3, 0.6], model=model)
     lines, bands = found["contours"], found["bands"]
-    normal = np.asarray(lines.points, float) * [1, 1, 0]
+    along = np.asarray(lines.points, float) @ axis
+    normal = lines.points - np.outer(along, axis)
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     half = (TOWARD + EYE) / np.linalg.norm(TOWARD + EYE)
     mirror = 2 * (normal @ TOWARD) * (normal @ EYE) - TOWARD @ EYE
     value = 0.1 + 0.9 * np.maximum(mirror if model == "phong" else normal @ half, 0) ** 12
     start, stop = lines.lines.reshape(-1, 3)[:, 1:].T
-    ruling = np.abs(lines.points[start, 2] - lines.points[stop, 2]) > 1e-3
+    ruling = np.abs(along[start] - along[stop]) > 1e-3
     miss = np.abs(value[start] - lines["luminance"])[ruling & (lines["luminance"] > 0.1)]
     assert len(miss) >= 4
     assert miss.max() < 1e-6
@@ -114,6 +116,22 @@ def test_solids_with_several_lights(random):
     )
     error = np.abs(expected - found["luminance"][polygon])
     assert np.quantile(error, 0.999) <= 1.1 * found.field_data["luminance_error"][0]
+
+
+def test_a_sharp_highlight_is_not_missed():
+    """It is far smaller than the triangles that the search begins with."""
+    scene = SHINY.replace(material=Material(diffuse=0.5, specular=0.4, shininess=3000))
+    found = isoluminance(Sphere(), scene, levels=8)["bands"]
+    peak = np.max(exact_sharp(np.asarray(found.points), 3000))
+    half = (TOWARD + EYE) / np.linalg.norm(TOWARD + EYE)
+    assert exact_sharp(half[None], 3000)[0] - found["luminance"].max() < 0.08
+    assert peak > 0.8
+
+
+def exact_sharp(normals, power):
+    cosine = normals @ TOWARD
+    mirror = np.maximum(2 * cosine * (normals @ EYE) - TOWARD @ EYE, 0)
+    return 0.1 + np.where(cosine > 0, 0.5 * cosine + 0.4 * mirror**power, 0)
 
 
 def test_a_machined_part():

@@ -33,6 +33,9 @@ ROUGH = 20
 #: Polygons of less than this share of their triangle are not measured: where the luminance
 #: jumps, all its contours run together.
 SLIVER = 1e-4
+#: Triangles beyond which none is asked for highlights smaller than itself, and places along its
+#: edge where it is asked.
+ASKED, GRID = 3000, 10
 #: How far from its apex a cone is opened, so that each ruling has its own normal there.
 APEX = 1e-7
 
@@ -78,7 +81,7 @@ def draw(mesh: Mesh, luminance: Luminance, levels: Levels, /, *, low: float | No
         allowed = (1 + CURVED) * steps.error if bound is None else bound
         rough, triangle = surface.cut(values, steps, ROUGH)
         error = surface.measure(rough, triangle)
-        bad = np.unique(triangle[error > allowed])
+        bad = np.unique(np.concatenate([triangle[error > allowed], surface.peaks(values, allowed)]))
         if last is None or not len(bad) or len(surface.mesh.triangles) > ENOUGH:
             break
         surface.split(bad)
@@ -157,6 +160,24 @@ class _Lit:
                 patch=self.mesh.patch[owner],
             )
         )
+
+    def peaks(self, values: Array, bound: float) -> Index:
+        """Return triangles in which the luminance rises above that of all corners by more.
+
+        A highlight may be smaller than a triangle: each is asked at a grid of places. Where there
+        are many triangles they are small, and none is asked.
+        """
+        triangles, patch = self.mesh.triangles, self.mesh.patch
+        if len(triangles) > ASKED:
+            return np.empty(0, np.intp)
+        grid = np.array([(i, j) for i in range(GRID) for j in range(GRID - i)]) + 0.5
+        weight = np.column_stack([grid, GRID + 0.5 - grid.sum(axis=1)]) / (GRID + 0.5)
+        top = values.max(axis=1) + bound
+        found = np.zeros(len(triangles), np.bool_)
+        for row in weight:
+            places = np.einsum("i,tij->tj", row, self.mesh.points[triangles])
+            found |= self.light(onto(self.mesh.surfaces, places, patch[:, None], 2), patch) > top
+        return np.flatnonzero(found)
 
     def measure(self, bands: Bands, triangle: Index) -> Array:
         """Return the largest error of each polygon at its middle and that of its edges."""
