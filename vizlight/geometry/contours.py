@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from vizlight import _check
 from vizlight.geometry import bands as _bands
 from vizlight.geometry import levels as _levels
 
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     Luminance = Callable[[Array, Array], Array]
 
 #: Rounds of refinement, and triangles beyond which none begins.
-ROUNDS, ENOUGH = 12, 1_500_000
+ROUNDS, ENOUGH = 20, 1_500_000
 #: The share of a step that contours drawn as chords may add to the error.
 CURVED = 0.1
 #: Halvings of an edge while triangles are still refined.
@@ -61,6 +62,11 @@ def draw(mesh: Mesh, luminance: Luminance, levels: Levels, /, *, low: float | No
         Closed if the mesh is. ``error`` is measured at the middle of each polygon and of each
         of its edges, on the exact surface.
 
+    Warns
+    -----
+    UserWarning
+        If an allowed error is not kept after 20 rounds of halving, or 1.5 million triangles.
+
     Notes
     -----
     Contour points are found by halving edges and lie on the exact surface (at creases, on both
@@ -87,6 +93,8 @@ def draw(mesh: Mesh, luminance: Luminance, levels: Levels, /, *, low: float | No
         surface.split(bad)
     made, triangle = surface.cut(values, steps, _bands.HALVINGS)
     error = surface.measure(made, triangle).max(initial=0)
+    if bound is not None and error > bound:
+        _check.warn(f"levels={bound:g} is not kept everywhere: the largest error is {error:.3g}")
     made = _close_apexes(made, mesh)
     return dataclasses.replace(made, points=mesh.world(made.points), error=float(error))
 
