@@ -24,7 +24,8 @@ def test_accessor_lights_as_the_function_does():
 
 
 def test_accessor_has_the_signatures_and_words_of_the_functions():
-    for name in ("illuminate", "project", "provenance", "satin", "streamlines"):
+    names = ("illuminate", "isoluminance", "project", "provenance", "satin", "streamlines")
+    for name in names:
         method, function = getattr(pv.Sphere().vizlight, name), getattr(vizlight, name)
         assert method.__doc__ == function.__doc__
         expected = list(inspect.signature(function).parameters)[1:]

@@ -37,6 +37,8 @@ def loaded(code):
         "vizlight.geometry.projection",
         "vizlight.geometry.slices",
         "vizlight.geometry.relief",
+        "vizlight.geometry.isoluminance",
+        "vizlight.geometry.solids",
         "vizlight.engine",
         "vizlight.scene",
     ],

@@ -141,7 +141,8 @@ def test_several_panels_stand_side_by_side(tmp_path):
 def test_bad_input(tmp_path):
     sphere = pv.Sphere()
     with pytest.raises(
-        ValueError, match=r"scalars: expected a point array \('Normals'\), got 'luminance'"
+        ValueError,
+        match=r"scalars: expected a point array or a cell array \('Normals'\), got 'luminance'",
     ):
         render.save_png(sphere, tmp_path / "x.png")
     with pytest.raises(ValueError, match=r"output: expected a name that ends in \.png"):

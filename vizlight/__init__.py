@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from vizlight.filters import (
         fur,
         illuminate,
+        isoluminance,
         manifold,
         project,
         provenance,
@@ -23,18 +24,23 @@ if TYPE_CHECKING:
         satin,
         streamlines,
     )
+    from vizlight.geometry.primitives import Block, Sphere, Truncus
     from vizlight.light import Light
     from vizlight.scene import DepthCue, Material, Scene, View
 
 _HOMES = {
+    "Block": "vizlight.geometry.primitives",
     "DepthCue": "vizlight.scene",
     "Light": "vizlight.light",
     "Material": "vizlight.scene",
     "Scene": "vizlight.scene",
+    "Sphere": "vizlight.geometry.primitives",
+    "Truncus": "vizlight.geometry.primitives",
     "View": "vizlight.scene",
     "example_path": "vizlight.data",
     "fur": "vizlight.filters",
     "illuminate": "vizlight.filters",
+    "isoluminance": "vizlight.filters",
     "load_example": "vizlight.data",
     "manifold": "vizlight.filters",
     "project": "vizlight.filters",
@@ -48,14 +54,18 @@ _HOMES = {
 _MODULES = ("accessor", "engine", "filters", "geometry", "model", "movie", "render", "studies")
 
 __all__ = [
+    "Block",
     "DepthCue",
     "Light",
     "Material",
     "Scene",
+    "Sphere",
+    "Truncus",
     "View",
     "example_path",
     "fur",
     "illuminate",
+    "isoluminance",
     "load_example",
     "manifold",
     "project",

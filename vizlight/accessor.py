@@ -38,6 +38,7 @@ class Accessor:
 
     fur = _method(filters.fur)
     illuminate = _method(filters.illuminate)
+    isoluminance = _method(filters.isoluminance)
     project = _method(filters.project)
     provenance = _method(filters.provenance)
     relief_day = _method(filters.relief_day)

@@ -272,11 +272,10 @@ def make_plotter(
         if not isinstance(panel.title, str):
             raise TypeError(_check.message("title", "words", _check.describe(panel.title)))
         for mesh in leaves(panel.mesh):
-            if panel.scalars not in mesh.point_data:
-                there = ", ".join(repr(key) for key in mesh.point_data) or "none"
-                raise ValueError(
-                    _check.message("scalars", f"a point array ({there})", repr(panel.scalars))
-                )
+            if panel.scalars not in mesh.point_data and panel.scalars not in mesh.cell_data:
+                there = ", ".join(map(repr, [*mesh.point_data, *mesh.cell_data])) or "none"
+                expected = f"a point array or a cell array ({there})"
+                raise ValueError(_check.message("scalars", expected, repr(panel.scalars)))
     if camera is None:
         camera = camera_on(_bounds(shown))
     if not hasattr(camera, "GetPosition"):
@@ -403,7 +402,8 @@ def _draw(
     for mesh in leaves(panel.mesh):
         if not mesh.n_points:
             continue
-        values = np.asarray(mesh.point_data[panel.scalars])
+        of_points = panel.scalars in mesh.point_data
+        values = np.asarray((mesh.point_data if of_points else mesh.cell_data)[panel.scalars])
         colour = values.ndim == 2
         if colour:
             # VTK wraps around above 1, so a bright highlight would turn black.
@@ -411,6 +411,7 @@ def _draw(
         plotter.add_mesh(
             mesh.copy(deep=False),
             scalars=values,
+            preference="point" if of_points else "cell",
             rgb=colour,
             cmap=None if colour else cmap,
             clim=None if colour else clim,

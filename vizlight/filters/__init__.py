@@ -3,6 +3,7 @@
 from vizlight.filters._bas_relief import relief_from_mesh
 from vizlight.filters._fur import fur
 from vizlight.filters._illuminate import illuminate
+from vizlight.filters._isoluminance import isoluminance
 from vizlight.filters._manifold import manifold
 from vizlight.filters._project import project
 from vizlight.filters._provenance import provenance
@@ -13,6 +14,7 @@ from vizlight.filters._streamlines import streamlines
 __all__ = [
     "fur",
     "illuminate",
+    "isoluminance",
     "manifold",
     "project",
     "provenance",

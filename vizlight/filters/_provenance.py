@@ -47,7 +47,7 @@ def tell(filter_name: str, scene: Scene, options: dict[str, Any], **facts: Any) 
             "vizlight": vizlight.__version__,
             "filter": filter_name,
             **facts,
-            "options": {name: _plain(value) for name, value in options.items()},
+            "options": plain(options),
             "scene": scene.to_dict(),
         }
     )
@@ -56,8 +56,14 @@ def tell(filter_name: str, scene: Scene, options: dict[str, Any], **facts: Any) 
 def retell(mesh: pv.DataSet, name: str, filter_name: str, options: dict[str, Any]) -> None:
     """Tell of an array that another filter made it, by the help of the one that is told."""
     told = json.loads(str(mesh.field_data[key(name)][0]))
-    plain = {name: _plain(value) for name, value in options.items()}
-    mesh.field_data[key(name)] = [json.dumps(told | {"filter": filter_name, "options": plain})]
+    mesh.field_data[key(name)] = [
+        json.dumps(told | {"filter": filter_name, "options": plain(options)})
+    ]
+
+
+def plain(options: dict[str, Any]) -> dict[str, Any]:
+    """Return options as values that JSON can hold."""
+    return {name: _plain(value) for name, value in options.items()}
 
 
 def _plain(value: Any) -> Any:

@@ -1,0 +1,57 @@
+"""
+Contours of equal luminance on solids
+=====================================
+
+The primitives of Conway and Cottingham, *The Isoluminance Contour Model*: sphere, cylinder, cone,
+frustum and disc, in bands of one luminance each between their contours; and a machined part made
+of them by union and difference, which keeps its bands.
+
+On the sphere contours are circles about the light, on the others rulings; the ends have one
+luminance each. The last two panels have what the source left open: a highlight and a near light.
+"""
+
+import numpy as np
+
+import vizlight
+from vizlight import Block, Light, Material, Scene, Sphere, Truncus, View, render
+
+far = Light(direction=(0.8, -1, 1.1))
+dull = Scene(lights=far, material=Material(ambient=0.1, diffuse=0.9, specular=0))
+camera = render.camera_on((-1, 1, -1, 1, -1, 1), (0.5, -1, 0.6), zoom=1.4)
+shiny = Scene(
+    lights=far, view=View.from_camera(camera), material=Material(diffuse=0.5, specular=0.4)
+)
+near = dull.replace(lights=Light(position=(1.0, -1.2, 0.6)))
+
+flange = Truncus((0, 0, -0.5), (0, 0, 0.35), (1, 1))
+neck = Truncus((0, 0, 0), (0, 0, 0.9), (0.4, 0.55))
+part = (flange | neck) - Truncus((0, 0, 0), (0, 0, 3), (0.25, 0.25))
+part = part - Block((0, 0, 0.5), (2, 0.2, 0.3))
+for angle in np.arange(6) * np.pi / 3:
+    place = (0.77 * np.cos(angle), 0.77 * np.sin(angle), -0.5)
+    part = part - Truncus(place, (0, 0, 1), (0.11, 0.11))
+
+shapes = {
+    "sphere": (Sphere(), dull),
+    "cylinder": (Truncus((0, 0, 0), (0, 0, 1.6), (0.6, 0.6)), dull),
+    "cone": (Truncus((0, 0, 0), (0, 0, 1.6), (0, 0.8)), dull),
+    "frustum": (Truncus((0, 0, 0), (0, 0, 1.2), (0.4, 0.9)), dull),
+    "disc": (Truncus((0, 0, 0), (0, 0, 0.2), (1, 1)), dull),
+    "machined part": (part, dull),
+    "highlight": (Sphere(), shiny),
+    "near light": (Truncus((0, 0, 0), (0, 0, 1.6), (0.6, 0.6)), near),
+}
+drawn = [vizlight.isoluminance(solid, scene, levels=12) for solid, scene in shapes.values()]
+plotter = render.make_plotter(
+    [render.Panel(found["bands"], title=name) for name, found in zip(shapes, drawn, strict=True)],
+    camera=camera,
+    size=(2400, 330),
+    cmap="cividis",
+)
+for column, found in enumerate(drawn):
+    plotter.subplot(0, column)
+    lines = plotter.add_mesh(found["contours"], color="black", line_width=1)
+    # Lines lie in the bands: they are drawn as if a little nearer.
+    lines.mapper.SetResolveCoincidentTopologyToPolygonOffset()
+    lines.mapper.SetRelativeCoincidentTopologyLineOffsetParameters(-4, -4)
+plotter.show()

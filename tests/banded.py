@@ -1,0 +1,47 @@
+"""What tests ask of bands: closed, outward, volume, area, and the error at random places."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def directed_edges(bands):
+    size = np.diff(bands.offsets)
+    after = np.arange(1, len(bands.corners) + 1)
+    after[bands.offsets[1:] - 1] = bands.offsets[:-1]
+    return np.stack([bands.corners, bands.corners[after]], axis=1), np.repeat(
+        np.arange(len(size)), size
+    )
+
+
+def is_closed(bands):
+    """Each edge has two polygons, which run along it in opposite directions."""
+    edges, _ = directed_edges(bands)
+    forth, count = np.unique(edges, axis=0, return_counts=True)
+    back = np.unique(edges[:, ::-1], axis=0)
+    return len(edges) > 0 and np.all(count == 1) and np.array_equal(forth, back)
+
+
+def corners(bands):
+    triangles, owner = bands.triangles()
+    return bands.points[triangles], owner
+
+
+def volume(bands):
+    t, _ = corners(bands)
+    return np.einsum("ij,ij->i", np.cross(t[:, 0], t[:, 1]), t[:, 2]).sum() / 6
+
+
+def area(bands):
+    t, _ = corners(bands)
+    return np.linalg.norm(np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0]), axis=1).sum() / 2
+
+
+def places(bands, random, count=4):
+    """Return random places in the polygons, and the polygon of each."""
+    t, owner = corners(bands)
+    size = np.linalg.norm(np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0]), axis=1)
+    # What has no area to speak of cannot be seen.
+    t, owner = t[size > 1e-9 * size.max()], owner[size > 1e-9 * size.max()]
+    weight = random.dirichlet([1, 1, 1], (count, len(t)))
+    return np.einsum("nti,tij->ntj", weight, t).reshape(-1, 3), np.tile(owner, count)

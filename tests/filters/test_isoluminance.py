@@ -1,0 +1,293 @@
+"""Bands on meshes and solids: right, closed, the input untouched; errors that say what to do."""
+
+from __future__ import annotations
+
+import banded
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight import Block, Light, Material, Scene, Sphere, Truncus, View, isoluminance, render
+from vizlight.studies import fur
+
+TOWARD = np.array([1.0, -0.6, 0.8]) / np.linalg.norm([1.0, -0.6, 0.8])
+EYE = np.array([0.2, -1, 0.5]) / np.linalg.norm([0.2, -1, 0.5])
+DULL = Scene(lights=Light(direction=TOWARD), material=Material(diffuse=0.8, specular=0))
+SHINY = Scene(
+    lights=Light(direction=TOWARD),
+    view=View(direction=EYE),
+    material=Material(ambient=0.1, diffuse=0.5, specular=0.4, shininess=20),
+)
+
+
+def polygons(mesh):
+    """Return bands as the helpers of other tests take them."""
+
+    class Bands:
+        points = np.asarray(mesh.points, dtype=float)
+        corners = np.asarray(mesh.faces) if mesh.n_cells else np.empty(0, int)
+        values = np.asarray(mesh["luminance"])
+        offsets = np.asarray(pv.convert_array(mesh.GetPolys().GetOffsetsArray()))
+
+        def triangles(self):
+            size = np.diff(self.offsets)
+            owner = np.repeat(np.arange(len(size)), size - 2)
+            turn = np.arange(len(owner)) - (np.cumsum(size - 2) - (size - 2))[owner]
+            at = self.offsets[owner]
+            ids = self.corners
+            return np.stack([ids[at], ids[at + turn + 1], ids[at + turn + 2]], 1), owner
+
+    Bands.corners = np.asarray(pv.convert_array(mesh.GetPolys().GetConnectivityArray()))
+    return Bands()
+
+
+def exact(points, normals):
+    """The same scene for SHINY, written again: ambient, Lambert, Phong."""
+    cosine = normals @ TOWARD
+    mirror = np.maximum(2 * cosine * (normals @ EYE) - TOWARD @ EYE, 0)
+    return 0.1 + np.where(cosine > 0, 0.5 * cosine + 0.4 * mirror**20, 0)
+
+
+@pytest.mark.parametrize("levels", [8, 0.02, [0.2, 0.4, 0.6, 0.8]])
+def test_a_shiny_sphere_is_right_everywhere(levels, random):
+    found = isoluminance(Sphere((1, 2, 3), 2), SHINY, levels=levels)
+    bands = found["bands"]
+    assert bands.is_manifold
+    place, polygon = banded.places(polygons(bands), random, 4)
+    normal = (place - [1, 2, 3]) / np.linalg.norm(place - [1, 2, 3], axis=1, keepdims=True)
+    error = np.abs(exact(place, normal) - bands["luminance"][polygon])
+    claimed = bands.field_data["luminance_error"][0]
+    assert np.quantile(error, 0.999) <= 1.1 * claimed
+    if isinstance(levels, float):
+        assert claimed <= levels
+    assert found["contours"].n_lines > 50
+
+
+def test_closed_forms_and_halved_edges_agree():
+    """A dull sphere and truncus have closed forms; with the least highlight they do not."""
+    nearly = DULL.replace(material=Material(diffuse=0.8, specular=1e-12), view=View(direction=EYE))
+    levels = [0.2, 0.4, 0.6, 0.8]
+    for solid in (Sphere(), Truncus(radii=(0.2, 0.6)), Truncus(radii=(0, 0.6))):
+        closed, general = (isoluminance(solid, scene, levels=levels) for scene in (DULL, nearly))
+        for level in levels:
+            lengths = []
+            for found in (closed, general):
+                on = found["contours"]["luminance"] == level
+                lines = found["contours"].extract_cells(np.flatnonzero(on))
+                lengths.append(lines.compute_cell_sizes()["Length"].sum())
+            assert lengths[0] == pytest.approx(lengths[1], rel=2e-2, abs=1e-9)
+
+
+@pytest.mark.parametrize("model", ["phong", "blinn"])
+def test_a_highlight_on_a_cylinder(model, random):
+    """Far light and eye: the highlight's contours are rulings, by either law."""
+    scene = SHINY.replace(material=Material(ambient=0.1, diffuse=0, specular=0.9, shininess=12))
+    axis = np.cross(TOWARD, EYE) / np.linalg.norm(np.cross(TOWARD, EYE))
+    found = isoluminance(Truncus(axis=axis), scene, levels=[0.3, 0.6], model=model)
+    lines, bands = found["contours"], found["bands"]
+    along = np.asarray(lines.points, float) @ axis
+    normal = lines.points - np.outer(along, axis)
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    half = (TOWARD + EYE) / np.linalg.norm(TOWARD + EYE)
+    mirror = 2 * (normal @ TOWARD) * (normal @ EYE) - TOWARD @ EYE
+    value = 0.1 + 0.9 * np.maximum(mirror if model == "phong" else normal @ half, 0) ** 12
+    start, stop = lines.lines.reshape(-1, 3)[:, 1:].T
+    ruling = np.abs(along[start] - along[stop]) > 1e-3
+    miss = np.abs(value[start] - lines["luminance"])[ruling & (lines["luminance"] > 0.1)]
+    assert len(miss) >= 4
+    assert miss.max() < 1e-6
+    assert bands.is_manifold
+
+
+def test_solids_with_several_lights(random):
+    lights = [
+        Light(direction=TOWARD, intensity=0.6), Light(position=(-3, 1, 2), intensity=0.5),
+    ]  # fmt: skip
+    scene = Scene(lights=lights, material=Material(ambient=0.05, diffuse=0.9, specular=0))
+    found = isoluminance(Sphere(), scene, levels=10)["bands"]
+    place, polygon = banded.places(polygons(found), random, 4)
+    normal = place / np.linalg.norm(place, axis=1, keepdims=True)
+    toward = np.array([-3, 1, 2]) - normal
+    toward /= np.linalg.norm(toward, axis=1, keepdims=True)
+    expected = 0.05 + 0.9 * (
+        0.6 * np.maximum(normal @ TOWARD, 0)
+        + 0.5 * np.maximum(np.einsum("ij,ij->i", normal, toward), 0)
+    )
+    error = np.abs(expected - found["luminance"][polygon])
+    assert np.quantile(error, 0.999) <= 1.1 * found.field_data["luminance_error"][0]
+
+
+def test_a_sharp_highlight_is_not_missed():
+    """It is far smaller than the triangles that the search begins with."""
+    scene = SHINY.replace(material=Material(diffuse=0.5, specular=0.4, shininess=3000))
+    found = isoluminance(Sphere(), scene, levels=8)["bands"]
+    peak = np.max(exact_sharp(np.asarray(found.points), 3000))
+    half = (TOWARD + EYE) / np.linalg.norm(TOWARD + EYE)
+    assert exact_sharp(half[None], 3000)[0] - found["luminance"].max() < 0.08
+    assert peak > 0.8
+
+
+def exact_sharp(normals, power):
+    cosine = normals @ TOWARD
+    mirror = np.maximum(2 * cosine * (normals @ EYE) - TOWARD @ EYE, 0)
+    return 0.1 + np.where(cosine > 0, 0.5 * cosine + 0.4 * mirror**power, 0)
+
+
+def test_a_machined_part():
+    part = Truncus((0, 0, 0), (0, 0, 0.4), (1, 1)) | Block((0, 0, 0.4), (0.6, 0.6, 0.6))
+    part = part - Truncus((0, 0, 0.3), (0, 0, 3), (0.2, 0.2))
+    found = isoluminance(part, SHINY, levels=8, tolerance=5e-3)
+    bands = found["bands"]
+    assert bands.is_manifold
+    expected = 0.4 * np.pi + 0.5 * 0.36 - np.pi * 0.04 * 0.9
+    assert bands.triangulate().volume == pytest.approx(expected, rel=5e-3)
+    assert len(np.unique(bands["patch"])) >= 8
+    told = vizlight.provenance(bands)
+    assert told["filter"] == "isoluminance"
+    assert told["options"]["levels"] == 8
+
+
+def sphere_mesh(n, radius=1.0):
+    mesh = pv.Sphere(radius=radius, theta_resolution=n, phi_resolution=n + 1)
+    mesh["Normals"] = np.asarray(mesh.points) / radius
+    mesh.point_data.active_normals_name = "Normals"
+    return mesh
+
+
+def test_the_error_on_a_mesh_falls_with_subdivision():
+    """Contour points on chords: second order in the edges, the terminator included."""
+    worst = []
+    for n in (32, 64, 128):
+        lines = isoluminance(fur.torus(n), DULL, levels=6)["contours"]
+        points = np.asarray(lines.points, float)
+        ring = points * [1, 1, 0]
+        ring *= 1.5 / np.linalg.norm(ring, axis=1, keepdims=True)
+        normal = (points - ring) / np.linalg.norm(points - ring, axis=1, keepdims=True)
+        ends = lines.lines.reshape(-1, 3)[:, 1:]
+        expected = 0.1 + 0.8 * np.maximum(normal[ends[:, 0]] @ TOWARD, 0)
+        worst.append(np.sqrt(np.mean((expected - lines["luminance"]) ** 2)))
+    order = np.log2(np.array(worst[:-1]) / worst[1:])
+    np.testing.assert_allclose(order, 2, atol=0.2)
+    # A ball's normals, interpolated and made unit, are exact: so are its contours.
+    lines = isoluminance(sphere_mesh(24), DULL, levels=6)["contours"]
+    normal = np.asarray(lines.points, float)
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    expected = 0.1 + 0.8 * np.maximum(normal[lines.lines[1::3]] @ TOWARD, 0)
+    assert np.abs(expected - lines["luminance"]).max() < 1e-7
+
+
+def test_areas_of_bands_against_vtk():
+    """With tangents the luminance itself is interpolated, as VTK's banded contours do."""
+    mesh = sphere_mesh(40)
+    mesh["V"] = np.cross(mesh["Normals"], [0.3, 0.1, 1.0]) + np.array([1e-3, 0, 0])
+    found = isoluminance(mesh, SHINY, levels=7, tangents="V")["bands"]
+    lit = vizlight.illuminate(mesh, SHINY, tangents="V", precision="float64")
+    low, high = lit["luminance"].min(), lit["luminance"].max()
+    vtk = lit.contour_banded(8, rng=(low, high), scalars="luminance")[0].compute_cell_sizes()
+    vtk_band = vtk.cell_data["Scalars"]
+    own = found.compute_cell_sizes()
+    theirs = np.bincount(np.unique(vtk_band, return_inverse=True)[1].ravel(), vtk["Area"])
+    ours = np.bincount(np.maximum(own["band"], 1) - 1, own["Area"])
+    np.testing.assert_allclose(ours, theirs, rtol=2e-3, atol=1e-3)
+
+
+def test_the_input_is_not_changed():
+    mesh = pv.Sphere()
+    mesh["luminance"] = np.arange(mesh.n_points)
+    before = mesh.copy()
+    isoluminance(mesh, DULL)
+    assert mesh == before
+
+
+def test_a_closed_mesh_stays_closed():
+    for mesh in (pv.Sphere().clean(), pv.ParametricTorus().clean(), pv.Cube().clean()):
+        found = isoluminance(mesh, DULL, levels=9)["bands"]
+        assert found.is_manifold == mesh.is_manifold
+        assert found.compute_cell_sizes()["Area"].sum() == pytest.approx(mesh.area, rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    "mesh",
+    [
+        pv.ImageData(dimensions=(4, 5, 6)),
+        pv.Sphere().cast_to_unstructured_grid(),
+        pv.MultiBlock([pv.Sphere(), None, pv.Sphere(center=(3, 0, 0))]),
+        pv.Cube(),
+        pv.Sphere().strip(),
+    ],
+)
+def test_kinds_of_meshes(mesh):
+    found = isoluminance(mesh, DULL, levels=5)
+    assert found.keys() == ["bands", "contours"]
+    assert found["bands"].n_cells > 0
+    assert np.isfinite(found["bands"]["luminance"]).all()
+
+
+def test_names_and_the_accessor():
+    found = pv.Sphere().vizlight.isoluminance(DULL, levels=4, name="glow")
+    assert {"glow", "glow_band"} <= set(found["bands"].cell_data)
+    assert vizlight.provenance(found["bands"], "glow")["options"]["name"] == "glow"
+
+
+def test_float32_far_from_the_origin():
+    mesh = sphere_mesh(30)
+    far = mesh.translate((5e6, 0, 0))
+    scene = DULL.replace(lights=Light(position=(5e6 + 2, 0, 0)))
+    near = DULL.replace(lights=Light(position=(2, 0, 0)))
+    a, b = isoluminance(far, scene, levels=5)["bands"], isoluminance(mesh, near, levels=5)["bands"]
+    assert a["luminance"].max() == pytest.approx(b["luminance"].max(), abs=0.1)
+
+
+def test_points_that_are_not_finite_or_have_no_normal():
+    mesh = pv.Sphere()
+    points = np.array(mesh.points)
+    points[7] = np.nan
+    mesh.points = points
+    found = isoluminance(mesh, DULL, levels=4)
+    assert np.isfinite(found["bands"].points).all()
+    assert np.isfinite(found["bands"]["luminance"]).all()
+    flat = pv.Sphere()
+    flat["N"] = np.where(np.arange(flat.n_points)[:, None] % 5, np.asarray(flat.points), 0)
+    with pytest.warns(UserWarning, match="could not be lit"):
+        found = isoluminance(flat, DULL, levels=4, normals="N")
+    assert found["bands"]["luminance"].min() == pytest.approx(0.1)
+
+
+def test_nothing_left_and_nothing_there():
+    found = isoluminance(Block() - Block(), DULL)
+    assert found["bands"].n_cells == 0
+    assert found["contours"].n_cells == 0
+
+
+@pytest.mark.parametrize(
+    ("mesh", "options", "kind", "words"),
+    [
+        (3, {}, TypeError, "mesh: expected a PyVista mesh or a solid"),
+        (pv.PolyData(np.zeros((3, 3))), {}, ValueError, "mesh: expected a surface"),
+        (pv.Sphere(), {"levels": 0}, ValueError, "levels: expected"),
+        (pv.Sphere(), {"name": ""}, ValueError, "name: expected"),
+        (pv.Sphere(), {"tangents": "V"}, ValueError, "tangents: expected"),
+        (Sphere(), {"tangents": "V"}, ValueError, "tangents: expected None for a solid"),
+        (Sphere() | Block(), {"tolerance": 1}, ValueError, "tolerance: expected"),
+    ],
+)
+def test_bad_input(mesh, options, kind, words):
+    with pytest.raises(kind, match=words):
+        isoluminance(mesh, DULL, **options)
+
+
+def test_a_scene_is_asked_for():
+    with pytest.raises(TypeError, match="scene: expected"):
+        isoluminance(Sphere(), "bright")
+
+
+@pytest.mark.opengl
+def test_picture_of_bands(verify_image_cache):
+    """Limits: edges of bands move by a pixel between drivers; a wrong band is far above."""
+    verify_image_cache.high_variance_test = False
+    part = Sphere() - Truncus((0, 0, 0), (0, 0, 3), (0.5, 0.5))
+    camera = render.camera_on((-1, 1, -1, 1, -1, 1), (0.4, -1, 0.9))
+    found = isoluminance(part, SHINY.replace(view=View.from_camera(camera)), levels=8)
+    plotter = render.make_plotter(found["bands"], camera=camera, size=(300, 300), cmap="cividis")
+    plotter.show()

@@ -1,0 +1,67 @@
+"""The study measures what it says; no time is asserted."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+from vizlight import render
+from vizlight.studies import isoluminance as study
+
+
+@pytest.mark.opengl
+@pytest.mark.parametrize("shape", study.SHAPES)
+def test_rows(shape):
+    rows = study.measure(shape, 900, levels=30, repeats=1)
+    contours, coarse, fine, cast = rows
+    assert contours.largest < coarse.largest
+    assert fine.largest <= contours.largest
+    assert fine.vertices > coarse.vertices
+    # Half a step, a pixel's step, and the slope over half a pixel.
+    assert contours.mean < 0.9 / 60
+    assert min(row.model for row in rows) > 0
+    assert cast.vertices == 0
+
+
+def test_the_cast_is_the_exact_picture():
+    camera = render.camera_on(
+        (-1, 1, -1, 1, -1, 1), study.EYE, parallel=True, zoom=math.sqrt(3) / 1.02
+    )
+    ball, cone = (study.cast(shape, camera, 200) for shape in ("sphere", "cone"))
+    scale = (2 * camera.parallel_scale / 200) ** 2
+    assert np.isfinite(ball).sum() * scale == pytest.approx(math.pi, rel=5e-3)
+    assert np.nanmax(ball) == pytest.approx(1, abs=1e-3)
+    assert np.nanmin(ball) == study.LOW
+    cosine = (study.TOWARD[2] * 0.5 + math.hypot(*study.TOWARD[:2])) / math.hypot(1, 0.5)
+    assert np.nanmax(cone) == pytest.approx(study.LOW + study.SCALE * cosine, abs=1e-3)
+
+
+def test_highlights():
+    """Exact for light and eye far away; first order in 1 / distance, peak nearer to the light."""
+    far = study.highlight(math.inf, 60)
+    assert far.half < 1e-12
+    assert abs(far.shift) < 1e-9
+    near = [study.highlight(d, 60) for d in (16.0, 32.0, 64.0)]
+    order = np.log2([a.half / b.half for a, b in itertools.pairwise(near)])
+    np.testing.assert_allclose(order, 1, atol=0.2)
+    assert all(row.shift > 0 for row in near)
+    # Fisher and Woo: (N . H)^(4 s) against (R . E)^s, the same at the peak.
+    assert 0.05 < far.mirror < 0.2
+
+
+@pytest.mark.parametrize("shape", study.SHAPES)
+def test_facets_need_more_vertices_for_the_same_worst_error(shape):
+    """Facets lie across the terminator: their worst error falls with their size, not its square."""
+    row = study.count(shape, 0.02)
+    assert row.facets > row.contours
+
+
+@pytest.mark.opengl
+def test_table(capsys):
+    study.main(levels=12, largest=600, finest=0.02)
+    out = capsys.readouterr().out
+    assert "A sphere: seconds" in out
+    assert "virtual light" in out

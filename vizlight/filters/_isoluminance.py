@@ -1,0 +1,263 @@
+"""Bands and contours of equal luminance on a mesh, or on a solid made of primitives."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import json
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyvista as pv
+
+from vizlight import _check, engine
+from vizlight.filters import _mesh, _provenance
+from vizlight.filters._illuminate import illuminate
+from vizlight.filters._light import DEFAULT_NAME
+from vizlight.filters._mesh import unit_rows
+from vizlight.geometry import bands as _bands
+from vizlight.geometry import contours, solids
+from vizlight.geometry import isoluminance as closed
+from vizlight.geometry import levels as _levels
+from vizlight.geometry.primitives import Solid, Sphere, Truncus
+from vizlight.scene import Scene
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from vizlight.geometry.bands import Bands
+    from vizlight.geometry.levels import Levels
+    from vizlight.model.reflection import SpecularModel
+
+    Array = NDArray[np.floating[Any]]
+    Index = NDArray[np.intp]
+
+#: The luminance of a mesh's points, on the way to bands.
+HIDDEN = "vizlight_isoluminance"
+
+
+def isoluminance(
+    mesh: Any,
+    /,
+    scene: Scene,
+    *,
+    levels: Levels = 16,
+    tolerance: float = 3e-3,
+    model: SpecularModel = "phong",
+    two_sided: bool = False,
+    flip_normals: bool = False,
+    normals: Any = None,
+    tangents: Any = None,
+    conditioned: bool = False,
+    compensate: bool = True,
+    threads: int | None = None,
+    name: str = "luminance",
+) -> Any:
+    """Draw the contours of equal luminance, and the bands between them with one value each.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet, pyvista.MultiBlock or a solid
+        A lit surface (of another mesh its outer surface; blocks are joined), not changed. Or a
+        :class:`vizlight.Sphere`, :class:`~vizlight.Truncus`, :class:`~vizlight.Block`, or what
+        ``|``, ``&`` and ``-`` made of them.
+    scene : Scene
+        One light or several; a highlight needs a view.
+    levels : int, float or sequence of float, default: 16
+        A count of equal steps, an allowed luminance error (solids) or half step (meshes), or
+        the luminance of the contours.
+    tolerance : float, default: 3e-3
+        Of a combined solid: how far triangles may be from its curves and surfaces, as a share of
+        its size.
+    model : {"phong", "blinn"}
+        The law of the highlight: ``R . E`` or ``N . H``. Both are drawn exactly.
+    two_sided, flip_normals : bool, default: False
+        As for :func:`vizlight.illuminate`.
+    normals, tangents, conditioned, compensate
+        As for :func:`vizlight.illuminate`; of a mesh only.
+    threads : int, optional
+    name : str, default: "luminance"
+        Of the resulting cell arrays.
+
+    Returns
+    -------
+    pyvista.MultiBlock
+        ``bands``: polygons with the cell arrays ``luminance`` and ``band``, closed if the
+        surface is, and for a solid ``patch``. ``contours``: lines with the cell array
+        ``luminance``. Field data of the bands: ``luminance_error``, and for a solid what it was
+        measured to be on the exact surface; ``luminance_provenance``.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument does not fit, or as :func:`vizlight.illuminate`.
+
+    Warns
+    -----
+    UserWarning
+        If points could not be lit; triangles at such points have the band of the ambient light.
+
+    Notes
+    -----
+    A solid is lit at its exact points and normals. A mesh is lit with its normals, interpolated
+    over each triangle and made unit: contour points are found by halving edges, so the
+    terminator does not jump from corner to corner. With tangents the luminance itself is
+    interpolated. A sphere, or a truncus, under one light without a highlight has closed forms.
+    Source: Isoluminance.
+    """
+    options = {
+        key: value for key, value in locals().items() if key not in ("mesh", "scene", "threads")
+    }
+    _check.instance("scene", scene, Scene)
+    _levels.check(levels)
+    if not isinstance(name, str) or not name:
+        raise ValueError(_check.message("name", "a name for the cell array", repr(name)))
+    if isinstance(mesh, Solid):
+        for option in ("normals", "tangents"):
+            if options[option] is not None:
+                raise ValueError(
+                    _check.message(option, "None for a solid, which has its own", "an array")
+                )
+        light = _Light(scene, model, two_sided, flip_normals, threads)
+        found = _of_solid(mesh, light, levels, tolerance)
+        return _blocks(found, name, light.record(options), patches=True)
+    if not isinstance(mesh, pv.DataSet | pv.MultiBlock):
+        remedy = "make solids of vizlight.Sphere, Truncus and Block"
+        raise TypeError(
+            _check.message("mesh", "a PyVista mesh or a solid", type(mesh).__name__, remedy)
+        )
+    joined = mesh.combine() if isinstance(mesh, pv.MultiBlock) else mesh
+    return _of_mesh(joined, scene, levels, threads, options)
+
+
+class _Light:
+    """The luminance of points with normals, and what is told of it."""
+
+    def __init__(
+        self, scene: Scene, model: SpecularModel, two_sided: bool, flip: bool, threads: int | None
+    ) -> None:
+        self.scene, self.flip, self.two_sided = scene, flip, two_sided
+        self.shade = functools.partial(
+            engine.shade, precision="float64", threads=threads, model=model, two_sided=two_sided
+        )
+        self.last: Any = None
+
+    def __call__(self, points: Array, normals: Array) -> Array:
+        self.last = self.shade(points, None, self.scene, normals=-normals if self.flip else normals)
+        return np.asarray(self.last.luminance)
+
+    def record(self, options: dict[str, Any]) -> str:
+        """Return what made the bands as a line of JSON."""
+        if self.last is None:
+            self(np.zeros((1, 3)), np.array([[0.0, 0, 1]]))
+        return _provenance.record(self.last, "isoluminance", self.scene, options)
+
+
+def _of_solid(solid: Solid, light: _Light, levels: Levels, tolerance: float) -> Bands:
+    """Return the bands of a solid, in closed form where there is one."""
+    scene = light.scene
+    low = scene.material.ambient * scene.ambient_intensity
+    dull = scene.material.specular == 0 and scene.depth_cue is None
+    found: Bands | None = None
+    plain = dull and len(scene.lights) == 1 and not (light.two_sided or light.flip)
+    if plain and isinstance(solid, Sphere | Truncus):
+        (lamp,) = scene.lights
+        source: dict[str, Any] = {
+            "direction": lamp.direction, "position": lamp.position, "ambient": low,
+            "diffuse": scene.material.diffuse * lamp.intensity,
+            "attenuation": lamp.attenuation, "levels": levels,
+        }  # fmt: skip
+        if isinstance(solid, Sphere) and not lamp.follows_view:
+            found = closed.sphere(solid.center, solid.radius, **source)
+        if isinstance(solid, Truncus) and lamp.direction is not None:
+            found = closed.truncus(
+                solid.center, solid.axis, solid.radii, height=solid.height, **source
+            )
+    if found is not None:
+        return found
+    shape = solids.tessellate(solid, tolerance=tolerance)
+    return contours.draw(shape, light, levels, low=low if dull else None)
+
+
+def _of_mesh(
+    mesh: pv.DataSet, scene: Scene, levels: Levels, threads: int | None, options: dict[str, Any]
+) -> pv.MultiBlock:
+    """Return bands and contours of a mesh."""
+    surface, triangles, ids = _surface(mesh)
+    own = ("levels", "tolerance", "name")
+    given = {key: value for key, value in options.items() if key not in own}
+    if ids is not None:
+        for key in ("normals", "tangents"):
+            if given[key] is not None and not isinstance(given[key], str):
+                given[key] = _mesh.array_of(mesh, key, given[key], average_cells=False)[ids]
+    lit = illuminate(surface, scene, threads=threads, precision="float64", name=HIDDEN, **given)
+    values = np.asarray(lit.point_data[HIDDEN], dtype=np.float64)
+    points = np.array(surface.points, dtype=np.float64)
+    luminance = None
+    if options["tangents"] is None:
+        light = _Light(
+            scene, options["model"], options["two_sided"], options["flip_normals"], threads
+        )
+        found = _mesh.normals_of(surface, given["normals"], 3, scene.view)
+        unit = unit_rows(np.asarray(found, dtype=np.float64))
+
+        def luminance(a: Index, b: Index, share: Array, _: Index) -> Array:
+            t = share[:, np.newaxis]
+            normal = unit_rows(unit[a] * (1 - t) + unit[b] * t)
+            return light(points[a] * (1 - t) + points[b] * t, normal)
+
+    used = values[triangles]
+    low, high = (float(used.min()), float(used.max())) if used.size else (0.0, 0.0)
+    steps = _levels.steps(levels, low, high, exact=True)
+    bands, _ = _bands.cut(points, triangles, used, steps, luminance=luminance)
+    told = _provenance.provenance(lit, HIDDEN)
+    told |= {"filter": "isoluminance", "options": _provenance.plain(options)}
+    bands = dataclasses.replace(bands, error=steps.error)
+    return _blocks(bands, options["name"], json.dumps(told), patches=False)
+
+
+def _surface(mesh: Any) -> tuple[pv.PolyData, Index, Any]:
+    """Return the surface of a mesh, its triangles with finite corners, and whose points it has."""
+    surface, ids = mesh, None
+    if not isinstance(mesh, pv.PolyData):
+        surface = mesh.extract_surface(algorithm="geometry", pass_pointid=True, pass_cellid=False)
+        ids = np.asarray(surface.point_data["vtkOriginalPointIds"])
+    if not (surface.GetNumberOfPolys() or surface.GetNumberOfStrips()):
+        remedy = "take a contour or the mesh's extract_surface()"
+        raise ValueError(
+            _check.message(
+                "mesh", "a surface with faces", f"a {type(mesh).__name__} without", remedy
+            )
+        )
+    bare = pv.PolyData()
+    bare.SetPoints(surface.GetPoints())
+    bare.SetPolys(surface.GetPolys())
+    bare.SetStrips(surface.GetStrips())
+    bare = bare if bare.is_all_triangles else bare.triangulate()
+    triangles = np.asarray(bare.regular_faces, dtype=np.intp)
+    finite: Any = np.isfinite(np.asarray(surface.points)).all(axis=1)
+    return surface, triangles[finite[triangles].all(axis=1)], ids
+
+
+def _blocks(bands: Bands, name: str, told: str, *, patches: bool) -> pv.MultiBlock:
+    """Return bands and contours as meshes."""
+    size = np.diff(bands.offsets)
+    cells = np.insert(bands.corners, bands.offsets[:-1], size)
+    surface = pv.PolyData(bands.points, faces=cells) if len(size) else pv.PolyData()
+    prefix = "" if name == DEFAULT_NAME else f"{name}_"
+    surface.cell_data[f"{prefix}band"] = bands.band
+    if patches:
+        surface.cell_data[f"{prefix}patch"] = bands.patch
+    surface.cell_data[name] = bands.values
+    surface.cell_data.active_scalars_name = name
+    surface.field_data[f"{name}_error"] = [bands.error]
+    surface.field_data[_provenance.key(name)] = [told]
+    lines = pv.PolyData()
+    if len(bands.lines):
+        used, ends = np.unique(bands.lines, return_inverse=True)
+        ends = ends.reshape(-1, 2)
+        lines = pv.PolyData(
+            bands.points[used], lines=np.column_stack([np.full(len(ends), 2), ends]).ravel()
+        )
+    lines.cell_data[name] = bands.line_levels
+    return pv.MultiBlock({"bands": surface, "contours": lines})

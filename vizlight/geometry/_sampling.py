@@ -1,0 +1,235 @@
+"""Points on a combined solid: its corners, the curves where surfaces meet, and its surfaces."""
+
+from __future__ import annotations
+
+import itertools
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from vizlight import _check
+from vizlight.geometry import contours
+from vizlight.geometry.surfaces import Plane, fibonacci
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from vizlight.geometry.primitives import Primitive, Solid
+    from vizlight.geometry.surfaces import Surface
+
+    Array = NDArray[np.floating[Any]]
+    Index = NDArray[np.intp]
+    Bools = NDArray[np.bool_]
+
+#: How far from a surface a point is asked whether it is inside; lengths are of a unit solid.
+PROBE = 1e-6
+#: Points farther from a surface than this are not on it.
+ON = 1e-9
+#: The most points: beyond, tetrahedra fill gigabytes.
+MOST = 400_000
+
+
+class Unit:
+    """A solid in a unit ball: its surfaces, and what is inside."""
+
+    def __init__(self, solid: Solid, parts: list[Primitive], given: list[Primitive]) -> None:
+        self.solid = solid
+        moved = iter(parts)
+        self.parts = [None if part.empty else next(moved) for part in given]
+        self.surfaces: list[Surface] = []
+        self.owners: list[Primitive] = []
+        for part in parts:
+            for surface in part.surfaces():
+                # A face of no size, as at a cone's apex, has no points.
+                if not (isinstance(surface, Plane) and max(surface.extent) == 0):
+                    self.surfaces.append(surface)
+                    self.owners.append(part)
+
+    def inside(self, points: Array) -> Bools:
+        """Return which points are inside the solid."""
+        none = np.zeros(len(points), np.bool_)
+        tests = [none if part is None else part.inside(points) for part in self.parts]
+        return np.asarray(self.solid.combine(iter(tests)))
+
+    def on(self, points: Array) -> Bools:
+        """Return which surfaces each point is on."""
+        if not len(points):
+            return np.zeros((0, len(self.surfaces)), np.bool_)
+        return np.stack([np.abs(s.distance(points)) < 1e3 * ON for s in self.surfaces], axis=1)
+
+    def edge(self, points: Array, which: Index) -> Bools:
+        """Return at which points, on k surfaces each, all these bound the solid.
+
+        Each is asked in the 2^k sectors that its surfaces make: a surface bounds the solid where
+        one side of it is inside and the other is not.
+        """
+        k = which.shape[1]
+        normal = np.zeros((len(points), k, 3))
+        for j in range(k):
+            for i in np.unique(which[:, j]):
+                on = which[:, j] == i
+                normal[on, j] = self.surfaces[i].normal(points[on])
+        gram = normal @ normal.transpose(0, 2, 1) + 1e-9 * np.eye(k)
+        inside = np.empty((len(points), *(2,) * k), np.bool_)
+        for sector in itertools.product((0, 1), repeat=k):
+            signs = np.tile(2.0 * np.array(sector)[:, np.newaxis] - 1, (len(points), 1, 1))
+            weight = np.linalg.solve(gram, signs)
+            step = np.einsum("nji,nj->ni", normal, weight[:, :, 0])
+            step /= np.sqrt(np.einsum("ij,ij->i", step, step))[:, np.newaxis]
+            there: Any = (slice(None), *sector)
+            inside[there] = self.inside(points + PROBE * step)
+        matter = np.ones(len(points), np.bool_)
+        for axis in range(1, k + 1):
+            differ = np.diff(inside, axis=axis)
+            matter &= differ.any(axis=tuple(range(1, k + 1)))
+        return matter
+
+
+def points(unit: Unit, spacing: float, random: np.random.Generator) -> tuple[Array, Bools]:
+    """Return points on the solid: corners, edges and faces; and which surfaces each is on."""
+    if sum(surface.area for surface in unit.surfaces) / spacing**2 > MOST:
+        raise ValueError(
+            _check.message(
+                "tolerance", f"one that {MOST} points can keep",
+                f"a spacing of {spacing:g} of the solid's size", "raise it",
+            )
+        )  # fmt: skip
+    fine = [surface.samples(spacing / 2, random) for surface in unit.surfaces]
+    edges, pairs = _meetings(unit, fine, spacing)
+    corners = _corners(unit, edges, pairs, spacing)
+    for surface in unit.surfaces:
+        apex = getattr(surface, "apex", None)
+        if apex is None:
+            continue
+        ring = apex + PROBE * fibonacci(26)
+        inside = unit.inside(ring)
+        if inside.any() and not inside.all():
+            corners = np.concatenate([corners, apex[np.newaxis]])
+    corners = _thin(corners, 1e-5, None)
+    lines = _away(edges, corners, 0.5 * spacing)
+    lines = _thin(lines, 0.5 * spacing, unit.on(lines), shared=2)
+    faces: list[Array] = []
+    for i, surface in enumerate(unit.surfaces):
+        found = surface.samples(spacing, random)
+        found = found[unit.edge(found, np.full((len(found), 1), i))]
+        faces.append(_away(_away(found, edges, 0.7 * spacing), corners, 0.7 * spacing))
+    # Where faces of two primitives coincide their points come twice.
+    known = np.concatenate([corners, lines])
+    found = np.concatenate(faces)
+    found = _thin(found, 0.6 * spacing, unit.on(found))
+    made = np.concatenate([known, found, _opposite(unit, found, edges, corners, spacing)])
+    return made, unit.on(made)
+
+
+def _opposite(unit: Unit, points: Array, edges: Array, corners: Array, spacing: float) -> Array:
+    """Return the places opposite some points, on surfaces closer than the points' spacing.
+
+    Tetrahedra then fill a thin wall or gap from side to side and do not reach through it.
+    """
+    found: list[Array] = [np.empty((0, 3))]
+    on = unit.on(points)
+    for i, surface in enumerate(unit.surfaces):
+        near = (np.abs(surface.distance(points)) < spacing) & ~on[:, i]
+        if np.any(near):
+            which = np.full((np.count_nonzero(near), 1), i)
+            places = contours.onto(tuple(unit.surfaces), points[near], which)
+            found.append(places[unit.edge(places, which)])
+    places = np.concatenate(found)
+    places = _away(_away(places, edges, 0.7 * spacing), corners, 0.7 * spacing)
+    places = _away(places, points, 1e-3 * spacing)
+    here = np.concatenate([points, places])
+    kept = _thin(here, 0.3 * spacing, unit.on(here), first=len(points))
+    return kept[len(points) :]
+
+
+def _meetings(unit: Unit, fine: list[Array], spacing: float) -> tuple[Array, Index]:
+    """Return points of the curves where two surfaces meet, densely, and which two."""
+    found: list[Array] = [np.empty((0, 3))]
+    pairs: list[Index] = [np.empty((0, 2), np.intp)]
+    for i, j in itertools.permutations(range(len(unit.surfaces)), 2):
+        first, second = unit.surfaces[i], unit.surfaces[j]
+        start = fine[i][np.abs(second.distance(fine[i])) < spacing]
+        if not len(start):
+            continue
+        both = np.tile([0, 1], (len(start), 1))
+        places = contours.onto((first, second), start, both, rounds=8)
+        step = places - start
+        good = np.abs(first.distance(places)) + np.abs(second.distance(places)) < ON
+        good &= np.einsum("ij,ij->i", step, step) < (3 * spacing) ** 2
+        # Surfaces that coincide do not cross: no curve.
+        cross = np.cross(first.normal(places), second.normal(places))
+        good &= np.einsum("ij,ij->i", cross, cross) > 1e-12
+        places = places[good]
+        both = np.tile([i, j], (len(places), 1))
+        real = unit.edge(places, both)
+        found.append(places[real])
+        pairs.append(both[real])
+    return np.concatenate(found), np.concatenate(pairs).astype(np.intp)
+
+
+def _corners(unit: Unit, edges: Array, pairs: Index, spacing: float) -> Array:
+    """Return the points where three surfaces meet."""
+    found: list[Array] = [np.empty((0, 3))]
+    for k, third in enumerate(unit.surfaces):
+        near = (np.abs(third.distance(edges)) < 1.5 * spacing) & ~np.any(pairs == k, axis=1)
+        start = edges[near]
+        which = np.column_stack([pairs[near], np.full(len(start), k)])
+        if not len(start):
+            continue
+        places = contours.onto(tuple(unit.surfaces), start, which, rounds=12)
+        step = places - start
+        good = np.einsum("ij,ij->i", step, step) < (4 * spacing) ** 2
+        missing = np.zeros(len(places))
+        normal = np.zeros((len(places), 3, 3))
+        for j in range(3):
+            for i in np.unique(which[:, j]):
+                rows = which[:, j] == i
+                missing[rows] += np.abs(unit.surfaces[i].distance(places[rows]))
+                normal[rows, j] = unit.surfaces[i].normal(places[rows])
+        good &= (missing < ON) & (np.abs(np.linalg.det(normal)) > 1e-3)
+        places, which = places[good], which[good]
+        found.append(places[unit.edge(places, which)])
+    return np.concatenate(found)
+
+
+def _away(points: Array, others: Array, radius: float) -> Array:
+    """Return the points that are farther than a radius from all others."""
+    if not len(points) or not len(others):
+        return points
+    gap, _ = cKDTree(others).query(points, distance_upper_bound=radius)
+    return np.asarray(points[np.isinf(gap)])
+
+
+def _thin(
+    points: Array, radius: float, on: Bools | None, *, shared: int = 1, first: int = 0
+) -> Array:
+    """Return points no two of which are within a radius, and none of which could be added.
+
+    With ``on``, which tells the surfaces of each, only points that share so many of them keep
+    each other away. The first points stay, whatever is near.
+    """
+    if not len(points):
+        return points
+    pairs = cKDTree(points).query_pairs(radius, output_type="ndarray")
+    if on is not None:
+        pairs = pairs[np.count_nonzero(on[pairs[:, 0]] & on[pairs[:, 1]], axis=1) >= shared]
+    pairs = pairs[~(pairs < first).all(axis=1)]
+    rank = np.random.default_rng(1990).permutation(len(points))
+    rank[:first] = -1
+    state = np.zeros(len(points), np.int8)
+    state[:first] = 1
+    state[pairs[(pairs[:, 0] < first), 1]] = 2
+    state[pairs[(pairs[:, 1] < first), 0]] = 2
+    while np.any(state == 0):
+        # Of the points left, those that come before all their neighbours stay.
+        live = (state[pairs] == 0).all(axis=1)
+        pairs = pairs[live]
+        a, b = pairs.T
+        beaten = np.zeros(len(points), np.bool_)
+        beaten[np.where(rank[a] > rank[b], a, b)] = True
+        state[(state == 0) & ~beaten] = 1
+        lost = state[pairs] == 1
+        state[pairs[lost[:, 0], 1]] = 2
+        state[pairs[lost[:, 1], 0]] = 2
+    return np.asarray(points[state == 1])
