@@ -149,6 +149,30 @@ def test_small_powers(shininess):
     assert back.shininess == pytest.approx(shininess, rel=1e-6)
 
 
+@pytest.mark.parametrize("degrees", [0, 60, 120])
+def test_a_property_there_and_back(degrees):
+    """The exchange rises with the power and is its own inverse, from the smallest on."""
+    options = {"lights": None if degrees == 0 else [turned(degrees)], "view": AXIS}
+    model = "phong" if degrees == 0 else "blinn"
+    powers = [0.1, 0.5, 0.99, 1.0, 4, 5, 6, 20, 120]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        read = [
+            Material.from_property(pv.Property(specular_power=p), model=model, **options)
+            for p in powers
+        ]
+        again = [material.to_property(model=model, **options).specular_power for material in read]
+    np.testing.assert_allclose(again, powers, rtol=1e-12)
+    assert np.all(np.diff([material.shininess for material in read]) > 0)
+
+
+def test_colours_are_not_rounded():
+    made = Material(color=(0.1, 0.2, 0.3), specular_color=(0.7, 0.05, 1)).to_property()
+    back = Material.from_property(made, lights=[Light(direction=(0, 0, 1))])
+    assert back.color == (0.1, 0.2, 0.3)
+    assert back.specular_color == (0.7, 0.05, 1)
+
+
 def test_warnings_tell_what_vtk_cannot():
     shiny = Material(specular=1.0, shininess=100.0)
     with pytest.warns(UserWarning, match=r"blinn's law of power 128: .* a second light"):
@@ -174,6 +198,13 @@ def test_warnings_tell_what_vtk_cannot():
             ValueError,
             "model: expected 'phong' or 'blinn'",
         ),
+        (lambda: Material().to_property(lights=3), TypeError, "lights: expected vizlight.Light or"),
+        (
+            lambda: Material().to_property(lights="sun"),
+            TypeError,
+            "lights: expected vizlight.Light",
+        ),
+        (lambda: Material().to_property(view=(0, 0, 1)), TypeError, "view: expected a vizlight.Vi"),
         (lambda: Material().to_property(lights=["sun"]), TypeError, "lights: expected a vizlight"),
         (
             lambda: Material.from_property("red"),

@@ -108,9 +108,8 @@ class _Line:
         return _cylinder.diffuse(pair.met)
 
     def specular(self, pair: _Pair, highlight: Highlight) -> Array:
-        lit, eye, met = pair
-        along, normal = lit.along + eye.along, _kernels.length(lit.vector + eye.vector)
-        return _cylinder.specular(met, along * along, normal, highlight.shininess)
+        along = pair.lit.along + pair.eye.along
+        return _cylinder.specular(pair.met, along * along, highlight.shininess)
 
 
 class _Surface:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from vizlight import _check
-from vizlight.light import WHITE, Light
+from vizlight.light import WHITE, Light, as_lights
 from vizlight.model import highlights
 
 if TYPE_CHECKING:
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 Law = Literal["phong", "blinn"]
 #: VTK clamps the power to this.
 LARGEST_POWER = 128.0
+#: Of half the angle between light and eye: beyond, there is hardly a half vector.
+LEAST_COSINE = 2.5e-4
 #: A highlight that may be off by more than this many pixel values of 255 is worth a warning.
 TELLING = 2.0
 
@@ -35,6 +37,7 @@ def to_property(material: Material, lights: Any, view: View | None, model: str) 
     import pyvista as pv
 
     given = _lights(lights)
+    _check_view(view)
     for name in ("ambient", "diffuse", "specular"):
         value = getattr(material, name)
         if value > 1:
@@ -54,8 +57,10 @@ def to_property(material: Material, lights: Any, view: View | None, model: str) 
         interpolation="phong",
         lighting=True,
     )
-    made.color = made.ambient_color = made.diffuse_color = material.color or WHITE
-    made.specular_color = material.specular_color or WHITE
+    # VTK's own setters: PyVista's round colours to 8 bits.
+    for paint in (made.SetAmbientColor, made.SetDiffuseColor):
+        paint(*(material.color or WHITE))
+    made.SetSpecularColor(*(material.specular_color or WHITE))
     return made
 
 
@@ -68,17 +73,10 @@ def from_property(
             _check.message("source", "a pyvista.Property or vtkProperty", _check.describe(source))
         )
     given = _lights(lights)
+    _check_view(view)
     power = float(source.GetSpecularPower())
     if _law(model) != vtk_law(given):
-        angle = _angle(given, view)
-        other = "phong" if model == "blinn" else "blinn"
-        # The inverse of the exchange, whose factor depends little on the power: a fixed point.
-        target, power = power, _exchanged(power, angle, other)
-        for _ in range(20):
-            ratio = target / _exchanged(power, angle, model) if power else 1.0
-            power *= ratio
-            if abs(ratio - 1) < 1e-9:
-                break
+        power = _exchanged(power, _angle(given, view), "phong" if model == "blinn" else "blinn")
     own = (source.GetDiffuseColor, source.GetSpecularColor)
     colors = [tuple(float(channel) for channel in get()) for get in own]
     if tuple(source.GetAmbientColor()) != colors[0]:
@@ -95,11 +93,13 @@ def from_property(
 
 def _lights(lights: Any) -> tuple[Light, ...]:
     """Return the lights that are given, one headlight by default."""
-    given = (Light.headlight(),) if lights is None else lights
-    given = (given,) if isinstance(given, Light) else tuple(given)
-    for light in given:
-        _check.instance("lights", light, Light)
-    return given
+    return as_lights(Light.headlight() if lights is None else lights)
+
+
+def _check_view(view: Any) -> None:
+    from vizlight.scene import View
+
+    _check.instance("view", view, View, optional=True)
 
 
 def _law(model: str) -> str:
@@ -122,16 +122,17 @@ def _angle(lights: Sequence[Light], view: View | None) -> float:
 
 
 def _exchanged(power: float, angle: float, model: str) -> float:
-    """Return the power of the other law for one of the model asked for."""
-    if power < 1:
-        rule = float(highlights.simple_factor(angle))
-        return power * rule if model == "phong" else power / max(rule, 1e-3)
+    """Return the power of the other law for one of a model, rising with it and inverted by it.
+
+    By :func:`highlights.simple_factor` corrected for Phong's power r, ``q = c (r + e)``, and
+    below its range, r = 1/2, in proportion.
+    """
+    cosine = max(float(np.cos(angle / 2)), LEAST_COSINE)
+    least, factor = 0.5, float(highlights.simple_factor(2 * np.arccos(cosine)))
+    low = least * float(highlights.simple_factor(2 * np.arccos(cosine), least))
     if model == "phong":
-        return power * float(highlights.best_factor(angle, power))
-    phong = power / max(float(highlights.simple_factor(angle)), 1e-3)
-    for _ in range(3):
-        phong = power / float(highlights.best_factor(angle, float(np.clip(phong, 0.5, 1e6))))
-    return phong
+        return low + factor * (power - least) if power > least else power * low / least
+    return least + (power - low) / factor if power > low else power * least / low
 
 
 def _tell(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -10,8 +11,6 @@ from vizlight import _check
 from vizlight.model import falloff
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from vizlight._check import Color, ColorLike, Vector, VectorLike
     from vizlight.scene import View
 
@@ -125,6 +124,24 @@ class Light:
         else:
             place = {"position": view.position}
         return dataclasses.replace(self, follows_view=False, **place)
+
+
+def as_lights(lights: Any) -> tuple[Light, ...]:
+    """Return one light or several as a tuple.
+
+    Raises
+    ------
+    TypeError
+        If something else is given.
+    """
+    if isinstance(lights, str) or not isinstance(lights, Light | Iterable):
+        raise TypeError(
+            _check.message("lights", "vizlight.Light or several", _check.describe(lights))
+        )
+    several = (lights,) if isinstance(lights, Light) else tuple(lights)
+    for light in several:
+        _check.instance("lights", light, Light)
+    return several
 
 
 def from_vtk(lights: Iterable[Any], camera: Any) -> Iterable[Light]:

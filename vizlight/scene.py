@@ -6,17 +6,16 @@ Directions point away from the lit point: toward the light, toward the eye.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from vizlight import _check
-from vizlight.light import Light, from_vtk
+from vizlight.light import Light, as_lights, from_vtk
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from vizlight._check import Color, ColorLike, Vector, VectorLike
 
@@ -334,14 +333,7 @@ class Scene:
         ambient_color: ColorLike | None = None,
         depth_cue: DepthCue | None = None,
     ) -> None:
-        lights = Light.headlight() if lights is None else lights
-        if not isinstance(lights, Light | Iterable):
-            raise TypeError(
-                _check.message("lights", "vizlight.Light or several", _check.describe(lights))
-            )
-        lights = (lights,) if isinstance(lights, Light) else tuple(lights)
-        for light in lights:
-            _check.instance("lights", light, Light)
+        lights = as_lights(Light.headlight() if lights is None else lights)
         _check.instance("material", material, Material, optional=True)
         _check.instance("view", view, View, optional=True)
         _check.instance("depth_cue", depth_cue, DepthCue, optional=True)

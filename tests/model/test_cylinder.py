@@ -99,6 +99,14 @@ def test_shininess_0_is_the_lit_share_of_the_width(random):
     np.testing.assert_allclose(value, (1 + cosine) / 2, atol=1e-13)
 
 
+@pytest.mark.parametrize("gap", [1e-3, 1e-5, 1e-7])
+def test_light_and_eye_from_opposite_sides(gap):
+    """The normal parts of wi and wo nearly cancel: sin^2(gap / 2) of the width is lit and seen."""
+    wi, wo = [-np.cos(gap), np.sin(gap), 0.5], [1, 0, 0.5 + 1e-7]
+    found = cylinder.specular(wi, wo, [0, 0, 1.0], shininess=0)
+    assert abs(found - np.sin(gap / 2) ** 2) < 8 * np.finfo(float).eps / 0.89
+
+
 def test_invariance(random):
     """Turned, mirrored, with the tangent the other way, of other lengths: the same light."""
     wi, wo, t = random.standard_normal((3, 50, 3))

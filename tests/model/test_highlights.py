@@ -308,6 +308,31 @@ def test_extreme_powers(r):
         assert value.error[3] == pytest.approx(63.75, abs=1e-4)
 
 
+@pytest.mark.parametrize("model", ["phong", "blinn"])
+@pytest.mark.parametrize(
+    ("degrees", "s", "width"), [(0, 0.5, 1), (0, 1, 1), (90, 1e5, 1), (150, 1e5, 1), (40, 0, 0.3)]
+)
+def test_the_terminator_takes_no_more_and_as_much(degrees, s, width, model):
+    """Against a fine grid of N.L in the plane of light and eye, where whole ranges are dark."""
+    beta, times = np.deg2rad(degrees) / 2, 2 if model == "phong" else 1
+    cosine = np.linspace(0, 1, 400_001)
+    t = np.minimum(cosine / width, 1)
+    base = np.maximum(np.cos(times * (np.arccos(cosine) - beta)), 0)
+    with np.errstate(under="ignore"):
+        loss = 255 * (1 - t * t * (3 - 2 * t)) * base**s
+    found = highlights.terminator_error(np.deg2rad(degrees), s, width, model=model)
+    assert found == pytest.approx(loss.max(), rel=2e-3)
+
+
+@pytest.mark.parametrize(("rho", "r", "factor"), [(np.pi, 0.1, 1), (3.14, 0.1, 1), (3.0, 2, 0.5)])
+def test_pixel_error_near_the_far_side(rho, r, factor):
+    """Where cos(rho / 2) is small it is not 1 - sin^2."""
+    with mp.workdps(50):
+        blinn = mp.cos(mp.mpf(rho) / 2) ** (mp.mpf(factor) * mp.mpf(r))
+        expected = 255 * (blinn - max(mp.mpf(0), mp.cos(mp.mpf(rho))) ** mp.mpf(r))
+        assert abs(highlights.pixel_error(rho, r, factor=factor) - expected) < 1e-11
+
+
 def test_the_terminator_bound_holds(random):
     normals = random.standard_normal((100_000, 3))
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
@@ -359,3 +384,17 @@ def test_the_terminator_bound_holds(random):
 def test_bad_input(call, error, words):
     with pytest.raises(error, match=words):
         call()
+
+
+def test_shapes_that_do_not_fit_are_told_by_name():
+    with pytest.raises(
+        ValueError, match=r"rho, r, factor: expected shapes that broadcast, got \(3"
+    ):
+        highlights.pixel_error([0.1, 0.2, 0.3], [1, 2])
+    with pytest.raises(ValueError, match="shininess, light_eye_angle: expected shapes that"):
+        highlights.blinn_from_phong([1, 2, 3], light_eye_angle=[1, 2])
+    with pytest.raises(
+        ValueError, match="light_eye_angle, r, factor: expected shapes that broadcast"
+    ):
+        highlights.max_pixel_error([1, 2, 3], [1, 2])
+    assert highlights.phong_from_blinn(highlights.blinn_from_phong(1e9)) == 1e9

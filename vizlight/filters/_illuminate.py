@@ -191,8 +191,9 @@ def _prepare(mesh: pv.DataSet, path: str, scene: Scene, options: dict[str, Any])
         one_line = tangents is not None and n == 3 and tangents.shape[1:] == (3,)
         if options["model"] == "cylinder" and not one_line:
             remedy = "model='blinn' is its like for other manifolds"
+            got = "a surface" if tangents is None else f"{n}-space, {tangents.shape[-1]} components"
             raise ValueError(
-                _check.message("model", "lines in 3-space for 'cylinder'", "another mesh", remedy)
+                _check.message("model", "lines in 3-space for 'cylinder'", got, remedy)
             )
         if tangents is None and conditioned:
             remedy = "a surface without tangents shadows itself as it is"

@@ -47,12 +47,16 @@ class Meeting(NamedTuple):
         |wi_N| and |wo_N|.
     dot, cross : ndarray, shape (B,)
         wi_N . wo_N and |wi_N x wo_N|.
+    light, eye : ndarray, shape (3, B)
+        wi_N and wo_N.
     """
 
     a: Array
     b: Array
     dot: Array
     cross: Array
+    light: Array
+    eye: Array
 
 
 def across(x: Array, tangent: Array) -> tuple[Array, Array, Array]:
@@ -73,12 +77,12 @@ def meet(rest_i: Array, a: Array, rest_o: Array, b: Array, tangent: Array) -> Me
         + (rest_i[2] * rest_o[0] - rest_i[0] * rest_o[2]) * tangent[1]
         + (rest_i[0] * rest_o[1] - rest_i[1] * rest_o[0]) * tangent[2]
     )
-    return Meeting(a, b, _kernels.dot(rest_i, rest_o), np.abs(cross))
+    return Meeting(a, b, _kernels.dot(rest_i, rest_o), np.abs(cross), rest_i, rest_o)
 
 
 def diffuse(met: Meeting) -> Array:
     """Return the mean of Lambert's law over the visible half of a thin cylinder."""
-    a, b, dot, cross = met
+    a, b, dot, cross, _, _ = met
     value = np.arctan2(cross, -dot)
     value *= dot
     value += cross
@@ -90,13 +94,13 @@ def diffuse(met: Meeting) -> Array:
     return value
 
 
-def specular(met: Meeting, tangential: Array, normal: Array, shininess: float) -> Array:
-    """Return the mean of Blinn's law over the visible half; parts of wi + wo as lengths.
-
-    ``tangential`` is |(wi + wo)_T|^2 and ``normal`` |(wi + wo)_N|, from the normal parts' sum.
-    """
-    a, b, dot, cross = met
+def specular(met: Meeting, tangential: Array, shininess: float) -> Array:
+    """Return the mean of Blinn's law over the visible half; ``tangential`` is |(wi + wo)_T|^2."""
+    a, b, _, cross, light, eye = met
     number = a.dtype.type
+    # Cosines to the half vector from the sum itself, which is exact where wi_N is near -wo_N.
+    whole = light + eye
+    normal = _kernels.length(whole)
     value = _kernels.blinn(tangential, normal * normal, shininess)
     end_on, dark = b <= _least(b), a <= _least(a)
     poor = end_on | dark | (normal == 0)
@@ -104,8 +108,8 @@ def specular(met: Meeting, tangential: Array, normal: Array, shininess: float) -
     to_eye, to_light = b * normal, a * normal
     if spoiled:
         to_eye, to_light = np.where(poor, 1, to_eye), np.where(poor, 1, to_light)
-    cos_b = np.clip((b * b + dot) / to_eye, -1, 1)
-    cos_c = np.clip((a * a + dot) / to_light, -1, 1)
+    cos_b = np.clip(_kernels.dot(eye, whole) / to_eye, -1, 1)
+    cos_c = np.clip(_kernels.dot(light, whole) / to_light, -1, 1)
     sin_b, sin_c = np.minimum(cross / to_eye, 1), np.minimum(cross / to_light, 1)
     integral = half_integral(shininess, a.dtype)
     mean = integral(cos_b)

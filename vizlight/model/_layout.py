@@ -21,7 +21,13 @@ def batch(frame: Array, *directions: Array) -> tuple[tuple[int, ...], Array, lis
     """Broadcast a frame and directions; return batch shape and component-first arrays."""
     k, n = frame.shape[-2:]
     kind = np.result_type(frame, *directions)
-    shape = np.broadcast_shapes(frame.shape[:-2], *(d.shape[:-1] for d in directions))
+    shapes = [frame.shape[:-2], *(d.shape[:-1] for d in directions)]
+    try:
+        shape = np.broadcast_shapes(*shapes)
+    except ValueError as error:
+        got = ", ".join(str(one) for one in shapes)
+        expected = "batches of directions and tangents that broadcast"
+        raise ValueError(_check.message("shapes", expected, got)) from error
     rows = np.broadcast_to(frame, (*shape, k, n)).reshape(-1, k, n).transpose(1, 2, 0)
     columns = [np.broadcast_to(d, (*shape, n)).reshape(-1, n).T for d in directions]
     return (

@@ -64,7 +64,7 @@ def diffuse(wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike, /) -> Any:
     where light, line and eye are in one plane, on one side of the line, and nowhere else.
     Absolute error at most ``4 eps / |wo_N|``.
     """
-    shape, seen, met, _, _ = _meeting(wi, wo, tangent)
+    shape, seen, met, _ = _meeting(wi, wo, tangent)
     return _finish(_cylinder.diffuse(met), seen, shape)
 
 
@@ -108,8 +108,8 @@ def specular(wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike, /, *, shininess: 
     the light is.
     """
     shininess = _check.number("shininess", shininess, low=0.0, high=_check.LARGEST)
-    shape, seen, met, tangential, normal = _meeting(wi, wo, tangent)
-    return _finish(_cylinder.specular(met, tangential, normal, shininess), seen, shape)
+    shape, seen, met, tangential = _meeting(wi, wo, tangent)
+    return _finish(_cylinder.specular(met, tangential, shininess), seen, shape)
 
 
 def diffuse_gradient(wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike, /) -> Gradient:
@@ -264,17 +264,17 @@ def _given(
 
 def _meeting(
     wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike
-) -> tuple[tuple[int, ...], NDArray[np.bool_], _cylinder.Meeting, Array, Array]:
-    """Return shape, validity, the meeting, and the parts of wi + wo along and across the line."""
+) -> tuple[tuple[int, ...], NDArray[np.bool_], _cylinder.Meeting, Array]:
+    """Return shape, validity, the meeting, and the square of wi + wo along the line."""
     shape, rows, (light, eye) = _given(wi, wo, tangent)
     line, line_size = _kernels.unit(rows[0])
     light, light_size = _kernels.unit(light)
     eye, eye_size = _kernels.unit(eye)
     p, rest_i, a = _cylinder.across(light, line)
     q, rest_o, b = _cylinder.across(eye, line)
-    met, normal = _cylinder.meet(rest_i, a, rest_o, b, line), _kernels.length(rest_i + rest_o)
+    met = _cylinder.meet(rest_i, a, rest_o, b, line)
     seen = (light_size > 0) & (eye_size > 0) & (line_size > 0)
-    return shape, seen, met, np.square(p + q), normal
+    return shape, seen, met, np.square(p + q)
 
 
 def _finish(value: Array, seen: NDArray[np.bool_], shape: tuple[int, ...]) -> Any:

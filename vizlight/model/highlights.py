@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, get_args
 import numpy as np
 
 from vizlight import _check
-from vizlight.model._extremes import PEAK, difference, extremes, sphere_errors
+from vizlight.model._extremes import PEAK, extremes, sphere_errors
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -112,13 +112,19 @@ def pixel_error(rho: ArrayLike, r: ArrayLike, /, *, factor: ArrayLike = 4.0) -> 
     Notes
     -----
     Source: Fisher and Woo (6); their table 2 is off by one in the last digit of some of its first
-    row. The cosine of an angle beyond pi / 2 counts as 0. Absolute error at most
-    ``255 (8 + 4 sqrt(f r)) eps`` for f of 1 or more.
+    row, and of 20 degrees, r = 30, which is 1.162. The cosine of an angle beyond pi / 2 counts as
+    0. Absolute error at most ``255 (8 + 4 sqrt(f r)) eps`` for f of 1 or more.
     """
     angle, r, factor = _angles("rho", rho), _powers("r", r), _powers("factor", factor)
-    angle, r, factor = np.broadcast_arrays(angle, r, factor)
-    x = np.square(np.sin(angle / 2))
-    return (-PEAK * difference(x, np.full_like(r, 2.0), r, factor * r))[()]
+    angle, r, factor = _together({"rho": angle, "r": r, "factor": factor})
+    q = factor * r
+    with np.errstate(divide="ignore", invalid="ignore", under="ignore"):
+        x = np.square(np.sin(angle / 2))
+        # Beyond a right angle the cosine itself has the digits.
+        log = np.where(x < 0.5, np.log1p(-x) / 2, np.log(np.cos(angle / 2)))
+        blinn = np.where(q == 0, 1, np.exp(q * log))
+        phong = np.where(r == 0, 1, np.exp(r * np.log1p(-np.minimum(2 * x, 1))))
+    return (PEAK * (blinn - phong))[()]
 
 
 def max_pixel_error(
@@ -161,7 +167,7 @@ def max_pixel_error(
     """
     angle = _angles("light_eye_angle", light_eye_angle)
     r, factor = _powers("r", r), _powers("factor", factor)
-    beta, r, factor = np.broadcast_arrays(angle / 2, r, factor)
+    beta, r, factor = _together({"light_eye_angle": angle / 2, "r": r, "factor": factor})
     more, less, at_more, at_less = extremes(beta, r, factor, lit=lit)
     phong_wins = more >= less
     theta = np.where(phong_wins, np.pi / 2 - np.arcsin(np.sqrt(at_more)), np.pi / 2)
@@ -208,7 +214,7 @@ def best_factor(light_eye_angle: ArrayLike, r: ArrayLike, /, *, by: Measure = "w
         raise ValueError(_check.message("by", "'worst', 'rms' or 'volume'", repr(by)))
     angle = _angles("light_eye_angle", light_eye_angle).astype(np.float64)
     r = _powers("r", r, low=0.5, high=1e6).astype(np.float64)
-    beta, r = np.broadcast_arrays(angle / 2, r)
+    beta, r = _together({"light_eye_angle": angle / 2, "r": r})
     if by == "worst":
         low, high = np.full(beta.shape, np.log(1e-3)), np.full(beta.shape, np.log(16.0))
         for _ in range(36):
@@ -332,7 +338,9 @@ def blinn_from_phong(
     TypeError, ValueError
         If a value is out of its range.
     """
-    return (_powers("shininess", shininess) * _factor(light_eye_angle, factor))[()]
+    by = np.asarray(_factor(light_eye_angle, factor))
+    power, by = _together({"shininess": _powers("shininess", shininess), "light_eye_angle": by})
+    return (power * by)[()]
 
 
 def phong_from_blinn(
@@ -343,7 +351,7 @@ def phong_from_blinn(
     Parameters
     ----------
     shininess : array_like, shape (...)
-        Blinn's, from 0 to 1e9.
+        Blinn's, from 0 to 1e18.
     light_eye_angle, factor
         As there; the angle below pi, where the factor is 0.
 
@@ -361,7 +369,9 @@ def phong_from_blinn(
         raise ValueError(
             _check.message("light_eye_angle", "an angle below pi, where a half vector is", "pi")
         )
-    return (_powers("shininess", shininess) / by)[()]
+    power = _powers("shininess", shininess, high=_check.LARGEST**2)
+    power, by = _together({"shininess": power, "light_eye_angle": np.asarray(by)})
+    return (power / by)[()]
 
 
 def exchange_rate(light_eye_angle: ArrayLike, /, *, k: int = 2, n: int = 3) -> Any:
@@ -469,26 +479,44 @@ def terminator_error(
     s, width = _powers("shininess", shininess), _powers("width", width, high=1.0)
     times = 2.0 if model == "phong" else 1.0
 
-    def loss(cosine: Array) -> Array:
-        with np.errstate(divide="ignore", invalid="ignore", under="ignore"):
-            t = np.minimum(cosine / np.where(width > 0, width, 1), 1)
-            base = np.maximum(np.cos(times * (np.arccos(cosine) - beta)), 0)
-            value: Array = (1 - t) ** 2 * (1 + 2 * t) * np.power(base, s)
-        return value
+    _together({"light_eye_angle": beta, "shininess": s, "width": width})
+    safe = np.where(width > 0, width, 1)
 
-    low = np.zeros(np.broadcast_shapes(beta.shape, s.shape, width.shape))
-    high = low + np.minimum(width, np.cos(beta))
+    def log_loss(cosine: Array) -> Array:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            t = np.minimum(cosine / safe, 1)
+            base = np.maximum(np.cos(times * (np.arccos(cosine) - beta)), 0)
+            power = np.where(s == 0, 0, s * np.log(base))
+            total: Array = 2 * np.log1p(-t) + np.log1p(2 * t) + power
+        return total
+
+    # Nearer the terminator than ``low`` there is no highlight to lose.
+    reach = np.cos(np.minimum(beta + np.pi / (2 * times), np.pi))
+    low = np.where(s == 0, 0.0, np.maximum(reach, 0)) + np.zeros_like(safe)
+    high = np.maximum(np.minimum(safe, np.cos(beta)), low)
     for _ in range(90):
         third = (high - low) / 3
-        right = loss(low + third) < loss(high - third)
+        right = log_loss(low + third) < log_loss(high - third)
         low, high = np.where(right, low + third, low), np.where(right, high, high - third)
-    return np.where(width > 0, PEAK * np.maximum(loss(low), loss(high)), 0)[()]
+    with np.errstate(under="ignore"):
+        most = np.exp(np.maximum(log_loss(low), log_loss(high)))
+    return np.where(width > 0, PEAK * most, 0)[()]
 
 
 def _factor(light_eye_angle: ArrayLike | None, factor: float) -> Any:
     if light_eye_angle is not None:
         return simple_factor(light_eye_angle)
     return _check.number("factor", factor, low=1e-9, high=_check.LARGEST)
+
+
+def _together(arrays: dict[str, Array]) -> list[Array]:
+    """Return arrays broadcast together; their names are told where shapes do not fit."""
+    try:
+        return list(np.broadcast_arrays(*arrays.values()))
+    except ValueError as error:
+        shapes = ", ".join(str(array.shape) for array in arrays.values())
+        names = ", ".join(arrays)
+        raise ValueError(_check.message(names, "shapes that broadcast", shapes)) from error
 
 
 def _angles(name: str, value: ArrayLike) -> Array:
