@@ -231,6 +231,7 @@ def light(
     from vizlight import engine, files, render
     from vizlight.filters import illuminate, provenance
     from vizlight.filters._lines import has_lines_only
+    from vizlight.filters._mesh import leaves
 
     for option, value, needs, given in (
         ("level", level, "contour", contour),
@@ -254,6 +255,8 @@ def light(
     meshes = [path for path in output if path not in pictures]
     pixels = _size(size)
     mesh = files.read_mesh(file)
+    if average_cells and not {contour, warp} <= {None, *getattr(mesh, "point_data", {})}:
+        mesh = mesh.cell_data_to_point_data()
     if warp is not None:
         mesh = files.warped(mesh, warp, 1.0 if warp_factor is None else warp_factor)
     if surface or contour is not None:
@@ -299,6 +302,12 @@ def light(
     seconds = time.perf_counter() - start
     for warning in caught:
         sys.stderr.write(f"vizlight: {warning.message}\n")
+    bright = sum(int((leaf["luminance"] > 1).sum()) for leaf in leaves(lit))
+    if bright and pictures:
+        sys.stderr.write(
+            f"vizlight: {bright} of {lit.n_points} points are brighter than 1 and white in the "
+            "picture; a smaller --ambient, --diffuse or --specular shows them\n"
+        )
     told = provenance(lit)
     terms = " + ".join(told["terms"])
     _say(f"{lit.n_points} points lit in {seconds:.3f} s, {told['precision']}: {terms}")

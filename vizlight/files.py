@@ -126,7 +126,10 @@ def surface_of(mesh: Any, /, contour: str | None = None, level: float | None = N
             return mesh
         return mesh.extract_surface(algorithm="geometry", pass_pointid=False, pass_cellid=False)
     values = _scalars(mesh, "contour", contour)
-    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    finite = values[np.isfinite(values)]
+    if not finite.size:
+        raise ValueError(_check.message("contour", "an array with finite values", repr(contour)))
+    low, high = float(finite.min()), float(finite.max())
     level = (low + high) / 2 if level is None else _check.number("level", level)
     found = mesh.contour([level], scalars=contour)
     if not found.n_points:
@@ -158,9 +161,9 @@ def _scalars(mesh: Any, argument: str, name: str) -> Any:
     elif name in mesh.cell_data:
         got = f"the cell array {name!r}"
     there = [key for key in data if data[key].ndim == 1]
-    raise ValueError(
-        _check.message(argument, f"a point array of one component, one of {there}", got)
-    )
+    remedy = "average it to the points" if name in mesh.cell_data else ""
+    expected = f"a point array of one component, one of {there}"
+    raise ValueError(_check.message(argument, expected, got, remedy))
 
 
 def check_output(path: str | Path, /, formats: tuple[str, ...]) -> Path:

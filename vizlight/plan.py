@@ -229,7 +229,10 @@ def plan(
     if scene.n not in (None, n):
         raise ValueError(
             _check.message(
-                "scene", f"vectors of {n} components, as the points have", f"{scene.n} components"
+                "scene",
+                f"vectors of {n} components, as the points have",
+                f"{scene.n} components",
+                f"for light in {scene.n}-space name the arrays by positions= and tangents=",
             )
         )
     material, cue = scene.material, scene.depth_cue

@@ -110,6 +110,9 @@ def provenance(mesh: Any, /, name: str = "luminance") -> dict[str, Any]:
             result: dict[str, Any] = json.loads(str(leaf.field_data[key(name)][0]))
             return result
         told |= {k.removesuffix(key("")) for k in leaf.field_data if k.endswith(key(""))}
+    if not told:
+        remedy = "light it first, or read it from a file format that keeps field data"
+        raise ValueError(_check.message("mesh", "one that vizlight made arrays on", "none", remedy))
     raise ValueError(
         _check.message("name", f"one of the arrays made by vizlight, {sorted(told)}", repr(name))
     )
