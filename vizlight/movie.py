@@ -188,6 +188,7 @@ def _write_movie(path: str, pictures: Iterable[Picture], options: dict[str, Any]
     """Write one picture after the other, so that a long movie needs no more memory."""
     import imageio.v2
 
-    with imageio.v2.get_writer(path, mode="I", **options) as movie:
+    writer: Any = imageio.v2.get_writer(path, mode="I", **options)
+    with writer as movie:
         for picture in pictures:
             movie.append_data(picture)
