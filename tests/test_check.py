@@ -43,6 +43,8 @@ def test_good_values(validate, value, expected):
         (_check.vector, np.ones((2, 3)), ValueError, "one vector"),
         (_check.vector, [1, np.nan, 0], ValueError, "finite components"),
         (lambda n, v: _check.vector(n, v, direction=True), [0, 0, 0], ValueError, "non-zero"),
+        (_check.number, 10**400, ValueError, "a finite number"),
+        (_check.number, 10**5000, ValueError, "got int of more digits than can be written"),
         (_check.vector, "abc", TypeError, "real numbers, got 'abc'"),
         (_check.vectors, [[1, 2], [3]], TypeError, "numbers of one shape"),
         (_check.rgb, [1, 2], ValueError, "three channels"),
