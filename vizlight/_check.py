@@ -46,7 +46,8 @@ def describe(value: object) -> str:
     try:
         text = repr(value)
     except ValueError:  # Python writes no integer of more than 4300 digits
-        text = f"{type(value).__name__} of more digits than can be written"
+        kind = "an integer" if isinstance(value, int) else "a number"
+        text = f"{kind} of more digits than can be written"
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 

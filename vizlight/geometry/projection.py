@@ -320,11 +320,21 @@ def push_frame(
             image /= _rounding(np.asarray(points), float(distance))[..., np.newaxis, np.newaxis]
         found, rank = orthonormalize(image)
         # The volume that the images span is at most the least singular value.
-        volume = np.linalg.det(image @ np.swapaxes(image, -1, -2))
-        doubtful = ~(volume > max(DOUBTFUL, tolerance) ** 2)
+        doubtful = ~(_squared_volume(image) > max(DOUBTFUL, tolerance) ** 2)
     if doubtful.any():
         found[doubtful], rank[doubtful] = _significant(image[doubtful], tolerance)
     return found, rank
+
+
+def _squared_volume(rows: Any) -> Any:
+    """Return the square of the volume that 1 to 3 vectors in 3-space span."""
+    if rows.shape[-2] == 3:
+        return np.linalg.det(rows) ** 2
+    a, b = rows[..., 0, :], rows[..., -1, :]
+    square = np.einsum("...i,...i", a, a)
+    if rows.shape[-2] == 1:
+        return square
+    return square * np.einsum("...i,...i", b, b) - np.einsum("...i,...i", a, b) ** 2
 
 
 def _rounding(points: Any, distance: float) -> Any:
