@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 import pyvista as pv
@@ -55,6 +57,15 @@ def test_good_values(validate, value, expected):
 def test_bad_values(validate, value, error, words):
     with pytest.raises(error, match=f"^x: expected .*{words}"):
         validate("x", value)
+
+
+def test_numbers_beyond_the_largest_and_beyond_what_python_writes():
+    with pytest.raises(ValueError, match="x: expected a finite number, got an integer of more"):
+        _check.number("x", 10**5000)
+    with pytest.raises(ValueError, match="x: expected a finite number, got 1000000"):
+        _check.number("x", 10**400)
+    with pytest.raises(ValueError, match="x: expected a finite number, got a number of more"):
+        _check.number("x", Fraction(10**5000, 7))
 
 
 def test_infinite_position_names_the_remedy():

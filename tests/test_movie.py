@@ -108,6 +108,42 @@ def test_progress_and_names(torus, tmp_path, capsys):
 
 
 @pytest.mark.opengl
+def test_without_a_scene_the_active_scalars_are_drawn(torus, tmp_path):
+    torus["temp"] = 300 + 50 * np.asarray(torus["position"])[:, 0]
+    torus.cell_data["number"] = np.full(torus.n_cells, 7)
+    camera = render.camera_on((-3, 3, -3, 3, -1, 1))
+
+    def drawn(name, **options):
+        (file,) = movie.turn(torus, tmp_path / f"{name}.png", frames=1, camera=camera, **options)
+        return np.asarray(Image.open(file))
+
+    torus.set_active_scalars("temp")
+    found = drawn("a", picture=SMALL)
+    clim = (300 - 75, 300 + 75)
+    expected = next(render.pictures([torus], camera=camera, scalars="temp", clim=clim, **SMALL))
+    np.testing.assert_array_equal(found, expected)
+    assert len(np.unique(found)) > 20
+    np.testing.assert_array_equal(drawn("b", picture={**SMALL, "scalars": "temp"}), expected)
+    assert np.any(drawn("c", picture={**SMALL, "clim": (0, 1)}) != expected)
+    torus.set_active_scalars("number", preference="cell")
+    assert len(np.unique(drawn("d", picture=SMALL))) < 20
+
+
+@pytest.mark.opengl
+def test_a_shorter_sequence_leaves_nothing_of_a_longer_one(torus, tmp_path):
+    camera = render.camera_on((-3, 3, -3, 3, -1, 1))
+    kept = {"t_0004.png", "t_12.png", "u_0002.png"}
+    for name in kept:
+        (tmp_path / name).write_bytes(b"mine")
+    for frames in (3, 2):
+        files = movie.turn(
+            torus, tmp_path / "t.png", scene=SCENE, frames=frames, camera=camera, picture=SMALL
+        )
+        assert len(files) == frames
+    assert {p.name for p in tmp_path.iterdir()} == {"t_0000.png", "t_0001.png", *kept}
+
+
+@pytest.mark.opengl
 def test_points_behind_the_eye_are_told_of_once(torus, tmp_path):
     with pytest.warns(UserWarning, match="in 2 of 2 frames: .* points cannot be projected") as said:
         movie.turn(
@@ -236,13 +272,23 @@ def test_a_missing_package_is_named_before_anything_is_drawn(
         ("t.png", {"plane": "xx"}, ValueError, "plane: expected two different axes"),
         ("t.png", {"picture": {"size": (0, 5)}}, ValueError, "size: expected an integer"),
         ("t.png", {"picture": {"camera": 1}}, ValueError, "picture: expected no camera"),
+        ("t.png", {"picture": "abc"}, TypeError, "picture: expected a mapping, got 'abc'"),
+        ("t.png", {"picture": {"foo": 1}}, ValueError, "picture: expected options of a picture"),
+        ("t.png", {"rotate": 1}, TypeError, "rotate: expected an option of project or of"),
+        ("t.png", {"scene": None}, ValueError, "scene: expected a scene, or a mesh with active"),
         ("t.mp4", {"picture": {"size": (81, 60)}}, ValueError, "size: expected an even width"),
     ],
 )
 def test_bad_arguments(torus, tmp_path, writers, name, options, error, words):
     with pytest.raises(error, match=words):
-        movie.turn(torus, tmp_path / name, scene=SCENE, **options)
+        movie.turn(torus, tmp_path / name, **{"scene": SCENE, **options})
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("path", [3, None])
+def test_not_a_path(torus, path):
+    with pytest.raises(TypeError, match="path: expected the path of a file"):
+        movie.turn(torus, path, scene=SCENE)
 
 
 def test_nothing_to_draw(tmp_path):

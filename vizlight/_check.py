@@ -43,7 +43,11 @@ def describe(value: object) -> str:
     """Return a short description of a value for an error message."""
     if isinstance(value, np.ndarray):
         return f"an array of shape {value.shape} and type {value.dtype}"
-    text = repr(value)
+    try:
+        text = repr(value)
+    except ValueError:  # Python writes no integer of more than 4300 digits
+        kind = "an integer" if isinstance(value, int) else "a number"
+        text = f"{kind} of more digits than can be written"
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
@@ -108,7 +112,10 @@ def number(
         value = value.item()
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         raise TypeError(message(name, "a number", describe(value)))
-    result = float(value)
+    try:
+        result = float(value)
+    except OverflowError:  # an integer or a fraction beyond the largest double
+        result = math.inf
     if not (math.isfinite(result) and low <= result <= high):
         raise ValueError(message(name, _range(low, high), describe(value)))
     return result

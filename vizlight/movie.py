@@ -3,20 +3,26 @@
 from __future__ import annotations
 
 import importlib
+import inspect
+import itertools
+import os
 import warnings
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pyvista as pv
 from PIL import Image
 
 from vizlight import _check, render
 from vizlight.files import check_output, replace_file
 from vizlight.filters import project
+from vizlight.filters._light import DEFAULT_NAME
 from vizlight.filters._mesh import leaves
 from vizlight.filters._progress import progress
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -55,7 +61,8 @@ def turn(
         With positions and a frame in n-space, as :func:`vizlight.project` takes it. Not changed.
     path : path
         A movie, ``.gif`` or ``.mp4``, or ``turn.png`` for ``turn_0000.png`` and so on; the
-        folder must exist.
+        folder must exist. What an earlier sequence has there is written over, and what follows
+        the last frame without a gap, the end of a longer one, is removed.
     plane : str or (int, int), default: "xw"
         Of the turn, as for :func:`vizlight.geometry.projection.plane_rotation`.
     frames : int, default: 72
@@ -67,13 +74,15 @@ def turn(
     camera : pyvista.Camera, optional
         The eye, which stays. Default: one that sees the mesh at every step.
     picture : mapping, optional
-        Further options of :func:`vizlight.render.make_plotter`: size, scalars, cmap, background.
+        Further options of :func:`vizlight.render.make_plotter`: size, scalars, cmap, clim,
+        background.
     progress_bar : bool, default: False
         Show progress on standard error.
     **options
         Of :func:`vizlight.project`: ``scene=``, which stays as the mesh turns; ``light=`` before
         or after the projection; distance, hyperplane, cut. ``rotation=`` comes before the turn.
-        Without a scene, scalars that the mesh has are drawn.
+        Without a scene the mesh's active scalars are drawn, those but luminance from their least
+        to their largest number.
 
     Returns
     -------
@@ -95,15 +104,17 @@ def turn(
     UserWarning
         Once, with the number of frames, if :func:`vizlight.project` warns.
     """
+    if not isinstance(path, str | os.PathLike):
+        raise TypeError(_check.message("path", "the path of a file", _check.describe(path)))
     path = check_output(path, FORMATS)
     count = _check.integer("frames", frames, low=1)
     whole = _check.number("angle", angle)
     fps = _check.number("fps", fps, low=0.01, high=100.0)
-    drawing = dict(picture or {})
-    drawing["size"] = drawing.get("size", (640, 480))
-    if "camera" in drawing:
-        raise ValueError(_check.message("picture", "no camera", "one", "pass it as camera="))
-    drawing.setdefault("scalars", options.get("name", "luminance"))
+    drawing = _drawing(picture)
+    if options.get("scene") is not None:
+        drawing.setdefault("scalars", options.get("name", DEFAULT_NAME))
+    else:
+        _draw_active(mesh, drawing)
     writer = _writer(path, fps, drawing["size"])
     before = options.pop("rotation", None)
     said: list[str] = []
@@ -131,6 +142,40 @@ def turn(
     if said:
         _check.warn(f"in {len(said)} of {count} frames: {said[0]}")
     return files
+
+
+def _drawing(picture: Any) -> dict[str, Any]:
+    """Return options of a picture, if they are."""
+    if not (picture is None or isinstance(picture, Mapping)):
+        raise TypeError(_check.message("picture", "a mapping", _check.describe(picture)))
+    drawing = {"size": (640, 480), **(picture or {})}
+    if "camera" in drawing:
+        raise ValueError(_check.message("picture", "no camera", "one", "pass it as camera="))
+    known = set(inspect.signature(render.make_plotter).parameters) - {"panels", "camera"}
+    for name in drawing:
+        if name not in known:
+            expected = f"options of a picture ({', '.join(sorted(known))})"
+            raise ValueError(_check.message("picture", expected, repr(name)))
+    return drawing
+
+
+def _draw_active(mesh: Any, drawing: dict[str, Any]) -> None:
+    """Have scalars drawn that a mesh has: those chosen, else the active ones."""
+    parts = [leaf for leaf in leaves(mesh) if isinstance(leaf, pv.DataSet) and leaf.n_points]
+    if not parts:
+        return
+    name = drawing.setdefault("scalars", parts[0].active_scalars_name)
+    arrays = [np.asarray(part[name]) for part in parts if name in part.array_names]
+    if not arrays or any(x.ndim == 2 and x.shape[1] != 3 for x in arrays):
+        expected = "a scene, or a mesh with active scalars of 1 component or 3"
+        raise ValueError(_check.message("scene", expected, f"none, and {name!r}"))
+    if "clim" in drawing or name == DEFAULT_NAME:
+        return
+    finite = [x[np.isfinite(x)] for x in arrays if x.ndim == 1 and x.dtype.kind in "biuf"]
+    ends = [float(end(x)) for x in finite if len(x) for end in (np.min, np.max)]
+    if ends:
+        low, high = min(ends), max(ends)
+        drawing["clim"] = (low, high) if low < high else (low - 0.5, low + 0.5)
 
 
 def _counted(items: Iterable[Any], report: Callable[[int], None], done: int) -> Iterator[Any]:
@@ -181,6 +226,12 @@ def _write_sequence(path: Path, pictures: Iterable[Picture]) -> list[Path]:
     for i, picture in enumerate(pictures):
         name = path.with_name(f"{path.stem}_{i:04d}.png")
         files.append(replace_file(name, Image.fromarray(picture).save))
+    for i in itertools.count(len(files)):
+        # Frames of an earlier, longer sequence would play as the end of this one.
+        name = path.with_name(f"{path.stem}_{i:04d}.png")
+        if not name.is_file():
+            return files
+        name.unlink()
     return files
 
 

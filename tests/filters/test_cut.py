@@ -68,6 +68,26 @@ def test_strips_lines_and_wedges():
     assert area(_cut.cut(wedge, np.asarray(wedge.points)[:, 2] - 0.5)) == pytest.approx(0.5)
 
 
+def test_frames_are_cut_as_the_spaces_they_span(random):
+    """Whichever cells are cut: also at the mean point of a hexahedron."""
+    for kind in ("image", "tetrahedra"):
+        mesh = box(kind)
+        x = np.asarray(mesh.points, float)
+        away, along = x + np.array([1.0, 2, 3]), np.array([1.0, 0, 0])
+        frame = np.linalg.qr(np.stack([away, 0 * x + along], axis=2))[0].swapaxes(1, 2)
+        turns = np.linalg.qr(random.standard_normal((len(x), 2, 2)))[0]
+        seen = []
+        for rows in (frame, turns @ frame):
+            mesh["frame"] = rows.reshape(len(x), 6)
+            cut = _cut.cut(mesh, x @ [1.0, 0.4, 0.3] - 0.73, spaces={"frame": 3})
+            seen.append(np.cross(*np.asarray(cut["frame"]).reshape(-1, 2, 3).swapaxes(0, 1)))
+        one, other = seen
+        assert np.abs(np.abs(np.sum(one * other, axis=1)) - 1).max() < 1e-14
+        exact = np.cross(np.asarray(cut.points) + np.array([1.0, 2, 3]), along)
+        exact /= np.linalg.norm(exact, axis=1, keepdims=True)
+        assert np.abs(np.sum(one * exact, axis=1)).min() > 0.9999
+
+
 def test_nothing_to_cut_and_nothing_met():
     cut = _cut.cut(pv.Sphere(), np.ones(842))
     assert cut.n_points == cut.n_cells == 0

@@ -155,6 +155,95 @@ def test_a_sphere_cut_by_a_hyperplane():
     assert np.abs(np.einsum("bki,bi->bk", frame, centre)).max() < 0.05
 
 
+PLANE = ((0.3, -0.2, 0.5, 1), 0.05)
+
+
+@pytest.mark.parametrize(
+    ("shape", "bound"),
+    [(manifolds.klein_bottle(), 0.99), (manifolds.veronese(resolution=48), 0.99)],
+    ids=["Klein bottle", "Veronese surface"],
+)
+def test_tangents_of_a_cut_are_along_it(shape, bound):
+    """Also where the surface is not orientable and neighbours' frames differ in sign."""
+    curve = vizlight.manifold(shape, hyperplane=PLANE)
+    x, ends = np.asarray(curve["position"]), curve.lines.reshape(-1, 3)[:, 1:]
+    step = x[ends[:, 1]] - x[ends[:, 0]]
+    size = np.linalg.norm(step, axis=1)
+    long = size > 1e-6 * size.max()
+    unit = step[long] / size[long, np.newaxis]
+    for end in (0, 1):
+        along = np.abs(np.sum(unit * np.asarray(curve["frame"])[ends[long, end]], axis=1))
+        assert along.min() > bound
+
+
+def test_a_cut_does_not_depend_on_the_basis_at_each_point(torus, random):
+    other = torus.copy()
+    signs = random.choice([-1, 1], (torus.n_points, 2, 1))
+    other["frame"] = (frames(torus, "frame", 4) * signs).reshape(-1, 8)
+    one, two = (project(m, hyperplane=PLANE, scene=SCENE4) for m in (torus, other))
+    np.testing.assert_allclose(one["luminance"], two["luminance"], atol=1e-13)
+    sphere = vizlight.manifold(manifolds.sphere3(resolution=5))
+    other = sphere.copy()
+    turns = np.linalg.qr(random.standard_normal((sphere.n_points, 3, 3)))[0]
+    other["frame"] = (turns @ frames(sphere, "frame", 4)).reshape(-1, 12)
+    one, two = (project(m, hyperplane=PLANE, scene=SCENE4) for m in (sphere, other))
+    np.testing.assert_allclose(one["luminance"], two["luminance"], atol=1e-13)
+
+
+def test_a_point_without_tangents_leaves_none_in_the_cut(torus):
+    frame = np.array(torus["frame"])
+    frame[np.asarray(torus["position"])[:, 0] > 1] = np.nan
+    torus["frame"] = frame
+    with pytest.warns(UserWarning, match="could not be lit"):
+        cut = project(torus, hyperplane=PLANE, scene=SCENE4)
+    bad = np.asarray(cut["luminance_valid"]) == 0
+    assert np.asarray(cut["position"])[bad, 0].min() > 0.7
+    assert 0 < bad.sum() < cut.n_points
+
+
+def test_silhouettes_are_found_beyond_rounding():
+    """Where the exact tangent would vanish, that of rounded numbers is noise, not a direction."""
+    cells = np.stack([np.arange(5), np.arange(1, 6)], axis=1)
+    points = np.c_[np.zeros((6, 3)), np.linspace(-1, 1, 6)]
+    line = manifolds.Manifold(points, np.tile([[0, 0, 0, 1.0]], (6, 1, 1)), cells)
+    there_and_back = [("xw", 0.7), ("xw", -0.7), ("yw", 0.2), ("yw", -0.2)]
+    with pytest.warns(UserWarning, match="6 of 6 points could not be lit"):
+        out = vizlight.manifold(line, rotation=there_and_back, scene=SCENE3, light="after")
+    np.testing.assert_array_equal(out["projected_frame"], 0)
+    np.testing.assert_array_equal(out["luminance"], 0.1)
+    shape = manifolds.torus(1.5, 0.75, resolution=64)
+    with pytest.warns(UserWarning, match="128 of 4096 points could not be lit"):
+        out = vizlight.manifold(shape, scene=SCENE3, light="after")
+    edge = np.linalg.svd(shape.frame[..., :3], compute_uv=False)[:, 1] < 1e-15
+    np.testing.assert_array_equal(np.asarray(out["luminance_valid"]) == 0, edge)
+
+
+def test_silhouettes_in_float32(random):
+    """The rounding of the arrays counts, not that of the work."""
+    points = random.uniform(-0.5, 0.5, (200, 4))
+    toward = [0, 0, 0, 1.7] - points
+    frame = np.stack([toward, random.standard_normal((200, 4))], axis=1)
+    mesh = pv.PointSet(np.zeros((200, 3)))
+    mesh["position"] = points.astype(np.float32)
+    mesh["frame"] = np.linalg.qr(frame.swapaxes(1, 2))[0].swapaxes(1, 2).reshape(200, 8)
+    mesh["frame"] = np.asarray(mesh["frame"]).astype(np.float32)
+    out = project(mesh, distance=1.7)
+    np.testing.assert_array_equal(out["projected_frame"][:, 3:], 0)
+
+
+def test_no_tangents_named_are_the_frame(torus):
+    for when, scene in (("before", SCENE4), ("after", SCENE3)):
+        one = project(torus, scene=scene, light=when, distance=3.0)
+        other = project(torus, scene=scene, light=when, distance=3.0, tangents=None)
+        np.testing.assert_array_equal(one["luminance"], other["luminance"])
+
+
+def test_what_is_not_changed_is_shared(torus):
+    """As the docstring says, and as in shallow copies."""
+    assert np.shares_memory(project(torus)["frame"], torus["frame"])
+    assert not np.shares_memory(project(torus, rotation=TURN)["frame"], torus["frame"])
+
+
 def test_sheets_that_fall_on_each_other_stay_apart_in_a_cut():
     """Both halves of the 3-sphere project to one ball: places in 3-space must join nothing."""
     shape = manifolds.sphere3(resolution=4)
@@ -228,7 +317,11 @@ def test_points_that_are_not_finite(torus):
         with pytest.warns(UserWarning, match="2 points cannot be projected"):
             out = project(torus, cut=True, **options)
         assert out.n_points == 382
-    cut = project(torus, hyperplane=((1, 0, 0, 0), 0.1))
+    plane = {"hyperplane": ((1, 0, 0, 0), 0.1)}
+    with pytest.raises(ValueError, match="mesh: expected finite points, got 2 of 384.*cut=True"):
+        project(torus, **plane)
+    with pytest.warns(UserWarning, match="2 points cannot be projected"):
+        cut = project(torus, cut=True, **plane)
     assert np.all(np.isfinite(cut["position"]))
 
 
@@ -378,6 +471,10 @@ def test_progress(torus, capsys):
         ({"hyperplane": ((0, 0, 0, 1), np.nan)}, ValueError, "hyperplane: expected a finite"),
         ({"light": "during"}, ValueError, "light: expected 'before' or 'after'"),
         ({"scene": "sun"}, TypeError, "scene: expected a vizlight.Scene"),
+        ({"positions": "cells"}, ValueError, "the cell array 'cells'; call mesh.cell_data_to_po"),
+        ({"vectors": 3}, TypeError, "vectors: expected the name of a point array, or a list"),
+        ({"scene": SCENE4, "rotate": 1}, TypeError, "rotate: expected an option of project or of"),
+        ({"rotate": 1}, TypeError, "rotate: expected an option of project or of illuminate"),
         ({"compensate": False}, TypeError, "compensate: expected an option of project, or"),
         ({"scene": SCENE3}, ValueError, "scene: expected vectors of 4 components"),
         ({"scene": SCENE4, "light": "after"}, ValueError, "scene: expected vectors of 3"),
@@ -385,6 +482,7 @@ def test_progress(torus, capsys):
     ],
 )
 def test_bad_arguments(torus, options, error, words):
+    torus.cell_data["cells"] = np.ones((torus.n_cells, 4))
     torus["odd"] = np.ones((torus.n_points, 5))
     torus["full"] = np.ones((torus.n_points, 16))
     torus["number"] = np.ones(torus.n_points)

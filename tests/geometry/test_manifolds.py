@@ -186,6 +186,79 @@ def test_complex_curve_against_50_digits(figure):
         compare(figure, f"complex curve, {name}", shape, exact, some, bound)
 
 
+def test_klein_bottle_near_its_axis_against_50_digits(figure):
+    """Where the tube nearly fills its hole, frames lose as many digits as the bound says."""
+    ratio = mp.mpf(1.0001)
+    shape = manifolds.klein_bottle(major=1.0001, minor=1.0, resolution=(36, 20))
+
+    def exact(u, v):
+        out, up = ratio + mp.cos(v), mp.sin(v)
+        return [out * mp.cos(u), out * mp.sin(u), up * mp.cos(u / 2), up * mp.sin(u / 2)]
+
+    some = [(20 * i + j, (angle(i, 36), angle(j, 20))) for i in (1, 5, 17, 30) for j in (3, 9, 10)]
+    bound = 12 * 1.0001 / 0.0001
+    compare(figure, "Klein bottle, R = 1.0001 r", shape, exact, some, bound, point=12)
+
+
+@pytest.mark.parametrize(
+    ("function", "derivative"),
+    [
+        (lambda z: z**5, lambda z: 5 * z**4),
+        (lambda z: z**7, lambda z: 7 * z**6),
+        (lambda z: 1 / (z - 1.2), lambda z: -1 / (z - 1.2) ** 2),
+        (lambda z: np.exp(8 * z), lambda z: 8 * np.exp(8 * z)),
+        (lambda z: 1e100 * z**3 + z, lambda z: 3e100 * z**2 + 1),
+        (lambda z: 3.0, lambda z: 0),
+        (np.tanh, lambda z: 1 / np.cosh(z) ** 2),
+    ],
+    ids=["z^5", "z^7", "pole", "exp", "large", "constant", "tanh"],
+)
+def test_slopes_of_complex_curves_by_differences(function, derivative):
+    """Within 1e-12 of the largest of f and f', as is said."""
+    found = manifolds.complex_curve(function, resolution=10)
+    exact = manifolds.complex_curve(function, derivative=derivative, resolution=10)
+    slope = [(s.frame[:, 0, 2] + 1j * s.frame[:, 0, 3]) / s.frame[:, 0, 0] for s in (found, exact)]
+    extent = max(np.abs(slope[1]).max(), np.abs(exact.points[:, 2:]).max())
+    assert np.abs(slope[0] - slope[1]).max() <= 1e-12 * extent
+
+
+def test_slopes_of_a_function_in_single_precision():
+    found = manifolds.complex_curve(lambda z: z.astype(np.complex64) ** 3, resolution=10)
+    exact = manifolds.complex_curve(lambda z: z**3, derivative=lambda z: 3 * z**2, resolution=10)
+    assert np.abs(projector(found.frame) - projector(exact.frame)).max() < 2e-6
+
+
+@pytest.mark.parametrize("resolution", [9, 16, 64, (30, 45)])
+def test_functions_that_are_not_analytic_are_refused(resolution):
+    """Depending on the conjugate however little, or with a cut that no sample lies on."""
+    for function in (
+        lambda z: z**2 + 0.0099 * np.conj(z),
+        lambda z: z**2 + 1e-9 * np.conj(z),
+        lambda z: np.exp(8 * z) + np.abs(z),
+        np.sqrt,
+        lambda z: np.log(z + 0.001),
+        lambda z: (z - 0.3j) ** 0.4,
+    ):
+        with pytest.raises(ValueError, match="function: expected an analytic one"):
+            manifolds.complex_curve(function, resolution=resolution)
+    with pytest.raises(ValueError, match="got one that jumps at z = .*without its branch cut"):
+        manifolds.complex_curve(np.sqrt, derivative=lambda z: 0.5 / np.sqrt(z), resolution=64)
+
+
+def test_functions_that_are_steep_but_analytic_are_taken():
+    """Steps that the slopes at both ends do not foresee need not be jumps."""
+    for function in (
+        lambda z: np.exp(40 * z),
+        lambda z: 1 / z,
+        lambda z: 1 / (z - 1.03),
+        lambda z: np.sin(20 * z),
+        lambda z: 1e17 + z,
+    ):
+        manifolds.complex_curve(function, resolution=16)
+    half = ((0.01, 1), (-1, 1))
+    assert manifolds.complex_curve(np.sqrt, domain=half, resolution=9).k == 2
+
+
 @pytest.mark.parametrize("name", EVERY)
 def test_frames_are_orthonormal_and_points_stand_apart(name):
     shape = EVERY[name]()
@@ -258,7 +331,9 @@ def test_veronese_surface_is_the_projective_plane():
 
 def test_winding_numbers():
     assert len(manifolds.torus_curve(3, resolution=50).cells) == 50
-    for ratio, turns in ((Fraction(2, 7), 7), (0.2, 5), (5 / 49, 49), (1 / 3, 3), (0, 1)):
+    single = (np.float32(0.5), 2), (np.array(0.25), 4)
+    ratios = (Fraction(2, 7), 7), (0.2, 5), (5 / 49, 49), (1 / 3, 3), (0, 1), *single
+    for ratio, turns in ratios:
         shape = manifolds.torus_curve(ratio, resolution=1000)
         assert len(shape.cells) == len(shape.points) == 1000
         t = np.unwrap(np.arctan2(shape.points[:, 1], shape.points[:, 0]))
@@ -278,6 +353,26 @@ def test_winding_numbers():
         (lambda: manifolds.torus(1, 1, resolution=(9, 2)), ValueError, "resolution"),
         (lambda: manifolds.torus_curve(np.pi), ValueError, "ratio: .* pass turns="),
         (lambda: manifolds.torus_curve(np.inf), ValueError, "ratio: expected a finite number"),
+        (
+            lambda: manifolds.torus_curve(Fraction(10**400, 1)),
+            ValueError,
+            "ratio: expected a finite number",
+        ),
+        (
+            lambda: manifolds.complex_curve(lambda z: z[:3]),
+            ValueError,
+            "function: expected one that returns numbers of the shape",
+        ),
+        (
+            lambda: manifolds.complex_curve(np.exp, derivative=lambda z: None),
+            TypeError,
+            "derivative: expected one that returns numbers",
+        ),
+        (
+            lambda: manifolds.complex_curve(lambda z: np.where(z.real > 1, np.nan, z)),
+            ValueError,
+            "function: expected finite numbers on its domain and .* around it.*pass derivative=",
+        ),
         (lambda: manifolds.torus_curve(2, turns=0), ValueError, "turns: expected an integer"),
         (lambda: manifolds.klein_bottle(minor=3.0), ValueError, "minor: expected less than major"),
         (lambda: manifolds.veronese(resolution=1), ValueError, "resolution: expected an integer"),

@@ -142,6 +142,57 @@ def test_a_vector_at_the_eye_vanishes():
     np.testing.assert_allclose(projection.push_forward(toward_eye, x, distance=2.0), 0, atol=1e-16)
 
 
+def test_a_frame_of_what_is_seen(random):
+    """It spans the images, the first row along the first; an overall scale changes nothing."""
+    for n, distance in ((4, None), (4, 2.0), (6, 3.0)):
+        frame = oracles.frames(random, 40, 2, n, np.float64)
+        points = random.uniform(-0.4, 0.4, (40, n))
+        found, rank = projection.push_frame(frame, points, distance=distance)
+        image = projection.push_forward(frame, points, distance=distance)
+        np.testing.assert_array_equal(rank, 2)
+        np.testing.assert_allclose(
+            np.einsum("bki,bli->bkl", found, found), np.tile(np.eye(2), (40, 1, 1)), atol=1e-14
+        )
+        inside = np.einsum("bki,bji,bjm->bkm", image, found, found)
+        np.testing.assert_allclose(inside, image, atol=1e-13)
+        first = image[:, 0] / np.linalg.norm(image[:, 0], axis=1, keepdims=True)
+        np.testing.assert_allclose(found[:, 0], first, atol=1e-14)
+        again, _ = projection.push_frame(1e-200 * frame, points, distance=distance)
+        np.testing.assert_allclose(again, found, atol=1e-13)
+
+
+@pytest.mark.parametrize("distance", [None, 1.7])
+@pytest.mark.parametrize("k", [1, 2, 3])
+def test_silhouettes_are_found_in_any_basis(k, distance, random):
+    """Tangents aimed at the eye, mixed with others by a random rotation: rank k - 1, not k."""
+    points = random.uniform(-1, 1, (500, 4)) * [2, 2, 2, 1]
+    toward = np.array([0, 0, 0, 1.0]) if distance is None else [0, 0, 0, distance] - points
+    rows = random.standard_normal((500, k, 4))
+    rows[:, 0] = toward
+    turns = np.linalg.qr(random.standard_normal((500, k, k)))[0]
+    # Nearly, but not quite, along one row as well.
+    turns[:50] = np.eye(k)
+    turns[:50, -1, 0] = 1e-8
+    found, rank = projection.push_frame(turns @ rows, points, distance=distance)
+    np.testing.assert_array_equal(rank, k - 1)
+    np.testing.assert_array_equal(np.any(found, axis=2).sum(axis=1), k - 1)
+    # A millionth away from there it is no silhouette.
+    rows[:, 0] += 1e-6 * np.linalg.norm(toward) * random.standard_normal((500, 4))
+    _, rank = projection.push_frame(turns @ rows, points, distance=distance)
+    assert np.mean(rank == k) > 0.95
+
+
+def test_frames_that_cannot_be_pushed():
+    with pytest.raises(ValueError, match="frame: expected 3 tangents or fewer"):
+        projection.push_frame(np.eye(5)[:4], np.zeros(5))
+    with pytest.raises(ValueError, match="rtol: expected"):
+        projection.push_frame(np.eye(5)[:2], np.zeros(5), rtol=-1)
+    lost = np.array([[[np.nan, 0, 0, 0], [0, 1, 0, 0]], [[0, 0, 0, 0], [0, 0, 0, 0]]])
+    found, rank = projection.push_frame(lost, np.full((2, 4), 1e150), distance=1e-150)
+    assert np.all(np.isfinite(found))
+    assert rank.max() <= 1
+
+
 def test_depth():
     points = np.array([[0, 0, 0, 0.0], [0, 0, 0, 1], [5, 0, 0, 2], [1, 1, 1, 3], [0, 0, 0, np.nan]])
     _, found = projection.image_and_depth(points, distance=2.0)

@@ -7,6 +7,7 @@ import itertools
 import numpy as np
 import oracles
 import pytest
+from scipy.sparse import csr_array
 
 from vizlight.geometry import slices
 
@@ -92,6 +93,59 @@ def test_frames_of_a_slice(random, figure):
         assert np.abs(found @ normal).max() < 1e-14
         inside = np.einsum("bki,bji,bjm->bkm", found, frame, frame)
         np.testing.assert_allclose(inside, found, atol=1e-14)
+
+
+def projector(frame):
+    return np.einsum("bki,bkj->bij", frame, frame)
+
+
+@pytest.mark.parametrize(("k", "n"), [(1, 3), (2, 4), (3, 5)])
+def test_mean_frames_do_not_depend_on_the_basis_at_a_point(k, n, random):
+    """Random rotations and signs of each basis change nothing that is spanned."""
+    base = oracles.frames(random, 1, k, n, np.float64)
+    near = np.linalg.qr((base + 0.2 * random.standard_normal((30, k, n))).swapaxes(1, 2))[0]
+    frame = np.ascontiguousarray(near.swapaxes(1, 2))
+    turns = np.linalg.qr(random.standard_normal((30, k, k)))[0]
+    shares = random.uniform(0, 1, (20, 30)) * (random.uniform(0, 1, (20, 30)) < 0.2)
+    shares[:, 0] += 0.1
+    shares = csr_array(shares / shares.sum(axis=1, keepdims=True))
+    one, other = (slices.mean_frame(f, shares) for f in (frame, turns @ frame))
+    np.testing.assert_allclose(projector(one), projector(other), atol=1e-14)
+    gram = np.einsum("bki,bli->bkl", one, one)
+    np.testing.assert_allclose(gram, np.tile(np.eye(k), (20, 1, 1)), atol=1e-14)
+
+
+def test_mean_frame_between_two_lines_is_between_them():
+    """Shares of unit vectors that may point either way, and the order 2 of the mean."""
+    for size, bound in ((0.1, 2e-4), (0.01, 2e-7)):
+        angles = np.array([0.3, 0.3 + size])
+        frame = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)[:, np.newaxis]
+        frame[1] *= -1
+        found = slices.mean_frame(frame, csr_array([[0.7, 0.3]]))[0, 0]
+        assert abs(np.arctan(found[1] / found[0]) - (0.3 + 0.3 * size)) < bound
+
+
+def test_spaces_without_a_mean_have_none():
+    """At right angles either diagonal would do; a point without tangents has no space."""
+    frame = np.stack([np.eye(4)[:2], np.eye(4)[1:3], np.eye(4)[[0, 0]], np.eye(4)[:2]])
+    frame = np.concatenate([frame, np.full((1, 2, 4), np.nan)])
+    shares = csr_array(
+        np.array([[1, 1, 0, 0, 0], [1, 0, 1, 0, 0], [1, 0, 0, 0, 1], [1, 0, 0, 1, 0]]) / 2
+    )
+    found = slices.mean_frame(frame, shares)
+    np.testing.assert_array_equal(found[:3], 0)
+    np.testing.assert_allclose(projector(found[3:])[0], np.diag([1, 1, 0, 0]), atol=1e-15)
+    assert slices.mean_frame(frame, csr_array((0, 5))).shape == (0, 2, 4)
+    with pytest.raises(ValueError, match="shares: expected a matrix of 5 columns"):
+        slices.mean_frame(frame, csr_array((2, 4)))
+    with pytest.raises(ValueError, match="frame: expected shape"):
+        slices.mean_frame(frame[0], shares)
+
+
+def test_a_manifold_that_touches_within_the_rounding_of_float32():
+    tilted = np.array([[1, 0, 0, 0.0], [0, 1, 0, 3e-8]])
+    assert np.any(slices.slice_frame(tilted, (0, 0, 0, 1.0)))
+    np.testing.assert_array_equal(slices.slice_frame(tilted, (0, 0, 0, 1.0), rtol=1e-6), 0)
 
 
 def test_where_the_manifold_touches_the_hyperplane_there_is_no_frame():

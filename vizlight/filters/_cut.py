@@ -6,13 +6,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista as pv
-from scipy.sparse import coo_array
+from scipy.sparse import coo_array, csr_array
 
-from vizlight import _check
+from vizlight import _check, _pool
 from vizlight.filters import _mesh
 from vizlight.geometry import slices
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
     Array = NDArray[np.floating[Any]]
@@ -24,9 +26,11 @@ _FACES = np.array(
     [[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
 )
 _VOXEL = [0, 1, 3, 2, 4, 5, 7, 6]
+#: Frames between points are made block by block: each needs some n k numbers for each point.
+BLOCK = 1 << 15
 
 
-def cut(mesh: Any, heights: Array, /) -> Any:
+def cut(mesh: Any, heights: Array, /, *, spaces: Mapping[str, int] | None = None) -> Any:
     """Return the part of a mesh where a function of its points is 0, with its point arrays.
 
     Parameters
@@ -34,6 +38,9 @@ def cut(mesh: Any, heights: Array, /) -> Any:
     mesh : pyvista.DataSet
         Of lines, faces or volumes; the cells of highest dimension are cut.
     heights : ndarray, shape (N,)
+    spaces : mapping, optional
+        Names of point arrays that stand for the space their rows span, and the components n of
+        a row: their mean is that of spaces, whatever basis each point has.
 
     Returns
     -------
@@ -70,12 +77,27 @@ def cut(mesh: Any, heights: Array, /) -> Any:
     (out.SetVerts, out.SetLines, out.SetPolys)[cells.shape[1] - 1](made)
     for key, value in mesh.point_data.items():
         array = np.asarray(value)
-        if array.dtype.kind in "biuf":
+        if spaces and key in spaces:
+            _mesh.attach_rows(out, key, _mean_frames(array, between, spaces[key]))
+        elif array.dtype.kind in "biuf":
             kind = array.dtype if array.dtype.kind == "f" else np.float64
             _mesh.attach_rows(out, key, (between @ array.astype(np.float64)).astype(kind))
     for key, value in mesh.field_data.items():
         out.field_data[key] = value
     return out
+
+
+def _mean_frames(array: Array, between: Any, n: int) -> Array:
+    found = np.empty((between.shape[0], array.shape[1]), dtype=array.dtype)
+    for block in _pool.blocks(len(found), BLOCK):
+        part = between[block]
+        used, columns = np.unique(part.indices, return_inverse=True)
+        near = csr_array(
+            (part.data, columns.reshape(-1), part.indptr), (len(part.indptr) - 1, len(used))
+        )
+        rows = array[used].astype(np.float64).reshape(len(used), -1, n)
+        found[block] = slices.mean_frame(rows, near).reshape(-1, array.shape[1])
+    return found
 
 
 def _simplices(mesh: Any) -> tuple[Index, Index]:

@@ -108,14 +108,18 @@ def moved(mesh: Any, offset: Array, scale: float = 1.0) -> Any:
 def points_of(mesh: pv.DataSet, positions: str | None) -> Rows:
     """Return the points of a mesh, or a point array of positions in n-space."""
     if positions is not None:
-        return array_of(mesh, "positions", positions, average_cells=False)
+        return array_of(mesh, "positions", positions)
     if isinstance(mesh, pv.ImageData | pv.RectilinearGrid):
         return GridPoints(mesh)
     return np.asarray(mesh.points)
 
 
-def array_of(mesh: pv.DataSet, name: str, value: Any, *, average_cells: bool) -> Array:
+def array_of(
+    mesh: pv.DataSet, name: str, value: Any, *, average_cells: bool | None = None
+) -> Array:
     """Return a point array by name, or an array given as such; two-dimensional, real.
+
+    Cell data are averaged to the points, refused, or, where None, never averaged.
 
     Raises
     ------
@@ -149,7 +153,7 @@ def array_of(mesh: pv.DataSet, name: str, value: Any, *, average_cells: bool) ->
     return array
 
 
-def _named(mesh: pv.DataSet, name: str, value: str, *, average_cells: bool) -> Array:
+def _named(mesh: pv.DataSet, name: str, value: str, *, average_cells: bool | None) -> Array:
     if value in mesh.point_data:
         return np.asarray(mesh.point_data[value])
     if value in mesh.cell_data:
@@ -158,14 +162,10 @@ def _named(mesh: pv.DataSet, name: str, value: str, *, average_cells: bool) -> A
             only.clear_data()
             only.cell_data[value] = np.asarray(mesh.cell_data[value])
             return np.asarray(only.cell_data_to_point_data().point_data[value])
-        raise ValueError(
-            _check.message(
-                name,
-                "a point array",
-                f"the cell array {value!r}",
-                "pass average_cells=True or call mesh.cell_data_to_point_data()",
-            )
-        )
+        remedy = "call mesh.cell_data_to_point_data()"
+        if average_cells is not None:
+            remedy = f"pass average_cells=True or {remedy}"
+        raise ValueError(_check.message(name, "a point array", f"the cell array {value!r}", remedy))
     there = ", ".join(repr(key) for key in mesh.point_data) or "none"
     raise ValueError(_check.message(name, f"the name of a point array ({there})", repr(value)))
 
@@ -181,7 +181,7 @@ def refuse_unnamed(name: str, value: Any) -> None:
 
 def vectors_of(mesh: pv.DataSet, name: str, value: Any, n: int) -> Array:
     """Return a point array of n components, by name or given as such."""
-    array = array_of(mesh, name, value, average_cells=False)
+    array = array_of(mesh, name, value)
     if array.shape[1] != n:
         what = f"{value!r} with {array.shape[1]}" if isinstance(value, str) else array.shape[1]
         raise ValueError(_check.message(name, f"{n} components", what))

@@ -13,7 +13,7 @@ import vizlight
 from vizlight import _check, _pool
 from vizlight.filters import _cut, _mesh, _provenance
 from vizlight.geometry import projection, slices
-from vizlight.model.frames import orthonormalize
+from vizlight.model.frames import default_rtol
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -50,7 +50,7 @@ class Turning:
     vectors: tuple[str, ...]
     cut: bool
 
-    def turned(self, mesh: Any, done: Counter) -> Any:
+    def turned(self, mesh: Any, done: Counter, lost: Counter) -> Any:
         """Return a mesh turned and cut; its points are still where they were."""
         if isinstance(mesh, pv.ImageData | pv.RectilinearGrid):
             mesh = mesh.cast_to_structured_grid()
@@ -70,7 +70,7 @@ class Turning:
                 )
             _mesh.attach_rows(out, name, array)
         if plane is not None:
-            out = self._sliced(out, *plane)
+            out = self._sliced(out, *plane, lost)
         out.field_data[_provenance.key(RECORD)] = [record]
         done.add(mesh.n_points)
         return out
@@ -105,24 +105,41 @@ class Turning:
             for name, array in found.items()
         }
 
-    def _sliced(self, mesh: Any, normal: Array, offset: float) -> Any:
+    def _sliced(self, mesh: Any, normal: Array, offset: float, lost: Counter) -> Any:
         position = np.asarray(mesh.point_data[self.positions])
         heights = np.empty(len(position))
         with np.errstate(all="ignore"):
             for block in _pool.blocks(len(position), BLOCK):
                 heights[block] = position[block].astype(np.float64) @ normal - offset
-        out = _cut.cut(mesh, heights)
-        if self.frame is not None:
-            tangents = np.asarray(out.point_data[self.frame])
-            n = len(normal)
-            k = tangents.shape[1] // n
-            del out.point_data[self.frame]
-            if k > 1:
-                rows = _blocks(
-                    lambda x: slices.slice_frame(x.reshape(-1, k, n), normal), tangents, k - 1, n
-                )
-                _mesh.attach_rows(out, self.frame, rows)
+        bad = int(np.count_nonzero(~np.isfinite(heights)))
+        if bad:
+            self._count_lost(bad, len(heights), "finite points", lost)
+        n = len(normal)
+        if self.frame is None:
+            return _cut.cut(mesh, heights)
+        k = mesh.point_data[self.frame].shape[1] // n
+        if k == 1:
+            del mesh.point_data[self.frame]
+            return _cut.cut(mesh, heights)
+        out = _cut.cut(mesh, heights, spaces={self.frame: n})
+        tangents = np.asarray(out.point_data[self.frame])
+        rtol = default_rtol(n, tangents.dtype)
+        rows = _blocks(
+            lambda x: slices.slice_frame(x.reshape(-1, k, n), normal, rtol=rtol), tangents, k - 1, n
+        )
+        del out.point_data[self.frame]
+        _mesh.attach_rows(out, self.frame, rows)
         return out
+
+    def _count_lost(self, count: int, total: int, expected: str, lost: Counter) -> None:
+        """Count points that cannot be shown, if they may be left out."""
+        if not self.cut:
+            got = f"{count} of {total} points that are not"
+            remedy = "leave them out by cut=True"
+            if self.distance is not None:
+                remedy = "move the eye away by distance=, or " + remedy
+            raise ValueError(_check.message("mesh", expected, got, remedy))
+        lost.add(count)
 
     def projected(self, mesh: Any, done: Counter, lost: Counter) -> Any:
         """Return a mesh projected to 3-space."""
@@ -130,13 +147,8 @@ class Turning:
         n = position.shape[1]
         points, good = self._points(position)
         if not good.all():
-            count = int(np.count_nonzero(~good))
-            if not self.cut:
-                expected = "points before the eye's hyperplane, and finite"
-                got = f"{count} of {len(good)} points that are not"
-                remedy = "move the eye away by distance=, or leave them out by cut=True"
-                raise ValueError(_check.message("mesh", expected, got, remedy))
-            lost.add(count)
+            expected = "points before the eye's hyperplane, and finite"
+            self._count_lost(int(np.count_nonzero(~good)), len(good), expected, lost)
             mesh = _without(mesh, ~good)
             position = np.asarray(mesh.point_data[self.positions])
             points, _ = self._points(position)
@@ -149,7 +161,7 @@ class Turning:
             out.point_data.pop(name, None)
             # Three directions fill 3-space: there is no frame that light could use.
             if self.frame in out.point_data and out.point_data[self.frame].shape[1] < 3 * n:
-                _mesh.attach_rows(out, name, self._image(out, self.frame, position, unit=True))
+                _mesh.attach_rows(out, name, self._image(out, self.frame, position, space=True))
         done.add(mesh.n_points)
         return out
 
@@ -170,19 +182,25 @@ class Turning:
                 good[block] &= np.all(np.isfinite(points[block]), axis=1)
         return points, good
 
-    def _image(self, mesh: Any, name: str, position: Array, *, unit: bool = False) -> Array:
+    def _image(self, mesh: Any, name: str, position: Array, *, space: bool = False) -> Array:
         """Return the vectors of an array as the projection's derivative takes them to 3-space.
 
-        With ``unit`` they are orthonormalised.
+        With ``space`` they are tangents: an orthonormal frame of what their images span.
         """
         vectors, n = np.asarray(mesh.point_data[name]), position.shape[1]
         rows = vectors.shape[1] // n
+        # Orthographic images do not depend on the places.
+        rough = [vectors.dtype] if self.distance is None else [vectors.dtype, position.dtype]
+        rtol = max(default_rtol(n, dtype) for dtype in rough)
 
         def work(x: Array, p: Array) -> Array:
-            image: Array = projection.push_forward(
-                x.reshape(-1, rows, n), p, distance=self.distance
+            x = x.reshape(-1, rows, n)
+            found: Array = (
+                projection.push_frame(x, p, distance=self.distance, rtol=rtol)[0]
+                if space
+                else projection.push_forward(x, p, distance=self.distance)
             )
-            return orthonormalize(image)[0] if unit else image
+            return found
 
         return _blocks(work, vectors, rows, 3, position)
 
@@ -206,7 +224,7 @@ def _blocks(
 def _named(mesh: Any, argument: str, name: Any) -> Array:
     if not isinstance(name, str):
         raise TypeError(_check.message(argument, "the name of a point array", repr(name)))
-    return _mesh.array_of(mesh, argument, name, average_cells=False)
+    return _mesh.array_of(mesh, argument, name)
 
 
 def _without(mesh: Any, lost: NDArray[np.bool_]) -> Any:

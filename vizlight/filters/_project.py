@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import pyvista as pv
@@ -17,6 +18,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
 LightWhen = Literal["before", "after"]
+#: Options of light that may come along; the others are this filter's own to set.
+LIGHTING = set(inspect.signature(illuminate).parameters) - {
+    "mesh", "scene", "positions", "inplace", "progress_bar",
+}  # fmt: skip
 
 
 def project(
@@ -48,8 +53,8 @@ def project(
         first done first; see :func:`vizlight.geometry.projection.rotation`.
     hyperplane : (normal, offset), optional
         Keep where the turned mesh meets ``{x : x . normal / |normal| = offset}``: a
-        (k - 1)-manifold. All arrays of numbers are interpolated, the frame is cut down to the
-        directions within.
+        (k - 1)-manifold. All arrays of numbers are interpolated, the frame as the space that it
+        spans, whatever its basis at each point, and cut down to the directions within.
     distance : float, optional
         Of the eye on the last axis from the origin, in the mesh's unit: a perspective projection
         on the hyperplane across it. Default: orthographic, the first three coordinates.
@@ -60,8 +65,9 @@ def project(
     vectors : str or sequence of str, optional
         Further point arrays of m n components, vectors in n-space that turn with the mesh.
     cut : bool, default: False
-        Leave out points that cannot be projected, those on or behind the eye's hyperplane or not
-        finite, and the cells that have one, with a warning of the count; else they are an error.
+        Leave out points that cannot be cut or projected, those on or behind the eye's hyperplane
+        or not finite, and the cells that have one, with a warning of the count; else they are an
+        error.
     scene : Scene, optional
         Light the mesh by it.
     light : {"before", "after"}
@@ -79,6 +85,8 @@ def project(
         array ``projected_frame``: the derivative of the projection applied to the frame,
         orthonormalised; for each array V of ``vectors`` its image ``projected_V``, of the length
         it comes to. What was done is kept as field data, ``provenance(mesh, "projection")``.
+        Arrays that nothing is done to, without a rotation positions and frame too, are shared with
+        ``mesh``, as in PyVista's shallow copies: copy one before changing it in place.
 
     Raises
     ------
@@ -97,8 +105,11 @@ def project(
     Notes
     -----
     Where the projection flattens the tangent space (at a silhouette) ``projected_frame`` has rows
-    of zero past its rank. Light after the projection is there the ambient one, and
-    ``luminance_valid`` marks the points; light before it knows of no silhouette.
+    of zero past its rank, which is what is left of unit tangents beyond rounding (see
+    :func:`vizlight.geometry.projection.push_frame`). Light after the projection is there the
+    ambient one, and ``luminance_valid`` marks the points; light before it knows of no silhouette.
+    A frame on a cut is a mean of those at the points around, of second order in their distance,
+    and zero where one of them lacks tangents.
     Error bounds: :func:`vizlight.geometry.projection.turn` and ``perspective``. Work is done in
     float64, block by block; arrays keep their type. Source: Banks, section 3.
     """
@@ -108,27 +119,32 @@ def project(
     if light not in get_args(LightWhen):
         raise ValueError(_check.message("light", "'before' or 'after'", repr(light)))
     _check.instance("scene", scene, Scene, optional=True)
+    for option in options:
+        if option not in LIGHTING:
+            expected = "an option of project or of illuminate"
+            raise TypeError(_check.message(option, expected, "one that neither has"))
     if scene is None and options:
         expected = "an option of project, or scene= beside an option of illuminate"
         raise TypeError(_check.message(next(iter(options)), expected, "neither"))
     distance = None if distance is None else projection.check_distance(distance)
-    names = (vectors,) if isinstance(vectors, str) else tuple(vectors or ())
-    job = Turning(rotation, hyperplane, distance, positions, frame, names, bool(cut))
+    names = () if vectors is None else (vectors,) if isinstance(vectors, str) else vectors
+    if not isinstance(names, list | tuple):
+        expected = "the name of a point array, or a list of names"
+        raise TypeError(_check.message("vectors", expected, _check.describe(vectors)))
+    job = Turning(rotation, hyperplane, distance, positions, frame, tuple(names), bool(cut))
 
     total = 2 * sum(leaf.n_points for leaf in _mesh.leaves(mesh))
     with _progress.progress("project", total, show=progress_bar) as report:
         done = Counter(report)
-        out = _each(mesh, lambda leaf: job.turned(leaf, done))
+        lost = Counter(lambda _: None)
+        out = _each(mesh, lambda leaf: job.turned(leaf, done, lost))
         if scene is not None and light == "before":
             _check_tangents(out, job, options)
-            options.setdefault("tangents", frame)
-            out = illuminate(out, scene, positions=positions, **options)
-        lost = Counter(lambda _: None)
+            out = illuminate(out, scene, positions=positions, **_by(frame, options))
         out = _each(out, lambda leaf: job.projected(leaf, done, lost))
         if scene is not None and light == "after":
             _check_tangents(out, job, options, PROJECTED)
-            options.setdefault("tangents", f"{PROJECTED}{frame}")
-            out = illuminate(out, scene, **options)
+            out = illuminate(out, scene, **_by(f"{PROJECTED}{frame}", options))
     if lost.count:
         _check.warn(
             f"{lost.count} points cannot be projected (on or behind the eye's hyperplane, or not "
@@ -154,6 +170,11 @@ def _each(mesh: Any, work: Callable[[Any], Any], path: str = "") -> Any:
     for key, value in mesh.field_data.items():
         out.field_data[key] = value
     return out
+
+
+def _by(tangents: str | None, options: dict[str, Any]) -> dict[str, Any]:
+    """Return options of light by the frame, unless they name other tangents."""
+    return options if options.get("tangents") is not None else {**options, "tangents": tangents}
 
 
 def _check_tangents(mesh: Any, job: Turning, options: dict[str, Any], prefix: str = "") -> None:

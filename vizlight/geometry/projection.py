@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vizlight import _check
+from vizlight.model.frames import default_rtol, orthonormalize
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
 AXES = "xyzw"
 #: Matrices whose rows miss orthonormality by more than this are refused: text keeps 7 digits.
 SLACK = 2e-7
+#: Images of a frame that span less are looked at closely: their volume loses half the digits.
+DOUBTFUL = 1e-6
 
 
 def plane_rotation(n: int, plane: Any, angle: float, /) -> Array:
@@ -263,6 +266,100 @@ def push_forward(vectors: ArrayLike, points: ArrayLike, /, *, distance: float | 
             scale = factor[..., np.newaxis, np.newaxis]
             rows = scale * (rows[..., :-1] + image[..., np.newaxis, :] * (rows[..., -1:] / d))
     return np.array(rows)
+
+
+def push_frame(
+    frame: ArrayLike,
+    points: ArrayLike,
+    /,
+    *,
+    distance: float | None = None,
+    rtol: float | None = None,
+) -> tuple[Any, Any]:
+    """Return a frame of the space that tangents are taken to by :func:`push_forward`.
+
+    Parameters
+    ----------
+    frame : array_like, shape (..., k, n)
+        Tangents at each point; orthonormalised here.
+    points : array_like, shape (..., n)
+    distance : float, optional
+        As for :func:`perspective`.
+    rtol : float, optional
+        The part of a unit vector's image, as a part of the largest that the projection gives
+        there, that counts as none. Default: ``8 sqrt(n) eps``.
+
+    Returns
+    -------
+    frame : ndarray, shape (..., k, 3)
+        Orthonormal rows, the first along the image of the first tangent. Where the projection
+        takes a direction of the space to nothing (a silhouette) rows past the rank are zero.
+    rank : ndarray of int, shape (...)
+
+    Raises
+    ------
+    TypeError, ValueError
+        As :func:`push_forward`.
+
+    Notes
+    -----
+    The rank is the number of singular values of the image of an orthonormal frame above
+    ``rtol`` times a bound on rounding, the product over the axes projected away of
+    ``f (1 + |y|/d (1 + f |x_n|/d))`` with ``f = d/(d - x_n)``, 1 if orthographic: what is less is
+    rounding. What the rows span is known to eps over the least singular value.
+    """
+    rows = orthonormalize(frame)[0]
+    k, n = rows.shape[-2:]
+    if k > 3:
+        raise ValueError(_check.message("frame", "3 tangents or fewer", k))
+    tolerance = default_rtol(n, rows.dtype) if rtol is None else rtol
+    tolerance = _check.number("rtol", tolerance, low=0.0)
+    image = push_forward(rows, points, distance=distance)
+    with np.errstate(all="ignore"):
+        if distance is not None:
+            image /= _rounding(np.asarray(points), float(distance))[..., np.newaxis, np.newaxis]
+        found, rank = orthonormalize(image)
+        # The volume that the images span is at most the least singular value.
+        doubtful = ~(_squared_volume(image) > max(DOUBTFUL, tolerance) ** 2)
+    if doubtful.any():
+        found[doubtful], rank[doubtful] = _significant(image[doubtful], tolerance)
+    return found, rank
+
+
+def _squared_volume(rows: Any) -> Any:
+    """Return the square of the volume that 1 to 3 vectors in 3-space span."""
+    if rows.shape[-2] == 3:
+        return np.linalg.det(rows) ** 2
+    a, b = rows[..., 0, :], rows[..., -1, :]
+    square = np.einsum("...i,...i", a, a)
+    if rows.shape[-2] == 1:
+        return square
+    return square * np.einsum("...i,...i", b, b) - np.einsum("...i,...i", a, b) ** 2
+
+
+def _rounding(points: Any, distance: float) -> Any:
+    """Return how much :func:`push_forward` enlarges the rounding of unit vectors and places."""
+    bound = np.ones(points.shape[:-1], dtype=points.dtype)
+    last = points
+    for factor, image in _steps(points, distance):
+        aside = np.linalg.norm(image / distance, axis=-1)
+        bound *= np.abs(factor) * (1 + aside * (1 + np.abs(factor * last[..., -1] / distance)))
+        last = image
+    return bound
+
+
+def _significant(image: Any, tolerance: float) -> tuple[Any, Any]:
+    """Return a frame of what images span beyond a tolerance, and their rank."""
+    image = np.where(np.all(np.isfinite(image), axis=(-2, -1), keepdims=True), image, 0)
+    left, size, right = np.linalg.svd(image, full_matrices=False)
+    large = size > tolerance
+    full = np.all(large, axis=-1)
+    # Along the images rather than against them.
+    sign = np.where(np.take_along_axis(left, np.abs(left).argmax(-2)[:, np.newaxis], -2) < 0, -1, 1)
+    found = np.where(large[..., np.newaxis], right * sign.swapaxes(-2, -1), 0)
+    # The rows' own order is kept where nothing is lost.
+    found[full] = orthonormalize(image[full], rtol=0.0)[0]
+    return found, np.count_nonzero(large, axis=-1)
 
 
 def check_distance(distance: Any) -> float:

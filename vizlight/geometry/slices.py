@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from vizlight import _check
-from vizlight.model.frames import orthonormalize
+from vizlight.model.frames import default_rtol, orthonormalize
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -107,7 +108,65 @@ def cut(values: ArrayLike, simplices: ArrayLike, /) -> tuple[Any, Any, Any]:
     return edges, weights, np.asarray(cells_of, dtype=np.intp).reshape(cells.shape)
 
 
-def slice_frame(frame: ArrayLike, normal: ArrayLike, /) -> Any:
+def mean_frame(frame: ArrayLike, shares: Any, /) -> Any:
+    """Return tangent frames between points, each a mean of the spaces at some of them.
+
+    A frame stands for the space that it spans, whatever basis it is: neighbours may differ by
+    any rotation or change of sign, so numbers cannot be mixed as they are. Each frame is turned
+    within its own space until it is nearest to that of the largest share, and mixed then.
+
+    Parameters
+    ----------
+    frame : array_like, shape (N, k, n)
+        Tangents at the points; orthonormalised here.
+    shares : sparse array, shape (M, N)
+        What each point has in each mean: 0 or more, in sum 1.
+
+    Returns
+    -------
+    ndarray, shape (M, k, n)
+        Orthonormal rows; zero where a point that has a share lacks tangents, or two of the
+        spaces have directions at right angles, which have no mean.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If shapes do not fit.
+
+    Notes
+    -----
+    The turn is the orthogonal factor ``U V^T`` of the matrix ``F G^T = U S V^T`` of two frames
+    (orthogonal Procrustes). Another basis at a point changes what is spanned by 8 eps over the
+    cosine of the largest angle between the spaces. Between two points of a smooth manifold
+    the mean is off by the square of their distance.
+    """
+    rows, _ = orthonormalize(frame)
+    if rows.ndim != 3:
+        raise ValueError(_check.message("frame", "shape (N, k, n)", f"shape {rows.shape}"))
+    count, k, n = rows.shape
+    parts = shares.tocsr()
+    if parts.shape[1] != count:
+        expected = f"a matrix of {count} columns, one a point"
+        raise ValueError(_check.message("shares", expected, f"shape {parts.shape}"))
+    owner = np.repeat(np.arange(parts.shape[0]), np.diff(parts.indptr))
+    # The last of each owner's entries, ordered by share, is that of its largest.
+    order = np.lexsort((parts.data, owner))
+    largest = np.zeros(parts.shape[0], dtype=np.intp)
+    largest[owner[order]] = parts.indices[order]
+    base = rows[largest[owner]]
+    other = rows[parts.indices]
+    left, cosines, right = np.linalg.svd(base @ other.swapaxes(1, 2))
+    turned = (left @ right @ other).reshape(len(owner), k * n)
+    mixing = csr_array(
+        (parts.data, np.arange(len(owner)), parts.indptr), (len(largest), len(owner))
+    )
+    found: Array = orthonormalize((mixing @ turned).reshape(-1, k, n))[0]
+    # A frame with rows of zero has such a cosine with any frame.
+    found[owner[cosines.min(axis=1) <= default_rtol(n, rows.dtype)]] = 0
+    return found
+
+
+def slice_frame(frame: ArrayLike, normal: ArrayLike, /, *, rtol: float | None = None) -> Any:
     """Return the tangent frame of a manifold's cut by a hyperplane.
 
     Parameters
@@ -116,6 +175,9 @@ def slice_frame(frame: ArrayLike, normal: ArrayLike, /) -> Any:
         Tangents of the manifold, k of 2 or more; orthonormalised here.
     normal : array_like, shape (n,)
         Of the hyperplane, any length but 0.
+    rtol : float, optional
+        The sine of the angle between manifold and hyperplane below which they touch. Default:
+        ``8 sqrt(n) eps``.
 
     Returns
     -------
@@ -144,7 +206,8 @@ def slice_frame(frame: ArrayLike, normal: ArrayLike, /) -> Any:
     across /= np.abs(across).max()
     a = rows @ (across / np.linalg.norm(across))
     size = np.linalg.norm(a, axis=-1)
-    good = (size > 8 * np.sqrt(n) * np.finfo(rows.dtype).eps) & (rank == k)
+    rtol = default_rtol(n, rows.dtype) if rtol is None else _check.number("rtol", rtol, low=0.0)
+    good = (size > rtol) & (rank == k)
     mirror = a / np.where(good, size, 1)[..., np.newaxis]
     mirror[..., 0] += np.where(mirror[..., 0] < 0, -1, 1)
     square = np.sum(mirror**2, axis=-1)

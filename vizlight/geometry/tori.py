@@ -122,10 +122,11 @@ def torus_curve(
     ``2 pi turns max(1, A)``, on top.
     Source: Banks, section 3.
     """
-    number = _check.number("ratio", float(ratio) if isinstance(ratio, Fraction) else ratio)
+    number = _check.number("ratio", ratio)
     r1, r2 = radius_of("r1", r1), radius_of("r2", r2)
     if turns is None:
-        turns = Fraction(ratio).limit_denominator(1000).denominator
+        exact_ratio = ratio if isinstance(ratio, Fraction) else Fraction(number)
+        turns = exact_ratio.limit_denominator(1000).denominator
         if turns * number != round(turns * number):
             # The nearest double of 1/3 times 3 is 1, but that of 5/49 times 49 need not be 5.
             exact = abs(Fraction(number) * turns - round(turns * number)) < Fraction(1, 2**40)
