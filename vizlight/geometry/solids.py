@@ -82,7 +82,7 @@ def tessellate(solid: Any, /, *, tolerance: float = 3e-3) -> Mesh:
         return _empty(shift, scale)
     spacing = _spacing(unit.surfaces, tolerance)
     for attempt, finer in enumerate((1.0, 1.0, 1.7, 2.9)):
-        found = _mesh(unit, spacing / finer, attempt)
+        found = _mesh(unit, spacing / finer, tolerance, attempt)
         if found is not None:
             triangles, patch, points = found
             signs = np.ones(len(unit.surfaces))
@@ -125,7 +125,9 @@ def _spacing(surfaces: list[Surface], tolerance: float) -> float:
     return min(sizes)
 
 
-def _mesh(unit: Unit, spacing: float, attempt: int) -> tuple[Index, Index, Array] | None:
+def _mesh(
+    unit: Unit, spacing: float, tolerance: float, attempt: int
+) -> tuple[Index, Index, Array] | None:
     """Return triangles, their surfaces and points; None where they do not fit the surfaces."""
     random = np.random.default_rng([1990, attempt])
     points, on = _sampling.points(unit, spacing, random)
@@ -148,7 +150,7 @@ def _mesh(unit: Unit, spacing: float, attempt: int) -> tuple[Index, Index, Array
     triangles[turned] = triangles[turned][:, ::-1]
     # Corner 3 is where the determinant looks from: positive means faces as listed look inward.
     triangles = triangles[:, ::-1]
-    patch, fits = _patches(unit, points, triangles, on, spacing)
+    patch, fits = _patches(unit, points, triangles, on, spacing, tolerance)
     # A point that no triangle has is of a wall or a gap that tetrahedra reach through.
     lost = len(points) - len(np.unique(triangles))
     if not fits or lost > max(2, 0.003 * len(points)):
@@ -261,7 +263,7 @@ def _smooth(
 
 
 def _patches(
-    unit: Unit, points: Array, triangles: Index, on: Bools, spacing: float
+    unit: Unit, points: Array, triangles: Index, on: Bools, spacing: float, tolerance: float
 ) -> tuple[Index, bool]:
     """Return the surface of each triangle, and whether all triangles fit theirs."""
     corners = points[triangles]
@@ -282,8 +284,29 @@ def _patches(
         best = np.minimum(score, best)
     # A triangle whose corners share no surface cuts an edge off, or reaches through a wall or
     # gap; a few are where two surfaces touch.
-    stray = size[best > 9].sum() > 0.004 * size.sum()
-    return patch, not stray
+    stray = np.flatnonzero(best > 9)
+    stray = stray[~_tangent(unit, corners[stray], across[stray], on[triangles[stray]], tolerance)]
+    return patch, bool(size[stray].sum() <= 0.004 * size.sum())
+
+
+def _tangent(
+    unit: Unit, corners: Array, across: Array, on: Bools, tolerance: float
+) -> Bools:
+    """Return which triangles lie where surfaces touch: within the tolerance of one of them.
+
+    The solid is on the same side of all their corners, which it is not in a thin wall.
+    """
+    near = np.zeros(len(corners), np.bool_)
+    alike = np.zeros(corners.shape[:2], np.bool_)
+    flat = corners.reshape(-1, 3)
+    for i, surface in enumerate(unit.surfaces):
+        near |= (np.abs(surface.distance(flat)).reshape(-1, 3) < tolerance).all(axis=1)
+        normal = surface.normal(flat)
+        beyond, before = unit.inside(flat + PROBE * normal), unit.inside(flat - PROBE * normal)
+        outward = (before.astype(int) - beyond).reshape(-1, 3)
+        lean = np.einsum("ijk,ik->ij", normal.reshape(-1, 3, 3), across)
+        alike |= on[:, :, i] & (outward * lean > 0.5)
+    return near & alike.all(axis=1)
 
 
 def _signed(mesh: Mesh) -> Mesh:
