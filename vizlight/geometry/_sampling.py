@@ -86,9 +86,14 @@ class Unit:
         return matter
 
 
+def estimate(surfaces: list[Surface], spacing: float) -> float:
+    """Return how many points of a spacing the surfaces have, whole as they are."""
+    return sum(surface.area for surface in surfaces) / spacing**2
+
+
 def points(unit: Unit, spacing: float, random: np.random.Generator) -> tuple[Array, Bools]:
     """Return points on the solid: corners, edges and faces; and which surfaces each is on."""
-    if sum(surface.area for surface in unit.surfaces) / spacing**2 > MOST:
+    if estimate(unit.surfaces, spacing) > MOST:
         raise ValueError(
             _check.message(
                 "tolerance", f"one that {MOST} points can keep",
