@@ -34,6 +34,9 @@ if TYPE_CHECKING:
 #: Spacings that are tried where a thin wall or gap does not come out, as divisors of the first,
 #: up to so many points.
 FINER, PATIENCE = (1.7, 2.9, 5.0, 8.5, 14.0, 24.0), 120_000
+#: The spacing that narrow faces ask for at most, as a share of the solid's size: narrower ones
+#: are tried.
+NARROW = 0.05
 #: How far points are moved for Delaunay's sake, in units of their spacing.
 JOGGLE = 1e-7
 #: Tetrahedra of less height, in units of the points' spacing, have no side of their own.
@@ -120,13 +123,13 @@ def _spacing(surfaces: list[Surface], tolerance: float) -> float:
     sizes = []
     for surface in surfaces:
         if isinstance(surface, Plane):
-            sizes.append(min(0.7 * min(surface.extent), 6.4 * math.sqrt(tolerance)))
+            sizes.append(min(max(0.7 * min(surface.extent), NARROW), 6.4 * math.sqrt(tolerance)))
             continue
         radius = getattr(surface, "radius", None) or max(surface.radii)  # type: ignore[union-attr]
         sizes.append(min(math.sqrt(2 * tolerance * radius), 0.6 * radius))
         height = getattr(surface, "height", None)
         if height is not None:
-            sizes.append(0.7 * height)
+            sizes.append(max(0.7 * height, NARROW))
     return min(sizes)
 
 
