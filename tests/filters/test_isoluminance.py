@@ -177,6 +177,51 @@ def test_the_error_on_a_mesh_falls_with_subdivision():
     assert np.abs(expected - lines["luminance"]).max() < 1e-7
 
 
+def test_coarse_meshes_keep_the_allowed_error(random):
+    """Triangles larger than the highlight are split: against interpolated normals, anywhere."""
+    mesh = pv.Sphere(theta_resolution=12, phi_resolution=9)
+    found = isoluminance(mesh, SHINY, levels=0.02)["bands"]
+    normals = np.asarray(mesh.point_normals, dtype=float)
+    place, polygon = banded.places(polygons(found), random, 2)
+    some = random.choice(len(place), 3000, replace=False)
+    place, polygon = place[some], polygon[some]
+    # The triangle that a place is on, by itself: all weights from 0 to 1 and no distance.
+    a, b, c = np.asarray(mesh.points, dtype=float)[mesh.regular_faces.T]
+    best = np.full(len(place), np.inf)
+    normal = np.zeros_like(place)
+    for i, face in enumerate(mesh.regular_faces):
+        basis = np.stack([a[i], b[i], c[i]], axis=1)
+        weight = np.linalg.solve(basis, place.T).T
+        miss = np.maximum(-weight.min(axis=1), 0) + np.abs(weight.sum(axis=1) - 1)
+        nearer = miss < best
+        best[nearer] = miss[nearer]
+        normal[nearer] = weight[nearer] @ normals[face]
+    assert best.max() < 1e-6
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    error = np.abs(exact(place, normal) - found["luminance"][polygon])
+    assert error.max() <= 1.02 * found.field_data["luminance_error"][0] <= 1.02 * 0.02
+    assert found["luminance"].max() > 0.85
+
+
+def test_colour_goes_with_the_bands():
+    scene = DULL.replace(material=Material(ambient=0.1, diffuse=0.8, specular=0, color="orange"))
+    tint = np.array(pv.Color("orange").float_rgb)
+    for shape in (pv.Sphere(), Sphere(), Sphere() - Block((0, 0, 1))):
+        bands = isoluminance(shape, scene)["bands"]
+        # The source may be as bright as its tint; what counts is one colour a band.
+        expected = tint * bands["luminance"][:, np.newaxis]
+        scale = bands["rgb"].max() / expected.max()
+        np.testing.assert_allclose(bands["rgb"], scale * expected, atol=1e-6)
+    assert "rgb" not in isoluminance(Sphere(), DULL)["bands"].cell_data
+
+
+@pytest.mark.parametrize("empty", [pv.PolyData, pv.UnstructuredGrid, pv.MultiBlock])
+def test_an_empty_mesh_has_no_bands(empty):
+    found = isoluminance(empty(), DULL)
+    assert found["bands"].n_cells == found["contours"].n_cells == 0
+    assert found["bands"].field_data["luminance_error"] == [0]
+
+
 def test_areas_of_bands_against_vtk():
     """With tangents the luminance itself is interpolated, as VTK's banded contours do."""
     mesh = sphere_mesh(40)

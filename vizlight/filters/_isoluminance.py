@@ -13,10 +13,10 @@ import pyvista as pv
 from vizlight import _check, engine
 from vizlight.filters import _mesh, _provenance
 from vizlight.filters._illuminate import illuminate
-from vizlight.filters._light import DEFAULT_NAME
+from vizlight.filters._light import DEFAULT_NAME, VALID
 from vizlight.filters._mesh import unit_rows
 from vizlight.geometry import bands as _bands
-from vizlight.geometry import contours, solids
+from vizlight.geometry import contours, facets, solids
 from vizlight.geometry import isoluminance as closed
 from vizlight.geometry import levels as _levels
 from vizlight.geometry.primitives import Solid, Sphere, Truncus
@@ -64,8 +64,7 @@ def isoluminance(
     scene : Scene
         One light or several; a highlight needs a view.
     levels : int, float or sequence of float, default: 16
-        A count of equal steps, an allowed luminance error (solids) or half step (meshes), or
-        the luminance of the contours.
+        A count of equal steps, an allowed luminance error, or the luminance of the contours.
     tolerance : float, default: 3e-3
         Of a combined solid: how far triangles may be from its curves and surfaces, as a share of
         its size.
@@ -84,8 +83,10 @@ def isoluminance(
     pyvista.MultiBlock
         ``bands``: polygons with the cell arrays ``luminance`` and ``band``, closed if the
         surface is, and for a solid ``patch``. ``contours``: lines with the cell array
-        ``luminance``. Field data of the bands: ``luminance_error``, and for a solid what it was
-        measured to be on the exact surface; ``luminance_provenance``.
+        ``luminance``. ``rgb`` on the bands where the scene has a colour: that of each polygon's
+        middle, as bright as its band. Field data of the bands: ``luminance_error``, the bound of
+        a closed form, else what was measured at the middle and along the edges of each polygon;
+        ``luminance_provenance``.
 
     Raises
     ------
@@ -96,12 +97,14 @@ def isoluminance(
     -----
     UserWarning
         If points could not be lit; triangles at such points have the band of the ambient light.
+        If an allowed error is not kept, as where a highlight ends at the terminator.
 
     Notes
     -----
     A solid is lit at its exact points and normals. A mesh is lit with its normals, interpolated
     over each triangle and made unit: contour points are found by halving edges, so the
-    terminator does not jump from corner to corner. With tangents the luminance itself is
+    terminator does not jump from corner to corner, and triangles over which the luminance bends
+    are split. An empty mesh has no bands. With tangents the luminance itself is
     interpolated. A sphere, or a truncus, under one light without a highlight has closed forms.
     Source: Isoluminance.
     """
@@ -110,6 +113,7 @@ def isoluminance(
     }
     _check.instance("scene", scene, Scene)
     _levels.check(levels)
+    _check.number("tolerance", tolerance, low=1e-6, high=0.1)
     if not isinstance(name, str) or not name:
         raise ValueError(_check.message("name", "a name for the cell array", repr(name)))
     if isinstance(mesh, Solid):
@@ -120,13 +124,17 @@ def isoluminance(
                 )
         light = _Light(scene, model, two_sided, flip_normals, threads)
         found = _of_solid(mesh, light, levels, tolerance)
-        return _blocks(found, name, light.record(options), patches=True)
+        told = light.record(options)
+        rgb = _rgb(found, light) if scene.colored else None
+        return _blocks(found, name, told, rgb, patches=True)
     if not isinstance(mesh, pv.DataSet | pv.MultiBlock):
         remedy = "make solids of vizlight.Sphere, Truncus and Block"
         raise TypeError(
             _check.message("mesh", "a PyVista mesh or a solid", type(mesh).__name__, remedy)
         )
     joined = mesh.combine() if isinstance(mesh, pv.MultiBlock) else mesh
+    if not joined.n_points:
+        joined = pv.PolyData()
     return _of_mesh(joined, scene, levels, threads, options)
 
 
@@ -193,27 +201,31 @@ def _of_mesh(
     lit = illuminate(surface, scene, threads=threads, precision="float64", name=HIDDEN, **given)
     values = np.asarray(lit.point_data[HIDDEN], dtype=np.float64)
     points = np.array(surface.points, dtype=np.float64)
-    luminance = None
-    if options["tangents"] is None:
-        light = _Light(
-            scene, options["model"], options["two_sided"], options["flip_normals"], threads
-        )
+    light = _Light(scene, options["model"], options["two_sided"], options["flip_normals"], threads)
+    if not len(triangles):
+        steps = _levels.steps(levels, 0.0, 0.0)
+        bands, _ = _bands.cut(np.empty((0, 3)), triangles, np.empty((0, 3)), steps)
+        bands = dataclasses.replace(bands, error=0.0)
+    elif options["tangents"] is None:
         found = _mesh.normals_of(surface, given["normals"], 3, scene.view)
         unit = unit_rows(np.asarray(found, dtype=np.float64))
+        valid = lit.point_data.get(f"{HIDDEN}{VALID}")
+        able = np.ones(len(points), np.bool_) if valid is None else np.asarray(valid, np.bool_)
+        rows = np.concatenate([points, unit], axis=1)
 
-        def luminance(a: Index, b: Index, share: Array, _: Index) -> Array:
-            t = share[:, np.newaxis]
-            normal = unit_rows(unit[a] * (1 - t) + unit[b] * t)
-            return light(points[a] * (1 - t) + points[b] * t, normal)
+        def luminance(places: Array, directions: Array) -> Array:
+            return light(places, unit_rows(directions))
 
-    used = values[triangles]
-    low, high = (float(used.min()), float(used.max())) if used.size else (0.0, 0.0)
-    steps = _levels.steps(levels, low, high, exact=True)
-    bands, _ = _bands.cut(points, triangles, used, steps, luminance=luminance)
+        bands = contours.refine(facets.Facets(rows, triangles, luminance, able), levels)
+    else:
+        used = values[triangles]
+        steps = _levels.steps(levels, float(used.min()), float(used.max()), exact=True)
+        bands, _ = _bands.cut(points, triangles, used, steps)
+        bands = dataclasses.replace(bands, error=steps.error)
     told = _provenance.provenance(lit, HIDDEN)
     told |= {"filter": "isoluminance", "options": _provenance.plain(options)}
-    bands = dataclasses.replace(bands, error=steps.error)
-    return _blocks(bands, options["name"], json.dumps(told), patches=False)
+    rgb = _rgb(bands, light) if scene.colored and options["tangents"] is None else None
+    return _blocks(bands, options["name"], json.dumps(told), rgb, patches=False)
 
 
 def _surface(mesh: Any) -> tuple[pv.PolyData, Index, Any]:
@@ -222,7 +234,7 @@ def _surface(mesh: Any) -> tuple[pv.PolyData, Index, Any]:
     if not isinstance(mesh, pv.PolyData):
         surface = mesh.extract_surface(algorithm="geometry", pass_pointid=True, pass_cellid=False)
         ids = np.asarray(surface.point_data["vtkOriginalPointIds"])
-    if not (surface.GetNumberOfPolys() or surface.GetNumberOfStrips()):
+    if surface.n_points and not (surface.GetNumberOfPolys() or surface.GetNumberOfStrips()):
         remedy = "take a contour or the mesh's extract_surface()"
         raise ValueError(
             _check.message(
@@ -234,20 +246,34 @@ def _surface(mesh: Any) -> tuple[pv.PolyData, Index, Any]:
     bare.SetPolys(surface.GetPolys())
     bare.SetStrips(surface.GetStrips())
     bare = bare if bare.is_all_triangles else bare.triangulate()
-    triangles = np.asarray(bare.regular_faces, dtype=np.intp)
+    triangles = np.asarray(bare.regular_faces, dtype=np.intp).reshape(-1, 3)
     finite: Any = np.isfinite(np.asarray(surface.points)).all(axis=1)
     return surface, triangles[finite[triangles].all(axis=1)], ids
 
 
-def _blocks(bands: Bands, name: str, told: str, *, patches: bool) -> pv.MultiBlock:
+def _rgb(bands: Bands, light: _Light) -> Array:
+    """Return the colour of each polygon: that of the light at its middle, as bright as its band."""
+    middle = bands.middles()
+    normals = unit_rows(middle[:, 3:]) if middle.shape[1] == 6 else bands.normals()
+    value = light(middle[:, :3], normals)
+    share = np.divide(bands.values, value, out=np.ones_like(value), where=value > 0)
+    return np.asarray(light.last.rgb * share[:, np.newaxis])
+
+
+def _blocks(
+    bands: Bands, name: str, told: str, rgb: Array | None, *, patches: bool
+) -> pv.MultiBlock:
     """Return bands and contours as meshes."""
+    points = bands.points[:, :3]
     size = np.diff(bands.offsets)
     cells = np.insert(bands.corners, bands.offsets[:-1], size)
-    surface = pv.PolyData(bands.points, faces=cells) if len(size) else pv.PolyData()
+    surface = pv.PolyData(points, faces=cells) if len(size) else pv.PolyData()
     prefix = "" if name == DEFAULT_NAME else f"{name}_"
     surface.cell_data[f"{prefix}band"] = bands.band
     if patches:
         surface.cell_data[f"{prefix}patch"] = bands.patch
+    if rgb is not None:
+        surface.cell_data[f"{prefix}rgb"] = rgb
     surface.cell_data[name] = bands.values
     surface.cell_data.active_scalars_name = name
     surface.field_data[f"{name}_error"] = [bands.error]
@@ -257,7 +283,7 @@ def _blocks(bands: Bands, name: str, told: str, *, patches: bool) -> pv.MultiBlo
         used, ends = np.unique(bands.lines, return_inverse=True)
         ends = ends.reshape(-1, 2)
         lines = pv.PolyData(
-            bands.points[used], lines=np.column_stack([np.full(len(ends), 2), ends]).ravel()
+            points[used], lines=np.column_stack([np.full(len(ends), 2), ends]).ravel()
         )
     lines.cell_data[name] = bands.line_levels
     return pv.MultiBlock({"bands": surface, "contours": lines})

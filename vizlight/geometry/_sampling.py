@@ -26,6 +26,10 @@ if TYPE_CHECKING:
 PROBE = 1e-6
 #: Points farther from a surface than this are not on it.
 ON = 1e-9
+#: How much the spacing grows with the distance from what is small.
+GROWTH = 0.35
+#: The most points of the finest spacing that are looked through.
+SEARCHED = 12_000_000
 #: The most points: beyond, tetrahedra fill gigabytes.
 MOST = 400_000
 
@@ -86,18 +90,72 @@ class Unit:
         return matter
 
 
-def points(unit: Unit, spacing: float, random: np.random.Generator) -> tuple[Array, Bools]:
+class Size:
+    """The spacing of points over space: coarse, and finer toward surfaces of small radius.
+
+    Parameters
+    ----------
+    unit : Unit
+    coarse : float
+        The spacing far from all that is small.
+    own : ndarray, shape (number of surfaces,)
+        The spacing that each surface needs.
+    """
+
+    def __init__(self, unit: Unit, coarse: float, own: Array) -> None:
+        self.coarse = coarse
+        self.small = [(i, float(need)) for i, need in enumerate(own) if need < 0.99 * coarse]
+        self.unit = unit
+        finest = min([coarse, *(need for _, need in self.small)])
+        count = max(int(np.ceil(np.log2(coarse / finest))), 0) + 1
+        self.levels = [coarse / 2**k for k in range(count)]
+
+    def of(self, points: Array) -> Array:
+        """Return the spacing at some points."""
+        found = np.full(len(points), self.coarse)
+        for i, need in self.small:
+            # No farther than the surface's own piece: it lies within its primitive.
+            far = np.abs(self.unit.surfaces[i].distance(points))
+            for j, owner in enumerate(self.unit.owners):
+                if owner is self.unit.owners[i]:
+                    far = np.maximum(far, self.unit.surfaces[j].distance(points))
+            found = np.minimum(found, need + GROWTH * far)
+        return found
+
+    def samples(self, surface: Surface, share: float, random: np.random.Generator) -> Array:
+        """Return points of a surface at a share of their spacing."""
+        found = []
+        for k, level in enumerate(self.levels):
+            # The spacing of a finer level is up to twice its own: it is dense enough.
+            places = surface.samples((max(share, 0.8) if k else share) * level, random)
+            if len(self.levels) > 1:
+                size = self.of(places)
+                own = size >= level if k < len(self.levels) - 1 else np.ones(len(size), np.bool_)
+                places = places[own & (size < 2 * level) if k else own]
+            found.append(places)
+        return np.concatenate(found)
+
+
+def estimate(surfaces: list[Surface], spacing: float) -> float:
+    """Return how many points of a spacing the surfaces have, whole as they are."""
+    return sum(surface.area for surface in surfaces) / spacing**2
+
+
+def points(unit: Unit, size: Size, random: np.random.Generator) -> tuple[Array, Bools]:
     """Return points on the solid: corners, edges and faces; and which surfaces each is on."""
-    if sum(surface.area for surface in unit.surfaces) / spacing**2 > MOST:
+    finest = size.levels[-1]
+    searched = 2 * estimate(unit.surfaces, finest) if len(size.levels) > 1 else 0
+    if searched > SEARCHED or estimate(unit.surfaces, size.coarse) > MOST:
         raise ValueError(
             _check.message(
                 "tolerance", f"one that {MOST} points can keep",
-                f"a spacing of {spacing:g} of the solid's size", "raise it",
+                f"a spacing of {finest:g} of the solid's size",
+                "raise it, or leave out what is tiny beside the whole",
             )
         )  # fmt: skip
-    fine = [surface.samples(spacing / 2, random) for surface in unit.surfaces]
-    edges, pairs = _meetings(unit, fine, spacing)
-    corners = _corners(unit, edges, pairs, spacing)
+    fine = [size.samples(surface, 0.5, random) for surface in unit.surfaces]
+    edges, pairs = _meetings(unit, fine, size)
+    corners = _corners(unit, edges, pairs, size)
     for surface in unit.surfaces:
         apex = getattr(surface, "apex", None)
         if apex is None:
@@ -106,29 +164,30 @@ def points(unit: Unit, spacing: float, random: np.random.Generator) -> tuple[Arr
         inside = unit.inside(ring)
         if inside.any() and not inside.all():
             corners = np.concatenate([corners, apex[np.newaxis]])
-    corners = _thin(corners, 1e-5, None)
-    lines = _away(edges, corners, 0.5 * spacing)
-    lines = _thin(lines, 0.5 * spacing, unit.on(lines), shared=2)
+    corners = _thin(corners, np.full(len(corners), 1e-5), None)
+    lines = _away(edges, corners, 0.5 * size.of(edges))
+    lines = _thin(lines, 0.5 * size.of(lines), unit.on(lines), shared=2)
     faces: list[Array] = []
     for i, surface in enumerate(unit.surfaces):
-        found = surface.samples(spacing, random)
+        found = size.samples(surface, 1.0, random)
         found = found[unit.edge(found, np.full((len(found), 1), i))]
-        faces.append(_away(_away(found, edges, 0.7 * spacing), corners, 0.7 * spacing))
+        found = _away(found, edges, 0.7 * size.of(found))
+        faces.append(_away(found, corners, 0.7 * size.of(found)))
     # Where faces of two primitives coincide their points come twice.
     known = np.concatenate([corners, lines])
     found = np.concatenate(faces)
-    found = _thin(found, 0.6 * spacing, unit.on(found))
-    made = np.concatenate([known, found, _opposite(unit, found, edges, corners, spacing)])
+    found = _thin(found, 0.6 * size.of(found), unit.on(found))
+    made = np.concatenate([known, found, _opposite(unit, found, edges, corners, size)])
     return made, unit.on(made)
 
 
-def _opposite(unit: Unit, points: Array, edges: Array, corners: Array, spacing: float) -> Array:
+def _opposite(unit: Unit, points: Array, edges: Array, corners: Array, size: Size) -> Array:
     """Return the places opposite some points, on surfaces closer than the points' spacing.
 
     Tetrahedra then fill a thin wall or gap from side to side and do not reach through it.
     """
     found: list[Array] = [np.empty((0, 3))]
-    on = unit.on(points)
+    on, spacing = unit.on(points), size.of(points)
     for i, surface in enumerate(unit.surfaces):
         near = (np.abs(surface.distance(points)) < spacing) & ~on[:, i]
         if np.any(near):
@@ -136,27 +195,27 @@ def _opposite(unit: Unit, points: Array, edges: Array, corners: Array, spacing: 
             places = contours.onto(tuple(unit.surfaces), points[near], which)
             found.append(places[unit.edge(places, which)])
     places = np.concatenate(found)
-    places = _away(_away(places, edges, 0.7 * spacing), corners, 0.7 * spacing)
-    places = _away(places, points, 1e-3 * spacing)
+    for others, share in ((edges, 0.7), (corners, 0.7), (points, 1e-3)):
+        places = _away(places, others, share * size.of(places))
     here = np.concatenate([points, places])
-    kept = _thin(here, 0.3 * spacing, unit.on(here), first=len(points))
+    kept = _thin(here, 0.3 * size.of(here), unit.on(here), first=len(points))
     return kept[len(points) :]
 
 
-def _meetings(unit: Unit, fine: list[Array], spacing: float) -> tuple[Array, Index]:
+def _meetings(unit: Unit, fine: list[Array], size: Size) -> tuple[Array, Index]:
     """Return points of the curves where two surfaces meet, densely, and which two."""
     found: list[Array] = [np.empty((0, 3))]
     pairs: list[Index] = [np.empty((0, 2), np.intp)]
     for i, j in itertools.permutations(range(len(unit.surfaces)), 2):
         first, second = unit.surfaces[i], unit.surfaces[j]
-        start = fine[i][np.abs(second.distance(fine[i])) < spacing]
+        start = fine[i][np.abs(second.distance(fine[i])) < size.of(fine[i])]
         if not len(start):
             continue
         both = np.tile([0, 1], (len(start), 1))
         places = contours.onto((first, second), start, both, rounds=8)
         step = places - start
         good = np.abs(first.distance(places)) + np.abs(second.distance(places)) < ON
-        good &= np.einsum("ij,ij->i", step, step) < (3 * spacing) ** 2
+        good &= np.einsum("ij,ij->i", step, step) < (3 * size.of(start)) ** 2
         # Surfaces that coincide do not cross: no curve.
         cross = np.cross(first.normal(places), second.normal(places))
         good &= np.einsum("ij,ij->i", cross, cross) > 1e-12
@@ -168,18 +227,18 @@ def _meetings(unit: Unit, fine: list[Array], spacing: float) -> tuple[Array, Ind
     return np.concatenate(found), np.concatenate(pairs).astype(np.intp)
 
 
-def _corners(unit: Unit, edges: Array, pairs: Index, spacing: float) -> Array:
+def _corners(unit: Unit, edges: Array, pairs: Index, size: Size) -> Array:
     """Return the points where three surfaces meet."""
     found: list[Array] = [np.empty((0, 3))]
     for k, third in enumerate(unit.surfaces):
-        near = (np.abs(third.distance(edges)) < 1.5 * spacing) & ~np.any(pairs == k, axis=1)
+        near = (np.abs(third.distance(edges)) < 1.5 * size.of(edges)) & ~np.any(pairs == k, axis=1)
         start = edges[near]
         which = np.column_stack([pairs[near], np.full(len(start), k)])
         if not len(start):
             continue
         places = contours.onto(tuple(unit.surfaces), start, which, rounds=12)
         step = places - start
-        good = np.einsum("ij,ij->i", step, step) < (4 * spacing) ** 2
+        good = np.einsum("ij,ij->i", step, step) < (4 * size.of(start)) ** 2
         missing = np.zeros(len(places))
         normal = np.zeros((len(places), 3, 3))
         for j in range(3):
@@ -193,25 +252,45 @@ def _corners(unit: Unit, edges: Array, pairs: Index, spacing: float) -> Array:
     return np.concatenate(found)
 
 
-def _away(points: Array, others: Array, radius: float) -> Array:
-    """Return the points that are farther than a radius from all others."""
+def _away(points: Array, others: Array, radius: Array) -> Array:
+    """Return the points that are farther than their radius from all others."""
     if not len(points) or not len(others):
         return points
-    gap, _ = cKDTree(others).query(points, distance_upper_bound=radius)
-    return np.asarray(points[np.isinf(gap)])
+    gap, _ = cKDTree(others).query(points, distance_upper_bound=radius.max())
+    return np.asarray(points[gap >= radius])
+
+
+def _close(points: Array, radius: Array) -> Index:
+    """Return the pairs of points closer than the smaller of their radii."""
+    if radius.min() == radius.max():
+        return cKDTree(points).query_pairs(radius[0], output_type="ndarray")
+    # By octaves of the radius: the points of one against all that have no smaller one.
+    octave = np.floor(np.log2(radius)).astype(int)
+    found = [np.empty((0, 2), np.intp)]
+    for k in np.unique(octave):
+        some, rest = np.flatnonzero(octave == k), np.flatnonzero(octave >= k)
+        near = cKDTree(points[some]).sparse_distance_matrix(
+            cKDTree(points[rest]), 2.0 ** (k + 1), output_type="ndarray"
+        )
+        pairs = np.stack([some[near["i"]], rest[near["j"]]], axis=1)
+        kept = near["v"] < np.minimum(*radius[pairs.T])
+        kept &= (octave[pairs[:, 1]] > k) | (pairs[:, 0] < pairs[:, 1])
+        found.append(pairs[kept])
+    return np.concatenate(found)
 
 
 def _thin(
-    points: Array, radius: float, on: Bools | None, *, shared: int = 1, first: int = 0
+    points: Array, radius: Array, on: Bools | None, *, shared: int = 1, first: int = 0
 ) -> Array:
-    """Return points no two of which are within a radius, and none of which could be added.
+    """Return points no two of which are close, and none of which could be added.
 
-    With ``on``, which tells the surfaces of each, only points that share so many of them keep
-    each other away. The first points stay, whatever is near.
+    Close is nearer than the smaller of their radii. With ``on``, which tells the surfaces of
+    each, only points that share so many of them keep each other away. The first points stay,
+    whatever is near.
     """
     if not len(points):
         return points
-    pairs = cKDTree(points).query_pairs(radius, output_type="ndarray")
+    pairs = _close(points, radius)
     if on is not None:
         pairs = pairs[np.count_nonzero(on[pairs[:, 0]] & on[pairs[:, 1]], axis=1) >= shared]
     pairs = pairs[~(pairs < first).all(axis=1)]

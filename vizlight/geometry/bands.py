@@ -49,7 +49,7 @@ class Bands:
     steps : Steps
     error : float
         The largest luminance error: for closed forms the bound, else measured at the
-        middle of each polygon.
+        middle of each polygon and along its edges.
     """
 
     points: Array
@@ -67,6 +67,24 @@ class Bands:
     def levels(self) -> Array:
         """The luminance of the contours between the lowest and the highest."""
         return self.steps.edges[1:-1]
+
+    def middles(self) -> Array:
+        """Return the mean of each polygon's corners."""
+        size = np.diff(self.offsets)
+        owner = np.repeat(np.arange(len(size)), size)
+        columns = [np.bincount(owner, x, len(size)) for x in self.points[self.corners].T]
+        return np.asarray(np.stack(columns, axis=1) / size[:, np.newaxis])
+
+    def normals(self) -> Array:
+        """Return the mean unit normal of each polygon, zero where it has no area."""
+        corners, owner = self.triangles()
+        a, b, c = (self.points[corners[:, i], :3] for i in range(3))
+        # Over its size, as squares of tiny lengths vanish and those of huge ones overflow.
+        unit = float(np.ptp(self.points[:, :3], axis=0).max(initial=0)) or 1.0
+        across = np.cross((b - a) / unit, (c - a) / unit)
+        total = np.stack([np.bincount(owner, x, len(self.values)) for x in across.T], axis=1)
+        size = np.sqrt(np.einsum("ij,ij->i", total, total))[:, np.newaxis]
+        return np.asarray(total / np.where(size > 0, size, 1))
 
     def triangles(self) -> tuple[Index, Index]:
         """Return the polygons as fans of triangles, and the polygon of each."""

@@ -12,7 +12,7 @@ from vizlight.geometry import bands as _bands
 from vizlight.geometry import levels as _levels
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     Index = NDArray[np.intp]
     Luminance = Callable[[Array, Array], Array]
 
-#: Rounds of refinement, and triangles beyond which none begins.
-ROUNDS, ENOUGH = 20, 1_500_000
+#: Rounds of refinement, and triangles and polygons beyond which none begins.
+ROUNDS, ENOUGH, MANY = 20, 1_500_000, 300_000
 #: The share of a step that contours drawn as chords may add to the error.
 CURVED = 0.1
 #: Halvings of an edge while triangles are still refined.
@@ -34,6 +34,11 @@ ROUGH = 20
 #: Polygons of less than this share of their triangle are not measured: where the luminance
 #: jumps, all its contours run together.
 SLIVER = 1e-4
+#: Where along the edges of polygons their error is measured, and how far within.
+ALONG, WITHIN = (0.25, 0.5, 0.75), 1e-3
+#: The share of an allowed error up to which a measured one is taken: between the places where
+#: it is measured it may be a little larger.
+KEPT = 0.98
 #: Triangles beyond which none is asked for highlights smaller than itself, and places along its
 #: edge where it is asked.
 ASKED, GRID = 3000, 10
@@ -59,13 +64,14 @@ def draw(mesh: Mesh, luminance: Luminance, levels: Levels, /, *, low: float | No
     Returns
     -------
     Bands
-        Closed if the mesh is. ``error`` is measured at the middle of each polygon and of each
-        of its edges, on the exact surface.
+        Closed if the mesh is. ``error`` is measured at the middle of each polygon and at three
+        places of each of its edges, on the exact surface.
 
     Warns
     -----
     UserWarning
-        If an allowed error is not kept after 20 rounds of halving, or 1.5 million triangles.
+        If an allowed error is not kept after 20 rounds of halving, 1.5 million triangles or
+        300 thousand polygons.
 
     Notes
     -----
@@ -73,30 +79,56 @@ def draw(mesh: Mesh, luminance: Luminance, levels: Levels, /, *, low: float | No
     surfaces); only between them are contours drawn as chords.
     """
     _levels.check(levels)
-    bound = _levels.allowed(levels)
     if not len(mesh.triangles):
         none = _levels.steps(levels, low or 0.0, low or 0.0)
         empty, _ = _bands.cut(mesh.points[:0], mesh.triangles, np.empty((0, 3)), none)
         return dataclasses.replace(empty, error=0.0)
-    surface = _Lit(open_apexes(mesh), luminance)
+    made = refine(_Lit(open_apexes(mesh), luminance), levels, low=low)
+    made = _close_apexes(made, mesh)
+    return dataclasses.replace(made, points=mesh.world(made.points))
+
+
+def refine(surface: Any, levels: Levels, /, *, low: float | None = None) -> Bands:
+    """Return the bands of a lit surface, refined until they keep the allowed error.
+
+    Parameters
+    ----------
+    surface : object
+        With ``triangles``, ``corners()``, ``cut()``, ``measure()``, ``peaks()`` and ``split()``
+        as of solids here and of :class:`vizlight.geometry.facets.Facets`.
+    levels, low
+        As for :func:`draw`.
+
+    Returns
+    -------
+    Bands
+        With the error that was measured.
+    """
+    bound = _levels.allowed(levels)
+    worst: float | None = None
     for last in (*range(ROUNDS), None):
         values = surface.corners()
         bottom = float(values.min()) if low is None else low
-        top = float(values.max())
-        steps = _levels.steps(levels, bottom, top)
-        allowed = (1 + CURVED) * steps.error if bound is None else bound
+        steps = _levels.steps(levels, bottom, float(values.max()))
+        if last is None or len(surface.triangles) > ENOUGH:
+            break
+        allowed = (1 + CURVED) * steps.error if bound is None else KEPT * bound
         rough, triangle = surface.cut(values, steps, ROUGH)
+        if len(rough.values) > MANY:
+            break
         error = surface.measure(rough, triangle)
         bad = np.unique(np.concatenate([triangle[error > allowed], surface.peaks(values, allowed)]))
-        if last is None or not len(bad) or len(surface.mesh.triangles) > ENOUGH:
+        if not len(bad):
+            worst = float(error.max(initial=0))
             break
         surface.split(bad)
+    made: Bands
     made, triangle = surface.cut(values, steps, _bands.HALVINGS)
-    error = surface.measure(made, triangle).max(initial=0)
-    if bound is not None and error > bound:
-        _check.warn(f"levels={bound:g} is not kept everywhere: the largest error is {error:.3g}")
-    made = _close_apexes(made, mesh)
-    return dataclasses.replace(made, points=mesh.world(made.points), error=float(error))
+    if worst is None:
+        worst = float(surface.measure(made, triangle).max(initial=0))
+    if bound is not None and worst > bound:
+        _check.warn(f"levels={bound:g} is not kept everywhere: the largest error is {worst:.3g}")
+    return dataclasses.replace(made, error=worst)
 
 
 class _Lit:
@@ -120,6 +152,11 @@ class _Lit:
         other = owner != self.both[self.edge.ravel(), 0]
         self.both[:, 1] = self.both[:, 0]
         self.both[self.edge.ravel()[other], 1] = owner[other]
+
+    @property
+    def triangles(self) -> Index:
+        """The triangles as they are now."""
+        return self.mesh.triangles
 
     def light(self, points: Array, patch: Index) -> Array:
         """Return the luminance of points on given surfaces."""
@@ -178,35 +215,69 @@ class _Lit:
         triangles, patch = self.mesh.triangles, self.mesh.patch
         if len(triangles) > ASKED:
             return np.empty(0, np.intp)
-        grid = np.array([(i, j) for i in range(GRID) for j in range(GRID - i)]) + 0.5
-        weight = np.column_stack([grid, GRID + 0.5 - grid.sum(axis=1)]) / (GRID + 0.5)
         top = values.max(axis=1) + bound
         found = np.zeros(len(triangles), np.bool_)
-        for row in weight:
+        for row in grid():
             places = np.einsum("i,tij->tj", row, self.mesh.points[triangles])
             found |= self.light(onto(self.mesh.surfaces, places, patch[:, None], 2), patch) > top
         return np.flatnonzero(found)
 
     def measure(self, bands: Bands, triangle: Index) -> Array:
-        """Return the largest error of each polygon at its middle and that of its edges."""
-        size = np.diff(bands.offsets)
-        owner = np.repeat(np.arange(len(size)), size)
-        corner = bands.points[bands.corners]
-        middle = np.stack([np.bincount(owner, x, len(size)) for x in corner.T], 1) / size[:, None]
-        after = np.arange(1, len(owner) + 1)
-        after[bands.offsets[1:] - 1] = bands.offsets[:-1]
-        # Just within the polygon: on a contour either band is right.
-        edge = 0.98 * (corner + corner[after]) / 2 + 0.02 * middle[owner]
-        worst = np.zeros(len(size))
-        for places, of in ((middle, np.arange(len(size))), (edge, owner)):
+        """Return the largest error of each polygon at its middle and along its edges."""
+        worst = np.zeros(len(bands.values))
+        for places, of in within(bands):
             patch = bands.patch[of]
             on = onto(self.mesh.surfaces, places, patch[:, np.newaxis])
-            np.maximum.at(worst, of, np.abs(self.light(on, patch) - bands.values[of]))
-        across = np.cross(corner - middle[owner], corner[after] - middle[owner])
-        area = np.bincount(owner, np.sqrt(np.einsum("ij,ij->i", across, across)), len(size))
-        whole = np.bincount(triangle, area, len(self.mesh.triangles))
-        worst[area <= SLIVER * whole[triangle]] = 0
+            miss = np.abs(self.light(on, patch) - bands.values[of])
+            worst = np.maximum(worst, largest(bands, miss))
+        worst[slivers(bands, triangle, len(self.mesh.triangles))] = 0
         return worst
+
+
+def grid() -> Array:
+    """Return barycentric weights of places within a triangle, row by row."""
+    steps = np.array([(i, j) for i in range(GRID) for j in range(GRID - i)]) + 0.5
+    return np.column_stack([steps, GRID + 0.5 - steps.sum(axis=1)]) / (GRID + 0.5)
+
+
+def within(bands: Bands) -> Iterator[tuple[Array, Index]]:
+    """Yield the places where the error of polygons is measured, and the polygon of each."""
+    middle = bands.middles()
+    yield middle, np.arange(len(middle))
+    size = np.diff(bands.offsets)
+    owner = np.repeat(np.arange(len(size)), size)
+    corner, after = bands.points[bands.corners], bands.points[bands.corners[_next(bands)]]
+    for share in ALONG:
+        # Just within the polygon: on a contour either band is right.
+        places = corner + share * (after - corner)
+        yield places + WITHIN * (middle[owner] - places), owner
+
+
+def largest(bands: Bands, miss: Array) -> Array:
+    """Return the largest of each polygon's numbers, one a polygon or one a corner."""
+    if len(miss) == len(bands.values):
+        return miss
+    return np.asarray(np.maximum.reduceat(miss, bands.offsets[:-1]))
+
+
+def slivers(bands: Bands, triangle: Index, count: int) -> NDArray[np.bool_]:
+    """Return which polygons are next to nothing of the triangle, of so many, they are cut from."""
+    owner = np.repeat(np.arange(len(bands.values)), np.diff(bands.offsets))
+    # Over their size, as squares of tiny lengths vanish and those of huge ones overflow.
+    unit = float(np.ptp(bands.points[:, :3], axis=0).max(initial=0)) or 1.0
+    middle = bands.middles()[owner, :3] / unit
+    corner = bands.points[bands.corners, :3] / unit
+    across = np.cross(corner - middle, corner[_next(bands)] - middle)
+    area = np.bincount(owner, np.sqrt(np.einsum("ij,ij->i", across, across)), len(bands.values))
+    whole = np.bincount(triangle, area, count)
+    return np.asarray(area <= SLIVER * whole[triangle])
+
+
+def _next(bands: Bands) -> Index:
+    """Return for each corner of a polygon the place of the next in ``corners``."""
+    after = np.arange(1, len(bands.corners) + 1)
+    after[bands.offsets[1:] - 1] = bands.offsets[:-1]
+    return after
 
 
 def open_apexes(mesh: Mesh) -> Mesh:

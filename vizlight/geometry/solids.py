@@ -17,10 +17,10 @@ from scipy.spatial import Delaunay
 
 from vizlight import _check
 from vizlight.geometry import _sampling, contours, meshes, primitives
-from vizlight.geometry._sampling import PROBE, Unit
+from vizlight.geometry._sampling import PROBE, Size, Unit
 from vizlight.geometry.meshes import Mesh
 from vizlight.geometry.primitives import Primitive
-from vizlight.geometry.surfaces import Plane
+from vizlight.geometry.surfaces import Ball, Plane
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -31,6 +31,14 @@ if TYPE_CHECKING:
     Index = NDArray[np.intp]
     Bools = NDArray[np.bool_]
 
+#: Spacings that are tried where a thin wall or gap does not come out, as divisors of the first,
+#: up to so many points.
+FINER, PATIENCE = (1.7, 2.9, 5.0, 8.5, 14.0, 24.0), 120_000
+#: Points that one spacing for all surfaces may take.
+PLENTY = 15_000
+#: The spacing that narrow faces ask for at most, as a share of the solid's size: narrower ones
+#: are tried.
+NARROW = 0.05
 #: How far points are moved for Delaunay's sake, in units of their spacing.
 JOGGLE = 1e-7
 #: Tetrahedra of less height, in units of the points' spacing, have no side of their own.
@@ -58,14 +66,16 @@ def tessellate(solid: Any, /, *, tolerance: float = 3e-3) -> Mesh:
     ------
     TypeError, ValueError
         If an argument does not fit, the tolerance asks for more than 400,000 points, or
-        something is too thin for it: two surfaces closer than about the spacing of the points,
-        ``sqrt(2 tolerance r)`` for the smallest radius r.
+        something is too thin for it: what no spacing brings out that takes less than 120,000
+        points.
 
     Notes
     -----
     Coincident faces count once: a point is on the solid if one side of it is inside and the
     other is not, so that faces glued together vanish and faces that cancel leave nothing.
-    Surfaces that touch in a point or along a line meet there. Volume and area converge with
+    Surfaces that touch in a point or along a line meet there. Points are ``sqrt(2 tolerance r)``
+    apart on a surface of radius r; around what is small their spacing grows from its own to that
+    of the rest. Thin walls and gaps are tried with finer points. Volume and area converge with
     the tolerance. Source: Isoluminance, Further Work.
     """
     if not isinstance(solid, primitives.Solid):
@@ -80,9 +90,15 @@ def tessellate(solid: Any, /, *, tolerance: float = 3e-3) -> Mesh:
     unit = Unit(solid, [part.moved(shift, scale) for part in parts if not part.empty], parts)
     if not unit.surfaces:
         return _empty(shift, scale)
-    spacing = _spacing(unit.surfaces, tolerance)
-    for attempt, finer in enumerate((1.0, 1.0, 1.7, 2.9)):
-        found = _mesh(unit, spacing / finer, attempt)
+    need = np.array([_spacing(surface, tolerance) for surface in unit.surfaces])
+    # Where the finest spacing would take too many points it is kept to the surfaces that need it.
+    area = sum(surface.area for surface in unit.surfaces)
+    coarse = max(float(need.min()), math.sqrt(area / PLENTY))
+    for attempt, finer in enumerate((1.0, 1.0, *FINER)):
+        if attempt > 1 and _sampling.estimate(unit.surfaces, coarse / finer) > PATIENCE:
+            break
+        size = Size(unit, coarse / finer, need)
+        found = _mesh(unit, size, tolerance, attempt)
         if found is not None:
             triangles, patch, points = found
             signs = np.ones(len(unit.surfaces))
@@ -110,32 +126,29 @@ def _frame(parts: list[Primitive]) -> tuple[Array, float]:
     return shift, max(largest, apart)
 
 
-def _spacing(surfaces: list[Surface], tolerance: float) -> float:
-    """Return the distance of points that keeps chords within the tolerance of all surfaces."""
-    sizes = []
-    for surface in surfaces:
-        if isinstance(surface, Plane):
-            sizes.append(min(0.7 * min(surface.extent), 6.4 * math.sqrt(tolerance)))
-            continue
-        radius = getattr(surface, "radius", None) or max(surface.radii)  # type: ignore[union-attr]
-        sizes.append(min(math.sqrt(2 * tolerance * radius), 0.6 * radius))
-        height = getattr(surface, "height", None)
-        if height is not None:
-            sizes.append(0.7 * height)
-    return min(sizes)
+def _spacing(surface: Surface, tolerance: float) -> float:
+    """Return the distance of points that keeps chords within the tolerance of a surface."""
+    if isinstance(surface, Plane):
+        return min(max(0.7 * min(surface.extent), NARROW), 6.4 * math.sqrt(tolerance))
+    radius = surface.radius if isinstance(surface, Ball) else max(surface.radii)
+    found = min(math.sqrt(2 * tolerance * radius), 0.6 * radius)
+    return found if isinstance(surface, Ball) else min(found, max(0.7 * surface.height, NARROW))
 
 
-def _mesh(unit: Unit, spacing: float, attempt: int) -> tuple[Index, Index, Array] | None:
+def _mesh(
+    unit: Unit, size: Size, tolerance: float, attempt: int
+) -> tuple[Index, Index, Array] | None:
     """Return triangles, their surfaces and points; None where they do not fit the surfaces."""
     random = np.random.default_rng([1990, attempt])
-    points, on = _sampling.points(unit, spacing, random)
+    points, on = _sampling.points(unit, size, random)
     if len(points) < 5:
         return np.empty((0, 3), np.intp), np.empty(0, np.intp), np.empty((0, 3))
     # Points on planes, circles and spheres are degenerate for Delaunay; moved by a little at
     # random they are not, and any choice among tetrahedra without volume is as good.
-    moved = points + JOGGLE * spacing * random.standard_normal(points.shape)
+    moved = points + JOGGLE * size.of(points)[:, np.newaxis] * random.standard_normal(points.shape)
     tetrahedra = Delaunay(moved)
     cells = tetrahedra.simplices.astype(np.intp)
+    spacing = size.of(points[cells].mean(axis=1))
     inside = _inside(unit, points[cells], spacing)
     beyond = np.asarray(tetrahedra.neighbors, dtype=np.intp)
     _smooth(inside, points[cells], beyond, spacing, random)
@@ -148,7 +161,7 @@ def _mesh(unit: Unit, spacing: float, attempt: int) -> tuple[Index, Index, Array
     triangles[turned] = triangles[turned][:, ::-1]
     # Corner 3 is where the determinant looks from: positive means faces as listed look inward.
     triangles = triangles[:, ::-1]
-    patch, fits = _patches(unit, points, triangles, on, spacing)
+    patch, fits = _patches(unit, points, triangles, on, size, tolerance)
     # A point that no triangle has is of a wall or a gap that tetrahedra reach through.
     lost = len(points) - len(np.unique(triangles))
     if not fits or lost > max(2, 0.003 * len(points)):
@@ -220,7 +233,7 @@ def _sheets(partners: Index) -> Index:
     return np.asarray(number, dtype=np.intp).reshape(-1, 3)
 
 
-def _inside(unit: Unit, corners: Array, spacing: float) -> Bools:
+def _inside(unit: Unit, corners: Array, spacing: Array) -> Bools:
     """Return which tetrahedra are inside."""
     center = corners.mean(axis=1)
     inside = unit.inside(center)
@@ -237,7 +250,7 @@ def _inside(unit: Unit, corners: Array, spacing: float) -> Bools:
 
 
 def _smooth(
-    inside: Bools, corners: Array, beyond: Index, spacing: float, random: np.random.Generator
+    inside: Bools, corners: Array, beyond: Index, spacing: Array, random: np.random.Generator
 ) -> None:
     """Give tetrahedra of next to no height the side that most of their faces are on.
 
@@ -261,14 +274,15 @@ def _smooth(
 
 
 def _patches(
-    unit: Unit, points: Array, triangles: Index, on: Bools, spacing: float
+    unit: Unit, points: Array, triangles: Index, on: Bools, size: Size, tolerance: float
 ) -> tuple[Index, bool]:
     """Return the surface of each triangle, and whether all triangles fit theirs."""
     corners = points[triangles]
     center = corners.mean(axis=1)
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    size = np.sqrt(np.einsum("ij,ij->i", across, across))
-    across /= np.where(size > 0, size, 1)[:, np.newaxis]
+    area = np.sqrt(np.einsum("ij,ij->i", across, across))
+    across /= np.where(area > 0, area, 1)[:, np.newaxis]
+    spacing = size.of(center)
     best = np.full(len(triangles), np.inf)
     patch = np.zeros(len(triangles), np.intp)
     for i, surface in enumerate(unit.surfaces):
@@ -277,13 +291,32 @@ def _patches(
         # faces nowhere.
         off = 3 - np.count_nonzero(on[triangles, i], axis=1)
         score = 10.0 * off + np.abs(surface.distance(center)) / spacing
-        score += 0.1 * np.where(size > 1e-4 * spacing**2, lean, 0)
+        score += 0.1 * np.where(area > 1e-4 * spacing**2, lean, 0)
         patch = np.where(score < best, i, patch)
         best = np.minimum(score, best)
     # A triangle whose corners share no surface cuts an edge off, or reaches through a wall or
     # gap; a few are where two surfaces touch.
-    stray = size[best > 9].sum() > 0.004 * size.sum()
-    return patch, not stray
+    stray = np.flatnonzero(best > 9)
+    stray = stray[~_tangent(unit, corners[stray], across[stray], on[triangles[stray]], tolerance)]
+    return patch, bool(area[stray].sum() <= 0.004 * area.sum())
+
+
+def _tangent(unit: Unit, corners: Array, across: Array, on: Bools, tolerance: float) -> Bools:
+    """Return which triangles lie where surfaces touch: within the tolerance of one of them.
+
+    The solid is on the same side of all their corners, which it is not in a thin wall.
+    """
+    near = np.zeros(len(corners), np.bool_)
+    alike = np.zeros(corners.shape[:2], np.bool_)
+    flat = corners.reshape(-1, 3)
+    for i, surface in enumerate(unit.surfaces):
+        near |= (np.abs(surface.distance(flat)).reshape(-1, 3) < tolerance).all(axis=1)
+        normal = surface.normal(flat)
+        beyond, before = unit.inside(flat + PROBE * normal), unit.inside(flat - PROBE * normal)
+        outward = (before.astype(int) - beyond).reshape(-1, 3)
+        lean = np.einsum("ijk,ik->ij", normal.reshape(-1, 3, 3), across)
+        alike |= on[:, :, i] & (outward * lean > 0.5)
+    return near & alike.all(axis=1)
 
 
 def _signed(mesh: Mesh) -> Mesh:
