@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.floating[Any]]
 
+#: Nodes in a block.
+BLOCK = 1 << 16
+
 Border = Literal["extend", "wall"]
 
 
@@ -149,11 +152,19 @@ def normals(field: Field) -> Array:
     The slope at a node is that of the parabola through it and its two neighbours, at a border
     or beside a hole that of the one cell that is there.
     """
-    slopes = [_slope(field.heights, field.x, 1), _slope(field.heights, field.y, 0)]
-    normal = np.stack([-slopes[0], -slopes[1], np.ones_like(slopes[0])], axis=-1)
-    size = np.sqrt(np.einsum("ijk,ijk->ij", normal, normal))
-    result: Array = normal / size[..., np.newaxis]
-    return result
+    normal = np.empty((*field.heights.shape, 3))
+    # Row by row in blocks that stay in the cache, each with a row more on either side.
+    rows = max(BLOCK // len(field.x), 1)
+    for first in range(0, len(field.y), rows):
+        last = min(first + rows, len(field.y))
+        low, high = max(first - 1, 0), min(last + 1, len(field.y))
+        heights, own = field.heights[low:high], slice(first - low, last - low)
+        right = _slope(heights[own], field.x, 1)
+        up = _slope(heights, field.y[low:high], 0)[own]
+        size = np.sqrt(right * right + up * up + 1)
+        part = normal[first:last]
+        part[..., 0], part[..., 1], part[..., 2] = -right / size, -up / size, 1 / size
+    return normal
 
 
 def _slope(heights: Array, nodes: Array, axis: int) -> Array:

@@ -3,6 +3,8 @@
 In a profile the ray's own rise is taken from the heights, so that every ray toward the light
 becomes level and what is inside the solid is what stands above it. Bounds over 2^l steps of a
 profile then decide most of it at once, and the highest of all that is still to come ends it.
+Profiles are made in bands, one after the other, so that memory does not grow with the field and
+the bounds of a band stay in the cache.
 """
 
 from __future__ import annotations
@@ -23,6 +25,12 @@ if TYPE_CHECKING:
 STEEP = 3.0
 #: More profiles than this many times the rows are not made, however uneven the rows.
 PROFILES = 4
+#: Rays of a band, about.
+BAND = 1 << 16
+#: Columns that are looked at one by one are 2^LEAF: fewer have no bounds.
+LEAF = 3
+#: Profiles of a band, at least: the last is made again for the next one.
+NARROW = 8
 #: Stands for a level without solid: weighed by a rounded 0 it stays a number.
 NO_SOLID = -1e6
 
@@ -57,7 +65,7 @@ class Profiles:
     """
 
     def __init__(self, field: Field, way: Array, below: float) -> None:
-        self._field = field
+        self._field, self._solid = field, field.border == "extend"
         nodes = [field.x, field.y]
         size = [abs(way[a]) / np.mean(np.diff(nodes[a])) for a in (0, 1)]
         #: The axis that profiles step along, and the other.
@@ -67,23 +75,24 @@ class Profiles:
         self.slope, self.rise = way[self.side] / along, way[2] / along
         self.per_step = 1 / along
         columns = np.sort(self.sign * nodes[self.main])
-        rows = nodes[self.side]
+        self._rows = rows = nodes[self.side]
         heights = field.heights if self.main == 1 else field.heights.T
-        heights = np.ascontiguousarray(heights[:: int(self.sign)])
-        solid = field.border == "extend"
-        self.columns, inner = self._padded(columns, rows, field.top + below, below, solid=solid)
+        self._heights = np.ascontiguousarray(heights[:: int(self.sign)])
+        self.columns, self._inner = self._padded(columns, rows, field.top + below, below)
 
         step = max(np.diff(rows).min(), (rows[-1] - rows[0]) / (PROFILES * len(rows)))
         reach = np.sort(self.slope * np.array([self.columns[0], columns[-1] + below]))
         self.first = rows[0] - reach[1] - below - step
         self.spacing = step
-        count = int(np.ceil((rows[-1] - reach[0] + below + step - self.first) / step)) + 2
+        self.count = int(np.ceil((rows[-1] - reach[0] + below + step - self.first) / step)) + 2
         #: Levels are in this unit, so that they fit float32 whatever the field's size.
         self.unit = field.top + below + self.rise * float(np.ptp(self.columns))
-        self._bounds(self._level(heights, rows, inner, count, solid=solid))
+        # Half as many columns as a ray crosses from as deep as this below level ground.
+        run = below / (self.rise * float(np.mean(np.diff(columns))))
+        self.first_scale = max(int(np.log2(max(run, 1.0))) - 1 - LEAF, 0)
 
     def _padded(
-        self, columns: Array, rows: Array, relief: float, below: float, *, solid: bool
+        self, columns: Array, rows: Array, relief: float, below: float
     ) -> tuple[Array, slice]:
         """Return the columns with those beyond the border, and which are the field's own."""
         step = float(np.mean(np.diff(columns)))
@@ -96,30 +105,59 @@ class Profiles:
         after = columns[-1] + stride * np.arange(1, int(np.ceil(far / stride)) + 1)
         last = columns[-1] + below + relief / self.rise + 2 * stride
         after = (
-            np.append(after, last) if solid else columns[-1] + np.array([step, below + 2 * step])
+            np.append(after, last) if self._solid else columns[-1] + np.array([step, below + 2 * step])
         )
         inner = slice(len(before), len(before) + len(columns))
         return np.concatenate([before, columns, after]), inner
 
-    def _level(
-        self, heights: Array, rows: Array, inner: slice, count: int, *, solid: bool
-    ) -> Array:
-        """Return heights less the ray's rise, in units, shape (columns, count)."""
-        offsets = self.first + self.spacing * np.arange(count)
-        result = np.full((len(self.columns), count), NO_SOLID)
-        for k, column in enumerate(self.columns):
-            own = min(max(k - inner.start, 0), len(heights) - 1)
-            if not solid and own != k - inner.start:
-                continue
-            beyond = {} if solid else {"left": np.nan, "right": np.nan}
-            result[k] = np.interp(offsets + self.slope * column, rows, heights[own], **beyond)
-            result[k] -= self.rise * column
-            result[k] /= self.unit
-        np.copyto(result, NO_SOLID, where=np.isnan(result))
-        return result
+    def beside(self, start: Array) -> Array:
+        """Return between which profiles places are, in profiles from the first."""
+        across = start[self.side] - self.slope * self.sign * start[self.main]
+        return np.asarray((across - self.first) / self.spacing)
 
-    def _bounds(self, level: Array) -> None:
-        """Keep what the steps ask for: heights, bounds by level, the highest still to come."""
+    def surface(self, start: Array) -> Array:
+        """Return the height of the field itself at places."""
+        return self._field.height(start[0], start[1])
+
+    def width(self, rays: int) -> int:
+        """Return of how many profiles a band for some of so many rays is."""
+        return max(NARROW, -(-BAND * self.count // max(rays, 1)))
+
+    def band(self, first: int, width: int) -> _Band:
+        """Return the profiles for rays beside the first or up to so many more."""
+        return _Band(self, self._level(first, min(width, self.count - 1 - first) + 1), first)
+
+    def _level(self, first: int, count: int) -> Array:
+        """Return heights less the ray's rise, in units, shape (columns, count)."""
+        rows, nodes = self._rows, len(self._rows)
+        offsets = self.first + self.spacing * np.arange(first, first + count)
+        place = offsets + self.slope * self.columns[:, np.newaxis]
+        share = np.interp(place, rows, np.arange(float(nodes)))
+        row = share.astype(np.intp)
+        share -= row
+        own = np.arange(len(self.columns)) - self._inner.start
+        held = np.clip(own, 0, len(self._heights) - 1)
+        at = held[:, np.newaxis] * nodes + row
+        flat = self._heights.ravel()
+        low = flat[at]
+        # At a node its neighbour does not matter, which may be a hole or not there.
+        between = share > 0
+        at += between
+        level = np.where(between, low + share * (flat[at] - low), low)
+        level -= self.rise * self.columns[:, np.newaxis]
+        level /= self.unit
+        if not self._solid:
+            level[own != held] = NO_SOLID
+            np.copyto(level, NO_SOLID, where=(place < rows[0]) | (place > rows[-1]))
+            np.copyto(level, NO_SOLID, where=np.isnan(level))
+        return level
+
+
+class _Band:
+    """Some profiles side by side: heights, bounds by level, the highest still to come."""
+
+    def __init__(self, profiles: Profiles, level: Array, first: int) -> None:
+        self.profiles, self.columns, self.first = profiles, profiles.columns, first
         # The two profiles of a ray stand side by side in memory.
         self.steps, self.count = len(level) - 1, level.shape[1]
         self.level = level.ravel()
@@ -127,37 +165,41 @@ class Profiles:
         up, down = _rounded(level, np.inf), _rounded(level, -np.inf)
         self.coming = np.maximum.accumulate(up[::-1], axis=0)[::-1].ravel()
         largest, least = np.maximum(up[:-1], up[1:]), np.minimum(down[:-1], down[1:])
-        bounds = [(largest, least)]
-        while len(largest) > 1:
+        bounds = []
+        while len(bounds) < LEAF + 1 or len(largest) > 1:
+            bounds.append((largest, least))
             if len(largest) % 2:
                 largest, least = (
                     np.pad(a, [(0, 1), (0, 0)], constant_values=NO_SOLID) for a in (largest, least)
                 )
             largest = np.maximum(largest[::2], largest[1::2])
             least = np.minimum(least[::2], least[1::2])
-            bounds.append((largest, least))
+        bounds.append((largest, least))
+        bounds = bounds[LEAF:]
         self.offsets = np.cumsum([0] + [a.size for a, _ in bounds])
         self.largest = np.concatenate([a.ravel() for a, _ in bounds])
         self.least = np.concatenate([a.ravel() for _, a in bounds])
         self.top = len(bounds) - 1
+        self.first_scale = min(profiles.first_scale, self.top)
 
     def lengths(self, start: Array) -> Array:
         """Return the length inside the solid of rays that start at places, shape (3, N)."""
-        x = self.sign * start[self.main]
-        beside = (start[self.side] - self.slope * x - self.first) / self.spacing
-        rays = _Level(self, x, beside, (start[2] - self.rise * x) / self.unit)
+        world = self.profiles
+        x = world.sign * start[world.main]
+        beside = world.beside(start) - self.first
+        rays = _Level(self, x, beside, (start[2] - world.rise * x) / world.unit)
         length = np.zeros(len(x))
         row = np.arange(len(x))
         # The surface at the start is the field's own, however shallow the start is below it.
-        surface = self._field.height(start[0], start[1]) - self.rise * x
-        length += rays.begin(surface / self.unit)
+        surface = world.surface(start) - world.rise * x
+        length += rays.begin(surface / world.unit)
         while True:
             going = rays.going()
             if not np.all(going):
                 rays.keep(going)
                 row = row[going]
             if not len(row):
-                return np.asarray(length * self.per_step)
+                return np.asarray(length * world.per_step)
             # Rays have rows of their own, so none is added twice.
             length[row] += rays.step()
 
@@ -165,16 +207,18 @@ class Profiles:
 class _Level:
     """Level rays, each between two profiles; all change in every step."""
 
-    def __init__(self, world: Profiles, x: Array, beside: Array, z: Array) -> None:
+    def __init__(self, world: _Band, x: Array, beside: Array, z: Array) -> None:
         self.world, self.x, self.z = world, x, z
         self.profile = np.floor(beside).astype(np.intp)
         self.share = beside - self.profile
+        #: The column that a ray is at, and the scale l of its next step, to the end of the
+        #: 2^(LEAF + l) columns that hold it: it need not be at their beginning.
         self.at = np.searchsorted(world.columns, x, side="right") - 1
-        self.scale = np.zeros(len(x), np.intp)
+        self.scale = np.full(len(x), world.first_scale, np.intp)
 
     def keep(self, going: NDArray[np.bool_]) -> None:
         """Forget the rays that are at their end."""
-        for name in ("x", "z", "profile", "share", "at", "scale"):
+        for name in ("z", "profile", "share", "at", "scale"):
             setattr(self, name, getattr(self, name)[going])
 
     def begin(self, surface: Array) -> Array:
@@ -191,37 +235,39 @@ class _Level:
 
     def going(self) -> NDArray[np.bool_]:
         """Return which rays have something above them still to come."""
-        at = self.at << self.scale
-        inner = at < self.world.steps
-        place = np.minimum(at, self.world.steps) * self.world.count + self.profile
-        return inner & (self._mix(self.world.coming, place) > self.z)
+        world = self.world
+        # At the last column nothing is.
+        place = np.minimum(self.at, world.steps) * world.count + self.profile
+        return (self.at < world.steps) & (self._mix(world.coming, place) > self.z)
 
     def step(self) -> Array:
-        """Take each ray through 2^l steps, or into the first half of them."""
+        """Take each ray to the end of its columns, or halve them; return the length inside."""
         world, at, scale = self.world, self.at, self.scale
-        place = world.offsets[scale] + at * world.count + self.profile
+        square = at >> (scale + LEAF)
+        place = world.offsets[scale] + square * world.count + self.profile
         below = self._mix(world.least, place) >= self.z
         clear = below | (self._mix(world.largest, place) <= self.z)
-        inside = np.zeros(len(at))
-        whole = np.flatnonzero(below)
-        first, last = (np.minimum((at[whole] + k) << scale[whole], world.steps) for k in (0, 1))
-        inside[whole] = world.columns[last] - world.columns[first]
+        descend = ~clear & (scale > 0)
+        square += 1
+        last = np.minimum(square << (scale + LEAF), world.steps)
+        inside = np.where(below, world.columns[last] - world.columns[at], 0.0)
         leaf = np.flatnonzero(~clear & (scale == 0))
         inside[leaf] = self._leaf(leaf)
-        descend = ~clear & (scale > 0)
-        at += ~descend
-        ascend = ~descend & (at % 2 == 0) & (scale < world.top)
-        at >>= ascend
-        at <<= descend
-        scale += ascend
+        np.copyto(at, last, where=~descend)
+        scale += ~descend & (square % 2 == 0) & (scale < world.top)
         scale -= descend
         return inside
 
     def _leaf(self, which: Index) -> Array:
+        """Return the length inside up to the next multiple of 2^LEAF columns."""
         at = self.at[which]
-        low, high = self._height(at, which), self._height(at + 1, which)
-        columns = self.world.columns
-        return _above(low, high, self.z[which]) * (columns[at + 1] - columns[at])
+        # Columns that are behind or beyond have no width.
+        nodes = (at >> LEAF << LEAF) + np.arange((1 << LEAF) + 1)[:, np.newaxis]
+        nodes = np.minimum(np.maximum(nodes, at), self.world.steps)
+        heights = self._height(nodes, which)
+        part = _above(heights[:-1], heights[1:], self.z[which])
+        result: Array = np.sum(part * np.diff(self.world.columns[nodes], axis=0), axis=0)
+        return result
 
     def _height(self, at: Index, which: Any = slice(None)) -> Array:
         place = at * self.world.count + self.profile[which]

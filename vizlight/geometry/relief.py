@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from vizlight.geometry._field import Border, Field
 
     Array = NDArray[np.floating[Any]]
+    Index = NDArray[np.integer[Any]]
 
 Method = Literal["fast", "exact"]
 
@@ -101,9 +102,11 @@ def inside_length(
     field = _field.make(x, y, z, base=base, border=border)
     starts = _check.vectors("points", points, n=3)
     flat = starts.reshape(-1, 3).astype(np.float64) - field.origin
+    odd = ~np.all(np.isfinite(flat), axis=1)
+    flat[odd] = 0
     ray = toward(field, direction=direction, position=position)
-    length = lengths(field, lambda rows: flat[rows].T, len(flat), ray, method, threads)
-    length[~np.all(np.isfinite(flat), axis=1)] = np.nan
+    length = lengths(field, lambda rays: flat[rays].T, len(flat), ray, method, threads)
+    length[odd] = np.nan
     return length.reshape(starts.shape[:-1])
 
 
@@ -233,8 +236,8 @@ def ratio(
     inset = 0.0 if limit else depth
     shape = field.heights.shape
 
-    def start(rows: slice) -> Array:
-        row, column = np.unravel_index(np.arange(rows.start, rows.stop), shape)
+    def start(rays: Index) -> Array:
+        row, column = np.unravel_index(rays, shape)
         place = np.stack([field.x[column], field.y[row], field.heights[row, column]])
         return np.asarray(place - inset * normal[row, column].T)
 
@@ -243,7 +246,7 @@ def ratio(
         step = min(np.diff(field.x).min(), np.diff(field.y).min())
         free = t <= 1e-6 * step
         for rows in _pool.blocks(len(t), BLOCK):
-            way, _ = ray.from_places(start(rows))
+            way, _ = ray.from_places(start(np.arange(rows.start, rows.stop)))
             cosine = np.einsum("ij,ji->i", normal.reshape(-1, 3)[rows], way)
             t[rows] = np.where(free[rows], np.clip(cosine, 0, 1), 0)
     else:
@@ -254,14 +257,14 @@ def ratio(
 
 def lengths(
     field: Field,
-    start: Callable[[slice], Array],
+    start: Callable[[Index], Array],
     count: int,
     ray: Ray,
     method: Method,
     threads: int | None,
     below: float | None = None,
 ) -> Array:
-    """Return the length inside of rays whose places, shape (3, rows), are made block by block.
+    """Return the length inside of rays whose places, shape (3, rays), are made block by block.
 
     ``below`` is how far from the surface they may start; None: anywhere.
     """
@@ -272,24 +275,60 @@ def lengths(
     if ray.direction is not None and ray.direction[2] < 0 and endless:
         length[:] = np.inf
         return length
-    profiles = None
     if method == "fast" and ray.direction is not None and count:
         if below is None:
-            below = _beside(field, start(slice(0, count)))
+            below = _beside(field, start(np.arange(count)))
         profiles = _sweep.profiles(field, ray.direction, below)
+        if profiles is not None:
+            _by_profile(profiles, start, length, threads)
+            return length
 
     def work(rows: slice) -> int:
-        places = start(rows)
-        if profiles is not None:
-            length[rows] = profiles.lengths(places)
-        else:
-            way, reach = ray.from_places(places)
-            length[rows] = _march.march(field, places, way, reach, coarse=True)
+        places = start(np.arange(rows.start, rows.stop))
+        way, reach = ray.from_places(places)
+        length[rows] = _march.march(field, places, way, reach, coarse=True)
         return int(rows.stop)
 
-    for _ in _pool.run(work, _pool.blocks(count, BLOCK), threads):
-        pass
+    _all(work, _pool.blocks(count, BLOCK), threads)
     return length
+
+
+def _by_profile(
+    profiles: _sweep.Profiles,
+    start: Callable[[Index], Array],
+    length: Array,
+    threads: int | None,
+) -> None:
+    """Fill in lengths, the rays of one band of profiles after those of the other."""
+    count = len(length)
+    width = profiles.width(count)
+    # Sorting integers of 16 bits is quick.
+    width = max(width, profiles.count >> 15)
+    band = np.empty(count, np.uint16)
+
+    def sort(rows: slice) -> int:
+        band[rows] = profiles.beside(start(np.arange(rows.start, rows.stop))) // width
+        return int(rows.stop)
+
+    _all(sort, _pool.blocks(count, BLOCK), threads)
+    order = np.argsort(band, kind="stable").astype(np.int32 if count < 1 << 31 else np.int64)
+    ends = np.cumsum(np.bincount(band))
+    parts = [slice(a, b) for a, b in zip([0, *ends[:-1]], ends, strict=True) if b > a]
+
+    def work(part: slice) -> int:
+        own = order[part]
+        made = profiles.band(int(band[own[0]]) * width, width)
+        for rows in _pool.blocks(len(own), 2 * _sweep.BAND):
+            some = own[rows]
+            length[some] = made.lengths(start(some))
+        return int(part.stop)
+
+    _all(work, parts, threads)
+
+
+def _all(work: Callable[[slice], int], parts: list[slice], threads: int | None) -> None:
+    for _ in _pool.run(work, parts, threads):
+        pass
 
 
 def _beside(field: Field, places: Array) -> float:
