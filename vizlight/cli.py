@@ -1,4 +1,4 @@
-"""The command line: ``vizlight demo``, ``vizlight light FILE``, ``vizlight doctor``."""
+"""The command line: ``vizlight demo``, ``light FILE``, ``study NAME``, ``doctor``."""
 
 from __future__ import annotations
 
@@ -350,6 +350,51 @@ def doctor() -> int:
     except render.BackendError as error:
         sys.stderr.write(f"vizlight: {error}\n")
         return LACKING
+    return OK
+
+
+@app.command
+def study(
+    name: str | None = None,
+    /,
+    *,
+    quick: bool = False,
+    out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("vizlight-study"),
+) -> int:
+    """Measure speed against error; without a name list the studies.
+
+    Prints a table and a verdict, and writes NAME.csv and the log-log figure NAME.png.
+
+    Parameters
+    ----------
+    name
+        Of the study.
+    quick
+        Measure less: under 20 s on 2 cores.
+    out
+        The folder to write to; made if it is missing.
+    """
+    from vizlight import files, studies
+    from vizlight.studies import _study
+
+    if name is None:
+        _study.print_list({known: studies.load(known) for known in studies.names()})
+        return OK
+    chosen = studies.load(name)
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise files.FileError(
+            _check.message("out", "a folder that can be made", f"'{out}' ({error.strerror})")
+        ) from error
+    try:
+        result = studies.run(name, chosen, quick=quick, progress_bar=True)
+    except _study.LackingError as error:
+        sys.stderr.write(f"vizlight: {error}\n")
+        return LACKING
+    _study.print_result(result)
+    _say(f"table    {result.write_csv(out / f'{name}.csv')}")
+    _say(f"figure   {result.draw(out / f'{name}.png')}")
     return OK
 
 

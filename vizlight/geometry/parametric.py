@@ -118,7 +118,7 @@ def parametric(
     differences ``(h^2/6) |f'''| + eps |f| / h``, about 1e-10 of the extent for a function that
     varies over its domain as a sine does over a period; the complex step
     ``Im f(u + i h) / h`` (nothing is subtracted, so h may be tiny) only the rounding of the
-    function itself, a few eps. ``vizlight.studies.manifolds`` measures both. Differences reach
+    function itself, a few eps. ``vizlight.studies.frames`` measures both. Differences reach
     past the ends of the domain by h.
     Where tangents are dependent, at the pole of a sphere's angles for one, the frame has rows
     of zero, and light there is the ambient one.

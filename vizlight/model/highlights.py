@@ -202,7 +202,7 @@ def best_factor(light_eye_angle: ArrayLike, r: ArrayLike, /, *, by: Measure = "w
     With a growing f Phong exceeds Blinn by more and falls short by less, so the worst error is
     least where both are equal: a root, found by halving. The others are minima over f of a
     quadrature over normals, found to 1e-4 (scipy's bounded minimiser).
-    ``python -m vizlight.studies.highlights`` prints the table.
+    ``vizlight study highlights`` prints the table.
     """
     if by not in get_args(Measure):
         raise ValueError(_check.message("by", "'worst', 'rms' or 'volume'", repr(by)))
