@@ -2,10 +2,10 @@
 
 Lines, lights and eyes point anywhere, or the light is the eye's own; the exact light is that of
 :mod:`vizlight.model.cylinder`, specular with N.H to the power 20. Tubes of N sides are shaded as
-VTK shades them: normals of the corners, interpolated along a face and made unit at each pixel; what a
-pixel that holds the whole tube shows is the mean over its width, and each tube is turned at random
-about its line. A factor for all points, which a coefficient of the material can hold, is taken out
-of the scaled errors.
+VTK shades them: normals of the corners, interpolated along a face and made unit at each pixel; what
+a pixel that holds the whole tube shows is the mean over its width, and each tube is turned at
+random about its line. A factor for all points, which a coefficient of the material can hold, is
+taken out of the scaled errors.
 
 Where they are exact: for a headlight, and wherever light, line and eye lie in one plane on one
 side of the line, Banks' diffuse term with p = 1 and Blinn's highlight are the exact light up to a

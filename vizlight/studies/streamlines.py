@@ -24,14 +24,16 @@ if TYPE_CHECKING:
 
 SCENE = Scene(lights=Light(direction=(1, 1, 1)), view=View(direction=(0, 0, 1)))
 #: Radii at which lines start: some cells from the centre, within the grid.
-RADII = (0.3, 0.5, 0.7)
+RADII, HEIGHT = (0.3, 0.5, 0.7), 0.4
 STEP, CELL, SPHERE = "solid turn, by step", "swirl, by cell", "on a sphere, by cell"
 
 
 def turning(size: int = 11) -> Any:
     """Return a flow that turns about the z-axis as a solid does."""
     grid = pv.ImageData(
-        dimensions=(size, size, 5), spacing=(2 / (size - 1),) * 3, origin=(-1, -1, 0)
+        dimensions=(size, size, 5),
+        spacing=(2 / (size - 1),) * 3,
+        origin=(-1, -1, HEIGHT - 4 / (size - 1)),
     )
     x, y, _ = grid.points.T
     grid["V"] = np.stack([-y, x, 0 * x], axis=1)
@@ -56,7 +58,7 @@ def sphere(cells: int) -> Any:
 
 def measure(way: str, parameter: float, flow: Any, step: float, repeats: int) -> list[Row]:
     """Return the drift from the circles, of the radius."""
-    seeds = np.array([[r, 0.0, 0.4 if way != SPHERE else (1 - r * r) ** 0.5] for r in RADII])
+    seeds = np.array([[r, 0.0, (1 - r * r) ** 0.5 if way == SPHERE else HEIGHT] for r in RADII])
     trace = partial(
         streamlines, flow, SCENE, vectors="V", seeds=seeds, step=step, max_length=8.0,
         max_steps=200_000,
