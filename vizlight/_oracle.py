@@ -10,12 +10,17 @@ import itertools
 import math
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from vizlight.scene import Scene
 
     Numbers = Sequence[float]
+
+#: Places on a ray through a height field.
+SAMPLES = 20_000
 
 
 def luminance(
@@ -101,6 +106,38 @@ def luminance(
             diffuse = float(shadow[number])
         lit += scale * (material.diffuse * diffuse + material.specular * specular)
     return _cued(ambient + lit, point, scene)
+
+
+def relief_ratio(
+    x: Any, y: Any, z: Any, place: Any, normal: Any, depth: float, way: Numbers
+) -> float:
+    """Return t of a point of a height field that ends nowhere, by many samples along its ray.
+
+    Parameters
+    ----------
+    x, y, z : ndarray, shapes (nx,), (ny,), (ny, nx)
+    place, normal : ndarray, shape (3,)
+    depth : float
+        Above 0.
+    way : vector of 3 components
+        Toward the light, above the horizon.
+
+    Returns
+    -------
+    float
+        To 1/20,000 of the ray over the depth.
+    """
+    toward = np.asarray(_unit(way))
+    start = place - depth * normal
+    reach = max(float(z.max() - start[2]), 0.0) / toward[2]
+    places = start + (np.arange(SAMPLES)[:, np.newaxis] + 0.5) * (reach / SAMPLES) * toward
+    across, up = (np.clip(p, a[0], a[-1]) for p, a in ((places[:, 0], x), (places[:, 1], y)))
+    i, j = (np.clip(np.searchsorted(a, p) - 1, 0, len(a) - 2) for a, p in ((x, across), (y, up)))
+    u, v = (across - x[i]) / (x[i + 1] - x[i]), (up - y[j]) / (y[j + 1] - y[j])
+    low = (1 - u) * z[j, i] + u * z[j, i + 1]
+    high = (1 - u) * z[j + 1, i] + u * z[j + 1, i + 1]
+    inside = float(np.mean(places[:, 2] < (1 - v) * low + v * high)) * reach
+    return depth / max(inside, depth)
 
 
 def _terms(

@@ -14,11 +14,15 @@ import numpy as np
 from vizlight import _check, _oracle
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from vizlight._block import Given
     from vizlight.engine import Shading
     from vizlight.scene import Scene
+
+
+#: Rays through a height field that are sampled again, at most.
+RAYS = 64
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -152,8 +156,10 @@ def report(*, sample: int = 256, seed: int = 0) -> Iterator[Report]:
     Notes
     -----
     The sample's light is computed from the scene as given, not from a plan: its error includes what
-    ``tolerance=`` and ``highlight_error=`` chose. Given t of a shadow is taken as it is. About
-    40 µs a point of the sample, 3 ms for ``model="cylinder"``, not counted as the run's time.
+    ``tolerance=`` and ``highlight_error=`` chose. t of a cos-theta shadow on a height field, sun at
+    one place, is sampled along its ray at 20,000 places, on at most 64 rays; that of other solids is
+    told without an error. About 40 µs a point of the sample, 3 ms for ``model="cylinder"``, not
+    counted as time.
 
     Examples
     --------
@@ -209,6 +215,31 @@ def note(given: Given, scene: Scene, shading: Shading, options: dict[str, Any]) 
             invalid=shading.invalid,
             disagreed=int(np.count_nonzero(valid != np.isfinite(pairs[:, 1]))),
             bound=choice.bound if choice.tolerance else math.nan,
+        )
+    )
+
+
+def note_ratio(t: Any, valid: Any, seconds: float, again: Callable[[int], float] | None) -> None:
+    """Add a cos-theta shadow to the report: t of one light, and what samples it again."""
+    active = _ACTIVE.get()
+    if active is None:
+        return
+    start = time.perf_counter()
+    random, good = np.random.default_rng(active.seed), np.flatnonzero(valid)
+    drawn = random.choice(good, min(active.sample, RAYS, good.size) if again else 0, replace=False)
+    off = np.array([abs(t[i] - again(int(i))) for i in drawn]) if again else np.empty(0)
+    active.seconds -= time.perf_counter() - start
+    active.runs.append(
+        Run(
+            points=len(t),
+            terms=("t",),
+            precision=t.dtype.name,
+            seconds=seconds,
+            bytes=t.nbytes,
+            sample=off.size,
+            error=float(off.max()) if off.size else math.nan,
+            rms=float(np.sqrt(np.mean(off * off))) if off.size else math.nan,
+            invalid=int(np.count_nonzero(~valid)),
         )
     )
 

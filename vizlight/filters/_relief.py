@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import time
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 import pyvista as pv
 
-from vizlight import _check, engine
+from vizlight import _check, _oracle, _report, engine
 from vizlight.filters import _mesh, _progress, _provenance, _solid
 from vizlight.filters._heights import heights_of
 from vizlight.filters._light import DEFAULT_NAME, VALID, attach, refuse_overwriting
@@ -16,7 +17,7 @@ from vizlight.light import Light
 from vizlight.scene import Material, Scene
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     from numpy.typing import NDArray
 
@@ -138,12 +139,17 @@ def relief_shadow(
             expected = "one under which the mesh has no array of its own"
             raise ValueError(_check.message("name", expected, repr(array)))
 
+    start = time.perf_counter()
     t = np.empty((len(shadow.points), len(lights)))
     with _progress.progress("shadow", len(lights), show=progress_bar) as report:
         for i, light in enumerate(lights):
             discs = _disc(light, angular_diameter, samples)
             t[:, i] = sum(shadow.of(one) for one in discs) / len(discs)
             report(i + 1)
+    again = None
+    if isinstance(shadow, _FieldCaster) and not angular_diameter:
+        again = shadow.again(lights[0])
+    _report.note_ratio(t[:, 0], shadow.valid, time.perf_counter() - start, again)
     weight = np.array([light.intensity for light in lights])
     told = _provenance.tell(
         "relief_shadow", scene, options, precision="float64", points=len(t),
@@ -308,6 +314,20 @@ class _FieldCaster:
         )
         t[self._holes] = 0
         return self._to_points(t)
+
+    def again(self, light: Light) -> Callable[[int], float] | None:
+        """Return a function that samples t of one point; None where a sample says too little."""
+        field, way = self._field, light.direction
+        flat = self.depth <= relief.LEAST_DEPTH * max(field.x[-1], field.y[-1], field.top)
+        if way is None or way[2] <= 0 or flat or field.border != "extend" or field.base > -np.inf:
+            return None
+        grid = field.x, field.y, field.heights
+
+        def sample(i: int) -> float:
+            place = self.points[i] - field.origin
+            return _oracle.relief_ratio(*grid, place, self.normals[i], self.depth, way)
+
+        return sample
 
 
 class _SolidCaster:

