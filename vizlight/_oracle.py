@@ -137,7 +137,7 @@ def relief_ratio(
     low = (1 - u) * z[j, i] + u * z[j, i + 1]
     high = (1 - u) * z[j + 1, i] + u * z[j + 1, i + 1]
     inside = float(np.mean(places[:, 2] < (1 - v) * low + v * high)) * reach
-    return depth / max(inside, depth)
+    return float(depth / max(inside, depth))
 
 
 def _terms(

@@ -157,8 +157,8 @@ def report(*, sample: int = 256, seed: int = 0) -> Iterator[Report]:
     -----
     The sample's light is computed from the scene as given, not from a plan: its error includes what
     ``tolerance=`` and ``highlight_error=`` chose. t of a cos-theta shadow on a height field, sun at
-    one place, is sampled along its ray at 20,000 places, on at most 64 rays; that of other solids is
-    told without an error. About 40 µs a point of the sample, 3 ms for ``model="cylinder"``, not
+    one place, is sampled along its ray at 20,000 places, on at most 64 rays; that of other solids
+    is told without an error. About 40 µs a point of the sample, 3 ms for ``model="cylinder"``, not
     counted as time.
 
     Examples

@@ -151,9 +151,13 @@ def rounding(plan: Plan) -> float:
         if plan.terminator:
             factors += 6 / plan.terminator
         for light, highlight in zip(scene.lights, plan.highlights, strict=True):
-            if highlight.model == "blinn" and highlight.half is None and angle(light, scene.view):
-                return math.inf
-            term = specular_bound(highlight.shininess, eps) + factors * eps
+            share = 1.0
+            if highlight.model == "blinn" and highlight.half is None:
+                apart = angle(light, scene.view)
+                if apart is None or apart > 3:
+                    return math.inf
+                share = min(2 * math.cos(apart / 2), 1.0)
+            term = specular_bound(highlight.shininess, eps / share) + factors * eps
             total += plan.factors[1] * term * material.specular * light.intensity
     return total
 

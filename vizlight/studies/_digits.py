@@ -96,16 +96,18 @@ def mean_intensity(k: int, n: int, p: Any) -> Any:
 
 
 def cylinder(wi: Any, wo: Any, tangent: Any, shininess: float) -> tuple[Any, Any, Any, Any, Any]:
-    """Return diffuse and specular of a thin cylinder, and |wi_N|, |wo_N|, |wi + wo|.
+    """Return diffuse and specular of a thin cylinder, and what their claims are over.
 
-    By the closed form, with the integral by its recurrence for whole powers up to 100 and by
-    mpmath's incomplete beta function for others; tests have the closed form from quadrature.
+    These are |wi_N|, |wo_N| and |wi + wo|, for powers below 1 |(wi + wo)_N|. By the closed form,
+    with the integral by its recurrence for whole powers up to 100 and by mpmath's incomplete beta
+    function for others; tests have the closed form from quadrature.
     """
     wi, wo, t = (unit(exact(v)) for v in (wi, wo, tangent))
     rest_i, rest_o = ([x - dot(v, t) * y for x, y in zip(v, t, strict=True)] for v in (wi, wo))
     both = [x + y for x, y in zip(rest_i, rest_o, strict=True)]
     half = [x + y for x, y in zip(wi, wo, strict=True)]
     a, b, w, size = (mp.sqrt(dot(v, v)) for v in (rest_i, rest_o, both, half))
+    size = w if shininess < 1 else size
     if not (a and b):
         return mp.nan, mp.nan, a, b, size
     alpha = _angle(rest_i, rest_o)
@@ -116,7 +118,7 @@ def cylinder(wi: Any, wo: Any, tangent: Any, shininess: float) -> tuple[Any, Any
     mean = mp.cos(beta) * (_half(mp.cos(beta), shininess) + _half(mp.cos(gamma), shininess))
     ends = mp.sin(beta) ** (s + 1) - mp.sin(gamma) ** (s + 1)
     mean += mp.sin(beta) * ends / (s + 1)
-    return lambert, (w / size) ** s * mean / 2, a, b, size
+    return lambert, (w / mp.sqrt(dot(half, half))) ** s * mean / 2, a, b, size
 
 
 def _angle(u: Any, v: Any) -> Any:

@@ -64,6 +64,8 @@ class Study:
         Takes all rows, returns a sentence to act on, made of their numbers.
     axes : tuple of str
         What the log-log figure shows, of ``parameter``, ``error`` and ``cost``: x and y.
+    joined : bool
+        Whether the rows of one way are joined by a line.
     """
 
     approximates: str
@@ -74,6 +76,7 @@ class Study:
     steps: Callable[[bool], Sequence[Callable[[], Iterable[Row]]]]
     verdict: Callable[[Sequence[Row]], str]
     axes: tuple[Axis, Axis] = ("cost", "error")
+    joined: bool = True
 
 
 @dataclass(frozen=True)
@@ -121,12 +124,18 @@ class Result:
             at = [(getattr(r, x), getattr(r, y)) for r in self.rows if r.way == way]
             at = [pair for pair in at if all(isinstance(v, float | int) and v > 0 for v in pair)]
             if not at:
+                exact = [r.cost for r in self.rows if r.way == way and r.error == 0 < r.cost]
+                if exact and (x, y) == ("cost", "error"):
+                    label = f"{way}: no error"
+                    axes.axvline(exact[0], color=colours[i % len(colours)], ls=":", label=label)
                 continue
-            style = "-" if len(at) > 1 else ""
+            style = "-" if len(at) > 1 and self.study.joined else ""
             axes.plot(
                 *zip(*sorted(at), strict=True), style + marks[i % len(marks)],
                 color=colours[i % len(colours)], label=way, markersize=5,
             )  # fmt: skip
+        if y == "error" and "luminance" in self.study.error:
+            axes.axhline(PIXEL, color="#888888", linestyle="--", label="1/255")
         axes.set(
             xscale="log", yscale="log", xlabel=getattr(self.study, x), ylabel=getattr(self.study, y)
         )
