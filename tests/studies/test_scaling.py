@@ -8,7 +8,7 @@ from vizlight.studies import Row, scaling
 
 
 def test_rows_in_memory_and_from_disk():
-    (memory,) = scaling.in_memory(30_000, 1)
+    (memory,) = scaling.in_memory([30_000], 1)
     (disk,) = scaling.from_disk(30_000)
     assert memory.error < 2e-6
     assert disk.error < 2e-6
@@ -16,7 +16,7 @@ def test_rows_in_memory_and_from_disk():
 
 
 def test_memory_beyond_the_output_is_bounded():
-    small, large = (scaling.in_memory(count, 1)[0] for count in (400_000, 1_600_000))
+    small, large = scaling.in_memory([400_000, 1_600_000], 1)
     key = "MB beyond the output"
     assert large.more[key] < 1.6 * small.more[key]
 
