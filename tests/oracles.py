@@ -8,69 +8,31 @@ from __future__ import annotations
 
 import math
 
-import mpmath
 import numpy as np
 
-mp = mpmath.mp.clone()
-mp.dps = 50
+from vizlight.studies._digits import (
+    diffuse,
+    dot,
+    exact,
+    mean_intensity,
+    mp,
+    orthonormal,
+    specular,
+    split,
+    unit,
+)
 
-
-def exact(values):
-    """Return nested lists of exact numbers."""
-    if isinstance(values, mp.mpf):
-        return values
-    if np.ndim(values) == 0:
-        return mp.mpf(float(values))
-    return [exact(v) for v in values]
-
-
-def dot(a, b):
-    return mp.fsum(x * y for x, y in zip(a, b, strict=True))
-
-
-def unit(v):
-    size = mp.sqrt(dot(v, v))
-    return [x / size for x in v] if size else v
-
-
-def orthonormal(rows):
-    """Return orthonormal rows spanning the rows that are not zero."""
-    frame = []
-    for row in rows:
-        for t in frame:
-            c = dot(row, t)
-            row = [x - c * y for x, y in zip(row, t, strict=True)]
-        if any(row):
-            frame.append(unit(row))
-    return frame
-
-
-def split(x, frame):
-    """Return tangential coefficients and the length of the rest."""
-    along = [dot(x, t) for t in frame]
-    rest = list(x)
-    for c, t in zip(along, frame, strict=True):
-        rest = [r - c * y for r, y in zip(rest, t, strict=True)]
-    return along, mp.sqrt(dot(rest, rest))
-
-
-def diffuse(wi, frame, exponent):
-    """sin(a)^p."""
-    _, sine = split(unit(exact(wi)), orthonormal(exact(frame)))
-    return sine ** exact(exponent)
-
-
-def specular(wi, wo, frame, shininess, model):
-    """max(0, |wi_N||wo_N| - wi_T.wo_T)^s, or |h_N|^q."""
-    wi, wo, frame = unit(exact(wi)), unit(exact(wo)), orthonormal(exact(frame))
-    if model == "phong":
-        along_i, sine_i = split(wi, frame)
-        along_o, sine_o = split(wo, frame)
-        return max(mp.mpf(0), sine_i * sine_o - dot(along_i, along_o)) ** exact(shininess)
-    half = [x + y for x, y in zip(wi, wo, strict=True)]
-    if not any(half):
-        return mp.mpf(0)
-    return split(unit(half), frame)[1] ** exact(shininess)
+__all__ = [
+    "diffuse",
+    "dot",
+    "exact",
+    "mean_intensity",
+    "mp",
+    "orthonormal",
+    "specular",
+    "split",
+    "unit",
+]
 
 
 def toward(owner, point):
@@ -155,18 +117,6 @@ def shade(point, tangents, normal, scene, *, exponent, model="phong", two_sided=
             for c, k in zip(rgb, cue.color or white, strict=True)
         ]
     return ambient, diffuse[0], specular[0], luminance, rgb
-
-
-def mean_intensity(k, n, p):
-    """I(k, n, p) by the gamma functions themselves."""
-    c, p = n - k, exact(p)
-    log = (
-        mp.loggamma(mp.mpf(n) / 2)
-        + mp.loggamma((c + p) / 2)
-        - mp.loggamma(mp.mpf(c) / 2)
-        - mp.loggamma((n + p) / 2)
-    )
-    return mp.exp(log)
 
 
 def eps(dtype):

@@ -10,6 +10,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from vizlight._report import report
     from vizlight.data import example_path, load_example
     from vizlight.filters import (
         fur,
@@ -48,6 +49,7 @@ _HOMES = {
     "relief_day": "vizlight.filters",
     "relief_from_mesh": "vizlight.filters",
     "relief_shadow": "vizlight.filters",
+    "report": "vizlight._report",
     "satin": "vizlight.filters",
     "streamlines": "vizlight.filters",
 }
@@ -73,6 +75,7 @@ __all__ = [
     "relief_day",
     "relief_from_mesh",
     "relief_shadow",
+    "report",
     "satin",
     "streamlines",
 ]

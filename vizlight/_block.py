@@ -416,7 +416,11 @@ def _store(
     """Weigh the sums by the material, fade them with depth, write them to the output."""
     scene, number = plan.scene, plan.dtype.type
     material, cue = scene.material, scene.depth_cue
-    weights = {"diffuse": number(material.diffuse), "specular": number(material.specular)}
+    diffuse, specular = plan.factors
+    weights = {
+        "diffuse": number(material.diffuse * diffuse),
+        "specular": number(material.specular * specular),
+    }
     fade: Array | None = None
     if cue is not None:
         assert points is not None

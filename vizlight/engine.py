@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
-from vizlight import _check, _pool
+from vizlight import _check, _pool, _report
 from vizlight._block import Given, Output, Rows, columns, shade_block, view_depth
 from vizlight.plan import Model, Plan, plan
 
@@ -114,7 +114,8 @@ def shade(
         N = M repeat. Tangents have N rows or M. What depends on the row alone is computed once.
     precision : {"float32", "float64"}, optional
         Of the work and the result. Default: float32 if the vectors are float32 or less, else
-        float64; float64 points keep their differences in float64 either way.
+        float64; float64 points keep their differences in float64 either way. With
+        ``tolerance=`` what that allows.
     threads : int, optional
         Default: the processors that this process may use.
     block : int, optional
@@ -122,8 +123,8 @@ def shade(
     progress : callable, optional
         Called from the caller's thread as ``progress(points done, N)`` after each block.
     **options
-        Of :func:`plan`: model, highlight_error, compensate, conditioned, two_sided, terminator,
-        fur, components.
+        Of :func:`plan`: model, highlight_error, tolerance, compensate, conditioned, two_sided,
+        terminator, fur, components.
 
     Returns
     -------
@@ -178,11 +179,11 @@ def shade(
         if tuple(shadow.shape) != (count, bright) or normals is None:
             got = f"shape {tuple(shadow.shape)}" if normals is not None else "no normals"
             raise ValueError(_check.message("shadow", f"shape ({count}, {bright}), normals", got))
-    if precision is None:
+    if precision is None and not options.get("tolerance"):
         given = [rows.dtype for rows in (tangents, normals) if rows is not None]
         small = given and all(kind in (np.float16, np.float32) for kind in given)
         precision = "float32" if small else "float64"
-    if precision not in get_args(Precision):
+    if precision not in (None, *get_args(Precision)):
         raise ValueError(_check.message("precision", "'float32' or 'float64'", repr(precision)))
     made = plan(
         scene,
@@ -208,7 +209,7 @@ def shade(
     for done in _pool.run(work, _pool.blocks(rows, step), threads):
         if progress is not None:
             progress(done, count)
-    return Shading(
+    shading = Shading(
         luminance=output.luminance,
         valid=output.valid,
         diffuse=output.diffuse,
@@ -217,6 +218,8 @@ def shade(
         plan=made,
         seconds=time.perf_counter() - start,
     )
+    _report.note(lit, scene, shading, options)
+    return shading
 
 
 def _rows(name: str, rows: Any) -> Any:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
-from vizlight import _check, _highlight
+from vizlight import _check, _highlight, _tolerance
 from vizlight.light import NO_ATTENUATION
 from vizlight.model import brightness
 from vizlight.model._kernels import DEFICIT_FROM
@@ -61,6 +62,10 @@ class Plan:
         Whether the term is computed.
     colored, components : bool
         Which results are kept.
+    factors : tuple of float
+        Of the diffuse and the specular coefficient; not 1 where a law stands for its multiple.
+    choice : Choice
+        What was chosen within ``tolerance=``, and its bound.
     """
 
     n: int
@@ -82,6 +87,8 @@ class Plan:
     specular: bool
     colored: bool
     components: bool
+    factors: tuple[float, float] = (1.0, 1.0)
+    choice: _tolerance.Choice = _tolerance.EXACT
 
     @property
     def terms(self) -> tuple[str, ...]:
@@ -147,9 +154,10 @@ def plan(
     n: int = 3,
     k: int | None = None,
     normals: bool = False,
-    dtype: DTypeLike = np.float64,
+    dtype: DTypeLike | None = None,
     model: Model = "phong",
     highlight_error: float = 0.0,
+    tolerance: float = 0.0,
     compensate: bool = True,
     conditioned: bool = True,
     two_sided: bool = False,
@@ -170,14 +178,18 @@ def plan(
         Number of tangents a point. None: the manifold is the surface that has the normals.
     normals : bool, default: False
         Whether normals are given. With k they may condition and attenuate the light.
-    dtype : dtype, default: float64
-        float32 or float64.
+    dtype : dtype, optional
+        float32 or float64. Default: float64, or what ``tolerance`` allows.
     model : {"phong", "blinn", "cylinder"}
         The last for lines in 3-space alone: the exact line light.
     highlight_error : float, default: 0.0
         How far, in pixel values of 255, Phong's specular term may differ from what it is: where
         the half vector is the same at all points, Blinn's law with the best power then takes its
         place, light by light, while the errors' bounds add up to no more.
+    tolerance : float, default: 0.0
+        How far the luminance may be from that of the exact forms. The cheapest evaluation whose
+        stated bound is within it is taken: float32, Blinn's law for Phong's, whole powers, the
+        laws that a cylinder's light is a multiple of under headlights. 0: the exact forms.
     compensate : bool, default: True
         Diffuse with the exponent p(k, n) (Banks 5), else 1; nothing to a cylinder.
     conditioned : bool, default: True
@@ -208,8 +220,14 @@ def plan(
     if model not in get_args(Model):
         raise ValueError(_check.message("model", "'phong', 'blinn' or 'cylinder'", repr(model)))
     highlight_error = _check.number("highlight_error", highlight_error, low=0.0)
+    tolerance = _check.number("tolerance", tolerance, low=0.0)
+    if tolerance and highlight_error:
+        remedy = "it has the highlights' share in it"
+        raise ValueError(
+            _check.message("tolerance", "no highlight_error beside it", "both", remedy)
+        )
     terminator = _check.number("terminator", terminator, low=0.0, high=1.0)
-    kind = np.dtype(dtype)
+    kind = np.dtype(np.float64 if dtype is None else dtype)
     if kind not in (np.dtype(np.float32), np.dtype(np.float64)):
         raise ValueError(_check.message("dtype", "float32 or float64", kind))
     n = _check.integer("n", n, low=2)
@@ -268,7 +286,7 @@ def plan(
         raise ValueError(_check.message("view", f"a View, which the {what} needs", None, remedy))
     lights = tuple(light.seen_from(scene.view) for light in lights) if diffuse or specular else ()
     scene = scene.replace(lights=lights)
-    return Plan(
+    exact = Plan(
         n=n,
         k=size,
         dtype=kind,
@@ -289,6 +307,7 @@ def plan(
         colored=scene.colored,
         components=bool(components),
     )
+    return _tolerance.relax(exact, tolerance, any_precision=dtype is None) if tolerance else exact
 
 
 def surface_model(model: Model) -> Model:
@@ -364,6 +383,15 @@ def _words(plan: Plan) -> tuple[list[str], list[str]]:
         yes.append("rgb: three channels")
     else:
         no.append("rgb: nothing in the scene has a colour")
+    if plan.choice.tolerance:
+        yes += plan.choice.said
+        no += plan.choice.unsaid
+        asked = f"tolerance: {plan.choice.tolerance:.3g} of luminance"
+        met = math.isfinite(plan.choice.bound)
+        none = "rounding has no bound within it here"
+        yes.append(
+            f"{asked}, the bound of all is {plan.choice.bound:.3g}" if met else f"{asked}: {none}"
+        )
     return yes, no
 
 
@@ -373,6 +401,7 @@ def _highlight_words(plan: Plan) -> tuple[list[str], list[str]]:
     shininess = plan.scene.material.shininess
     own = [h for h in plan.highlights if h.model == plan.model]
     if own:
+        shininess = own[0].shininess
         if plan.model == "cylinder":
             how = "averaged over the visible half of a thin cylinder"
         else:

@@ -113,11 +113,11 @@ def test_statistics():
     assert contrast == pytest.approx(math.sqrt(0.75) / 1.5)
 
 
-def test_tables(capsys):
-    codimension.main(24)
-    out = capsys.readouterr().out
-    assert "k = 1, n = 4, p = 7.6737" in out
-    assert "Uniform directions" in out
+def test_rows_of_the_study():
+    rows = codimension.rows_of_panels(24) + codimension.rows_of_directions(1, 4, 2000)
+    assert len(rows) == 9
+    assert rows[0].parameter == 2
+    assert "compensate=True" in codimension.verdict(rows)
 
 
 def test_panels_can_be_made_again(panels):

@@ -4,17 +4,24 @@ from __future__ import annotations
 
 import pytest
 
-from vizlight.studies import fur
-
-pytestmark = pytest.mark.opengl
+from vizlight.studies import fur, order
 
 
+@pytest.mark.opengl
 def test_row():
     row = fur.measure(32, 3, repeats=1)
-    assert row.fibres == 32 * 32 * 49
-    assert min(row.fur, row.glyph, row.draw, row.memory) > 0
+    assert row.more["fibres"] == 32 * 32 * 49
+    assert row.cost > 0
+    assert 0 < row.error < 0.05
 
 
-def test_table(capsys):
-    fur.main(8)
-    assert "Fur of 9408 segments" in capsys.readouterr().out
+def test_more_segments_are_nearer():
+    few, more, many = (fur.along_fibres(n) for n in (1, 3, 12))
+    assert few > 3 * more > 6 * many > 0
+
+
+def test_more_fibres_are_nearer():
+    exact = fur.over_patches(100_000)
+    rows = [fur.count_fibres(64 * size, exact) for size in (8, 32, 128)]
+    # Seeds are stratified: better than the 1/2 of independent ones.
+    assert order(rows) < -0.5

@@ -31,13 +31,14 @@ def test_exchange():
     assert 0.5 * row.bound < row.error <= row.bound + 0.1
 
 
-def test_tables(capsys, monkeypatch):
-    monkeypatch.setattr(highlights, "DEGREES", (60.0,))
-    monkeypatch.setattr(highlights, "POWERS", (10.0,))
-    full = highlights.codimension
-    monkeypatch.setattr(highlights, "codimension", lambda k, c: full(k, c, count=500))
-    monkeypatch.setenv("COLUMNS", "150")
-    highlights.main(1000)
-    said = capsys.readouterr().out
-    for number in ("4.0038", "7.668", "198.52", "best by volume"):
-        assert number in said
+def test_rows_of_the_study():
+    rows = [
+        *highlights.rows_of_rules(60.0, 40.0),
+        *highlights.rows_of_codimension(1, 2, 500),
+        *(row for a in (2.0, 60.0) for row in highlights.rows_of_exchange(a, 100.0, 1000)),
+        *highlights.rows_of_terminators(120),
+    ]
+    assert len({row.way for row in rows}) == 6 + 3 + 2 + 4
+    said = highlights.verdict(rows)
+    assert "holds 1/255 up to 2 degrees" in said
+    assert "usual 4 makes 26.6" in said

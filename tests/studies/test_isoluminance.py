@@ -60,8 +60,8 @@ def test_facets_need_more_vertices_for_the_same_worst_error(shape):
 
 
 @pytest.mark.opengl
-def test_table(capsys):
-    study.main(levels=12, largest=600, finest=0.02)
-    out = capsys.readouterr().out
-    assert "A sphere: seconds" in out
-    assert "virtual light" in out
+def test_rows_and_verdict():
+    rows = [row for shape in study.SHAPES for row in study.vertices(shape, 0.05)]
+    rows += study.pictures("sphere", 300, 12, 1) + study.virtual(30.0)
+    assert {row.way for row in rows} >= {"sphere, contours", "virtual light, 30 degrees"}
+    assert "for an error of 0.05 use contours: a sphere needs" in study.verdict(rows)

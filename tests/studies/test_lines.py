@@ -41,10 +41,10 @@ def test_a_tube_of_many_sides_is_the_cylinder():
     np.testing.assert_allclose(specular, exact, atol=2e-4)
 
 
-def test_table(capsys, monkeypatch):
-    monkeypatch.setattr(lines, "SIDES", (3,))
-    monkeypatch.setenv("COLUMNS", "150")
-    lines.main(200)
-    said = capsys.readouterr().out
-    assert "tube of 3 sides" in said
-    assert "Banks, p(1, 3)" in said
+def test_rows_of_the_study(monkeypatch):
+    monkeypatch.setattr(lines, "SIDES", (3, 40))
+    rows = lines.rows(500, repeats=1)
+    assert {row.parameter for row in rows} == {0, 3, 40}
+    said = lines.verdict(rows)
+    assert said.startswith("at an RMS error of 1/255 use, diffuse: ")
+    assert "a headlight's by" in said

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 import pyvista as pv
 
-from vizlight import _check
+from vizlight import _check, _oracle
 from vizlight.filters import _mesh, _solid
 from vizlight.filters._heights import heights_of
 from vizlight.geometry import _field, relief
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
 
     from numpy.typing import NDArray
 
@@ -37,6 +37,9 @@ class Caster(Protocol):
 
     def of(self, light: Light) -> Array:
         """Return t at the points."""
+
+    def again(self, light: Light) -> Callable[[int], float] | None:
+        """Return a function that samples t of one point; None where a sample says too little."""
 
 
 def caster(
@@ -94,6 +97,20 @@ class _FieldCaster:
         t[self._holes] = 0
         return self._to_points(t)
 
+    def again(self, light: Light) -> Callable[[int], float] | None:
+        """Return a function that samples t of one point; None where a sample says too little."""
+        field, way = self._field, light.direction
+        flat = self.depth <= relief.LEAST_DEPTH * max(field.x[-1], field.y[-1], field.top)
+        if way is None or way[2] <= 0 or flat or field.border != "extend" or field.base > -np.inf:
+            return None
+        grid = field.x, field.y, field.heights
+
+        def sample(i: int) -> float:
+            place = self.points[i] - field.origin
+            return _oracle.relief_ratio(*grid, place, self.normals[i], self.depth, way)
+
+        return sample
+
 
 class _SolidCaster:
     """The shadows of a closed surface, and of others beside it."""
@@ -138,6 +155,9 @@ class _SolidCaster:
         else:
             t[good] = depth / np.maximum(length, depth)
         return t
+
+    def again(self, light: Light) -> Callable[[int], float] | None:  # noqa: ARG002
+        return None
 
     def _toward(self, light: Light, start: Array) -> tuple[Array, Array]:
         if light.direction is not None:

@@ -26,6 +26,7 @@ def illuminate(
     compensate: bool = True,
     model: engine.Model = "phong",
     highlight_error: float = 0.0,
+    tolerance: float = 0.0,
     terminator: float = 0.0,
     average_cells: bool = False,
     components: bool = False,
@@ -76,6 +77,9 @@ def illuminate(
         How far, in pixel values of 255, Phong's highlight may be off for speed: under a parallel
         view and lights at infinity Blinn's, of the best power, may then take its place.
         :meth:`vizlight.engine.Plan.explain` tells what was chosen, and the bound.
+    tolerance : float, default: 0.0
+        How far ``luminance`` may be off for speed, such as 1/255: the cheapest evaluation whose
+        stated bound is within it is taken, see :func:`vizlight.engine.plan`. 0: the exact forms.
     terminator : float, default: 0.0
         A surface's highlight ends sharply where the light does. This is the ``N . wi``, up to 1,
         below which it fades smoothly instead; what that takes from it at most is
@@ -85,7 +89,7 @@ def illuminate(
     components : bool, default: False
         Add the arrays ``ambient``, ``diffuse`` and ``specular``, before any depth cue.
     precision : {"float32", "float64"}, optional
-        Default: that of the tangents or normals.
+        Default: that of the tangents or normals, or what ``tolerance`` allows.
     threads : int, optional
         Default: the processors that this process may use.
     name : str, default: "luminance"
@@ -150,6 +154,7 @@ def illuminate(
         precision=precision,
         model=model,
         highlight_error=highlight_error,
+        tolerance=tolerance,
         compensate=compensate,
         two_sided=two_sided,
         terminator=terminator,

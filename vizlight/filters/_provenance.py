@@ -35,6 +35,7 @@ def record(shading: Shading, filter_name: str, scene: Scene, options: dict[str, 
         terms=list(plan.terms),
         exponent=plan.exponent,
         highlight_error=plan.highlight_error,
+        error_bound=plan.choice.bound if np.isfinite(plan.choice.bound) else None,
         points=int(shading.luminance.size),
         invalid=shading.invalid,
     )  # fmt: skip

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import time
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vizlight import _check, engine
+from vizlight import _check, _report, engine
 from vizlight.filters import _progress, _provenance
 from vizlight.filters._casters import caster
 from vizlight.filters._light import DEFAULT_NAME, VALID, attach, refuse_overwriting
@@ -133,12 +134,15 @@ def relief_shadow(
             expected = "one under which the mesh has no array of its own"
             raise ValueError(_check.message("name", expected, repr(array)))
 
+    start = time.perf_counter()
     t = np.empty((len(shadow.points), len(lights)))
     with _progress.progress("shadow", len(lights), show=progress_bar) as report:
         for i, light in enumerate(lights):
             discs = _disc(light, angular_diameter, samples)
             t[:, i] = sum(shadow.of(one) for one in discs) / len(discs)
             report(i + 1)
+    again = None if angular_diameter else shadow.again(lights[0])
+    _report.note_ratio(t[:, 0], shadow.valid, time.perf_counter() - start, again)
     weight = np.array([light.intensity for light in lights])
     told = _provenance.tell(
         "relief_shadow", scene, options, precision="float64", points=len(t),

@@ -105,7 +105,9 @@ class Profiles:
         after = columns[-1] + stride * np.arange(1, int(np.ceil(far / stride)) + 1)
         last = columns[-1] + below + relief / self.rise + 2 * stride
         after = (
-            np.append(after, last) if self._solid else columns[-1] + np.array([step, below + 2 * step])
+            np.append(after, last)
+            if self._solid
+            else columns[-1] + np.array([step, below + 2 * step])
         )
         inner = slice(len(before), len(before) + len(columns))
         return np.concatenate([before, columns, after]), inner

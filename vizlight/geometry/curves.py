@@ -52,8 +52,8 @@ def polyline_tangents(
     inside, and ``u0 + (u0 - u1) h0 / (h0 + h1)`` at an end; the error falls with the square of
     the spacing, also at ends and for unequal spacing. A line that ends where it starts is
     closed and has neighbours across the seam. Repeated points are passed over and share one
-    tangent. A line of two points has the direction of its segment. Differences are taken in
-    float64.
+    tangent. A line of two points has the direction of its segment, to 2 eps. Differences are
+    taken in float64.
     """
     positions = _check.vectors("points", points)
     if positions.ndim != 2:

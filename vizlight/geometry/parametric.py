@@ -134,7 +134,7 @@ def parametric(
     the function returns, about 1e-10 of the extent in float64 and 3e-4 in float32 for a function
     that varies over its domain as a sine does over a period; the complex step
     ``Im f(u + i h) / h`` (nothing is subtracted, so h may be tiny) only the rounding of the
-    function itself, a few eps. ``vizlight.studies.manifolds`` measures both. Differences stay
+    function itself, a few eps. ``vizlight.studies.frames`` measures both. Differences stay
     within the domain: at its ends they are those of the parabola through the end and two points
     h and 2 h from it, with ``(h^2/3) |f'''|`` and four times the rounding.
     Where tangents are dependent, at the pole of a sphere's angles for one, the frame has rows

@@ -88,10 +88,10 @@ def inside_length(
     -----
     The surface is bilinear, not triangulated: it has no diagonals to choose, so a mirrored field
     has the mirrored shadow, and along a ray it is a quadratic in each cell, whose roots are
-    taken in closed form. "exact" errs by at most ``64 eps`` times the size of the field for
-    rays that do not graze it; "fast" by the square of the spacing, as does the bilinear surface
-    itself from a smooth one. Cost of a ray: "exact" O(log N) squares for each time that it
-    crosses the surface, "fast" likewise along its own profile.
+    taken in closed form. "exact" errs by at most ``3 eps`` times the size of the field for each
+    time that a ray, not grazing, crosses the surface; "fast" by the square of the spacing, as does
+    the bilinear surface itself from a smooth one. Cost of a ray: "exact" O(log N) squares for each
+    time that it crosses the surface, "fast" likewise along its own profile.
     Source: cos-theta, section 2.
 
     Examples

@@ -160,6 +160,17 @@ def _integer_power(x: Array, exponent: int) -> Array:
     return x if result is None else result * x
 
 
+def power_error(p: float, q: float) -> float:
+    """Return the largest |x^p - x^q| for x in [0, 1], exactly: where the derivatives agree."""
+    low, high = sorted((p, q))
+    if low == high:
+        return 0.0
+    if low == 0:
+        return 1.0
+    ratio = np.log(low / high) / (high - low)
+    return float(np.exp(low * ratio) * (1 - low / high))
+
+
 def diffuse(sine: Array, exponent: float, along: Array | None = None) -> Array:
     """Return sin(a)^p; ``along``, the tangential coefficients, sharpens large p by cos^2."""
     if exponent > DEFICIT_FROM and along is not None:

@@ -52,7 +52,7 @@ def mean_intensity(k: int, n: int, p: ArrayLike = 1.0) -> Any:
     ``I = G(n/2) G((c+p)/2) / (G(c/2) G((n+p)/2))``, G the gamma function, c = n - k: the
     closed form of the integrals in Banks' appendix. The four log-gammas would cancel for large
     n; their leading parts are combined by hand into three log1p terms, so the relative error
-    is at most ``32 eps (1 + |ln I|)`` up to n = 1e6 and p = 4e6.
+    is at most ``32 eps (1 + |ln I|)`` up to n = 1e6 and p = 4e6, where I is a normal number.
     Banks 3.3 prints I(1, 2) = 2/pi as 0.673; it is 0.6366.
     """
     k, n = _dimensions(k, n)

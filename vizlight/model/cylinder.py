@@ -104,8 +104,8 @@ def specular(wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike, /, *, shininess: 
     exact up to a factor for a headlight, as Banks' law is.
 
     Absolute error at most ``8 eps / d``, whatever s, where d is the smallest of ``|wi_N|``,
-    ``|wo_N|`` and ``|wi + wo|``: near a light along the line the value depends on which way round
-    the light is.
+    ``|wo_N|`` and ``|wi + wo|``, for s below 1 ``|(wi + wo)_N|`` in its place: near a light along
+    the line the value depends on which way round the light is.
     """
     shininess = _check.number("shininess", shininess, low=0.0, high=_check.LARGEST)
     shape, seen, met, tangential = _meeting(wi, wo, tangent)

@@ -39,7 +39,7 @@ def distance(d: ArrayLike, c1: float, c2: float, c3: float, /) -> Any:
 
     Notes
     -----
-    Relative error at most ``4 eps`` where the result is a normal number.
+    Relative error at most ``2 eps`` where the result is a normal number.
     Source: Lecture, effect of distance.
     """
     lengths = _check.floats("d", d)
@@ -123,7 +123,7 @@ def depth_cue(
 
     Notes
     -----
-    Absolute error at most ``8 eps max(|I|, |Icue|)``, for depths that are exact.
+    Absolute error at most ``4 eps max(|I|, |Icue|)``, for depths that are exact.
     Source: Lecture, atmospheric attenuation; the smooth step is its "small sigmoid".
     """
     front, back = _check.number("front", front), _check.number("back", back)
@@ -188,7 +188,7 @@ def fur(height: ArrayLike, sin_alpha: ArrayLike, density: float, /) -> Any:
 
     Notes
     -----
-    Absolute error at most ``4 eps``. Source: Banks (7) and (8).
+    Absolute error at most ``3 eps``. Source: Banks (7) and (8).
     """
     density = _check.number("density", density, low=0.0, high=1.0)
     heights, sines = _check.floats("height", height), _check.floats("sin_alpha", sin_alpha)

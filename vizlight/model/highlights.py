@@ -113,7 +113,7 @@ def pixel_error(rho: ArrayLike, r: ArrayLike, /, *, factor: ArrayLike = 4.0) -> 
     -----
     Source: Fisher and Woo (6); their table 2 is off by one in the last digit of some of its first
     row, and of 20 degrees, r = 30, which is 1.162. The cosine of an angle beyond pi / 2 counts as
-    0. Absolute error at most ``255 (8 + 4 sqrt(f r)) eps`` for f of 1 or more.
+    0. Absolute error at most ``255 (3 eps)`` for f of 1 or more, whatever the power.
     """
     angle, r, factor = _angles("rho", rho), _powers("r", r), _powers("factor", factor)
     angle, r, factor = _together({"rho": angle, "r": r, "factor": factor})
@@ -208,7 +208,7 @@ def best_factor(light_eye_angle: ArrayLike, r: ArrayLike, /, *, by: Measure = "w
     With a growing f Phong exceeds Blinn by more and falls short by less, so the worst error is
     least where both are equal: a root, found by halving. The others are minima over f of a
     quadrature over normals, found to 1e-4 (scipy's bounded minimiser).
-    ``python -m vizlight.studies.highlights`` prints the table.
+    ``vizlight study highlights`` prints the table.
     """
     if by not in get_args(Measure):
         raise ValueError(_check.message("by", "'worst', 'rms' or 'volume'", repr(by)))

@@ -1,1 +1,42 @@
-"""Speed against error: each study measures both in one run and prints a table."""
+"""Speed against error: each study measures both in one run; ``vizlight study`` runs them.
+
+A study is a file of this folder with a ``STUDY``: see :class:`vizlight.studies.Study`.
+"""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+
+from vizlight import _check
+from vizlight.studies._study import Result, Row, Study, cheapest, order, run
+
+__all__ = ["Result", "Row", "Study", "cheapest", "load", "names", "order", "run"]
+
+#: What other studies and the reports lean on, not studies themselves.
+_NO_STUDIES = {"reference"}
+
+
+def names() -> list[str]:
+    """Return the names of the studies."""
+    found = (module.name for module in pkgutil.iter_modules(__path__))
+    return sorted(name for name in found if name[0] != "_" and name not in _NO_STUDIES)
+
+
+def load(name: str, /) -> Study:
+    """Return a study.
+
+    Parameters
+    ----------
+    name : str
+        One of :func:`names`.
+
+    Raises
+    ------
+    ValueError
+        If there is no such study.
+    """
+    if name not in names():
+        raise ValueError(_check.message("study", f"one of {', '.join(names())}", repr(name)))
+    study: Study = importlib.import_module(f"vizlight.studies.{name}").STUDY
+    return study

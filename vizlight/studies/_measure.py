@@ -1,19 +1,21 @@
-"""What studies share: taking turns, counting memory, printing a table."""
+"""What studies share: taking turns and counting memory."""
 
 from __future__ import annotations
 
 import statistics
 import time
 import tracemalloc
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Mapping
+
+Way = TypeVar("Way")
 
 
-def take_turns(ways: Mapping[str, Callable[[], Any]], repeats: int) -> dict[str, float]:
+def take_turns(ways: Mapping[Way, Callable[[], Any]], repeats: int) -> dict[Way, float]:
     """Return the median seconds of each way; they take turns, so a busy machine slows all."""
-    taken: dict[str, list[float]] = {way: [] for way in ways}
+    taken: dict[Way, list[float]] = {way: [] for way in ways}
     for _ in range(repeats):
         for way, work in ways.items():
             start = time.perf_counter()
@@ -30,16 +32,3 @@ def peak_memory(work: Callable[[], Any]) -> int:
         return tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
-
-
-def print_table(title: str, headings: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
-    """Print a table; its first column is of words, the others of numbers."""
-    from rich.console import Console
-    from rich.table import Table
-
-    table = Table(title=title)
-    for i, heading in enumerate(headings):
-        table.add_column(heading, justify="right" if i else "left")
-    for row in rows:
-        table.add_row(*row)
-    Console().print(table)

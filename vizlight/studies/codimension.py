@@ -1,8 +1,8 @@
 """Brightness and contrast of curves and surfaces in 3- and 4-space: Banks' illustration 1.
 
-``python -m vizlight.studies.codimension`` lights the torus of Banks' section 3 and a curve wound
-on it in eight ways: k = 1 and 2, n = 3 and 4, plain and compensated; and a uniform sample of
-directions for each (k, n), for which the mean of compensated light is 1/2.
+The torus of Banks' section 3 and a curve wound on it in eight ways: k = 1 and 2, n = 3 and 4, plain
+and compensated; and a uniform sample of directions for each (k, n), for which the mean of
+compensated light is 1/2.
 """
 
 from __future__ import annotations
@@ -10,9 +10,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
-import cyclopts
 import numpy as np
 
 from vizlight.filters import manifold
@@ -20,9 +20,12 @@ from vizlight.geometry import manifolds
 from vizlight.light import Light
 from vizlight.model import brightness, reflection
 from vizlight.scene import Material, Scene
-from vizlight.studies._measure import print_table
+from vizlight.studies._measure import take_turns
+from vizlight.studies._study import Row, Study, words
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
     from numpy.typing import NDArray
 
     Array = NDArray[np.floating[Any]]
@@ -128,26 +131,67 @@ def uniform(k: int, n: int, count: int = 200_000, *, seed: int = 0) -> tuple[flo
     return mean, contrast * mean / math.sqrt(count), contrast
 
 
-def main(resolution: int = 192) -> None:
-    """Print the tables.
+def rows_of_panels(resolution: int) -> list[Row]:
+    """Return the panels as rows."""
+    found: list[Panel] = []
+    seconds = take_turns({"panels": lambda: found.extend(panels(resolution))}, 1)["panels"]
+    points = sum(panel.mesh.n_points for panel in found)
+    return [
+        Row(
+            f"torus and curve, {'compensated' if p.compensated else 'plain'}",
+            p.n - p.k,
+            abs(p.mean - brightness.STANDARD),
+            1e9 * seconds / points,
+            {"k": p.k, "n": p.n, "mean": p.mean, "contrast (std / mean)": p.contrast},
+        )
+        for p in found
+    ]
 
-    Parameters
-    ----------
-    resolution
-        Of the torus on each circle.
-    """
-    print_table(
-        "Torus and curve of illustration 1: luminance by length or area",
-        ("panel", "mean", "contrast (std / mean)"),
-        [(p.title, f"{p.mean:.3f}", f"{p.contrast:.3f}") for p in panels(resolution)],
-    )
-    rows = []
+
+def rows_of_directions(k: int, n: int, count: int) -> list[Row]:
+    """Return a uniform sample of directions as a row; what is left is the sample's own error."""
+    start: list[tuple[float, float, float]] = []
+    seconds = take_turns({"": lambda: start.append(uniform(k, n, count))}, 1)[""]
+    mean, _, contrast = start[0]
+    more = {"k": k, "n": n, "mean": mean, "contrast (std / mean)": contrast}
+    error = abs(mean - brightness.STANDARD)
+    return [Row("uniform directions, compensated", n - k, error, 1e9 * seconds / count, more)]
+
+
+def steps(quick: bool) -> list[Callable[[], Iterable[Row]]]:
+    """Return the steps: the panels, then uniform directions in some spaces."""
+    found: list[Callable[[], Iterable[Row]]] = [partial(rows_of_panels, 48 if quick else 192)]
     for k, n in ((1, 2), (1, 3), (1, 4), (2, 3), (2, 4), (2, 5), (3, 4), (1, 12)):
-        mean, sigma, contrast = uniform(k, n)
-        name = f"k = {k}, n = {n}, p = {brightness.exponent(k, n):.5g}"
-        rows.append((name, f"{mean:.4f}", f"{sigma:.4f}", f"{contrast:.3f}"))
-    print_table("Uniform directions, compensated", ("case", "mean", "its error", "contrast"), rows)
+        found.append(partial(rows_of_directions, k, n, 50_000 if quick else 200_000))
+    return found
 
 
-if __name__ == "__main__":
-    cyclopts.run(main)
+def verdict(rows: Sequence[Row]) -> str:
+    """Return what compensation does to brightness and contrast."""
+    plain, made = (
+        [row for row in rows if row.way == f"torus and curve, {how}"]
+        for how in ("plain", "compensated")
+    )
+
+    def span(of: Sequence[Row], key: str) -> str:
+        values = [float(row.more[key]) for row in of]
+        return f"{words(min(values))} to {words(max(values))}"
+
+    contrast = "contrast (std / mean)"
+    return (
+        f"keep compensate=True where manifolds of several codimensions share a picture: it brings "
+        f"the mean from {span(plain, 'mean')} to {span(made, 'mean')} and the contrast from "
+        f"{span(plain, contrast)} to {span(made, contrast)}"
+    )
+
+
+STUDY = Study(
+    approximates="the brightness of a surface in 3-space, 1/2, by manifolds of any codimension",
+    reference="1/2, the mean over all directions of light",
+    parameter="codimension",
+    error="distance of the mean from 1/2",
+    cost="ns a point",
+    steps=steps,
+    verdict=verdict,
+    axes=("parameter", "error"),
+)

@@ -1,17 +1,14 @@
 """The engine against a plain NumPy script: time, error and memory, measured in one run.
 
-``python -m vizlight.studies.engine [POINTS]`` prints the table. The scene is the costly one of
-everyday work: lines lit by a positional light under a perspective view, compensated diffuse and
-Phong's term. The script (:mod:`vizlight.studies.reference`) works on whole arrays; script and
-engine take turns, so that a busy machine slows both.
+The scene is the costly one of everyday work: lines lit by a positional light under a perspective
+view, compensated diffuse and Phong's term. The script (:mod:`vizlight.studies.reference`) works on
+whole arrays; script and engine take turns, so that a busy machine slows both.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import cyclopts
 import numpy as np
 
 from vizlight import engine
@@ -19,26 +16,17 @@ from vizlight.light import Light
 from vizlight.model import brightness
 from vizlight.scene import Scene, View
 from vizlight.studies import reference
-from vizlight.studies._measure import peak_memory, print_table, take_turns
+from vizlight.studies._measure import peak_memory, take_turns
+from vizlight.studies._study import PIXEL, Row, Study, cheapest, words
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
     Array = NDArray[np.floating[Any]]
 
 SCENE = Scene(lights=Light(position=(4.0, 5.0, 6.0)), view=View(position=(0.0, 1.0, 9.0)))
-
-
-@dataclass(frozen=True)
-class Row:
-    """One way to light the points."""
-
-    way: str
-    seconds: float
-    error: float
-    extra_bytes: int
 
 
 def lines(count: int, dtype: Any = np.float32) -> tuple[Array, Array]:
@@ -66,48 +54,51 @@ def measure(count: int, repeats: int = 5) -> list[Row]:
     def run(**options: Any) -> Callable[[], Array]:
         return lambda: engine.shade(points, tangents, SCENE, **options).luminance
 
-    ways: dict[str, Callable[[], Array]] = {
-        "NumPy script, float32": script,
-        "engine, float32": run(),
-        "engine, float32, 1 thread": run(threads=1),
-        "engine, float64": run(precision="float64"),
+    whole, own = count, engine.plan(SCENE, k=1, dtype=np.float32).block
+    ways: dict[tuple[str, int], Callable[[], Array]] = {
+        ("NumPy script, float32", whole): script,
+        ("engine, float32", own): run(),
+        ("engine, float32, 1 thread", own): run(threads=1),
+        ("engine, float64", engine.plan(SCENE, k=1).block): run(precision="float64"),
     }
-    for block in (1 << 12, 1 << 15, 1 << 20):
-        ways[f"engine, float32, blocks of {block}"] = run(block=block)
+    for block in (1 << 10, 1 << 12, 1 << 15, 1 << 20):
+        ways["engine, float32, other blocks", block] = run(block=block)
     seconds = take_turns(ways, repeats)
     rows = []
-    for way, work in ways.items():
-        result = work()
+    for (way, block), work in ways.items():
+        result, taken = work(), seconds[way, block]
+        more = {
+            "times as fast": seconds["NumPy script, float32", whole] / taken,
+            "extra MB": (peak_memory(work) - result.nbytes) / 1e6,
+        }
         error = float(np.abs(result - exact).max())
-        rows.append(Row(way, seconds[way], error, peak_memory(work) - result.nbytes))
+        rows.append(Row(way, block, error, 1e9 * taken / count, more))
     return rows
 
 
-def main(count: int = 4_000_000) -> None:
-    """Print the table.
-
-    Parameters
-    ----------
-    count
-        How many points are lit.
-    """
-    rows = measure(count)
-    print_table(
-        f"{count} float32 points, positional light, perspective, Phong",
-        ("way", "median, s", "ns a point", "times as fast", "largest error", "extra MB"),
-        [
-            (
-                row.way,
-                f"{row.seconds:.3f}",
-                f"{1e9 * row.seconds / count:.1f}",
-                f"{rows[0].seconds / row.seconds:.1f}",
-                f"{row.error:.1e}",
-                f"{row.extra_bytes / 1e6:.1f}",
-            )
-            for row in rows
-        ],
+def verdict(rows: Sequence[Row]) -> str:
+    """Return which precision and which block to take."""
+    best = cheapest(rows)
+    own = next(row for row in rows if row.way == "engine, float32")
+    high = next(row for row in rows if row.way == "engine, float64")
+    other = min((row for row in rows if "other" in row.way), key=lambda row: row.cost)
+    if best is None:
+        return f"no way is within 1/255; float64 is within {high.error:.1g}"
+    return (
+        f"at 1/255 of error use '{best.way}' in blocks of {best.parameter}: "
+        f"{words(best.cost)} ns a point, wrong by {best.error:.1g}, {PIXEL / best.error:.0f} times "
+        f"less than allowed; float64 costs {high.cost / own.cost:.2g} times as much for an error "
+        f"of {high.error:.1g}; the best other block, {other.parameter}, takes "
+        f"{other.cost / own.cost:.2g} times the time of the engine's own"
     )
 
 
-if __name__ == "__main__":
-    cyclopts.run(main)
+STUDY = Study(
+    approximates="the light of lines: positional light, perspective, compensated diffuse, Phong",
+    reference="the formulas as a plain NumPy script in float64",
+    parameter="points in a block",
+    error="largest error of luminance",
+    cost="ns a point",
+    steps=lambda quick: [lambda: measure(500_000 if quick else 4_000_000, 3 if quick else 5)],
+    verdict=verdict,
+)

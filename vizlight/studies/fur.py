@@ -1,16 +1,17 @@
-"""Fur against VTK's glyph filter: time to make and light, time to draw, memory.
+"""How many fibres and how many segments fur needs, and what they cost beside VTK's glyphs.
 
-``python -m vizlight.studies.fur`` covers a torus of 128 x 128 points with 2,408,448 segments, 147 a
-point, as Banks did in 1994 (22 s to light and generate, 16 s to draw). The glyph
-filter makes the same fibres' geometry alone, unlit. Both take turns in one run.
+A torus of 128 x 128 points carries 2,408,448 segments, 147 a point, as Banks' did in 1994 (22 s to
+light and generate, 16 s to draw), in fibres of 1, 3 or 7, or fewer fibres of 3. Light between the
+points of a fibre is interpolated: its error is what more segments lessen. Light over the surface is
+sampled: its error is what more fibres lessen. The glyph filter makes the same fibres' geometry
+alone, unlit. Both take turns in one run.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
-import cyclopts
 import numpy as np
 import pyvista as pv
 
@@ -18,22 +19,18 @@ from vizlight import render
 from vizlight.filters import fur
 from vizlight.light import Light
 from vizlight.scene import Material, Scene, View
-from vizlight.studies._measure import peak_memory, print_table, take_turns
+from vizlight.studies._measure import peak_memory, take_turns
+from vizlight.studies._study import PIXEL, Row, Study, cheapest, words
 from vizlight.studies.tubes import time_to_draw
 
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
 SEGMENTS_A_POINT = 147
-
-
-@dataclass(frozen=True)
-class Row:
-    """Fibres of so many segments: seconds, and peak memory as a multiple of the output."""
-
-    segments: int
-    fibres: int
-    fur: float
-    glyph: float
-    draw: float
-    memory: float
+#: Patches of the torus, on each circle, whose mean light is compared.
+PATCHES = 8
+#: Segments of a fibre that stand for infinitely many, and fibres of which the mean is taken.
+FINE, MANY = 48, 400_000
 
 
 def torus(n: int = 128, r1: float = 1.5, r2: float = 0.75) -> Any:
@@ -53,15 +50,61 @@ def torus(n: int = 128, r1: float = 1.5, r2: float = 0.75) -> Any:
     return mesh
 
 
-def measure(n: int, segments: int, repeats: int = 5) -> Row:
-    """Return one row of the study."""
-    mesh, count = torus(n), n * n * SEGMENTS_A_POINT // segments
+def scene_of(mesh: Any) -> tuple[Scene, Any]:
+    """Return the scene of the study and the camera that sees it."""
     camera = render.camera_on(mesh.bounds, (0.3, -1, 0.8))
     scene = Scene(
         lights=Light(direction=(-1, -0.6, 0.9)),
         view=View.from_camera(camera),
         material=Material(ambient=0.1, diffuse=0.9, specular=0.1),
     )
+    return scene, camera
+
+
+def along_fibres(segments: int) -> float:
+    """Return the RMS error of light that is interpolated along fibres of so many segments."""
+    mesh = torus(32)
+    scene, _ = scene_of(mesh)
+
+    def light(count: int) -> Any:
+        coat = fur(
+            mesh,
+            scene,
+            density=0.02,
+            fibres=2000,
+            length=0.3,
+            segments=count,
+            toward=(0, 0, -1),
+            bend=0.5,
+        )
+        return np.asarray(coat["fibres"]["luminance"], dtype=np.float64).reshape(-1, count + 1)
+
+    at, fine, rough = np.linspace(0, 1, FINE + 1), light(FINE), light(segments)
+    nodes = np.linspace(0, 1, segments + 1)
+    between = np.stack([np.interp(at, nodes, row) for row in rough])
+    return float(np.sqrt(np.mean((between - fine) ** 2)))
+
+
+def over_patches(fibres: int, seed: int = 0) -> Any:
+    """Return the mean light of the fibres that stand on each patch of the torus."""
+    mesh = torus(64)
+    scene, _ = scene_of(mesh)
+    coat = fur(mesh, scene, density=0.02, fibres=fibres, length=0.3, segments=3, seed=seed)[
+        "fibres"
+    ]
+    light = np.asarray(coat["luminance"], dtype=np.float64).reshape(-1, 4).mean(axis=1)
+    x, y, z = np.asarray(coat.points)[::4].T
+    u, v = np.arctan2(y, x), np.arctan2(z, np.hypot(x, y) - 1.5)
+    patch = [np.floor((a / (2 * np.pi) + 0.5) * PATCHES).astype(int) % PATCHES for a in (u, v)]
+    number = patch[0] * PATCHES + patch[1]
+    count = np.bincount(number, minlength=PATCHES**2)
+    return np.bincount(number, light, minlength=PATCHES**2) / np.maximum(count, 1)
+
+
+def measure(n: int, segments: int, repeats: int = 5) -> Row:
+    """Return a row of the study: 147 segments a point of the torus, so many a fibre."""
+    mesh, count = torus(n), n * n * SEGMENTS_A_POINT // segments
+    scene, camera = scene_of(mesh)
 
     def cover() -> Any:
         return fur(mesh, scene, density=0.02, fibres=count, length=0.3, segments=segments)
@@ -74,40 +117,74 @@ def measure(n: int, segments: int, repeats: int = 5) -> Row:
         {"fur": cover, "glyph": lambda: roots.glyph(orient="way", scale=False, geom=fibre)}, repeats
     )
     output = 1024 * sum(block.actual_memory_size for block in cover())
-    draw = time_to_draw(coat, camera, repeats)
-    memory = peak_memory(cover) / output
-    return Row(segments, count, seconds["fur"], seconds["glyph"], draw, memory)
+    more = {
+        "fibres": count,
+        "s": seconds["fur"],
+        "VTK glyphs unlit, s": seconds["glyph"],
+        "draw a frame, s": time_to_draw(coat, camera, repeats),
+        "peak memory / output": peak_memory(cover) / output,
+    }
+    cost = 1e9 * seconds["fur"] / (count * (segments + 1))
+    return Row("segments of a fibre", segments, along_fibres(segments), cost, more)
 
 
-def main(n: int = 128) -> None:
-    """Print the table.
+def count_fibres(fibres: int, exact: Any) -> Row:
+    """Return a row of the study: so many fibres on the torus, of 3 segments."""
+    seconds = take_turns({"fur": partial(over_patches, fibres)}, 1)["fur"]
+    errors = [over_patches(fibres, seed) - exact for seed in range(1, 4)]
+    error = float(np.sqrt(np.mean(np.square(errors))))
+    a_patch = fibres / PATCHES**2
+    more = {"fibres": fibres, "s": seconds}
+    return Row("fibres a patch", a_patch, error, 1e9 * seconds / (4 * fibres), more)
 
-    Parameters
-    ----------
-    n
-        The torus has n x n points.
-    """
-    rows = [measure(n, segments) for segments in (1, 3, 7)]
-    print_table(
-        f"Fur of {n * n * SEGMENTS_A_POINT} segments",
-        (
-            "segments a fibre", "fibres", "make and light, s", "VTK glyphs unlit, s",
-            "times as fast", "draw a frame, s", "peak memory / output",
-        ),
-        [
-            (
-                f"{row.segments}",
-                f"{row.fibres}",
-                f"{row.fur:.2f}",
-                f"{row.glyph:.2f}",
-                f"{row.glyph / row.fur:.1f}",
-                f"{row.draw:.2f}",
-                f"{row.memory:.2f}",
-            )
-            for row in rows
-        ],
+
+def steps(quick: bool) -> list[Callable[[], Iterable[Row]]]:
+    """Return the steps: segments of a fibre, then numbers of fibres."""
+    n, repeats = (48, 1) if quick else (128, 5)
+    found: list[Callable[[], Iterable[Row]]] = [
+        lambda segments=segments: [measure(n, segments, repeats)]  # type: ignore[misc]
+        for segments in ((1, 3, 7) if quick else (1, 2, 3, 5, 7, 12))
+    ]
+    counts = [PATCHES**2 * size for size in (8, 32, 128, 512)]
+
+    def counted() -> list[Row]:
+        exact = over_patches(MANY // 4 if quick else MANY)
+        return [count_fibres(count, exact) for count in counts]
+
+    return [*found, counted]
+
+
+def verdict(rows: Sequence[Row]) -> str:
+    """Return how many segments and fibres are enough."""
+    own = [row for row in rows if row.way == "segments of a fibre"]
+    best = cheapest([row._replace(cost=float(row.parameter)) for row in own])
+    many = [row for row in rows if row.way == "fibres a patch"]
+    few = cheapest([row._replace(cost=float(row.parameter)) for row in many])
+    least = min(own, key=lambda row: row.error)
+    said = (
+        f"at an RMS error of 1/255 use {best.parameter} segments a fibre (error "
+        f"{best.error:.1g})" if best
+        else f"{least.parameter} segments a fibre leave {least.error / PIXEL:.2g} of 255"
     )  # fmt: skip
+    said += (
+        f", and {words(few.parameter)} fibres or more where a patch's mean is to be that near"
+        if few
+        else f"; {words(many[-1].parameter)} fibres leave {many[-1].error / PIXEL:.2g} of 255"
+    )
+    speed = [float(row.more["VTK glyphs unlit, s"]) / float(row.more["s"]) for row in own]
+    return (
+        f"{said}; fur is grown and lit in 1/{min(speed):.2g} to 1/{max(speed):.2g} of the time in "
+        "which VTK's glyph filter grows it unlit"
+    )
 
 
-if __name__ == "__main__":
-    cyclopts.run(main)
+STUDY = Study(
+    approximates="light along fibres by segments, and over a furry surface by a number of fibres",
+    reference=f"fibres of {FINE} segments; {MANY} fibres",
+    parameter="segments, or fibres a patch",
+    error="RMS error of luminance",
+    cost="ns a point",
+    steps=steps,
+    verdict=verdict,
+    axes=("parameter", "error"),
+)

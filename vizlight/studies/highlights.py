@@ -1,23 +1,29 @@
-"""Phong against Blinn: the tables of Fisher and Woo, the better rule, and higher codimension.
+"""Blinn's law in place of Phong's: by which power, in which codimension, and what it saves.
 
-``python -m vizlight.studies.highlights`` prints them all. Errors are pixel values of 255.
+Rules for the power over lit and visible normals of a sphere; the same over random tangent spaces;
+the exchange that the engine makes within ``highlight_error=``; a smooth terminator. Errors are
+pixel values of 255.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
-import cyclopts
 import numpy as np
 
 from vizlight import engine
 from vizlight.light import Light
 from vizlight.model import highlights, reflection
 from vizlight.scene import Material, Scene, View
-from vizlight.studies._measure import print_table, take_turns
+from vizlight.studies._measure import take_turns
+from vizlight.studies._study import Row, Study, words
 
-DEGREES = (0.0, 30.0, 60.0, 90.0, 120.0, 150.0)
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
+DEGREES = (10.0, 30.0, 60.0, 90.0, 120.0, 150.0)
 POWERS = (10.0, 40.0, 200.0)
 
 
@@ -136,110 +142,98 @@ def exchange(
     )
 
 
-def main(count: int = 1_000_000) -> None:
-    """Print the tables.
+def rows_of_rules(degrees: float, r: float) -> list[Row]:
+    """Return the rules at one angle as rows."""
+    return [
+        Row(
+            f"rule {row.rule}", degrees, row.worst, np.nan,
+            {"power": r, "factor": row.factor, "RMS": row.rms, "mean size": row.volume},
+        )
+        for row in rules(degrees, r)
+    ]  # fmt: skip
 
-    Parameters
-    ----------
-    count
-        How many points are lit where time is taken.
-    """
-    rho = (5, 20, 40, 60, 80, 85, 87, 89, 89.5, 89.9)
-    required = highlights.required_factor(np.deg2rad(rho))
-    print_table(
-        "Required f for rho in degrees, any exponent (Fisher and Woo, table 1)",
-        ("rho", *(f"{x:g}" for x in rho)),
-        [("f", *(f"{f:.4f}" for f in required))],
-    )
-    r = np.arange(5, 46, 5)
-    print_table(
-        "Blinn minus Phong, f = 4, light, normal and eye coplanar (table 2)",
-        ("rho", *(f"r = {x}" for x in r)),
-        [
-            (f"{x}", *(f"{e:.3f}" for e in highlights.pixel_error(np.deg2rad(x), r)))
-            for x in (10, 20, 30, 40, 50, 60, 70, 80, 85)
-        ],
-    )
-    angles = np.arange(0, 181, 30)
-    print_table(
-        "Phong minus Blinn, f = 4, the largest of all normals (table 3)",
-        ("r", *(f"{x} deg" for x in angles)),
-        [
-            (
-                f"{x}",
-                *(f"{e:.2f}" for e in highlights.max_pixel_error(np.deg2rad(angles), x).error),
-            )
-            for x in (10, 20, 40, 60, 80, 100, 200, 300, 400)
-        ],
-    )
-    print_table(
-        "The factor by which Blinn comes nearest to Phong; errors over lit and visible normals",
-        ("rule", "[L, E]", "r", "f", "worst", "RMS", "mean size"),
-        [
-            (
-                row.rule,
-                f"{row.degrees:g}",
-                f"{row.r:g}",
-                f"{row.factor:.3f}",
-                f"{row.worst:.2f}",
-                f"{row.rms:.3f}",
-                f"{row.volume:.4f}",
-            )
-            for degrees in DEGREES
-            for r in POWERS
-            for row in rules(degrees, r)
-        ],
-    )
-    print_table(
-        "k-manifolds of codimension c, light and eye at 60 degrees, r = 10, random tangent spaces",
-        ("rule", "k", "c", "f", "worst", "RMS"),
-        [
-            (
-                row.rule,
-                f"{row.k}",
-                f"{row.c}",
-                f"{row.factor:.3f}",
-                f"{row.worst:.2f}",
-                f"{row.rms:.2f}",
-            )
-            for c in (1, 2, 3)
-            for k in (1, 2, 3)
-            for row in codimension(k, c)
-        ],
-    )
-    print_table(
-        f"highlight_error=: specular term of {count} lines, float32, one thread, H constant",
-        ("[L, E]", "power", "Phong, ns a point", "Blinn, ns a point", "bound", "error seen"),
-        [
-            (
-                f"{row.degrees:g}",
-                f"{row.shininess:g}",
-                f"{row.phong:.1f}",
-                f"{row.blinn:.1f}",
-                f"{row.bound:.2f}",
-                f"{row.error:.2f}",
-            )
-            for degrees in (10.0, 30.0, 60.0)
-            for s in (20.0, 100.0)
-            for row in [exchange(degrees, s, count)]
-        ],
-    )
-    widths = (0.02, 0.05, 0.1, 0.2)
-    print_table(
-        "terminator=: the most that a smooth end takes from a highlight of Phong of power 20",
-        ("[L, E]", *(f"{width:g}" for width in widths)),
-        [
-            (
-                f"{degrees}",
-                *(
-                    f"{highlights.terminator_error(np.deg2rad(degrees), 20.0, width):.2f}"
-                    for width in widths
-                ),
-            )
-            for degrees in (60, 90, 120, 150, 170)
-        ],
+
+def rows_of_codimension(k: int, c: int, count: int) -> list[Row]:
+    """Return the rules over tangent spaces as rows."""
+    return [
+        Row(
+            f"rule {row.rule}, k = {k}, codimension {c}", 60.0, row.worst, np.nan,
+            {"power": 10.0, "factor": row.factor, "RMS": row.rms},
+        )
+        for row in codimension(k, c, count=count)
+    ]  # fmt: skip
+
+
+def rows_of_exchange(degrees: float, shininess: float, count: int) -> list[Row]:
+    """Return Phong's highlight and the engine's exchange for it as rows."""
+    made = exchange(degrees, shininess, count)
+    return [
+        Row(f"engine, Phong of power {shininess:g}", degrees, 0.0, made.phong),
+        Row(
+            f"engine, Blinn for power {shininess:g}", degrees, made.error, made.blinn,
+            {"power": shininess, "bound": made.bound},
+        ),
+    ]  # fmt: skip
+
+
+def rows_of_terminators(degrees: float) -> list[Row]:
+    """Return what a smooth terminator takes from a highlight as rows."""
+    angle = np.deg2rad(degrees)
+    return [
+        Row(
+            f"terminator={width:g}", degrees,
+            float(highlights.terminator_error(angle, 20.0, width)), np.nan, {"power": 20.0},
+        )
+        for width in (0.02, 0.05, 0.1, 0.2)
+    ]  # fmt: skip
+
+
+def steps(quick: bool) -> list[Callable[[], Iterable[Row]]]:
+    """Return the steps: rules, codimensions, exchange, terminators."""
+    powers = POWERS[1:2] if quick else POWERS
+    sizes = (1, 2) if quick else (1, 2, 3)
+    count, many = (20_000, 200_000) if quick else (200_000, 1_000_000)
+    found: list[Callable[[], Iterable[Row]]] = []
+    found += [partial(rows_of_rules, degrees, r) for degrees in DEGREES for r in powers]
+    found += [partial(rows_of_codimension, k, c, count) for c in sizes for k in sizes]
+    found += [
+        partial(rows_of_exchange, degrees, s, many)
+        for s in (20.0, 100.0)
+        for degrees in (2.0, 5.0, 10.0, 30.0, 60.0)
+    ]
+    return found + [partial(rows_of_terminators, degrees) for degrees in (60, 90, 120, 150, 170)]
+
+
+def verdict(rows: Sequence[Row]) -> str:
+    """Return the rule to take, and up to which angle the exchange is within 1 of 255."""
+    worst: dict[str, list[float]] = {}
+    for row in rows:
+        if row.way in ("rule 4", "rule 4 cos(beta)", "rule best by worst"):
+            worst.setdefault(row.way.removeprefix("rule "), []).append(row.error)
+    rule, usual = max(worst["4 cos(beta)"]), max(worst["4"])
+    made = [row for row in rows if row.way.startswith("engine, Blinn")]
+    plain = [row for row in rows if row.way.startswith("engine, Phong")]
+    speed = np.mean([row.cost for row in plain]) / np.mean([row.cost for row in made])
+    good = [row for row in made if float(row.more["bound"]) <= 1]
+    reach = max((float(row.parameter) for row in good), default=0.0)
+    where = (
+        f"holds 1/255 up to {reach:g} degrees between light and eye" if reach
+        else f"does not hold 1/255 from {min(float(row.parameter) for row in made):g} degrees on"
+    )  # fmt: skip
+    return (
+        f"take 4 cos(beta) times Phong's power, whose worst error is {rule:.3g} of 255 where the "
+        f"usual 4 makes {usual:.3g}; highlight_error=1 {where}, and the exchange takes "
+        f"1/{words(speed)} of the time"
     )
 
 
-if __name__ == "__main__":
-    cyclopts.run(main)
+STUDY = Study(
+    approximates="Phong's highlight by Blinn's",
+    reference="Phong's law with the same light",
+    parameter="angle from light to eye, degrees",
+    error="worst error, of 255",
+    cost="ns a point",
+    steps=steps,
+    verdict=verdict,
+    axes=("parameter", "error"),
+)

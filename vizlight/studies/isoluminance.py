@@ -1,6 +1,6 @@
 """Isoluminance contours against Gouraud-shaded facets and a ray cast: seconds, vertices, error.
 
-``python -m vizlight.studies.isoluminance`` draws a sphere and a cone in the sizes of the source's
+The study draws a sphere and a cone in the sizes of the source's
 tables and compares each pixel with the exact luminance there, and says how far the approximate
 highlights are from the exact ones.
 """
@@ -13,7 +13,6 @@ import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import cyclopts
 import numpy as np
 import pyvista as pv
 from scipy import ndimage
@@ -25,10 +24,11 @@ from vizlight.geometry.primitives import Sphere, Truncus
 from vizlight.geometry.surfaces import fibonacci
 from vizlight.light import Light
 from vizlight.scene import Material, Scene
-from vizlight.studies._measure import print_table, take_turns
+from vizlight.studies._measure import take_turns
+from vizlight.studies._study import Row, Study, words
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -47,7 +47,7 @@ SHAPES = {"sphere": Sphere(), "cone": Truncus((0, 0, 0), (0, 0, 1.6), (0.0, 0.8)
 
 
 @dataclass(frozen=True)
-class Row:
+class Picture:
     """One way to make one picture: what it costs, and how far it is from the exact one."""
 
     shape: str
@@ -142,7 +142,7 @@ def error(pixels: Array, exact: Array) -> tuple[float, float]:
     return float(miss.max()), float(miss.mean())
 
 
-def measure(shape: str, area: int, levels: int = 200, repeats: int = 3) -> list[Row]:
+def measure(shape: str, area: int, levels: int = 200, repeats: int = 3) -> list[Picture]:
     """Return the rows of one picture: contours, facets, facets of equal error, ray cast."""
     camera = render.camera_on(
         (-1, 1, -1, 1, -1, 1), EYE.tolist(), parallel=True, zoom=math.sqrt(3) / 1.02
@@ -152,11 +152,11 @@ def measure(shape: str, area: int, levels: int = 200, repeats: int = 3) -> list[
     side = max(round(math.sqrt(area / share)), 16)
     exact = cast(shape, camera, side)
 
-    def row(way: str, make: Callable[[], Any]) -> Row:
+    def row(way: str, make: Callable[[], Any]) -> Picture:
         mesh = make()
         model = take_turns({"model": make}, repeats)["model"]
         draw, pixels = picture(mesh, camera, side, repeats)
-        return Row(shape, way, area, mesh.n_points, model, draw, *error(pixels, exact))
+        return Picture(shape, way, area, mesh.n_points, model, draw, *error(pixels, exact))
 
     rows = [row(f"{levels} levels", functools.partial(contours, shape, levels))]
     number = FACETS[shape]
@@ -169,7 +169,7 @@ def measure(shape: str, area: int, levels: int = 200, repeats: int = 3) -> list[
         rows[2:] = [fine]
     start = time.perf_counter()
     cast(shape, camera, side)
-    rows.append(Row(shape, "ray cast", area, 0, time.perf_counter() - start, 0.0, 0.0, 0.0))
+    rows.append(Picture(shape, "ray cast", area, 0, time.perf_counter() - start, 0.0, 0.0, 0.0))
     return rows
 
 
@@ -265,74 +265,69 @@ def highlight(distance: float, angle: float, power: float = 20.0) -> Highlight:
     )
 
 
-def main(*, levels: int = 200, largest: int = SIZES[-1], finest: float = 0.005) -> None:
-    """Print the tables.
+def vertices(shape: str, worst: float) -> list[Row]:
+    """Return how many vertices both ways need for one worst error."""
+    found = count(shape, worst)
+    return [
+        Row(f"{shape}, contours", worst, worst, found.contours),
+        Row(f"{shape}, facets", worst, worst, found.facets),
+    ]
 
-    Parameters
-    ----------
-    levels
-        Of the contours; the source had 200 intensities.
-    largest
-        Leave out pictures of more pixels.
-    finest
-        The least worst error for which vertices are counted.
-    """
+
+def pictures(shape: str, area: int, levels: int, repeats: int) -> list[Row]:
+    """Return the ways to make one picture, with their times."""
+    rows = []
+    for made in measure(shape, area, levels, repeats):
+        more: dict[str, float | str] = {
+            "ms to model": 1e3 * made.model,
+            "ms a frame": 1e3 * made.draw,
+            "mean error": made.mean,
+        }
+        way = f"picture of a {shape}, {made.way}"
+        rows.append(Row(way, area, made.largest, made.vertices or math.nan, more))
+    return rows
+
+
+def virtual(angle: float) -> list[Row]:
+    """Return how far the virtual light's highlight is off, by the distance of the light."""
+    rows = []
+    for distance in (1.5, 2, 4, 8, 16, 64, math.inf):
+        h = highlight(distance, angle)
+        more: dict[str, float | str] = {"error of N.H": h.half, "degrees off the peak": h.shift}
+        rows.append(Row(f"virtual light, {angle:g} degrees", distance, h.mirror, math.nan, more))
+    return rows
+
+
+def steps(quick: bool) -> list[Callable[[], list[Row]]]:
+    """Return the steps: vertices for an error, pictures, the virtual light."""
+    errors = (0.05, 0.02) if quick else (0.05, 0.02, 0.01, 0.005)
+    sizes = SIZES[:2] if quick else SIZES
+    levels, repeats = (50, 1) if quick else (200, 3)
+    return [
+        *(functools.partial(vertices, shape, worst) for shape in SHAPES for worst in errors),
+        *(functools.partial(pictures, s, area, levels, repeats) for s in SHAPES for area in sizes),
+        *(functools.partial(virtual, angle) for angle in (30.0, 90.0)),
+    ]
+
+
+def verdict(rows: Sequence[Row]) -> str:
+    """Return how many vertices contours save, and what the picture costs."""
+    said = []
     for shape in SHAPES:
-        rows = [row for area in SIZES if area <= largest for row in measure(shape, area, levels)]
-        print_table(
-            f"A {shape}: seconds to model and to draw, and the error of its pixels",
-            ("way", "pixels", "vertices", "model, ms", "frame, ms", "largest error", "mean error"),
-            [
-                (
-                    row.way,
-                    f"{row.pixels}",
-                    f"{row.vertices}",
-                    f"{1e3 * row.model:.2f}",
-                    f"{1e3 * row.draw:.2f}",
-                    f"{row.largest:.4f}",
-                    f"{row.mean:.4f}",
-                )
-                for row in rows
-            ],
+        fine = {row.way: row for row in rows if row.way.startswith(f"{shape}, ")}
+        drawn, flat = fine[f"{shape}, contours"], fine[f"{shape}, facets"]
+        said.append(
+            f"a {shape} needs {words(drawn.cost)} vertices where facets need {words(flat.cost)}"
         )
-    errors = [error for error in (0.05, 0.02, 0.01, 0.005) if error >= finest]
-    counts = [count(shape, error) for shape in SHAPES for error in errors]
-    print_table(
-        "Vertices for one worst error anywhere on the surface",
-        ("shape", "worst error", "contours", "facets", "times as many"),
-        [
-            (
-                c.shape,
-                f"{c.error:g}",
-                f"{c.contours}",
-                f"{c.facets}",
-                f"{c.facets / c.contours:.1f}",
-            )
-            for c in counts
-        ],
-    )
-    print_table(
-        "The virtual light's highlight on a sphere, shininess 20",
-        (
-            "light at, radii",
-            "light to eye",
-            "error of N.H",
-            "error of R.E",
-            "peak off, degrees",
-        ),
-        [
-            (
-                f"{h.distance:g}",
-                f"{h.angle:g}",
-                f"{h.half:.4f}",
-                f"{h.mirror:.4f}",
-                f"{h.shift:.2f}",
-            )
-            for angle in (30.0, 90.0)
-            for h in (highlight(d, angle) for d in (1.5, 2, 4, 8, 16, 64, math.inf))
-        ],
-    )
+    return f"for an error of {drawn.error:g} use contours: " + ", ".join(said)
 
 
-if __name__ == "__main__":
-    cyclopts.run(main)
+STUDY = Study(
+    approximates="a lit sphere and cone by contours of equal luminance",
+    reference="the exact luminance, by a ray cast; Gouraud-shaded facets beside it",
+    parameter="allowed error, pixels, or distance of the light in radii",
+    error="largest error of luminance",
+    cost="vertices",
+    steps=steps,
+    verdict=verdict,
+)

@@ -1,11 +1,11 @@
 """The error meter of line models: every cheap one against the exact line light.
 
-``python -m vizlight.studies.lines [COUNT]`` prints one table. Lines, lights and eyes point
-anywhere, or the light is the eye's own; the exact light is that of :mod:`vizlight.model.cylinder`,
-specular with N.H to the power 20. Tubes of N sides are shaded as VTK shades them: normals of the
-corners, interpolated along a face and made unit at each pixel; what a pixel that holds the whole
-tube shows is the mean over its width, and each tube is turned at random about its line. A factor
-for all points, which a coefficient of the material can hold, is taken out in the last two columns.
+Lines, lights and eyes point anywhere, or the light is the eye's own; the exact light is that of
+:mod:`vizlight.model.cylinder`, specular with N.H to the power 20. Tubes of N sides are shaded as
+VTK shades them: normals of the corners, interpolated along a face and made unit at each pixel; what
+a pixel that holds the whole tube shows is the mean over its width, and each tube is turned at
+random about its line. A factor for all points, which a coefficient of the material can hold, is
+taken out of the scaled errors.
 
 Where they are exact: for a headlight, and wherever light, line and eye lie in one plane on one
 side of the line, Banks' diffuse term with p = 1 and Blinn's highlight are the exact light up to a
@@ -17,7 +17,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import cyclopts
 import numpy as np
 import pyvista as pv
 
@@ -25,10 +24,11 @@ from vizlight import engine
 from vizlight.light import Light
 from vizlight.model import brightness, cylinder, highlights, reflection
 from vizlight.scene import Material, Scene, View
-from vizlight.studies._measure import print_table, take_turns
+from vizlight.studies._measure import take_turns
+from vizlight.studies._study import Row, Study, cheapest, words
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -41,7 +41,7 @@ NODES = 16
 
 
 @dataclass(frozen=True)
-class Row:
+class Model:
     """One model of one term: errors in the term's own unit, cost for a point of the line."""
 
     setting: str
@@ -98,7 +98,7 @@ def tube(
     return diffuse / width, specular / width
 
 
-def measure(count: int = 20_000, repeats: int = 3) -> list[Row]:
+def measure(count: int = 20_000, repeats: int = 3) -> list[Model]:
     """Return the rows of the study."""
     rows = []
     costs = _costs(repeats)
@@ -148,10 +148,10 @@ def measure(count: int = 20_000, repeats: int = 3) -> list[Row]:
 
 def _row(
     setting: str, term: str, model: str, value: Array, exact: Array, cost: tuple[float, float]
-) -> Row:
+) -> Model:
     factor = float(np.sum(value * exact) / np.sum(value * value))
     plain, scaled = value - exact, factor * value - exact
-    return Row(
+    return Model(
         setting,
         term,
         model,
@@ -200,36 +200,50 @@ def _costs(repeats: int, count: int = 200_000) -> dict[str, tuple[float, float]]
     return costs
 
 
-def main(count: int = 20_000) -> None:
-    """Print the table.
-
-    Parameters
-    ----------
-    count
-        How many lines are lit in each setting.
-    """
-    print_table(
-        f"Line models against the exact line light, {count} lines, power {SHININESS:g}",
-        (
-            "model", "setting", "term", "worst", "RMS", "worst, scaled", "RMS, scaled",
-            "ns a point", "bytes a point",
-        ),
-        [
-            (
-                row.model,
-                row.setting,
-                row.term,
-                f"{row.worst:.4f}",
-                f"{row.rms:.4f}",
-                f"{row.scaled_worst:.4f}",
-                f"{row.scaled_rms:.4f}",
-                f"{row.nanoseconds:.0f}",
-                f"{row.bytes:.0f}",
-            )
-            for row in measure(count)
-        ],
-    )  # fmt: skip
+def rows(count: int = 20_000, repeats: int = 3) -> list[Row]:
+    """Return the models as rows: a tube by its sides, the other models by none."""
+    found = []
+    for m in measure(count, repeats):
+        tube_of = m.model.split()[2] if m.model.startswith("tube") else "0"
+        more: dict[str, float | str] = {
+            "term": m.term,
+            "worst": m.worst,
+            "worst, scaled": m.scaled_worst,
+            "RMS, scaled": m.scaled_rms,
+            "bytes a point": m.bytes,
+        }
+        name = "tube" if int(tube_of) else m.model
+        way = f"{name}, {m.term}, {m.setting}"
+        found.append(Row(way, int(tube_of), m.rms, m.nanoseconds, more))
+    return found
 
 
-if __name__ == "__main__":
-    cyclopts.run(main)
+def verdict(rows: Sequence[Row]) -> str:
+    """Return which model to take for lights anywhere, and for a headlight."""
+    said = []
+    for term in ("diffuse", "specular"):
+        anywhere = [r for r in rows if r.more["term"] == term and r.way.endswith("random")]
+        best = cheapest(anywhere)
+        assert best is not None
+        near = min((r for r in anywhere if not r.parameter and r.error > 0), key=lambda r: r.error)
+        name = near.way.split(", " + term)[0]
+        said.append(
+            f"{term}: '{best.way.split(', ')[0]}' at {words(best.cost)} ns a point, while "
+            f"'{name}' at {words(near.cost)} ns is off by {near.error:.2g}"
+        )
+        head = [r for r in rows if r.more["term"] == term and r.way.endswith("headlight")]
+        scaled = cheapest([r._replace(error=float(r.more["RMS, scaled"])) for r in head])
+        assert scaled is not None
+        said.append(f"a headlight's by '{scaled.way.split(', ' + term)[0]}' times a factor")
+    return f"at an RMS error of 1/255 use, {'; '.join(said)}"
+
+
+STUDY = Study(
+    approximates=f"diffuse and specular light of thin lines, N.H to the power {SHININESS:g}",
+    reference="the exact light of a thin cylinder",
+    parameter="sides of a tube, 0 for a line",
+    error="RMS error of the term",
+    cost="ns a point",
+    steps=lambda quick: [lambda: rows(4000 if quick else 20_000, 3)],
+    verdict=verdict,
+)

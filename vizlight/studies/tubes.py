@@ -1,39 +1,42 @@
 """The same streamlines as lit lines and as tubes: points, bytes, time to build, time to draw.
 
-``python -m vizlight.studies.tubes [SEEDS] [--picture FILE]`` prints the table and draws both side
-by side: the lines lit by vizlight, the tubes of 20 sides by the same light, also as scalars.
+The lines are lit by vizlight, the tubes by the same light, also as scalars. The error is that of
+the shape: what a tube of so many sides shows, averaged over its width, against the exact light of
+a cylinder (:mod:`vizlight.studies.lines`), for the power of a default material.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from pathlib import Path  # noqa: TC003 - read by the command line at run time
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
-import cyclopts
+import numpy as np
 
 from vizlight import render
 from vizlight.data import load_example
 from vizlight.filters import illuminate, streamlines
 from vizlight.light import Light
-from vizlight.scene import Scene, View
-from vizlight.studies._measure import print_table, take_turns
+from vizlight.model import cylinder
+from vizlight.scene import Material, Scene, View
+from vizlight.studies import lines
+from vizlight.studies._measure import take_turns
+from vizlight.studies._study import PIXEL, Row, Study, words
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
-SIDES = 20
+SIDES = (4, 8, 20)
+MATERIAL = Material()
 
 
-@dataclass(frozen=True)
-class Row:
-    """One way to show streamlines."""
-
-    way: str
-    points: int
-    megabytes: float
-    build: float
-    draw: float
+def shape_error(sides: int, count: int = 5000) -> float:
+    """Return the RMS error of the light of a tube of so many sides, its material included."""
+    wi, wo, t = lines.directions(count, headlight=False)
+    diffuse, specular = lines.tube(wi, wo, t, sides, shininess=MATERIAL.shininess)
+    error = MATERIAL.diffuse * (diffuse - cylinder.diffuse(wi, wo, t)) + MATERIAL.specular * (
+        specular - cylinder.specular(wi, wo, t, shininess=MATERIAL.shininess)
+    )
+    return float(np.sqrt(np.mean(error * error)))
 
 
 def measure(seeds: int = 300, repeats: int = 5) -> tuple[list[Row], list[Any], Any]:
@@ -44,18 +47,24 @@ def measure(seeds: int = 300, repeats: int = 5) -> tuple[list[Row], list[Any], A
     bare = streamlines(flow, scene, vectors="V", seeds=seeds)
     bare.clear_data()
     radius = float(flow.length) / 800
-    ways: dict[str, Callable[[], Any]] = {
-        "lit lines": lambda: illuminate(bare, scene),
-        f"tubes, {SIDES} sides": lambda: illuminate(bare.tube(radius=radius, n_sides=SIDES), scene),
-    }
+    ways: dict[int, Callable[[], Any]] = {0: lambda: illuminate(bare, scene, model="cylinder")}
+    for sides in SIDES:
+        ways[sides] = partial(
+            lambda n: illuminate(bare.tube(radius=radius, n_sides=n), scene), sides
+        )
     seconds = take_turns(ways, repeats)
     rows, meshes = [], []
-    for way, build in ways.items():
+    for sides, build in ways.items():
         mesh = build()
         meshes.append(mesh)
-        size = mesh.actual_memory_size / 1e3
-        draw = time_to_draw(mesh, camera, repeats)
-        rows.append(Row(way, mesh.n_points, size, seconds[way], draw))
+        more = {
+            "points": mesh.n_points,
+            "MB": mesh.actual_memory_size / 1e3,
+            "build and light, ms": 1e3 * seconds[sides],
+        }
+        draw = 1e3 * time_to_draw(mesh, camera, repeats)
+        error = shape_error(sides) if sides else 0.0
+        rows.append(Row("tubes" if sides else "lit lines", sides, error, draw, more))
     return rows, meshes, camera
 
 
@@ -76,37 +85,31 @@ def time_to_draw(mesh: Any, camera: Any, repeats: int = 5, **options: Any) -> fl
         plotter.close()
 
 
-def main(seeds: int = 300, *, picture: Path | None = None) -> None:
-    """Print the table and draw the picture.
-
-    Parameters
-    ----------
-    seeds
-        How many streamlines are started.
-    picture
-        A .png file for both ways side by side.
-    """
-    rows, meshes, camera = measure(seeds)
-    print_table(
-        f"{seeds} streamlines of the rotating disk",
-        ("way", "points", "MB", "build and light, ms", "draw a frame, ms"),
-        [
-            (
-                row.way,
-                f"{row.points}",
-                f"{row.megabytes:.1f}",
-                f"{1e3 * row.build:.0f}",
-                f"{1e3 * row.draw:.0f}",
-            )
-            for row in rows
-        ],
+def verdict(rows: Sequence[Row]) -> str:
+    """Return what lines save, and where tubes are as good."""
+    line, *tubes = rows
+    fine = tubes[-1]
+    size, build = (
+        float(fine.more[key]) / float(line.more[key]) for key in ("MB", "build and light, ms")
     )
-    if picture is not None:
-        panels = [render.Panel(mesh, title=row.way) for mesh, row in zip(meshes, rows, strict=True)]
-        render.save_png(
-            panels, picture, camera=camera, size=(1600, 800), line_width=2, background="black"
-        )
+    good = [row for row in tubes if row.error <= PIXEL]
+    said = (
+        f"a tube needs {good[0].parameter} sides for an RMS error of 1/255" if good
+        else f"tubes of {fine.parameter} sides miss by {fine.error / PIXEL:.2g} of 255"
+    )  # fmt: skip
+    return (
+        f"for lines thinner than a pixel use lit lines (model='cylinder'): {said}, and one of "
+        f"{fine.parameter} sides takes {words(size)} times the memory, {words(build)} times the "
+        f"time to build and {words(fine.cost / line.cost)} times the time to draw"
+    )
 
 
-if __name__ == "__main__":
-    cyclopts.run(main)
+STUDY = Study(
+    approximates="streamlines of the rotating disk as round cylinders",
+    reference="the exact light of a thin cylinder",
+    parameter="sides, 0 for a line",
+    error="RMS error of luminance",
+    cost="ms to draw a frame",
+    steps=lambda quick: [lambda: measure(100 if quick else 300, 1 if quick else 5)[0]],
+    verdict=verdict,
+)

@@ -1,0 +1,129 @@
+"""One shape for all studies: found by name, run, told as table, CSV, figure and verdict."""
+
+from __future__ import annotations
+
+import csv
+import re
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from vizlight import cli, studies
+from vizlight.studies import Row, Study, _study
+
+
+@pytest.fixture
+def toy():
+    def steps(quick):
+        sizes = (10, 20) if quick else (10, 20, 40, 80)
+        return [lambda n=n: [Row("rough", n, n**-2.0, 3.0 * n, {"memory": n})] for n in sizes] + [
+            lambda: [Row("exact", "none", 0.0, 500.0)]
+        ]
+
+    def verdict(rows):
+        best = studies.cheapest(rows)
+        return f"at 1/255 use {best.way}, {best.parameter}"
+
+    return Study(
+        approximates="a toy",
+        reference="itself",
+        parameter="points",
+        error="error",
+        cost="ns",
+        steps=steps,
+        verdict=verdict,
+        axes=("parameter", "error"),
+    )
+
+
+@pytest.mark.parametrize("name", studies.names())
+def test_every_study_has_the_shape(name):
+    study = studies.load(name)
+    assert isinstance(study, Study)
+    for text in (study.approximates, study.reference, study.parameter, study.error, study.cost):
+        assert text
+    assert set(study.axes) <= {"parameter", "error", "cost"}
+    assert 0 < len(study.steps(True)) <= len(study.steps(False))
+
+
+def test_names():
+    assert {"engine", "brightness", "frames", "highlights", "lines", "fur", "relief"} <= set(
+        studies.names()
+    )
+    assert {"mesh", "scaling", "stability", "streamlines", "tubes"} <= set(studies.names())
+    assert "reference" not in studies.names()
+    with pytest.raises(ValueError, match=r"study: expected one of brightness, .*, got 'nothing'"):
+        studies.load("nothing")
+
+
+def test_run(toy, capsys):
+    result = studies.run("toy", toy, quick=True)
+    assert len(result.rows) == 3
+    assert result.verdict == "at 1/255 use rough, 20"
+    assert len(studies.run("toy", toy).rows) == 5
+    _study.print_result(result)
+    said = " ".join(capsys.readouterr().out.split())
+    for part in ("vizlight study toy", "memory", "approximated: a toy", "verdict: at 1/255"):
+        assert part in said
+
+
+def test_csv_keeps_all_digits(toy, tmp_path):
+    result = studies.run("toy", toy)
+    path = result.write_csv(tmp_path / "toy.csv")
+    with path.open(newline="") as file:
+        head, *rows = csv.reader(file)
+    assert head == ["way", "points", "error", "ns", "memory"]
+    assert float(rows[1][2]) == 1 / 400
+    assert rows[-1] == ["exact", "none", "0.0", "500.0", ""]
+
+
+def test_figure_is_logarithmic(toy, tmp_path):
+    result = studies.run("toy", toy)
+    picture = pv.read(result.draw(tmp_path / "toy.png"))
+    assert picture.dimensions == (960, 600, 1)
+    pixels = np.asarray(picture.active_scalars).reshape(600, 960, -1)[..., :3].astype(int)
+    blue = np.argwhere(np.abs(pixels - (0, 0x72, 0xB2)).sum(axis=-1) < 30)
+    # A power law is a straight line: its pixels, the legend's left out, lie along one.
+    line = blue[blue[:, 1] < 600]
+    fit = np.polyfit(line[:, 1], line[:, 0], 1)
+    assert np.abs(np.polyval(fit, line[:, 1]) - line[:, 0]).max() < 6
+
+
+def test_order_and_cheapest():
+    rows = [Row("a", h, 3 * h**2.5, 1 / h) for h in (0.1, 0.2, 0.4)]
+    assert studies.order(rows) == pytest.approx(2.5)
+    assert studies.cheapest(rows, 0.1) is rows[1]
+    assert studies.cheapest(rows, 1e-9) is None
+    assert studies.cheapest([*rows, Row("b", 1, 0.0, np.nan)], 0.1) is rows[1]
+
+
+def test_command_line(tmp_path, capfd, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "200")
+    assert cli.main(["study"]) == 0
+    listed = capfd.readouterr().out
+    assert all(name in listed for name in studies.names())
+    out = tmp_path / "deep" / "folder"
+    assert cli.main(["study", "brightness", "--quick", "-o", str(out)]) == 0
+    said, err = capfd.readouterr()
+    assert "verdict: p(k, n) gives" in said
+    assert "brightness" in err
+    assert {p.name for p in out.iterdir()} == {"brightness.csv", "brightness.png"}
+
+
+def test_bad_command_lines(tmp_path, capfd):
+    assert cli.main(["study", "nothing"]) == 2
+    assert re.fullmatch(r"vizlight: study: expected one of .*\n", capfd.readouterr().err)
+    (tmp_path / "file").touch()
+    assert cli.main(["study", "brightness", "-o", str(tmp_path / "file")]) == 2
+    assert "out: expected a folder" in capfd.readouterr().err
+
+
+def test_a_study_that_lacks_something(capfd, tmp_path, monkeypatch, toy):
+    def missing(_):
+        raise _study.LackingError("mpmath is missing; pip install 'vizlight[test]'")
+
+    monkeypatch.setattr(studies, "load", lambda _: toy.__class__(**{**vars(toy), "steps": missing}))
+    assert cli.main(["study", "stability", "-o", str(tmp_path)]) == 1
+    assert capfd.readouterr().err == "vizlight: mpmath is missing; pip install 'vizlight[test]'\n"
+    assert not list(tmp_path.iterdir())

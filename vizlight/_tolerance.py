@@ -1,0 +1,219 @@
+"""The cheapest evaluation of a plan whose stated bound is within a tolerance.
+
+In the order of what they save: the line light of headlights by the laws that it then is a multiple
+of, float32 for float64, Blinn's law for Phong's under one half vector, whole powers for others.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy import special
+
+from vizlight import _highlight
+from vizlight.light import NO_ATTENUATION
+from vizlight.model import _kernels
+
+if TYPE_CHECKING:
+    from vizlight.light import Light
+    from vizlight.plan import Plan
+    from vizlight.scene import View
+
+
+@dataclasses.dataclass(frozen=True)
+class Choice:
+    """What was chosen within a tolerance, in words, and the bound of all of it together.
+
+    Attributes
+    ----------
+    tolerance : float
+        That was asked for, 0 for the exact forms.
+    bound : float
+        The most that the luminance of a valid point differs from the exact forms; infinity where
+        rounding has no bound within the tolerance that holds for all data.
+    said, unsaid : tuple of str
+        What was taken and what was not.
+    """
+
+    tolerance: float = 0.0
+    bound: float = math.inf
+    said: tuple[str, ...] = ()
+    unsaid: tuple[str, ...] = ()
+
+
+EXACT = Choice()
+
+
+def relax(plan: Plan, tolerance: float, *, any_precision: bool) -> Plan:
+    """Return the plan with what is cheaper and within the tolerance in all.
+
+    Parameters
+    ----------
+    plan : Plan
+        Of the exact forms.
+    tolerance : float
+        Of the luminance, above 0.
+    any_precision : bool
+        Whether float32 may take the place of the plan's precision.
+    """
+    said, unsaid, spent = [], [], 0.0
+
+    def offer(error: float, made: Plan, words: str, *, low: bool = False) -> None:
+        nonlocal plan, spent
+        rounds = rounding(made)
+        if spent + error + (rounds if low else _finite(rounds)) <= tolerance:
+            plan, spent = made, spent + error
+            said.append(f"{words}, within {rounds if low else error:.3g}")
+        else:
+            unsaid.append(f"{words}: it would differ by up to {rounds if low else error:.3g}")
+
+    if plan.model == "cylinder" and (plan.diffuse or plan.specular):
+        offer(*_flat_line(plan))
+    if any_precision:
+        single = dataclasses.replace(plan, dtype=np.dtype(np.float32))
+        offer(0.0, single, "precision: float32", low=True)
+    if plan.model == "phong" and plan.specular:
+        # Those that are too far off are told beside the others, light by light.
+        left = 255 * max(tolerance - spent - _finite(rounding(plan)), 0)
+        made = dataclasses.replace(plan, highlights=_highlight.choose(plan.scene, "phong", left))
+        if spent + made.highlight_error / 255 + _finite(rounding(made)) <= tolerance:
+            plan, spent = made, spent + made.highlight_error / 255
+    if plan.diffuse and _slow(plan.exponent):
+        whole = float(max(round(plan.exponent), 1))
+        error = _kernels.power_error(plan.exponent, whole)
+        error *= _weight(plan, plan.scene.material.diffuse)
+        made = dataclasses.replace(plan, exponent=whole)
+        offer(error, made, f"diffuse: power {whole:g} for {plan.exponent:.6g}")
+    if plan.specular:
+        _offer_whole_shininess(plan, offer)
+    bound = spent + rounding(plan)
+    if bound > tolerance:
+        bound = math.inf
+    choice = Choice(tolerance, bound, tuple(said), tuple(unsaid))
+    return dataclasses.replace(plan, choice=choice)
+
+
+def _finite(bound: float) -> float:
+    return bound if math.isfinite(bound) else 0.0
+
+
+def _offer_whole_shininess(plan: Plan, offer: Any) -> None:
+    """Offer whole powers for the highlights of the law asked for."""
+    half = 2.0 if plan.model == "blinn" else 1.0
+    shininess = plan.scene.material.shininess
+    own = [h for h in plan.highlights if h.model == plan.model and not h.error]
+    if plan.model == "cylinder" or not own or not _slow(shininess / half):
+        return
+    whole = half * max(round(shininess / half), 1)
+    error = _kernels.power_error(shininess, whole) * _weight(plan, plan.scene.material.specular)
+    highlights = tuple(h._replace(shininess=whole) if h in own else h for h in plan.highlights)
+    made = dataclasses.replace(plan, highlights=highlights)
+    offer(error, made, f"specular: power {whole:g} for {shininess:g}")
+
+
+def _slow(power: float) -> bool:
+    """Tell whether a power is not taken by multiplication, but near one that would be."""
+    return power != int(power) and power <= _kernels.DEFICIT_FROM
+
+
+def _weight(plan: Plan, coefficient: float) -> float:
+    return float(coefficient * sum(light.intensity for light in plan.scene.lights))
+
+
+def rounding(plan: Plan) -> float:
+    """Return the most that rounding changes the luminance; infinity where no bound holds.
+
+    Notes
+    -----
+    By the bounds of :mod:`vizlight.model.reflection`, with 8 eps more for each factor that a scene
+    puts to them. None holds for k tangents near each other, near opposite directions under Blinn's
+    law, near the line under a cylinder's, and for t and fur, whose own rounding is the data's.
+    """
+    eps = float(np.finfo(plan.dtype).eps)
+    scene, material = plan.scene, plan.scene.material
+    if not (plan.diffuse or plan.specular):
+        return 4 * eps * plan.ambient
+    if plan.model == "cylinder" or plan.shadowed or plan.fur or plan.carrier:
+        return math.inf
+    if not plan.surface and plan.k > 1:
+        return math.inf
+    factors = 8.0 * (
+        1 + plan.conditioned + any(x.attenuation != NO_ATTENUATION for x in scene.lights)
+    )
+    total = 4 * eps * (plan.ambient + _weight(plan, material.diffuse + material.specular))
+    if plan.diffuse:
+        term = diffuse_bound(plan.exponent, eps) + factors * eps
+        total += plan.factors[0] * term * _weight(plan, material.diffuse)
+    if plan.specular:
+        if plan.terminator:
+            factors += 6 / plan.terminator
+        for light, highlight in zip(scene.lights, plan.highlights, strict=True):
+            share = 1.0
+            if highlight.model == "blinn" and highlight.half is None:
+                apart = angle(light, scene.view)
+                if apart is None or apart > 3:
+                    return math.inf
+                share = min(2 * math.cos(apart / 2), 1.0)
+            term = specular_bound(highlight.shininess, eps / share) + factors * eps
+            total += plan.factors[1] * term * material.specular * light.intensity
+    return total
+
+
+def diffuse_bound(p: float, eps: float) -> float:
+    """Return the absolute error of :func:`vizlight.model.reflection.diffuse`."""
+    if p < 1:
+        return float((4 * eps) ** p)
+    return (4 + 2 * p if p <= 128 else 8 + math.sqrt(p)) * eps
+
+
+def specular_bound(s: float, eps: float) -> float:
+    """Return the absolute error of :func:`vizlight.model.reflection.specular`, |wi + wo| >= 1."""
+    if s < 1:
+        return float((8 * eps) ** s)
+    return (4 + s if s <= 128 else 8 + 3 * math.sqrt(s)) * eps
+
+
+def angle(light: Light, view: View | None) -> float | None:
+    """Return the angle from light to eye where it is one for all points; 0 for a headlight."""
+    if view is None:
+        return None
+    if light.position is not None:
+        same = not view.parallel and light.position == view.position
+        return 0.0 if same else None
+    if not view.parallel or light.direction is None or view.direction is None:
+        return None
+    a, b = (np.array(v) / np.linalg.norm(v) for v in (light.direction, view.direction))
+    return 2 * math.atan2(float(np.linalg.norm(a - b)), float(np.linalg.norm(a + b)))
+
+
+def _flat_line(plan: Plan) -> tuple[float, Plan, str]:
+    """Return Banks' and Blinn's laws, times a factor each, for the exact line light, and the error.
+
+    They are its multiples for a headlight. For light and eye theta apart Lambert's mean differs by
+    at most ``pi/2 sin(theta/2)``, as the normal parts are within ``2 sin(theta/2)``; and Blinn's,
+    of power 1 or more, by ``3 pi/2 sin(theta/4)``, as those of half vector and eye are within
+    ``2 sin(theta/4)`` and the mean changes by no more than the angles between them.
+    """
+    scene, material = plan.scene, plan.scene.material
+    error, s = 0.0, material.shininess
+    for light in scene.lights:
+        theta = angle(light, scene.view)
+        if theta is None or (theta > 0 and s < 1):
+            error = math.inf
+            break
+        each = material.diffuse * math.pi / 2 * math.sin(theta / 2)
+        each += material.specular * 1.5 * math.pi * math.sin(theta / 4)
+        error += each * light.intensity
+    factors = math.pi / 4, float(special.beta(s / 2 + 1, 0.5)) / 2
+    made = dataclasses.replace(
+        plan,
+        model="blinn",
+        exponent=1.0,
+        factors=factors,
+        highlights=_highlight.choose(scene, "blinn", 0.0),
+    )
+    words = f"cylinder: Banks' law times {factors[0]:.4g} and Blinn's times {factors[1]:.4g}"
+    return error, made, words

@@ -1,0 +1,172 @@
+"""Light at the points of a mesh and interpolated, against light at every pixel.
+
+A torus in 3-space, closed, its frames exact: light in the middle of each cell as the mean of its
+corners, which is what a picture shows there, against the light of the surface itself at that place.
+The same for a torus in 4-space. Smooth light is interpolated at order 2; at the terminator, where
+Lambert's law has a kink, the order is 1.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from vizlight import engine
+from vizlight.geometry import manifolds
+from vizlight.light import Light
+from vizlight.scene import Material, Scene, View
+from vizlight.studies._measure import take_turns
+from vizlight.studies._study import PIXEL, Row, Study, cheapest, order, words
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import NDArray
+
+    Array = NDArray[Any]
+
+R1, R2 = 1.5, 0.75
+#: Pixels that a picture lights, one point each.
+PIXELS = 1_000_000
+SHININESS = (5.0, 20.0, 100.0)
+
+
+def ring(size: int) -> tuple[Array, Array]:
+    """Return a torus of revolution of size x size points and its two tangents, row by row."""
+    angle = 2 * np.pi * np.arange(size) / size
+    u, v = (a.ravel() for a in np.meshgrid(angle, angle, indexing="ij"))
+    across = R1 + R2 * np.cos(v)
+    points = np.stack([across * np.cos(u), across * np.sin(u), R2 * np.sin(v)], axis=-1)
+    along = np.stack([-np.sin(u), np.cos(u), 0 * u], axis=-1)
+    up = np.stack([-np.sin(v) * np.cos(u), -np.sin(v) * np.sin(u), np.cos(v)], axis=-1)
+    return points, np.stack([along, up], axis=1)
+
+
+def flat_torus(size: int) -> tuple[Array, Array]:
+    """Return the torus in 4-space likewise."""
+    shape = manifolds.torus(R1, R2, resolution=size)
+    return shape.points, shape.frame
+
+
+def scene(n: int, shininess: float) -> Scene:
+    """Return the scene of the study in n-space."""
+    return Scene(
+        lights=Light(direction=(0.7, 0.6, 0.38, 0.2)[:n]),
+        view=View(direction=(0.1, 0.3, 0.9, -0.2)[:n]),
+        material=Material(shininess=shininess),
+    )
+
+
+def smooth_cells(points: Array, frame: Array, size: int, shininess: float) -> Any:
+    """Return the cells that the terminator of a surface in 3-space does not cross; else all."""
+    if points.shape[1] > 3:
+        return np.ones((size, size), dtype=bool)
+    normal = np.cross(frame[:, 0], frame[:, 1])
+    lit = (normal @ np.asarray(scene(3, shininess).lights[0].direction) > 0).reshape(size, size)
+    down = np.roll(lit, -1, axis=0)
+    corners = lit.astype(int) + down + np.roll(lit, -1, axis=1) + np.roll(down, -1, axis=1)
+    return corners % 4 == 0
+
+
+def error(
+    shape: Callable[[int], tuple[Array, Array]], size: int, shininess: float
+) -> tuple[float, float, float]:
+    """Return the largest, the RMS, and the largest error off the terminator, in cells' middles."""
+
+    def light(count: int) -> Array:
+        points, frame = shape(count)
+        found: Any = engine.shade(points, frame, scene(points.shape[1], shininess)).luminance
+        return np.asarray(found).reshape(count, count)
+
+    corners, fine = light(size), light(2 * size)
+    down = np.roll(corners, -1, axis=0)
+    mean = (corners + down + np.roll(corners, -1, axis=1) + np.roll(down, -1, axis=1)) / 4
+    off = np.abs(mean - fine[1::2, 1::2])
+    smooth = smooth_cells(*shape(size), size, shininess)
+    return float(off.max()), float(np.sqrt(np.mean(off * off))), float(off[smooth].max())
+
+
+def measure(n: int, shininess: float, sizes: Sequence[int]) -> list[Row]:
+    """Return the rows of one shape and shininess, the cost that of lighting the whole mesh."""
+    shape = ring if n == 3 else flat_torus
+    rows = []
+    for size in sizes:
+        points, frame = shape(size)
+        work = partial(engine.shade, points, frame, scene(n, shininess))
+        taken = take_turns({"": work}, 3)[""]
+        worst, rms, smooth = error(shape, size, shininess)
+        more = {
+            "n": n,
+            "power": shininess,
+            "points": size * size,
+            "RMS error": rms,
+            "off the terminator": smooth,
+        }
+        rows.append(Row(f"{n}-space, power {shininess:g}", size, worst, 1e3 * taken, more))
+    return rows
+
+
+def every_pixel(shininess: float = 20.0) -> list[Row]:
+    """Return the cost of a point a pixel."""
+    points, frame = ring(int(PIXELS**0.5))
+    work = partial(engine.shade, points, frame, scene(3, shininess))
+    taken = take_turns({"": work}, 3)[""]
+    more = {"n": 3, "power": shininess, "RMS error": 0.0, "points": PIXELS}
+    return [Row("a point a pixel", int(PIXELS**0.5), 0.0, 1e3 * taken, more)]
+
+
+def steps(quick: bool) -> list[Callable[[], list[Row]]]:
+    """Return a step for each shape and shininess, and one for all pixels."""
+    sizes = (64, 128, 256, 512) if quick else (64, 128, 256, 512, 1024)
+    found = [partial(measure, 3, s, sizes) for s in SHININESS]
+    return [*found, partial(measure, 4, 20.0, sizes), every_pixel]
+
+
+def verdict(rows: Sequence[Row]) -> str:
+    """Return how fine a mesh must be, what it saves, and the order."""
+    usual = [row for row in rows if row.way == "3-space, power 20"]
+    pixel = next(row for row in rows if row.way == "a point a pixel")
+    best = cheapest(usual)
+    ways = dict.fromkeys(row.way for row in rows if row.error)
+    orders = [
+        -order(
+            [
+                row._replace(error=float(row.more["off the terminator"]))
+                for row in rows
+                if row.way == way
+            ][-3:]
+        )
+        for way in ways
+    ]
+    at = -order(usual[-2:])
+    falls = f"{min(orders):.2f} to {max(orders):.2f} off the terminator and {at:.2f} at it"
+    if best is None:
+        fine = usual[-1]
+        return (
+            f"meshes up to {fine.parameter} points on a circle miss by {fine.error / PIXEL:.2g} of "
+            f"255; error falls with the spacing to the power {falls}"
+        )
+    needed = {
+        row.more["power"]: row.parameter
+        for row in reversed(rows) if row.error and row.error <= PIXEL and row.more["n"] == 3
+    }  # fmt: skip
+    others = ", ".join(f"{size} at power {power:g}" for power, size in sorted(needed.items()))
+    return (
+        f"at 1/255 of error light the points of a mesh whose normals turn once round in "
+        f"{best.parameter} steps or more ({others}): 1/{words(pixel.cost / best.cost)} of the cost "
+        f"of a point a pixel; error falls with the spacing to the power {falls}"
+    )
+
+
+STUDY = Study(
+    approximates="light between the points of a mesh by interpolation",
+    reference="the light of the surface itself, as at every pixel",
+    parameter="points on a circle",
+    error="largest error of luminance",
+    cost="ms to light the mesh",
+    steps=steps,
+    verdict=verdict,
+    axes=("parameter", "error"),
+)

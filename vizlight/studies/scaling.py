@@ -1,0 +1,141 @@
+"""How time and memory grow with the number of points, up to 1e8 from a file on disk.
+
+Lines, a light and an eye nearby, float32. The largest run reads points and tangents block by block
+from memory-mapped files and is left out where disk or memory do not hold it.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+import time
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from vizlight import engine
+from vizlight.studies import reference
+from vizlight.studies._measure import peak_memory
+from vizlight.studies._study import PIXEL, Row, Study, words
+from vizlight.studies.engine import SCENE
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.floating[Any]]
+
+#: Points written to the files at a time, and checked against the script.
+CHUNK, CHECKED = 1_000_000, 10_000
+#: Bytes a point: points and tangents on disk, light and validity in memory.
+ON_DISK, IN_MEMORY = 24, 5
+
+
+def made(count: int, seed: int = 7) -> Array:
+    """Return vectors in float32, seeded."""
+    return np.random.default_rng(seed).standard_normal((count, 3), dtype=np.float32)
+
+
+def measure(
+    points: Array, tangents: Array, counts: Sequence[int], way: str, repeats: int
+) -> list[Row]:
+    """Return a row for the first so many points: best time, peak beyond the output, error.
+
+    The counts take turns, so that a busy machine slows all.
+    """
+    best = dict.fromkeys(counts, np.inf)
+    for _ in range(repeats):
+        for count in counts:
+            start = time.perf_counter()
+            engine.shade(points[:count], tangents[:count], SCENE)
+            best[count] = min(best[count], time.perf_counter() - start)
+    at = slice(0, min([*counts, CHECKED]))
+    lit = engine.shade(points[at], tangents[at], SCENE)
+    exact = reference.light(
+        np.asarray(points[at]), np.asarray(tangents[at]), SCENE, exponent=lit.plan.exponent
+    )
+    error = float(np.abs(lit.luminance - exact).max())
+    rows = []
+    for count in counts:
+        work = partial(engine.shade, points[:count], tangents[:count], SCENE)
+        extra = peak_memory(work) - IN_MEMORY * count
+        more = {"s": best[count], "MB beyond the output": extra / 1e6}
+        rows.append(Row(way, count, error, 1e9 * best[count] / count, more))
+    return rows
+
+
+def in_memory(counts: Sequence[int], repeats: int) -> list[Row]:
+    """Return the rows of points in memory."""
+    largest = max(counts)
+    return measure(made(largest), made(largest, 8), counts, "in memory", repeats)
+
+
+def from_disk(count: int) -> list[Row]:
+    """Return the row of points in files, or none where disk or memory do not hold them."""
+    folder = Path(tempfile.gettempdir())
+    free = 0
+    if hasattr(os, "sysconf"):
+        free = os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    if shutil.disk_usage(folder).free < 2 * ON_DISK * count or free < 4 * IN_MEMORY * count:
+        return []
+    with tempfile.TemporaryDirectory(prefix="vizlight-", dir=folder) as place:
+        files = []
+        for seed, name in enumerate(("points", "tangents")):
+            file = np.memmap(Path(place) / name, np.float32, "w+", shape=(count, 3))
+            for i in range(0, count, CHUNK):
+                size = min(CHUNK, count - i)
+                file[i : i + size] = made(size, seed + 2 * i)
+            file.flush()
+            files.append(file)
+        rows = measure(files[0], files[1], [count], "in blocks from disk", 1)
+        del files, file
+    return rows
+
+
+def steps(quick: bool) -> list[Callable[[], list[Row]]]:
+    """Return a step for each number of points."""
+    counts = [10_000, 100_000, 1_000_000, 2_000_000, 5_000_000, 10_000_000]
+    if not quick:
+        counts.append(20_000_000)
+    return [
+        partial(in_memory, counts, 5 if quick else 9),
+        partial(from_disk, 2_000_000 if quick else 100_000_000),
+    ]
+
+
+def exponent(rows: Sequence[Row], least: float = 1e6) -> float:
+    """Return the power of the number of points with which time grows, above so many."""
+    large = [row for row in rows if float(row.parameter) > least and row.way == "in memory"]
+    x, y = np.log([(float(row.parameter), float(row.more["s"])) for row in large]).T
+    return float((x - x.mean()) @ (y - y.mean()) / ((x - x.mean()) @ (x - x.mean())))
+
+
+def verdict(rows: Sequence[Row]) -> str:
+    """Return the exponent, and how large a mesh may be."""
+    largest = rows[-1]
+    extra = max(float(row.more["MB beyond the output"]) for row in rows)
+    grows = exponent(rows)
+    plan = "count on" if abs(grows - 1) <= 0.05 else "do not count on"
+    right = "within" if max(row.error for row in rows) <= PIXEL else "not within"
+    return (
+        f"{plan} time in step with the number of points: above 1e6 it grows with the power "
+        f"{grows:.3f}; {largest.parameter:.1g} points {largest.way} take "
+        f"{words(float(largest.more['s']))} s, {right} 1/255, and {words(extra)} MB beyond the "
+        "output are enough for any mesh"
+    )
+
+
+STUDY = Study(
+    approximates="the light of many lines, in float32 and in blocks",
+    reference="the formulas as a plain NumPy script in float64, of the first points",
+    parameter="points",
+    error="largest error of luminance",
+    cost="ns a point",
+    steps=steps,
+    verdict=verdict,
+    axes=("parameter", "cost"),
+)
