@@ -105,7 +105,9 @@ class Profiles:
         after = columns[-1] + stride * np.arange(1, int(np.ceil(far / stride)) + 1)
         last = columns[-1] + below + relief / self.rise + 2 * stride
         after = (
-            np.append(after, last) if self._solid else columns[-1] + np.array([step, below + 2 * step])
+            np.append(after, last)
+            if self._solid
+            else columns[-1] + np.array([step, below + 2 * step])
         )
         inner = slice(len(before), len(before) + len(columns))
         return np.concatenate([before, columns, after]), inner
@@ -117,7 +119,7 @@ class Profiles:
 
     def surface(self, start: Array) -> Array:
         """Return the height of the field itself at places."""
-        return self._field.height(start[0], start[1])
+        return np.asarray(self._field.height(start[0], start[1]))
 
     def width(self, rays: int) -> int:
         """Return of how many profiles a band for some of so many rays is."""
@@ -150,7 +152,7 @@ class Profiles:
             level[own != held] = NO_SOLID
             np.copyto(level, NO_SOLID, where=(place < rows[0]) | (place > rows[-1]))
             np.copyto(level, NO_SOLID, where=np.isnan(level))
-        return level
+        return np.asarray(level)
 
 
 class _Band:
@@ -165,7 +167,7 @@ class _Band:
         up, down = _rounded(level, np.inf), _rounded(level, -np.inf)
         self.coming = np.maximum.accumulate(up[::-1], axis=0)[::-1].ravel()
         largest, least = np.maximum(up[:-1], up[1:]), np.minimum(down[:-1], down[1:])
-        bounds = []
+        bounds: list[tuple[Array, Array]] = []
         while len(bounds) < LEAF + 1 or len(largest) > 1:
             bounds.append((largest, least))
             if len(largest) % 2:
