@@ -14,7 +14,7 @@ from vizlight import Light, Material, Scene, render
 
 ant = pv.examples.load_ant().subdivide(2, "butterfly").compute_normals(split_vertices=False)
 side = ant.length
-camera = render.camera_on(ant.bounds, (0.5, 1.0, 0.35), zoom=1.4)
+camera = render.camera_on(ant.bounds, (0.5, 1.0, 0.35), zoom=1.25)
 panels = []
 for title, depth in (("A", 0.0), ("B", 0.003), ("C", 0.01)):
     scene = Scene(

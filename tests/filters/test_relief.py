@@ -60,6 +60,41 @@ def test_every_kind_of_grid_has_the_same_shadow(kind):
     assert out["t"].min() < 0.3 < 0.6 < out["t"].max()
 
 
+@pytest.mark.parametrize("angle", [30, 90, 200, -45.5])
+@pytest.mark.parametrize("kind", ["ImageData", "StructuredGrid"])
+def test_a_turned_grid_has_its_shadow_turned(kind, angle):
+    """As the grid lies straight: t, and points, normals and near lights of the engine."""
+    x, y = np.arange(30.0), np.arange(20.0)
+    z = 2 * np.exp(-((x - 12) ** 2 + (y[:, None] - 9) ** 2) / 9)
+    if kind == "ImageData":
+        grid = pv.ImageData(dimensions=(30, 20, 1))
+        grid["height"] = z.ravel()
+    else:
+        grid = pv.StructuredGrid(*np.meshgrid(x, y), z)
+    a = np.radians(angle)
+    turn = np.array([[np.cos(a), -np.sin(a), 0], [np.sin(a), np.cos(a), 0], [0, 0, 1]])
+    if kind == "ImageData":
+        turned = grid.copy()
+        turned.direction_matrix = turn
+    else:
+        turned = grid.copy()
+        turned.points = grid.points @ turn.T + [50, -7, 0]
+    move = np.zeros(3) if kind == "ImageData" else np.array([50, -7, 0])
+    places = np.array([1.0, 2, 0.6]), np.array([20.0, 15, 6])
+
+    def scene(turn, move):
+        lights = Light(direction=turn @ places[0]), Light(position=turn @ places[1] + move)
+        return Scene(lights=lights, material=Material(specular=0))
+
+    one, other = (
+        relief_shadow(mesh, scene(*how), depth=0.4, method="exact", lit=True, components=True)
+        for mesh, how in ((grid, (np.eye(3), np.zeros(3))), (turned, (turn, move)))
+    )
+    assert np.ptp(one["t_0"]) > 0.5
+    for name in ("t_0", "t_1", "t", "luminance"):
+        np.testing.assert_allclose(other[name], one[name], atol=2e-6)
+
+
 def test_grid_in_float32_far_from_the_origin():
     far = pv.StructuredGrid(
         *np.meshgrid(
@@ -215,6 +250,15 @@ def test_occluder_in_the_way():
     behind = relief_shadow(ball, scene, depth=0.1, occluders=[screen])["t"]
     lit = alone < 1
     np.testing.assert_allclose(0.1 / behind[lit], 0.1 / alone[lit] + 0.5, atol=1e-9)
+
+
+def test_one_occluder_needs_no_list():
+    ball = pv.Sphere(theta_resolution=20, phi_resolution=20)
+    moon = pv.Sphere(radius=0.3, center=(2, 0, 0))
+    scene = Scene(lights=Light(direction=(1, 0, 0)))
+    one, many = (relief_shadow(ball, scene, occluders=o)["t"] for o in (moon, [moon]))
+    np.testing.assert_array_equal(one, many)
+    assert one[ball.points[:, 0].argmax()] < 0.1
 
 
 def test_open_surface_with_thickness():
@@ -393,7 +437,7 @@ BALL = pv.Sphere(theta_resolution=8, phi_resolution=8)
         (image(height=np.full(16, np.nan)), {}, ValueError, "z: expected heights, got NaN"),
         (layers(), {}, ValueError, "mesh: expected a grid of one layer, nx x ny x 1, got 3 x 3"),
         (row(), {}, ValueError, "y: expected two nodes or more.*repeat the row"),
-        (curved(), {}, ValueError, "mesh: expected columns of one x and rows of one y"),
+        (curved(), {}, ValueError, "mesh: expected rows and columns that are straight"),
         (pv.ImageData(), {}, ValueError, "mesh: expected a grid of points, got an empty one"),
         (image(), {"thickness": 1}, ValueError, "thickness: expected none on a height field"),
         (image(), {"border": "x"}, ValueError, "border: expected 'extend' or 'wall'"),

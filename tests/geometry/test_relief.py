@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import RegularGridInterpolator
 
-from vizlight.geometry import _field, _march, relief
+from vizlight.geometry import _field, _march, _sweep, relief
 
 METHODS = ("fast", "exact")
 
@@ -115,6 +115,44 @@ def test_fast_rays_may_start_anywhere(border, random):
         assert np.mean(np.abs(fast - exact)) < 0.1
 
 
+@pytest.mark.parametrize("border", ["extend", "wall"])
+def test_bands_of_profiles_change_nothing(border, monkeypatch):
+    """One band for all rays, or many narrow ones; holes and uneven nodes."""
+    x, y, z = hills(60, 45)
+    z[10:14, 20:26] = np.nan
+    for way in (sun(12, 20), sun(9, 110), sun(15, 200), sun(14, 305), sun(8, 0), sun(10, 90)):
+        field = _field.make(x, y, z, base=None, border=border)
+        profiles = _sweep.profiles(field, way, 0.2)
+        assert profiles.count > 10 * _sweep.NARROW
+        one = relief.shadow(x, y, z, depth=0.2, direction=way, border=border)
+        with monkeypatch.context() as patch:
+            patch.setattr(_sweep, "BAND", 1)
+            assert profiles.width(z.size) == _sweep.NARROW
+            many = relief.shadow(x, y, z, depth=0.2, direction=way, border=border)
+        np.testing.assert_allclose(many, one, atol=1e-13)
+
+
+def test_levels_are_followed_as_by_single_columns(random):
+    """Rays through random profiles, in uneven columns, against a loop over segments."""
+    x = np.sort(random.uniform(0, 30, 70))
+    z = np.repeat(random.uniform(0, 3, (1, 70)), 5, axis=0)
+    way = sun(6, 0)
+    start = np.column_stack(
+        [random.uniform(x[0], x[-1], 300), np.full(300, 2.0), random.uniform(-2, 3, 300)]
+    )
+    field = _field.make(x, np.arange(5.0), z, base=None, border="extend")
+    assert _sweep.profiles(field, way, 2.0) is not None
+    found = relief.inside_length(x, np.arange(5.0), z, start, direction=way)
+    edge = np.append(x, x[-1] + 100)
+    for (a, _, c), length in zip(start, found, strict=True):
+        s = np.sort(np.append(edge[edge > a], a))
+        f = np.interp(s, x, z[0]) - (c + (s - a) * way[2] / way[0])
+        high, low = np.maximum(f[:-1], f[1:]), np.minimum(f[:-1], f[1:])
+        share = np.clip(high / np.where(high > low, high - low, 1), 0, 1)
+        expected = np.where(low >= 0, 1, share) @ np.diff(s) / way[0]
+        assert length == pytest.approx(expected, abs=1e-9)
+
+
 def test_a_batch_is_a_loop_and_shapes_are_kept(random):
     x, y, z = hills(20)
     points = places(x, y, z, 24, random).reshape(2, 3, 4, 3)
@@ -128,6 +166,8 @@ def test_a_batch_is_a_loop_and_shapes_are_kept(random):
     assert relief.inside_length(x, y, z, np.empty((0, 3)), direction=(0, 0, 1)).shape == (0,)
     odd = relief.inside_length(x, y, z, [[1, 1, np.nan], [1, 1, -1]], direction=(0, 0, 1))
     assert np.isnan(odd[0])
+    slanted = relief.inside_length(x, y, z, [[np.nan, 1, 1], [1, 1, -np.inf]], direction=(9, 1, 1))
+    assert np.all(np.isnan(slanted))
     assert odd[1] > 1
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from vizlight.geometry import sun
 
-EQUINOX, SOLSTICE, WINTER = 79.9, 172, 355
+EQUINOX, SOLSTICE, WINTER = 79, 172, 355
 
 
 def test_noon():
@@ -18,6 +18,25 @@ def test_noon():
             height = np.degrees(np.arctan2(way[2], -way[1]))
             assert height == pytest.approx(90 - latitude + declination, abs=0.25)
             assert way[0] == pytest.approx(0, abs=1e-12)
+
+
+def almanac(days):
+    """Return the declination, days after noon of 1 January 2000, in degrees (Almanac C24)."""
+    longitude = np.radians(280.460 + 0.9856474 * days)
+    anomaly = np.radians(357.528 + 0.9856003 * days)
+    longitude += np.radians(1.915 * np.sin(anomaly) + 0.020 * np.sin(2 * anomaly))
+    return np.degrees(np.arcsin(np.sin(np.radians(23.439)) * np.sin(longitude)))
+
+
+@pytest.mark.parametrize("hour", [0, 6, 12, 24])
+def test_declination_is_that_of_the_almanac_in_any_year(hour):
+    """At the pole the sun is as high as its declination; years differ by their leap days."""
+    days = np.arange(1, 366)
+    up = [sun.directions(np.pi / 2, day, hour)[2] for day in days]
+    for year in range(2001, 2041):
+        first = (np.datetime64(f"{year}-01-01") - np.datetime64("2000-01-01")).astype(int) - 0.5
+        error = np.degrees(np.arcsin(up)) - almanac(first + days - 1 + hour / 24)
+        assert np.abs(error).max() < 0.21
 
 
 def test_day_of_twelve_hours_and_midnight_sun():

@@ -83,14 +83,19 @@ class _FieldCaster:
         self._normal = _field.normals(self._field)
         self._holes = np.isnan(found.z)
         self._to_points, self._method, self._threads = found.to_points, options["method"], threads
+        self._turn = found.turn
         side = float(np.hypot(self._field.x[-1], self._field.y[-1]))
         self.depth = _depth(options["depth"], side)
         self.points = found.points()
-        self.normals = found.to_points(np.where(self._holes[..., np.newaxis], 0, self._normal))
+        normals = self._normal if self._turn is None else self._normal @ self._turn
+        self.normals = found.to_points(np.where(self._holes[..., np.newaxis], 0, normals))
         self.valid: Any = found.to_points(~self._holes)
 
     def of(self, light: Light) -> Array:
-        ray = relief.toward(self._field, direction=light.direction, position=light.position)
+        way: Any = [light.direction, light.position]
+        if self._turn is not None:
+            way = [None if v is None else self._turn @ np.array(v) for v in way]
+        ray = relief.toward(self._field, direction=way[0], position=way[1])
         t = relief.ratio(
             self._field, self._normal, self.depth, ray, method=self._method, threads=self._threads
         )

@@ -30,12 +30,16 @@ class Heights:
     z : ndarray, shape (ny, nx)
     place : ndarray of int, shape (ny, nx)
         The point that each node is.
+    turn : ndarray, shape (3, 3), optional
+        Takes the mesh's directions and places to those of x, y and z, if the mesh is turned
+        about the vertical.
     """
 
     x: Array
     y: Array
     z: Array
     place: NDArray[np.intp]
+    turn: Array | None = None
 
     def to_points(self, values: Array) -> Array:
         """Return values at the nodes, shape (ny, nx, ...), in the order of the points."""
@@ -46,7 +50,8 @@ class Heights:
     def points(self) -> Array:
         """Return the nodes in the order of the points, shape (ny nx, 3)."""
         x, y = np.meshgrid(self.x, self.y)
-        return self.to_points(np.stack([x, y, self.z], axis=-1))
+        found = self.to_points(np.stack([x, y, self.z], axis=-1))
+        return found if self.turn is None else found @ self.turn
 
 
 def heights_of(grid: Any, elevation: str | None, factor: float) -> Heights:
@@ -72,6 +77,9 @@ def heights_of(grid: Any, elevation: str | None, factor: float) -> Heights:
     else:
         z = _elevation(grid, elevation).reshape(ny, nx)
     place = np.arange(nx * ny).reshape(ny, nx)
+    turn = _turn(places)
+    if turn is not None:
+        places = places @ turn.T
     x, y = places[..., 0], places[..., 1]
     if np.ptp(x[0]) < np.ptp(x[:, 0]):
         x, y, z, place = x.T, y.T, z.T, place.T
@@ -81,14 +89,29 @@ def heights_of(grid: Any, elevation: str | None, factor: float) -> Heights:
     wide = 8 * eps * np.nanmax(np.abs(places[..., :2]))
     if not (np.ptp(x, axis=0).max() <= wide and np.ptp(y, axis=1).max() <= wide):
         raise ValueError(
-            _check.message("mesh", "columns of one x and rows of one y", "others", REMEDY)
+            _check.message(
+                "mesh", "rows and columns that are straight and square", "others", REMEDY
+            )
         )
     x, y = x[0], y[:, 0]
     if x[0] > x[-1]:
         x, z, place = x[::-1], z[:, ::-1], place[:, ::-1]
     if y[0] > y[-1]:
         y, z, place = y[::-1], z[::-1], place[::-1]
-    return Heights(x, y, np.asarray(z, dtype=np.float64) * factor, place)
+    return Heights(x, y, np.asarray(z, dtype=np.float64) * factor, place, turn)
+
+
+def _turn(places: Array) -> Array | None:
+    """Return the turn about the vertical that lays rows along x; None where they lie along an axis.
+
+    Places have shape (ny, nx, 3).
+    """
+    x, y = places[0, -1, :2] - places[0, 0, :2]
+    size = np.hypot(x, y)
+    # Rounding of float32 coordinates is no turn.
+    if not min(abs(x), abs(y)) > 1e-5 * size + 1e-6 * np.abs(places[0, 0, :2]).max():
+        return None
+    return np.asarray(np.array([[x, y, 0], [-y, x, 0], [0, 0, size]]) / size)
 
 
 def _elevation(grid: Any, name: str | None) -> Array:

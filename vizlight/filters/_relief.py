@@ -6,6 +6,7 @@ import time
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pyvista as pv
 
 from vizlight import _check, _report, engine
 from vizlight.filters import _progress, _provenance
@@ -16,8 +17,6 @@ from vizlight.light import Light
 from vizlight.scene import Material, Scene
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from numpy.typing import NDArray
 
     from vizlight.geometry._field import Border
@@ -38,7 +37,7 @@ def relief_shadow(
     border: Border = "extend",
     method: Method = "fast",
     thickness: float | None = None,
-    occluders: Sequence[Any] = (),
+    occluders: Any = (),
     angular_diameter: float = 0.0,
     samples: int = 16,
     lit: bool = False,
@@ -53,8 +52,8 @@ def relief_shadow(
     Parameters
     ----------
     mesh : pyvista.ImageData, RectilinearGrid, StructuredGrid or PolyData
-        A height field of one layer, columns of one x and rows of one y; or a closed surface.
-        Not changed, unless ``inplace``.
+        A height field of one layer, its rows and columns straight and square to each other; or a
+        closed surface. Not changed, unless ``inplace``.
     scene : Scene
         Its lights, at infinity or near, in the mesh's unit.
     depth : float, optional
@@ -69,7 +68,7 @@ def relief_shadow(
         As for :func:`vizlight.geometry.relief.inside_length`: height fields alone.
     thickness : float, optional
         Light an open surface as a shell of that thickness below its normals.
-    occluders : sequence of pyvista.PolyData
+    occluders : pyvista.PolyData or sequence of them
         Further closed surfaces that stand between a surface and the light.
     angular_diameter : float, default: 0.0
         Of the lights at infinity, in radians: the sun's 0.53 degrees are 0.00925.
@@ -122,6 +121,8 @@ def relief_shadow(
     options = dict(locals())
     for own in ("mesh", "scene", "threads", "inplace", "progress_bar"):
         del options[own]
+    if isinstance(occluders, pv.DataObject):
+        occluders = [occluders]
     options["occluders"] = len(list(occluders))
     lights = _lights(scene)
     shadow = caster(mesh, scene, options, occluders, threads)

@@ -119,7 +119,7 @@ class Profiles:
 
     def surface(self, start: Array) -> Array:
         """Return the height of the field itself at places."""
-        return self._field.height(start[0], start[1])
+        return np.asarray(self._field.height(start[0], start[1]))
 
     def width(self, rays: int) -> int:
         """Return of how many profiles a band for some of so many rays is."""
@@ -152,7 +152,7 @@ class Profiles:
             level[own != held] = NO_SOLID
             np.copyto(level, NO_SOLID, where=(place < rows[0]) | (place > rows[-1]))
             np.copyto(level, NO_SOLID, where=np.isnan(level))
-        return level
+        return np.asarray(level)
 
 
 class _Band:
@@ -167,7 +167,7 @@ class _Band:
         up, down = _rounded(level, np.inf), _rounded(level, -np.inf)
         self.coming = np.maximum.accumulate(up[::-1], axis=0)[::-1].ravel()
         largest, least = np.maximum(up[:-1], up[1:]), np.minimum(down[:-1], down[1:])
-        bounds = []
+        bounds: list[tuple[Array, Array]] = []
         while len(bounds) < LEAF + 1 or len(largest) > 1:
             bounds.append((largest, least))
             if len(largest) % 2:

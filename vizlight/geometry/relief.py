@@ -311,7 +311,8 @@ def _by_profile(
         return int(rows.stop)
 
     _all(sort, _pool.blocks(count, BLOCK), threads)
-    order = np.argsort(band, kind="stable").astype(np.int32 if count < 1 << 31 else np.int64)
+    short = np.int32 if count < 1 << 31 else np.int64
+    order: Index = np.argsort(band, kind="stable").astype(short)
     ends = np.cumsum(np.bincount(band))
     parts = [slice(a, b) for a, b in zip([0, *ends[:-1]], ends, strict=True) if b > a]
 

@@ -41,7 +41,10 @@ def directions(latitude: float, day: float, hours: ArrayLike, /) -> Any:
 
     Notes
     -----
-    The declination is Spencer's series of 1971, at most 0.0006 radians (0.035 degrees) off.
+    The sun's ecliptic longitude is its mean one and the equation of the centre, from elements
+    averaged over the years 2001 to 2040. As no year is told, the declination is up to 0.2
+    degrees off near an equinox, for leap days alone, and half a day's turn of the earth as much
+    again; the disc is 0.53 degrees wide.
     Refraction, which lifts a setting sun by 0.01 radians, is left out.
     """
     latitude = _check.number("latitude", latitude, low=-np.pi / 2, high=np.pi / 2)
@@ -49,13 +52,11 @@ def directions(latitude: float, day: float, hours: ArrayLike, /) -> Any:
     times = _check.floats("hours", hours).astype(np.float64)
     if not np.all((times >= 0) & (times <= 24)):
         raise ValueError(_check.message("hours", "hours from 0 to 24", _check.describe(hours)))
-    year = 2 * np.pi * (day - 1) / 365
-    declination = (
-        0.006918
-        - 0.399912 * np.cos(year) + 0.070257 * np.sin(year)
-        - 0.006758 * np.cos(2 * year) + 0.000907 * np.sin(2 * year)
-        - 0.002697 * np.cos(3 * year) + 0.001480 * np.sin(3 * year)
-    )  # fmt: skip
+    year = 2 * np.pi * (day - 1 + times / 24) / 365.2422
+    anomaly = np.radians(357.21) + year
+    longitude = np.radians(280.50) + year
+    longitude += np.radians(1.9147 * np.sin(anomaly) + 0.0200 * np.sin(2 * anomaly))
+    declination = np.arcsin(np.sin(np.radians(23.4367)) * np.sin(longitude))
     angle = (times - 12) * np.pi / 12
     sine, cosine = np.sin(declination), np.cos(declination)
     east = -cosine * np.sin(angle)
