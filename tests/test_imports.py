@@ -37,6 +37,7 @@ def loaded(code):
         "vizlight.geometry.projection",
         "vizlight.geometry.slices",
         "vizlight.engine",
+        "vizlight.studies",
         "vizlight.scene",
     ],
 )
