@@ -40,6 +40,7 @@ def loaded(code):
         "vizlight.geometry.isoluminance",
         "vizlight.geometry.solids",
         "vizlight.engine",
+        "vizlight.studies",
         "vizlight.scene",
     ],
 )

@@ -165,7 +165,7 @@ def rounding(plan: Plan) -> float:
 def diffuse_bound(p: float, eps: float) -> float:
     """Return the absolute error of :func:`vizlight.model.reflection.diffuse`."""
     if p < 1:
-        return float((4 * eps) ** p)
+        return float((8 * eps) ** p)
     return (4 + 2 * p if p <= 128 else 8 + math.sqrt(p)) * eps
 
 

@@ -21,7 +21,7 @@ def unit(v):
 def diffuse_bound(p, dtype):
     """The bound that the docstring claims, in eps."""
     if p < 1:
-        return (4 * oracles.eps(dtype)) ** p / oracles.eps(dtype)
+        return (8 * oracles.eps(dtype)) ** p / oracles.eps(dtype)
     return 4 + 2 * p if p <= 128 else 8 + np.sqrt(p)
 
 

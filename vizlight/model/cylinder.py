@@ -103,7 +103,7 @@ def specular(wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike, /, *, shininess: 
     :func:`vizlight.model._cylinder.half_integral` for how it is evaluated. Blinn's ``|h_N|^s`` is
     exact up to a factor for a headlight, as Banks' law is.
 
-    Absolute error at most ``8 eps / d``, whatever s, where d is the smallest of ``|wi_N|``,
+    Absolute error at most ``10 eps / d``, whatever s, where d is the smallest of ``|wi_N|``,
     ``|wo_N|`` and ``|wi + wo|``, for s below 1 ``|(wi + wo)_N|`` in its place: near a light along
     the line the value depends on which way round the light is.
     """

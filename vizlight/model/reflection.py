@@ -45,7 +45,7 @@ def diffuse(wi: ArrayLike, frame: ArrayLike, /, *, exponent: float = 1.0) -> Any
     ``sin(a)^p`` with ``sin(a) = |wi_N|``; in codimension 1 with p = 1 two-sided Lambert.
     Source: Banks (1) and (5). Absolute error for n up to 8 at most ``(4 + 2 p) eps`` for p from
     1 to 128 and ``(8 + sqrt(p)) eps`` above; for p < 1, infinitely steep at sin(a) = 0,
-    ``(4 eps)^p``. What the rows miss of being orthonormal comes on top.
+    ``(8 eps)^p``. What the rows miss of being orthonormal comes on top.
     """
     exponent = _check.number("exponent", exponent, low=0.0, high=_check.LARGEST)
     rows = _layout.as_frame(frame)

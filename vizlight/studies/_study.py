@@ -9,9 +9,6 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
-from vizlight import files
-from vizlight.filters import _progress
-
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
     from pathlib import Path
@@ -98,6 +95,8 @@ class Result:
 
     def write_csv(self, path: Path, /) -> Path:
         """Write the table, all digits, whole or not at all."""
+        from vizlight import files
+
         headings, lines = self.table()
 
         def write(place: str) -> None:
@@ -112,6 +111,8 @@ class Result:
         # matplotlib comes with PyVista, which requires it.
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
+
+        from vizlight import files
 
         figure = Figure(figsize=(8, 5), dpi=120, layout="constrained")
         FigureCanvasAgg(figure)
@@ -163,6 +164,8 @@ def run(name: str, study: Study, /, *, quick: bool = False, progress_bar: bool =
     -------
     Result
     """
+    from vizlight.filters import _progress
+
     steps = study.steps(quick)
     rows: list[Row] = []
     with _progress.progress(name, len(steps), show=progress_bar) as report:

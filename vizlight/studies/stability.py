@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     Array = NDArray[Any]
 
 #: Inputs of a kernel and a type, and in a quick run.
-INPUTS, QUICK = 10_400, 600
+INPUTS, QUICK = 10_600, 600
 TYPES = (np.float32, np.float64)
 #: Claim of the length inside a field, of its size.
 RELIEF = 3.0
@@ -153,7 +153,7 @@ def split(dtype: Any, count: int, random: Any) -> Iterator[Check]:
                 off = max(abs(_digits.exact(a) - b) for a, b in pairs)
                 values.append(0.0 if np.all(np.isfinite(along[i])) else np.nan)
                 true.append(off / size)
-            yield Check(case, np.array(values), true, np.array(6.0), seconds)
+            yield Check(case, np.array(values), true, np.array(10.0), seconds)
 
 
 def diffuse(dtype: Any, count: int, random: Any) -> Iterator[Check]:
@@ -248,7 +248,7 @@ def line_light(which: str, dtype: Any, count: int, random: Any) -> Iterator[Chec
                 light, shine, a, b, size = _digits.cylinder(wi[i], wo[i], t[i], s)
                 least = float(b if which == "diffuse" else min(a, b, size))
                 true.append(light if which == "diffuse" else shine)
-                claim.append((4.0 if which == "diffuse" else 8.0) / least if least else 1e30)
+                claim.append((4.0 if which == "diffuse" else 10.0) / least if least else 1e30)
             yield Check(f"light {at}, eye {case}", value, true, np.array(claim), seconds)
     up = np.array([0, 0, 1], dtype)
     calls: dict[str, Callable[[Array, Array], Array]] = {
@@ -493,7 +493,8 @@ def perspective(dtype: Any, count: int, random: Any) -> Iterator[Check]:
     """Projection from 4-space, relative to the image, over the depth where that is small."""
     from vizlight.studies import _digits
 
-    for case, low in (("random", -0.3), ("near the eye", -12.0)):
+    near = -6.0 if dtype == np.float32 else -12.0
+    for case, low in (("random", -0.3), ("near the eye", near)):
         many, d = count // 2, 2.0
         points = random.standard_normal((many, 4))
         points[:, 3] = d * (1 - 10 ** random.uniform(low, 0.3, many))
