@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 #: Spacings that are tried where a thin wall or gap does not come out, as divisors of the first,
 #: up to so many points.
-FINER, PATIENCE = (1.7, 2.9, 5.0, 8.5, 14.0, 24.0), 120_000
+FINER, PATIENCE = (1.7, 2.9, 5.0, 8.5, 14.0, 24.0), 60_000
 #: Points that one spacing for all surfaces may take.
 PLENTY = 15_000
 #: The spacing that narrow faces ask for at most, as a share of the solid's size: narrower ones
@@ -66,7 +66,7 @@ def tessellate(solid: Any, /, *, tolerance: float = 3e-3) -> Mesh:
     ------
     TypeError, ValueError
         If an argument does not fit, the tolerance asks for more than 400,000 points, or
-        something is too thin for it: what no spacing brings out that takes less than 120,000
+        something is too thin for it: what no spacing brings out that takes less than 60,000
         points.
 
     Notes
