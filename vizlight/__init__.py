@@ -45,7 +45,7 @@ _HOMES = {
     "satin": "vizlight.filters",
     "streamlines": "vizlight.filters",
 }
-_MODULES = ("accessor", "engine", "filters", "geometry", "model", "movie", "render", "studies")
+_MODULES = ("accessor", "engine", "filters", "geometry", "model", "movie", "render", "studies", "testing")
 
 __all__ = [
     "DepthCue",
