@@ -14,12 +14,12 @@ from sphinx_gallery.scrapers import figure_rst
 from trame_vtk.tools.vtksz2html import embed_data_to_viewer_file
 
 #: The scripts with a scene: one view of one mesh, of a few megabytes.
-INTERACTIVE = ("plot_first", "plot_flow", "plot_carotid", "plot_fibres", "plot_complex_curve")
+INTERACTIVE = ("plot_flow", "plot_carotid", "plot_fibres", "plot_complex_curve")
 
 # Lines and flows, then surfaces, 4-space, terrain, laws and their errors; what is not named here
 # comes last.
 ORDER = """
-plot_first plot_flow plot_carotid plot_lines plot_fibres plot_satin plot_fur
+plot_flow plot_carotid plot_lines plot_fibres plot_satin plot_fur
 plot_ambient plot_depth_cue plot_attenuation
 plot_terrain_day plot_terrain plot_earth plot_bas_relief plot_seeping_light
 plot_codimension plot_turning plot_complex_curve plot_shapes plot_field_in_4_space
@@ -79,6 +79,6 @@ def _tabs(name, source):
 
       .. raw:: html
 
-         <iframe class="scene" src="../_static/scenes/{name.stem}.html" title="scene"></iframe>
+         <iframe class="scene" src="../_static/scenes/{name.stem}.html" title="scene" loading="lazy"></iframe>
 
 """
