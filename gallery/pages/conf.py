@@ -11,6 +11,10 @@ from pathlib import Path
 os.environ["PYVISTA_BUILDING_GALLERY"] = "true"
 os.environ["PYVISTA_OFF_SCREEN"] = "true"
 
+# The studies run in the same Python, their tables as wide as a page.
+os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
+os.environ["COLUMNS"] = "104"
+
 import pyvista as pv
 
 import vizlight
