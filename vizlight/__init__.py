@@ -45,7 +45,9 @@ _HOMES = {
     "satin": "vizlight.filters",
     "streamlines": "vizlight.filters",
 }
-_MODULES = ("accessor", "engine", "filters", "geometry", "model", "movie", "render", "studies", "testing")
+_MODULES = (
+    "accessor", "engine", "filters", "geometry", "model", "movie", "render", "studies", "testing",
+)  # fmt: skip
 
 __all__ = [
     "DepthCue",
@@ -84,4 +86,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted([*__all__, *_MODULES, "__version__"])
+    return sorted([*__all__, *_MODULES, "__all__", "__version__"])

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
+from docutils import nodes
 from docutils.utils.math.latex2mathml import tex2mathml
 
 
 def inline(visitor, node):
     """Write a formula within a line."""
     visitor.body.append(tex2mathml(node.astext()))
-    from docutils import nodes
-
     raise nodes.SkipNode
 
 
 def block(visitor, node):
     """Write a formula of its own."""
-    from docutils import nodes
-
-    visitor.body.append(f'<div class="math">{tex2mathml(node.astext(), as_block=True)}</div>')
+    visitor.body.append(f'<div class="formula">{tex2mathml(node.astext(), as_block=True)}</div>')
     raise nodes.SkipNode
 
 
