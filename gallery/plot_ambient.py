@@ -2,9 +2,9 @@
 Ambient light
 =============
 
-The ambient term is a product: what the material returns, ka, grows from left to right, and the light
-all around, Ia, from above to below. See that the highlight and the lit side stay as they are added
-to, and that the dark side, which has no other light, loses its shape as it brightens.
+The ambient term is a product: what the material returns, ka, grows from left to right, and the
+light all around, Ia, from above to below. See that the highlight and the lit side stay as they are
+added to, and that the dark side, which has no other light, loses its shape as it brightens.
 
 After a figure of a lecture on illumination and shading; each ball is lit from above on the left.
 """

@@ -2,9 +2,10 @@
 Light that fades with distance
 ==============================
 
-A lamp over the left end of a row of balls, with the light ``min(1, 1 / (c1 + c2 d + c3 d^2))`` of the
-distance d. See the first row, without attenuation, as bright at its end as at its start; the last,
-the inverse square, dark after three balls; and the middle ones, which keep the far balls legible.
+A lamp over the left end of a row of balls, with the light ``min(1, 1 / (c1 + c2 d + c3 d^2))`` of
+the distance d. See the first row, without attenuation, as bright at its end as at its start; the
+last, the inverse square, dark after three balls; and the middle ones, which keep the far balls
+legible.
 """
 
 import pyvista as pv

@@ -2,10 +2,10 @@
 A complex curve turning in 4-space
 ==================================
 
-The graph of ``w = z^3 / 3 - z / 2``, a surface in 4-space (Re z, Im z, Re w, Im w), turned in the plane
-of x and w and lit there before it is seen in 3-space. See how the graph of Re w, a sheet
-with two saddles on the left, becomes that of the inverse a quarter turn later: its three sheets cross
-in what is seen, though the surface itself never meets itself.
+The graph of ``w = z^3 / 3 - z / 2``, a surface in 4-space (Re z, Im z, Re w, Im w), turned in the
+plane of x and w and lit there before it is seen in 3-space. See how the graph of Re w, a sheet
+with two saddles on the left, becomes that of the inverse a quarter turn later: its three sheets
+cross in what is seen, though the surface itself never meets itself.
 """
 
 import numpy as np

@@ -2,9 +2,10 @@
 Depth cue
 =========
 
-Streamlines over a rotating disk, unchanged on the left; then fading with depth, ``S I + (1 - S) Icue``,
-where the scale S falls from 1 in front to 0 at the back. See which lines pass in front of which:
-without the cue near and far lines are alike; the smooth step keeps more of the front and of the back.
+Streamlines over a rotating disk, unchanged on the left; then fading with depth, ``S I + (1 - S)
+Icue``, where the scale S falls from 1 in front to 0 at the back. See which lines pass in front of
+which: without the cue near and far lines are alike; the smooth step keeps more of the front and of
+the back.
 """
 
 import vizlight

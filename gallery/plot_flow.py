@@ -3,8 +3,9 @@ A flow over an isosurface
 =========================
 
 The isosurface Temp = 600 of the gas over a heated, rotating disk, lit by the velocity on it, under
-the clamped light of the surface itself. See the swirl: the bright streak lies where the mirror cone
-of the flow meets the eye, and turns with it around the axis; a surface's own light shows none of it.
+the clamped light of the surface itself. See the swirl: the bright streak lies where the mirror
+cone of the flow meets the eye, and turns with it around the axis; a surface's own light shows none
+of it.
 """
 
 import vizlight

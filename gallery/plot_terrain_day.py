@@ -2,9 +2,9 @@
 Terrain through a day
 =====================
 
-Mount St. Helens on an autumn day from after sunrise to before sunset, the sun where it is at 46 degrees
-north. See the crater's wall throw its shadow westward in the morning and eastward in the afternoon, and,
-last, the mean of the day: what a slope has had of the sun.
+Mount St. Helens on an autumn day from after sunrise to before sunset, the sun where it is at 46
+degrees north. See the crater's wall throw its shadow westward in the morning and eastward in the
+afternoon, and, last, the mean of the day: what a slope has had of the sun.
 
 Where the terrain cannot be downloaded, the Himalaya of the embedded relief of the earth stands in.
 """

@@ -18,13 +18,13 @@ INTERACTIVE = ("plot_flow", "plot_carotid", "plot_fibres", "plot_complex_curve")
 
 # Lines and flows, then surfaces, 4-space, terrain, laws and their errors; what is not named here
 # comes last.
-ORDER = """
-plot_flow plot_carotid plot_lines plot_fibres plot_satin plot_fur
-plot_ambient plot_depth_cue plot_attenuation
-plot_terrain_day plot_terrain plot_earth plot_bas_relief plot_seeping_light
-plot_codimension plot_turning plot_complex_curve plot_shapes plot_field_in_4_space
-plot_highlights plot_highlights_shapes plot_highlight_error plot_line_models plot_errors
-""".split()
+ORDER = [
+    "plot_flow", "plot_carotid", "plot_lines", "plot_fibres", "plot_satin", "plot_fur",
+    "plot_ambient", "plot_depth_cue", "plot_attenuation", "plot_terrain_day", "plot_terrain",
+    "plot_earth", "plot_bas_relief", "plot_seeping_light", "plot_codimension", "plot_turning",
+    "plot_complex_curve", "plot_shapes", "plot_field_in_4_space", "plot_highlights",
+    "plot_highlights_shapes", "plot_highlight_error", "plot_line_models", "plot_errors",
+]  # fmt: skip
 
 
 class Order:
@@ -39,6 +39,7 @@ class Order:
     def __call__(self, name):
         stem = Path(name).stem
         return (ORDER.index(stem) if stem in ORDER else len(ORDER), stem)
+
 
 _export = pv.Plotter._trame_component
 
@@ -67,6 +68,7 @@ def _tabs(name, source):
     scenes.mkdir(parents=True, exist_ok=True)
     embed_data_to_viewer_file(name.read_bytes(), scenes / f"{name.stem}.html")
     name.unlink()
+    address = f"../_static/scenes/{name.stem}.html"
     indented = "\n".join(f"      {line}" for line in picture.splitlines())
     return f"""
 .. tab-set::
@@ -79,6 +81,6 @@ def _tabs(name, source):
 
       .. raw:: html
 
-         <iframe class="scene" src="../_static/scenes/{name.stem}.html" title="scene" loading="lazy"></iframe>
+         <iframe class="scene" src="{address}" title="scene" loading="lazy"></iframe>
 
 """

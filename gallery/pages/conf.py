@@ -1,4 +1,4 @@
-"""The pages: ``sphinx-build -W -b html gallery/pages build/gallery``, offscreen, no network needed."""
+"""The pages: ``sphinx-build -W gallery/pages build/gallery``, offscreen, to be read from disk."""
 
 from __future__ import annotations
 
@@ -73,6 +73,7 @@ sphinx_gallery_conf = {
     "download_all_examples": False,
     "nested_sections": False,
     "show_memory": False,
+    "write_computation_times": False,
     "min_reported_time": 0,
     "plot_gallery": "True",
     "abort_on_example_error": False,
