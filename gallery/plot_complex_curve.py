@@ -8,6 +8,7 @@ with two saddles on the left, becomes that of the inverse a quarter turn later: 
 cross in what is seen, though the surface itself never meets itself.
 """
 
+# sphinx_gallery_thumbnail_number = 2
 import numpy as np
 
 import vizlight

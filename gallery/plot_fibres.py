@@ -7,6 +7,7 @@ right, lit by their own tangents, the sheets of the bundle come apart, and so do
 crosses over it.
 """
 
+# sphinx_gallery_thumbnail_number = 2
 import numpy as np
 
 import vizlight

@@ -1,8 +1,8 @@
 """Show that pictures guard the light: put one wrong sign, exponent or term in, see what fails.
 
-``python tests/mutations.py`` copies the package, breaks one line of the copy at a time and runs
-the picture tests on it; ``--all`` runs the tests of the mathematics too. It prints what caught each and
-ends with exit code 1 if nothing caught one. It takes minutes, so no test run includes it.
+``python tests/mutations.py`` copies the package, breaks one line of the copy at a time and runs the
+picture tests on it; ``--all`` runs the tests of the mathematics too. It prints what caught each
+and ends with exit code 1 if nothing caught one. It takes minutes, so no test run includes it.
 """
 
 from __future__ import annotations
