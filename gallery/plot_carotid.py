@@ -29,7 +29,7 @@ speed = np.linalg.norm(flow[name], axis=1)
 flow[name] = np.where(speed[:, np.newaxis] > least, flow[name], 0)
 inside = flow.points[speed > 4 * least]
 seeds = np.random.default_rng(0).choice(inside, 400, replace=False)
-camera = render.camera_on(flow.bounds, seen, zoom=1.5)
+camera = render.camera_on(flow.bounds, seen, zoom=1.36)
 scene = Scene(
     lights=Light(direction=(-0.6, -1, 0.8)),
     view=View.from_camera(camera),

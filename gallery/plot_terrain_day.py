@@ -30,7 +30,7 @@ except Exception as error:  # noqa: BLE001 (no network has many names)
     part = earth.extract_subset((750, 850, 340, 390, 0, 0))
     terrain = pv.ImageData(dimensions=part.dimensions, spacing=(32.1, 37.1, 1.0))
     heights = np.array(part["elevation"], dtype=float) / 100
-    depth, latitude, shape, size = 40.0, 30.0, 6, (800, 1800)
+    depth, latitude, shape, size = 40.0, 30.0, 2, (1500, 560)
 terrain.clear_data()
 terrain["height"] = heights
 

@@ -109,8 +109,9 @@ def flow_lines(**options):
     flow = vizlight.load_example()
     camera = render.camera_on(flow.bounds, (1, 0.5, 0.55), zoom=1.1)
     scene = Scene(
-        lights=Light(direction=(1, 0.9, 0.5)),
+        lights=Light(direction=options.pop("light", (1, 0.9, 0.5))),
         view=View.from_camera(camera),
+        material=options.pop("material", Material()),
         depth_cue=options.pop("depth_cue", None),
     )
     seeds = flow.points[:: flow.n_points // 60]
@@ -127,7 +128,11 @@ def depth_cue():
 
 
 def exact_line_light():
-    return plot(*flow_lines(model="cylinder"), line_width=2)
+    """With light from behind, where a cylinder shows its highlight's ends and its dark side."""
+    sheen = Material(ambient=0, diffuse=0.5, specular=1.0, shininess=3)
+    behind = {"model": "cylinder", "light": (-0.6, 1, 0.3)}
+    panels = [flow_lines(**behind)[0], flow_lines(**behind, material=sheen)[0]]
+    return plot(panels, flow_lines()[1], line_width=2)
 
 
 def confined_streamlines():
@@ -165,9 +170,14 @@ def satin():
 def fur():
     mesh = ball()
     camera = render.camera_on(mesh.bounds, (0.2, -1, 0.35))
-    scene = Scene(lights=Light(direction=(1, -1, 0.8)), view=View.from_camera(camera))
-    coat = vizlight.fur(mesh, scene, density=0.5, fibres=30_000, length=0.25)
-    return plot(coat, camera, background="white")
+    scene = Scene(
+        lights=Light(direction=(1, -1, 0.8)),
+        view=View.from_camera(camera),
+        material=Material(ambient=0.05, diffuse=1.0, specular=0.6),
+    )
+    # Few fibres, and black behind: the base of each is seen, where the fur takes most.
+    coat = vizlight.fur(mesh, scene, density=0.7, fibres=8_000, length=0.3, compensate=False)
+    return plot(coat, camera, background="black")
 
 
 def turning():
