@@ -37,7 +37,8 @@ extensions = [
     "_mathml",
 ]
 templates_path = ["_templates"]
-exclude_patterns = ["_build"]
+# The table of run times loads a script from elsewhere.
+exclude_patterns = ["_build", "**sg_execution_times.rst"]
 html_theme = "pydata_sphinx_theme"
 html_title = "vizlight"
 html_static_path = ["_static"]
