@@ -39,7 +39,9 @@ for column, factor in enumerate((4.0, float(highlights.simple_factor(ANGLE)))):
     plotter.add_mesh(
         surface, scalars="error", cmap="PuOr_r", clim=(-64, 64), smooth_shading=True,
         specular=0.2,
-        scalar_bar_args={"title": "Phong minus Blinn\n", "color": "black", "position_y": 0.84},
+        scalar_bar_args={
+            "title": "Phong minus Blinn, of 255\n", "color": "black", "position_y": 0.84,
+        },
     )  # fmt: skip
     plotter.add_text(f"f = {factor:.2f}", color="black", font_size=14)
     worst = highlights.max_pixel_error(ANGLE, POWER, factor=factor)

@@ -31,6 +31,9 @@ for column, term in enumerate(("diffuse", "specular")):
         ends = (lines.SIDES[0], lines.SIDES[-1])
         chart.line(ends, [row.scaled_rms] * 2, color=color, width=3, label=row.model)
     chart.legend_visible = True
+    for axis in (chart.x_axis, chart.y_axis):
+        axis.label_size, axis.tick_label_size = 20, 15
+    chart.GetLegend().SetLabelSize(17)
     chart.GetLegend().SetHorizontalAlignment(vtkChartLegend.LEFT)
     chart.GetLegend().SetVerticalAlignment(vtkChartLegend.BOTTOM)
     chart.y_range = (1e-4, 0.5)

@@ -57,7 +57,7 @@ for height in (10, 25, 45):
 
 plotter = render.make_plotter(
     panels,
-    camera=render.camera_on(terrain.bounds, (0, 0, 1), parallel=True, zoom=1.08),
+    camera=render.camera_on(terrain.bounds, (0, 0, 1), parallel=True, zoom=1.02),
     size=(2100, 560) if rows > columns else (2400, 300),
     background="white",
 )

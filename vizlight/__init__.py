@@ -53,7 +53,9 @@ _HOMES = {
     "satin": "vizlight.filters",
     "streamlines": "vizlight.filters",
 }
-_MODULES = ("accessor", "engine", "filters", "geometry", "model", "movie", "render", "studies")
+_MODULES = (
+    "accessor", "engine", "filters", "geometry", "model", "movie", "render", "studies", "testing",
+)  # fmt: skip
 
 __all__ = [
     "Block",
@@ -97,4 +99,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted([*__all__, *_MODULES, "__version__"])
+    return sorted([*__all__, *_MODULES, "__all__", "__version__"])

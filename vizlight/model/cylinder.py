@@ -134,7 +134,7 @@ def diffuse_gradient(wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike, /) -> Gra
     -----
     The value depends on ``wi.t``, ``wo.t`` and ``wi.wo`` alone; the chain rule does the rest.
     Within 1e-8 of a complex step through quadrature for directions in general; the derivatives
-    themselves, and their errors, grow as 1 over |wi_N| and |wo_N|.
+    themselves, and their errors, grow as 1 over ``|wi_N|`` and ``|wo_N|``.
     """
     x = _Invariants(wi, wo, tangent)
     by_dot = x.rest / (4 * x.b)
@@ -168,7 +168,7 @@ def specular_gradient(
     Notes
     -----
     Within 1e-8 of a complex step through quadrature for directions in general; the derivatives
-    themselves, and their errors, grow as 1 over |wi_N|, |wo_N| and |wi + wo|.
+    themselves, and their errors, grow as 1 over ``|wi_N|``, ``|wo_N|`` and ``|wi + wo|``.
     """
     s = _check.number("shininess", shininess, low=0.0, high=_check.LARGEST)
     x = _Invariants(wi, wo, tangent)

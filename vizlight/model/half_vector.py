@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def reflection_from_half(n_h: ArrayLike, /, *, triple: ArrayLike = 0.0) -> Any:
-    """Return R.E from N.H exactly, without a power: ``2 (N.H)^2 - 1 + 2 (L x H . N)^2``.
+    """Return R.E from N.H exactly, without a power.
 
     Parameters
     ----------
@@ -39,7 +39,8 @@ def reflection_from_half(n_h: ArrayLike, /, *, triple: ArrayLike = 0.0) -> Any:
 
     Notes
     -----
-    Source: Fisher and Woo (3) and (9). Absolute error at most 4 eps.
+    ``2 (N.H)^2 - 1 + 2 (L x H . N)^2``. Source: Fisher and Woo (3) and (9). Absolute error at most
+    4 eps.
     """
     half, cross = _check.floats("n_h", n_h), _check.floats("triple", triple)
     return (2 * half * half - 1 + 2 * cross * cross)[()]

@@ -1,0 +1,92 @@
+"""The pages: ``sphinx-build -W gallery/pages build/gallery``, offscreen, to be read from disk."""
+
+from __future__ import annotations
+
+import os
+import sys
+import warnings
+from pathlib import Path
+
+# PyVista reads these when it is imported, here and in a second process that draws.
+os.environ["PYVISTA_BUILDING_GALLERY"] = "true"
+os.environ["PYVISTA_OFF_SCREEN"] = "true"
+
+import pyvista as pv
+
+import vizlight
+
+HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE))
+
+project = "vizlight"
+author = "the vizlight developers"
+copyright = author
+version = release = vizlight.__version__
+
+extensions = [
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx_gallery.gen_gallery",
+    "numpydoc",
+    "sphinx_design",
+    "_mathml",
+    "_studies",
+]
+templates_path = ["_templates"]
+# The table of run times loads a script from elsewhere.
+exclude_patterns = ["_build", "**sg_execution_times.rst"]
+html_theme = "pydata_sphinx_theme"
+html_title = "vizlight"
+html_static_path = ["_static"]
+html_css_files = ["pages.css"]
+html_theme_options = {
+    "show_prev_next": False,
+    "secondary_sidebar_items": {"**": ["page-toc"], "index": [], "examples/index": []},
+    "navbar_end": ["theme-switcher"],
+    "footer_start": ["copyright"],
+    "footer_end": [],
+    "logo": {"text": "vizlight"},
+}
+html_show_sourcelink = False
+html_sidebars = {
+    "index": [],
+    "formulas": [],
+    "studies": [],
+    "studies/**": [],
+    "sources": [],
+    "examples/**": [],
+}
+html_math_renderer = "mathml"
+nitpicky = False
+
+autosummary_generate = True
+autosummary_ignore_module_all = False
+autodoc_typehints = "none"
+numpydoc_show_class_members = False
+numpydoc_class_members_toctree = False
+
+sphinx_gallery_conf = {
+    "examples_dirs": "..",
+    "gallery_dirs": "examples",
+    "filename_pattern": r"plot_",
+    "ignore_pattern": r"__init__\.py|/pages/",
+    "within_subsection_order": "_scenes.Order",
+    "image_scrapers": ("_scenes.scrape",),
+    "reset_modules": ("_scenes.reset",),
+    "remove_config_comments": True,
+    "download_all_examples": False,
+    "nested_sections": False,
+    "show_memory": False,
+    "write_computation_times": False,
+    "min_reported_time": 0,
+    "plot_gallery": "True",
+    "abort_on_example_error": False,
+    "thumbnail_size": (480, 320),
+    "doc_module": ("vizlight",),
+    "backreferences_dir": "examples/backreferences",
+    "inspect_global_variables": False,
+}
+
+pv.global_theme.notebook = False
+# A script that warns is a script to mend.
+warnings.filterwarnings("error", module=r"vizlight(\.|$)")

@@ -1,0 +1,46 @@
+"""
+A complex curve turning in 4-space
+==================================
+
+The graph of ``w = z^3 / 3 - z / 2``, a surface in 4-space (Re z, Im z, Re w, Im w), turned in the
+plane of x and w and lit there before it is seen in 3-space. See how the graph of Re w, a sheet
+with two saddles on the left, becomes that of the inverse a quarter turn later: its three sheets
+cross in what is seen, though the surface itself never meets itself.
+"""
+
+# sphinx_gallery_thumbnail_number = 2
+import numpy as np
+
+import vizlight
+from vizlight import Light, Material, Scene, View, render
+from vizlight.geometry import manifolds
+
+curve = vizlight.manifold(
+    manifolds.complex_curve(
+        lambda z: z**3 / 3 - z / 2,
+        derivative=lambda z: z**2 - 0.5,
+        domain=((-1.35, 1.35),) * 2,
+        resolution=220,
+    )
+)
+scene = Scene(
+    lights=Light(direction=(-0.4, -0.9, 0.9, 0.4)),
+    view=View(direction=(0.5, -1, 0.7, 0)),
+    material=Material(ambient=0.1, diffuse=0.6, specular=0.3, shininess=25),
+)
+camera = render.camera_on((-1.3, 1.3, -1.3, 1.3, -1.2, 1.2), (0.5, -1, 0.7), zoom=0.66)
+panels = [
+    render.Panel(
+        vizlight.project(curve, rotation=("xw", np.radians(angle)), scene=scene, light="before"),
+        title=f"{angle} degrees",
+    )
+    for angle in (0, 30, 60, 90)
+]
+plotter = render.make_plotter(panels, camera=camera, size=(2000, 560), background="#203048")
+plotter.show()
+
+# %%
+# One of them, to be turned in 3-space.
+
+plotter = render.make_plotter(panels[2], camera=camera, size=(1000, 700), background="#203048")
+plotter.show()

@@ -1,0 +1,152 @@
+"""Show that pictures guard the light: put one wrong sign, exponent or term in, see what fails.
+
+``python tests/mutations.py [WORD ...]`` copies the package, breaks one line of the copy at a time
+and runs the picture tests on it, and those of the mathematics where no picture shows it. It prints
+what caught each and ends with exit code 1 if nothing caught one. Words take the mutations whose
+titles hold them. It takes minutes, so no test run includes it.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+PICTURES = ["tests/test_pictures.py"]
+NUMBERS = ["tests/model"]
+
+#: What is broken: file, what stands there, what is put in its place.
+MUTATIONS = {
+    "Phong: sign of wo's tangential part (the slip of Banks' equation 2)": (
+        "_block.py", "along = lit.along + eye.along\n            return _kernels.phong",
+        "along = lit.along - eye.along\n            return _kernels.phong",
+    ),
+    "Phong: normal parts added": (
+        "model/_kernels.py", "deficit = sine_i - sine_o", "deficit = sine_i + sine_o",
+    ),
+    "Phong on a surface: half of the deficit": (
+        "model/_kernels.py", "deficit *= deficit.dtype.type(0.5)", "deficit *= 1",
+    ),
+    "Blinn: power halved": (
+        "model/_kernels.py", "power(normal / whole, shininess / 2, tangential / whole)",
+        "power(normal / whole, shininess / 4, tangential / whole)",
+    ),
+    "Blinn, one half vector: power halved": (
+        "_block.py", "return _kernels.power(self.side(cosine), shininess)",
+        "return _kernels.power(self.side(cosine), shininess / 2)",
+    ),
+    "diffuse: cosine to the tangent for the sine": (
+        "model/_kernels.py", "return along, length(residual)",
+        "return along, np.sqrt(np.maximum(1 - length(residual) ** 2, 0))",
+    ),
+    "diffuse on a surface: not clamped": (
+        "_block.py", "if self.two_sided else np.maximum(cosine, 0)",
+        "if self.two_sided else np.abs(cosine)",
+    ),
+    "diffuse: no compensation": (
+        "model/brightness.py", "def exponent(k: int, n: int) -> float:",
+        "def exponent(k: int, n: int) -> float:\n    return 1.0\n\n\n"
+        "def _unused(k: int, n: int) -> float:",
+    ),
+    "compensation: half the codimension": (
+        "model/brightness.py", "a, d, h = (n - k) / 2,", "a, d, h = (n - k) / 4,",
+    ),
+    "highlight: on the dark side too": (
+        "_block.py", "return value * (lit.across > 0)", "return value",
+    ),
+    "distance: no linear term": (
+        "model/falloff.py", "denominator += c2 * wide", "denominator += 0",
+    ),
+    "distance: d in place of its square": (
+        "model/falloff.py", "denominator += c3 * wide * wide", "denominator += c3 * wide",
+    ),
+    "depth cue: front and back exchanged": (
+        "model/falloff.py", "- back) / (front - back)", "- front) / (back - front)",
+    ),
+    "depth cue: smooth step's 3 a 2": (
+        "model/falloff.py", "t = t * t * (3 - 2 * t)", "t = t * t * (2 - t)",
+    ),
+    "fur: path times the sine": ("model/falloff.py", "height / sine", "height * sine"),
+    "fur: density in place of 1 - density": (
+        "model/falloff.py", "np.log1p(-density)", "np.log(density)",
+    ),
+    "exact line: alpha for pi - alpha": (
+        "model/_cylinder.py", "np.arctan2(cross, -dot)", "np.arctan2(cross, dot)",
+    ),
+    "exact line: sine's term is missing": ("model/_cylinder.py", "    value += cross\n", ""),
+    "exact line: highlight without its ends": (
+        "model/_cylinder.py", "    mean += ends\n", "",
+    ),
+    "turn in n-space: wrong way round": (
+        "geometry/projection.py", "matrix[j, i] = math.sin(angle)",
+        "matrix[j, i] = -math.sin(angle)",
+    ),
+    "perspective in n-space: sign of the depth": (
+        "geometry/projection.py", "(1 - image[..., -1] / distance)",
+        "(1 + image[..., -1] / distance)",
+    ),
+    "cos-theta: r / d (the slip of its section 3)": (
+        "geometry/relief.py", "np.divide(depth, t, out=t)", "np.divide(t, 2 * t.max(), out=t)",
+    ),
+    "cos-theta: out of the ground in place of into it": (
+        "geometry/relief.py", "place - inset * normal", "place + inset * normal",
+    ),
+    "light 5 % too bright": (
+        "model/_kernels.py", "return power(sine, exponent)", "return 1.05 * power(sine, exponent)",
+    ),
+}  # fmt: skip
+
+
+def failed(folder: Path, tests: list[str]) -> list[str]:
+    """Return the names of the tests that fail on a copy."""
+    run = subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", "-rfE", "--tb=no", *tests],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": f"{folder}{os.pathsep}{folder / 'tests'}"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    if run.returncode not in (0, 1):
+        sys.exit(run.stdout + run.stderr)
+    return re.findall(r"^(?:FAILED|ERROR) \S*?([\w/]+\.py::\S+)", run.stdout, re.MULTILINE)
+
+
+def main() -> int:
+    """Break, run, print."""
+    escaped = 0
+    with tempfile.TemporaryDirectory() as name:
+        copy = Path(name) / "copy"
+        for folder in ("vizlight", "tests", "datasets"):
+            shutil.copytree(ROOT / folder, copy / folder)
+        for file in ("pyproject.toml", "README.md"):
+            shutil.copy(ROOT / file, copy)
+        if found := failed(copy, PICTURES):
+            sys.exit(f"these fail as it is: {found}")
+        chosen = {
+            title: mutation
+            for title, mutation in MUTATIONS.items()
+            if all(word in title for word in sys.argv[1:])
+        }
+        for title, (path, old, new) in chosen.items():
+            file = copy / "vizlight" / path
+            text = file.read_text()
+            if text.count(old) < 1:
+                sys.exit(f"{title}: {path} does not hold {old!r}")
+            file.write_text(text.replace(old, new))
+            caught = failed(copy, PICTURES) or failed(copy, NUMBERS)
+            file.write_text(text)
+            escaped += not caught
+            told = ", ".join(name.partition("::")[2] for name in caught) or "NOTHING"
+            print(f"{title}\n    {told}", flush=True)  # noqa: T201
+    print(f"{len(chosen) - escaped} of {len(chosen)} caught")  # noqa: T201
+    return 1 if escaped else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,168 @@
+"""The built pages: no dead link, no missing picture, no error in a browser, scenes that show.
+
+Pages are looked for where README's line builds them. What needs a browser takes Debian's
+``chromium``. Where ``VIZLIGHT_PAGES`` names the folder of the pages, what is missing is an error.
+"""
+
+from __future__ import annotations
+
+import functools
+import os
+import re
+import shutil
+import subprocess
+from html.parser import HTMLParser
+from pathlib import Path
+from urllib.parse import unquote, urlsplit
+
+import numpy as np
+import pytest
+from PIL import Image
+
+ROOT = Path(__file__).parents[1]
+PAGES = Path(os.environ.get("VIZLIGHT_PAGES", ROOT / "build" / "gallery"))
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+WANTED = "VIZLIGHT_PAGES" in os.environ
+
+pytestmark = pytest.mark.skipif(
+    not (PAGES / "index.html").exists() and not WANTED, reason=f"no pages in {PAGES}"
+)
+browser = pytest.mark.skipif(CHROMIUM is None and not WANTED, reason="no chromium here")
+
+
+class _Links(HTMLParser):
+    """What a page refers to, the places that can be referred to, and its words."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.targets: list[str] = []
+        self.places: set[str] = set()
+        self.words = 0
+
+    def handle_starttag(self, tag, attrs):
+        given = dict(attrs)
+        self.places.update(given[key] for key in ("id", "name") if given.get(key))
+        for key in ("href", "src"):
+            if given.get(key):
+                self.targets.append(given[key])
+        self.targets += [part.split()[0] for part in (given.get("srcset") or "").split(",") if part]
+
+    def handle_data(self, data):
+        self.words += len(data.split())
+
+
+@functools.cache
+def read(page):
+    parser = _Links()
+    parser.feed(page.read_text(encoding="utf-8"))
+    return parser
+
+
+def pages():
+    return sorted(p for p in PAGES.rglob("*.html") if "_static" not in p.parts)
+
+
+def broken_links(page):
+    broken = []
+    for target in read(page).targets:
+        parts = urlsplit(target)
+        if parts.scheme or target.startswith("//"):
+            continue
+        place = (page.parent / unquote(parts.path)).resolve() if parts.path else page
+        if not place.exists() or (
+            parts.fragment
+            and place.suffix == ".html"
+            and unquote(parts.fragment) not in read(place).places
+        ):
+            broken.append(target)
+    return broken
+
+
+def test_every_link_and_picture_is_there():
+    assert len(pages()) > 100
+    broken = {page.name: found for page in pages() if (found := broken_links(page))}
+    assert not broken
+
+
+def test_a_broken_link_is_found(tmp_path):
+    page = tmp_path / "a.html"
+    page.write_text('<p id="x"><a href="#x">a</a><a href="#y">b</a><img src="no.png"></p>')
+    assert broken_links(page) == ["#y", "no.png"]
+
+
+def test_nothing_is_loaded_from_elsewhere():
+    """The pages work from disk, without a network."""
+    loaded = re.compile(r'<(?:script|img|iframe|link rel="stylesheet")[^>]*(?:src|href)="https?:')
+    assert not [p.name for p in pages() if loaded.search(p.read_text(encoding="utf-8"))]
+
+
+def test_every_script_has_a_page_a_picture_and_no_error():
+    for script in sorted((ROOT / "gallery").glob("plot_*.py")):
+        page = PAGES / "examples" / f"{script.stem}.html"
+        text = page.read_text(encoding="utf-8")
+        assert "Traceback (most recent call last)" not in text, script.stem
+        assert f"sphx_glr_{script.stem}_001.png" in text, script.stem
+        thumbnail = PAGES / "_images" / f"sphx_glr_{script.stem}_thumb.png"
+        assert np.asarray(Image.open(thumbnail).convert("L")).std() > 5, script.stem
+
+
+def test_every_public_name_has_a_page():
+    import vizlight
+
+    for name in vizlight.__all__:
+        assert (PAGES / "api" / f"vizlight.{name}.html").exists(), name
+
+
+def open_in_browser(page, picture, profile):
+    """Open a page from disk; return what it says on the console, and its picture."""
+    run = subprocess.run(
+        [
+            CHROMIUM, "--headless=new", "--no-sandbox", "--use-angle=swiftshader",
+            "--enable-unsafe-swiftshader", "--hide-scrollbars", "--enable-logging=stderr",
+            f"--user-data-dir={profile}", "--window-size=900,700", "--virtual-time-budget=8000",
+            f"--screenshot={picture}", page.as_uri(),
+        ],
+        capture_output=True, text=True, errors="replace", timeout=120, check=False,
+    )  # fmt: skip
+    assert run.returncode == 0, run.stderr[-2000:]
+    said = re.findall(r":(\w+):CONSOLE[:(]\d+\)?\] (.*)", run.stderr)
+    return said, np.asarray(Image.open(picture).convert("RGB"))
+
+
+#: What the theme and the viewer say when all is well.
+HARMLESS = re.compile(r"Got invalid theme mode|\[PST\]|hashes,scene|GPU stall|GL Driver Message")
+
+
+def errors(said):
+    return [text for _, text in said if not HARMLESS.search(text)]
+
+
+@browser
+@pytest.mark.parametrize("name", ["index", "examples/index", "formulas", "api", "studies"])
+def test_a_page_opens_without_an_error(name, tmp_path):
+    said, picture = open_in_browser(PAGES / f"{name}.html", tmp_path / "a.png", tmp_path / "p")
+    assert not errors(said)
+    assert picture.std() > 5
+
+
+@browser
+def test_scenes_are_not_blank(tmp_path):
+    scenes = sorted((PAGES / "_static" / "scenes").glob("*.html"))
+    assert len({re.sub(r"_\d+$", "", scene.stem) for scene in scenes}) >= 3
+    for scene in scenes:
+        said, picture = open_in_browser(scene, tmp_path / f"{scene.stem}.png", tmp_path / "p")
+        assert not errors(said), scene.name
+        back = picture[0, 0].astype(int)
+        drawn = np.any(np.abs(picture.astype(int) - back) > 24, axis=-1)
+        # Something is drawn, in its middle, and in many tones: it is lit.
+        assert drawn.mean() > 0.01, scene.name
+        assert drawn[200:500, 250:650].any(), scene.name
+        assert len(np.unique(picture[drawn], axis=0)) > 50, scene.name
+
+
+@browser
+def test_the_browser_tests_can_fail(tmp_path):
+    page = tmp_path / "bad.html"
+    page.write_text("<p>nothing</p><script>console.error('no'); nowhere()</script>")
+    said, _ = open_in_browser(page, tmp_path / "a.png", tmp_path / "p")
+    assert len(errors(said)) == 2

@@ -1,0 +1,146 @@
+"""The comparison of pictures sees wrong light and is blind to how edges are drawn."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+from PIL import Image, ImageDraw
+
+import vizlight
+from vizlight import Light, Material, Scene, View, render, testing
+
+
+def lines(grey=200, shift=0.0, width=1, scale=1):
+    """Draw thin grey lines on black, once as they are or from a larger picture."""
+    image = Image.new("L", (300 * scale, 200 * scale))
+    draw = ImageDraw.Draw(image)
+    for i in range(40):
+        ends = [(7.3 * i + shift, 3), (300 - 7.1 * i + shift, 195)]
+        draw.line([(x * scale, y * scale) for x, y in ends], fill=round(grey), width=width * scale)
+    image = image.resize((300, 200), Image.Resampling.BOX)
+    return np.repeat(np.asarray(image)[..., np.newaxis], 3, axis=2)
+
+
+def disc(moved=0.0, radius=70.0, bright=200.0):
+    y, x = np.mgrid[:200, :300]
+    shade = bright * np.exp(-((x - 130 - moved) ** 2 + (y - 80) ** 2) / 1500)
+    inside = np.clip(radius + 0.5 - np.hypot(x - 150, y - 100), 0, 1)
+    grey = inside * (40 + shade) + (1 - inside) * 255
+    return np.repeat(np.clip(grey, 0, 255).astype(np.uint8)[..., np.newaxis], 3, axis=2)
+
+
+def test_the_same_picture_passes_and_measures_nothing():
+    assert testing.assert_same_picture(lines(), lines()) == testing.Difference(0, 0, 0)
+
+
+@pytest.mark.parametrize("factor", [0.95, 1.05])
+def test_thin_lines_5_percent_off_fail(factor):
+    with pytest.raises(AssertionError, match=r"brightness 0\.05"):
+        testing.assert_same_picture(lines(200 * factor), lines())
+
+
+def test_thin_lines_a_third_of_a_pixel_away_pass():
+    testing.assert_same_picture(lines(scale=8, shift=0.33), lines(scale=8))
+
+
+def test_an_edge_a_quarter_of_a_pixel_away_passes():
+    testing.assert_same_picture(disc(radius=70.25), disc())
+
+
+@pytest.mark.parametrize("options", [{"moved": 8}, {"bright": 185}, {"radius": 78}])
+def test_a_moved_or_dimmer_highlight_or_another_outline_fails(options):
+    with pytest.raises(AssertionError, match="at most"):
+        testing.assert_same_picture(disc(**options), disc())
+
+
+def test_one_grey_level_below_0_does_not_wrap_around():
+    """In unsigned bytes 9 - 10 is 255."""
+    dark, less = (np.full((50, 60, 3), grey, dtype=np.uint8) for grey in (10, 9))
+    dark[10:40, 10:40] = less[10:40, 10:40] = 200
+    found = testing.difference(less, dark, background=(0, 0, 0))
+    assert found.block == pytest.approx(1)
+    assert found.pixels == 0
+    assert found.brightness < 0.02
+
+
+def test_swapped_channels_fail():
+    red = disc()
+    red[..., 1:] //= 2
+    with pytest.raises(AssertionError, match="block"):
+        testing.assert_same_picture(red[..., ::-1], red)
+
+
+def test_nothing_drawn_fails_and_nothing_expected_passes():
+    empty = np.zeros((200, 300, 3), dtype=np.uint8)
+    with pytest.raises(AssertionError, match="brightness 1"):
+        testing.assert_same_picture(empty, lines())
+    testing.assert_same_picture(empty, empty)
+    with pytest.raises(AssertionError, match="brightness"):
+        testing.assert_same_picture(lines(), empty)
+
+
+def test_a_failure_leaves_got_expected_and_difference(tmp_path):
+    Image.fromarray(lines()).save(tmp_path / "a.png")
+    with pytest.raises(AssertionError, match=r"^a: brightness .*see .*a-\*\.png"):
+        testing.assert_same_picture(lines(220), tmp_path / "a.png", failed=tmp_path / "failed")
+    kept = {p.name: np.asarray(Image.open(p)) for p in (tmp_path / "failed").iterdir()}
+    assert set(kept) == {"a-got.png", "a-expected.png", "a-difference.png"}
+    np.testing.assert_array_equal(kept["a-got.png"], lines(220))
+    assert kept["a-difference.png"].max() == 20
+
+
+def test_a_missing_picture_fails_unless_it_may_be_added(tmp_path):
+    path = tmp_path / "new.png"
+    with pytest.raises(AssertionError, match="add_missing=True"):
+        testing.assert_same_picture(lines(), path)
+    testing.assert_same_picture(lines(), path, add_missing=True)
+    testing.assert_same_picture(lines(), str(path))
+
+
+def test_sizes_that_differ(tmp_path):
+    with pytest.raises(AssertionError, match="299 x 200 pixels, expected 300 x 200"):
+        testing.assert_same_picture(lines()[:, :-1], lines())
+    with pytest.raises(ValueError, match="got: expected 300 x 200 pixels"):
+        testing.difference(lines()[:, :-1], lines())
+
+
+@pytest.mark.parametrize("bad", [np.zeros((3, 3)), np.zeros((3, 3, 3)), 7, None])
+def test_what_is_not_a_picture(bad):
+    with pytest.raises(TypeError, match="got: expected a plotter, a path or bytes"):
+        testing.difference(bad, lines())
+
+
+def test_a_file_that_is_no_picture(tmp_path):
+    (tmp_path / "a.png").write_text("no")
+    with pytest.raises(ValueError, match="expected: expected a picture"):
+        testing.difference(lines(), tmp_path / "a.png")
+    with pytest.raises(ValueError, match="brightness"):
+        testing.assert_same_picture(lines(), lines(), brightness=-1)
+    with pytest.raises(ValueError, match="background"):
+        testing.difference(lines(), lines(), background="no colour")
+
+
+@pytest.mark.opengl
+def test_a_plotter_with_lit_lines(tmp_path):
+    spiral = pv.Spline(np.random.default_rng(1).standard_normal((60, 3)).cumsum(axis=0), 2000)
+    camera = render.camera_on(spiral.bounds, (1, 1, 1))
+
+    def plotter(brighter=1.0, **options):
+        scene = Scene(
+            lights=Light(direction=(1, 0, 0)),
+            view=View.from_camera(camera),
+            material=Material(ambient=0.1 * brighter, diffuse=0.4 * brighter, specular=0),
+        )
+        lit = vizlight.illuminate(spiral, scene)
+        return render.make_plotter(lit, camera=camera, size=(400, 300), **options)
+
+    expected = plotter()
+    kept = tmp_path / "lines.png"
+    testing.assert_same_picture(expected, kept, add_missing=True)
+    testing.assert_same_picture(plotter(), kept)
+    with pytest.raises(AssertionError, match="brightness"):
+        testing.assert_same_picture(plotter(1.05), kept)
+    expected.close()
+    with pytest.raises(ValueError, match="an open plotter"):
+        testing.assert_same_picture(expected, kept)
