@@ -49,8 +49,8 @@ for column, factor in enumerate((4.0, float(highlights.simple_factor(ANGLE)))):
     plotter.add_mesh(pv.Sphere(radius=3, center=place), color="black")
     plotter.show_bounds(
         axes_ranges=[0, 180, 0, 180, -64, 64], bounds=(0, 180, 0, 180, -64, 64),
-        xtitle="phi", ytitle="theta", ztitle="error", color="black", location="outer",
-        n_xlabels=5, n_ylabels=5, n_zlabels=5, fmt="%.0f", font_size=11,
+        xtitle="phi, degrees", ytitle="theta, degrees", ztitle="error", color="black",
+        location="outer", n_xlabels=5, n_ylabels=5, n_zlabels=5, fmt="%.0f", font_size=17,
     )  # fmt: skip
     plotter.camera_position = [(-330, -300, 90), (90, 90, 5), (0, 0, 1)]
 plotter.show()

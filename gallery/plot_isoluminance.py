@@ -7,7 +7,8 @@ frustum and disc, in bands of one luminance each between their contours; and a m
 of them by union and difference, which keeps its bands.
 
 On the sphere contours are circles about the light, on the others rulings; the ends have one
-luminance each. The last two panels have what the source left open: a highlight and a near light.
+luminance each. The machined part is what the source left open, set operations; the last two panels
+have contours found by halving where it approximates: a highlight and a near light.
 """
 
 import numpy as np
@@ -45,11 +46,13 @@ drawn = [vizlight.isoluminance(solid, scene, levels=12) for solid, scene in shap
 plotter = render.make_plotter(
     [render.Panel(found["bands"], title=name) for name, found in zip(shapes, drawn, strict=True)],
     camera=camera,
-    size=(2400, 330),
+    rows=2,
+    size=(1800, 800),
     cmap="cividis",
+    bar="luminance",
 )
-for column, found in enumerate(drawn):
-    plotter.subplot(0, column)
+for number, found in enumerate(drawn):
+    plotter.subplot(*divmod(number, 4))
     lines = plotter.add_mesh(found["contours"], color="black", line_width=1)
     # Lines lie in the bands: they are drawn as if a little nearer.
     lines.mapper.SetResolveCoincidentTopologyToPolygonOffset()

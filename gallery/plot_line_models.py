@@ -23,6 +23,7 @@ for column, term in enumerate(("diffuse", "specular")):
     own = [row for row in rows if row.term == term and row.model != "exact"]
     chart = pv.Chart2D(x_label="sides of the tube", y_label="RMS error")
     chart.title = term
+    chart.GetTitleProperties().SetFontSize(24)
     chart.x_axis.log_scale = chart.y_axis.log_scale = True
     errors = [row.scaled_rms for row in own if row.model.startswith("tube")]
     chart.line(lines.SIDES, errors, color="black", width=2, label="tube")

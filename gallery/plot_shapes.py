@@ -5,7 +5,7 @@ Shapes in 4-space
 What ``vizlight.geometry.manifolds`` makes, seen in 3-space and lit in 4-space. From left to right:
 the Klein bottle and the Veronese surface (a projective plane), neither of which meets itself in
 4-space although what is seen of it does; the graph of w = z^2; fibres of the Hopf map, circles of
-the 3-sphere no two of which meet; and a piece of the 3-sphere that a hyperplane cuts out.
+the 3-sphere no two of which meet; and the section of the 3-sphere by a hyperplane.
 """
 
 import numpy as np

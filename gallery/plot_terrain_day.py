@@ -57,6 +57,7 @@ plotter = render.make_plotter(
     rows=shape,
     size=size,
     cmap="cividis",
+    bar="t",
     background="white",
 )
 plotter.show()

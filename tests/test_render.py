@@ -98,6 +98,37 @@ def test_camera_frames_as_vtk_would(direction, parallel):
     assert camera.parallel_projection == parallel
 
 
+@pytest.mark.parametrize("direction", [(0.3, -1, 0.4), (0, 0, 1), (1, 0.2, -0.5)])
+def test_a_mesh_is_centred_as_it_is_seen(direction):
+    """The camera's focal point lies in the middle of what is seen, which is not the box's."""
+    points = np.array([[0, 0, 0], [4, 0, 0], [4, 3, 1], [0.5, 0.2, 5e-1]])
+    mesh = pv.MultiBlock([pv.PolyData(points[:2]), None, pv.PolyData(points[2:]), pv.PolyData()])
+    camera = render.camera_on(mesh, direction, parallel=True)
+    back = np.array(direction) / np.linalg.norm(direction)
+    right = np.cross(camera.up, back)
+    for axis in (right, np.cross(back, right)):
+        seen = points @ axis
+        assert camera.focal_point @ axis == pytest.approx((seen.min() + seen.max()) / 2)
+    box = render.camera_on(mesh.bounds, direction, parallel=True)
+    if np.count_nonzero(direction) == 3:
+        assert np.linalg.norm(np.subtract(camera.focal_point, box.focal_point)) > 0.1
+    assert camera.parallel_scale == box.parallel_scale
+    with pytest.raises(ValueError, match="bounds: expected a mesh with points"):
+        render.camera_on(pv.PolyData())
+
+
+def test_a_scalar_bar_is_named(tmp_path):
+    lit = pv.Plane()
+    lit["luminance"] = np.full(lit.n_points, 0.5)
+    with_bar, without = (
+        pixels(render.save_png(lit, tmp_path / "a.png", size=(600, 400), bar=bar))
+        for bar in ("luminance", "")
+    )
+    changed = np.any(with_bar != without, axis=-1)
+    assert changed[:, :420].sum() == 0
+    assert changed[:, 460:].mean() > 0.1
+
+
 def test_zoom_halves_the_distance():
     bounds = (0, 1, 0, 1, 0, 1)
     one, two = (render.camera_on(bounds, zoom=zoom) for zoom in (1, 2))
@@ -187,7 +218,7 @@ def test_bad_input(tmp_path):
         render.make_plotter([lit, None], camera=camera)
     with pytest.raises(TypeError, match="title: expected words, got 3"):
         render.make_plotter(render.Panel(lit, title=3), camera=camera)
-    with pytest.raises(ValueError, match="bounds: expected six finite numbers"):
+    with pytest.raises(ValueError, match="bounds: expected a mesh or six finite numbers"):
         render.camera_on((0, 1))
     empty = pv.PolyData()
     empty["luminance"] = np.empty(0)

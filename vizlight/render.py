@@ -146,19 +146,19 @@ class Panel:
 
 
 def camera_on(
-    bounds: Sequence[float],
+    bounds: Any,
     direction: Sequence[float] = (1.0, 1.0, 1.0),
     *,
     up: Sequence[float] | None = None,
     parallel: bool = False,
     zoom: float = 1.0,
 ) -> Any:
-    """Return a camera that sees all of a bounding box; no OpenGL is needed for it.
+    """Return a camera that sees all of a mesh or a bounding box; no OpenGL is needed for it.
 
     Parameters
     ----------
-    bounds : (xmin, xmax, ymin, ymax, zmin, zmax)
-        In the unit of the mesh.
+    bounds : (xmin, xmax, ymin, ymax, zmin, zmax), or mesh
+        In the unit of the mesh. A mesh is centred by its points as they are seen, not by its box.
     direction : vector of 3 components
         From the box's centre toward the eye.
     up : vector of 3 components, optional
@@ -181,12 +181,24 @@ def camera_on(
     if np.linalg.norm(np.cross(_check.vector("up", up, direction=True), toward)) < 1e-6:
         raise ValueError(_check.message("up", "a direction across the view", tuple(up)))
     zoom = _check.number("zoom", zoom, low=1e-6)
-    box = _check.floats("bounds", bounds).astype(np.float64)
-    if box.shape != (6,) or not np.all(np.isfinite(box)):
-        raise ValueError(_check.message("bounds", "six finite numbers", _check.describe(bounds)))
-    box = box.reshape(3, 2)
+    seen = isinstance(bounds, pv.DataSet | pv.MultiBlock)
+    corners = _check.floats("bounds", _box("bounds", [bounds]) if seen else bounds).astype(
+        np.float64
+    )
+    if corners.shape != (6,) or not np.all(np.isfinite(corners)):
+        expected = "a mesh or six finite numbers"
+        raise ValueError(_check.message("bounds", expected, _check.describe(bounds)))
+    box = corners.reshape(3, 2)
     centre = box.mean(axis=1)
     radius = 0.5 * float(np.linalg.norm(box[:, 1] - box[:, 0])) or 1.0
+    if seen:
+        right = np.cross(up, toward)
+        for axis in (right, np.cross(toward, right)):
+            across = axis / np.linalg.norm(axis)
+            ends = [
+                f(m.points @ across) for m in leaves(bounds) if m.n_points for f in (np.min, np.max)
+            ]
+            centre = centre + (0.5 * (min(ends) + max(ends)) - centre @ across) * across
     camera: Any = pv.Camera()  # type: ignore[no-untyped-call]
     camera.view_angle = 30.0
     distance = radius / math.sin(math.radians(15.0)) / zoom
@@ -218,6 +230,7 @@ def make_plotter(
     scalars: str = "luminance",
     cmap: str = "gray",
     clim: tuple[float, float] = (0.0, 1.0),
+    bar: str = "",
     background: Any = None,
     line_width: float = 1.0,
     anti_aliasing: AntiAliasing | None = "ssaa",
@@ -241,6 +254,8 @@ def make_plotter(
         Of arrays of one component.
     clim : (float, float)
         What the ends of the map stand for.
+    bar : str
+        Title of a scalar bar in the last picture, its unit told; default: no bar.
     background : colour, optional
         Default: white, or black behind meshes of lines.
     line_width : float
@@ -277,7 +292,7 @@ def make_plotter(
                 expected = f"a point array or a cell array ({there})"
                 raise ValueError(_check.message("scalars", expected, repr(panel.scalars)))
     if camera is None:
-        camera = camera_on(_bounds(shown))
+        camera = camera_on(_box("panels", [panel.mesh for panel in shown]))
     if not hasattr(camera, "GetPosition"):
         raise TypeError(_check.message("camera", "a pyvista.Camera", _check.describe(camera)))
     pixels = pixels_of(size)
@@ -302,6 +317,7 @@ def make_plotter(
         )
     else:
         _check.color("background", background)
+    ink = "black" if sum(pv.Color(background).float_rgb) > 1.2 else "white"
     with _window_class(choose_backend(backend)):
         plotter = pv.Plotter(
             off_screen=True, shape=(rows, columns), window_size=pixels, border=False
@@ -312,12 +328,16 @@ def make_plotter(
             plotter.set_background(background)
             _draw(plotter, panel, cmap, clim, line_width)
             if panel.title:
-                ink = "black" if sum(pv.Color(background).float_rgb) > 1.2 else "white"
                 plotter.add_text(panel.title, position="upper_edge", font_size=10, color=ink)
             plotter.camera = camera.copy()
             plotter.reset_camera_clipping_range()
             if anti_aliasing is not None:
                 plotter.enable_anti_aliasing(anti_aliasing)
+        if bar:
+            plotter.add_scalar_bar(  # type: ignore[call-arg]
+                title=bar, color=ink, n_labels=3, fmt="%.1f", vertical=True, height=0.7, width=0.1,
+                position_x=0.82, position_y=0.12,
+            )  # fmt: skip
     except BaseException:
         plotter.close()
         raise
@@ -334,8 +354,8 @@ def save_png(panels: Any, path: str | Path, /, **options: Any) -> Path:
     path : path
         The picture; its folder must exist.
     **options
-        Of :func:`make_plotter`: camera, rows, size, scalars, cmap, clim, background, line_width,
-        anti_aliasing, backend.
+        Of :func:`make_plotter`: camera, rows, size, scalars, cmap, clim, bar, background,
+        line_width, anti_aliasing, backend.
 
     Returns
     -------
@@ -421,10 +441,10 @@ def _draw(
         )
 
 
-def _bounds(panels: Sequence[Panel]) -> list[float]:
-    meshes = [mesh for panel in panels for mesh in leaves(panel.mesh)]
-    boxes = np.array([mesh.bounds for mesh in meshes if mesh.n_points])
+def _box(name: str, meshes: Sequence[Any]) -> list[float]:
+    parts = [part for mesh in meshes for part in leaves(mesh)]
+    boxes = np.array([part.bounds for part in parts if part.n_points])
     if not boxes.size:
-        raise ValueError(_check.message("panels", "a mesh with points", "empty meshes"))
+        raise ValueError(_check.message(name, "a mesh with points", "empty meshes"))
     low, high = boxes[:, ::2].min(axis=0), boxes[:, 1::2].max(axis=0)
     return [float(x) for pair in zip(low, high, strict=True) for x in pair]

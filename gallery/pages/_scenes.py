@@ -1,4 +1,4 @@
-"""Scenes that can be turned in a page opened from disk.
+"""What the scripts draw: pictures, their thumbnails, and scenes that can be turned.
 
 PyVista's own viewer fetches its scene, which browsers refuse for files on disk, so each scene is
 written into a page of its own instead, together with the viewer.
@@ -8,9 +8,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 import pyvista as pv
+from PIL import Image, ImageOps
 from pyvista.plotting.utilities.sphinx_gallery import generate_images
-from sphinx_gallery.scrapers import figure_rst
+from sphinx_gallery.scrapers import figure_rst, matplotlib_scraper
 from trame_vtk.tools.vtksz2html import embed_data_to_viewer_file
 
 #: The scripts with a scene: one view of one mesh, of a few megabytes.
@@ -23,8 +25,35 @@ ORDER = [
     "plot_ambient", "plot_depth_cue", "plot_attenuation", "plot_terrain_day", "plot_terrain",
     "plot_earth", "plot_bas_relief", "plot_seeping_light", "plot_codimension", "plot_turning",
     "plot_complex_curve", "plot_shapes", "plot_field_in_4_space", "plot_highlights",
-    "plot_highlights_shapes", "plot_highlight_error", "plot_line_models", "plot_errors",
+    "plot_highlights_shapes", "plot_highlight_error", "plot_isoluminance",
+    "plot_isoluminance_painter", "plot_line_models", "plot_errors", "plot_tolerance",
+    "plot_isoluminance_speed",
 ]  # fmt: skip
+
+#: What of a wide picture its thumbnail shows: left, top, right and bottom of 1.
+PARTS = {
+    "plot_bas_relief": (0.335, 0.05, 0.665, 0.95),
+    "plot_carotid": (0.08, 0.12, 0.92, 0.88),
+    "plot_codimension": (0.25, 0.56, 0.5, 1.0),
+    "plot_complex_curve": (0.1, 0.05, 0.9, 1.0),
+    "plot_depth_cue": (0.67, 0.06, 1.0, 0.5),
+    "plot_earth": (0.02, 0.1, 0.48, 0.9),
+    "plot_fibres": (0.05, 0.1, 0.95, 0.8),
+    "plot_field_in_4_space": (0.667, 0.07, 1.0, 1.0),
+    "plot_fur": (0.67, 0.2, 1.0, 0.9),
+    "plot_highlight_error": (0.0, 0.2, 0.45, 0.9),
+    "plot_highlights": (0.15, 0.06, 0.9, 0.5),
+    "plot_highlights_shapes": (0.0, 0.08, 0.5, 0.92),
+    "plot_isoluminance": (0.25, 0.56, 0.5, 1.0),
+    "plot_lines": (0.5, 0.05, 1.0, 1.0),
+    "plot_satin": (0.75, 0.1, 1.0, 1.0),
+    "plot_seeping_light": (0.67, 0.05, 1.0, 0.95),
+    "plot_shapes": (0.2, 0.07, 0.4, 1.0),
+    "plot_terrain": (0.0, 0.08, 0.165, 0.92),
+    "plot_terrain_day": (0.06, 0.04, 0.28, 0.47),
+    "plot_tolerance": (0.67, 0.12, 1.0, 0.9),
+    "plot_turning": (0.4, 0.06, 0.61, 0.5),
+}
 
 
 class Order:
@@ -54,8 +83,12 @@ def reset(_conf, script):
     pv.Plotter._trame_component = _export if Path(script).stem in INTERACTIVE else none
 
 
-def scrape(_block, block_vars, gallery_conf):
+def scrape(block, block_vars, gallery_conf):
     """Return reST for what a block of a script has drawn: its pictures and scenes."""
+    if plt.get_fignums():
+        # A chart: what its study has drawn is not to be shown.
+        pv.close_all()
+        return matplotlib_scraper(block, block_vars, gallery_conf)
     names = generate_images(block_vars["image_path_iterator"], dynamic=True)
     return "\n".join(_tabs(Path(name), Path(gallery_conf["src_dir"])) for name in names)
 
@@ -84,3 +117,23 @@ def _tabs(name, source):
          <iframe class="scene" src="{address}" title="scene" loading="lazy"></iframe>
 
 """
+
+
+def cut_thumbnails(app):
+    """Make thumbnails of parts of pictures that would be too small as a whole."""
+    folder = Path(app.srcdir) / "examples" / "images"
+    size = app.config.sphinx_gallery_conf["thumbnail_size"]
+    for script, part in PARTS.items():
+        thumbnail = folder / "thumb" / f"sphx_glr_{script}_thumb.png"
+        if not thumbnail.exists():
+            continue
+        with Image.open(sorted(folder.glob(f"sphx_glr_{script}_[0-9]*.png"))[-1]) as whole:
+            ends = [x * side for x, side in zip(part, whole.size * 2, strict=True)]
+            cut = whole.convert("RGB").crop([round(x) for x in ends])
+        ImageOps.pad(cut, size, color=cut.getpixel((1, 1))).save(thumbnail)
+
+
+def setup(app):
+    """Register with Sphinx, after the gallery's own work."""
+    app.connect("builder-inited", cut_thumbnails, priority=900)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -26,11 +26,10 @@ def write(app):
         studies.names(), "measuring... ", "darkgreen", len(studies.names())
     ):
         study = studies.load(name)
-        result = studies.run(name, study, quick=True)
+        kept = name == "stability"
+        result = _kept(study, source / KEPT) if kept else studies.run(name, study, quick=True)
         result.draw(folder / f"{name}.png")
-        headings, rows = result.table()
-        if name == "stability":
-            headings, rows = _kept(source / KEPT)
+        headings, rows = _worst(result) if kept else result.table()
         overview.append([f":doc:`{name} <studies/{name}>`", study.approximates, result.verdict])
         page = [
             name, "=" * len(name), "",
@@ -38,7 +37,7 @@ def write(app):
             f"Reference: {study.reference}.", "",
             f"**Verdict**: {result.verdict}.", "",
             f".. figure:: {name}.png", f"   :alt: {study.error} over {study.cost}", "",
-            f"   ``vizlight study {name} --quick``.", "",
+            f"   ``vizlight study {name}{'' if kept else ' --quick'}``.", "",
             *_table(headings, [list(map(number, row)) for row in rows]),
         ]  # fmt: skip
         (folder / f"{name}.rst").write_text("\n".join(page) + "\n", encoding="utf-8")
@@ -53,19 +52,29 @@ def _table(headings, rows, widths="auto"):
     return [*lines[:4], "", *lines[4:], ""]
 
 
-def _kept(path):
-    """Return the worst case of each kernel and type, of all that were measured."""
+def _kept(study, path):
+    """Return the result that was written to a file."""
     with path.open(newline="", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
+        _, *lines = csv.reader(file)
+    more = ("type", "case", "seen / claimed", "inputs", "")
+    rows = [
+        studies.Row(way, *map(float, numbers), dict(zip(more, rest, strict=True)))
+        for way, *numbers, rest in ((*line[:4], line[4:]) for line in lines)
+    ]
+    return studies.Result(path.stem, study, rows, study.verdict(rows))
+
+
+def _worst(result):
+    """Return headings, and for each kernel and type its worst case."""
     headings = ["kernel", "type", "inputs", "worst case", "claimed, eps", "seen, eps", ""]
-    worst = []
-    for key in dict.fromkeys((row["way"], row["type"]) for row in rows):
-        own = [row for row in rows if (row["way"], row["type"]) == key]
-        top = max(own, key=lambda row: float(row["seen / claimed"]))
-        inputs = sum(int(row["inputs"]) for row in own)
-        ends = (float(top["claimed, eps"]), float(top["seen, eps"]))
-        worst.append([*key, f"{inputs}", top["case"], *ends, top[""]])
-    return headings, worst
+    lines = []
+    for key in dict.fromkeys((row.way, row.more["type"]) for row in result.rows):
+        own = [row for row in result.rows if (row.way, row.more["type"]) == key]
+        top = max(own, key=lambda row: float(row.more["seen / claimed"]))
+        inputs = sum(int(row.more["inputs"]) for row in own)
+        more = top.more
+        lines.append([*key, f"{inputs}", more["case"], top.parameter, top.error, more[""]])
+    return headings, lines
 
 
 def setup(app):

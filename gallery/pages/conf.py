@@ -30,6 +30,7 @@ extensions = [
     "numpydoc",
     "sphinx_design",
     "_mathml",
+    "_scenes",
     "_studies",
 ]
 templates_path = ["_templates"]

@@ -3,7 +3,8 @@
 The yardstick of every cheaper line model. A line of width has a normal all round; what the eye
 sees of it is the mean over the half that is turned to the eye, weighted by projected width.
 Lambert's and Blinn's laws, cut where a normal does not face the light, have that mean in closed
-form. (Mallo, Peikert, Sigg and Sadlo 2005 keep it in textures.) Lines in 3-space: codimension 2.
+form. Source: Mallo, Peikert, Sigg and Sadlo, *Illuminated Lines Revisited* (2005), who integrate
+the highlight numerically; here it is finite, by the incomplete beta function. Lines in 3-space.
 """
 
 from __future__ import annotations
