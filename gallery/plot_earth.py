@@ -3,9 +3,9 @@ The earth in the light of a morning
 ===================================
 
 The embedded relief of the earth, land and sea floor, heights times 60, lit from the
-west-north-west at 19 degrees, with ``t`` in place of the cosine: trenches and the walls of plateaus cast shadows, and
-ridges under the sea stand out. Left shallow, right with light gathered twenty times deeper, which
-rounds what is small.
+west-north-west at 19 degrees, with ``t`` in place of the cosine: trenches and the walls of plateaus
+cast shadows, and ridges under the sea stand out. Left shallow, right with light gathered twenty
+times deeper, which rounds what is small.
 """
 
 import numpy as np

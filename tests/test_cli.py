@@ -139,6 +139,23 @@ def test_terrain_is_warped(tmp_path, monkeypatch, capfd):
     assert np.ptp(pv.read("t.vtp")["luminance"]) > 0.1
 
 
+def test_what_may_have_been_meant_is_told(volume, tmp_path, capfd):
+    pv.ImageData(dimensions=(4, 5, 1)).save("bare.vti")
+    flat = pv.ImageData(dimensions=(4, 5, 1))
+    flat["height"] = np.arange(20.0)
+    flat.save("flat.vti")
+    for options, words in (
+        ((volume,), "hull of a volume is lit; --contour r"),
+        (("flat.vti",), "mesh is flat; --warp height"),
+        ((volume, "--no-surface"), ""),
+        (("flat.vti", "--warp", "height"), ""),
+        (("bare.vti",), ""),
+    ):
+        code, out, _ = run(capfd, "light", *options, "-o", "a.vtk")
+        assert code == 0
+        assert words in out if words else "note" not in out
+
+
 def test_points_that_cannot_be_lit_are_told_and_no_error(volume, capfd):
     grid = pv.read(volume)
     grid["V"][:3] = 0
@@ -181,7 +198,10 @@ def test_points_that_cannot_be_lit_are_told_and_no_error(volume, capfd):
         (["light", "flow.vti", "-o", "none/x.vtp"], "output: expected a folder that exists"),
         (["light", "flow.vti", "-o", "x.vti"], "output: expected a name that ends in .vtp"),
         (["light", "flow.vti", "--light", "1,2"], "--light: expected three numbers x,y,z"),
-        (["light", "flow.vti", "--light", "0,0,0"], "direction: expected a direction of non-zero"),
+        (
+            ["light", "flow.vti", "--light", "0,0,0"],
+            "--light: expected a direction x,y,z, not all zero",
+        ),
         (["light", "flow.vti", "--color", "nothing"], "color: expected a colour's name"),
         (["light", "flow.vti", "--size", "big"], "--size: expected WIDTHxHEIGHT"),
         (["light", "flow.vti", "--size", "0x5"], "size: expected an integer of at least 1"),

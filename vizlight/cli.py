@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from cyclopts import App, CycloptsError, Parameter
 
 import vizlight
-from vizlight import _check
+from vizlight import _check, _console
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -84,7 +84,6 @@ def demo(
     backend
         What draws: egl (the default) or osmesa.
     """
-    from rich.console import Console
     from rich.table import Table
 
     from vizlight import demo, files
@@ -105,7 +104,7 @@ def demo(
         table.add_row(
             row.light, f"{row.points}", row.terms, f"{row.milliseconds:.2f}", f"{row.error:.1e}"
         )
-    console = Console()
+    console = _console.console()
     console.print(table)
     console.print("Error: float32 luminance against plain NumPy in float64. The flow's plan:")
     console.print(explained, highlight=False)
@@ -267,6 +266,7 @@ def light(
         mesh = mesh.cell_data_to_point_data()
     if warp is not None:
         mesh = files.warped(mesh, warp, 1.0 if warp_factor is None else warp_factor)
+    hint = None if contour or warp else _hint(mesh)
     if surface or contour is not None:
         mesh = files.surface_of(mesh, contour, level)
     for path in meshes:
@@ -310,6 +310,8 @@ def light(
             progress_bar=progress,
         )
     seconds = time.perf_counter() - start
+    if hint and (surface or "flat" in hint):
+        _say(f"note     {hint}")
     for warning in caught:
         sys.stderr.write(f"vizlight: {warning.message}\n")
     bright = sum(int((leaf["luminance"] > 1).sum()) for leaf in leaves(lit))
@@ -358,15 +360,15 @@ def light(
 @app.command
 def doctor() -> int:
     """Say what is installed, what draws here, what is missing and how to get it."""
-    from rich.console import Console
     from rich.table import Table
 
     from vizlight import doctor, render
 
     table = Table("part", "found", title="vizlight doctor")
+    table.columns[1].overflow = "fold"
     for part, found in doctor.findings():
         table.add_row(part, found)
-    Console().print(table)
+    _console.console().print(table)
     try:
         render.choose_backend()
     except render.BackendError as error:
@@ -420,6 +422,23 @@ def study(
     return OK
 
 
+def _hint(mesh: Any) -> str | None:
+    """Return what may have been meant for a volume, of which the hull is lit, or a flat field."""
+    from vizlight.filters._mesh import leaves
+
+    parts = [leaf for leaf in leaves(mesh) if leaf.n_cells]
+    names = [
+        name for leaf in parts[:1] for name, values in leaf.point_data.items() if values.ndim == 1
+    ]
+    if not names:
+        return None
+    if any(leaf.GetMaxSpatialDimension() == 3 for leaf in parts):
+        return f"the hull of a volume is lit; --contour {names[0]} lights an isosurface of it"
+    if all(leaf.GetMaxSpatialDimension() == 2 and not min(leaf.bounds_size) for leaf in parts):
+        return f"the mesh is flat; --warp {names[0]} raises it by its heights"
+    return None
+
+
 def _draw(panels: Any, path: Path, **options: Any) -> int:
     """Draw a picture; where nothing draws say so and keep what was written."""
     from vizlight import render
@@ -443,6 +462,8 @@ def _vector(name: str, text: str) -> tuple[float, ...]:
         values = ()
     if len(values) != 3:
         raise ValueError(_check.message(f"--{name}", "three numbers x,y,z", repr(text)))
+    if name != "lamp" and not any(values):
+        raise ValueError(_check.message(f"--{name}", "a direction x,y,z, not all zero", repr(text)))
     return values
 
 

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
+from vizlight import _console
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
     from pathlib import Path
@@ -198,15 +200,14 @@ def number(value: float | str) -> str:
 
 def print_result(result: Result) -> None:
     """Print a study's table, what it compares, and its verdict."""
-    from rich.console import Console
     from rich.table import Table
 
-    study, console = result.study, Console()
+    study, console = result.study, _console.console()
     headings, lines = result.table()
     table = Table(title=f"vizlight study {result.name}")
     for i, heading in enumerate(headings):
         words = all(isinstance(line[i], str) for line in lines)
-        table.add_column(heading, justify="left" if words else "right")
+        table.add_column(heading, justify="left" if words else "right", overflow="fold")
     for line in lines:
         table.add_row(*map(number, line))
     console.print(table)
@@ -217,13 +218,12 @@ def print_result(result: Result) -> None:
 
 def print_list(studies: Mapping[str, Study]) -> None:
     """Print the studies there are."""
-    from rich.console import Console
     from rich.table import Table
 
     table = Table("study", "what is approximated", "reference", "swept", title="vizlight study")
     for name, study in studies.items():
         table.add_row(name, study.approximates, study.reference, study.parameter)
-    Console().print(table)
+    _console.console().print(table)
 
 
 def words(value: Any) -> str:

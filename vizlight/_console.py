@@ -1,0 +1,19 @@
+"""Where tables are printed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+#: Characters in a line of a file or a pipe, which has no width of its own.
+WIDTH = 140
+
+
+def console() -> Console:
+    """Return a console as wide as the terminal, or wide enough for a table where there is none."""
+    from rich.console import Console
+
+    own = Console()
+    return own if own.is_terminal else Console(width=WIDTH)
