@@ -46,6 +46,10 @@ def test_accessor_on_blocks():
     assert all("luminance" in block.point_data for block in lit)
 
 
+def test_accessor_tells_what_it_can():
+    assert repr(pv.Sphere().vizlight).startswith("vizlight of PolyData: fur, illuminate")
+
+
 def test_accessor_needs_no_import():
     code = "import pyvista as pv; print(type(pv.Sphere().vizlight).__name__)"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import importlib
+import inspect
+import pkgutil
 import subprocess
 import sys
 
 import pytest
+
+import vizlight
 
 PROBE = """
 import sys
@@ -67,3 +72,29 @@ def test_every_public_name_is_there():
     assert set(vizlight.__all__) <= set(dir(vizlight))
     with pytest.raises(AttributeError, match="no attribute 'illuminated'"):
         vizlight.illuminated  # noqa: B018
+
+
+#: The command line and what it runs; the plan's names are the engine's.
+NOT_FOR_IMPORT = ("cli", "demo", "doctor", "plan")
+
+
+def public_modules():
+    found = (name for _, name, _ in pkgutil.walk_packages(vizlight.__path__, "vizlight."))
+    for name in found:
+        inner = name.split(".")[1:]
+        studies = inner[0] == "studies" and len(inner) > 1
+        if not any(part[0] == "_" or part in NOT_FOR_IMPORT for part in inner) and not studies:
+            yield name
+
+
+@pytest.mark.parametrize("name", sorted(public_modules()))
+def test_public_names_are_declared_and_described(name):
+    module = importlib.import_module(name)
+    if not module.__file__.endswith("__init__.py") or hasattr(module, "__all__"):
+        assert sorted(module.__all__) == sorted(set(module.__all__))
+    for public in getattr(module, "__all__", ()):
+        value = getattr(module, public)
+        if inspect.isfunction(value) or inspect.isclass(value):
+            assert inspect.getdoc(value), public
+        if inspect.isfunction(value) and inspect.signature(value).parameters:
+            assert "Parameters\n---" in inspect.getdoc(value), public

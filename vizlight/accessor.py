@@ -16,6 +16,8 @@ from vizlight import filters
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+__all__ = ["Accessor"]
+
 
 def _method(function: Callable[..., Any]) -> Callable[..., Any]:
     """Return a filter as a method: signature and documentation are the filter's."""
@@ -35,6 +37,10 @@ class Accessor:
 
     def __init__(self, mesh: Any) -> None:
         self._mesh = mesh
+
+    def __repr__(self) -> str:
+        known = ", ".join(name for name in dir(type(self)) if name[0] != "_")
+        return f"vizlight of {type(self._mesh).__name__}: {known}"
 
     fur = _method(filters.fur)
     illuminate = _method(filters.illuminate)

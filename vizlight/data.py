@@ -7,6 +7,8 @@ from typing import Any
 
 from vizlight import _check
 
+__all__ = ["example_path", "load_example"]
+
 
 def _folder() -> Path:
     package = Path(__file__).parent
@@ -35,7 +37,22 @@ def example_path(name: str = "rotating_disk.vtu") -> Path:
 
 
 def load_example(name: str = "rotating_disk.vtu") -> Any:
-    """Return an embedded data set as a PyVista mesh; ``name`` as for :func:`example_path`."""
+    """Return an embedded data set as a PyVista mesh.
+
+    Parameters
+    ----------
+    name : str, default: "rotating_disk.vtu"
+        The file's name; "fibre_bundle.vtp" and "earth_relief.vti" are others.
+
+    Returns
+    -------
+    pyvista.DataSet
+
+    Raises
+    ------
+    ValueError
+        If there is no such data set.
+    """
     import pyvista as pv
 
     return pv.read(example_path(name))

@@ -20,6 +20,8 @@ from vizlight import _check
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+__all__ = ["FileError", "read_mesh", "surface_of", "warped", "write_mesh"]
+
 #: File formats that keep point and field arrays, by kind of mesh.
 FORMATS: dict[str, tuple[str, ...]] = {
     "PolyData": (".vtp", ".vtk", ".vtu"),
@@ -37,6 +39,14 @@ class FileError(ValueError):
 
 def read_mesh(path: str | Path, /) -> Any:
     """Read a mesh from any file that PyVista reads; several blocks become one grid.
+
+    Parameters
+    ----------
+    path : path
+
+    Returns
+    -------
+    pyvista.DataSet
 
     Raises
     ------
@@ -142,6 +152,14 @@ def surface_of(mesh: Any, /, contour: str | None = None, level: float | None = N
 def warped(mesh: Any, name: str, factor: float, /) -> Any:
     """Return a mesh whose points are raised by a point array of one component.
 
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+    name : str
+        Of the array, in the unit of height.
+    factor : float
+        Lengths of the mesh in a unit of height.
+
     Raises
     ------
     ValueError
@@ -207,6 +225,17 @@ def check_format(mesh: Any, path: str | Path, /) -> Path:
 
 def write_mesh(mesh: Any, path: str | Path, /) -> Path:
     """Write a mesh with its arrays, whole or not at all.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+    path : path
+        Its ending, one of .vtp, .vtu, .vtk, .vts, .vti and .vtr, is the format; its folder must
+        exist. A file that is there is replaced.
+
+    Returns
+    -------
+    pathlib.Path
 
     Raises
     ------

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from vizlight._check import Color, ColorLike, Vector, VectorLike
     from vizlight.scene import View
 
+__all__ = ["Light"]
+
 WHITE = (1.0, 1.0, 1.0)
 NO_ATTENUATION = (1.0, 0.0, 0.0)
 

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
     Picture = NDArray[np.uint8]
 
+__all__ = ["MovieError", "turn"]
+
 FORMATS = (".png", ".gif", ".mp4")
 TURN = 2 * np.pi
 #: The options of a projection that decide where points come to be.

@@ -25,6 +25,19 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+__all__ = [
+    "BackendError",
+    "Panel",
+    "Probe",
+    "camera_on",
+    "choose_backend",
+    "make_plotter",
+    "over_shoulder",
+    "pictures",
+    "probe",
+    "save_png",
+]
+
 Backend = Literal["egl", "osmesa"]
 AntiAliasing = Literal["ssaa", "msaa", "fxaa"]
 
@@ -103,6 +116,10 @@ def choose_backend(backend: Backend | None = None) -> Backend | None:
 
     None, on a platform other than Linux or where the environment names a window class, leaves
     the choice to VTK.
+
+    Parameters
+    ----------
+    backend : {"egl", "osmesa"}, optional
 
     Raises
     ------
@@ -212,7 +229,17 @@ def camera_on(
 
 
 def over_shoulder(camera: Any) -> tuple[float, float, float]:
-    """Return the direction toward a light at infinity above the left shoulder of the eye."""
+    """Return the direction toward a light at infinity above the left shoulder of the eye.
+
+    Parameters
+    ----------
+    camera : pyvista.Camera or vtkCamera
+
+    Returns
+    -------
+    (float, float, float)
+        Of any length.
+    """
     back = -np.array(camera.GetDirectionOfProjection())
     right = np.cross(np.array(camera.GetViewUp()), back)
     right /= np.linalg.norm(right)

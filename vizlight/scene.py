@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
     from vizlight._check import Color, ColorLike, Vector, VectorLike
 
+__all__ = ["DepthCue", "Material", "Scene", "View"]
+
 
 @dataclass(frozen=True, init=False)
 class Material:

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.floating[Any]]
 
+__all__ = ["Difference", "assert_same_picture", "difference"]
+
 #: Pixels on a side of the blocks whose means are compared: edges are off by one pixel or less.
 BLOCK = 12
 

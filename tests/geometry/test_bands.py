@@ -8,22 +8,22 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vizlight.geometry import bands, contours, levels, meshes
+from vizlight.geometry import _bands, _contours, _levels, _meshes
 from vizlight.geometry.primitives import Block, Sphere, Truncus
 
 
 def soup(seed, count=12):
     """Return a closed triangulation with random values at its points."""
     random = np.random.default_rng(seed)
-    mesh = meshes.mesh(Sphere(), count)
+    mesh = _meshes.mesh(Sphere(), count)
     return mesh.points, mesh.triangles, random.uniform(0, 1, len(mesh.points))
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(1, 30))
 def test_polygons_tile_the_triangles(seed, count):
     points, triangles, values = soup(seed)
-    steps = levels.steps(count, 0.0, 1.0)
-    made, owner = bands.cut(points, triangles, values[triangles], steps)
+    steps = _levels.steps(count, 0.0, 1.0)
+    made, owner = _bands.cut(points, triangles, values[triangles], steps)
     assert banded.is_closed(made)
     t, polygon = banded.corners(made)
     size = np.linalg.norm(np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0]), axis=1)
@@ -39,8 +39,8 @@ def test_polygons_tile_the_triangles(seed, count):
 @given(st.integers(0, 2**32 - 1), st.integers(2, 20))
 def test_bands_hold_what_linear_interpolation_says(seed, count):
     points, triangles, values = soup(seed)
-    steps = levels.steps(count, 0.0, 1.0)
-    made, owner = bands.cut(points, triangles, values[triangles], steps)
+    steps = _levels.steps(count, 0.0, 1.0)
+    made, owner = _bands.cut(points, triangles, values[triangles], steps)
     place, polygon = banded.places(made, np.random.default_rng(seed), 2)
     corner = points[triangles[owner[polygon]]]
     weight = np.einsum("tij,ti->tj", np.linalg.pinv(corner), place)
@@ -50,7 +50,7 @@ def test_bands_hold_what_linear_interpolation_says(seed, count):
 
 def test_contour_lines_are_closed_curves():
     points, triangles, values = soup(5)
-    made, _ = bands.cut(points, triangles, values[triangles], levels.steps(6, 0.0, 1.0))
+    made, _ = _bands.cut(points, triangles, values[triangles], _levels.steps(6, 0.0, 1.0))
     for level in made.levels:
         ends = made.lines[made.line_levels == level]
         assert len(ends) > 2
@@ -60,7 +60,7 @@ def test_contour_lines_are_closed_curves():
 def test_corners_on_a_level_make_no_empty_polygons():
     points, triangles, values = soup(6)
     values = np.round(values * 4) / 4
-    made, _ = bands.cut(points, triangles, values[triangles], levels.steps(4, 0.0, 1.0))
+    made, _ = _bands.cut(points, triangles, values[triangles], _levels.steps(4, 0.0, 1.0))
     assert banded.is_closed(made)
     t, owner = banded.corners(made)
     size = np.linalg.norm(np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0]), axis=1)
@@ -69,7 +69,9 @@ def test_corners_on_a_level_make_no_empty_polygons():
 
 def test_one_value_everywhere():
     points, triangles, _ = soup(7)
-    made, _ = bands.cut(points, triangles, np.full(triangles.shape, 0.3), levels.steps(4, 0.3, 0.3))
+    made, _ = _bands.cut(
+        points, triangles, np.full(triangles.shape, 0.3), _levels.steps(4, 0.3, 0.3)
+    )
     assert len(made.values) == len(triangles)
     assert np.all(made.values == 0.3)
     assert len(made.lines) == 0
@@ -86,8 +88,8 @@ def test_a_luminance_that_is_not_monotone_along_an_edge():
         return wave(points[a] * (1 - t[:, None]) + points[b] * t[:, None])
 
     values = wave(points)
-    made, _ = bands.cut(
-        points, triangles, values[triangles], levels.steps(12, 0.0, 1.0), luminance=along
+    made, _ = _bands.cut(
+        points, triangles, values[triangles], _levels.steps(12, 0.0, 1.0), luminance=along
     )
     assert banded.is_closed(made)
     on = np.unique(made.lines)
@@ -96,8 +98,8 @@ def test_a_luminance_that_is_not_monotone_along_an_edge():
 
 
 def test_no_triangles():
-    made, _ = bands.cut(
-        np.empty((0, 3)), np.empty((0, 3), int), np.empty((0, 3)), levels.steps(4, 0.0, 1.0)
+    made, _ = _bands.cut(
+        np.empty((0, 3)), np.empty((0, 3), int), np.empty((0, 3)), _levels.steps(4, 0.0, 1.0)
     )
     assert len(made.values) == len(made.points) == len(made.lines) == 0
 
@@ -108,7 +110,7 @@ def test_split_of_each_pattern(pattern):
     ends = [(0, 1), (1, 2), (2, 0)]
     middles = np.array([[3 + i if pattern >> i & 1 else -1 for i in range(3)]])
     points = np.concatenate([corners, [(corners[a] + corners[b]) / 2 for a, b in ends]])
-    made, owner = contours.split(np.array([[0, 1, 2]]), middles)
+    made, owner = _contours.split(np.array([[0, 1, 2]]), middles)
     a, b, c = (points[made[:, i]] for i in range(3))
     area = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
     assert np.all(area > 0)
@@ -128,7 +130,7 @@ def spot(points, normals):
 @pytest.mark.parametrize("levels_", [10, 0.03, [0.2, 0.5, 0.8]])
 def test_diffuse_and_specular_together(levels_, random):
     """Contours found by roots, against the law at random places of the true sphere."""
-    made = contours.draw(meshes.mesh(Sphere(), 24), spot, levels_, low=0.1)
+    made = _contours.draw(_meshes.mesh(Sphere(), 24), spot, levels_, low=0.1)
     assert banded.is_closed(made)
     place, polygon = banded.places(made, random, 6)
     normal = place / np.linalg.norm(place, axis=1, keepdims=True)
@@ -152,13 +154,13 @@ def test_several_lights(solid, random):
     def both(_, normals):
         return 0.1 + 0.45 * np.maximum(normals @ lights.T, 0).sum(axis=1)
 
-    made = contours.draw(meshes.mesh(solid, 24), both, 9, low=0.1)
+    made = _contours.draw(_meshes.mesh(solid, 24), both, 9, low=0.1)
     assert banded.is_closed(made)
     assert made.error <= 1.11 * made.steps.error
 
 
 def test_empty_shapes():
     for solid in (Sphere(radius=0), Truncus(radii=(0, 0)), Block(size=(0, 0, 1))):
-        made = contours.draw(meshes.mesh(solid, 24), spot, 5, low=0.1)
+        made = _contours.draw(_meshes.mesh(solid, 24), spot, 5, low=0.1)
         assert len(made.values) == 0
         assert made.error == 0

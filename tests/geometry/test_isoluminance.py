@@ -10,7 +10,7 @@ import oracles
 import pytest
 
 from vizlight import Light, View
-from vizlight.geometry import isoluminance, levels
+from vizlight.geometry import _levels, isoluminance
 from vizlight.geometry.isoluminance import sphere, virtual_light
 
 mp = oracles.mp
@@ -239,4 +239,4 @@ def test_bad_shapes():
 
 def test_public_names():
     assert set(isoluminance.__all__) <= set(dir(isoluminance))
-    assert levels.steps(3, 0, 1).error == pytest.approx(1 / 6)
+    assert _levels.steps(3, 0, 1).error == pytest.approx(1 / 6)

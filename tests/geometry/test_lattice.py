@@ -7,7 +7,7 @@ import itertools
 import numpy as np
 import pytest
 
-from vizlight.geometry import lattice
+from vizlight.geometry import _lattice
 
 _RING = [(0, 1), (1, 2), (2, 3), (3, 0)]
 _EDGES = {
@@ -39,24 +39,24 @@ def euler(cells):
 
 @pytest.mark.parametrize("shape", [(5,), (4, 7), (3, 4, 5)])
 def test_closed_lattices_have_no_boundary(shape):
-    cells = lattice.cells(shape, [True] * len(shape))
+    cells = _lattice.cells(shape, [True] * len(shape))
     assert len(cells) == np.prod(shape)
     assert set(faces_around(cells)) == {2}
     np.testing.assert_array_equal(np.unique(cells), np.arange(np.prod(shape)))
 
 
 def test_open_lattice():
-    cells = lattice.cells((3, 2), (False, False))
+    cells = _lattice.cells((3, 2), (False, False))
     np.testing.assert_array_equal(cells, [[0, 2, 3, 1], [2, 4, 5, 3]])
     assert set(faces_around(cells)) == {1, 2}
 
 
 def test_klein_bottle_is_closed_and_has_no_orientation():
-    cells = lattice.cells((6, 5), (True, True), twisted=True)
+    cells = _lattice.cells((6, 5), (True, True), twisted=True)
     assert set(faces_around(cells)) == {2}
     assert euler(cells) == 0
     assert not orientable(cells)
-    assert orientable(lattice.cells((6, 5), (True, True)))
+    assert orientable(_lattice.cells((6, 5), (True, True)))
 
 
 def orientable(cells):
@@ -84,7 +84,7 @@ def orientable(cells):
 
 @pytest.mark.parametrize(("dimension", "size"), [(3, 1), (3, 4), (4, 1), (4, 3)])
 def test_skin_of_a_cube(dimension, size):
-    points, cells = lattice.cube_skin(dimension, size)
+    points, cells = _lattice.cube_skin(dimension, size)
     assert np.all(np.abs(points).max(axis=1) == size)
     assert len(cells) == 2 * dimension * size ** (dimension - 1)
     assert set(faces_around(cells)) == {2}
@@ -93,7 +93,7 @@ def test_skin_of_a_cube(dimension, size):
 
 @pytest.mark.parametrize("size", [2, 3, 6])
 def test_opposite_points_of_a_skin_are_one(size):
-    points, cells = lattice.cube_skin(3, size, opposite=True)
+    points, cells = _lattice.cube_skin(3, size, opposite=True)
     assert len(cells) == 3 * size**2
     assert set(faces_around(cells)) == {2}
     assert euler(cells) == 1
@@ -104,7 +104,7 @@ def test_opposite_points_of_a_skin_are_one(size):
 
 def test_cells_are_boxes_of_neighbours():
     """Corners in VTK's order: along an edge of a cell one coordinate steps."""
-    points, cells = lattice.cube_skin(4, 3)
+    points, cells = _lattice.cube_skin(4, 3)
     for a, b in _EDGES[8]:
         step = np.abs(points[cells[:, a]] - points[cells[:, b]])
         assert np.all(np.sort(step, axis=1) == [0, 0, 0, 2])
@@ -123,9 +123,9 @@ def test_cells_are_boxes_of_neighbours():
 )
 def test_bad_resolution(value, error, words):
     with pytest.raises(error, match=words):
-        lattice.resolution(value, 2, (True, False))
+        _lattice.resolution(value, 2, (True, False))
 
 
 def test_resolution():
-    assert lattice.resolution(5, 2, (True, False)) == (5, 5)
-    assert lattice.resolution((3, 2), 2, (True, False)) == (3, 2)
+    assert _lattice.resolution(5, 2, (True, False)) == (5, 5)
+    assert _lattice.resolution((3, 2), 2, (True, False)) == (3, 2)

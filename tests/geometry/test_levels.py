@@ -7,12 +7,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vizlight.geometry import levels
+from vizlight.geometry import _levels
 
 
 @given(st.integers(1, 300), st.floats(-5, 5), st.floats(1e-3, 10), st.integers(0, 2**32 - 1))
 def test_worst_error_is_half_a_step(count, low, span, seed):
-    steps = levels.steps(count, low, low + span)
+    steps = _levels.steps(count, low, low + span)
     value = np.random.default_rng(seed).uniform(low, low + span, 500)
     error = np.abs(steps.values[steps.band(value)] - value)
     assert steps.error == pytest.approx(span / count / 2, rel=1e-9)
@@ -24,7 +24,7 @@ def test_worst_error_is_half_a_step(count, low, span, seed):
 
 def test_mid_values_are_the_best():
     """Any other values of the same bands have a larger worst error."""
-    steps = levels.steps(7, 0.1, 0.9)
+    steps = _levels.steps(7, 0.1, 0.9)
     value = np.linspace(0.1, 0.9, 70_001)[1:]
     band = steps.band(value)
     best = np.abs(steps.values[band] - value).max()
@@ -37,7 +37,7 @@ def test_mid_values_are_the_best():
 
 @given(st.floats(1e-4, 1.9), st.floats(1e-3, 10))
 def test_smallest_count_for_an_error(error, span):
-    steps = levels.steps(error, 0.0, span, exact=True)
+    steps = _levels.steps(error, 0.0, span, exact=True)
     n = len(steps.edges) - 1
     assert steps.error <= error * (1 + 1e-9)
     if n > 1:
@@ -45,23 +45,23 @@ def test_smallest_count_for_an_error(error, span):
 
 
 def test_the_lowest_luminance_is_exact():
-    steps = levels.steps(5, 0.1, 1.0)
+    steps = _levels.steps(5, 0.1, 1.0)
     assert steps.band(np.array([0.1]))[0] == 0
     assert steps.values[0] == 0.1
     assert steps.band(np.nextafter([0.1], 1))[0] == 1
 
 
 def test_explicit_values():
-    steps = levels.steps([0.5, 0.2, 0.2, 7.0, -1.0], 0.1, 0.9)
+    steps = _levels.steps([0.5, 0.2, 0.2, 7.0, -1.0], 0.1, 0.9)
     np.testing.assert_allclose(steps.edges, [0.1, 0.2, 0.5, 0.9])
     np.testing.assert_allclose(steps.values, [0.1, 0.15, 0.35, 0.7])
     assert steps.error == pytest.approx(0.2)
-    np.testing.assert_array_equal(levels.steps([], 0.0, 1.0).edges, [0, 1])
+    np.testing.assert_array_equal(_levels.steps([], 0.0, 1.0).edges, [0, 1])
 
 
 def test_one_luminance_has_one_band():
     for given_levels in (5, 0.1, [0.3]):
-        steps = levels.steps(given_levels, 0.4, 0.4)
+        steps = _levels.steps(given_levels, 0.4, 0.4)
         np.testing.assert_array_equal(steps.edges, [0.4])
         np.testing.assert_array_equal(steps.values, [0.4])
         assert steps.error == 0
@@ -87,9 +87,9 @@ def test_one_luminance_has_one_band():
 )
 def test_bad_levels(value, kind, words):
     with pytest.raises(kind, match=words):
-        levels.steps(value, 0.0, 1.0)
+        _levels.steps(value, 0.0, 1.0)
 
 
 @pytest.mark.parametrize("value", [np.int32(4), np.float32(0.125), np.array([0.25, 0.5, 0.75])])
 def test_numbers_of_numpy(value):
-    assert levels.steps(value, 0.0, 1.0, exact=True).error == pytest.approx(0.125)
+    assert _levels.steps(value, 0.0, 1.0, exact=True).error == pytest.approx(0.125)

@@ -8,7 +8,7 @@ import numpy as np
 import oracles
 import pytest
 
-from vizlight.geometry import lattice, manifolds
+from vizlight.geometry import _lattice, manifolds
 
 mp = oracles.mp
 EVERY = {
@@ -130,7 +130,7 @@ def across(p, count):
 def test_veronese_against_50_digits(random, figure):
     size = 6
     shape = manifolds.veronese(resolution=size)
-    corners, _ = lattice.cube_skin(3, size, opposite=True)
+    corners, _ = _lattice.cube_skin(3, size, opposite=True)
     for index in random.integers(0, len(corners), 20):
         p = round_place(corners[index], size)
         a = across(p, 2)
@@ -145,7 +145,7 @@ def test_veronese_against_50_digits(random, figure):
 
 def test_sphere_against_50_digits(random, figure):
     shape = manifolds.sphere3(radius=1.0, resolution=3)
-    corners, _ = lattice.cube_skin(4, 3)
+    corners, _ = _lattice.cube_skin(4, 3)
     for index in random.integers(0, len(corners), 20):
         p = round_place(corners[index], 3)
         basis = across(p, 3)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from vizlight.geometry import manifolds
-from vizlight.geometry.parametric import CENTRAL_STEP, parametric
+from vizlight.geometry._parametric import CENTRAL_STEP, parametric
 
 TURN = (0, 2 * np.pi)
 

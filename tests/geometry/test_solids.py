@@ -8,7 +8,7 @@ import banded
 import numpy as np
 import pytest
 
-from vizlight.geometry import contours, solids
+from vizlight.geometry import _contours, solids
 from vizlight.geometry.primitives import Block, Boolean, Sphere, Truncus
 
 PI = np.pi
@@ -20,7 +20,7 @@ def lambert(points, normals):
 
 
 def bands_of(solid, tolerance=3e-3, levels=8):
-    return contours.draw(solids.tessellate(solid, tolerance=tolerance), lambert, levels, low=0.1)
+    return _contours.draw(solids.tessellate(solid, tolerance=tolerance), lambert, levels, low=0.1)
 
 
 LENS = Sphere() & Sphere((1, 0, 0), 1)
@@ -110,7 +110,7 @@ THIN = {
 def test_thin_plane_walls(name):
     size, hole = (np.array(x, dtype=float) for x in THIN[name])
     mesh = solids.tessellate(Block(size=size) - Block(size=hole))
-    bands = contours.draw(mesh, lambert, 2, low=0.1)
+    bands = _contours.draw(mesh, lambert, 2, low=0.1)
     assert banded.is_closed(bands)
     height = min(size[2], hole[2])
     expected = size.prod() - hole[0] * hole[1] * height
@@ -126,7 +126,7 @@ def test_what_is_small_beside_the_rest():
     radius = 0.015
     mesh = solids.tessellate(Block(size=(2, 2, 2)) - Truncus((0, 0, 0), (0, 0, 3), (radius,) * 2))
     assert len(mesh.points) < 40_000
-    bands = contours.draw(mesh, lambert, 2, low=0.1)
+    bands = _contours.draw(mesh, lambert, 2, low=0.1)
     assert banded.is_closed(bands)
     # The bore is a polygon of 10 sides or more: the volume is a little too large.
     assert 0.85 < (8 - banded.volume(bands)) / (2 * PI * radius**2) < 1

@@ -15,18 +15,16 @@ from vizlight.filters import _mesh, _provenance
 from vizlight.filters._illuminate import illuminate
 from vizlight.filters._light import DEFAULT_NAME, VALID
 from vizlight.filters._mesh import unit_rows
-from vizlight.geometry import bands as _bands
-from vizlight.geometry import contours, facets, solids
+from vizlight.geometry import _bands, _contours, _facets, _levels, solids
 from vizlight.geometry import isoluminance as closed
-from vizlight.geometry import levels as _levels
 from vizlight.geometry.primitives import Solid, Sphere, Truncus
 from vizlight.scene import Scene
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vizlight.geometry.bands import Bands
-    from vizlight.geometry.levels import Levels
+    from vizlight.geometry._bands import Bands
+    from vizlight.geometry._levels import Levels
     from vizlight.model.reflection import SpecularModel
 
     Array = NDArray[np.floating[Any]]
@@ -184,7 +182,7 @@ def _of_solid(solid: Solid, light: _Light, levels: Levels, tolerance: float) -> 
     if found is not None:
         return found
     shape = solids.tessellate(solid, tolerance=tolerance)
-    return contours.draw(shape, light, levels, low=low if dull else None)
+    return _contours.draw(shape, light, levels, low=low if dull else None)
 
 
 def _of_mesh(
@@ -216,7 +214,7 @@ def _of_mesh(
         def luminance(places: Array, directions: Array) -> Array:
             return light(places, unit_rows(directions))
 
-        bands = contours.refine(facets.Facets(rows, triangles, luminance, able), levels)
+        bands = _contours.refine(_facets.Facets(rows, triangles, luminance, able), levels)
     else:
         used = values[triangles]
         steps = _levels.steps(levels, float(used.min()), float(used.max()), exact=True)

@@ -10,7 +10,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.filters._nspace import FRAME, POSITION
 from vizlight.filters._project import project
-from vizlight.geometry.parametric import Manifold
+from vizlight.geometry._parametric import Manifold
 
 
 def manifold(shape: Manifold, /, **options: Any) -> Any:

@@ -9,14 +9,14 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from vizlight import _check
-from vizlight.geometry import contours
-from vizlight.geometry.surfaces import Plane, fibonacci
+from vizlight.geometry import _contours
+from vizlight.geometry._surfaces import Plane, fibonacci
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from vizlight.geometry._surfaces import Surface
     from vizlight.geometry.primitives import Primitive, Solid
-    from vizlight.geometry.surfaces import Surface
 
     Array = NDArray[np.floating[Any]]
     Index = NDArray[np.intp]
@@ -192,7 +192,7 @@ def _opposite(unit: Unit, points: Array, edges: Array, corners: Array, size: Siz
         near = (np.abs(surface.distance(points)) < spacing) & ~on[:, i]
         if np.any(near):
             which = np.full((np.count_nonzero(near), 1), i)
-            places = contours.onto(tuple(unit.surfaces), points[near], which)
+            places = _contours.onto(tuple(unit.surfaces), points[near], which)
             found.append(places[unit.edge(places, which)])
     places = np.concatenate(found)
     for others, share in ((edges, 0.7), (corners, 0.7), (points, 1e-3)):
@@ -212,7 +212,7 @@ def _meetings(unit: Unit, fine: list[Array], size: Size) -> tuple[Array, Index]:
         if not len(start):
             continue
         both = np.tile([0, 1], (len(start), 1))
-        places = contours.onto((first, second), start, both, rounds=8)
+        places = _contours.onto((first, second), start, both, rounds=8)
         step = places - start
         good = np.abs(first.distance(places)) + np.abs(second.distance(places)) < ON
         good &= np.einsum("ij,ij->i", step, step) < (3 * size.of(start)) ** 2
@@ -236,7 +236,7 @@ def _corners(unit: Unit, edges: Array, pairs: Index, size: Size) -> Array:
         which = np.column_stack([pairs[near], np.full(len(start), k)])
         if not len(start):
             continue
-        places = contours.onto(tuple(unit.surfaces), start, which, rounds=12)
+        places = _contours.onto(tuple(unit.surfaces), start, which, rounds=12)
         step = places - start
         good = np.einsum("ij,ij->i", step, step) < (4 * size.of(start)) ** 2
         missing = np.zeros(len(places))

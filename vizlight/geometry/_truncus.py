@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 import numpy as np
 
 from vizlight import _check
-from vizlight.geometry import _axial, contours, meshes, primitives
-from vizlight.geometry import levels as _levels
-from vizlight.geometry.bands import Bands, Laminae
+from vizlight.geometry import _axial, _contours, _levels, _meshes, primitives
+from vizlight.geometry._bands import Bands, Laminae
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vizlight.geometry.levels import Levels, Steps
+    from vizlight.geometry._levels import Levels, Steps
 
     Array = NDArray[np.floating[Any]]
 
@@ -108,8 +107,8 @@ def truncus(
         raise ValueError(_check.message("method", "'rulings' with laminae", "'curves'", remedy))
     _levels.check(levels)
     if method == "curves":
-        return contours.draw(
-            meshes.mesh(solid, segments), shade(light, solid.center), levels, low=light.low
+        return _contours.draw(
+            _meshes.mesh(solid, segments), shade(light, solid.center), levels, low=light.low
         )
     # The distance of a near light is that of the centre.
     near = dataclasses.replace(light, attenuation=(1.0, 0.0, 0.0))

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     Array = NDArray[np.floating[Any]]
     Index = NDArray[np.intp]
 
+__all__ = ["polyline_tangents"]
+
 
 def polyline_tangents(
     points: ArrayLike, /, *, connectivity: ArrayLike | None = None, offsets: ArrayLike | None = None

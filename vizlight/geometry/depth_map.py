@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.floating[Any]]
 
+__all__ = ["depth_map"]
+
 #: Pairs of a triangle and a node that are looked at together.
 BLOCK = 1 << 20
 

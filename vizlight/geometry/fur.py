@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     Array = NDArray[np.floating[Any]]
     Index = NDArray[np.intp]
 
+__all__ = ["grow", "seeds"]
+
 #: Seeds drawn at once; each block has random numbers of its own, whatever thread draws it.
 SEED_BLOCK = 1 << 16
 #: The turn of a Fibonacci lattice, 2 - the golden ratio: multiples of it fill [0, 1) evenly.

@@ -8,15 +8,14 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 import numpy as np
 
 from vizlight import _check
-from vizlight.geometry import _axial
-from vizlight.geometry import levels as _levels
+from vizlight.geometry import _axial, _levels
+from vizlight.geometry._bands import Bands, Laminae
 from vizlight.geometry._truncus import truncus
-from vizlight.geometry.bands import Bands, Laminae
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vizlight.geometry.levels import Levels, Steps
+    from vizlight.geometry._levels import Levels, Steps
 
     Array = NDArray[np.floating[Any]]
     Index = NDArray[np.intp]
@@ -60,7 +59,7 @@ def sphere(
         Of a near light: ``min(1, 1 / (c1 + c2 d + c3 d^2))``.
     levels : int, float or sequence of float, default: 16
         A count of equal steps, the allowed luminance error, or the values of the contours; see
-        :func:`vizlight.geometry.levels.steps`.
+        :func:`vizlight.geometry._levels.steps`.
     segments : int, optional
         Points of a circle, 3 or more. Default: so many that chords in place of circles add at
         most 5 % of half a step.

@@ -1,6 +1,6 @@
 """Curves, surfaces and 3-manifolds in 4-space and beyond, with exact tangents.
 
-Every shape is a :class:`~vizlight.geometry.parametric.Manifold`: points, orthonormal tangent
+Every shape is a :class:`~vizlight.geometry._parametric.Manifold`: points, orthonormal tangent
 frames, cells. Closed directions share their points, so nothing has a seam.
 """
 
@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vizlight import _check
-from vizlight.geometry import lattice
-from vizlight.geometry.parametric import (
+from vizlight.geometry import _lattice
+from vizlight.geometry._parametric import (
     ROUNDING,
     Manifold,
     check_callable,
     manifold,
     parametric,
 )
-from vizlight.geometry.tori import (
+from vizlight.geometry._tori import (
     circle,
     clifford_torus,
     hopf_fibres,
@@ -93,7 +93,7 @@ def klein_bottle(*, major: float = 2.0, minor: float = 1.0, resolution: Any = (9
     major, minor = radius_of("major", major), radius_of("minor", minor)
     if minor >= major:
         raise ValueError(_check.message("minor", f"less than major = {major:g}", minor))
-    shape = lattice.resolution(resolution, 2, [True, True])
+    shape = _lattice.resolution(resolution, 2, [True, True])
     u, v = (x.ravel() for x in np.meshgrid(*(circle(count) for count in shape), indexing="ij"))
     out = major + minor * np.cos(v)
     up, half = minor * np.sin(v), u / 2
@@ -107,7 +107,7 @@ def klein_bottle(*, major: float = 2.0, minor: float = 1.0, resolution: Any = (9
     across = np.stack(
         [inward * np.cos(u), inward * np.sin(u), lift * np.cos(half), lift * np.sin(half)], axis=1
     )
-    cells = lattice.cells(shape, [True, True], twisted=True)
+    cells = _lattice.cells(shape, [True, True], twisted=True)
     return manifold(points, np.stack([along, across], axis=1), cells)
 
 
@@ -140,7 +140,7 @@ def veronese(*, radius: float = 1.0, resolution: int = 24) -> Manifold:
     """
     radius = radius_of("radius", radius)
     size = _check.integer("resolution", resolution, low=2)
-    corners, cells = lattice.cube_skin(3, size, opposite=True)
+    corners, cells = _lattice.cube_skin(3, size, opposite=True)
     place = _round(corners, size)
     x, y, z = place.T
     zero = np.zeros_like(x)
@@ -341,7 +341,7 @@ def sphere3(*, radius: float = 1.0, resolution: int = 8) -> Manifold:
     """
     radius = radius_of("radius", radius)
     size = _check.integer("resolution", resolution, low=1)
-    corners, cells = lattice.cube_skin(4, size)
+    corners, cells = _lattice.cube_skin(4, size)
     place = _round(corners, size)
     frame = np.stack([place[:, order] * sign for order, sign in _UNITS], axis=1)
     return Manifold(radius * place, frame, cells)

@@ -14,17 +14,19 @@ import numpy as np
 
 from vizlight import _check
 from vizlight.geometry import _axial
-from vizlight.geometry.surfaces import Ball, Cone, Plane
+from vizlight.geometry._surfaces import Ball, Cone, Plane
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from numpy.typing import NDArray
 
-    from vizlight.geometry.surfaces import Surface
+    from vizlight.geometry._surfaces import Surface
 
     Array = NDArray[np.floating[Any]]
     Bools = NDArray[np.bool_]
+
+__all__ = ["Block", "Boolean", "Primitive", "Solid", "Sphere", "Truncus"]
 
 
 class Solid:

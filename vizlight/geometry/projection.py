@@ -16,6 +16,16 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.floating[Any]]
 
+__all__ = [
+    "image_and_depth",
+    "perspective",
+    "plane_rotation",
+    "push_forward",
+    "push_frame",
+    "rotation",
+    "turn",
+]
+
 AXES = "xyzw"
 #: Matrices whose rows miss orthonormality by more than this are refused: text keeps 7 digits.
 SLACK = 2e-7

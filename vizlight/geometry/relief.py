@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     Array = NDArray[np.floating[Any]]
     Index = NDArray[np.integer[Any]]
 
+__all__ = ["inside_length", "shadow"]
+
 Method = Literal["fast", "exact"]
 
 #: Rays in a block: what they need fits the cache.

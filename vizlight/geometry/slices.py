@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     Array = NDArray[np.floating[Any]]
     Index = NDArray[np.intp]
 
+__all__ = ["cut", "mean_frame", "slice_frame"]
+
 _EDGES = {
     2: ((0, 1),),
     3: ((0, 1), (1, 2), (2, 0)),

@@ -16,20 +16,22 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import Delaunay
 
 from vizlight import _check
-from vizlight.geometry import _sampling, contours, meshes, primitives
+from vizlight.geometry import _contours, _meshes, _sampling, primitives
+from vizlight.geometry._meshes import Mesh
 from vizlight.geometry._sampling import PROBE, Size, Unit
-from vizlight.geometry.meshes import Mesh
+from vizlight.geometry._surfaces import Ball, Plane
 from vizlight.geometry.primitives import Primitive
-from vizlight.geometry.surfaces import Ball, Plane
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vizlight.geometry.surfaces import Surface
+    from vizlight.geometry._surfaces import Surface
 
     Array = NDArray[np.floating[Any]]
     Index = NDArray[np.intp]
     Bools = NDArray[np.bool_]
+
+__all__ = ["tessellate"]
 
 #: Spacings that are tried where a thin wall or gap does not come out, as divisors of the first,
 #: up to so many points.
@@ -84,7 +86,7 @@ def tessellate(solid: Any, /, *, tolerance: float = 3e-3) -> Mesh:
     tolerance = _check.number("tolerance", tolerance, low=1e-6, high=0.1)
     if isinstance(solid, Primitive):
         segments = max(24, math.ceil(math.pi / math.acos(1 - tolerance)))
-        return meshes.mesh(solid, segments)
+        return _meshes.mesh(solid, segments)
     parts = list(solid.primitives())
     shift, scale = _frame(parts)
     unit = Unit(solid, [part.moved(shift, scale) for part in parts if not part.empty], parts)
@@ -181,8 +183,8 @@ def _mesh(
     number[again] = len(places) + np.arange(len(again))
     middle = places[ends[one][again]].mean(axis=1)
     both = np.stack([patch[one[again] // 3], patch[partner.ravel()[one[again]] // 3]], axis=1)
-    middle = contours.onto(tuple(unit.surfaces), middle, both)
-    corner, owner = contours.split(corner, number[which.reshape(-1, 3)])
+    middle = _contours.onto(tuple(unit.surfaces), middle, both)
+    corner, owner = _contours.split(corner, number[which.reshape(-1, 3)])
     return corner, patch[owner], np.concatenate([places, middle])
 
 
@@ -323,7 +325,7 @@ def _signed(mesh: Mesh) -> Mesh:
     """Return the mesh with the sign of each surface; one used from both sides becomes two."""
     corners = mesh.points[mesh.triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normal = contours.normals_of(mesh, corners.mean(axis=1), mesh.patch)
+    normal = _contours.normals_of(mesh, corners.mean(axis=1), mesh.patch)
     outward = np.einsum("ij,ij->i", normal, across) >= 0
     # A triangle without area faces as its surface mostly does.
     area = np.sqrt(np.einsum("ij,ij->i", across, across))

@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
     from vizlight._check import VectorLike
 
+__all__ = ["DIAMETER", "directions", "disc"]
+
 #: The sun's mean angular diameter, in radians.
 DIAMETER = np.radians(0.53)
 

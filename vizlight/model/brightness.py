@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
+__all__ = ["exponent", "mean_intensity"]
+
 #: The mean brightness of a surface in 3-space, the standard that others are brought to.
 STANDARD = 0.5
 

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.floating[Any]]
 
+__all__ = ["Gradient", "diffuse", "diffuse_gradient", "specular", "specular_gradient"]
+
 
 class Gradient(NamedTuple):
     """Derivatives by the three directions, each of shape (..., 3).

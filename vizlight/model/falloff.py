@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.floating[Any]]
 
+__all__ = ["depth_cue", "distance", "fur"]
+
 
 def distance(d: ArrayLike, c1: float, c2: float, c3: float, /) -> Any:
     """Return the attenuation of a light at distance d.

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.floating[Any]]
 
+__all__ = ["orthonormalize", "split"]
+
 
 def default_rtol(n: int, dtype: np.dtype[Any]) -> float:
     """Return the relative distance from a span below which a vector counts as within it."""

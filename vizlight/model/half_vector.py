@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.floating[Any]]
 
+__all__ = ["identity", "reflection", "reflection_cosine", "reflection_from_half"]
+
 
 def reflection_from_half(n_h: ArrayLike, /, *, triple: ArrayLike = 0.0) -> Any:
     """Return R.E from N.H exactly, without a power.

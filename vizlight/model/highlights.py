@@ -30,6 +30,20 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.floating[Any]]
 
+__all__ = [
+    "MaximumError",
+    "best_factor",
+    "blinn_from_phong",
+    "exchange_rate",
+    "max_pixel_error",
+    "phong_from_blinn",
+    "pixel_error",
+    "required_factor",
+    "simple_factor",
+    "sphere_error",
+    "terminator_error",
+]
+
 Measure = Literal["worst", "rms", "volume"]
 
 

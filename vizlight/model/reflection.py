@@ -12,6 +12,8 @@ from vizlight.model import _kernels, _layout
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+__all__ = ["diffuse", "specular"]
+
 SpecularModel = Literal["phong", "blinn"]
 
 

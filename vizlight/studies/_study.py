@@ -178,13 +178,26 @@ def run(name: str, study: Study, /, *, quick: bool = False, progress_bar: bool =
 
 
 def cheapest(rows: Iterable[Row], limit: float = PIXEL) -> Row | None:
-    """Return the row of least cost whose error is within a limit, or None."""
+    """Return the row of least cost whose error is within a limit, or None.
+
+    Parameters
+    ----------
+    rows : iterable of Row
+    limit : float, default: 1/255
+        In the unit of the rows' errors.
+    """
     good = [row for row in rows if row.error <= limit and not math.isnan(row.cost)]
     return min(good, key=lambda row: row.cost) if good else None
 
 
 def order(rows: Sequence[Row]) -> float:
-    """Return the exponent by which the error changes with the parameter: a least-squares slope."""
+    """Return the exponent by which the error changes with the parameter: a least-squares slope.
+
+    Parameters
+    ----------
+    rows : sequence of Row
+        Of one way, with parameters and errors above 0.
+    """
     points = np.array([(row.parameter, row.error) for row in rows], dtype=np.float64)
     x, y = np.log(points).T
     x, y = x - x.mean(), y - y.mean()

@@ -19,9 +19,9 @@ from scipy import ndimage
 
 from vizlight import render
 from vizlight.filters._isoluminance import isoluminance
+from vizlight.geometry._surfaces import fibonacci
 from vizlight.geometry.isoluminance import virtual_light
 from vizlight.geometry.primitives import Sphere, Truncus
-from vizlight.geometry.surfaces import fibonacci
 from vizlight.light import Light
 from vizlight.scene import Material, Scene
 from vizlight.studies._measure import take_turns

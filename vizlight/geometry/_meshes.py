@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vizlight.geometry import _axial
+from vizlight.geometry._surfaces import Plane, fibonacci
 from vizlight.geometry.primitives import Block, Primitive, Sphere, Truncus
-from vizlight.geometry.surfaces import Plane, fibonacci
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vizlight.geometry.surfaces import Surface
+    from vizlight.geometry._surfaces import Surface
 
     Array = NDArray[np.floating[Any]]
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vizlight.geometry.levels import Steps
+    from vizlight.geometry._levels import Steps
 
     Array = NDArray[np.floating[Any]]
     Index = NDArray[np.intp]

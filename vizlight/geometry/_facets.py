@@ -6,16 +6,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vizlight.geometry import bands as _bands
-from vizlight.geometry import contours
+from vizlight.geometry import _bands, _contours
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
 
-    from vizlight.geometry.bands import Bands
-    from vizlight.geometry.levels import Steps
+    from vizlight.geometry._bands import Bands
+    from vizlight.geometry._levels import Steps
 
     Array = NDArray[np.floating[Any]]
     Index = NDArray[np.intp]
@@ -24,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Facets:
-    """Triangles for :func:`vizlight.geometry.contours.refine`.
+    """Triangles for :func:`vizlight.geometry._contours.refine`.
 
     Parameters
     ----------
@@ -64,20 +63,20 @@ class Facets:
     def measure(self, bands: Bands, triangle: Index) -> Array:
         """Return the largest error of each polygon at its middle and along its edges."""
         worst = np.zeros(len(bands.values))
-        for places, of in contours.within(bands):
+        for places, of in _contours.within(bands):
             miss = np.abs(self.light(places) - bands.values[of])
-            worst = np.maximum(worst, contours.largest(bands, miss))
-        worst[contours.slivers(bands, triangle, len(self.triangles))] = 0
+            worst = np.maximum(worst, _contours.largest(bands, miss))
+        worst[_contours.slivers(bands, triangle, len(self.triangles))] = 0
         worst[~np.all(self.lit[self.triangles], axis=1)[triangle]] = 0
         return worst
 
     def peaks(self, values: Array, bound: float) -> Index:
         """Return triangles in which the luminance rises above that of all corners by more."""
-        if len(self.triangles) > contours.ASKED:
+        if len(self.triangles) > _contours.ASKED:
             return np.empty(0, np.intp)
         top = values.max(axis=1) + bound
         found = np.zeros(len(self.triangles), np.bool_)
-        for row in contours.grid():
+        for row in _contours.grid():
             found |= self.light(np.einsum("i,tij->tj", row, self.points[self.triangles])) > top
         return np.flatnonzero(found & np.all(self.lit[self.triangles], axis=1))
 
@@ -90,6 +89,6 @@ class Facets:
         a, b = np.divmod(marked, count)
         place = np.minimum(np.searchsorted(marked, codes), len(marked) - 1)
         number = np.where(marked[place] == codes, count + place, -1)
-        self.triangles, _ = contours.split(self.triangles, number)
+        self.triangles, _ = _contours.split(self.triangles, number)
         self.points = np.concatenate([self.points, self.points[a] / 2 + self.points[b] / 2])
         self.lit = np.concatenate([self.lit, self.lit[a] & self.lit[b]])

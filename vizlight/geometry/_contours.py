@@ -8,18 +8,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vizlight import _check
-from vizlight.geometry import bands as _bands
-from vizlight.geometry import levels as _levels
+from vizlight.geometry import _bands, _levels
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
-    from vizlight.geometry.bands import Bands
-    from vizlight.geometry.levels import Levels, Steps
-    from vizlight.geometry.meshes import Mesh
-    from vizlight.geometry.surfaces import Surface
+    from vizlight.geometry._bands import Bands
+    from vizlight.geometry._levels import Levels, Steps
+    from vizlight.geometry._meshes import Mesh
+    from vizlight.geometry._surfaces import Surface
 
     Array = NDArray[np.floating[Any]]
     Index = NDArray[np.intp]
@@ -57,7 +56,7 @@ def draw(mesh: Mesh, luminance: Luminance, levels: Levels, /, *, low: float | No
         ``luminance(points, outward normals)``, in the solid's own unit. It is called for points
         on the exact surfaces, with their exact normals.
     levels : int, float or sequence of float
-        As :func:`vizlight.geometry.levels.steps`.
+        As :func:`vizlight.geometry._levels.steps`.
     low : float, optional
         The luminance of what no light reaches; default the lowest found.
 
@@ -95,7 +94,7 @@ def refine(surface: Any, levels: Levels, /, *, low: float | None = None) -> Band
     ----------
     surface : object
         With ``triangles``, ``corners()``, ``cut()``, ``measure()``, ``peaks()`` and ``split()``
-        as of solids here and of :class:`vizlight.geometry.facets.Facets`.
+        as of solids here and of :class:`vizlight.geometry._facets.Facets`.
     levels, low
         As for :func:`draw`.
 

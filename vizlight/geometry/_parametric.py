@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from vizlight import _check
-from vizlight.geometry import lattice
+from vizlight.geometry import _lattice
 from vizlight.model.frames import orthonormalize
 
 if TYPE_CHECKING:
@@ -166,7 +166,7 @@ def parametric(
 
     if wraps is None:
         wraps = tuple(_comes_back(sample, ends, axis, eps, same) for axis in range(k))
-    shape = lattice.resolution(resolution, k, wraps)
+    shape = _lattice.resolution(resolution, k, wraps)
     axes = [
         np.linspace(low, high, count, endpoint=not wrap)
         for (low, high), count, wrap in zip(ends, shape, wraps, strict=True)
@@ -179,7 +179,7 @@ def parametric(
         if not _comes_back(sample, ends, axis, eps):
             expected = f"a function that comes back in direction {axis}"
             raise ValueError(_check.message("closed", expected, "one that does not"))
-    return manifold(points, rows, lattice.cells(shape, wraps))
+    return manifold(points, rows, _lattice.cells(shape, wraps))
 
 
 def check_callable(name: str, value: Any) -> None:

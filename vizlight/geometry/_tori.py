@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vizlight import _check
-from vizlight.geometry import lattice
-from vizlight.geometry.parametric import Manifold, manifold
+from vizlight.geometry import _lattice
+from vizlight.geometry._parametric import Manifold, manifold
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -54,7 +54,7 @@ def torus(*radii: float, resolution: Any = 64) -> Manifold:
         raise ValueError(_check.message("radii", "1 to 3 radii", len(radii)))
     sizes = [radius_of(f"radii[{i}]", radius) for i, radius in enumerate(radii)]
     k = len(sizes)
-    shape = lattice.resolution(resolution, k, [True] * k)
+    shape = _lattice.resolution(resolution, k, [True] * k)
     angles = np.meshgrid(*(circle(count) for count in shape), indexing="ij")
     points = np.empty((angles[0].size, 2 * k))
     tangents = np.zeros((len(points), k, 2 * k))
@@ -62,7 +62,7 @@ def torus(*radii: float, resolution: Any = 64) -> Manifold:
         cosine, sine = np.cos(angle.ravel()), np.sin(angle.ravel())
         points[:, 2 * i], points[:, 2 * i + 1] = radius * cosine, radius * sine
         tangents[:, i, 2 * i], tangents[:, i, 2 * i + 1] = -sine, cosine
-    return Manifold(points, tangents, lattice.cells(shape, [True] * k))
+    return Manifold(points, tangents, _lattice.cells(shape, [True] * k))
 
 
 def clifford_torus(*, radius: float = 1.0, resolution: Any = 64) -> Manifold:
@@ -137,7 +137,7 @@ def torus_curve(
     turns = _check.integer("turns", turns, low=1)
     whole = round(turns * number)
     closed = abs(turns * number - whole) < 1e-9
-    (count,) = lattice.resolution(resolution, 1, [closed])
+    (count,) = _lattice.resolution(resolution, 1, [closed])
     part = np.arange(count) / (count if closed else count - 1)
     t = TURN * turns * part
     f = TURN * whole * part if closed else number * t
@@ -146,7 +146,7 @@ def torus_curve(
     along = np.stack([-r1 * np.sin(t), r1 * np.cos(t), zero, zero], axis=1)
     around = np.stack([zero, zero, -r2 * np.sin(f), r2 * np.cos(f)], axis=1)
     rows = (along + number * around)[:, np.newaxis]
-    return manifold(points, rows, lattice.cells((count,), [closed]))
+    return manifold(points, rows, _lattice.cells((count,), [closed]))
 
 
 def hopf_fibres(
@@ -197,10 +197,10 @@ def hopf_fibres(
     near, far = 1 + np.abs(c), across**2 / (1 + np.abs(c))
     z1 = np.sqrt(np.where(c >= 0, near, far) / 2)
     z2 = np.sqrt(np.where(c >= 0, far, near) / 2) * np.exp(-1j * np.arctan2(b, a))
-    (count,) = lattice.resolution(resolution, 1, [True])
+    (count,) = _lattice.resolution(resolution, 1, [True])
     turning = np.exp(1j * circle(count))
     pairs = np.stack([np.outer(z1, turning).ravel(), np.outer(z2, turning).ravel()], axis=1)
-    cells = lattice.cells((count,), [True]) + count * np.arange(len(a))[:, np.newaxis, np.newaxis]
+    cells = _lattice.cells((count,), [True]) + count * np.arange(len(a))[:, np.newaxis, np.newaxis]
     points = radius * pairs.view(np.float64)
     return manifold(points, (1j * pairs).view(np.float64)[:, np.newaxis], cells.reshape(-1, 2))
 
