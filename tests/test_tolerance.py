@@ -134,6 +134,39 @@ def test_a_precision_that_is_asked_for_stays(random):
     assert engine.shade(points, lines, scene, tolerance=0.5).luminance.dtype == np.float32
 
 
+def test_float32_that_cannot_keep_the_tolerance_is_refused():
+    scene = Scene(lights=Light(direction=(1, 0, 1)), view=PARALLEL)
+    assert lines_of(scene, tolerance=1e-4, dtype=np.float32).choice.bound < 1e-4
+    with pytest.raises(ValueError, match=r"tolerance: expected .* rounding may be .*e-06; leave"):
+        lines_of(scene, tolerance=1e-7, dtype=np.float32)
+    for options in ({"model": "cylinder"}, {"k": 2, "n": 4}):
+        asked = {"k": 1, "tolerance": 0.1} | options
+        still = scene if asked["k"] == 1 else Scene(view=View(direction=(0, 0, 0, 1)))
+        with pytest.raises(ValueError, match="rounding has no bound here; leave precision away"):
+            engine.plan(still, dtype=np.float32, **asked)
+        assert engine.plan(still, dtype=np.float64, **asked).choice.bound == np.inf
+        assert "no bound holds for all data" in engine.plan(still, **asked).explain()
+
+
+@pytest.mark.parametrize("shininess", [20.5, 2596.16, 42125.18, 1e6])
+def test_the_bound_of_a_headlight_s_cylinder_holds_at_50_digits(shininess):
+    mp = pytest.importorskip("mpmath").mp
+    scene = Scene(
+        lights=Light.headlight(),
+        view=PARALLEL,
+        material=Material(ambient=0, diffuse=0, specular=1, shininess=shininess),
+    )
+    tangents = np.array([[1.0, 0, 0], [1, 0, 1e-4], [1, 0, 0.3]])
+    made = engine.shade(
+        np.zeros((3, 3)), tangents, scene, model="cylinder", tolerance=1e-7, precision="float64"
+    )
+    with mp.workdps(50):
+        for value, (x, _, z) in zip(made.luminance, tangents, strict=True):
+            sine = mp.mpf(x) / mp.sqrt(mp.mpf(x) ** 2 + mp.mpf(z) ** 2)
+            true = mp.beta(mp.mpf(shininess) / 2 + 1, mp.mpf(1) / 2) / 2 * sine ** mp.mpf(shininess)
+            assert abs(mp.mpf(float(value)) - true) <= made.plan.choice.bound
+
+
 def test_filter_and_provenance():
     surface = vizlight.load_example().contour([600], scalars="Temp")
     scene = Scene(lights=Light(direction=(1, 1, 1)), view=View(direction=(1, 0, 1)))

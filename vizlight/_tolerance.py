@@ -11,11 +11,10 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy import special
 
-from vizlight import _highlight
+from vizlight import _check, _highlight
 from vizlight.light import NO_ATTENUATION
-from vizlight.model import _kernels
+from vizlight.model import _kernels, brightness
 
 if TYPE_CHECKING:
     from vizlight.light import Light
@@ -58,6 +57,11 @@ def relax(plan: Plan, tolerance: float, *, any_precision: bool) -> Plan:
         Of the luminance, above 0.
     any_precision : bool
         Whether float32 may take the place of the plan's precision.
+
+    Raises
+    ------
+    ValueError
+        If float32 is asked for whose rounding is not within the tolerance.
     """
     said, unsaid, spent = [], [], 0.0
 
@@ -68,7 +72,12 @@ def relax(plan: Plan, tolerance: float, *, any_precision: bool) -> Plan:
             plan, spent = made, spent + error
             said.append(f"{words}, within {rounds if low else error:.3g}")
         else:
-            unsaid.append(f"{words}: it would differ by up to {rounds if low else error:.3g}")
+            most = rounds if low else error
+            finite = math.isfinite(most)
+            why = (
+                f"it would differ by up to {most:.3g}" if finite else "no bound holds for all data"
+            )
+            unsaid.append(f"{words}: {why}")
 
     if plan.model == "cylinder" and (plan.diffuse or plan.specular):
         offer(*_flat_line(plan))
@@ -91,6 +100,11 @@ def relax(plan: Plan, tolerance: float, *, any_precision: bool) -> Plan:
         _offer_whole_shininess(plan, offer)
     bound = spent + rounding(plan)
     if bound > tolerance:
+        if not any_precision and plan.dtype == np.float32:
+            got = f"{tolerance:.3g} with precision='float32', whose rounding "
+            got += f"may be {bound:.3g}" if math.isfinite(bound) else "has no bound here"
+            remedy = "leave precision away, or pass 'float64'"
+            raise ValueError(_check.message("tolerance", "more than rounding", got, remedy))
         bound = math.inf
     choice = Choice(tolerance, bound, tuple(said), tuple(unsaid))
     return dataclasses.replace(plan, choice=choice)
@@ -144,6 +158,9 @@ def rounding(plan: Plan) -> float:
         1 + plan.conditioned + any(x.attenuation != NO_ATTENUATION for x in scene.lights)
     )
     total = 4 * eps * (plan.ambient + _weight(plan, material.diffuse + material.specular))
+    if plan.factors != (1.0, 1.0):
+        # Of a line's mean brightness I, 9 (1 + |ln I|) eps of it, which is most at I = 1.
+        total += 10 * eps * _weight(plan, material.diffuse + material.specular)
     if plan.diffuse:
         term = diffuse_bound(plan.exponent, eps) + factors * eps
         total += plan.factors[0] * term * _weight(plan, material.diffuse)
@@ -207,7 +224,8 @@ def _flat_line(plan: Plan) -> tuple[float, Plan, str]:
         each = material.diffuse * math.pi / 2 * math.sin(theta / 2)
         each += material.specular * 1.5 * math.pi * math.sin(theta / 4)
         error += each * light.intensity
-    factors = math.pi / 4, float(special.beta(s / 2 + 1, 0.5)) / 2
+    # B(s/2 + 1, 1/2) / 2, by the closed form that keeps its digits for large s.
+    factors = math.pi / 4, float(brightness.mean_intensity(1, 3, s))
     made = dataclasses.replace(
         plan,
         model="blinn",

@@ -189,7 +189,8 @@ def plan(
     tolerance : float, default: 0.0
         How far the luminance may be from that of the exact forms. The cheapest evaluation whose
         stated bound is within it is taken: float32, Blinn's law for Phong's, whole powers, the
-        laws that a cylinder's light is a multiple of under headlights. 0: the exact forms.
+        laws that a cylinder's light is a multiple of under headlights. Float64 is taken where
+        rounding in float32 has no bound that holds for all data. 0: the exact forms.
     compensate : bool, default: True
         Diffuse with the exponent p(k, n) (Banks 5), else 1; nothing to a cylinder.
     conditioned : bool, default: True
@@ -213,8 +214,8 @@ def plan(
     TypeError
         If the scene is not a :class:`vizlight.Scene`.
     ValueError
-        If the scene's vectors are not of n components, a view is needed and missing, or an
-        option is unknown.
+        If the scene's vectors are not of n components, a view is needed and missing, an option
+        is unknown, or the tolerance is less than the rounding of float32 that is asked for.
     """
     _check.instance("scene", scene, Scene)
     if model not in get_args(Model):

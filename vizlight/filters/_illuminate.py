@@ -79,7 +79,9 @@ def illuminate(
         :meth:`vizlight.engine.Plan.explain` tells what was chosen, and the bound.
     tolerance : float, default: 0.0
         How far ``luminance`` may be off for speed, such as 1/255: the cheapest evaluation whose
-        stated bound is within it is taken, see :func:`vizlight.engine.plan`. 0: the exact forms.
+        stated bound is within it is taken, see :func:`vizlight.engine.plan`. Where rounding has
+        no bound for all data (several tangents a point, a cylinder, Blinn's law with eye or light
+        near) that is float64, which takes longer for float32 data. 0: the exact forms.
     terminator : float, default: 0.0
         A surface's highlight ends sharply where the light does. This is the ``N . wi``, up to 1,
         below which it fades smoothly instead; what that takes from it at most is
