@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 SAMPLES = 20_000
 
 
-def luminance(
+def light(
     point: Numbers,
     tangents: Sequence[Numbers] | None,
     normal: Numbers | None,
@@ -38,9 +38,10 @@ def luminance(
     two_sided: bool = False,
     terminator: float = 0.0,
     fur: float = 0.0,
+    apart: float = 1e-14,
     **_: Any,
-) -> float:
-    """Return the luminance of one point; NaN where it cannot be lit.
+) -> list[float]:
+    """Return the luminance of one point, and its colour if the scene has one.
 
     Parameters
     ----------
@@ -51,20 +52,26 @@ def luminance(
         Its depth cue with both ends.
     carrier, depth, shadow, model, compensate, conditioned, two_sided, terminator, fur
         As :func:`vizlight.engine.shade` takes them, for one point.
+    apart : float
+        The share of a tangent's length beyond which it is independent of those before it.
 
     Returns
     -------
-    float
+    list of 1 or 4 floats
+        Luminance, red, green and blue; NaN where the point cannot be lit.
     """
+    dark = [math.nan] * (4 if scene.colored else 1)
     material, n = scene.material, len(point)
     up = None if normal is None else _unit(normal)
-    frame = None if tangents is None else _orthonormal(tangents)
-    sheet = None if carrier is None else _orthonormal(carrier)
+    frame = None if tangents is None else _orthonormal(tangents, apart)
+    sheet = None if carrier is None else _orthonormal(carrier, apart)
     missing = (normal is not None and up is None) or (up is None and frame is None)
     for given, made in ((tangents, frame), (carrier, sheet)):
         missing |= given is not None and (made is None or len(made) < len(given))
-    if missing:
-        return math.nan
+    places = [owner.position for owner in (*scene.lights, scene.view) if owner is not None]
+    nowhere = not all(map(math.isfinite, point)) and any(p is not None for p in places)
+    if missing or nowhere:
+        return dark
     ambient = material.ambient * scene.ambient_intensity
     power = 1.0
     if compensate and model != "cylinder" and frame is not None:
@@ -74,16 +81,21 @@ def luminance(
     view = scene.view
     eye = None if view is None else _toward(view, point)
     lit, number = 0.0, -1
-    for light in scene.lights:
-        if light.intensity <= 0:
+    white = (1.0, 1.0, 1.0)
+    rgb = [
+        ambient * a * b
+        for a, b in zip(material.color or white, scene.ambient_color or white, strict=True)
+    ]
+    for lamp in scene.lights:
+        if lamp.intensity <= 0:
             continue
         number += 1
-        wi, away = _toward(light.seen_from(view), point)
+        wi, away = _toward(lamp.seen_from(view), point)
         if wi is None:
             continue
-        scale = light.intensity
+        scale = lamp.intensity
         if away is not None:
-            c1, c2, c3 = light.attenuation
+            c1, c2, c3 = lamp.attenuation
             scale *= min(1.0, 1 / max(c1 + c2 * away + c3 * away * away, 1e-300))
         facing = None
         if up is not None:
@@ -104,14 +116,24 @@ def luminance(
         if shadow is not None and frame is None and facing is not None:
             specular *= min(float(shadow[number]) / facing, 1.0) if facing else 0.0
             diffuse = float(shadow[number])
-        lit += scale * (material.diffuse * diffuse + material.specular * specular)
-    return _cued(ambient + lit, point, scene)
+        diffuse, specular = (
+            scale * material.diffuse * diffuse, scale * material.specular * specular
+        )  # fmt: skip
+        lit += diffuse + specular
+        for i, tint in enumerate(lamp.color or white):
+            own = (material.color or white)[i] * diffuse
+            rgb[i] += tint * (own + (material.specular_color or white)[i] * specular)
+    cue = scene.depth_cue
+    grey = [1.0, *((cue.color if cue is not None else None) or white)]
+    values = [ambient + lit, *rgb] if scene.colored else [ambient + lit]
+    return [_cued(value, g, point, scene) for value, g in zip(values, grey, strict=False)]
 
 
 def relief_ratio(
-    x: Any, y: Any, z: Any, place: Any, normal: Any, depth: float, way: Numbers
-) -> float:
-    """Return t of a point of a height field that ends nowhere, by many samples along its ray.
+    x: Any, y: Any, z: Any, place: Any, normal: Any, depth: float, *, way: Numbers | None,
+    end: Numbers | None = None, base: float = -math.inf, wall: bool = False,
+) -> float:  # fmt: skip
+    """Return t of a point of a height field, by many samples along its ray.
 
     Parameters
     ----------
@@ -119,25 +141,92 @@ def relief_ratio(
     place, normal : ndarray, shape (3,)
     depth : float
         Above 0.
-    way : vector of 3 components
+    way : vector of 3 components or None
         Toward the light, above the horizon.
+    end : vector of 3 components, optional
+        Where the light is, in place of a way.
+    base : float
+        Where the solid ends below.
+    wall : bool
+        Whether it ends at its border, else it goes on.
 
     Returns
     -------
     float
         To 1/20,000 of the ray over the depth.
     """
-    toward = np.asarray(_unit(way))
     start = place - depth * normal
-    reach = max(float(z.max() - start[2]), 0.0) / toward[2]
-    places = start + (np.arange(SAMPLES)[:, np.newaxis] + 0.5) * (reach / SAMPLES) * toward
+    rise = max(float(np.nanmax(z) - start[2]), 0.0)
+    if end is not None:
+        along = np.asarray(end, dtype=np.float64) - start
+        if along @ normal <= depth:
+            return 0.0
+        # Above the highest there is no solid.
+        along = along * min(rise / along[2], 1.0) if along[2] > 0 else along
+    else:
+        toward = np.asarray(_unit(() if way is None else list(way)))
+        along = rise / toward[2] * toward
+    places = start + (np.arange(SAMPLES)[:, np.newaxis] + 0.5) / SAMPLES * along
     across, up = (np.clip(p, a[0], a[-1]) for p, a in ((places[:, 0], x), (places[:, 1], y)))
     i, j = (np.clip(np.searchsorted(a, p) - 1, 0, len(a) - 2) for a, p in ((x, across), (y, up)))
     u, v = (across - x[i]) / (x[i + 1] - x[i]), (up - y[j]) / (y[j + 1] - y[j])
     low = (1 - u) * z[j, i] + u * z[j, i + 1]
     high = (1 - u) * z[j + 1, i] + u * z[j + 1, i + 1]
-    inside = float(np.mean(places[:, 2] < (1 - v) * low + v * high)) * reach
+    within = (places[:, 2] < (1 - v) * low + v * high) & (places[:, 2] > base)
+    if wall:
+        within &= (across == places[:, 0]) & (up == places[:, 1])
+    inside = float(np.mean(within)) * math.hypot(*along)
     return float(depth / max(inside, depth))
+
+
+def solid_ratio(
+    bodies: Sequence[Any], place: Any, normal: Any, depth: float, way: Any, reach: float
+) -> float:
+    """Return t of a point of closed surfaces: its ray against every triangle.
+
+    Parameters
+    ----------
+    bodies : sequence of ndarray, shape (T, 3, 3)
+        Corners of triangles, turned outward.
+    place, normal : ndarray, shape (3,)
+    depth : float
+        Above 0.
+    way : ndarray, shape (3,)
+        Unit, toward the light.
+    reach : float
+        How far the light is.
+
+    Returns
+    -------
+    float
+        NaN where the ray meets an edge.
+    """
+    start = place - depth * normal
+    inside: list[tuple[float, int]] = []
+    for corners in bodies:
+        a, e, f = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+        p = np.cross(way, f)
+        scale = np.einsum("ij,ij->i", e, p)
+        with np.errstate(all="ignore"):
+            u = np.einsum("ij,ij->i", start - a, p) / scale
+            q = np.cross(start - a, e)
+            v = q @ way / scale
+            s = np.einsum("ij,ij->i", f, q) / scale
+            near = np.minimum(np.minimum(u, v), 1 - u - v)
+        ahead = (s > 0) & (s < reach)
+        if np.any(ahead & (np.abs(near) < 1e-9)):
+            return math.nan
+        # The ray leaves where it runs with the outward normal e x f, of which scale is the inverse.
+        hit = ahead & (near > 0)
+        inside += [
+            (float(at), 1 if side < 0 else -1) for at, side in zip(s[hit], scale[hit], strict=True)
+        ]
+    length, depth_in, far = 0.0, 0, reach
+    for at, change in sorted(inside, reverse=True):
+        length += far - at if depth_in > 0 else 0.0
+        depth_in, far = depth_in + change, at
+    length += far if depth_in > 0 else 0.0
+    return float(depth / max(length, depth))
 
 
 def _terms(
@@ -249,8 +338,8 @@ def _exponent(k: int, n: int) -> float:
 _EXPONENTS: dict[tuple[int, int], float] = {}
 
 
-def _cued(light: float, point: Numbers, scene: Scene) -> float:
-    """Return the light faded with depth."""
+def _cued(light: float, grey: float, point: Numbers, scene: Scene) -> float:
+    """Return the light faded with depth toward a share of the cue's."""
     cue, view = scene.depth_cue, scene.view
     if cue is None or view is None or cue.front is None or cue.back is None:
         return light
@@ -261,7 +350,7 @@ def _cued(light: float, point: Numbers, scene: Scene) -> float:
     t = min(max((depth - cue.back) / (cue.front - cue.back), 0.0), 1.0)
     t = t * t * (3 - 2 * t) if cue.smooth else t
     scale = cue.back_scale + (cue.front_scale - cue.back_scale) * t
-    return scale * light + (1 - scale) * cue.cue
+    return scale * light + (1 - scale) * cue.cue * grey
 
 
 def _toward(owner: Any, point: Numbers) -> tuple[list[float] | None, float | None]:
@@ -304,13 +393,13 @@ def _across(v: Numbers, frame: list[list[float]]) -> float:
     return math.hypot(*_rest(v, frame))
 
 
-def _orthonormal(rows: Sequence[Numbers]) -> list[list[float]] | None:
+def _orthonormal(rows: Sequence[Numbers], apart: float) -> list[list[float]] | None:
     """Return an orthonormal frame of the rows; fewer rows where some depend on the others."""
     frame: list[list[float]] = []
     for row in rows:
         own = _unit(row)
         rest = None if own is None else _unit(_rest(own, frame))
-        if own is not None and rest is not None and math.hypot(*_rest(own, frame)) > 1e-7:
+        if own is not None and rest is not None and math.hypot(*_rest(own, frame)) > apart:
             again = _unit(_rest(rest, frame))
             if again is not None:
                 frame.append(again)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -13,7 +14,7 @@ from vizlight.filters._heights import heights_of
 from vizlight.geometry import _field, relief
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Iterable
 
     from numpy.typing import NDArray
 
@@ -28,18 +29,23 @@ GRIDS = pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid
 
 
 class Caster(Protocol):
-    """What casts shadows on itself: points, unit normals, which of them count, the depth."""
+    """What casts shadows on itself.
+
+    Points, unit normals, which of them count, the depth, and how many places or triangles
+    ``again`` tries for one t; 0 where it finds none.
+    """
 
     points: Array
     normals: Array
     valid: NDArray[np.bool_]
     depth: float
+    effort: int
 
     def of(self, light: Light) -> Array:
         """Return t at the points."""
 
-    def again(self, light: Light) -> Callable[[int], float] | None:
-        """Return a function that samples t of one point; None where a sample says too little."""
+    def again(self, point: int, light: Light) -> float:
+        """Return t of one point by other means; NaN where they say nothing."""
 
 
 def caster(
@@ -90,6 +96,9 @@ class _FieldCaster:
         normals = self._normal if self._turn is None else self._normal @ self._turn
         self.normals = found.to_points(np.where(self._holes[..., np.newaxis], 0, normals))
         self.valid: Any = found.to_points(~self._holes)
+        field = self._field
+        size = max(field.x[-1], field.y[-1], field.top)
+        self.effort = _oracle.SAMPLES if self.depth > relief.LEAST_DEPTH * size else 0
 
     def of(self, light: Light) -> Array:
         way: Any = [light.direction, light.position]
@@ -102,19 +111,18 @@ class _FieldCaster:
         t[self._holes] = 0
         return self._to_points(t)
 
-    def again(self, light: Light) -> Callable[[int], float] | None:
-        """Return a function that samples t of one point; None where a sample says too little."""
-        field, way = self._field, light.direction
-        flat = self.depth <= relief.LEAST_DEPTH * max(field.x[-1], field.y[-1], field.top)
-        if way is None or way[2] <= 0 or flat or field.border != "extend" or field.base > -np.inf:
-            return None
-        grid = field.x, field.y, field.heights
-
-        def sample(i: int) -> float:
-            place = self.points[i] - field.origin
-            return _oracle.relief_ratio(*grid, place, self.normals[i], self.depth, way)
-
-        return sample
+    def again(self, point: int, light: Light) -> float:
+        field, turn = self._field, np.eye(3) if self._turn is None else self._turn
+        way = None if light.direction is None else turn @ np.array(light.direction)
+        if way is not None and way[2] <= 0:
+            return math.nan
+        return _oracle.relief_ratio(
+            field.x, field.y, field.heights,
+            turn @ self.points[point] - field.origin, turn @ self.normals[point], self.depth,
+            way=way,
+            end=None if light.position is None else turn @ np.array(light.position) - field.origin,
+            base=field.base, wall=field.border != "extend",
+        )  # fmt: skip
 
 
 class _SolidCaster:
@@ -141,6 +149,9 @@ class _SolidCaster:
         self.depth = _depth(options["depth"], self._unit)
         self.points: Array = np.asarray(mesh.points, dtype=np.float64)
         self.valid = np.any(self.normals, axis=1) & np.all(np.isfinite(self.points), axis=1)
+        faces = sum(len(body.triangles) for body in self._solids)
+        self.effort = faces if self.depth / self._unit > relief.LEAST_DEPTH else 0
+        self._corners: list[Array] | None = None
 
     def of(self, light: Light) -> Array:
         good = self.valid
@@ -161,8 +172,14 @@ class _SolidCaster:
             t[good] = depth / np.maximum(length, depth)
         return t
 
-    def again(self, light: Light) -> Callable[[int], float] | None:  # noqa: ARG002
-        return None
+    def again(self, point: int, light: Light) -> float:
+        if self._corners is None:
+            self._corners = [body.vertices[body.triangles] for body in self._solids]
+        place = (self.points[point] - self._origin) / self._unit
+        depth, normal = self.depth / self._unit, self.normals[point]
+        way, reach = self._toward(light, (place - depth * normal)[np.newaxis])
+        far = min(float(reach[0]), 10.0 * max(float(np.abs(c).max()) for c in self._corners))
+        return _oracle.solid_ratio(self._corners, place, normal, depth, way[0], far)
 
     def _toward(self, light: Light, start: Array) -> tuple[Array, Array]:
         if light.direction is not None:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import dataclasses
 import functools
 import json
+import time
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista as pv
 
-from vizlight import _check, engine
+from vizlight import _check, _report, engine
 from vizlight.filters import _mesh, _provenance
 from vizlight.filters._illuminate import illuminate
 from vizlight.filters._light import DEFAULT_NAME, VALID
@@ -109,6 +110,21 @@ def isoluminance(
     options = {
         key: value for key, value in locals().items() if key not in ("mesh", "scene", "threads")
     }
+    start = time.perf_counter()
+    with _report.paused():
+        made, bands, light = _make(mesh, scene, options, threads)
+    seconds = time.perf_counter() - start
+    _note(bands, light, seconds, 1024 * made.actual_memory_size, sampled=tangents is None)
+    return made
+
+
+def _make(
+    mesh: Any, scene: Scene, options: dict[str, Any], threads: int | None
+) -> tuple[pv.MultiBlock, Bands, _Light]:
+    """Return bands and contours as meshes, the bands as arrays, and what lit them."""
+    levels, tolerance, name = options["levels"], options["tolerance"], options["name"]
+    model = options["model"]
+    two_sided, flip_normals = options["two_sided"], options["flip_normals"]
     _check.instance("scene", scene, Scene)
     _levels.check(levels)
     _check.number("tolerance", tolerance, low=1e-6, high=0.1)
@@ -124,7 +140,7 @@ def isoluminance(
         found = _of_solid(mesh, light, levels, tolerance)
         told = light.record(options)
         rgb = _rgb(found, light) if scene.colored else None
-        return _blocks(found, name, told, rgb, patches=True)
+        return _blocks(found, name, told, rgb, patches=True), found, light
     if not isinstance(mesh, pv.DataSet | pv.MultiBlock):
         remedy = "make solids of vizlight.Sphere, Truncus and Block"
         raise TypeError(
@@ -142,11 +158,13 @@ class _Light:
     def __init__(
         self, scene: Scene, model: SpecularModel, two_sided: bool, flip: bool, threads: int | None
     ) -> None:
-        self.scene, self.flip, self.two_sided = scene, flip, two_sided
+        self.scene, self.flip, self.two_sided, self.model = scene, flip, two_sided, model
         self.shade = functools.partial(
             engine.shade, precision="float64", threads=threads, model=model, two_sided=two_sided
         )
         self.last: Any = None
+        #: Triangles on the exact surfaces of a solid that is lit.
+        self.shape: Any = None
 
     def __call__(self, points: Array, normals: Array) -> Array:
         self.last = self.shade(points, None, self.scene, normals=-normals if self.flip else normals)
@@ -181,13 +199,13 @@ def _of_solid(solid: Solid, light: _Light, levels: Levels, tolerance: float) -> 
             )
     if found is not None:
         return found
-    shape = solids.tessellate(solid, tolerance=tolerance)
-    return _contours.draw(shape, light, levels, low=low if dull else None)
+    light.shape = solids.tessellate(solid, tolerance=tolerance)
+    return _contours.draw(light.shape, light, levels, low=low if dull else None)
 
 
 def _of_mesh(
     mesh: pv.DataSet, scene: Scene, levels: Levels, threads: int | None, options: dict[str, Any]
-) -> pv.MultiBlock:
+) -> tuple[pv.MultiBlock, Bands, _Light]:
     """Return bands and contours of a mesh."""
     surface, triangles, ids = _surface(mesh)
     own = ("levels", "tolerance", "name")
@@ -223,7 +241,7 @@ def _of_mesh(
     told = _provenance.provenance(lit, HIDDEN)
     told |= {"filter": "isoluminance", "options": _provenance.plain(options)}
     rgb = _rgb(bands, light) if scene.colored and options["tangents"] is None else None
-    return _blocks(bands, options["name"], json.dumps(told), rgb, patches=False)
+    return _blocks(bands, options["name"], json.dumps(told), rgb, patches=False), bands, light
 
 
 def _surface(mesh: Any) -> tuple[pv.PolyData, Index, Any]:
@@ -249,11 +267,31 @@ def _surface(mesh: Any) -> tuple[pv.PolyData, Index, Any]:
     return surface, triangles[finite[triangles].all(axis=1)], ids
 
 
+def _note(bands: Bands, light: _Light, seconds: float, size: int, *, sampled: bool) -> None:
+    """Tell the report, if one is asked for, how far bands are from the light at their middles."""
+    none: Array = np.empty((0, 3))
+    places, normals = _middles(bands, light) if sampled and len(bands.values) else (none, none)
+    terms = engine.plan(light.scene, normals=True, model=light.model).terms
+    _report.note_bands(
+        bands.values, len(bands.points), places, -normals if light.flip else normals, light.scene,
+        terms, seconds, size, bands.error, model=light.model, two_sided=light.two_sided,
+    )  # fmt: skip
+
+
+def _middles(bands: Bands, light: _Light) -> tuple[Array, Array]:
+    """Return the middles of polygons, on the surface where it is known, and unit normals there."""
+    middle, shape = bands.middles(), light.shape
+    if shape is not None:
+        patches = np.stack([bands.patch, bands.patch], axis=1)
+        places = _contours.onto(shape.surfaces, (middle - shape.shift) / shape.scale, patches)
+        return shape.world(places), _contours.normals_of(shape, places, bands.patch)
+    normals = unit_rows(middle[:, 3:]) if middle.shape[1] == 6 else bands.normals()
+    return middle[:, :3], normals
+
+
 def _rgb(bands: Bands, light: _Light) -> Array:
     """Return the colour of each polygon: that of the light at its middle, as bright as its band."""
-    middle = bands.middles()
-    normals = unit_rows(middle[:, 3:]) if middle.shape[1] == 6 else bands.normals()
-    value = light(middle[:, :3], normals)
+    value = light(*_middles(bands, light))
     share = np.divide(bands.values, value, out=np.ones_like(value), where=value > 0)
     return np.asarray(light.last.rgb * share[:, np.newaxis])
 

@@ -137,13 +137,18 @@ def relief_shadow(
 
     start = time.perf_counter()
     t = np.empty((len(shadow.points), len(lights)))
+    discs = [_disc(light, angular_diameter, samples) for light in lights]
     with _progress.progress("shadow", len(lights), show=progress_bar) as report:
-        for i, light in enumerate(lights):
-            discs = _disc(light, angular_diameter, samples)
-            t[:, i] = sum(shadow.of(one) for one in discs) / len(discs)
+        for i, disc in enumerate(discs):
+            t[:, i] = sum(shadow.of(one) for one in disc) / len(disc)
             report(i + 1)
-    again = None if angular_diameter else shadow.again(lights[0])
-    _report.note_ratio(t[:, 0], shadow.valid, time.perf_counter() - start, again)
+
+    def again(point: int, light: int) -> float:
+        return float(np.mean([shadow.again(point, one) for one in discs[light]]))
+
+    size = t.itemsize * len(t) * (1 + len(lights) * components)
+    effort = shadow.effort * max(map(len, discs))
+    _report.note_ratio(t, shadow.valid, time.perf_counter() - start, size, again, effort)
     weight = np.array([light.intensity for light in lights])
     told = _provenance.tell(
         "relief_shadow", scene, options, precision="float64", points=len(t),
