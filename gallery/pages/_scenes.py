@@ -21,7 +21,7 @@ INTERACTIVE = ("plot_flow", "plot_carotid", "plot_fibres", "plot_complex_curve")
 # Lines and flows, then surfaces, 4-space, terrain, laws and their errors; what is not named here
 # comes last.
 ORDER = [
-    "plot_flow", "plot_carotid", "plot_lines", "plot_fibres", "plot_satin", "plot_fur",
+    "plot_flow", "plot_carotid", "plot_lines", "plot_tubes", "plot_fibres", "plot_satin", "plot_fur",
     "plot_ambient", "plot_depth_cue", "plot_attenuation", "plot_terrain_day", "plot_terrain",
     "plot_earth", "plot_bas_relief", "plot_seeping_light", "plot_codimension", "plot_turning",
     "plot_complex_curve", "plot_shapes", "plot_field_in_4_space", "plot_highlights",
@@ -52,6 +52,7 @@ PARTS = {
     "plot_terrain": (0.0, 0.08, 0.165, 0.92),
     "plot_terrain_day": (0.06, 0.04, 0.28, 0.47),
     "plot_tolerance": (0.67, 0.12, 1.0, 0.9),
+    "plot_tubes": (0.37, 0.08, 1.0, 0.95),
     "plot_turning": (0.4, 0.06, 0.61, 0.5),
 }
 
