@@ -174,7 +174,7 @@ def _measure(got: NDArray[np.uint8], expected: NDArray[np.uint8], background: An
 
 
 def _block_error(apart: Array) -> float:
-    """Return the largest mean over a block; blocks overlap by half, so that none hides an error."""
+    """Return the largest mean over a block, wherever it begins: no border hides an error."""
     rows, columns = (min(BLOCK, n) for n in apart.shape[:2])
     total = np.zeros((apart.shape[0] + 1, apart.shape[1] + 1, 3))
     total[1:, 1:] = apart.cumsum(axis=0).cumsum(axis=1)
