@@ -16,7 +16,7 @@ from vizlight.filters import project
 from vizlight.light import Light
 from vizlight.scene import Scene, View
 from vizlight.studies._measure import peak_memory, take_turns
-from vizlight.studies._study import CLEAR, PIXEL, Curve, Panel, Row, Study, span, words
+from vizlight.studies._study import PIXEL, Curve, Panel, Row, Study, span, words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -62,7 +62,7 @@ def verdict(rows: Sequence[Row]) -> str:
         pairs.setdefault(row.way, []).append(row)
     high, low = pairs["light"], pairs["light, float32"]
     gain = {(a.more["k"], a.parameter): a.cost / b.cost for a, b in zip(high, low, strict=True)}
-    pays = [space for space, times in gain.items() if times > 1 / CLEAR]
+    pays = [space for space, times in gain.items() if times > 1]
     worst = max(row.error for row in low)
     here = next(r for r in high if (r.more["k"], r.parameter) == (2, 4))
     turn = next(r for r in pairs["turn and project"] if (r.more["k"], r.parameter) == (2, 4))
