@@ -40,3 +40,10 @@ def test_rows():
     rows = {row.way: row for row in study.measure(1, 3, 1000, repeats=1)}
     assert rows["exact p"].error == 0
     assert rows["nearest integer, by multiplication"].error == pytest.approx(0.0178, abs=1e-4)
+
+
+def test_a_mean_that_is_off_is_not_relied_on():
+    rows = study.measure(1, 3, 1000, repeats=1)
+    assert "keep it unless tolerance= allows another" in study.verdict(rows)
+    off = [row._replace(more={**row.more, "mean - 1/2": 0.2}) for row in rows]
+    assert study.verdict(off).startswith("p(k, n) gives a mean of 1/2 to 0.2; do not rely on it")

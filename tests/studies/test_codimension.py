@@ -117,7 +117,23 @@ def test_rows_of_the_study():
     rows = codimension.rows_of_panels(24) + codimension.rows_of_directions(1, 4, 2000)
     assert len(rows) == 9
     assert rows[0].parameter == 2
-    assert "compensate=True" in codimension.verdict(rows)
+    assert codimension.verdict(rows).startswith("keep compensate=True where")
+    assert "it evens out contrast" in codimension.verdict(rows)
+
+
+def test_the_verdict_follows_from_the_rows():
+    def worse(row):
+        if row.way != "torus and curve, compensated":
+            return row
+        more = {
+            **row.more,
+            "contrast (std / mean)": row.more["contrast (std / mean)"] * row.parameter,
+        }
+        return row._replace(error=row.error + 0.5, more=more)
+
+    said = codimension.verdict([worse(row) for row in codimension.rows_of_panels(24)])
+    assert said.startswith("take compensate=False where")
+    assert "does not even out contrast" in said
 
 
 def test_panels_can_be_made_again(panels):

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-import numpy as np
+import time
 
-from vizlight.studies import _measure, engine
+import numpy as np
+import pytest
+
+from vizlight.studies import Row, _measure, engine
 
 
 def test_rows_of_the_study():
@@ -25,7 +28,43 @@ def test_peak_memory_counts_numpy():
 
 
 def test_turns():
-    seen = []
-    seconds = _measure.take_turns({"a": lambda: seen.append(1), "b": lambda: seen.append(2)}, 3)
+    """The first time, which is slower, does not count."""
+    seen, waits = [], iter((0.02, 0, 0))
+
+    def first():
+        seen.append(1)
+        time.sleep(next(waits))
+
+    seconds = _measure.take_turns({"a": first, "b": lambda: seen.append(2)}, 3)
     assert seen == [1, 2] * 3
-    assert all(value > 0 for value in seconds.values())
+    assert all(0 < value < 0.02 for value in seconds.values())
+
+
+def known(one_thread=0.9):
+    """Return rows in which one thread takes so much of the default's time."""
+    costs = {
+        ("NumPy script, float32", 1000): 5.0,
+        ("engine, float32", 64): 1.0,
+        ("engine, float32, 1 thread", 64): one_thread,
+        ("engine, float64", 32): 1.5,
+        ("engine, float32, other blocks", 8): 3.0,
+    }
+    return [Row(way, block, 1e-6, cost) for (way, block), cost in costs.items()]
+
+
+@pytest.mark.parametrize(
+    ("one_thread", "chosen", "float64"),
+    [
+        (0.9, "the engine as it is, 'engine, float32'", 1.5),
+        (0.75, "'engine, float32, 1 thread'", 2),
+    ],
+)
+def test_the_default_is_kept_unless_another_is_clearly_faster(one_thread, chosen, float64):
+    said = engine.verdict(known(one_thread))
+    assert f"use {chosen} in blocks of 64" in said
+    assert f"float64 costs {float64:g} times" in said
+
+
+def test_no_way_is_near_enough():
+    rows = [row._replace(error=1.0) for row in known()]
+    assert engine.verdict(rows) == "no way is within 1/255; float64 is within 1"

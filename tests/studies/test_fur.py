@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from vizlight.studies import fur, order
+from vizlight.studies import Row, fur, order
 
 
 @pytest.mark.opengl
@@ -25,3 +25,19 @@ def test_more_fibres_are_nearer():
     rows = [fur.count_fibres(64 * size, exact) for size in (8, 32, 128)]
     # Seeds are stratified: better than the 1/2 of independent ones.
     assert order(rows) < -0.5
+
+
+def test_the_verdict_follows_error_and_time():
+    more = {"VTK glyphs unlit, s": 1.0}
+
+    def rows(errors):
+        return [
+            Row("segments of a fibre", n, error, 1.0, {**more, "s": 2.0 / n})
+            for n, error in zip((1, 3, 7), errors, strict=True)
+        ] + [Row("fibres a patch", n, 1e-3, 1.0) for n in (8, 32)]
+
+    said = fur.verdict(rows((0.1, 1e-3, 1e-4)))
+    assert said.startswith("at an RMS error of 1/255 use 3 segments a fibre (error 0.001), and 8 ")
+    assert said.endswith("0.5 to 3.5 times as fast as VTK's glyph filter grows it unlit")
+    # One that is near by chance, where finer ones are not, is not enough.
+    assert fur.verdict(rows((0.1, 1e-3, 0.1))).startswith("7 segments a fibre leave 26 of 255")

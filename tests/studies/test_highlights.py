@@ -40,5 +40,51 @@ def test_rows_of_the_study():
     ]
     assert len({row.way for row in rows}) == 6 + 3 + 2 + 4
     said = highlights.verdict(rows)
-    assert "holds 1/255 up to 2 degrees" in said
-    assert "usual 4 makes 26.6" in said
+    assert "take 4 cos(beta) corrected for r times Phong's power" in said
+    assert "(4: 26.56, 4 cos(beta): 14.13, the best that a search finds: 13.63)" in said
+    assert "up to 2 degrees between light and eye for power 100: there it takes" in said
+
+
+@pytest.fixture(scope="module")
+def rows():
+    return [
+        *highlights.rows_of_rules(60.0, 40.0),
+        *(
+            row for power in (20.0, 100.0) for a in (2.0, 10.0, 60.0)
+            for row in highlights.rows_of_exchange(a, power, 1000)
+        ),
+    ]  # fmt: skip
+
+
+def test_the_verdict_names_each_power(rows):
+    """The default shininess, 20, is not within 1 of 255 at any angle."""
+    said = highlights.verdict(rows)
+    assert "at no angle for power 20 (its bound is 1.47 of 255 at 2 degrees)" in said
+    assert "up to 10 degrees between light and eye for power 100" in said
+
+
+def test_the_rule_follows_from_the_rows(rows):
+    worse = [row._replace(error=250.0) if row.way.startswith("rule 4 cos") else row for row in rows]
+    assert highlights.verdict(worse).startswith(
+        "take 4 times Phong's power, whose worst error is 26"
+    )
+
+
+def test_what_is_dearer_is_left_out(rows):
+    dear = [row._replace(cost=1e6) if "Blinn" in row.way else row for row in rows]
+    assert "but leave it out: there it takes" in highlights.verdict(dear)
+    off = [
+        row._replace(more={**row.more, "bound": 9.0}) if "bound" in row.more else row
+        for row in rows
+    ]
+    assert highlights.verdict(off).endswith("at 2 degrees), so leave it out")
+
+
+def test_the_figure_shows_few_curves_and_no_rounding(rows):
+    rows = [*rows, *(r for a in (60, 120) for r in highlights.rows_of_terminators(a))]
+    left, right = (
+        {panel.curve(row) for row in rows} - {None}
+        for panel in (highlights.STUDY, *highlights.STUDY.beside)
+    )
+    assert len(left) == 6
+    assert len(right) == 2 + 4

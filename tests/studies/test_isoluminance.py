@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from vizlight import render
+from vizlight.studies import Row
 from vizlight.studies import isoluminance as study
 
 
@@ -64,4 +65,31 @@ def test_rows_and_verdict():
     rows = [row for shape in study.SHAPES for row in study.vertices(shape, 0.05)]
     rows += study.pictures("sphere", 300, 12, 1) + study.virtual(30.0)
     assert {row.way for row in rows} >= {"sphere, contours", "virtual light, 30 degrees"}
-    assert "for an error of 0.05 use contours: a sphere needs" in study.verdict(rows)
+    said = study.verdict(rows)
+    assert "either way for a sphere at an error of 0.05 (758, facets 762)" in said
+    assert "contours for a cone at an error of 0.05 (43, facets 150)" in said
+    assert "for the time of a picture as good" in said
+    panels = (study.STUDY, *study.STUDY.beside)
+    assert all(sum(panel.curve(row) is not None for panel in panels) == 1 for row in rows)
+
+
+def test_the_verdict_follows_vertices_and_times():
+    """What needs ten times the vertices, or is too far off, is not chosen."""
+    rows = [
+        Row(f"{s}, {way}", 0.01, 0.01, cost)
+        for s in study.SHAPES
+        for way, cost in (("contours", 1000), ("facets", 100))
+    ]
+    ways = (
+        ("50 levels", 0.01, 9.0),
+        ("70 facets", 0.3, 1.0),
+        ("900 facets, equal", 0.01, 5.0),
+        ("ray cast", 0.0, 20.0),
+    )
+    rows += [
+        Row(f"picture of a cone, {way}", 550, error, 10, {"ms to model": ms - 1, "ms a frame": 1.0})
+        for way, error, ms in ways
+    ]
+    said = study.verdict(rows)
+    assert "take facets for a sphere at an error of 0.01 (1000, facets 100)" in said
+    assert "as good 900 facets of equal error for a cone of 550 pixels (5 ms, 50 levels 9" in said

@@ -7,6 +7,7 @@ import pytest
 
 from vizlight.model import cylinder
 from vizlight.studies import lines
+from vizlight.studies._study import words
 
 
 @pytest.fixture(scope="module")
@@ -46,5 +47,15 @@ def test_rows_of_the_study(monkeypatch):
     rows = lines.rows(500, repeats=1)
     assert {row.parameter for row in rows} == {0, 3, 40}
     said = lines.verdict(rows)
-    assert said.startswith("at an RMS error of 1/255 use, diffuse: ")
-    assert "a headlight's by" in said
+    assert said.startswith(
+        "at an RMS error of 1/255, each model by its best factor, use, diffuse: "
+    )
+    assert "diffuse by a headlight: 'Banks, p = 1'" in said
+    # The errors are those by the best factor, as in the table.
+    blinn = next(row for row in rows if row.way == "Blinn, specular, random")
+    assert f"('Blinn' at {words(blinn.cost)} ns is off by {blinn.error:.2g})" in said
+    assert blinn.error < 0.04 < 0.2 < blinn.more["RMS without it"]
+    far = [row._replace(error=0.5) for row in rows]
+    assert "diffuse: none, 'Banks, p = 1' is off by 0.5" in lines.verdict(far)
+    shown = {lines.STUDY.curve(row) for row in rows} - {None}
+    assert {name for name, _ in shown} == {"Banks, p = 1", "Banks, p(1, 3)", "tube", "exact"}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from vizlight.studies import cheapest, mesh, order, relief, streamlines
+from vizlight.studies import Row, cheapest, mesh, order, relief, streamlines
 
 
 @pytest.mark.parametrize(("n", "shininess"), [(3, 5.0), (3, 20.0), (4, 20.0)])
@@ -24,7 +24,19 @@ def test_the_verdict_names_a_row_that_holds():
     rows = [*mesh.measure(3, 20.0, (128, 256, 512)), *mesh.every_pixel()]
     best = cheapest(rows[:3])
     assert best.error <= 1 / 255
-    assert f"in {best.parameter} steps" in mesh.verdict(rows)
+    said = mesh.verdict(rows)
+    assert f"steps: {best.parameter} at power 20" in said
+    assert "off the terminator, in theory 2, and" in said
+
+
+def test_the_verdict_leaves_no_power_out():
+    """What no measured mesh is enough for is named with what it leaves."""
+    rows = [row for power in (5.0, 100.0) for row in mesh.measure(3, power, (128, 256, 512))]
+    rows += mesh.every_pixel()
+    said = mesh.verdict(rows)
+    assert "512 at power 5, more than 512 at power 100 (which leave 1.04 of 255)" in said
+    better = [row._replace(error=1e-3) if row.parameter == 512 else row for row in rows]
+    assert "512 at power 5, 512 at power 100, at" in mesh.verdict(better)
 
 
 def test_streamlines_drift_with_the_square_of_the_cells():
@@ -34,6 +46,37 @@ def test_streamlines_drift_with_the_square_of_the_cells():
         for row in streamlines.measure(streamlines.CELL, 1 / n, streamlines.swirling(n), 0.1, 1)
     ]  # fmt: skip
     assert order(rows) == pytest.approx(2, abs=0.3)
+
+
+def test_streamlines_on_a_sphere_drift_with_the_square_of_the_triangles():
+    rows = [
+        row for n in (24, 48, 96, 192)
+        for row in streamlines.measure(streamlines.SPHERE, 1 / n, streamlines.sphere(n), 0.1, 1)
+    ]  # fmt: skip
+    assert order(rows) == pytest.approx(2, abs=0.3)
+
+
+@pytest.fixture(scope="module")
+def drifts():
+    return [
+        *(Row(streamlines.STEP, step, error, 1.0) for step, error in ((2, 2e-5), (1, 1e-5))),
+        *(Row(streamlines.CELL, h, h**2, 1.0) for h in (0.1, 0.05)),
+        *(Row(streamlines.SPHERE, h, h**2, 1.0) for h in (0.1, 0.05)),
+    ]
+
+
+def test_the_largest_step_that_holds_is_taken(drifts):
+    """Whatever the steps cost; and the one that drifts more is refined first."""
+    said = streamlines.verdict(drifts)
+    assert "use step=2 cell lengths, the largest measured, which drifts by 2e-05" in said
+    assert "refine the cells rather than the step" in said
+    assert "2.00 in a volume and 2.00 on a surface, in theory 2" in said
+    off = [row._replace(error=2e-3) if row.parameter == 2 else row for row in drifts]
+    assert "use step=1 cell lengths, which drifts by 1e-05" in streamlines.verdict(off)
+    off = [row._replace(error=0.1) if row.way == streamlines.STEP else row for row in drifts]
+    said = streamlines.verdict(off)
+    assert said.startswith("take a step below 1 cell lengths, which drifts by 0.1 of the radius")
+    assert "refine the step before the cells" in said
 
 
 def test_a_solid_turn_has_the_tracer_s_own_drift_alone():
@@ -48,3 +91,5 @@ def test_relief_orders():
         own = [row for row in rows if row.way.endswith(method)]
         assert -2.2 < order(own) < -1.2
         assert np.all(np.diff([row.error for row in own]) < 0)
+        smooth = [row._replace(error=row.more["mean off the edges"]) for row in own]
+        assert order(smooth) == pytest.approx(-2, abs=0.2)

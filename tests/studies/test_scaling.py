@@ -8,7 +8,7 @@ from vizlight.studies import Row, scaling
 
 
 def test_rows_in_memory_and_from_disk():
-    (memory,) = scaling.in_memory([30_000], 1)
+    (memory,) = scaling.in_memory([30_000], 0.1)
     (disk,) = scaling.from_disk(30_000)
     assert memory.error < 2e-6
     assert disk.error < 2e-6
@@ -16,7 +16,7 @@ def test_rows_in_memory_and_from_disk():
 
 
 def test_memory_beyond_the_output_is_bounded():
-    small, large = scaling.in_memory([400_000, 1_600_000], 1)
+    small, large = scaling.in_memory([400_000, 1_600_000], 0.0)
     key = "MB beyond the output"
     assert large.more[key] < 1.6 * small.more[key]
 
@@ -24,12 +24,19 @@ def test_memory_beyond_the_output_is_bounded():
 @pytest.mark.parametrize("power", [1.0, 1.3])
 def test_exponent_of_known_times(power):
     rows = [
-        Row("in memory", n, 1e-7, 1.0, {"s": 1e-9 * n**power, "MB beyond the output": 30.0})
+        Row(
+            "in memory",
+            n,
+            1e-7,
+            1.0,
+            {"s": 1.0, "processor s": 1e-9 * n**power, "MB beyond the output": 30.0},
+        )
         for n in (1e4, 2e6, 5e6, 1e7)
     ]
-    rows[0] = rows[0]._replace(more={**rows[0].more, "s": 1.0})
+    rows[0] = rows[0]._replace(more={**rows[0].more, "processor s": 1.0})
     assert scaling.exponent(rows) == pytest.approx(power)
     assert scaling.verdict(rows).startswith("count on") == (power == 1.0)
+    assert f"grows with the power {power:.3f}, in theory 1" in scaling.verdict(rows)
 
 
 def test_no_room(monkeypatch):

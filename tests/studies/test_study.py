@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import dataclasses
 import re
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 import pyvista as pv
 
 from vizlight import cli, studies
-from vizlight.studies import Row, Study, _study
+from vizlight.studies import Curve, Panel, Row, Study, _study
 
 
 @pytest.fixture
@@ -81,13 +82,64 @@ def test_csv_keeps_all_digits(toy, tmp_path):
 def test_figure_is_logarithmic(toy, tmp_path):
     result = studies.run("toy", toy)
     picture = pv.read(result.draw(tmp_path / "toy.png"))
-    assert picture.dimensions == (960, 600, 1)
-    pixels = np.asarray(picture.active_scalars).reshape(600, 960, -1)[..., :3].astype(int)
+    assert picture.dimensions == (960, 720, 1)
+    pixels = np.asarray(picture.active_scalars).reshape(720, 960, -1)[..., :3].astype(int)
     blue = np.argwhere(np.abs(pixels - (0, 0x72, 0xB2)).sum(axis=-1) < 30)
     # A power law is a straight line: its pixels, the legend's left out, lie along one.
-    line = blue[blue[:, 1] < 600]
+    line = blue[blue[:, 0] > 150]
     fit = np.polyfit(line[:, 1], line[:, 0], 1)
     assert np.abs(np.polyval(fit, line[:, 1]) - line[:, 0]).max() < 6
+
+
+def test_panels_show_the_curves_they_ask_for(toy):
+    """Colour by name, line style by kind; coincident exact ways are one line."""
+    from matplotlib.figure import Figure
+
+    rows = [
+        Row(f"{name}, {kind}", n, 1 / n, n, {}) for n in (1, 2) for name in "ab" for kind in "cd"
+    ]
+    rows += [Row(way, "none", 0.0, 5.0) for way in ("one", "two", "hidden")]
+    panel = Panel(
+        curve=lambda row: None if row.way == "hidden" else Curve(*row.way.split(", ")),
+        diagonal="x = y", x="other name",
+    )  # fmt: skip
+    axes = Figure().add_subplot()
+    studies.Result("toy", toy, rows, "")._draw_panel(panel, axes)
+    lines = {line.get_label(): line for line in axes.lines}
+    assert set(lines) == {"a, c", "a, d", "b, c", "b, d", "no error: one, two", "x = y"}
+    assert lines["a, c"].get_color() == lines["a, d"].get_color() != lines["b, c"].get_color()
+    assert lines["a, c"].get_linestyle() == lines["b, c"].get_linestyle() == "-"
+    assert lines["a, d"].get_linestyle() == "--"
+    assert axes.get_xlabel() == "other name"
+    assert (lines["x = y"].get_xy1(), lines["x = y"].get_xy2()) == ((1, 1), (10, 10))
+
+
+def test_a_panel_without_rows(toy, tmp_path):
+    study = dataclasses.replace(toy, curve=lambda _: None, beside=(Panel(diagonal="x = y"),))
+    picture = pv.read(studies.run("toy", study).draw(tmp_path / "toy.png"))
+    assert picture.dimensions == (1440, 720, 1)
+
+
+def test_more_curves_than_colours_differ_in_style(toy):
+    from matplotlib.figure import Figure
+
+    rows = [Row(f"way {i}", n, 1 / n, n) for i in range(10) for n in (1, 2)]
+    axes = Figure().add_subplot()
+    studies.Result("toy", toy, rows, "")._draw_panel(Panel(), axes)
+    assert len({(line.get_color(), line.get_linestyle()) for line in axes.lines}) == 10
+
+
+def test_usual_and_holding():
+    rows = [Row("a", n, 1 / n, cost) for n, cost in ((1, 1.0), (2, 9.0), (4, 8.0), (8, 10.0))]
+    assert studies.cheapest(rows, 0.5, usual=rows[1]) is rows[1]
+    assert studies.cheapest(rows, 0.5, usual=rows[3]) is rows[2]
+    assert studies.cheapest(rows, 0.5, usual=rows[0]) is rows[2]
+    assert studies.holding(rows, 0.5, coarse=False) is rows[1]
+    assert studies.holding(rows, 0.1, coarse=False) is None
+    by_step = [row._replace(parameter=1 / row.parameter) for row in rows]
+    assert studies.holding(by_step, 0.5) is by_step[1]
+    gap = [rows[0], rows[1], rows[2]._replace(error=2.0), rows[3]]
+    assert studies.holding(gap, 0.5, coarse=False) is gap[3]
 
 
 def test_order_and_cheapest():

@@ -9,9 +9,31 @@ import importlib
 import pkgutil
 
 from vizlight import _check
-from vizlight.studies._study import Result, Row, Study, cheapest, order, run
+from vizlight.studies._study import (
+    Curve,
+    Panel,
+    Result,
+    Row,
+    Study,
+    cheapest,
+    holding,
+    order,
+    run,
+)
 
-__all__ = ["Result", "Row", "Study", "cheapest", "load", "names", "order", "run"]
+__all__ = [
+    "Curve",
+    "Panel",
+    "Result",
+    "Row",
+    "Study",
+    "cheapest",
+    "holding",
+    "load",
+    "names",
+    "order",
+    "run",
+]
 
 #: What other studies and the reports lean on, not studies themselves.
 _NO_STUDIES = {"reference"}

@@ -19,6 +19,11 @@ if TYPE_CHECKING:
 
 #: One value of a picture of 8 bits, the error that nobody sees.
 PIXEL = 1 / 255
+#: What costs at most this part of another is clearly cheaper, whatever a busy machine does.
+CLEAR = 0.85
+#: Okabe and Ito's colours, which colour-blind readers tell apart; marks and lines of curves.
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+MARKS, STYLES = "osD^vP*X<>", ("-", "--", ":", "-.")
 
 
 class LackingError(RuntimeError):
@@ -47,9 +52,46 @@ class Row(NamedTuple):
     more: Mapping[str, float | str] = {}
 
 
+class Curve(NamedTuple):
+    """Where a figure shows a row: curves of one name share a colour, of one kind a line style."""
+
+    name: str
+    kind: str = ""
+
+
+def by_way(row: Row) -> Curve | None:
+    """Return the curve of a row where every way is one."""
+    return Curve(row.way)
+
+
 @dataclass(frozen=True, kw_only=True)
-class Study:
-    """What a study says of itself, how it is run, and what follows from it.
+class Panel:
+    """One log-log panel of a figure.
+
+    Attributes
+    ----------
+    axes : tuple of str
+        What is shown, of ``parameter``, ``error`` and ``cost``: x and y.
+    joined : bool
+        Whether the rows of one curve are joined by a line.
+    curve : callable
+        Takes a row, returns its :class:`Curve`, or None where the panel does not show it.
+    diagonal : str
+        Name of the line on which y is x, which is drawn if there is one.
+    x : str
+        What the x axis is called, where the heading of the table says too much.
+    """
+
+    axes: tuple[Axis, Axis] = ("cost", "error")
+    joined: bool = True
+    curve: Callable[[Row], Curve | None] = by_way
+    diagonal: str = ""
+    x: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Study(Panel):
+    """What a study says of itself, how it is run, what follows from it, and its figure.
 
     Attributes
     ----------
@@ -61,10 +103,8 @@ class Study:
         Takes whether to be quick, returns functions of no argument, each giving some rows.
     verdict : callable
         Takes all rows, returns a sentence to act on, made of their numbers.
-    axes : tuple of str
-        What the log-log figure shows, of ``parameter``, ``error`` and ``cost``: x and y.
-    joined : bool
-        Whether the rows of one way are joined by a line.
+    beside : tuple of Panel
+        Panels of the figure beside the first, which is the study's own ``axes`` and the like.
     """
 
     approximates: str
@@ -74,8 +114,7 @@ class Study:
     cost: str
     steps: Callable[[bool], Sequence[Callable[[], Iterable[Row]]]]
     verdict: Callable[[Sequence[Row]], str]
-    axes: tuple[Axis, Axis] = ("cost", "error")
-    joined: bool = True
+    beside: tuple[Panel, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -109,44 +148,69 @@ class Result:
         return files.replace_file(path, write)
 
     def draw(self, path: Path, /) -> Path:
-        """Draw one axis of the study against the other, both logarithmic, a curve a way."""
+        """Draw the study's panels, all axes logarithmic."""
         # matplotlib comes with PyVista, which requires it.
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
 
         from vizlight import files
 
-        figure = Figure(figsize=(8, 5), dpi=120, layout="constrained")
+        panels = (self.study, *self.study.beside)
+        figure = Figure(figsize=(4 + 4 * len(panels), 6), dpi=120, layout="constrained")
         FigureCanvasAgg(figure)
-        axes = figure.add_subplot()
-        marks = "osD^vP*X<>"
-        # Okabe and Ito's colours, which colour-blind readers tell apart.
-        colours = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
-        x, y = self.study.axes
-        for i, way in enumerate(dict.fromkeys(row.way for row in self.rows)):
-            at = [(getattr(r, x), getattr(r, y)) for r in self.rows if r.way == way]
-            at = [pair for pair in at if all(isinstance(v, float | int) and v > 0 for v in pair)]
+        figure.suptitle(self.study.approximates, fontsize=11)
+        for panel, axes in zip(
+            panels, figure.subplots(1, len(panels), squeeze=False)[0], strict=True
+        ):
+            self._draw_panel(panel, axes)
+        return files.replace_file(path, lambda place: figure.savefig(place, format="png"))
+
+    def _draw_panel(self, panel: Panel, axes: Any) -> None:
+        from matplotlib.ticker import LogFormatter
+
+        x, y = panel.axes
+        curves: dict[Curve, list[Row]] = {}
+        for row in self.rows:
+            if curve := panel.curve(row):
+                curves.setdefault(curve, []).append(row)
+        names, kinds = (list(dict.fromkeys(curve[i] for curve in curves)) for i in (0, 1))
+        exact: dict[float, list[str]] = {}
+        for i, (curve, rows) in enumerate(curves.items()):
+            label = ", ".join(filter(None, curve))
+            at = [(getattr(row, x), getattr(row, y)) for row in rows]
+            at = [
+                pair for pair in at
+                if all(isinstance(v, float | int) and 0 < v < math.inf for v in pair)
+            ]  # fmt: skip
             if not at:
-                exact = [r.cost for r in self.rows if r.way == way and r.error == 0 < r.cost]
-                if exact and (x, y) == ("cost", "error"):
-                    label = f"{way}: no error"
-                    axes.axvline(exact[0], color=colours[i % len(colours)], ls=":", label=label)
+                if (x, y) == ("cost", "error") and rows[0].error == 0 < rows[0].cost:
+                    exact.setdefault(rows[0].cost, []).append(label)
                 continue
-            style = "-" if len(at) > 1 and self.study.joined else ""
+            # One more kind for each time that the colours begin anew.
+            again, colour = divmod(names.index(curve.name), len(COLOURS))
+            style = STYLES[(kinds.index(curve.kind) + again) % len(STYLES)]
             axes.plot(
-                *zip(*sorted(at), strict=True), style + marks[i % len(marks)],
-                color=colours[i % len(colours)], label=way, markersize=5,
+                *zip(*sorted(at), strict=True), marker=MARKS[i % len(MARKS)], label=label,
+                color=COLOURS[colour], markersize=5, linestyle=style if panel.joined else "",
             )  # fmt: skip
+        for cost, labels in exact.items():
+            axes.axvline(cost, color="#888888", ls=":", label=f"no error: {', '.join(labels)}")
         if y == "error" and "luminance" in self.study.error:
             axes.axhline(PIXEL, color="#888888", linestyle="--", label="1/255")
         axes.set(
-            xscale="log", yscale="log", xlabel=getattr(self.study, x), ylabel=getattr(self.study, y)
-        )
-        axes.set_title(self.study.approximates, wrap=True, fontsize=10)
+            xscale="log", yscale="log", xlabel=panel.x or getattr(self.study, x),
+            ylabel=getattr(self.study, y),
+        )  # fmt: skip
+        if panel.diagonal:
+            axes.axline((1, 1), (10, 10), color="#888888", linestyle="-", label=panel.diagonal)
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_formatter(LogFormatter())
+            # Within a decade there are too few powers of 10 to read by.
+            axis.set_minor_formatter(LogFormatter(minor_thresholds=(1.1, 0.5)))
         axes.grid(visible=True, which="major", color="#dddddd")
-        if axes.get_legend_handles_labels()[0]:
-            figure.legend(loc="outside right upper", fontsize=7)
-        return files.replace_file(path, lambda place: figure.savefig(place, format="png"))
+        if handles := axes.get_legend_handles_labels()[0]:
+            columns = 1 + (len(handles) > 4) + (len(handles) > 12)
+            axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), fontsize=7, ncols=columns)
 
 
 def run(name: str, study: Study, /, *, quick: bool = False, progress_bar: bool = False) -> Result:
@@ -177,7 +241,7 @@ def run(name: str, study: Study, /, *, quick: bool = False, progress_bar: bool =
     return Result(name, study, rows, study.verdict(rows))
 
 
-def cheapest(rows: Iterable[Row], limit: float = PIXEL) -> Row | None:
+def cheapest(rows: Iterable[Row], limit: float = PIXEL, *, usual: Row | None = None) -> Row | None:
     """Return the row of least cost whose error is within a limit, or None.
 
     Parameters
@@ -185,9 +249,34 @@ def cheapest(rows: Iterable[Row], limit: float = PIXEL) -> Row | None:
     rows : iterable of Row
     limit : float, default: 1/255
         In the unit of the rows' errors.
+    usual : Row, optional
+        Of the rows: the one to keep, if it is within the limit, unless another is clearly cheaper.
     """
     good = [row for row in rows if row.error <= limit and not math.isnan(row.cost)]
-    return min(good, key=lambda row: row.cost) if good else None
+    best = min(good, key=lambda row: row.cost) if good else None
+    if best and usual in good and usual and best.cost > CLEAR * usual.cost:
+        return usual
+    return best
+
+
+def holding(rows: Iterable[Row], limit: float = PIXEL, *, coarse: bool = True) -> Row | None:
+    """Return the row that is coarsest of those that hold with all finer ones, or None.
+
+    Parameters
+    ----------
+    rows : iterable of Row
+        Of one way, with numbers for parameters.
+    limit : float, default: 1/255
+        In the unit of the rows' errors.
+    coarse : bool, default: True
+        Whether a larger parameter is coarser, as a step is; otherwise finer, as a count is.
+    """
+    found = None
+    for row in sorted(rows, key=lambda row: float(row.parameter), reverse=not coarse):
+        if not row.error <= limit:
+            break
+        found = row
+    return found
 
 
 def order(rows: Sequence[Row]) -> float:
@@ -242,3 +331,10 @@ def print_list(studies: Mapping[str, Study]) -> None:
 def words(value: Any) -> str:
     """Return a number as a sentence has it: three digits, whole ones without an exponent."""
     return f"{value:.0f}" if 1000 <= abs(value) < 1e7 else f"{value:.3g}"
+
+
+def span(values: Iterable[float]) -> str:
+    """Return the least and the largest of some numbers as a sentence has them."""
+    known = list(values)
+    least, largest = words(min(known)), words(max(known))
+    return least if least == largest else f"{least} to {largest}"

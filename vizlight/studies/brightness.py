@@ -15,7 +15,7 @@ from scipy import integrate
 
 from vizlight.model import _kernels, brightness
 from vizlight.studies._measure import take_turns
-from vizlight.studies._study import Row, Study, cheapest, words
+from vizlight.studies._study import PIXEL, Row, Study, cheapest, words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -84,10 +84,8 @@ def verdict(rows: Sequence[Row]) -> str:
             f"{way}: {good} of {len(own)} cases, {words(cost)} times the time, worst {worst:.2g}"
         )
     off = max(abs(float(row.more["mean - 1/2"])) for row in exact)
-    return (
-        f"p(k, n) gives a mean of 1/2 to {off:.1g}; keep it unless tolerance= allows another: "
-        f"within 1/255 are {'; '.join(said)}"
-    )
+    keep = "keep it unless tolerance= allows another" if off <= PIXEL else "do not rely on it"
+    return f"p(k, n) gives a mean of 1/2 to {off:.1g}; {keep}: within 1/255 are {'; '.join(said)}"
 
 
 STUDY = Study(
@@ -98,4 +96,5 @@ STUDY = Study(
     cost="ns a point",
     steps=lambda quick: [partial(measure, k, n, repeats=5 if quick else 25) for k, n in SPACES],
     verdict=verdict,
+    joined=False,
 )

@@ -21,7 +21,7 @@ from vizlight.light import Light
 from vizlight.model import brightness, reflection
 from vizlight.scene import Material, Scene
 from vizlight.studies._measure import take_turns
-from vizlight.studies._study import Row, Study, words
+from vizlight.studies._study import Curve, Row, Study, span, words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -167,22 +167,25 @@ def steps(quick: bool) -> list[Callable[[], Iterable[Row]]]:
 
 
 def verdict(rows: Sequence[Row]) -> str:
-    """Return what compensation does to brightness and contrast."""
+    """Return whether compensation brings brightness and contrast together."""
     plain, made = (
         [row for row in rows if row.way == f"torus and curve, {how}"]
         for how in ("plain", "compensated")
     )
-
-    def span(of: Sequence[Row], key: str) -> str:
-        values = [float(row.more[key]) for row in of]
-        return f"{words(min(values))} to {words(max(values))}"
-
-    contrast = "contrast (std / mean)"
-    return (
-        f"keep compensate=True where manifolds of several codimensions share a picture: it brings "
-        f"the mean from {span(plain, 'mean')} to {span(made, 'mean')} and the contrast from "
-        f"{span(plain, contrast)} to {span(made, contrast)}"
+    before, after = (max(row.error for row in of) for of in (plain, made))
+    keep = "keep compensate=True" if after < before else "take compensate=False"
+    said = (
+        f"{keep} where manifolds of several codimensions share a picture: compensated, means are "
+        f"at most {words(after)} off 1/2, plain {words(before)}"
     )
+    near, far = ([float(row.more["contrast (std / mean)"]) for row in of] for of in (made, plain))
+    even = "evens out" if np.ptp(near) < np.ptp(far) else "does not even out"
+    return f"{said}; it {even} contrast: {span(near)}, plain {span(far)}"
+
+
+def curve_of(row: Row) -> Curve | None:
+    """Return the curve of a row, one for each k; where nothing but rounding is left, none."""
+    return Curve(row.way, f"k = {row.more['k']:g}") if row.error > 1e-12 else None
 
 
 STUDY = Study(
@@ -194,4 +197,5 @@ STUDY = Study(
     steps=steps,
     verdict=verdict,
     axes=("parameter", "error"),
+    curve=curve_of,
 )

@@ -13,10 +13,11 @@ import numpy as np
 
 from vizlight import engine
 from vizlight.geometry import manifolds
+from vizlight.geometry._parametric import CENTRAL_STEP
 from vizlight.light import Light
 from vizlight.scene import Scene, View
 from vizlight.studies._measure import take_turns
-from vizlight.studies._study import Row, Study, cheapest, order, words
+from vizlight.studies._study import PIXEL, Row, Study, holding, order, words
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,8 +29,9 @@ DOMAIN = [(0.0, 2 * np.pi)] * 2
 SCENE = Scene(
     lights=Light(direction=(0.7, 0.6, 0.38, 0.2)), view=View(direction=(0.1, 0.3, 0.9, -0.2))
 )
-#: Steps of differences, of the domain; the fifth from the end is the default.
-CENTRAL = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 7.6e-7, 1e-8, 1e-10, 1e-12)
+#: The default of differences, and steps tried, of the domain.
+DEFAULT = float(f"{CENTRAL_STEP:.2g}")
+CENTRAL = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, DEFAULT, 1e-8, 1e-10, 1e-12)
 COMPLEX = (1e-4, 1e-8, 1e-30)
 
 
@@ -78,15 +80,31 @@ def verdict(rows: Sequence[Row]) -> str:
     """Return which way to take, its step, and the order of differences."""
     central = [row for row in rows if row.way.startswith("central")]
     best = min(central, key=lambda row: row.error)
-    above = [row for row in central if float(row.parameter) > 10 * float(best.parameter)]
+    above = [row for row in central if float(row.parameter) >= float(best.parameter)]
+    coarse = holding(above)
+    said = (
+        f"at 1/255 of error any step from {best.parameter:g} to {coarse.parameter:g} of the domain "
+        "will do" if coarse
+        else f"no step of central differences is within 1/255, the best leaves "
+        f"{words(best.error / PIXEL)} of 255"
+    )  # fmt: skip
+    own = next((row for row in central if row.parameter == DEFAULT), best)
+    # Between two steps that were tried the best one is not known.
+    said += (
+        f"; leave the step at its default, {own.parameter:g} (error {own.error:.1g}"
+        if own.error <= 10 * best.error
+        else f"; set the step to {best.parameter:g} (error {best.error:.1g}, that of the default "
+        f"{own.error:.1g}"
+    )
+    smooth = [row for row in above if float(row.parameter) > 10 * float(best.parameter)]
+    if len(smooth) > 1:
+        said += f"; of order {order(smooth):.2f} above it, in theory 2"
     step = min((row for row in rows if row.way.startswith("complex")), key=lambda row: row.error)
-    coarse = cheapest([row._replace(cost=-float(row.parameter)) for row in central])
-    assert coarse is not None
+    if step.error >= own.error:
+        return f"{said}); tangents='complex' is no nearer: error {step.error:.1g}"
     return (
-        f"at 1/255 of error any step up to {coarse.parameter:g} of the domain will do; leave the "
-        f"step at its default near {best.parameter:g} (error {best.error:.1g}, order "
-        f"{order(above):.2f} above it), and use tangents='complex' where the function takes "
-        f"complex numbers: error {step.error:.1g} at {words(step.cost / best.cost)} times the time"
+        f"{said}), and use tangents='complex' where the function takes complex numbers: error "
+        f"{step.error:.1g} at {words(step.cost / own.cost)} times the time"
     )
 
 
@@ -96,7 +114,7 @@ STUDY = Study(
     parameter="step / domain",
     error="largest error of luminance",
     cost="ns a point",
-    steps=lambda quick: [partial(frame_errors, 64 if quick else 128, 1 if quick else 3)],
+    steps=lambda quick: [partial(frame_errors, 64 if quick else 128, 3 if quick else 5)],
     verdict=verdict,
     axes=("parameter", "error"),
 )

@@ -20,7 +20,7 @@ from vizlight.filters import fur
 from vizlight.light import Light
 from vizlight.scene import Material, Scene, View
 from vizlight.studies._measure import peak_memory, take_turns
-from vizlight.studies._study import PIXEL, Row, Study, cheapest, words
+from vizlight.studies._study import PIXEL, Row, Study, holding, span, words
 from vizlight.studies.tubes import time_to_draw
 
 if TYPE_CHECKING:
@@ -140,7 +140,7 @@ def count_fibres(fibres: int, exact: Any) -> Row:
 
 def steps(quick: bool) -> list[Callable[[], Iterable[Row]]]:
     """Return the steps: segments of a fibre, then numbers of fibres."""
-    n, repeats = (48, 1) if quick else (128, 5)
+    n, repeats = (48, 3) if quick else (128, 5)
     found: list[Callable[[], Iterable[Row]]] = [
         lambda segments=segments: [measure(n, segments, repeats)]  # type: ignore[misc]
         for segments in ((1, 3, 7) if quick else (1, 2, 3, 5, 7, 12))
@@ -155,12 +155,12 @@ def steps(quick: bool) -> list[Callable[[], Iterable[Row]]]:
 
 
 def verdict(rows: Sequence[Row]) -> str:
-    """Return how many segments and fibres are enough."""
-    own = [row for row in rows if row.way == "segments of a fibre"]
-    best = cheapest([row._replace(cost=float(row.parameter)) for row in own])
-    many = [row for row in rows if row.way == "fibres a patch"]
-    few = cheapest([row._replace(cost=float(row.parameter)) for row in many])
-    least = min(own, key=lambda row: row.error)
+    """Return how many segments and fibres are enough, and the speed beside VTK's glyphs."""
+    own, many = (
+        [row for row in rows if row.way == way] for way in ("segments of a fibre", "fibres a patch")
+    )
+    best, few = holding(own, coarse=False), holding(many, coarse=False)
+    least, most = own[-1], many[-1]
     said = (
         f"at an RMS error of 1/255 use {best.parameter} segments a fibre (error "
         f"{best.error:.1g})" if best
@@ -169,12 +169,12 @@ def verdict(rows: Sequence[Row]) -> str:
     said += (
         f", and {words(few.parameter)} fibres or more where a patch's mean is to be that near"
         if few
-        else f"; {words(many[-1].parameter)} fibres leave {many[-1].error / PIXEL:.2g} of 255"
+        else f"; {words(most.parameter)} fibres a patch leave {most.error / PIXEL:.2g} of 255"
     )
-    speed = [float(row.more["VTK glyphs unlit, s"]) / float(row.more["s"]) for row in own]
+    speed = (float(row.more["VTK glyphs unlit, s"]) / float(row.more["s"]) for row in own)
     return (
-        f"{said}; fur is grown and lit in 1/{min(speed):.2g} to 1/{max(speed):.2g} of the time in "
-        "which VTK's glyph filter grows it unlit"
+        f"{said}; fur is grown and lit {span(speed)} times as fast as VTK's glyph filter grows it "
+        "unlit"
     )
 
 

@@ -18,13 +18,18 @@ from vizlight.light import Light
 from vizlight.model import highlights, reflection
 from vizlight.scene import Material, Scene, View
 from vizlight.studies._measure import take_turns
-from vizlight.studies._study import Row, Study, words
+from vizlight.studies._study import Curve, Panel, Row, Study, holding, words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
 DEGREES = (10.0, 30.0, 60.0, 90.0, 120.0, 150.0)
 POWERS = (10.0, 40.0, 200.0)
+#: Rules for the factor that are formulas, the usual one first, and the one found by search.
+CORRECTED = "4 cos(beta) corrected for r"
+FORMULAS, SEARCHED = ("4", "4 cos(beta)", CORRECTED), "best by worst"
+#: The power whose rules are drawn, and the error, of 255, below which there is nothing to see.
+DRAWN, SEEN = 40.0, 1e-4
 
 
 @dataclass(frozen=True)
@@ -58,7 +63,7 @@ def rules(degrees: float, r: float) -> list[Rule]:
     factors = {
         "4": 4.0,
         "4 cos(beta)": float(highlights.simple_factor(angle)),
-        "the same, for r": float(highlights.simple_factor(angle, r)),
+        CORRECTED: float(highlights.simple_factor(angle, r)),
         "best by worst": float(highlights.best_factor(angle, r)),
         "best by RMS": float(highlights.best_factor(angle, r, by="rms")),
         "best by volume": float(highlights.best_factor(angle, r, by="volume")),
@@ -205,26 +210,63 @@ def steps(quick: bool) -> list[Callable[[], Iterable[Row]]]:
 
 
 def verdict(rows: Sequence[Row]) -> str:
-    """Return the rule to take, and up to which angle the exchange is within 1 of 255."""
-    worst: dict[str, list[float]] = {}
-    for row in rows:
-        if row.way in ("rule 4", "rule 4 cos(beta)", "rule best by worst"):
-            worst.setdefault(row.way.removeprefix("rule "), []).append(row.error)
-    rule, usual = max(worst["4 cos(beta)"]), max(worst["4"])
-    made = [row for row in rows if row.way.startswith("engine, Blinn")]
-    plain = [row for row in rows if row.way.startswith("engine, Phong")]
-    speed = np.mean([row.cost for row in plain]) / np.mean([row.cost for row in made])
-    good = [row for row in made if float(row.more["bound"]) <= 1]
-    reach = max((float(row.parameter) for row in good), default=0.0)
-    where = (
-        f"holds 1/255 up to {reach:g} degrees between light and eye" if reach
-        else f"does not hold 1/255 from {min(float(row.parameter) for row in made):g} degrees on"
-    )  # fmt: skip
+    """Return the rule to take, and what the engine's exchange keeps and saves at each power."""
+    worst = {
+        rule: max(row.error for row in rows if row.way == f"rule {rule}")
+        for rule in (*FORMULAS, SEARCHED)
+    }
+    best = min(FORMULAS, key=lambda rule: worst[rule])
+    rest = ", ".join(f"{rule}: {worst[rule]:.4g}" for rule in FORMULAS if rule != best)
     return (
-        f"take 4 cos(beta) times Phong's power, whose worst error is {rule:.3g} of 255 where the "
-        f"usual 4 makes {usual:.3g}; highlight_error=1 {where}, and the exchange takes "
-        f"1/{words(speed)} of the time"
+        f"take {best} times Phong's power, whose worst error is {worst[best]:.4g} of 255 ({rest}, "
+        f"the best that a search finds: {worst[SEARCHED]:.4g}); {_exchanged(rows)}"
     )
+
+
+def _exchanged(rows: Sequence[Row]) -> str:
+    """Return up to which angle each power is exchanged within 1 of 255, and what that takes."""
+    made = [row for row in rows if row.way.startswith("engine, Blinn")]
+    phong = {
+        (row.way.rsplit(" ", 1)[1], row.parameter): row.cost
+        for row in rows if row.way.startswith("engine, Phong")
+    }  # fmt: skip
+    said, held = [], []
+    for power in sorted({float(row.more["power"]) for row in made}):
+        own = [
+            row._replace(error=float(row.more["bound"]))
+            for row in made if row.more["power"] == power
+        ]  # fmt: skip
+        last, first = holding(own, 1.0), min(own, key=lambda row: float(row.parameter))
+        if last is None:
+            said.append(
+                f"at no angle for power {power:g} (its bound is {words(first.error)} of 255 at "
+                f"{first.parameter:g} degrees)"
+            )
+            continue
+        held += [row for row in own if float(row.parameter) <= float(last.parameter)]
+        said.append(f"up to {last.parameter:g} degrees between light and eye for power {power:g}")
+    where = f"highlight_error=1 allows the engine Blinn's law {', '.join(said)}"
+    if not held:
+        return f"{where}, so leave it out"
+    ratio = sum(row.cost for row in held) / sum(
+        phong[f"{float(row.more['power']):g}", row.parameter] for row in held
+    )
+    if ratio >= 1:
+        return f"{where}, but leave it out: there it takes {words(ratio)} times Phong's time"
+    return f"{where}: there it takes {words(ratio)} times Phong's time"
+
+
+def curve_of_rules(row: Row) -> Curve | None:
+    """Return the curve of a rule on a sphere, for one power."""
+    rule = row.way.startswith("rule ") and ", k = " not in row.way
+    return Curve(row.way) if rule and row.more["power"] == DRAWN else None
+
+
+def curve_of_exchange(row: Row) -> Curve | None:
+    """Return the curve of an exchange or a terminator, where there is something to see."""
+    name, _, kind = row.way.partition("=" if row.way.startswith("term") else " for ")
+    shown = name in ("engine, Blinn", "terminator") and row.error >= SEEN
+    return Curve(name, kind) if shown else None
 
 
 STUDY = Study(
@@ -236,4 +278,6 @@ STUDY = Study(
     steps=steps,
     verdict=verdict,
     axes=("parameter", "error"),
+    curve=curve_of_rules,
+    beside=(Panel(axes=("parameter", "error"), curve=curve_of_exchange),),
 )

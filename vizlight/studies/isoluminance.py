@@ -25,7 +25,7 @@ from vizlight.geometry.primitives import Sphere, Truncus
 from vizlight.light import Light
 from vizlight.scene import Material, Scene
 from vizlight.studies._measure import take_turns
-from vizlight.studies._study import Row, Study, words
+from vizlight.studies._study import CLEAR, Curve, Panel, Row, Study, cheapest, words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -37,6 +37,8 @@ if TYPE_CHECKING:
 #: Pixels that the shape covers, as in the source's tables, and the facets of its comparison.
 SIZES = (550, 4500, 9000, 55_000, 250_000)
 FACETS = {"sphere": 70, "cone": 15}
+#: A pixel has 256 steps: less cannot be told apart.
+FAINT = 1.5 / 255
 TOWARD = np.array([1.0, -0.8, 0.9]) / math.sqrt(2.45)
 EYE = np.array([0.3, -1.0, 0.4]) / math.sqrt(1.25)
 LOW, SCALE = 0.1, 0.9
@@ -161,8 +163,7 @@ def measure(shape: str, area: int, levels: int = 200, repeats: int = 3) -> list[
     rows = [row(f"{levels} levels", functools.partial(contours, shape, levels))]
     number = FACETS[shape]
     rows.append(row(f"{number} facets", functools.partial(facets, shape, number)))
-    # A pixel has 256 steps: less cannot be told apart.
-    wanted = max(rows[0].largest, 1.5 / 255)
+    wanted = max(rows[0].largest, FAINT)
     while rows[-1].largest > wanted and number < 400_000:
         number = math.ceil(number * 1.6)
         fine = row(f"{number} facets, equal", functools.partial(facets, shape, number))
@@ -302,7 +303,7 @@ def steps(quick: bool) -> list[Callable[[], list[Row]]]:
     """Return the steps: vertices for an error, pictures, the virtual light."""
     errors = (0.05, 0.02) if quick else (0.05, 0.02, 0.01, 0.005)
     sizes = SIZES[:2] if quick else SIZES
-    levels, repeats = (50, 1) if quick else (200, 3)
+    levels, repeats = (50, 3) if quick else (200, 3)
     return [
         *(functools.partial(vertices, shape, worst) for shape in SHAPES for worst in errors),
         *(functools.partial(pictures, s, area, levels, repeats) for s in SHAPES for area in sizes),
@@ -311,15 +312,67 @@ def steps(quick: bool) -> list[Callable[[], list[Row]]]:
 
 
 def verdict(rows: Sequence[Row]) -> str:
-    """Return how many vertices contours save, and what the picture costs."""
-    said = []
+    """Return what needs the fewest vertices for an error, and what makes a picture fastest."""
+    fewest: dict[str, list[str]] = {}
+    by_time = []
     for shape in SHAPES:
-        fine = {row.way: row for row in rows if row.way.startswith(f"{shape}, ")}
-        drawn, flat = fine[f"{shape}, contours"], fine[f"{shape}, facets"]
-        said.append(
-            f"a {shape} needs {words(drawn.cost)} vertices where facets need {words(flat.cost)}"
+        drawn, flat = (
+            {row.parameter: row.cost for row in rows if row.way == f"{shape}, {way}"}
+            for way in ("contours", "facets")
         )
-    return f"for an error of {drawn.error:g} use contours: " + ", ".join(said)
+        for worst, few in drawn.items():
+            many = flat[worst]
+            way = "contours" if few <= CLEAR * many else "either way"
+            way = "facets" if many <= CLEAR * few else way
+            fewest.setdefault(way, []).append(
+                f"a {shape} at an error of {worst:g} ({words(few)}, facets {words(many)})"
+            )
+        start = f"picture of a {shape}, "
+        made = [
+            row._replace(way=row.way.removeprefix(start).replace(", equal", " of equal error"))
+            for row in rows
+            if row.way.startswith(start)
+        ]
+        made = [row for row in made if row.parameter == max(float(r.parameter) for r in made)]
+        if not made:
+            continue
+        bands = next(row for row in made if row.way.endswith("levels"))
+        # What cannot be told apart in a picture counts as equal.
+        good = [row._replace(cost=_milliseconds(row)) for row in made]
+        best = cheapest(good, max(bands.error, FAINT))
+        assert best is not None
+        by_time.append(
+            f"{best.way} for a {shape} of {words(float(best.parameter))} "
+            f"pixels ({words(best.cost)} ms, "
+            + ", ".join(f"{row.way} {words(row.cost)}" for row in good if row is not best)
+            + ")"
+        )
+    said = "; ".join(f"{way} for {', '.join(where)}" for way, where in fewest.items())
+    said = f"for few vertices take {said}"
+    return f"{said}; for the time of a picture as good {', '.join(by_time)}" if by_time else said
+
+
+def _milliseconds(row: Row) -> float:
+    return float(row.more["ms to model"]) + float(row.more["ms a frame"])
+
+
+def curve_of_vertices(row: Row) -> Curve | None:
+    """Return the curve of vertices for an error: a colour a shape."""
+    shape, _, way = row.way.partition(", ")
+    return Curve(shape, way) if shape in SHAPES else None
+
+
+def curve_of_pictures(row: Row) -> Curve | None:
+    """Return the curve of pictures, whatever the number of facets of equal ones."""
+    if not row.way.startswith("picture of a "):
+        return None
+    shape, way = row.way.removeprefix("picture of a ").split(", ", 1)
+    return Curve(shape, "facets of equal error" if way.endswith("equal") else way)
+
+
+def curve_of_highlights(row: Row) -> Curve | None:
+    """Return the curve of a virtual light."""
+    return Curve(row.way) if row.way.startswith("virtual") else None
 
 
 STUDY = Study(
@@ -330,4 +383,11 @@ STUDY = Study(
     cost="vertices",
     steps=steps,
     verdict=verdict,
+    curve=curve_of_vertices,
+    beside=(
+        Panel(axes=("parameter", "error"), curve=curve_of_pictures, x="pixels of the shape"),
+        Panel(
+            axes=("parameter", "error"), curve=curve_of_highlights, x="distance of the light, radii"
+        ),
+    ),
 )

@@ -25,7 +25,7 @@ from vizlight.light import Light
 from vizlight.model import brightness, cylinder, highlights, reflection
 from vizlight.scene import Material, Scene, View
 from vizlight.studies._measure import take_turns
-from vizlight.studies._study import Row, Study, cheapest, words
+from vizlight.studies._study import Curve, Panel, Row, Study, cheapest, words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -207,14 +207,14 @@ def rows(count: int = 20_000, repeats: int = 3) -> list[Row]:
         tube_of = m.model.split()[2] if m.model.startswith("tube") else "0"
         more: dict[str, float | str] = {
             "term": m.term,
-            "worst": m.worst,
-            "worst, scaled": m.scaled_worst,
-            "RMS, scaled": m.scaled_rms,
+            "worst, by the best factor": m.scaled_worst,
+            "RMS without it": m.rms,
+            "worst without it": m.worst,
             "bytes a point": m.bytes,
         }
         name = "tube" if int(tube_of) else m.model
         way = f"{name}, {m.term}, {m.setting}"
-        found.append(Row(way, int(tube_of), m.rms, m.nanoseconds, more))
+        found.append(Row(way, int(tube_of), m.scaled_rms, m.nanoseconds, more))
     return found
 
 
@@ -222,28 +222,46 @@ def verdict(rows: Sequence[Row]) -> str:
     """Return which model to take for lights anywhere, and for a headlight."""
     said = []
     for term in ("diffuse", "specular"):
-        anywhere = [r for r in rows if r.more["term"] == term and r.way.endswith("random")]
-        best = cheapest(anywhere)
-        assert best is not None
-        near = min((r for r in anywhere if not r.parameter and r.error > 0), key=lambda r: r.error)
-        name = near.way.split(", " + term)[0]
-        said.append(
-            f"{term}: '{best.way.split(', ')[0]}' at {words(best.cost)} ns a point, while "
-            f"'{name}' at {words(near.cost)} ns is off by {near.error:.2g}"
-        )
-        head = [r for r in rows if r.more["term"] == term and r.way.endswith("headlight")]
-        scaled = cheapest([r._replace(error=float(r.more["RMS, scaled"])) for r in head])
-        assert scaled is not None
-        said.append(f"a headlight's by '{scaled.way.split(', ' + term)[0]}' times a factor")
-    return f"at an RMS error of 1/255 use, {'; '.join(said)}"
+        for setting in ("random", "headlight"):
+            own = [r for r in rows if r.way.endswith(f", {term}, {setting}")]
+            where = f"{term} by a headlight" if setting == "headlight" else term
+            best = cheapest(own)
+            least = min(own, key=lambda row: row.error)
+            if best is None:
+                said.append(f"{where}: none, '{_model(least)}' is off by {least.error:.2g}")
+                continue
+            said.append(f"{where}: '{_model(best)}' at {words(best.cost)} ns a point")
+            cheaper = [r for r in own if r.cost < best.cost and not r.parameter]
+            if cheaper:
+                near = min(cheaper, key=lambda row: row.error)
+                said[-1] += (
+                    f" ('{_model(near)}' at {words(near.cost)} ns is off by {near.error:.2g})"
+                )
+    return f"at an RMS error of 1/255, each model by its best factor, use, {'; '.join(said)}"
+
+
+def _model(row: Row) -> str:
+    name = row.way.split(f", {row.more['term']}")[0]
+    return f"{name} of {row.parameter} sides" if row.parameter else name
+
+
+def curve_of(term: str) -> Callable[[Row], Curve | None]:
+    """Return what shows one term with lights anywhere."""
+    return lambda row: (
+        Curve(row.way.removesuffix(f", {term}, random"), term)
+        if row.way.endswith(f"{term}, random")
+        else None
+    )
 
 
 STUDY = Study(
     approximates=f"diffuse and specular light of thin lines, N.H to the power {SHININESS:g}",
     reference="the exact light of a thin cylinder",
     parameter="sides of a tube, 0 for a line",
-    error="RMS error of the term",
+    error="RMS error of the term by its best factor",
     cost="ns a point",
     steps=lambda quick: [lambda: rows(4000 if quick else 20_000, 3)],
     verdict=verdict,
+    curve=curve_of("diffuse"),
+    beside=(Panel(curve=curve_of("specular")),),
 )

@@ -18,7 +18,7 @@ from vizlight.geometry import manifolds
 from vizlight.light import Light
 from vizlight.scene import Material, Scene, View
 from vizlight.studies._measure import take_turns
-from vizlight.studies._study import PIXEL, Row, Study, cheapest, order, words
+from vizlight.studies._study import PIXEL, Row, Study, holding, order, span, words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -125,38 +125,39 @@ def steps(quick: bool) -> list[Callable[[], list[Row]]]:
 
 
 def verdict(rows: Sequence[Row]) -> str:
-    """Return how fine a mesh must be, what it saves, and the order."""
-    usual = [row for row in rows if row.way == "3-space, power 20"]
-    pixel = next(row for row in rows if row.way == "a point a pixel")
-    best = cheapest(usual)
-    ways = dict.fromkeys(row.way for row in rows if row.error)
-    orders = [
-        -order(
-            [
-                row._replace(error=float(row.more["off the terminator"]))
-                for row in rows
-                if row.way == way
-            ][-3:]
-        )
-        for way in ways
+    """Return how fine a mesh each power needs, what that saves, and the orders."""
+    ways: dict[str, list[Row]] = {}
+    for row in rows:
+        ways.setdefault(row.way, []).append(row)
+    (pixel,) = ways.pop("a point a pixel")
+    in_3 = sorted(
+        (own for own in ways.values() if own[0].more["n"] == 3),
+        key=lambda own: float(own[0].more["power"]),
+    )
+    said, costs = [], []
+    for own in in_3:
+        power, finest = own[0].more["power"], max(own, key=lambda row: int(row.parameter))
+        best = holding(own, coarse=False)
+        if best is None:
+            said.append(
+                f"more than {finest.parameter} at power {power:g} (which leave "
+                f"{words(finest.error / PIXEL)} of 255)"
+            )
+        else:
+            said.append(f"{best.parameter} at power {power:g}")
+            costs.append(best.cost / pixel.cost)
+    saved = f", at {span(costs)} times the cost of a point a pixel" if costs else ""
+    smooth = [
+        -order([row._replace(error=float(row.more["off the terminator"])) for row in own][-3:])
+        for own in ways.values()
     ]
-    at = -order(usual[-2:])
-    falls = f"{min(orders):.2f} to {max(orders):.2f} off the terminator and {at:.2f} at it"
-    if best is None:
-        fine = usual[-1]
-        return (
-            f"meshes up to {fine.parameter} points on a circle miss by {fine.error / PIXEL:.2g} of "
-            f"255; error falls with the spacing to the power {falls}"
-        )
-    needed = {
-        row.more["power"]: row.parameter
-        for row in reversed(rows) if row.error and row.error <= PIXEL and row.more["n"] == 3
-    }  # fmt: skip
-    others = ", ".join(f"{size} at power {power:g}" for power, size in sorted(needed.items()))
+    # The least power has the weakest highlight beside the terminator's kink.
+    kink = -order(in_3[0][-3:])
     return (
-        f"at 1/255 of error light the points of a mesh whose normals turn once round in "
-        f"{best.parameter} steps or more ({others}): 1/{words(pixel.cost / best.cost)} of the cost "
-        f"of a point a pixel; error falls with the spacing to the power {falls}"
+        "at 1/255 of error light the points of a mesh whose normals turn once round in at least "
+        f"these numbers of steps: {', '.join(said)}{saved}; error falls with the spacing to the "
+        f"power {min(smooth):.2f} to {max(smooth):.2f} off the terminator, in theory 2, and "
+        f"{kink:.2f} at it, in theory 1"
     )
 
 

@@ -16,7 +16,7 @@ from vizlight.filters import project
 from vizlight.light import Light
 from vizlight.scene import Scene, View
 from vizlight.studies._measure import peak_memory, take_turns
-from vizlight.studies._study import PIXEL, Row, Study, words
+from vizlight.studies._study import PIXEL, Curve, Panel, Row, Study, span, words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -56,26 +56,41 @@ def cost(k: int, n: int, count: int = 500_000, repeats: int = 3) -> list[Row]:
 
 
 def verdict(rows: Sequence[Row]) -> str:
-    """Return what float32 saves and what a surface in 4-space costs."""
+    """Return where float32 pays and what a surface in 4-space costs."""
     pairs: dict[str, list[Row]] = {}
     for row in rows:
         pairs.setdefault(row.way, []).append(row)
     high, low = pairs["light"], pairs["light, float32"]
-    gain = [a.cost / b.cost for a, b in zip(high, low, strict=True)]
+    gain = {(a.more["k"], a.parameter): a.cost / b.cost for a, b in zip(high, low, strict=True)}
+    pays = [space for space, times in gain.items() if times > 1]
     worst = max(row.error for row in low)
     here = next(r for r in high if (r.more["k"], r.parameter) == (2, 4))
     turn = next(r for r in pairs["turn and project"] if (r.more["k"], r.parameter) == (2, 4))
-    right = "use" if worst <= PIXEL else "do not use"
+    if worst > PIXEL or not pays:
+        said = f"keep precision='float64': float32 is {span(gain.values())} times as fast"
+    elif len(pays) == len(gain):
+        said = f"use precision='float32': {span(gain.values())} times as fast"
+    else:
+        where = ", ".join(f"({k:g}, {n:g})" for k, n in pays)
+        rest = (times for space, times in gain.items() if space not in pays)
+        said = (
+            f"use precision='float32' for (k, n) = {where}: "
+            f"{span(gain[space] for space in pays)} times as fast, elsewhere {span(rest)} times"
+        )
     return (
-        f"at 1/255 of error {right} precision='float32': {words(min(gain))} to {words(max(gain))} "
-        f"times as fast, off by {worst:.1g}; a surface in 4-space takes {words(here.cost)} ns a "
-        f"point to light and {words(turn.cost)} to turn and project"
+        f"at 1/255 of error {said}, off by {worst:.1g}; a surface in 4-space takes "
+        f"{words(here.cost)} ns a point to light and {words(turn.cost)} to turn and project"
     )
+
+
+def curve_of(*ways: str) -> Callable[[Row], Curve | None]:
+    """Return what shows these ways, a curve for each k."""
+    return lambda row: Curve(row.way, f"k = {row.more['k']:g}") if row.way in ways else None
 
 
 def steps(quick: bool) -> list[Callable[[], list[Row]]]:
     """Return a step for each space."""
-    count, repeats = (50_000, 1) if quick else (500_000, 3)
+    count, repeats = (100_000, 9) if quick else (500_000, 5)
     return [partial(cost, k, n, count, repeats) for k, n in SPACES]
 
 
@@ -88,4 +103,6 @@ STUDY = Study(
     steps=steps,
     verdict=verdict,
     axes=("parameter", "cost"),
+    curve=curve_of("light", "light, float32"),
+    beside=(Panel(axes=("parameter", "cost"), curve=curve_of("turn and project", "project")),),
 )
