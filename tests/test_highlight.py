@@ -91,7 +91,8 @@ def test_the_bound_includes_rounding(shininess, degrees, dtype, random):
     """Where the highlights fall both are rounded: at no angle the laws agree, numbers do not."""
     angle = np.deg2rad(degrees)
     way = np.array([np.sin(angle), 0, np.cos(angle)])
-    half = (way + [0, 0, 1]) / np.linalg.norm(way + [0, 0, 1])
+    half = way + np.array([0, 0, 1])
+    half /= np.linalg.norm(half)
     width = np.sqrt(random.uniform(0, 4, (20_000, 1)) / max(shininess, 4))
     normals = half + width * random.standard_normal((20_000, 3))
     tangents = np.cross(normals, random.standard_normal((20_000, 3))).astype(dtype)

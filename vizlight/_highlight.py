@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from vizlight.model import _kernels, highlights
+from vizlight.model._extremes import PEAK
 from vizlight.model._kernels import DEFICIT_FROM
 
 if TYPE_CHECKING:
@@ -84,7 +85,7 @@ def choose(
         vector, angle = half
         power, worst = _nearest(angle, material.shininess)
         # The highlight asked for would have been rounded too.
-        worst += highlights.PEAK * (rounding(material.shininess) + rounding(power))
+        worst += PEAK * (rounding(material.shininess) + rounding(power))
         error = worst * material.specular * scene.lights[i].intensity
         if power >= LEAST_POWER:
             offers.append((error, i, Highlight("blinn", power, vector, error)))
