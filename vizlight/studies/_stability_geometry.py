@@ -527,6 +527,11 @@ def inside_ends(_: Any, count: int, random: Any) -> Iterator[Check]:
     for case, toward in (("at the horizon", (1, 0, 0)), ("below it", (1, 0, -1))):
         value, seconds = timed(partial(solid, flat, inside, direction=toward))
         yield exactly(case, value, np.full(many, np.inf), seconds)
+    steep = [-p[2] for p in _digits.exact(inside)]
+    for case, least in (("smallest number", 5e-324), ("one ulp", 2.0**-52)):
+        value, seconds = timed(partial(solid, flat, inside, direction=(least, -least, 1.0)))
+        errors = [(_digits.exact(v) - t) / size for v, t in zip(value, steep, strict=True)]
+        yield off(f"off the zenith by the {case}", errors, RELIEF, seconds)
     above = inside * [1, 1, -1]
     value, seconds = timed(lambda: solid(flat, above, direction=(1, 0, 0)))
     yield exactly("at the horizon, above", value, np.zeros(many), seconds)

@@ -204,7 +204,7 @@ def veronese(_: Any, count: int, random: Any) -> Iterator[Check]:
     """Points, of the square of the radius, and the space of the frame."""
     from vizlight.studies import _digits
 
-    for share in (0.25, 0.5):
+    for share in (0.4, 0.7):
         size = max(round((share * count / 3) ** 0.5), 2)
         radius = float(10 ** random.uniform(-70, 70))
         made, seconds = timed(partial(manifolds.veronese, radius=radius, resolution=size))
@@ -216,8 +216,8 @@ def veronese(_: Any, count: int, random: Any) -> Iterator[Check]:
         for point, frame, i in zip(made.points, made.frame, near, strict=True):
             x, y, z = spheres[i]
             slope = [[y, x, 0], [z, 0, x], [0, z, y], [x, -y, 0]]
-            size = [abs(c) for c in (x, y, z)]
-            axis = [_digits.mp.mpf(j == size.index(min(size))) for j in range(3)]
+            lengths = [abs(c) for c in (x, y, z)]
+            axis = [_digits.mp.mpf(j == lengths.index(min(lengths))) for j in range(3)]
             _, *flat = _digits.orthonormal([[x, y, z], axis, _cross([x, y, z], axis)])
             space = [[_digits.dot(row, t) for row in slope] for t in flat]
             worst = max(
