@@ -14,7 +14,7 @@ import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View, render
 
 bundle = vizlight.load_example("fibre_bundle.vtp")
-camera = render.camera_on(bundle, (0.3, -1, 0.4), zoom=1.5)
+camera = render.camera_on(bundle, (0.3, -1, 0.4), aspect=1.2)
 scene = Scene(
     lights=Light(direction=(-0.5, -1, 1)),
     view=View.from_camera(camera),

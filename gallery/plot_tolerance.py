@@ -15,7 +15,7 @@ import vizlight
 from vizlight import Light, Material, Scene, View, engine, render
 
 bundle = vizlight.load_example("fibre_bundle.vtp")
-camera = render.camera_on(bundle, (0.3, -1, 0.4), zoom=1.5)
+camera = render.camera_on(bundle, (0.3, -1, 0.4), aspect=1.2)
 scene = Scene(
     lights=Light.headlight(),
     view=View(direction=(0.3, -1, 0.4)),

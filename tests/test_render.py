@@ -112,9 +112,26 @@ def test_a_mesh_is_centred_as_it_is_seen(direction):
     box = render.camera_on(mesh.bounds, direction, parallel=True)
     if np.count_nonzero(direction) == 3:
         assert np.linalg.norm(np.subtract(camera.focal_point, box.focal_point)) > 0.1
-    assert camera.parallel_scale == box.parallel_scale
+    assert camera.parallel_scale < box.parallel_scale
     with pytest.raises(ValueError, match="bounds: expected a mesh with points"):
         render.camera_on(pv.PolyData())
+
+
+@pytest.mark.opengl
+@pytest.mark.parametrize("parallel", [False, True])
+@pytest.mark.parametrize("size", [(300, 100), (100, 300), (150, 150)])
+def test_a_mesh_fills_the_picture(size, parallel):
+    """To within a twentieth on one pair of sides; a point that is nowhere has no say."""
+    mesh = pv.ParametricEllipsoid(3, 1, 0.5).rotate_z(30, inplace=False)
+    mesh.points[3] = np.nan
+    mesh["luminance"] = np.zeros(mesh.n_points)
+    camera = render.camera_on(mesh, (0.5, -1, 0.7), parallel=parallel, aspect=size[0] / size[1])
+    plotter = render.make_plotter(mesh, camera=camera, size=size)
+    dark = np.asarray(plotter.screenshot(return_img=True))[..., 0] < 128
+    plotter.close()
+    filled = [np.ptp(np.flatnonzero(dark.any(axis=i))) / n for i, n in enumerate(size)]
+    assert 0.85 < max(filled) < 0.97
+    assert not (dark[0].any() or dark[-1].any() or dark[:, 0].any() or dark[:, -1].any())
 
 
 def test_a_scalar_bar_is_named(tmp_path):

@@ -12,9 +12,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from vizlight.model import _kernels, highlights
+from vizlight.model._extremes import PEAK
 from vizlight.model._kernels import DEFICIT_FROM
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from vizlight._check import Vector
     from vizlight.plan import Model
     from vizlight.scene import Scene
@@ -38,7 +41,7 @@ class Highlight(NamedTuple):
         The unit half vector, where it is the same at all points and used as such.
     error : float
         The most that this law differs from the one asked for, in pixel values of 255 and with
-        coefficient and intensity; 0 where it is the one asked for.
+        coefficient and intensity, the rounding of both included; 0 where it is the one asked for.
     refused : float
         The error of Blinn's law, where it was not used because that is too much.
     """
@@ -50,8 +53,16 @@ class Highlight(NamedTuple):
     refused: float = 0.0
 
 
-def choose(scene: Scene, model: Model, allowed: float) -> tuple[Highlight, ...]:
+def choose(
+    scene: Scene,
+    model: Model,
+    allowed: float,
+    rounding: Callable[[float], float] = lambda _: 0.0,
+) -> tuple[Highlight, ...]:
     """Return a highlight for each light; Blinn for Phong while the errors add up to ``allowed``.
+
+    ``rounding`` gives the error of a computed highlight by its power; default: none, where the
+    caller counts it.
 
     Notes
     -----
@@ -73,6 +84,8 @@ def choose(scene: Scene, model: Model, allowed: float) -> tuple[Highlight, ...]:
             continue
         vector, angle = half
         power, worst = _nearest(angle, material.shininess)
+        # The highlight asked for would have been rounded too.
+        worst += PEAK * (rounding(material.shininess) + rounding(power))
         error = worst * material.specular * scene.lights[i].intensity
         if power >= LEAST_POWER:
             offers.append((error, i, Highlight("blinn", power, vector, error)))

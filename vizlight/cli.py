@@ -272,11 +272,12 @@ def light(
     for path in meshes:
         files.check_format(mesh, path)
     camera = render.camera_on(
-        mesh.bounds,
+        mesh,
         _vector("view", view),
         up=None if up is None else _vector("up", up),
         parallel=parallel,
         zoom=zoom,
+        aspect=pixels[0] / pixels[1],
     )
     lights = [vizlight.Light(direction=_vector("light", text)) for text in light or ()]
     lights += [vizlight.Light(position=_vector("lamp", text)) for text in lamp or ()]

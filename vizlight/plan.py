@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
@@ -125,7 +126,7 @@ class Plan:
 
     @property
     def highlight_error(self) -> float:
-        """The most that the specular term differs from the model asked for, of 255."""
+        """The most that the specular term differs from the model asked for, of 255, rounded."""
         return sum(h.error for h in self.highlights)
 
     @property
@@ -185,7 +186,7 @@ def plan(
     highlight_error : float, default: 0.0
         How far, in pixel values of 255, Phong's specular term may differ from what it is: where
         the half vector is the same at all points, Blinn's law with the best power then takes its
-        place, light by light, while the errors' bounds add up to no more.
+        place, light by light, while the errors' bounds, rounding included, add up to no more.
     tolerance : float, default: 0.0
         How far the luminance may be from that of the exact forms. The cheapest evaluation whose
         stated bound is within it is taken: float32, Blinn's law for Phong's, whole powers, the
@@ -294,7 +295,12 @@ def plan(
         scene=scene,
         exponent=exponent,
         model=model,
-        highlights=_highlight.choose(scene, model, highlight_error if specular else 0.0),
+        highlights=_highlight.choose(
+            scene,
+            model,
+            highlight_error if specular else 0.0,
+            partial(_tolerance.specular_bound, eps=float(np.finfo(kind).eps)),
+        ),
         surface=surface,
         conditioned=conditioned,
         two_sided=bool(two_sided),

@@ -169,13 +169,15 @@ def camera_on(
     up: Sequence[float] | None = None,
     parallel: bool = False,
     zoom: float = 1.0,
+    aspect: float = 1.0,
 ) -> Any:
     """Return a camera that sees all of a mesh or a bounding box; no OpenGL is needed for it.
 
     Parameters
     ----------
     bounds : (xmin, xmax, ymin, ymax, zmin, zmax), or mesh
-        In the unit of the mesh. A mesh is centred by its points as they are seen, not by its box.
+        In the unit of the mesh. A box is seen whole from wherever it is turned to; a mesh fills the
+        picture with its finite points as they are seen.
     direction : vector of 3 components
         From the box's centre toward the eye.
     up : vector of 3 components, optional
@@ -183,12 +185,15 @@ def camera_on(
     parallel : bool
     zoom : float
         Above 0; 2 shows half the width.
+    aspect : float
+        Width over height of the picture that a mesh is to fill.
 
     Raises
     ------
     TypeError, ValueError
         If a value does not fit.
     """
+    aspect = _check.number("aspect", aspect, low=1e-3)
     toward = np.array(_check.vector("direction", direction, direction=True))
     if toward.size != 3:
         raise ValueError(_check.message("direction", "3 components", toward.size))
@@ -208,24 +213,43 @@ def camera_on(
     box = corners.reshape(3, 2)
     centre = box.mean(axis=1)
     radius = 0.5 * float(np.linalg.norm(box[:, 1] - box[:, 0])) or 1.0
+    distance, height = radius / math.sin(math.radians(15.0)), radius
     if seen:
-        right = np.cross(up, toward)
-        for axis in (right, np.cross(toward, right)):
-            across = axis / np.linalg.norm(axis)
-            ends = [
-                f(m.points @ across) for m in leaves(bounds) if m.n_points for f in (np.min, np.max)
-            ]
-            centre = centre + (0.5 * (min(ends) + max(ends)) - centre @ across) * across
+        shift, distance, height = _fit(bounds, centre, toward, up, aspect)
+        centre = centre + shift
     camera: Any = pv.Camera()  # type: ignore[no-untyped-call]
     camera.view_angle = 30.0
-    distance = radius / math.sin(math.radians(15.0)) / zoom
+    distance /= zoom
     camera.focal_point = tuple(centre)
     camera.position = tuple(centre + distance * toward)
     camera.up = tuple(up)
     camera.parallel_projection = parallel
-    camera.parallel_scale = radius / zoom
+    camera.parallel_scale = height / zoom
     camera.clipping_range = (max(distance - 2 * radius, distance * 1e-3), distance + 2 * radius)
     return camera
+
+
+def _fit(mesh: Any, centre: Any, toward: Any, up: Any, aspect: float) -> tuple[Any, float, float]:
+    """Return how far to move the centre, and distance and height at which a mesh fills a view.
+
+    A view of 30 degrees; all but a twentieth of the picture.
+    """
+    right = np.cross(up, toward)
+    axes = np.stack([v / np.linalg.norm(v) for v in (right, np.cross(toward, right), toward)])
+    parts = [np.asarray(leaf.points, dtype=np.float64) for leaf in leaves(mesh) if leaf.n_points]
+    points = np.concatenate(parts)
+    points = (points[np.all(np.isfinite(points), axis=1)] - centre) @ axes.T
+    if not len(points):
+        raise ValueError(_check.message("bounds", "a mesh with finite points", "none"))
+    middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    middle[2] = 0
+    across = np.maximum(np.abs(points[:, 0] - middle[0]) / aspect, np.abs(points[:, 1] - middle[1]))
+    height = 1.05 * float(across.max())
+    depth = float(np.ptp(points[:, 2]))
+    distance = float(np.max(1.05 * across / math.tan(math.radians(15.0)) + points[:, 2]))
+    # A mesh that is nothing but a point, or seen edge on, has no size.
+    size = 0.05 * depth or 1.0
+    return middle @ axes, max(distance, float(points[:, 2].max()) + size), max(height, size)
 
 
 def over_shoulder(camera: Any) -> tuple[float, float, float]:
@@ -318,13 +342,15 @@ def make_plotter(
                 there = ", ".join(map(repr, [*mesh.point_data, *mesh.cell_data])) or "none"
                 expected = f"a point array or a cell array ({there})"
                 raise ValueError(_check.message("scalars", expected, repr(panel.scalars)))
-    if camera is None:
-        camera = camera_on(_box("panels", [panel.mesh for panel in shown]))
-    if not hasattr(camera, "GetPosition"):
+    if camera is not None and not hasattr(camera, "GetPosition"):
         raise TypeError(_check.message("camera", "a pyvista.Camera", _check.describe(camera)))
     pixels = pixels_of(size)
     rows = min(_check.integer("rows", rows, low=1), len(shown))
     columns = math.ceil(len(shown) / rows)
+    if camera is None:
+        _box("panels", [panel.mesh for panel in shown])
+        meshes = pv.MultiBlock([leaf for panel in shown for leaf in leaves(panel.mesh)])
+        camera = camera_on(meshes, aspect=pixels[0] * rows / (pixels[1] * columns))
     ends = _check.vector("clim", clim)
     if len(ends) != 2 or not ends[0] < ends[1]:
         raise ValueError(_check.message("clim", "a lower and a higher number", clim))

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from vizlight import View
+import vizlight
+from vizlight import Light, Material, Scene, View
 from vizlight.filters import _mesh
 
 
@@ -59,6 +60,41 @@ def test_a_bowl_faces_the_eye_that_looks_into_it():
         normals = _mesh.surface_normals(bowl, View(direction=(0, 0.3, side)))
         outward = np.einsum("ij,ij->i", normals, np.asarray(bowl.points)) / 0.5
         assert (side * outward).min() > 0.9
+
+
+def test_a_point_that_is_nowhere_has_no_say():
+    x, y = np.meshgrid(np.arange(40.0), np.arange(30.0))
+    z = 5 * np.exp(-((x - 20) ** 2 + (y - 15) ** 2) / 50)
+    z[10, 10] = np.nan
+    for side in (1, -1):
+        found = _mesh.surface_normals(pv.StructuredGrid(x, y, z), View(direction=(0, 0, side)))
+        known = np.isfinite(found).all(axis=1) & found.any(axis=1)
+        assert known.sum() > 1150
+        assert (side * found[known, 2]).min() > 0
+
+
+@pytest.mark.parametrize("winding", [1, -1])
+@pytest.mark.parametrize("eye", [(5, 0, 5), (-5, 0, 5), (0, 0, -9), (30, 1, 0)])
+def test_what_is_nearly_closed_faces_outward_wherever_the_eye_is(winding, eye):
+    slab = pv.Cube(x_length=4, y_length=1, z_length=0.2).triangulate().clean().subdivide(2)
+    kept = slab.regular_faces[slab.cell_centers().points[:, 0] < 1.99]
+    open_end = pv.PolyData.from_regular_faces(slab.points, kept[:, ::winding])
+    assert open_end.n_open_edges > 0
+    found = _mesh.surface_normals(open_end, View(position=eye))
+    flat = np.all(np.abs(open_end.points[:, :2]) < (1.6, 0.4), axis=1)
+    assert flat.sum() > 10
+    assert (np.sign(open_end.points[flat, 2]) * found[flat, 2]).min() > 0.99
+
+
+def test_without_a_view_the_light_is_looked_from():
+    sheet = pv.Plane(i_resolution=3, j_resolution=3)
+    sheet.clear_data()
+    for side in (1.0, -1.0):
+        for where in ({"direction": (0, 0.5, side)}, {"position": (0, 0, 7 * side)}):
+            scene = Scene(lights=Light(**where), material=Material(specular=0))
+            lit = vizlight.illuminate(sheet, scene)
+            assert lit["luminance"].min() > 0.3
+    assert _mesh.onlooker(Scene(lights=Light.headlight())) is None
 
 
 def test_separate_triangles_of_a_closed_surface_face_outward():

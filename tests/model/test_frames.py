@@ -204,3 +204,15 @@ def test_bad_frames(frame, words):
 def test_direction_of_another_space():
     with pytest.raises(ValueError, match=r"direction: expected vectors of shape \(\.\.\., 3\)"):
         frames.split([1.0, 0.0], [[1.0, 0, 0]])
+
+
+def test_split_of_none_and_of_what_is_not_finite(dtype):
+    frame = np.eye(3, dtype=dtype)[:2]
+    along, normal = frames.split(np.empty((0, 3), dtype), frame)
+    assert (along.shape, normal.shape) == ((0, 2), (0,))
+    x = np.array([[np.inf, 0, 1], [0, -np.inf, 0], [np.nan, 1, 2], [0, 0, 0]], dtype)
+    along, normal = frames.split(x, frame)
+    assert np.isnan(along[:3]).all()
+    assert np.isnan(normal[:3]).all()
+    assert not along[3].any()
+    assert normal[3] == 0

@@ -126,7 +126,7 @@ def fur(
     _check.instance("scene", scene, Scene)
     if scene.n not in (None, 3):
         raise ValueError(_check.message("scene", "vectors of 3 components", scene.n))
-    skin = _surface.with_normals(surface, scene.view)
+    skin = _surface.with_normals(surface, _mesh.onlooker(scene))
     _light.refuse_overwriting([(surface, "")], name, components=False, colored=scene.colored)
     told = {
         "density": density, "fibres": fibres, "length": length, "segments": segments,

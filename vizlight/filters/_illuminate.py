@@ -221,7 +221,7 @@ def _prepare(mesh: pv.DataSet, path: str, scene: Scene, options: dict[str, Any])
                     expected = f"no {option} beside tangents, which have no sides"
                     raise ValueError(_check.message(option, expected, "both", remedy))
         if tangents is None or conditioned:
-            normals = _mesh.normals_of(mesh, options["normals"], n, scene.view)
+            normals = _mesh.normals_of(mesh, options["normals"], n, _mesh.onlooker(scene))
             if options["flip_normals"]:
                 normals = -normals
         return Job(points, tangents, normals, carrier)

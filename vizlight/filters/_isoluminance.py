@@ -223,7 +223,7 @@ def _of_mesh(
         bands, _ = _bands.cut(np.empty((0, 3)), triangles, np.empty((0, 3)), steps)
         bands = dataclasses.replace(bands, error=0.0)
     elif options["tangents"] is None:
-        found = _mesh.normals_of(surface, given["normals"], 3, scene.view)
+        found = _mesh.normals_of(surface, given["normals"], 3, _mesh.onlooker(scene))
         unit = unit_rows(np.asarray(found, dtype=np.float64))
         valid = lit.point_data.get(f"{HIDDEN}{VALID}")
         able = np.ones(len(points), np.bool_) if valid is None else np.asarray(valid, np.bool_)

@@ -11,6 +11,7 @@ from scipy.sparse.csgraph import connected_components
 
 from vizlight import _check
 from vizlight.model import _kernels
+from vizlight.scene import View
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -19,9 +20,12 @@ if TYPE_CHECKING:
 
     from vizlight._block import Rows
     from vizlight._check import Vector
-    from vizlight.scene import View
+    from vizlight.scene import Scene
 
     Array = NDArray[np.floating[Any]]
+
+#: The vectors of a nearly closed surface's faces add up to less than this share of their area.
+NEARLY_CLOSED = 0.2
 
 
 class GridPoints:
@@ -238,8 +242,8 @@ def normals_of(mesh: pv.DataSet, value: Any, n: int, view: View | None) -> Array
 def surface_normals(mesh: pv.DataSet, view: View | None) -> Array:
     """Return the normals of a mesh's outer surface, zero at points that are not on it.
 
-    A closed surface has them outward. An open one has no outside: each connected piece is
-    turned as a whole, rather toward the eye and away from its own centroid.
+    A closed surface has them outward, and so has a connected piece that is nearly closed. Any
+    other has no outside: it is turned as a whole, rather toward the eye.
     VTK computes them, in float32.
 
     Raises
@@ -278,7 +282,7 @@ def surface_normals(mesh: pv.DataSet, view: View | None) -> Array:
     used[_corners(bare)[0]] = True
     computed[~used] = 0
     if not closed:
-        _turn_open(computed, bare, view)
+        _turn_open(computed, found, view)
     if origin is None:
         return computed
     normals = np.zeros((mesh.n_points, 3), dtype=computed.dtype)
@@ -287,24 +291,54 @@ def surface_normals(mesh: pv.DataSet, view: View | None) -> Array:
 
 
 def _turn_open(normals: Array, surface: pv.PolyData, view: View | None) -> None:
-    """Turn over each connected piece whose normals rather point inward and away from the eye.
+    """Turn over each connected piece whose normals rather point inward, or away from the eye.
 
-    The mean of N away from the piece's centroid decides for one that is nearly closed; for a
-    sheet or a bowl the mean of N toward the eye, which counts three times.
+    A piece is nearly closed where the vectors of its faces' areas add up to little of their area:
+    then the volume it encloses decides. For a sheet or a bowl the mean of N toward the eye, which
+    counts three times, and away from the piece's centroid. Points that are not finite have no say.
     """
     points = np.asarray(surface.points, dtype=np.float64)
     piece = _pieces(surface)
-    size = np.bincount(piece)
-    centroids = np.stack([np.bincount(piece, axis) / size for axis in points.T], axis=1)
-    score = np.einsum("ij,ij->i", normals, unit_rows(points - centroids[piece]))
+    good = np.all(np.isfinite(points), axis=1) & np.all(np.isfinite(normals), axis=1)
+    points = np.where(good[:, np.newaxis], points, 0)
+    size = np.maximum(np.bincount(piece, good), 1)
+    centroids = np.stack([np.bincount(piece, axis * good) / size for axis in points.T], axis=1)
+    away = points - centroids[piece]
+    score = _dots(normals, unit_rows(away))
     if view is not None and len(view.position or view.direction or ()) == 3:
         toward = (
             np.broadcast_to(np.asarray(view.direction), points.shape)
             if view.parallel
             else np.asarray(view.position) - points
         )
-        score += 3 * np.einsum("ij,ij->i", normals, unit_rows(toward))
-    normals[(np.bincount(piece, score) < 0)[piece]] *= -1
+        score += 3 * _dots(normals, unit_rows(toward))
+    turned = np.bincount(piece, np.where(good, score, 0)) < 0
+
+    faces = surface if surface.is_all_triangles else surface.triangulate()
+    corners = np.asarray(faces.regular_faces, dtype=np.intp)
+    corners = corners[good[corners].all(axis=1)]
+    # Over their size, since products of tiny lengths vanish and those of huge ones overflow.
+    a, b, c = (away[corners[:, i]] / (np.abs(away).max() or 1.0) for i in range(3))
+    across, owner = np.cross(b - a, c - a), piece[corners[:, 0]]
+    total = np.stack([np.bincount(owner, axis, len(size)) for axis in across.T], axis=1)
+    area = np.bincount(owner, np.linalg.norm(across, axis=1), len(size))
+    volume = np.bincount(owner, _dots(across, a), len(size))
+    around = np.linalg.norm(total, axis=1) < NEARLY_CLOSED * area
+    normals[np.where(around, volume < 0, turned)[piece]] *= -1
+
+
+def _dots(a: Array, b: Array) -> Array:
+    return np.asarray(np.einsum("ij,ij->i", a, b))
+
+
+def onlooker(scene: Scene) -> View | None:
+    """Return the scene's view, or one from its first light, to which an open surface then turns."""
+    if scene.view is not None:
+        return scene.view
+    light = next((light for light in scene.lights if not light.follows_view), None)
+    if light is None:
+        return None
+    return View(position=light.position, direction=light.direction)
 
 
 def _pieces(surface: pv.PolyData) -> NDArray[np.intp]:

@@ -125,7 +125,7 @@ def streamlines(
     carrier, own = mesh, made_here(mesh)
     if surface is not None:
         own |= made_here(surface)
-        surface = _surface.with_normals(surface, scene.view)
+        surface = _surface.with_normals(surface, _mesh.onlooker(scene))
         if confined:
             surface = carrier = _tangential(surface, mesh, vectors)
     # VTK traces in float32 to an absolute error: near the origin, in a box of size 1.

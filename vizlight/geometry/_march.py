@@ -125,7 +125,8 @@ class _Rays:
         """Return where rays leave their square along an axis."""
         way, edges = self.way[axis], self.edges[axis]
         out = np.minimum((self.cell[axis] + (way >= 0)) << self.level, len(edges) - 1)
-        return np.where(way == 0, np.inf, (edges[out] - self.start[axis]) / way)
+        with np.errstate(over="ignore"):
+            return np.where(way == 0, np.inf, (edges[out] - self.start[axis]) / way)
 
     def _descend(self, which: Index) -> None:
         if not len(which):

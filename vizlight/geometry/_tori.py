@@ -118,8 +118,8 @@ def torus_curve(
 
     Notes
     -----
-    Error of points and tangents: ``8 eps`` a component and eps times the larger of the angles,
-    ``2 pi turns max(1, A)``, on top.
+    Error of points, as a part of the larger radius, and of tangents: ``8 eps`` a component and
+    2 eps times the larger of the angles, ``2 pi turns max(1, A)``, on top.
     Source: Banks, section 3.
     """
     number = _check.number("ratio", ratio)
@@ -181,7 +181,7 @@ def hopf_fibres(
     With a point (a, b, c) of the unit sphere and ``z1 = sqrt((1 + c)/2)``,
     ``z2 = sqrt((1 - c)/2) (a - i b)/|a - i b|`` the fibre is ``e^(i t) (z1, z2)``; the Hopf map
     ``(2 Re(z1 z2*), 2 Im(z1 z2*), |z1|^2 - |z2|^2)`` takes it to (a, b, c). The tangent is i
-    times the point, unit as it comes; error of both 8 eps a component.
+    times the point, unit as it comes; error of both, over the radius, 8 eps a component.
     """
     radius = radius_of("radius", radius)
     if base is None:

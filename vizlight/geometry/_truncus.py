@@ -89,7 +89,8 @@ def truncus(
     The source's laminae for ``0 <= i < N`` begin with one of no area and never close the far
     side; here they are the chords through both rulings of each contour, on both sides.
     The luminance at a ruling misses its level by at most ``(8 + 4 power) eps`` of ``diffuse``,
-    and by what rounding of long thin shapes turns the rulings: ``H / max(R1, R2) eps``.
+    and by what rounding of long thin shapes turns the rulings: ``H / max(R1, R2) eps``. For
+    powers below 1, infinitely steep at the terminator, ``((8 + H / max(R1, R2)) eps)^power``.
     Source: Isoluminance, Representing a Generalised Truncus, and appendix.
     """
     solid = primitives.Truncus(center, axis, radii, height=height)

@@ -54,8 +54,9 @@ def polyline_tangents(
     inside, and ``u0 + (u0 - u1) h0 / (h0 + h1)`` at an end; the error falls with the square of
     the spacing, also at ends and for unequal spacing. A line that ends where it starts is
     closed and has neighbours across the seam. Repeated points are passed over and share one
-    tangent. A line of two points has the direction of its segment, to 2 eps. Differences are
-    taken in float64.
+    tangent. Differences are taken in float64: the tangent of a line of two points errs by at most
+    1 eps of the points' type and 1 of float64, that of others by 1 and 4 over the length of the
+    mean above before it is made unit.
     """
     positions = _check.vectors("points", points)
     if positions.ndim != 2:

@@ -81,9 +81,9 @@ def sphere(
     from the centre, ``N . wi = (1 - r - 2 q) / sqrt((1 - r)^2 + 4 r q)``: the terminator is at
     cos = R/d, and r = 0 is a light at infinity. The luminance falls with q, so each contour has
     one q, found by halving. The luminance at a contour's points misses its level by at most
-    ``(16 + 4 power) eps`` of the range, for the points as they are in units of the radius; a
-    light close to the sphere multiplies that by ``R / (d - R)``, where rounding of the points
-    turns the direction to it.
+    ``(16 + 4 power + 2 sqrt(power) R / (d - R)) eps`` of the range, for the points as they are in
+    units of the radius: rounding of them turns the direction to a light close to the sphere. For
+    powers below 1, infinitely steep at the terminator, ``((16 + 2 R / (d - R)) eps)^power``.
     Source: Isoluminance, Representing a Sphere; Specular Reflectors for ``power``.
     """
     middle = _axial.triple("center", center)

@@ -198,9 +198,9 @@ def complex_curve(
     -----
     Tangents ``(1, 0, Re f', Im f')`` and ``(0, 1, -Im f', Re f')``, orthogonal as they come.
     Without a derivative the mean of ``f(z + d)/d`` over eight d on a circle of radius h, whose
-    error is ``h^8 |f^(9)|/9! + eps (|f| + |z f'|)/h``. With h = eps^(1/5) of the domain's larger
-    side, 7.4e-4, that is 1e-12 of the largest of ``|f|`` and ``|f'|`` unless a pole is nearer
-    than 40 h.
+    error is ``h^8 |f^(9)|/9! + eps ((|f| + |z f'|)/h + 4 |f'|)``. With
+    h = eps^(1/5) of the domain's larger side, 7.4e-4, that is 1e-12 of the largest of ``|f|`` and
+    ``|f'|`` unless a pole is nearer than 40 h.
     The mean of ``f(z + d)/d*`` is the slope along the conjugate, 0 if f is analytic.
     The inverse of f, a root or a logarithm, has the same surface: turn z and w by ``project``.
     """

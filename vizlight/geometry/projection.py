@@ -194,8 +194,8 @@ def perspective(points: ArrayLike, /, *, distance: float | None = None) -> Any:
     Notes
     -----
     ``x -> x d / (d - x_n)``. With d the radius of a sphere in 4-space this is the stereographic
-    projection from its pole. Relative error 3 eps for each axis projected away, over the depth
-    ``(d - x_n)/d`` where that is small.
+    projection from its pole. Relative error 3 eps for each axis projected away, over the depths
+    ``(d - x)/d`` that are less than 1 by size.
     """
     return image_and_depth(points, distance=distance)[0]
 
@@ -219,6 +219,11 @@ def image_and_depth(points: ArrayLike, /, *, distance: float | None = None) -> t
     ------
     TypeError, ValueError
         As :func:`perspective`.
+
+    Notes
+    -----
+    Error of the image as of :func:`perspective`; of the depth, of 4-space, 2 eps of the larger of
+    it and 1.
     """
     positions = _check.vectors("points", points)
     near = np.ones(positions.shape[:-1], dtype=positions.dtype)
@@ -258,8 +263,9 @@ def push_forward(vectors: ArrayLike, points: ArrayLike, /, *, distance: float | 
 
     Notes
     -----
-    Of ``y = x d/(d - x_n)``: ``dy = (d/(d - x_n)) (v + y v_n / d)``. Relative error as of
-    :func:`perspective`.
+    Of ``y = x d/(d - x_n)``: ``dy = (d/(d - x_n)) (v + y v_n / d)``. Error as of
+    :func:`perspective`, of the lengths of both terms together: they cancel for a vector that
+    points at the eye.
     """
     rows = _check.vectors("vectors", vectors)
     positions = _check.vectors("points", points, n=rows.shape[-1])
@@ -316,7 +322,8 @@ def push_frame(
     The rank is the number of singular values of the image of an orthonormal frame above
     ``rtol`` times a bound on rounding, the product over the axes projected away of
     ``f (1 + |y|/d (1 + f |x_n|/d))`` with ``f = d/(d - x_n)``, 1 if orthographic: what is less is
-    rounding. What the rows span is known to eps over the least singular value.
+    rounding. Of orthonormal tangents what the rows span is known to 4 eps over the least
+    singular value that counts so.
     """
     rows = orthonormalize(frame)[0]
     k, n = rows.shape[-2:]

@@ -138,9 +138,9 @@ def mean_frame(frame: ArrayLike, shares: Any, /) -> Any:
     Notes
     -----
     The turn is the orthogonal factor ``U V^T`` of the matrix ``F G^T = U S V^T`` of two frames
-    (orthogonal Procrustes). Another basis at a point changes what is spanned by 8 eps over the
-    cosine of the largest angle between the spaces. Between two points of a smooth manifold
-    the mean is off by the square of their distance.
+    (orthogonal Procrustes). Of orthonormal tangents, whatever their bases, what is spanned is
+    known to 2 eps over the cosine of the largest angle between the spaces. Between two points of
+    a smooth manifold the mean is off by the square of their distance.
     """
     rows, _ = orthonormalize(frame)
     if rows.ndim != 3:
@@ -195,8 +195,8 @@ def slice_frame(frame: ArrayLike, normal: ArrayLike, /, *, rtol: float | None = 
     Notes
     -----
     With a the normal's coefficients on the frame, a reflection of the frame takes its first row
-    to a; the others are what is wanted. ``|F F^T - 1| <= 8 eps``; what they span is known to
-    eps over the angle between manifold and hyperplane.
+    to a; the others are what is wanted. ``|F F^T - 1| <= 8 eps``; of orthonormal tangents what
+    they span is known to 2 eps over the sine of the angle between manifold and hyperplane.
     """
     rows, rank = orthonormalize(frame)
     k, n = rows.shape[-2:]

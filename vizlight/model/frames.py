@@ -92,7 +92,8 @@ def split(direction: ArrayLike, frame: ArrayLike, /) -> tuple[Any, Any]:
     coefficients : ndarray, shape (..., k)
         ``x . t_j`` for every row t_j.
     normal : ndarray, shape (...)
-        ``|x_N|``, the length of ``x - sum_j (x . t_j) t_j``: sin(a) of a unit x.
+        ``|x_N|``, the length of ``x - sum_j (x . t_j) t_j``: sin(a) of a unit x. Both are NaN
+        where x is not finite.
 
     Raises
     ------
@@ -111,5 +112,6 @@ def split(direction: ArrayLike, frame: ArrayLike, /) -> tuple[Any, Any]:
     rows = _layout.as_frame(frame)
     x = _check.vectors("direction", direction, n=rows.shape[-1])
     shape, rows, (x,) = _layout.batch(rows, x)
+    x = np.where(np.isfinite(x).all(axis=0), x, np.nan)
     along, normal = _kernels.split(x, rows)
-    return np.ascontiguousarray(along.T).reshape(*shape, -1), normal.reshape(shape)
+    return np.ascontiguousarray(along.T).reshape(*shape, len(along)), normal.reshape(shape)

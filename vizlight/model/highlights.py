@@ -176,7 +176,7 @@ def max_pixel_error(
     so each side of it holds at most one root, found by halving to the last digit. No start, no
     local optimum. The result bounds the error **in every codimension**.
     Source: Fisher and Woo, table 3, which is off by one in some last digits. Absolute error of
-    ``error`` at most ``255 (8 + 4 sqrt(f r)) eps``. For r to infinity and f = 4 it tends to
+    ``error`` at most ``255 (4 eps)``, whatever the power. For r to infinity and f = 4 it tends to
     ``255 (1 - C) C^(C / (1 - C))``, C = cos^2(beta).
     """
     angle = _angles("light_eye_angle", light_eye_angle)

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 DIRECTIONS = ("random", "along the tangent", "one ulp off it", "near it", "across", "near across")
 #: Names of the ways in which an eye stands to a light.
 EYES = ("random", "at the mirror", "near it", "one ulp off it", "at the light", "opposite")
+#: And how to a power: with any, and with hardly a half vector.
+STEEP = ("where it falls", "where it ends", "opposite, where it falls", "opposite, where it ends")
 
 
 def units(random: Random, count: int, n: int) -> Array:
@@ -30,9 +32,9 @@ def steps(random: Random, count: int, low: float = -17.0, high: float = -0.5) ->
 
 
 def frames(random: Random, count: int, k: int, n: int, dtype: Any) -> Array:
-    """Return orthonormal frames, shape (count, k, n), rounded to the type."""
-    q, _ = np.linalg.qr(random.standard_normal((count, n, k)))
-    return np.asarray(np.swapaxes(q, 1, 2).astype(dtype))
+    """Return frames, shape (count, k, n), orthonormal as far as work in the type goes."""
+    q, _ = np.linalg.qr(random.standard_normal((count, n, k)).astype(dtype))
+    return np.asarray(np.swapaxes(q, 1, 2))
 
 
 def nudged(random: Random, v: Array) -> Array:
@@ -43,8 +45,11 @@ def nudged(random: Random, v: Array) -> Array:
     return out
 
 
-def directions(random: Random, frame: Array, kind: str) -> Array:
-    """Return a direction for each frame, in the frame's precision, of some length."""
+def directions(random: Random, frame: Array, kind: str, power: float = 1.0) -> Array:
+    """Return a direction for each frame, in the frame's precision, of some length.
+
+    "where it is steepest" is where sin^power changes most: as far from across as that is wide.
+    """
     count, k, n = frame.shape
     rows = frame.astype(np.float64)
     along = np.einsum("bk,bkn->bn", units(random, count, k) if k > 1 else np.ones((count, 1)), rows)
@@ -58,6 +63,7 @@ def directions(random: Random, frame: Array, kind: str) -> Array:
         "near it": along + steps(random, count) * across,
         "across": across,
         "near across": across + steps(random, count) * along,
+        "where it is steepest": across + _width(random, count, power) * along,
     }[kind].astype(frame.dtype)
     if kind == "one ulp off it":
         made = nudged(random, made)
@@ -66,7 +72,12 @@ def directions(random: Random, frame: Array, kind: str) -> Array:
     return np.asarray(np.ldexp(made, random.integers(-limit, limit, (count, 1))))
 
 
-def eyes(random: Random, wi: Array, frame: Array, kind: str) -> Array:
+def _width(random: Random, count: int, power: float) -> Array:
+    """Return lengths about that over which cos^power falls, shape (count, 1)."""
+    return np.asarray(np.sqrt(random.uniform(0.1, 4, (count, 1)) / max(power, 4.0)))
+
+
+def eyes(random: Random, wi: Array, frame: Array, kind: str, power: float = 1.0) -> Array:
     """Return a direction toward the eye for each light and frame."""
     light, rows = wi.astype(np.float64), frame.astype(np.float64)
     light /= np.abs(light).max(axis=1, keepdims=True)
@@ -77,14 +88,59 @@ def eyes(random: Random, wi: Array, frame: Array, kind: str) -> Array:
         return np.asarray(v - np.einsum("bkn,bk->bn", rows, np.einsum("bkn,bn->bk", rows, v)))
 
     normal = across(across(units(random, count, n)))
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     size = np.linalg.norm(across(light), axis=1, keepdims=True)
-    mirror = normal * size / np.linalg.norm(normal, axis=1, keepdims=True) - (light - across(light))
+    mirror = normal * size - (light - across(light))
+    fall = normal + _width(random, count, power) * units(random, count, n)
+    along = np.einsum("bk,bkn->bn", units(random, count, rows.shape[1]), rows)
+    flat = along + steps(random, count) * units(random, count, n)
+    # As far below the line as the light's mirror image is above it: V.R = 0.
+    low = light - across(light)
+    lies = np.linalg.norm(low, axis=1, keepdims=True)
+    low = normal * lies + low * size / np.where(lies > 0, lies, 1)
+
+    def about(half: Array) -> Array:
+        half = half / np.linalg.norm(half, axis=1, keepdims=True)
+        return np.asarray(2 * np.sum(half * light, axis=1, keepdims=True) * half - light)
+
     made = {
         "random": units(random, count, n),
         "at the mirror": mirror,
         "near it": mirror + steps(random, count) * units(random, count, n),
         "one ulp off it": mirror,
         "at the light": light,
+        "where it falls": about(fall),
+        "where it ends": np.where(
+            random.random((count, 1)) < 0.5,
+            low + steps(random, count) * units(random, count, n),
+            about(flat),
+        ),
         "opposite": steps(random, count, -9) * units(random, count, n) - light,
     }[kind].astype(wi.dtype)
     return nudged(random, made) if kind == "one ulp off it" else np.asarray(made)
+
+
+def pairs(
+    random: Random, frame: Array, light: str, eye: str, power: float = 1.0
+) -> tuple[Array, Array]:
+    """Return a light and an eye for each frame; ``light`` counts but for opposite steep ones."""
+    if not eye.startswith("opposite, "):
+        wi = directions(random, frame, light)
+        return wi, eyes(random, wi, frame, eye, power)
+    count, _, n = frame.shape
+    rows = frame.astype(np.float64)
+    other = units(random, count, n)
+    along = np.einsum("bkn,bk->bn", rows, np.einsum("bkn,bn->bk", rows, other))
+    normal = (other - along) / np.linalg.norm(other - along, axis=1, keepdims=True)
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    # The half vector is as it is wanted, light and eye hardly more than across it.
+    if eye.endswith("falls"):
+        half = normal + _width(random, count, power) * along
+    else:
+        half = along + steps(random, count) * normal
+    half /= np.linalg.norm(half, axis=1, keepdims=True)
+    across = units(random, count, n)
+    across -= np.sum(across * half, axis=1, keepdims=True) * half
+    across /= np.linalg.norm(across, axis=1, keepdims=True)
+    part = steps(random, count, -6) * half
+    return (across + part).astype(frame.dtype), (part - across).astype(frame.dtype)
