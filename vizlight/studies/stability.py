@@ -22,7 +22,7 @@ from vizlight.studies import (
     _stability_shapes,
 )
 from vizlight.studies._stability import rows_of
-from vizlight.studies._study import Row, Study, words
+from vizlight.studies._study import Curve, Row, Study, words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -101,6 +101,17 @@ def verdict(rows: Sequence[Row]) -> str:
     return f"{said}; {tight}"
 
 
+def curve(row: Row) -> Curve:
+    """Return what a row is drawn as: a colour for each part of the library, a mark for a type."""
+    module = row.way.partition(".")[0]
+    parts = {"model": _stability_model.CHECKS, "engine": _stability_engine.CHECKS}
+    part = next(
+        (name for name, checks in parts.items() if any(k.startswith(f"{module}.") for k in checks)),
+        "geometry",
+    )
+    return Curve(part, str(row.more["type"]))
+
+
 STUDY = Study(
     approximates="every kernel in float32 and float64 on its hard cases",
     reference="mpmath at 50 digits",
@@ -111,4 +122,6 @@ STUDY = Study(
     verdict=verdict,
     axes=("parameter", "error"),
     joined=False,
+    curve=curve,
+    diagonal="claimed = seen",
 )
