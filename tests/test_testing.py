@@ -40,6 +40,24 @@ def test_thin_lines_5_percent_off_fail(factor):
         testing.assert_same_picture(lines(200 * factor), lines())
 
 
+@pytest.mark.opengl
+@pytest.mark.parametrize("background", ["white", "black", "gray"])
+@pytest.mark.parametrize("factor", [0.95, 1.05])
+def test_a_surface_5_percent_off_fails_on_any_background(factor, background):
+    ball = pv.Sphere()
+    pictures = []
+    for bright in (1.0, factor):
+        material = Material(ambient=0.1 * bright, diffuse=0.5 * bright, specular=0)
+        lit = vizlight.illuminate(
+            ball, Scene(lights=Light(direction=(1, -1, 1)), material=material)
+        )
+        plotter = render.make_plotter(lit, size=(300, 300), background=background)
+        pictures.append(plotter.screenshot(return_img=True))
+        plotter.close()
+    with pytest.raises(AssertionError, match=r"brightness 0\.0[456]"):
+        testing.assert_same_picture(pictures[1], pictures[0])
+
+
 def test_thin_lines_a_third_of_a_pixel_away_pass():
     testing.assert_same_picture(lines(scale=8, shift=0.33), lines(scale=8))
 

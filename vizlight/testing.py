@@ -37,8 +37,9 @@ class Difference:
     Attributes
     ----------
     brightness : float
-        Of what is drawn, over the whole picture: the summed distance from the background is so many
-        times too large or too small, in the worst channel; 0.05 for light 5 % too bright.
+        Of what is drawn: the summed distance from the background, or within outlines the summed
+        light itself, is so many times too large or too small, in the worst channel; 0.05 for
+        light 5 % too bright on a dark background, and on any background where surfaces are drawn.
     block : float
         The largest difference of the means of blocks of 12 x 12 pixels, of 255.
     pixels : float
@@ -170,7 +171,20 @@ def _measure(got: NDArray[np.uint8], expected: NDArray[np.uint8], background: An
     # One grey level over a thousandth of the picture is as good as nothing drawn.
     least = max(1e-3 * a.shape[0] * a.shape[1], 0.02 * float(ought.max()))
     brightness = float(np.max(np.abs(drawn - ought) / np.maximum(ought, least)))
+    brightness = max(brightness, _within_outlines(a, b, back))
     return Difference(brightness, _block_error(a - b), _far_off(a, b))
+
+
+def _within_outlines(got: Array, expected: Array, back: Array) -> float:
+    """Return the relative error of light where both pictures and all pixels beside are drawn on."""
+    from scipy.ndimage import binary_erosion
+
+    drawn = [np.any(np.abs(x - back) > 8, axis=-1) for x in (got, expected)]
+    inside = binary_erosion(drawn[0] & drawn[1], np.ones((3, 3), np.bool_))
+    if np.mean(inside) < 1e-2:
+        return 0.0
+    light, ought = got[inside].sum(axis=0), expected[inside].sum(axis=0)
+    return float(np.max(np.abs(light - ought) / np.maximum(ought, 0.02 * ought.max() + 1)))
 
 
 def _block_error(apart: Array) -> float:
