@@ -73,7 +73,13 @@ def _plain(value: Any) -> Any:
         return value
     if isinstance(value, pv.DataObject):
         return f"{type(value).__name__} of {getattr(value, 'n_points', 0)} points"
-    array = np.asarray(value)
+    parts = isinstance(value, list | tuple) and len(value) <= WRITTEN_OUT
+    if parts and any(isinstance(part, str | pv.DataObject) for part in value):
+        return [_plain(part) for part in value]
+    try:
+        array = np.asarray(value)
+    except ValueError:  # parts of several shapes
+        return [_plain(part) for part in value] if parts else _check.describe(value)
     if array.size <= WRITTEN_OUT and array.dtype.kind in "biufU":
         return array.tolist()
     return _check.describe(array)
