@@ -99,8 +99,9 @@ def provenance(mesh: Any, /, name: str = "luminance") -> dict[str, Any]:
     -------
     dict
         ``p["filter"]`` names the filter, which makes the array again from the mesh it was given:
-        ``illuminate(mesh, Scene.from_dict(p["scene"]), **p["options"])``. Meshes and arrays of
-        more than 100 numbers among the options are only described.
+        ``illuminate(mesh, Scene.from_dict(p["scene"]), **p["options"])``; ``project`` takes the
+        scene by ``scene=``, ``relief_day`` takes none. Meshes and arrays of more than 100 numbers
+        among the options are only described.
 
     Raises
     ------
