@@ -96,6 +96,10 @@ def test_warp():
     ("call", "words"),
     [
         (lambda g: files.surface_of(g, "s"), r"contour: .*one of \['r'\], got 's'"),
+        (
+            lambda g: files.surface_of(pv.Cube(), "s"),
+            "contour: expected .* of one component, of which there is none, got 's'",
+        ),
         (lambda g: files.surface_of(g, "V"), "contour: .*got 'V' with 3 components"),
         (lambda g: files.surface_of(g, "C"), "contour: .*got the cell array 'C'"),
         (lambda g: files.surface_of(g, "r", 99.0), "level: expected a value between 0.8.* and 6.0"),

@@ -112,6 +112,17 @@ def test_scene_from_plotter_with_the_default_light_kit():
         (lambda: View.from_camera("camera"), TypeError, "camera: expected a pyvista.Camera"),
         (lambda: DepthCue(front=1, back=1), ValueError, "front: expected a depth other than back"),
         (lambda: DepthCue(back_scale=1.5), ValueError, "back_scale: expected a number from 0 to 1"),
+        (
+            lambda: View.from_camera(pv.Plotter(off_screen=True)),
+            TypeError,
+            "camera: expected .*; pass its .camera",
+        ),
+        (lambda: Scene(view=pv.Camera()), TypeError, r"view: .*; View.from_camera\(camera\) makes"),
+        (
+            lambda: Scene(lights=(1, 1, 1)),
+            TypeError,
+            r"lights: expected a vizlight.Light, got 1; Light\(direction=\(1, 1, 1\)\) makes one",
+        ),
         (lambda: Scene(lights=["sun"]), TypeError, "lights: expected a vizlight.Light, got 'sun'"),
         (lambda: Scene(lights=3), TypeError, "lights: expected vizlight.Light or several, got 3"),
         (lambda: Scene(view=(0, 0, 1)), TypeError, "view: expected a vizlight.View or None"),

@@ -39,12 +39,17 @@ def message(name: str, expected: str, got: object, remedy: str = "") -> str:
     return f"{text}; {remedy}" if remedy else text
 
 
+def one_of(names: Sequence[str]) -> str:
+    """Return ``one of`` some names, for an error message, or that there is none."""
+    return f"one of {list(names)}" if names else "of which there is none"
+
+
 def describe(value: object) -> str:
     """Return a short description of a value for an error message."""
     if isinstance(value, np.ndarray):
         return f"an array of shape {value.shape} and type {value.dtype}"
     try:
-        text = repr(value)
+        text = " ".join(repr(value).split())
     except ValueError:  # Python writes no integer of more than 4300 digits
         kind = "an integer" if isinstance(value, int) else "a number"
         text = f"{kind} of more digits than can be written"
@@ -191,8 +196,18 @@ def color(name: str, value: Any) -> Color | None:
     return rgb(name, getattr(value, "float_rgb", value))
 
 
-def instance(name: str, value: object, kind: type, *, optional: bool = False) -> None:
+def instance(
+    name: str,
+    value: object,
+    kind: type,
+    *,
+    optional: bool = False,
+    home: str = "",
+    remedy: str = "",
+) -> None:
     """Check that a value is of one of this package's classes, or None where that may be.
+
+    ``home`` is the public module of a class that is not at the package's top.
 
     Raises
     ------
@@ -200,8 +215,9 @@ def instance(name: str, value: object, kind: type, *, optional: bool = False) ->
         If it is not.
     """
     if not (isinstance(value, kind) or (optional and value is None)):
-        expected = f"a vizlight.{kind.__name__}" + (" or None" if optional else "")
-        raise TypeError(message(name, expected, describe(value)))
+        where = f"vizlight.{home}." if home else "vizlight."
+        expected = f"a {where}{kind.__name__}" + (" or None" if optional else "")
+        raise TypeError(message(name, expected, describe(value), remedy))
 
 
 def set_fields(frozen: object, **values: object) -> None:

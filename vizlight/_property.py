@@ -150,7 +150,10 @@ def _tell(
         angle = _angle(lights, view)
         error = abs(float(highlights.max_pixel_error(angle, phong, factor=blinn / phong).error))
         if law == "blinn":
-            remedy = "; a second light, were it of intensity 0, gives Phong's"
+            remedy = (
+                "; VTK takes Blinn's law with exactly one light switched on, a headlight, and "
+                "Phong's otherwise: a second light of intensity 0 is enough"
+            )
     else:
         # The same law with a clamped power: x^a - x^b is largest where both slopes are equal.
         x = (shown / wanted) ** (1 / (wanted - shown))

@@ -180,7 +180,7 @@ def _scalars(mesh: Any, argument: str, name: str) -> Any:
         got = f"the cell array {name!r}"
     there = [key for key in data if data[key].ndim == 1]
     remedy = "average it to the points" if name in mesh.cell_data else ""
-    expected = f"a point array of one component, one of {there}"
+    expected = f"a point array of one component, {_check.one_of(there)}"
     raise ValueError(_check.message(argument, expected, got, remedy))
 
 

@@ -142,7 +142,7 @@ def as_lights(lights: Any) -> tuple[Light, ...]:
         )
     several = (lights,) if isinstance(lights, Light) else tuple(lights)
     for light in several:
-        _check.instance("lights", light, Light)
+        _check.instance("lights", light, Light, remedy="Light(direction=(1, 1, 1)) makes one")
     return several
 
 

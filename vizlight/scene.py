@@ -223,13 +223,10 @@ class View:
         TypeError
             If it is not a camera.
         """
-        for name in ("GetPosition", "GetDirectionOfProjection", "GetParallelProjection"):
-            if not hasattr(camera, name):
-                raise TypeError(
-                    _check.message(
-                        "camera", "a pyvista.Camera or vtkCamera", _check.describe(camera)
-                    )
-                )
+        if not _is_camera(camera):
+            remedy = "pass its .camera" if _is_camera(getattr(camera, "camera", None)) else ""
+            expected = "a pyvista.Camera or vtkCamera"
+            raise TypeError(_check.message("camera", expected, _check.describe(camera), remedy))
         return cls(
             position=tuple(camera.GetPosition()),
             direction=tuple(-x for x in camera.GetDirectionOfProjection()),
@@ -337,7 +334,8 @@ class Scene:
     ) -> None:
         lights = as_lights(Light.headlight() if lights is None else lights)
         _check.instance("material", material, Material, optional=True)
-        _check.instance("view", view, View, optional=True)
+        remedy = "View.from_camera(camera) makes one of it" if _is_camera(view) else ""
+        _check.instance("view", view, View, optional=True, remedy=remedy)
         _check.instance("depth_cue", depth_cue, DepthCue, optional=True)
         _check.set_fields(
             self,
@@ -443,3 +441,9 @@ class Scene:
         fields.setdefault("view", View.from_camera(camera))
         fields.setdefault("lights", list(from_vtk(renderer.GetLights(), camera)))
         return cls(**fields)
+
+
+def _is_camera(value: Any) -> bool:
+    """Tell whether a value has what a view is made of."""
+    names = ("GetPosition", "GetDirectionOfProjection", "GetParallelProjection")
+    return all(hasattr(value, name) for name in names)

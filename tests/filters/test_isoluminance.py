@@ -336,3 +336,10 @@ def test_picture_of_bands(verify_image_cache):
     found = isoluminance(part, SHINY.replace(view=View.from_camera(camera)), levels=8)
     plotter = render.make_plotter(found["bands"], camera=camera, size=(300, 300), cmap="cividis")
     plotter.show()
+
+
+@pytest.mark.parametrize("color", [None, "tomato"])
+def test_nothing_of_a_solid_is_left(color):
+    scene = Scene(lights=Light(direction=(0, 0, 1)), material=Material(specular=0, color=color))
+    nothing = isoluminance(Sphere() - Sphere(radius=2), scene)
+    assert [block.n_cells for block in nothing] == [0, 0]

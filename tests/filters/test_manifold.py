@@ -89,5 +89,5 @@ def test_order_2_in_the_size_of_cells():
 
 
 def test_not_a_shape():
-    with pytest.raises(TypeError, match="shape: expected a vizlight.Manifold"):
+    with pytest.raises(TypeError, match="shape: expected a vizlight.geometry.manifolds.Manifold"):
         vizlight.manifold(pv.Sphere())

@@ -490,3 +490,34 @@ def test_bad_bas_relief():
     edge = pv.Plane(direction=(1, 0, 0))
     with pytest.raises(ValueError, match="mesh: expected a surface wider than a node"):
         relief_from_mesh(edge, direction=(0, 0, 1))
+
+
+def test_a_shadow_is_made_again_from_what_is_told():
+    ball = pv.Sphere()
+    told = vizlight.provenance(relief_shadow(ball, SCENE, samples=2), "t")
+    assert told["options"]["occluders"] == []
+    again = relief_shadow(ball, Scene.from_dict(told["scene"]), **told["options"])
+    np.testing.assert_array_equal(again["t"], relief_shadow(ball, SCENE, samples=2)["t"])
+    other = pv.Sphere(center=TOWARD)
+    told = vizlight.provenance(relief_shadow(ball, SCENE, occluders=(o for o in [other])), "t")
+    assert told["options"]["occluders"] == [f"PolyData of {other.n_points} points"]
+    for wrong in (0, told["options"]["occluders"]):
+        with pytest.raises(TypeError, match="occluders.*: expected .*surface"):
+            relief_shadow(ball, SCENE, occluders=wrong)
+
+
+@pytest.mark.parametrize(
+    "when",
+    [
+        {"latitude": 0.7, "day": 172, "hours": np.array([3.0, 9, 12])},
+        {"directions": [(0, 1, 1), (1, 0, -1)]},
+    ],
+)
+def test_a_day_is_made_again_from_what_is_told(when):
+    grid, _ = grids()["warped"]
+    day = relief_day(grid, depth=0.2, name="sunlit", **when)
+    told = vizlight.provenance(day, "sunlit")
+    assert told["filter"] == "relief_day"
+    again = relief_day(grid, **told["options"])
+    np.testing.assert_array_equal(again["sunlit"], day["sunlit"])
+    assert vizlight.provenance(again, "sunlit") == told

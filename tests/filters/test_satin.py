@@ -102,3 +102,18 @@ def test_options_go_to_the_panels_that_they_fit():
     assert panels["conditioned"]["x_diffuse"][away].max() > 0.1
     with pytest.raises(TypeError, match="conditioned: expected no such option, got True"):
         vizlight.satin(ball, SCENE, tangents="way", conditioned=True)
+
+
+@pytest.mark.parametrize(
+    ("tangents", "error", "words"),
+    [
+        ("T", ValueError, "tangents: expected the name of a point array .*, got 'T'"),
+        (np.ones((842, 3)), TypeError, "tangents: expected the name of a point array, got an arr"),
+        ("one", ValueError, "tangents: expected vectors"),
+    ],
+)
+def test_errors_name_the_argument(tangents, error, words):
+    ball = pv.Sphere()
+    ball["one"] = np.ones(ball.n_points)
+    with pytest.raises(error, match=words):
+        vizlight.satin(ball, SCENE, tangents=tangents)

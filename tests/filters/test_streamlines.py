@@ -321,3 +321,20 @@ def test_no_line_at_all():
     flow["V"] = np.zeros((flow.n_points, 3))
     with pytest.raises(ValueError, match="seeds: expected points inside the mesh"):
         streamlines(flow, SCENE, vectors="V", seeds=9)
+
+
+def test_errors_name_the_arrays_that_could_be_traced():
+    grid = pv.ImageData(dimensions=(3, 3, 3))
+    grid.cell_data["wind"] = np.ones((8, 3))
+    with pytest.raises(
+        ValueError, match=r"\(none\), got 'wnid'; the cells have 'wind': call .*data"
+    ):
+        streamlines(grid, SCENE, vectors="wnid")
+    with pytest.raises(ValueError, match="vectors: .*the cell array 'wind'; call"):
+        streamlines(grid, SCENE, vectors="wind")
+    grid.point_data["U"], grid.point_data["r"] = np.ones((27, 3)), np.ones(27)
+    grid.point_data.active_vectors_name = None
+    with pytest.raises(ValueError, match="got None; pass vectors='U'$"):
+        streamlines(grid, SCENE)
+    with pytest.raises(TypeError, match="got MultiBlock; join its blocks by mesh.combine()"):
+        streamlines(pv.MultiBlock([grid]), SCENE)

@@ -59,10 +59,9 @@ def caster(
     if isinstance(mesh, GRIDS):
         for option in ("thickness", "occluders"):
             if options[option]:
+                got = options[option] if option == "thickness" else len(options[option])
                 remedy = "pass the grid's surface, made closed, to have them"
-                raise ValueError(
-                    _check.message(option, "none on a height field", options[option], remedy)
-                )
+                raise ValueError(_check.message(option, "none on a height field", got, remedy))
         return _FieldCaster(mesh, options, threads)
     if isinstance(mesh, pv.PolyData):
         for option, default in (("elevation", None), ("base", None)):

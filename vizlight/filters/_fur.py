@@ -302,7 +302,9 @@ def _lengths(mesh: pv.PolyData, length: Any) -> Array | float:
             there = [key for key in mesh.point_data if mesh.point_data[key].ndim == 1]
             raise ValueError(
                 _check.message(
-                    "length", f"a point array of one component, one of {there}", repr(length)
+                    "length",
+                    f"a point array of one component, {_check.one_of(there)}",
+                    repr(length),
                 )
             )
         length = mesh.point_data[length]

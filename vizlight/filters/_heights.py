@@ -124,7 +124,7 @@ def _elevation(grid: Any, name: str | None) -> Array:
     if name not in there:
         raise ValueError(
             _check.message(
-                "elevation", f"a point array of one component, one of {there}", repr(name)
+                "elevation", f"a point array of one component, {_check.one_of(there)}", repr(name)
             )
         )
     return _check.floats("elevation", np.asarray(grid.point_data[name]))

@@ -308,7 +308,7 @@ def _blocks(
     surface.cell_data[f"{prefix}band"] = bands.band
     if patches:
         surface.cell_data[f"{prefix}patch"] = bands.patch
-    if rgb is not None:
+    if rgb is not None and len(rgb):
         surface.cell_data[f"{prefix}rgb"] = rgb
     surface.cell_data[name] = bands.values
     surface.cell_data.active_scalars_name = name

@@ -44,7 +44,7 @@ def manifold(shape: Manifold, /, **options: Any) -> Any:
     >>> mesh["position"].shape, mesh["frame"].shape
     ((256, 4), (256, 8))
     """
-    _check.instance("shape", shape, Manifold)
+    _check.instance("shape", shape, Manifold, home="geometry.manifolds")
     count, n = shape.points.shape
     # Places are put in by the projection; until then the points only have to be there.
     points: Any = np.zeros((count, 3))

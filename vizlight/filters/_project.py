@@ -10,7 +10,9 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.filters import _mesh, _progress
 from vizlight.filters._illuminate import illuminate
+from vizlight.filters._light import DEFAULT_NAME
 from vizlight.filters._nspace import FRAME, POSITION, PROJECTED, Counter, Turning
+from vizlight.filters._provenance import provenance, retell
 from vizlight.geometry import projection
 from vizlight.scene import Scene
 
@@ -22,6 +24,8 @@ LightWhen = Literal["before", "after"]
 LIGHTING = set(inspect.signature(illuminate).parameters) - {
     "mesh", "scene", "positions", "inplace", "progress_bar",
 }  # fmt: skip
+#: What is no option of the record: the scene is told beside them.
+UNTOLD = ("mesh", "scene", "options", "progress_bar")
 
 
 def project(
@@ -84,7 +88,8 @@ def project(
         A mesh with points in 3-space, ``position`` and ``frame`` turned, and for k < 3 the point
         array ``projected_frame``: the derivative of the projection applied to the frame,
         orthonormalised; for each array V of ``vectors`` its image ``projected_V``, of the length
-        it comes to. What was done is kept as field data, ``provenance(mesh, "projection")``.
+        it comes to. What was done is kept as field data, ``provenance(mesh, "projection")``;
+        ``luminance_provenance`` makes the light again from the mesh that was given.
         Arrays that nothing is done to, without a rotation positions and frame too, are shared with
         ``mesh``, as in PyVista's shallow copies: copy one before changing it in place.
 
@@ -113,6 +118,7 @@ def project(
     Error bounds: :func:`vizlight.geometry.projection.turn` and ``perspective``. Work is done in
     float64, block by block; arrays keep their type. Source: Banks, section 3.
     """
+    told = {key: value for key, value in locals().items() if key not in UNTOLD}
     if not isinstance(mesh, pv.DataSet | pv.MultiBlock):
         remedy = "read files by pyvista.read, wrap VTK objects by pyvista.wrap"
         raise TypeError(_check.message("mesh", "a PyVista mesh", type(mesh).__name__, remedy))
@@ -140,11 +146,17 @@ def project(
         out = _each(mesh, lambda leaf: job.turned(leaf, done, lost))
         if scene is not None and light == "before":
             _check_tangents(out, job, options)
+            _check_space(out, scene, light, positions)
             out = illuminate(out, scene, positions=positions, **_by(frame, options))
         out = _each(out, lambda leaf: job.projected(leaf, done, lost))
         if scene is not None and light == "after":
             _check_tangents(out, job, options, PROJECTED)
+            _check_space(out, scene, light, positions)
             out = illuminate(out, scene, **_by(f"{PROJECTED}{frame}", options))
+        if scene is not None:
+            name = options.get("name", DEFAULT_NAME)
+            for leaf in _mesh.leaves(out):
+                retell(leaf, name, "project", provenance(leaf, name)["options"] | told)
     if lost.count:
         _check.warn(
             f"{lost.count} points cannot be projected (on or behind the eye's hyperplane, or not "
@@ -175,6 +187,17 @@ def _each(mesh: Any, work: Callable[[Any], Any], path: str = "") -> Any:
 def _by(tangents: str | None, options: dict[str, Any]) -> dict[str, Any]:
     """Return options of light by the frame, unless they name other tangents."""
     return options if options.get("tangents") is not None else {**options, "tangents": tangents}
+
+
+def _check_space(mesh: Any, scene: Scene, light: LightWhen, positions: str) -> None:
+    """Check that lights and eye live in the space that is lit: that of positions, or 3-space."""
+    for leaf in _mesh.leaves(mesh):
+        n = leaf.point_data[positions].shape[1]
+        lit, other, when = (n, 3, "after") if light == "before" else (3, n, "before")
+        if scene.n not in (None, lit):
+            remedy = f"pass light={when!r} to light in {other}-space" if scene.n == other else ""
+            expected = f"vectors of {lit} components for light={light!r}"
+            raise ValueError(_check.message("scene", expected, scene.n, remedy))
 
 
 def _check_tangents(mesh: Any, job: Turning, options: dict[str, Any], prefix: str = "") -> None:

@@ -73,7 +73,13 @@ def _plain(value: Any) -> Any:
         return value
     if isinstance(value, pv.DataObject):
         return f"{type(value).__name__} of {getattr(value, 'n_points', 0)} points"
-    array = np.asarray(value)
+    parts = isinstance(value, list | tuple) and len(value) <= WRITTEN_OUT
+    if parts and any(isinstance(part, str | pv.DataObject) for part in value):
+        return [_plain(part) for part in value]
+    try:
+        array = np.asarray(value)
+    except ValueError:  # parts of several shapes
+        return [_plain(part) for part in value] if parts else _check.describe(value)
     if array.size <= WRITTEN_OUT and array.dtype.kind in "biufU":
         return array.tolist()
     return _check.describe(array)
@@ -93,8 +99,9 @@ def provenance(mesh: Any, /, name: str = "luminance") -> dict[str, Any]:
     -------
     dict
         ``p["filter"]`` names the filter, which makes the array again from the mesh it was given:
-        ``illuminate(mesh, Scene.from_dict(p["scene"]), **p["options"])``. Meshes and arrays of
-        more than 100 numbers among the options are only described.
+        ``illuminate(mesh, Scene.from_dict(p["scene"]), **p["options"])``; ``project`` takes the
+        scene by ``scene=``, ``relief_day`` takes none. Meshes and arrays of more than 100 numbers
+        among the options are only described.
 
     Raises
     ------

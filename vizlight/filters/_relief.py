@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -123,7 +124,10 @@ def relief_shadow(
         del options[own]
     if isinstance(occluders, pv.DataObject):
         occluders = [occluders]
-    options["occluders"] = len(list(occluders))
+    if isinstance(occluders, str) or not isinstance(occluders, Iterable):
+        expected = "closed surfaces, or one"
+        raise TypeError(_check.message("occluders", expected, _check.describe(occluders)))
+    options["occluders"] = occluders = list(occluders)
     lights = _lights(scene)
     shadow = caster(mesh, scene, options, occluders, threads)
     given = [name, *(f"{name}_{i}" for i in range(len(lights)) if components)]
@@ -208,14 +212,18 @@ def relief_day(
     Returns
     -------
     pyvista.DataSet
-        With the point array ``t`` of H components, 0 where the sun is below the horizon, and
-        ``t_mean``, their mean, which is active.
+        With the point array ``t`` of H components, 0 where the sun is below the horizon,
+        ``t_mean``, their mean, which is active, and ``t_provenance``: its options make ``t`` again
+        without its scene, ``relief_day(mesh, **p["options"])``.
 
     Raises
     ------
     TypeError, ValueError
         As :func:`relief_shadow` and :func:`vizlight.geometry.sun.directions`.
     """
+    own = {
+        "latitude": latitude, "day": day, "hours": hours, "directions": directions,
+    }  # fmt: skip
     if directions is None:
         if latitude is None or day is None:
             got = _check.message("latitude, day", "both, or directions=", (latitude, day))
@@ -227,9 +235,9 @@ def relief_day(
         raise ValueError(_check.message("directions", expected, "both"))
     else:
         toward = np.atleast_2d(_check.vectors("directions", directions, n=3))
-    for own in ("lit", "components", "inplace"):
-        if own in options:
-            raise TypeError(_check.message(own, "no such option", repr(options[own])))
+    for other in ("lit", "components", "inplace"):
+        if other in options:
+            raise TypeError(_check.message(other, "no such option", repr(options[other])))
     up = [way for way in toward if way[2] > 0]
     if not up:
         raise ValueError(_check.message("hours", "the sun above the horizon", "night"))
@@ -245,6 +253,9 @@ def relief_day(
     found.point_data[name] = t
     found.point_data[f"{name}_mean"] = t.mean(axis=1)
     found.point_data.active_scalars_name = f"{name}_mean"
+    told = _provenance.provenance(found, name)["options"]
+    told = {key: value for key, value in told.items() if key not in ("lit", "components")}
+    _provenance.retell(found, name, "relief_day", own | told)
     return found
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import pyvista as pv
 
 from vizlight import _check
+from vizlight.filters import _mesh
 from vizlight.filters._illuminate import illuminate
 from vizlight.filters._streamlines import streamlines
 from vizlight.plan import surface_model
@@ -70,6 +71,9 @@ def satin(
         if own in options:
             remedy = "the four panels differ in it" if own == "conditioned" else "leave it out"
             raise TypeError(_check.message(own, "no such option", repr(options[own]), remedy))
+    if isinstance(surface, pv.DataSet):
+        _mesh.refuse_unnamed("tangents", tangents)
+        _mesh.vectors_of(surface, "tangents", tangents, 3)
     traced = {key: options.pop(key) for key in TRACED if key in options}
     sides = {key: options.pop(key) for key in SIDES if key in options}
     options["compensate"] = compensate

@@ -106,7 +106,8 @@ def streamlines(
     """
     told = {name: value for name, value in locals().items() if name not in ("mesh", "scene")}
     if not isinstance(mesh, pv.DataSet):
-        raise TypeError(_check.message("mesh", "a PyVista dataset", type(mesh).__name__))
+        remedy = "join its blocks by mesh.combine()" if isinstance(mesh, pv.MultiBlock) else ""
+        raise TypeError(_check.message("mesh", "a PyVista dataset", type(mesh).__name__, remedy))
     _check.instance("scene", scene, Scene)
     if "inplace" in options:
         remedy = "the lines are always a new mesh"
@@ -179,12 +180,33 @@ def _vectors_name(mesh: pv.DataSet, vectors: str | None) -> str:
     if vectors is None:
         vectors = mesh.point_data.active_vectors_name
         if vectors is None:
-            there = ", ".join(repr(key) for key in mesh.point_data) or "none"
-            raise ValueError(
-                _check.message("vectors", f"the name of a point array ({there})", None)
-            )
+            raise _no_vectors(mesh, None)
+    if vectors not in mesh.point_data and vectors not in mesh.cell_data:
+        raise _no_vectors(mesh, vectors)
     _mesh.vectors_of(mesh, "vectors", vectors, 3)
     return vectors
+
+
+def _no_vectors(mesh: pv.DataSet, got: str | None) -> ValueError:
+    """Return an error that names the arrays which could be traced."""
+    point, cell = (
+        [repr(key) for key in data if np.shape(data[key])[1:] == (3,)]
+        for data in (mesh.point_data, mesh.cell_data)
+    )
+    remedy = ""
+    if point:
+        remedy = " or ".join(f"vectors={key}" for key in point)
+        remedy = f"pass {remedy}"
+    elif cell:
+        remedy = (
+            f"the cells have {', '.join(cell)}: call mesh.cell_data_to_point_data() and pass "
+            f"vectors={cell[0]}"
+        )
+    there = ", ".join(point) or "none"
+    expected = f"the name of a point array of 3 components ({there})"
+    return ValueError(
+        _check.message("vectors", expected, None if got is None else repr(got), remedy)
+    )
 
 
 def _tangential(surface: pv.PolyData, mesh: pv.DataSet, vectors: str) -> pv.PolyData:

@@ -84,7 +84,10 @@ def rotation(n: int, turns: Any, /) -> Array:
     TypeError, ValueError
         If it is none of these, the matrix is not orthogonal to 2e-7, or it is a reflection.
     """
-    if isinstance(turns, tuple) and len(turns) == 2 and isinstance(turns[1], numbers.Real):
+    pair = isinstance(turns, list | tuple) and len(turns) == 2
+    # JSON keeps a pair as a list.
+    pair = pair and (isinstance(turns, tuple) or isinstance(turns[0], str) or _is_row(turns[0]))
+    if pair and isinstance(turns[1], numbers.Real):
         return plane_rotation(n, *turns)
     if isinstance(turns, list) and turns and not all(_is_row(part) for part in turns):
         matrix = np.eye(n)
