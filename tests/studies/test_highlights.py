@@ -59,7 +59,7 @@ def rows():
 def test_the_verdict_names_each_power(rows):
     """The default shininess, 20, is not within 1 of 255 at any angle."""
     said = highlights.verdict(rows)
-    assert "at no angle for power 20 (its bound is 1.47 of 255 at 2 degrees)" in said
+    assert "at no angle for power 20 (its bound is 1.48 of 255 at 2 degrees)" in said
     assert "up to 10 degrees between light and eye for power 100" in said
 
 
