@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 import shutil
 from pathlib import Path
 
@@ -30,19 +31,26 @@ def write(app):
         result = _kept(study, source / KEPT) if kept else studies.run(name, study, quick=True)
         result.draw(folder / f"{name}.png")
         headings, rows = _worst(result) if kept else result.table()
-        overview.append([f":doc:`{name} <studies/{name}>`", study.approximates, result.verdict])
+        cells = [[_plain(number(cell)) for cell in row] for row in rows]
+        approximates, verdict = _plain(study.approximates), _plain(result.verdict)
+        overview.append([f":doc:`{name} <studies/{name}>`", approximates, verdict])
         page = [
             name, "=" * len(name), "",
-            f"Approximated: {study.approximates}.", "",
-            f"Reference: {study.reference}.", "",
-            f"**Verdict**: {result.verdict}.", "",
+            f"Approximated: {approximates}.", "",
+            f"Reference: {_plain(study.reference)}.", "",
+            f"**Verdict**: {verdict}.", "",
             f".. figure:: {name}.png", f"   :alt: {study.error} over {study.cost}", "",
             f"   ``vizlight study {name}{'' if kept else ' --quick'}``.", "",
-            *_table(headings, [list(map(number, row)) for row in rows]),
+            *_table(map(_plain, headings), cells),
         ]  # fmt: skip
         (folder / f"{name}.rst").write_text("\n".join(page) + "\n", encoding="utf-8")
     table = _table(["study", "what is approximated", "verdict"], overview, "12 28 60")
     (folder / "_verdicts.txt").write_text("\n".join(table) + "\n", encoding="utf-8")
+
+
+def _plain(text):
+    """Return text of which reStructuredText reads nothing as markup."""
+    return re.sub(r"([\\`*_|])", r"\\\1", text)
 
 
 def _table(headings, rows, widths="auto"):
