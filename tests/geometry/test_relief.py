@@ -549,6 +549,24 @@ def test_bad_input(field, options, error, words):
         relief.shadow(*field, **options)
 
 
+@pytest.mark.parametrize(
+    "nodes",
+    [
+        np.linspace(0.0, 1.0, 1000),
+        np.cumsum(np.geomspace(1e-9, 1.0, 50)),
+        np.array([0.0, 1e-300, 1e70]),
+        np.array([-3.0, -1.0]),
+    ],
+    ids=["even", "ever wider", "smallest and largest", "one cell"],
+)
+def test_intervals_are_those_of_a_binary_search(nodes, random):
+    near = [np.nextafter(nodes, end) for end in (-np.inf, np.inf)]
+    between = random.uniform(nodes[0], nodes[-1], 1000)
+    place = np.concatenate([nodes, *near, between, [-1e70, 1e70]])
+    found = _field.locate(nodes, place)
+    assert np.array_equal(found, np.searchsorted(nodes, place, side="right"))
+
+
 @pytest.mark.parametrize("least", [5e-324, 1e-310, 1e-300])
 def test_a_light_hardly_off_the_zenith(least):
     """Dividing by what is nearly nothing overflows: it must not be told."""

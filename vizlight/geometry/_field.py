@@ -71,8 +71,7 @@ class Field:
 
     def cell(self, axis: int, place: Array) -> NDArray[np.intp]:
         """Return the cell of an axis that holds each place."""
-        nodes = self.edges[axis][1:-1]
-        return np.searchsorted(nodes, place, side="right")
+        return locate(self.edges[axis][1:-1], place)
 
     def share(self, axis: int, cell: NDArray[np.intp], place: Array) -> Array:
         """Return how far through its cell a place is, 0 in a cell without end."""
@@ -81,6 +80,17 @@ class Field:
         ends = np.isfinite(low) & np.isfinite(high)
         width = np.where(ends, high, 1.0) - np.where(ends, low, 0.0)
         return np.where(ends, (place - np.where(ends, low, 0.0)) / width, 0.0)
+
+
+def locate(nodes: Array, place: Array) -> NDArray[np.intp]:
+    """Return how many of rising nodes are not above each place, at once where they are even."""
+    with np.errstate(over="ignore"):
+        steps = (place - nodes[0]) / (nodes[1] - nodes[0])
+    guess: NDArray[np.intp] = np.clip(steps, 0, len(nodes) - 2).astype(np.intp)
+    odd = np.flatnonzero((place < nodes.take(guess)) | (place >= nodes.take(guess + 1)))
+    guess += 1
+    guess[odd] = np.searchsorted(nodes, place.take(odd), side="right")
+    return guess
 
 
 def make(x: ArrayLike, y: ArrayLike, z: ArrayLike, *, base: float | None, border: Border) -> Field:

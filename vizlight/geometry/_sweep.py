@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from vizlight.geometry._field import locate
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -31,6 +33,8 @@ BAND = 1 << 16
 LEAF = 3
 #: Profiles of a band, at least: the last is made again for the next one.
 NARROW = 8
+#: Heights that differ by less are the same.
+LEVEL = 1e-300
 #: Stands for a level without solid: weighed by a rounded 0 it stays a number.
 NO_SOLID = -1e6
 
@@ -87,9 +91,9 @@ class Profiles:
         self.count = int(np.ceil((rows[-1] - reach[0] + below + step - self.first) / step)) + 2
         #: Levels are in this unit, so that they fit float32 whatever the field's size.
         self.unit = field.top + below + self.rise * float(np.ptp(self.columns))
-        # Half as many columns as a ray crosses from as deep as this below level ground.
+        # At most as many columns as a ray crosses from as deep as this below level ground.
         run = below / (self.rise * float(np.mean(np.diff(columns))))
-        self.first_scale = max(int(np.log2(max(run, 1.0))) - 1 - LEAF, 0)
+        self.first_scale = max(int(np.log2(max(run, 1.0))) - LEAF, 0)
 
     def _padded(
         self, columns: Array, rows: Array, relief: float, below: float
@@ -165,7 +169,10 @@ class _Band:
         self.level = level.ravel()
         # Bounds are rounded outward to float32, which costs no accuracy and half the memory.
         up, down = _rounded(level, np.inf), _rounded(level, -np.inf)
-        self.coming = np.maximum.accumulate(up[::-1], axis=0)[::-1].ravel()
+        # The highest from each column on; at the last one nothing is still to come.
+        coming = np.maximum.accumulate(up[::-1], axis=0)[::-1]
+        coming[-1] = NO_SOLID
+        self.coming = coming.ravel()
         largest, least = np.maximum(up[:-1], up[1:]), np.minimum(down[:-1], down[1:])
         bounds: list[tuple[Array, Array]] = []
         while len(bounds) < LEAF + 1 or len(largest) > 1:
@@ -196,10 +203,10 @@ class _Band:
         surface = world.surface(start) - world.rise * x
         length += rays.begin(surface / world.unit)
         while True:
-            going = rays.going()
-            if not np.all(going):
+            going = np.flatnonzero(rays.going())
+            if len(going) < len(row):
                 rays.keep(going)
-                row = row[going]
+                row = row.take(going)
             if not len(row):
                 return np.asarray(length * world.per_step)
             # Rays have rows of their own, so none is added twice.
@@ -215,13 +222,13 @@ class _Level:
         self.share = beside - self.profile
         #: The column that a ray is at, and the scale l of its next step, to the end of the
         #: 2^(LEAF + l) columns that hold it: it need not be at their beginning.
-        self.at = np.searchsorted(world.columns, x, side="right") - 1
+        self.at = locate(world.columns, x) - 1
         self.scale = np.full(len(x), world.first_scale, np.intp)
 
-    def keep(self, going: NDArray[np.bool_]) -> None:
+    def keep(self, going: Index) -> None:
         """Forget the rays that are at their end."""
         for name in ("z", "profile", "share", "at", "scale"):
-            setattr(self, name, getattr(self, name)[going])
+            setattr(self, name, getattr(self, name).take(going))
 
     def begin(self, surface: Array) -> Array:
         """Return what is inside of the first, partial step; the surface there is known better."""
@@ -238,9 +245,7 @@ class _Level:
     def going(self) -> NDArray[np.bool_]:
         """Return which rays have something above them still to come."""
         world = self.world
-        # At the last column nothing is.
-        place = np.minimum(self.at, world.steps) * world.count + self.profile
-        return (self.at < world.steps) & (self._mix(world.coming, place) > self.z)
+        return self._mix(world.coming, self.at * world.count + self.profile) > self.z
 
     def step(self) -> Array:
         """Take each ray to the end of its columns, or halve them; return the length inside."""
@@ -256,7 +261,7 @@ class _Level:
         leaf = np.flatnonzero(~clear & (scale == 0))
         inside[leaf] = self._leaf(leaf)
         np.copyto(at, last, where=~descend)
-        scale += ~descend & (square % 2 == 0) & (scale < world.top)
+        scale += ~descend & (square & 1 == 0) & (scale < world.top)
         scale -= descend
         return inside
 
@@ -268,19 +273,20 @@ class _Level:
         nodes = np.minimum(np.maximum(nodes, at), self.world.steps)
         heights = self._height(nodes, which)
         part = _above(heights[:-1], heights[1:], self.z[which])
-        result: Array = np.sum(part * np.diff(self.world.columns[nodes], axis=0), axis=0)
+        part *= np.diff(self.world.columns.take(nodes), axis=0)
+        result: Array = np.sum(part, axis=0)
         return result
 
     def _height(self, at: Index, which: Any = slice(None)) -> Array:
         place = at * self.world.count + self.profile[which]
-        low, high = self.world.level[place], self.world.level[place + 1]
+        low, high = self.world.level.take(place), self.world.level.take(place + 1)
         result: Array = low + self.share[which] * (high - low)
         return result
 
     def _mix(self, values: Array, place: Index) -> Array:
         """Return values of two profiles, each weighed by how near the ray is to it."""
-        low = values[place]
-        result: Array = low + self.share * (values[place + 1] - low)
+        low = values.take(place)
+        result: Array = low + self.share * (values.take(place + 1) - low)
         return result
 
 
@@ -291,7 +297,8 @@ def _rounded(values: Array, toward: float) -> Array:
 
 def _above(low: Array, high: Array, z: Array) -> Array:
     """Return the share of a straight line from low to high that is above z."""
-    least, most = np.minimum(low, high), np.maximum(low, high)
-    run = most - least
-    share = np.divide(most - z, run, out=np.where(most > z, 1.0, 0.0), where=run > 0)
-    return np.asarray(np.clip(share, 0.0, 1.0))
+    share = np.maximum(low, high)
+    share -= z
+    # A level one is above z or not.
+    share /= np.maximum(np.abs(high - low), LEVEL)
+    return np.asarray(np.clip(share, 0.0, 1.0, out=share))
