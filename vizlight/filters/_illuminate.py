@@ -223,7 +223,7 @@ def _prepare(mesh: pv.DataSet, path: str, scene: Scene, options: dict[str, Any])
         if tangents is None or conditioned:
             normals = _mesh.normals_of(mesh, options["normals"], n, _mesh.onlooker(scene))
             if options["flip_normals"]:
-                normals = -normals
+                normals = -_check.floats("normals", normals)
         return Job(points, tangents, normals, carrier)
     except (TypeError, ValueError) as error:
         if not path:

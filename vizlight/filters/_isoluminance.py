@@ -170,8 +170,8 @@ class _Light:
         self.last = self.shade(points, None, self.scene, normals=-normals if self.flip else normals)
         return np.asarray(self.last.luminance)
 
-    def record(self, options: dict[str, Any]) -> str:
-        """Return what made the bands as a line of JSON."""
+    def record(self, options: dict[str, Any]) -> dict[str, Any]:
+        """Return what made the bands."""
         if self.last is None:
             self(np.zeros((1, 3)), np.array([[0.0, 0, 1]]))
         return _provenance.record(self.last, "isoluminance", self.scene, options)
@@ -241,7 +241,7 @@ def _of_mesh(
     told = _provenance.provenance(lit, HIDDEN)
     told |= {"filter": "isoluminance", "options": _provenance.plain(options)}
     rgb = _rgb(bands, light) if scene.colored and options["tangents"] is None else None
-    return _blocks(bands, options["name"], json.dumps(told), rgb, patches=False), bands, light
+    return _blocks(bands, options["name"], told, rgb, patches=False), bands, light
 
 
 def _surface(mesh: Any) -> tuple[pv.PolyData, Index, Any]:
@@ -297,7 +297,7 @@ def _rgb(bands: Bands, light: _Light) -> Array:
 
 
 def _blocks(
-    bands: Bands, name: str, told: str, rgb: Array | None, *, patches: bool
+    bands: Bands, name: str, told: dict[str, Any], rgb: Array | None, *, patches: bool
 ) -> pv.MultiBlock:
     """Return bands and contours as meshes."""
     points = bands.points[:, :3]
@@ -313,7 +313,7 @@ def _blocks(
     surface.cell_data[name] = bands.values
     surface.cell_data.active_scalars_name = name
     surface.field_data[f"{name}_error"] = [bands.error]
-    surface.field_data[_provenance.key(name)] = [told]
+    surface.field_data[_provenance.key(name)] = [json.dumps(told)]
     lines = pv.PolyData()
     if len(bands.lines):
         used, ends = np.unique(bands.lines, return_inverse=True)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vizlight import _check, engine
-from vizlight.filters import _mesh, _progress, _provenance
+from vizlight.filters import _progress, _provenance
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -102,34 +102,12 @@ def _fit_depth_cue(scene: Scene, jobs: Sequence[Job]) -> Scene:
 def refuse_overwriting(
     leaves: list[tuple[pv.DataSet, str]], name: str, *, components: bool, colored: bool
 ) -> None:
-    """Refuse to lose the user's own arrays; those that vizlight made may be made anew."""
+    """Refuse to lose the user's own arrays to the light and what comes with it."""
     if not isinstance(name, str) or not name:
         raise ValueError(_check.message("name", "a name for the point array", repr(name)))
     prefix = "" if name == DEFAULT_NAME else f"{name}_"
-    made = [name]
-    made += [prefix + part for part in PARTS if (colored if part == "rgb" else components)]
-    for leaf, _ in leaves:
-        for array in made:
-            if array in leaf.point_data and _provenance.key(name) not in leaf.field_data:
-                raise ValueError(
-                    _check.message(
-                        "name",
-                        "one under which the mesh has no array of its own",
-                        repr(array),
-                        "pass another name= or rename that array",
-                    )
-                )
-
-
-def made_here(mesh: Any) -> set[str]:
-    """Return the names of the arrays that vizlight attached to a mesh."""
-    names = [key.removesuffix(_provenance.key("")) for key in getattr(mesh, "field_data", ())]
-    made = set()
-    for name in names:
-        if _provenance.key(name) in mesh.field_data:
-            prefix = "" if name == DEFAULT_NAME else f"{name}_"
-            made |= {name, name + VALID, *(prefix + part for part in PARTS)}
-    return made
+    made = [prefix + part for part in PARTS if (colored if part == "rgb" else components)]
+    _provenance.refuse_overwriting(leaves, name, [name, name + VALID, *made])
 
 
 def finish(
@@ -153,22 +131,16 @@ def finish(
         )
 
 
-def attach(mesh: pv.DataSet, shading: engine.Shading, name: str, told: str) -> None:
-    """Attach a result to a mesh, in place of one of the same name."""
+def attach(mesh: pv.DataSet, shading: engine.Shading, name: str, told: dict[str, Any]) -> None:
+    """Attach the light to a mesh, in place of what was there under the name."""
     prefix = "" if name == DEFAULT_NAME else f"{name}_"
-    data: Any = mesh.point_data
-    for stale in (name + VALID, *(prefix + part for part in PARTS)):
-        if stale in data and _provenance.key(name) in mesh.field_data:
-            del data[stale]
+    arrays: dict[str, Any] = {}
     if shading.diffuse is not None and shading.specular is not None:
-        ambient = np.full_like(shading.luminance, shading.plan.ambient)
-        _mesh.attach_rows(mesh, f"{prefix}ambient", ambient)
-        _mesh.attach_rows(mesh, f"{prefix}diffuse", shading.diffuse)
-        _mesh.attach_rows(mesh, f"{prefix}specular", shading.specular)
+        arrays[f"{prefix}ambient"] = np.full_like(shading.luminance, shading.plan.ambient)
+        arrays[f"{prefix}diffuse"] = shading.diffuse
+        arrays[f"{prefix}specular"] = shading.specular
     if shading.rgb is not None:
-        _mesh.attach_rows(mesh, f"{prefix}rgb", shading.rgb)
+        arrays[f"{prefix}rgb"] = shading.rgb
     if shading.invalid:
-        data[name + VALID] = shading.valid
-    data.set_array(shading.luminance, name)
-    data.active_scalars_name = name
-    mesh.field_data[_provenance.key(name)] = [told]
+        arrays[name + VALID] = shading.valid
+    _provenance.attach(mesh, name, arrays | {name: shading.luminance}, told)

@@ -200,6 +200,13 @@ def attach_rows(mesh: Any, name: str, array: Array) -> None:
         mesh.GetPointData().AddArray(pv.convert_array(array, name))
 
 
+def activate(mesh: Any, name: str) -> None:
+    """Make a point array the active scalars of a mesh, also where those of its cells were."""
+    mesh.point_data.active_scalars_name = name
+    if mesh.n_points:
+        mesh.set_active_scalars(name, preference="point")
+
+
 def tangents_of(
     mesh: pv.DataSet, value: Any, n: int, *, average_cells: bool, argument: str = "tangents"
 ) -> Array:

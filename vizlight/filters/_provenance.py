@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +14,8 @@ from vizlight import _check
 from vizlight.filters import _mesh
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
     from vizlight.engine import Shading
     from vizlight.scene import Scene
 
@@ -26,8 +29,52 @@ def key(name: str) -> str:
     return f"{name}_provenance"
 
 
-def record(shading: Shading, filter_name: str, scene: Scene, options: dict[str, Any]) -> str:
-    """Return what made an array as a line of JSON."""
+def attach(mesh: pv.DataSet, name: str, arrays: Mapping[str, Any], told: dict[str, Any]) -> None:
+    """Attach point arrays in place of those made under the name before; it becomes active."""
+    for stale in made(mesh, name):
+        if stale in mesh.point_data:
+            del mesh.point_data[stale]
+    for own, array in arrays.items():
+        _mesh.attach_rows(mesh, own, array)
+    _mesh.activate(mesh, name)
+    mesh.field_data[key(name)] = [json.dumps(told | {"arrays": list(arrays)})]
+
+
+def made(mesh: pv.DataSet, name: str) -> set[str]:
+    """Return the names of the point arrays that were attached under a name."""
+    if key(name) not in mesh.field_data:
+        return set()
+    return set(json.loads(str(mesh.field_data[key(name)][0])).get("arrays", ()))
+
+
+def all_made(mesh: Any) -> set[str]:
+    """Return the names of all point arrays that vizlight attached to a mesh."""
+    names = [name.removesuffix(key("")) for name in getattr(mesh, "field_data", ())]
+    return set().union(*(made(mesh, name) for name in names))
+
+
+def refuse_overwriting(
+    leaves: Iterable[tuple[pv.DataSet, str]], name: str, arrays: Iterable[str]
+) -> None:
+    """Refuse to lose the user's own arrays; those that vizlight made may be made anew."""
+    for leaf, _ in leaves:
+        ours = made(leaf, name)
+        for array in arrays:
+            if array in leaf.point_data and array not in ours:
+                raise ValueError(
+                    _check.message(
+                        "name",
+                        "one under which the mesh has no array of its own",
+                        repr(array),
+                        "pass another name= or rename that array",
+                    )
+                )
+
+
+def record(
+    shading: Shading, filter_name: str, scene: Scene, options: dict[str, Any]
+) -> dict[str, Any]:
+    """Return what made the light, as values that JSON can hold."""
     plan = shading.plan
     return tell(
         filter_name, scene, options,
@@ -41,17 +88,15 @@ def record(shading: Shading, filter_name: str, scene: Scene, options: dict[str, 
     )  # fmt: skip
 
 
-def tell(filter_name: str, scene: Scene, options: dict[str, Any], **facts: Any) -> str:
-    """Return what made an array that is no sum of an engine's terms, as a line of JSON."""
-    return json.dumps(
-        {
-            "vizlight": vizlight.__version__,
-            "filter": filter_name,
-            **facts,
-            "options": plain(options),
-            "scene": scene.to_dict(),
-        }
-    )
+def tell(filter_name: str, scene: Scene, options: dict[str, Any], **facts: Any) -> dict[str, Any]:
+    """Return what made an array that is no sum of an engine's terms."""
+    return {
+        "vizlight": vizlight.__version__,
+        "filter": filter_name,
+        **facts,
+        "options": plain(options),
+        "scene": scene.to_dict(),
+    }
 
 
 def retell(mesh: pv.DataSet, name: str, filter_name: str, options: dict[str, Any]) -> None:
@@ -73,15 +118,14 @@ def _plain(value: Any) -> Any:
         return value
     if isinstance(value, pv.DataObject):
         return f"{type(value).__name__} of {getattr(value, 'n_points', 0)} points"
-    parts = isinstance(value, list | tuple) and len(value) <= WRITTEN_OUT
-    if parts and any(isinstance(part, str | pv.DataObject) for part in value):
+    if isinstance(value, Fraction):
+        return float(value)
+    if isinstance(value, list | tuple) and len(value) <= WRITTEN_OUT:
         return [_plain(part) for part in value]
-    try:
-        array = np.asarray(value)
-    except ValueError:  # parts of several shapes
-        return [_plain(part) for part in value] if parts else _check.describe(value)
+    array = np.asarray(value)
     if array.size <= WRITTEN_OUT and array.dtype.kind in "biufU":
-        return array.tolist()
+        # No JSON has more digits than float64.
+        return (array.astype(np.float64) if array.dtype.kind == "f" else array).tolist()
     return _check.describe(array)
 
 

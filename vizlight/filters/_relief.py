@@ -10,7 +10,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check, _report, engine
-from vizlight.filters import _progress, _provenance
+from vizlight.filters import _mesh, _progress, _provenance
 from vizlight.filters._casters import caster
 from vizlight.filters._light import DEFAULT_NAME, VALID, attach, refuse_overwriting
 from vizlight.geometry import sun
@@ -130,14 +130,11 @@ def relief_shadow(
     options["occluders"] = occluders = list(occluders)
     lights = _lights(scene)
     shadow = caster(mesh, scene, options, occluders, threads)
-    given = [name, *(f"{name}_{i}" for i in range(len(lights)) if components)]
+    each = [f"{name}_{i}" for i in range(len(lights) if components else 0)]
     refuse_overwriting([(mesh, "")], name, components=False, colored=False)
+    _provenance.refuse_overwriting([(mesh, "")], name, each)
     if lit:
         refuse_overwriting([(mesh, "")], DEFAULT_NAME, components=components, colored=scene.colored)
-    for array in given:
-        if array in mesh.point_data and _provenance.key(name) not in mesh.field_data:
-            expected = "one under which the mesh has no array of its own"
-            raise ValueError(_check.message("name", expected, repr(array)))
 
     start = time.perf_counter()
     t = np.empty((len(shadow.points), len(lights)))
@@ -171,10 +168,18 @@ def relief_shadow(
     if shading is not None:
         record = _provenance.record(shading, "relief_shadow", scene, options)
         attach(out, shading, DEFAULT_NAME, record)
-    _attach(out, name, t @ (weight / weight.sum()), told, shadow.valid)
-    for i in range(len(lights) if components else 0):
-        out.point_data[f"{name}_{i}"] = t[:, i].copy()
-    out.point_data.active_scalars_name = DEFAULT_NAME if lit else name
+    arrays: dict[str, NDArray[Any]] = {own: t[:, i].copy() for i, own in enumerate(each)}
+    arrays[name] = t @ (weight / weight.sum())
+    missing = int(np.count_nonzero(~shadow.valid))
+    if missing:
+        arrays[name + VALID] = shadow.valid
+        _check.warn(
+            f"{missing} of {len(t)} points have no height or no normal and t = 0; "
+            f"the point array {name + VALID!r} marks them"
+        )
+    _provenance.attach(out, name, arrays, told)
+    if lit:
+        _mesh.activate(out, DEFAULT_NAME)
     return out
 
 
@@ -245,17 +250,23 @@ def relief_day(
     found = relief_shadow(
         mesh, scene, name=name, components=True, progress_bar=progress_bar, **options
     )
+    mean = f"{name}_mean"
+    _provenance.refuse_overwriting([(found, "")], name, [mean])
     t, seen = np.zeros((mesh.n_points, len(toward))), 0
     for hour, way in enumerate(toward):
         if way[2] > 0:
-            t[:, hour] = found.point_data.pop(f"{name}_{seen}")
+            t[:, hour] = found.point_data[f"{name}_{seen}"]
             seen += 1
-    found.point_data[name] = t
-    found.point_data[f"{name}_mean"] = t.mean(axis=1)
-    found.point_data.active_scalars_name = f"{name}_mean"
-    told = _provenance.provenance(found, name)["options"]
-    told = {key: value for key, value in told.items() if key not in ("lit", "components")}
-    _provenance.retell(found, name, "relief_day", own | told)
+    arrays: dict[str, NDArray[Any]] = {name: t, mean: t.mean(axis=1)}
+    if name + VALID in found.point_data:
+        arrays[name + VALID] = np.asarray(found.point_data[name + VALID])
+    told = _provenance.provenance(found, name)
+    told["filter"] = "relief_day"
+    for other in ("lit", "components"):
+        del told["options"][other]
+    told["options"] |= _provenance.plain(own)
+    _provenance.attach(found, name, arrays, told)
+    _mesh.activate(found, mean)
     return found
 
 
@@ -280,17 +291,3 @@ def _disc(light: Light, diameter: float, samples: int) -> list[Light]:
         Light(direction=way, intensity=light.intensity)
         for way in sun.disc(light.direction, diameter, samples)
     ]
-
-
-def _attach(mesh: Any, name: str, t: Array, told: str, valid: NDArray[np.bool_]) -> None:
-    if name + VALID in mesh.point_data and _provenance.key(name) in mesh.field_data:
-        del mesh.point_data[name + VALID]
-    mesh.point_data.set_array(t, name)
-    mesh.field_data[_provenance.key(name)] = [told]
-    missing = int(np.count_nonzero(~valid))
-    if missing:
-        mesh.point_data[name + VALID] = valid
-        _check.warn(
-            f"{missing} of {len(valid)} points have no height or no normal and t = 0; "
-            f"the point array {name + VALID!r} marks them"
-        )

@@ -10,8 +10,8 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.filters import _lines, _mesh, _surface
 from vizlight.filters._illuminate import illuminate
-from vizlight.filters._light import DEFAULT_NAME, made_here
-from vizlight.filters._provenance import retell
+from vizlight.filters._light import DEFAULT_NAME
+from vizlight.filters._provenance import all_made, retell
 from vizlight.geometry import fur
 from vizlight.model import _kernels
 from vizlight.scene import Scene
@@ -123,9 +123,9 @@ def streamlines(
     if surface is None and (confined or conditioned):
         what = "confined" if confined else "conditioned"
         raise ValueError(_check.message("surface", f"a surface for {what} lines", None))
-    carrier, own = mesh, made_here(mesh)
+    carrier, own = mesh, all_made(mesh)
     if surface is not None:
-        own |= made_here(surface)
+        own |= all_made(surface)
         surface = _surface.with_normals(surface, _mesh.onlooker(scene))
         if confined:
             surface = carrier = _tangential(surface, mesh, vectors)
