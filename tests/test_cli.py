@@ -270,3 +270,23 @@ def test_help_and_version(capfd):
     assert "demo" in out
     code, out, _ = run(capfd, "--version")
     assert out.strip() == vizlight.__version__
+
+
+def test_another_name_where_the_file_has_its_own(tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    mesh = pv.Sphere()
+    mesh["luminance"] = np.arange(mesh.n_points)
+    mesh.save("own.vtp")
+    code, _, err = run(capfd, "light", "own.vtp", "-o", "lit.vtp")
+    assert code != 0
+    assert "--name" in err
+    code, _, err = run(capfd, "light", "own.vtp", "--name", "light", "-o", "lit.vtp")
+    assert (code, err) == (0, "")
+    np.testing.assert_array_equal(pv.read("lit.vtp")["luminance"], mesh["luminance"])
+
+
+def test_explain_tells_of_averaged_tangents(volume, capfd):
+    options = ("--tangents", "C", "--average-cells", "--no-surface", "--explain", "-o", "lit.vti")
+    code, out, err = run(capfd, "light", volume, *options)
+    assert (code, err) == (0, "")
+    assert "1 orthonormal tangent" in out

@@ -72,6 +72,7 @@ def test_blocks_become_one_grid_of_their_highest_cells(tmp_path):
     assert isinstance(read, pv.UnstructuredGrid)
     assert read.n_cells == grid.n_cells
     assert "V" in read.point_data
+    assert not [name for name in read.array_names if name.startswith("vtk")]
 
 
 def test_surfaces():

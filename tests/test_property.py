@@ -218,3 +218,8 @@ def test_warnings_tell_what_vtk_cannot():
 def test_bad_input(call, error, words):
     with pytest.raises(error, match=words):
         call()
+
+
+def test_lights_of_another_space_are_refused():
+    with pytest.raises(ValueError, match="lights: expected vectors of 3 components"):
+        Material().to_property(lights=Light(direction=(1, 0, 0, 0)))

@@ -154,3 +154,18 @@ def test_a_moved_scene_lights_moved_points_the_same(random):
         np.testing.assert_allclose(
             found, engine.shade(points, tangents, scene).luminance, rtol=1e-12
         )
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        (None, "values: expected a dict of lights"),
+        ({"light": []}, "values: expected a dict of lights.* got 'light'"),
+        ({"lights": 5}, "lights: expected a list of dicts, got 5"),
+        ({"lights": [5]}, "lights: expected a dict of direction"),
+        ({"material": 3}, "material: expected a dict of ambient"),
+    ],
+)
+def test_a_dict_of_another_kind_is_refused(values, words):
+    with pytest.raises((TypeError, ValueError), match=words):
+        Scene.from_dict(values)

@@ -93,7 +93,12 @@ def from_property(
 
 def _lights(lights: Any) -> tuple[Light, ...]:
     """Return the lights that are given, one headlight by default."""
-    return as_lights(Light.headlight() if lights is None else lights)
+    given = as_lights(Light.headlight() if lights is None else lights)
+    for light in given:
+        n = len(light.direction or light.position or ()) or 3
+        if n != 3:
+            raise ValueError(_check.message("lights", "vectors of 3 components, VTK's", n))
+    return given
 
 
 def _check_view(view: Any) -> None:

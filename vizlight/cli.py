@@ -143,6 +143,7 @@ def light(
     zoom: float = 1.0,
     depth_cue: bool = False,
     components: bool = False,
+    name: str = "luminance",
     precision: Literal["float32", "float64"] | None = None,
     output: Annotated[list[Path], Parameter(name=["--output", "-o"], negative=())] | None = None,
     surface: bool = True,
@@ -213,6 +214,8 @@ def light(
         Fade to half with depth.
     components
         Keep ambient, diffuse and specular as arrays.
+    name
+        Of the point array that holds the light.
     precision
         Default: that of the vectors.
     output
@@ -237,6 +240,7 @@ def light(
     """
     from vizlight import engine, files, render
     from vizlight.filters import illuminate, provenance
+    from vizlight.filters._light import part_name
     from vizlight.filters._lines import has_lines_only
     from vizlight.filters._mesh import leaves
 
@@ -307,6 +311,7 @@ def light(
             tolerance=_fraction("tolerance", tolerance),
             average_cells=average_cells,
             components=components,
+            name=name,
             precision=precision,
             progress_bar=progress,
         )
@@ -315,21 +320,21 @@ def light(
         _say(f"note     {hint}")
     for warning in caught:
         sys.stderr.write(f"vizlight: {warning.message}\n")
-    bright = sum(int((leaf["luminance"] > 1).sum()) for leaf in leaves(lit))
+    bright = sum(int((leaf.point_data[name] > 1).sum()) for leaf in leaves(lit))
     if bright and pictures:
         sys.stderr.write(
             f"vizlight: {bright} of {lit.n_points} points are brighter than 1 and white in the "
             "picture; a smaller --ambient, --diffuse or --specular shows them\n"
         )
-    told = provenance(lit)
+    told = provenance(lit, name)
     terms = " + ".join(told["terms"])
     _say(f"{lit.n_points} points lit in {seconds:.3f} s, {told['precision']}: {terms}")
     if cost is not None:
         _say(str(cost))
     if explain:
         k: int | None = 1 if has_lines_only(lit) else None
-        if tangents in lit.point_data:
-            k = lit.point_data[tangents].shape[1] // 3
+        if tangents is not None:
+            k = lit[tangents].shape[1] // 3
         plan = engine.plan(
             vizlight.Scene.from_dict(told["scene"]),
             k=k,
@@ -345,7 +350,7 @@ def light(
         _say(f"mesh     {files.write_mesh(lit, path)}")
     codes = [
         _draw(
-            render.Panel(lit, "rgb" if scene.colored else "luminance"),
+            render.Panel(lit, part_name(name, "rgb") if scene.colored else name),
             path,
             camera=camera,
             size=pixels,

@@ -16,6 +16,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight.filters import _mesh
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -86,7 +87,9 @@ def _one_grid(blocks: pv.MultiBlock) -> Any:
     highest = max(dimension.values(), default=0)
     keep = [kind for kind, d in dimension.items() if d == highest]
     if len(keep) < len(dimension):
-        grid = grid.extract_cells(np.isin(grid.celltypes, keep))
+        grid = grid.extract_cells(
+            np.isin(grid.celltypes, keep), pass_point_ids=False, pass_cell_ids=False
+        )
     return grid
 
 
@@ -134,7 +137,7 @@ def surface_of(mesh: Any, /, contour: str | None = None, level: float | None = N
     if contour is None:
         if isinstance(mesh, pv.PolyData):
             return mesh
-        return mesh.extract_surface(algorithm="geometry", pass_pointid=False, pass_cellid=False)
+        return _mesh.outer_surface(mesh)[0]
     values = _scalars(mesh, "contour", contour)
     finite = values[np.isfinite(values)]
     if not finite.size:

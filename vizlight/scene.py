@@ -6,6 +6,7 @@ Directions point away from the lit point: toward the light, toward the eye.
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +16,7 @@ from vizlight import _check
 from vizlight.light import Light, as_lights, from_vtk
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Sequence
 
     from vizlight._check import Color, ColorLike, Vector, VectorLike
 
@@ -403,13 +404,24 @@ class Scene:
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> Scene:
-        """Return the scene that :meth:`to_dict` wrote."""
-        parts: dict[str, Any] = dict(values)
+        """Return the scene that :meth:`to_dict` wrote.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If it is another dict, or the values are not those of a scene.
+        """
+        parts = _fields("values", values, cls)
         if parts.get("lights") is not None:
-            parts["lights"] = [Light(**light) for light in parts["lights"]]
+            lights = parts["lights"]
+            if isinstance(lights, str | Mapping) or not isinstance(lights, Iterable):
+                raise TypeError(
+                    _check.message("lights", "a list of dicts", _check.describe(lights))
+                )
+            parts["lights"] = [Light(**_fields("lights", light, Light)) for light in lights]
         for name, kind in (("material", Material), ("view", View), ("depth_cue", DepthCue)):
             if parts.get(name) is not None:
-                parts[name] = kind(**parts[name])
+                parts[name] = kind(**_fields(name, parts[name], kind))
         return cls(**parts)
 
     @classmethod
@@ -441,6 +453,18 @@ class Scene:
         fields.setdefault("view", View.from_camera(camera))
         fields.setdefault("lights", list(from_vtk(renderer.GetLights(), camera)))
         return cls(**fields)
+
+
+def _fields(name: str, values: Any, kind: Any) -> dict[str, Any]:
+    """Return the fields of a class that :meth:`Scene.to_dict` wrote, by name."""
+    known = [field.name for field in dataclasses.fields(kind)]
+    expected = f"a dict of {', '.join(known)}"
+    if not isinstance(values, Mapping):
+        raise TypeError(_check.message(name, expected, _check.describe(values)))
+    for key in values:
+        if key not in known:
+            raise ValueError(_check.message(name, expected, repr(key)))
+    return dict(values)
 
 
 def _is_camera(value: Any) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import pyvista as pv
+import vtk
 
 import vizlight
 from vizlight import Light, Material, Scene, View, fur
@@ -392,3 +393,16 @@ def test_bad_surfaces_and_scenes():
     scene = Scene(lights=Light(direction=(0, 0, 1)), material=Material(specular=0))
     with pytest.raises(ValueError, match="view: expected a View, which the fur needs"):
         fur(torus(), scene, density=0.02, fibres=10)
+
+
+def test_surfaces_of_whole_numbers_have_fibres_between():
+    places = vtk.vtkPoints()
+    places.SetDataTypeToInt()
+    for place in ((0, 0, 0), (9, 0, 0), (0, 9, 0)):
+        places.InsertNextPoint(*place)
+    mesh = pv.PolyData()
+    mesh.SetPoints(places)
+    mesh.faces = [3, 0, 1, 2]
+    hair = fur(mesh, Scene(view=View(direction=(0, 0, 1))), density=0.1, fibres=5)[0]
+    assert hair.points.dtype.kind == "f"
+    assert np.any(hair.points % 1)

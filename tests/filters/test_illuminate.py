@@ -390,3 +390,57 @@ def test_bad_meshes_and_scenes():
         illuminate(pv.PolyData(np.eye(3)), SCENE)
     with pytest.raises(ValueError, match="view: expected a View, which the specular term needs"):
         illuminate(pv.Sphere(), Scene(lights=Light(direction=(0, 0, 1))))
+
+
+def test_integer_normals_are_turned_over_as_numbers():
+    mesh = pv.PolyData(np.eye(3), [3, 0, 1, 2])
+    mesh["N"] = np.full((3, 3), 255, np.uint8)
+    turned = illuminate(mesh, SCENE, normals="N", flip_normals=True)
+    expected = illuminate(mesh, SCENE, normals=-mesh["N"].astype(float))
+    np.testing.assert_array_equal(turned["luminance"], expected["luminance"])
+
+
+@pytest.mark.parametrize("inplace", [False, True])
+def test_light_is_active_where_a_cell_array_was(inplace):
+    mesh = pv.Sphere()
+    mesh.cell_data["c"] = np.arange(mesh.n_cells)
+    mesh.set_active_scalars("c")
+    lit = illuminate(mesh, SCENE, inplace=inplace)
+    assert lit.active_scalars_name == "luminance"
+    assert inplace or mesh.active_scalars_name == "c"
+
+
+def test_curved_cells_are_lit_at_their_nodes():
+    """A plane of one quadratic triangle: the middles of its edges have normals too."""
+    points = np.array([[0, 0, 0], [2, 0, 0], [0, 2, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
+    mesh = pv.UnstructuredGrid({pv.CellType.QUADRATIC_TRIANGLE: np.arange(6)[None]}, points)
+    scene = SCENE.replace(view=View(direction=(0, 0, 1)))
+    expected = illuminate(pv.Plane(), scene)["luminance"][0]
+    np.testing.assert_allclose(illuminate(mesh, scene)["luminance"], expected, rtol=1e-6)
+
+
+@pytest.mark.parametrize("kind", ["QUADRATIC_TETRA", "QUADRATIC_HEXAHEDRON"])
+def test_curved_volumes(kind):
+    cell = {"QUADRATIC_TETRA": "QuadraticTetrahedron"}.get(kind, "QuadraticHexahedron")
+    mesh = getattr(pv.examples.cells, cell)()
+    lit = illuminate(mesh, SCENE)
+    assert lit.n_points == mesh.n_points
+    assert "luminance_valid" not in lit.point_data
+
+
+@pytest.mark.parametrize(
+    ("mesh", "options", "error", "words"),
+    [
+        (pv.MultiBlock([pv.Table(np.eye(3)), pv.Sphere()]), {}, TypeError, "block /.* got Table"),
+        (pv.PointSet(np.eye(3)), {}, ValueError, "mesh: expected a surface"),
+        (
+            pv.PolyData(np.eye(3)),
+            {"tangents": np.eye(3), "conditioned": np.eye(3)},
+            TypeError,
+            "conditioned: expected True, False or the name",
+        ),
+    ],
+)
+def test_what_cannot_be_lit_is_named(mesh, options, error, words):
+    with pytest.raises(error, match=words):
+        illuminate(mesh, SCENE, **options)

@@ -45,8 +45,9 @@ def cut(mesh: Any, heights: Array, /, *, spaces: Mapping[str, int] | None = None
     Returns
     -------
     pyvista.PolyData
-        Points, lines or triangles. Arrays of numbers are interpolated along the cut edges; a
-        hexahedron is cut as 12 tetrahedra around its mean point. Triangles go either way around.
+        Points, lines or triangles. Point arrays of numbers are interpolated along the cut edges,
+        cell arrays are left out; a hexahedron is cut as 12 tetrahedra around its mean point.
+        Triangles go either way around.
 
     Raises
     ------

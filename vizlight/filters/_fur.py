@@ -142,7 +142,7 @@ def fur(
         lambda block: coat.grow(block, fibres, seed, **shape),
         fibres,
         segments + 1,
-        np.float64 if any(coat.origin) else skin.points.dtype,
+        np.float64 if any(coat.origin) else np.result_type(skin.points.dtype, np.float32),
         straight=not (bend or curl),
         threads=threads,
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pyvista as pv
 
 from vizlight import _check, engine
@@ -183,8 +184,6 @@ def _copy(mesh: Any) -> Any:
 def _prepare(mesh: pv.DataSet, path: str, scene: Scene, options: dict[str, Any]) -> Job:
     """Take from one mesh what is lit; a block's errors say which block it is."""
     try:
-        if not isinstance(mesh, pv.DataSet):
-            raise TypeError(_check.message("mesh", "a PyVista mesh", type(mesh).__name__))
         points = _mesh.points_of(mesh, options["positions"])
         n = points.shape[1]
         tangents = normals = carrier = None
@@ -202,6 +201,9 @@ def _prepare(mesh: pv.DataSet, path: str, scene: Scene, options: dict[str, Any])
             raise ValueError(
                 _check.message("model", "lines in 3-space for 'cylinder'", got, remedy)
             )
+        if not isinstance(conditioned, str | bool | np.bool_):
+            expected = "True, False or the name of a point array"
+            raise TypeError(_check.message("conditioned", expected, _check.describe(conditioned)))
         if tangents is None and conditioned:
             remedy = "a surface without tangents shadows itself as it is"
             raise ValueError(_check.message("conditioned", "tangents to condition", None, remedy))

@@ -248,8 +248,7 @@ def _surface(mesh: Any) -> tuple[pv.PolyData, Index, Any]:
     """Return the surface of a mesh, its triangles with finite corners, and whose points it has."""
     surface, ids = mesh, None
     if not isinstance(mesh, pv.PolyData):
-        surface = mesh.extract_surface(algorithm="geometry", pass_pointid=True, pass_cellid=False)
-        ids = np.asarray(surface.point_data["vtkOriginalPointIds"])
+        surface, ids = _mesh.outer_surface(mesh)
     if surface.n_points and not (surface.GetNumberOfPolys() or surface.GetNumberOfStrips()):
         remedy = "take a contour or the mesh's extract_surface()"
         raise ValueError(

@@ -99,14 +99,19 @@ def _fit_depth_cue(scene: Scene, jobs: Sequence[Job]) -> Scene:
     return scene.replace(depth_cue=dataclasses.replace(cue, front=front, back=back))
 
 
+def part_name(name: str, part: str) -> str:
+    """Return what an array that comes with the light is called."""
+    return part if name == DEFAULT_NAME else f"{name}_{part}"
+
+
 def refuse_overwriting(
     leaves: list[tuple[pv.DataSet, str]], name: str, *, components: bool, colored: bool
 ) -> None:
     """Refuse to lose the user's own arrays to the light and what comes with it."""
     if not isinstance(name, str) or not name:
         raise ValueError(_check.message("name", "a name for the point array", repr(name)))
-    prefix = "" if name == DEFAULT_NAME else f"{name}_"
-    made = [prefix + part for part in PARTS if (colored if part == "rgb" else components)]
+    parts = [part for part in PARTS if (colored if part == "rgb" else components)]
+    made = [part_name(name, part) for part in parts]
     _provenance.refuse_overwriting(leaves, name, [name, name + VALID, *made])
 
 
@@ -133,14 +138,13 @@ def finish(
 
 def attach(mesh: pv.DataSet, shading: engine.Shading, name: str, told: dict[str, Any]) -> None:
     """Attach the light to a mesh, in place of what was there under the name."""
-    prefix = "" if name == DEFAULT_NAME else f"{name}_"
-    arrays: dict[str, Any] = {}
+    parts: dict[str, Any] = {}
     if shading.diffuse is not None and shading.specular is not None:
-        arrays[f"{prefix}ambient"] = np.full_like(shading.luminance, shading.plan.ambient)
-        arrays[f"{prefix}diffuse"] = shading.diffuse
-        arrays[f"{prefix}specular"] = shading.specular
+        ambient = np.full_like(shading.luminance, shading.plan.ambient)
+        parts = {"ambient": ambient, "diffuse": shading.diffuse, "specular": shading.specular}
     if shading.rgb is not None:
-        arrays[f"{prefix}rgb"] = shading.rgb
+        parts["rgb"] = shading.rgb
+    arrays = {part_name(name, part): array for part, array in parts.items()}
     if shading.invalid:
         arrays[name + VALID] = shading.valid
     _provenance.attach(mesh, name, arrays | {name: shading.luminance}, told)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 
+from vizlight.filters import _mesh
 from vizlight.geometry.curves import polyline_tangents
 
 if TYPE_CHECKING:
@@ -34,10 +35,8 @@ def line_tangents(mesh: pv.DataSet) -> Array:
     Segments that follow each other, such as contour lines come in, are joined first.
     """
     if not isinstance(mesh, pv.PolyData):
-        surface = mesh.extract_surface(algorithm="geometry", pass_pointid=True, pass_cellid=False)
-        tangents = np.zeros((mesh.n_points, 3), dtype=mesh.points.dtype)
-        tangents[np.asarray(surface.point_data["vtkOriginalPointIds"])] = line_tangents(surface)
-        return tangents
+        surface, origin = _mesh.outer_surface(mesh)
+        return _mesh.scattered(line_tangents(surface), origin, mesh.n_points)
     lines = mesh.GetLines()
     ids, offsets = _cells(lines)
     if np.any(np.diff(offsets) == 2) and len(np.unique(ids)) < len(ids):

@@ -64,6 +64,10 @@ def leaves(mesh: Any) -> Iterator[Any]:
 def named_leaves(mesh: Any, path: str = "") -> Iterator[tuple[Any, str]]:
     """Yield the meshes of a MultiBlock, however deep, with where they are."""
     if not isinstance(mesh, pv.MultiBlock):
+        if not isinstance(mesh, pv.DataSet):
+            where = f"block {path}: " if path else ""
+            got = type(mesh).__name__
+            raise TypeError(where + _check.message("mesh", "a PyVista mesh", got))
         yield mesh, path
         return
     for i in range(mesh.n_blocks):
@@ -260,11 +264,12 @@ def surface_normals(mesh: pv.DataSet, view: View | None) -> Array:
     """
     if mesh.n_points == 0:
         return np.zeros((0, 3), dtype=np.float32)
+    if isinstance(mesh, pv.PointSet):
+        mesh = mesh.cast_to_polydata(deep=False)
     if isinstance(mesh, pv.PolyData):
         surface, origin = mesh, None
     else:
-        surface = mesh.extract_surface(algorithm="geometry", pass_pointid=True, pass_cellid=False)
-        origin = np.asarray(surface.point_data["vtkOriginalPointIds"])
+        surface, origin = outer_surface(mesh)
     if not (surface.GetNumberOfPolys() or surface.GetNumberOfStrips()):
         raise ValueError(
             _check.message(
@@ -292,9 +297,28 @@ def surface_normals(mesh: pv.DataSet, view: View | None) -> Array:
         _turn_open(computed, found, view)
     if origin is None:
         return computed
-    normals = np.zeros((mesh.n_points, 3), dtype=computed.dtype)
-    normals[origin] = computed
-    return normals
+    return scattered(computed, origin, mesh.n_points)
+
+
+def outer_surface(mesh: pv.DataSet) -> tuple[pv.PolyData, NDArray[np.intp]]:
+    """Return the outer surface of a mesh and which of its points each is, -1 for none.
+
+    Curved cells are taken as the flat ones between their nodes.
+    """
+    how: dict[str, Any] = {"algorithm": "geometry"}
+    if mesh.has_nonlinear_cells:
+        how = {"algorithm": "dataset_surface", "nonlinear_subdivision": 1}
+    surface = mesh.extract_surface(pass_pointid=True, pass_cellid=False, **how)
+    ids = surface.point_data.pop("vtkOriginalPointIds")
+    return surface, np.asarray(ids, dtype=np.intp)
+
+
+def scattered(rows: Array, origin: NDArray[np.intp], count: int) -> Array:
+    """Return the rows of a mesh's surface as rows of its points, zero where it has none."""
+    found = np.zeros((count, *rows.shape[1:]), dtype=rows.dtype)
+    there = origin >= 0
+    found[origin[there]] = rows[there]
+    return found
 
 
 def _turn_open(normals: Array, surface: pv.PolyData, view: View | None) -> None:

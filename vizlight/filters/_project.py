@@ -57,7 +57,7 @@ def project(
         first done first; see :func:`vizlight.geometry.projection.rotation`.
     hyperplane : (normal, offset), optional
         Keep where the turned mesh meets ``{x : x . normal / |normal| = offset}``: a
-        (k - 1)-manifold. All arrays of numbers are interpolated, the frame as the space that it
+        (k - 1)-manifold. Point arrays of numbers are interpolated, the frame as the space that it
         spans, whatever its basis at each point, and cut down to the directions within.
     distance : float, optional
         Of the eye on the last axis from the origin, in the mesh's unit: a perspective projection

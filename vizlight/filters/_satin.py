@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 #: Options of the integral curves alone, and of the panels that have sides.
 TRACED = ("step", "max_length", "max_steps")
 SIDES = ("normals", "two_sided", "flip_normals")
+ENDS = ("terminator",)
 
 
 def satin(
@@ -76,6 +77,7 @@ def satin(
         _mesh.vectors_of(surface, "tangents", tangents, 3)
     traced = {key: options.pop(key) for key in TRACED if key in options}
     sides = {key: options.pop(key) for key in SIDES if key in options}
+    ends = {key: options.pop(key) for key in ENDS if key in options}
     options["compensate"] = compensate
     own_light: dict[str, Any] = {"tangents": tangents, "model": model, **options}
     curves = streamlines(
@@ -92,7 +94,9 @@ def satin(
     return pv.MultiBlock(
         {
             "curves": curves,
-            "surface": illuminate(surface, scene, model=surface_model(model), **sides, **options),
+            "surface": illuminate(
+                surface, scene, model=surface_model(model), **sides, **ends, **options
+            ),
             "field": illuminate(surface, scene, **own_light),
             "conditioned": illuminate(surface, scene, conditioned=True, **sides, **own_light),
         }

@@ -108,6 +108,9 @@ def streamlines(
     if not isinstance(mesh, pv.DataSet):
         remedy = "join its blocks by mesh.combine()" if isinstance(mesh, pv.MultiBlock) else ""
         raise TypeError(_check.message("mesh", "a PyVista dataset", type(mesh).__name__, remedy))
+    if isinstance(mesh, pv.PointSet):
+        remedy = "interpolate its vectors onto a grid, between points there are none"
+        raise TypeError(_check.message("mesh", "a dataset with cells", "PointSet", remedy))
     _check.instance("scene", scene, Scene)
     if "inplace" in options:
         remedy = "the lines are always a new mesh"
@@ -211,7 +214,9 @@ def _no_vectors(mesh: pv.DataSet, got: str | None) -> ValueError:
 
 def _tangential(surface: pv.PolyData, mesh: pv.DataSet, vectors: str) -> pv.PolyData:
     """Return the surface with the tangential part of the vectors, sampled where it lacks them."""
-    if vectors not in surface.point_data:
+    if vectors in surface.point_data:
+        _mesh.vectors_of(surface, "vectors", vectors, 3)
+    else:
         field = pv.PolyData(surface.points).sample(mesh)
         surface.point_data[vectors] = np.asarray(field.point_data[vectors])
     array = np.array(surface.point_data[vectors], dtype=np.float64)
