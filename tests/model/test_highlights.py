@@ -397,4 +397,6 @@ def test_shapes_that_do_not_fit_are_told_by_name():
         ValueError, match="light_eye_angle, r, factor: expected shapes that broadcast"
     ):
         highlights.max_pixel_error([1, 2, 3], [1, 2])
+    with pytest.raises(ValueError, match="light_eye_angle, r: expected shapes that broadcast"):
+        highlights.simple_factor([1, 2], [1, 2, 3])
     assert highlights.phong_from_blinn(highlights.blinn_from_phong(1e9)) == 1e9

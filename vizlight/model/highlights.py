@@ -270,7 +270,7 @@ def simple_factor(light_eye_angle: ArrayLike, r: ArrayLike | None = None, /) -> 
     Raises
     ------
     TypeError, ValueError
-        If an angle is not a real number from 0 to pi.
+        If an argument does not fit, or shapes do not broadcast.
 
     Notes
     -----
@@ -281,10 +281,12 @@ def simple_factor(light_eye_angle: ArrayLike, r: ArrayLike | None = None, /) -> 
     :func:`best_factor`: from r = 10 on and up to 120 degrees its worst error is within a tenth, or
     half a pixel value, of the least, and no more than 0.1 above that of 4.
     """
-    cosine = np.cos(_angles("light_eye_angle", light_eye_angle) / 2)
+    angle = _angles("light_eye_angle", light_eye_angle)
     if r is None:
-        return (4 * cosine)[()]
-    return (4 * cosine * (1 + (2 * cosine - 1) / (3 * _powers("r", r, low=0.5))))[()]
+        return (4 * np.cos(angle / 2))[()]
+    angle, power = _together({"light_eye_angle": angle, "r": _powers("r", r, low=0.5)})
+    cosine = np.cos(angle / 2)
+    return (4 * cosine * (1 + (2 * cosine - 1) / (3 * power)))[()]
 
 
 def sphere_error(
