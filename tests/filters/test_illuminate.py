@@ -419,13 +419,24 @@ def test_curved_cells_are_lit_at_their_nodes():
     np.testing.assert_allclose(illuminate(mesh, scene)["luminance"], expected, rtol=1e-6)
 
 
-@pytest.mark.parametrize("kind", ["QUADRATIC_TETRA", "QUADRATIC_HEXAHEDRON"])
-def test_curved_volumes(kind):
-    cell = {"QUADRATIC_TETRA": "QuadraticTetrahedron"}.get(kind, "QuadraticHexahedron")
-    mesh = getattr(pv.examples.cells, cell)()
-    lit = illuminate(mesh, SCENE)
-    assert lit.n_points == mesh.n_points
-    assert "luminance_valid" not in lit.point_data
+@pytest.mark.parametrize("cell", ["QuadraticTetrahedron", "QuadraticHexahedron", "QuadraticWedge"])
+def test_nodes_of_curved_volumes_have_the_light_of_their_place(cell, random):
+    """However the points are numbered, and however many cells there are."""
+    one = getattr(pv.examples.cells, cell)()
+    other = one.translate((3, 0, 0))
+    mesh = pv.merge([one, other], merge_points=False)
+    order = random.permutation(mesh.n_points)
+    cells = np.insert(
+        np.argsort(order)[mesh.cell_connectivity],
+        mesh.cell_offsets[:-1],
+        np.diff(mesh.cell_offsets),
+    )
+    shuffled = pv.UnstructuredGrid(cells, mesh.celltypes, np.asarray(mesh.points)[order])
+    scene = SCENE.replace(view=View(direction=(0, 0, 1)))
+    expected = illuminate(one, scene)["luminance"]
+    lit = illuminate(shuffled, scene)
+    np.testing.assert_allclose(lit["luminance"], np.tile(expected, 2)[order], atol=1e-6)
+    assert np.ptp(lit["luminance"]) > 0.1
 
 
 @pytest.mark.parametrize(

@@ -117,3 +117,14 @@ def test_lines_as_thin_cylinders():
     blocks = pv.MultiBlock({"lines": lines, "ball": pv.Sphere()})
     with pytest.raises(ValueError, match="block /ball: model: expected lines in 3-space"):
         vizlight.illuminate(blocks, scene, model="cylinder")
+
+
+def test_curved_cells_are_lines_through_their_nodes():
+    """Quadratic edges, whose middle node comes last."""
+    line = circle(41, closed=False)
+    ids = np.arange(0, 40, 2)
+    cells = np.stack([ids, ids + 2, ids + 1], axis=1)
+    mesh = pv.UnstructuredGrid({pv.CellType.QUADRATIC_EDGE: cells}, line.points)
+    np.testing.assert_allclose(
+        illuminate(mesh, SCENE)["luminance"], illuminate(line, SCENE)["luminance"], atol=1e-6
+    )

@@ -16,6 +16,13 @@ if TYPE_CHECKING:
     Array = NDArray[np.floating[Any]]
 
 
+LINES = {
+    pv.CellType.LINE, pv.CellType.POLY_LINE, pv.CellType.QUADRATIC_EDGE, pv.CellType.CUBIC_LINE,
+    pv.CellType.LAGRANGE_CURVE, pv.CellType.BEZIER_CURVE,
+}  # fmt: skip
+POINTS = {pv.CellType.VERTEX, pv.CellType.POLY_VERTEX}
+
+
 def has_lines_only(mesh: pv.DataSet) -> bool:
     """Tell whether a mesh consists of lines (and perhaps loose points), without a surface."""
     if isinstance(mesh, pv.PolyData):
@@ -23,9 +30,7 @@ def has_lines_only(mesh: pv.DataSet) -> bool:
         return no_faces and mesh.n_lines > 0
     if isinstance(mesh, pv.UnstructuredGrid):
         kinds = set(np.unique(mesh.celltypes).tolist())
-        lines = {pv.CellType.LINE, pv.CellType.POLY_LINE}
-        points = {pv.CellType.VERTEX, pv.CellType.POLY_VERTEX}
-        return bool(kinds & lines) and kinds <= lines | points
+        return bool(kinds & LINES) and kinds <= LINES | POINTS
     return False
 
 
@@ -36,6 +41,12 @@ def line_tangents(mesh: pv.DataSet) -> Array:
     """
     if not isinstance(mesh, pv.PolyData):
         surface, origin = _mesh.outer_surface(mesh)
+        if mesh.has_nonlinear_cells:
+            # Each came as a line of its own.
+            ids, offsets = _cells(surface.GetLines())
+            first = np.delete(np.arange(len(ids)), offsets[1:] - 1)
+            pairs: Any = np.stack([ids[first], ids[first + 1]], axis=1)
+            surface.SetLines(pv.CellArray.from_regular_cells(pairs))
         return _mesh.scattered(line_tangents(surface), origin, mesh.n_points)
     lines = mesh.GetLines()
     ids, offsets = _cells(lines)

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.floating[Any]]
 
+#: A point array that no user has.
+NUMBERS = "vizlight numbers"
 #: The vectors of a nearly closed surface's faces add up to less than this share of their area.
 NEARLY_CLOSED = 0.2
 
@@ -300,17 +302,25 @@ def surface_normals(mesh: pv.DataSet, view: View | None) -> Array:
     return scattered(computed, origin, mesh.n_points)
 
 
-def outer_surface(mesh: pv.DataSet) -> tuple[pv.PolyData, NDArray[np.intp]]:
+def outer_surface(mesh: Any) -> tuple[pv.PolyData, NDArray[np.intp]]:
     """Return the outer surface of a mesh and which of its points each is, -1 for none.
 
-    Curved cells are taken as the flat ones between their nodes.
+    Curved cells are taken as flat ones between their nodes.
     """
-    how: dict[str, Any] = {"algorithm": "geometry"}
-    if mesh.has_nonlinear_cells:
-        how = {"algorithm": "dataset_surface", "nonlinear_subdivision": 1}
-    surface = mesh.extract_surface(pass_pointid=True, pass_cellid=False, **how)
-    ids = surface.point_data.pop("vtkOriginalPointIds")
-    return surface, np.asarray(ids, dtype=np.intp)
+    if not mesh.has_nonlinear_cells:
+        surface = mesh.extract_surface(algorithm="geometry", pass_pointid=True, pass_cellid=False)
+        ids = surface.point_data.pop("vtkOriginalPointIds")
+        return surface, np.asarray(ids, dtype=np.intp)
+    # VTK numbers the nodes of curved cells by their places in the cell: numbers of our own tell.
+    numbered = mesh.copy(deep=False)
+    numbered.point_data[NUMBERS] = np.arange(mesh.n_points, dtype=np.float64)
+    surface = numbered.extract_surface(
+        algorithm="dataset_surface", nonlinear_subdivision=1, pass_pointid=False, pass_cellid=False
+    )
+    ids = np.rint(np.asarray(surface.point_data.pop(NUMBERS))).astype(np.intp)
+    # Bezier's control points are not on the surface.
+    off = np.abs(np.asarray(surface.points) - np.asarray(mesh.points)[ids]).max(axis=1, initial=0)
+    return surface, np.where(off <= 1e-5 * np.abs(surface.points).max(initial=0), ids, -1)
 
 
 def scattered(rows: Array, origin: NDArray[np.intp], count: int) -> Array:
