@@ -400,6 +400,18 @@ def test_loose_points_have_no_shadow():
     assert out["t"][-1] == 0
 
 
+@pytest.mark.parametrize("loose", [np.nan, np.inf, 9.0])
+@pytest.mark.parametrize("thickness", [None, 0.3])
+def test_a_loose_point_changes_no_other(loose, thickness):
+    ball = pv.Icosphere(nsub=2)
+    mesh = pv.PolyData(np.vstack([ball.points, [[loose] * 3]]), ball.faces)
+    with pytest.warns(UserWarning, match="1 of 163 points have no height or no normal"):
+        out = relief_shadow(mesh, SCENE, thickness=thickness)
+    t = relief_shadow(ball, SCENE, thickness=thickness)["t"]
+    np.testing.assert_allclose(out["t"], np.append(t, 0), atol=1e-6)
+    assert np.flatnonzero(~out["t_valid"].astype(bool)).tolist() == [162]
+
+
 def image(**changes):
     grid = pv.ImageData(dimensions=(4, 4, 1))
     grid["height"] = np.zeros(16)

@@ -59,7 +59,7 @@ def relief_shadow(
         Its lights, at infinity or near, in the mesh's unit.
     depth : float, optional
         d of 0 or more, how far below the surface the light is gathered, in the mesh's unit: the
-        deeper, the softer. Default: 0.01 of the diagonal of the mesh, a field's in x and y.
+        deeper, the softer. Default: 0.01 of the diagonal of the faces, a field's in x and y.
     elevation : str, optional
         A point array of heights. Default: z of a StructuredGrid, else the active scalars. NaN
         is a hole.
