@@ -95,6 +95,32 @@ def test_a_turned_grid_has_its_shadow_turned(kind, angle):
         np.testing.assert_allclose(other[name], one[name], atol=2e-6)
 
 
+@pytest.mark.parametrize("angle", [1e-5, 0.05, 0.2, 0.4, 10, 89.9])
+@pytest.mark.parametrize("kind", ["ImageData", "StructuredGrid"])
+@pytest.mark.parametrize(
+    ("size", "spacing", "origin"),
+    [((100, 100), 10, (5e5, 5e6)), ((40, 30), 0.5, (5e6, 4e6)), ((2, 500), 0.5, (5e6, 4e6))],
+)
+def test_a_turned_grid_at_map_coordinates(size, spacing, origin, angle, kind):
+    """Flat, so t is the cosine; a ridge along y tells that the rows are turned too."""
+    grid = pv.ImageData(dimensions=(*size, 1), spacing=(spacing,) * 3, origin=(*origin, 0))
+    a = np.radians(angle)
+    turn = np.array([[np.cos(a), -np.sin(a), 0], [np.sin(a), np.cos(a), 0], [0, 0, 1]])
+    grid.direction_matrix = turn
+    if kind == "StructuredGrid":
+        grid = grid.cast_to_structured_grid()
+    assert np.asarray(grid.points).dtype == np.float64
+    straight = pv.ImageData(dimensions=(*size, 1), spacing=(spacing,) * 3)
+    ridge = spacing * np.abs(np.arange(size[0]) - size[0] // 2)
+    for heights in (np.zeros(size[0]), -ridge):
+        straight["h"] = grid["h"] = np.tile(heights, size[1]).astype(float)
+        way = np.array([3.0, 1, 4])
+        turned = Scene(lights=Light(direction=turn @ way))
+        t = relief_shadow(grid, turned, elevation="h", method="exact")["t"]
+        expected = relief_shadow(straight, Scene(lights=Light(direction=way)), method="exact")["t"]
+        np.testing.assert_allclose(t, expected, atol=1e-6)
+
+
 def test_grid_in_float32_far_from_the_origin():
     far = pv.StructuredGrid(
         *np.meshgrid(

@@ -77,16 +77,17 @@ def heights_of(grid: Any, elevation: str | None, factor: float) -> Heights:
     else:
         z = _elevation(grid, elevation).reshape(ny, nx)
     place = np.arange(nx * ny).reshape(ny, nx)
-    turn = _turn(places)
+    # Coordinates have the rounding of the largest of them.
+    coarse = np.asarray(points).dtype == np.float32
+    eps = np.finfo(np.float32 if coarse else np.float64).eps
+    rounding = float(eps * np.nanmax(np.abs(places[..., :2])))
+    turn = _turn(places, rounding)
     if turn is not None:
         places = places @ turn.T
     x, y = places[..., 0], places[..., 1]
     if np.ptp(x[0]) < np.ptp(x[:, 0]):
         x, y, z, place = x.T, y.T, z.T, place.T
-    # float32 coordinates have the rounding of the largest of them.
-    coarse = np.asarray(points).dtype == np.float32
-    eps = np.finfo(np.float32 if coarse else np.float64).eps
-    wide = 8 * eps * np.nanmax(np.abs(places[..., :2]))
+    wide = 8 * rounding
     if not (np.ptp(x, axis=0).max() <= wide and np.ptp(y, axis=1).max() <= wide):
         raise ValueError(
             _check.message(
@@ -101,16 +102,18 @@ def heights_of(grid: Any, elevation: str | None, factor: float) -> Heights:
     return Heights(x, y, np.asarray(z, dtype=np.float64) * factor, place, turn)
 
 
-def _turn(places: Array) -> Array | None:
+def _turn(places: Array, rounding: float) -> Array | None:
     """Return the turn about the vertical that lays rows along x; None where they lie along an axis.
 
-    Places have shape (ny, nx, 3).
+    Places have shape (ny, nx, 3); each coordinate may be off by their rounding.
     """
-    x, y = places[0, -1, :2] - places[0, 0, :2]
-    size = np.hypot(x, y)
-    # Rounding of float32 coordinates is no turn.
-    if not min(abs(x), abs(y)) > 1e-5 * size + 1e-6 * np.abs(places[0, 0, :2]).max():
+    along, across = (places[end][:2] - places[0, 0, :2] for end in ((0, -1), (-1, 0)))
+    # The longer side tells the angle to more digits.
+    longer = np.hypot(*along) >= np.hypot(*across)
+    x, y = along if longer else (across[1], -across[0])
+    if not min(abs(x), abs(y)) > 2 * rounding:
         return None
+    size = np.hypot(x, y)
     return np.asarray(np.array([[x, y, 0], [-y, x, 0], [0, 0, size]]) / size)
 
 
