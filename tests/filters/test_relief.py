@@ -463,6 +463,14 @@ def curved():
     return pv.StructuredGrid(r * np.cos(a), r * np.sin(a), 0 * r)
 
 
+def tilted(angle, axis):
+    grid = image()
+    c, s = np.cos(angle), np.sin(angle)
+    about_x = np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+    grid.direction_matrix = np.roll(about_x, axis, axis=(0, 1))
+    return grid
+
+
 BALL = pv.Sphere(theta_resolution=8, phi_resolution=8)
 
 
@@ -476,6 +484,15 @@ BALL = pv.Sphere(theta_resolution=8, phi_resolution=8)
         (layers(), {}, ValueError, "mesh: expected a grid of one layer, nx x ny x 1, got 3 x 3"),
         (row(), {}, ValueError, "y: expected two nodes or more.*repeat the row"),
         (curved(), {}, ValueError, "mesh: expected rows and columns that are straight"),
+        (tilted(0.3, 0), {}, ValueError, "mesh: expected a grid that lies level.*thickness="),
+        (tilted(-1e-3, 1), {}, ValueError, "mesh: expected a grid that lies level"),
+        (tilted(np.pi / 2, 0), {}, ValueError, "mesh: expected a grid that lies level"),
+        (
+            tilted(np.pi / 2, 1).cast_to_structured_grid(),
+            {"elevation": "height"},
+            ValueError,
+            "mesh: expected a grid that lies level",
+        ),
         (pv.ImageData(), {}, ValueError, "mesh: expected a grid of points, got an empty one"),
         (image(), {"thickness": 1}, ValueError, "thickness: expected none on a height field"),
         (image(), {"border": "x"}, ValueError, "border: expected 'extend' or 'wall'"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 import pyvista as pv
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     Array = NDArray[np.floating[Any]]
 
 Grid = pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid
+#: The rise of a level grid, as a share of its size: that of directions kept in float32.
+LEVEL = 1e-6
 REMEDY = "sample it on a pv.ImageData, or pass its surface with thickness="
 
 
@@ -60,7 +62,8 @@ def heights_of(grid: Any, elevation: str | None, factor: float) -> Heights:
     Raises
     ------
     TypeError, ValueError
-        If it has more than one layer, no such elevation, or x and y are not those of a grid.
+        If it has more than one layer, no such elevation, is tilted, or x and y are not those of
+        a grid.
     """
     factor = _check.number("factor", factor)
     if grid.n_points == 0:
@@ -72,6 +75,11 @@ def heights_of(grid: Any, elevation: str | None, factor: float) -> Heights:
         )
     points = GridPoints(grid)[:] if not isinstance(grid, pv.StructuredGrid) else grid.points
     places: Array = np.asarray(points, dtype=np.float64).reshape(ny, nx, 3)
+    # A structured grid has places of its own, which may rise with its heights.
+    if not isinstance(grid, pv.StructuredGrid):
+        sides = np.ptp(places.reshape(-1, 3), axis=0)
+        if sides[2] > LEVEL * np.linalg.norm(sides):
+            _refuse_tilted()
     if elevation is None and isinstance(grid, pv.StructuredGrid):
         z = places[..., 2]
     else:
@@ -87,6 +95,9 @@ def heights_of(grid: Any, elevation: str | None, factor: float) -> Heights:
     x, y = places[..., 0], places[..., 1]
     if np.ptp(x[0]) < np.ptp(x[:, 0]):
         x, y, z, place = x.T, y.T, z.T, place.T
+    for nodes in (x[0], y[:, 0]):
+        if len(nodes) > 1 and np.ptp(nodes) <= 4 * rounding:
+            _refuse_tilted()
     wide = 8 * rounding
     if not (np.ptp(x, axis=0).max() <= wide and np.ptp(y, axis=1).max() <= wide):
         raise ValueError(
@@ -100,6 +111,11 @@ def heights_of(grid: Any, elevation: str | None, factor: float) -> Heights:
     if y[0] > y[-1]:
         y, z, place = y[::-1], z[::-1], place[::-1]
     return Heights(x, y, np.asarray(z, dtype=np.float64) * factor, place, turn)
+
+
+def _refuse_tilted() -> NoReturn:
+    remedy = "lay it level and turn the light as much, or pass its surface with thickness="
+    raise ValueError(_check.message("mesh", "a grid that lies level", "a tilted one", remedy))
 
 
 def _turn(places: Array, rounding: float) -> Array | None:
