@@ -369,6 +369,38 @@ def test_hours_of_a_day():
     assert set(given.point_data) == {"height", "t", "t_mean"}
 
 
+def test_one_hour_of_a_day():
+    grid, _ = grids()["ImageData"]
+    when = {"latitude": 0.7, "day": 172}
+    one, many = (relief_day(grid, hours=hours, **when) for hours in (12, [12]))
+    np.testing.assert_array_equal(one["t"], many["t"])
+    assert one["t_mean"].shape == (63,)
+
+
+@pytest.mark.parametrize(
+    ("options", "error", "words"),
+    [
+        ({"directions": [[[0, 0, 1]]]}, ValueError, "directions: expected a list of one or more"),
+        ({"directions": np.zeros((0, 3))}, ValueError, "directions: expected a list of one"),
+        ({"directions": ()}, ValueError, "directions: expected vectors"),
+        (
+            {"directions": [(0, 0, 0)]},
+            ValueError,
+            r"directions\[0\]: expected a direction of non-z",
+        ),
+        ({"directions": [(0, 0, 1), (0, 0, np.nan)]}, ValueError, r"directions\[1\]: expected fin"),
+        ({"directions": [(0, 0, -1)]}, ValueError, "directions: expected the sun above the hor"),
+        ({"latitude": 0, "day": 9, "hours": [[12]]}, ValueError, "hours: expected a list of one"),
+        ({"latitude": 0, "day": 9, "hours": []}, ValueError, "hours: expected a list of one"),
+        ({"directions": (0, 0, 1), "scene": SCENE}, TypeError, "scene: expected no such option"),
+        ({"directions": (0, 0, 1), "lit": True}, TypeError, "lit: expected no such option"),
+    ],
+)
+def test_bad_days(options, error, words):
+    with pytest.raises(error, match=words):
+        relief_day(image(), **options)
+
+
 def test_a_bas_relief_of_a_sphere():
     ball = pv.Sphere(theta_resolution=200, phi_resolution=200)
     out = relief_from_mesh(ball, direction=(1, 1, 0.2), resolution=201, margin=0.1)
