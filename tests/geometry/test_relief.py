@@ -476,6 +476,20 @@ def test_holes(method):
     np.testing.assert_allclose(wall[row][~hole[row]], expected[~hole[row]], atol=1e-12)
 
 
+@pytest.mark.parametrize("normal", [np.zeros(3), [0, 0, np.nan], [np.inf, 0, 0]])
+@pytest.mark.parametrize("depth", [0, 0.1])
+def test_no_normal_no_light(normal, depth):
+    x, y, z = hills(12, 9)
+    normals = _field.normals(_field.make(x, y, z, base=None, border="extend"))
+    options = {"depth": depth, "direction": sun(50, 30), "method": "exact"}
+    expected = relief.shadow(x, y, z, normals=normals, **options)
+    expected[2, 3] = 0
+    normals[2, 3] = normal
+    given = normals.copy()
+    np.testing.assert_array_equal(relief.shadow(x, y, z, normals=normals, **options), expected)
+    np.testing.assert_array_equal(normals, given)
+
+
 def test_base():
     """Light from below comes through a slab of finite height, and not through one without end."""
     x = np.arange(5.0)
