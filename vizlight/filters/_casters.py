@@ -25,6 +25,10 @@ if TYPE_CHECKING:
 
 #: A depth that is not given, as a share of the diagonal.
 DEPTH = 0.01
+#: Options of a height field alone, and what they are where none is given.
+FIELD_ALONE = {
+    "elevation": None, "factor": 1.0, "base": None, "border": "extend", "method": "fast",
+}  # fmt: skip
 GRIDS = pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid
 
 
@@ -64,9 +68,10 @@ def caster(
                 raise ValueError(_check.message(option, "none on a height field", got, remedy))
         return _FieldCaster(mesh, options, threads)
     if isinstance(mesh, pv.PolyData):
-        for option, default in (("elevation", None), ("base", None)):
-            if options[option] is not default:
-                raise ValueError(_check.message(option, "none on a surface", repr(options[option])))
+        for option, default in FIELD_ALONE.items():
+            given = options[option]
+            if given is not default and (default is None or np.any(given != default)):
+                raise ValueError(_check.message(option, "none on a surface", repr(given)))
         return _SolidCaster(mesh, scene, options, list(occluders))
     raise TypeError(
         _check.message(

@@ -64,7 +64,7 @@ def relief_shadow(
         A point array of heights. Default: z of a StructuredGrid, else the active scalars. NaN
         is a hole.
     factor : float, default: 1.0
-        By which heights are multiplied.
+        By which heights are multiplied: height fields alone.
     base, border, method
         As for :func:`vizlight.geometry.relief.inside_length`: height fields alone.
     thickness : float, optional
