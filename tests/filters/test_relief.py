@@ -222,6 +222,20 @@ def test_sphere_has_its_closed_form():
         assert np.abs(out["t"] - depth / np.maximum(r, depth)).max() < 1e-3
 
 
+@pytest.mark.parametrize("far", [1e20, 1e200, 1e308])
+@pytest.mark.parametrize("size", [1, 1e-120])
+def test_a_light_far_away_is_a_direction(far, size):
+    ball = pv.Sphere(theta_resolution=20, phi_resolution=20)
+    mesh = pv.PolyData(np.asarray(ball.points, dtype=float) * size, ball.faces)
+    mesh["Normals"] = np.asarray(ball.point_normals)
+    mesh.point_data.active_normals_name = "Normals"
+    one, other = (
+        relief_shadow(mesh, Scene(lights=Light(**where)))["t"]
+        for where in ({"direction": TOWARD}, {"position": far * TOWARD})
+    )
+    np.testing.assert_allclose(other, one, atol=1e-9)
+
+
 @pytest.mark.parametrize(("scale", "moved"), [(1e-120, 0.0), (1e120, 0.0), (1e3, 4e6)])
 def test_closed_mesh_of_any_size_and_place(scale, moved):
     """Far from the origin float32 rounds the points; what it kept has the same shadow."""

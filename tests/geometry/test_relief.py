@@ -490,6 +490,23 @@ def test_no_normal_no_light(normal, depth):
     np.testing.assert_array_equal(normals, given)
 
 
+@pytest.mark.parametrize("far", [1e20, 1e200, 1e308])
+@pytest.mark.parametrize("way", [(0, 0, 1), (-0.6, 0.5, 0.8)])
+def test_a_light_far_away_is_a_direction(way, far):
+    x, y, z = hills(12, 9)
+    position = far * np.array(way)
+    for depth in (0, 0.1):
+        near, sunny = (
+            relief.shadow(x, y, z, depth=depth, method="exact", **light)
+            for light in ({"position": position}, {"direction": way})
+        )
+        np.testing.assert_allclose(near, sunny, atol=1e-9)
+    length = relief.inside_length(
+        [0, 1], [0, 1], np.zeros((2, 2)), (0.5, 0.5, -1), position=(0.5, 0.5, far)
+    )
+    assert length == pytest.approx(1, abs=1e-12)
+
+
 def test_base():
     """Light from below comes through a slab of finite height, and not through one without end."""
     x = np.arange(5.0)

@@ -191,8 +191,9 @@ class Ray:
             return way, np.full(start.shape[1], _march.FAR)
         assert self.position is not None
         way = self.position[:, np.newaxis] - start
-        size = np.sqrt(np.einsum("ij,ij->j", way, way))
-        return way / np.where(size > 0, size, 1), size
+        # Squares of a light far away would overflow.
+        size = np.hypot(np.hypot(way[0], way[1]), way[2])
+        return way / np.where(size > 0, size, 1), np.minimum(size, _march.FAR)
 
 
 def toward(
