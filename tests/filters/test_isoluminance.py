@@ -299,6 +299,18 @@ def test_points_that_are_not_finite_or_have_no_normal():
     assert found["bands"]["luminance"].min() == pytest.approx(0.1)
 
 
+def test_points_that_no_face_uses_are_not_told_of():
+    mesh = pv.Icosphere(nsub=2)
+    found = isoluminance(mesh + pv.Line(), DULL, levels=4)["bands"]
+    np.testing.assert_allclose(found["luminance"].max(), 0.9, atol=0.2)
+    bent = mesh + pv.Line()
+    bent["N"] = np.array(bent.points)
+    bent["N"][[5, -1]] = 0
+    with pytest.warns(UserWarning, match=r"1 of 162 points could not be lit") as told:
+        isoluminance(bent, DULL, levels=4, normals="N")
+    assert "array" not in str(told[0].message)
+
+
 def test_nothing_left_and_nothing_there():
     found = isoluminance(Block() - Block(), DULL)
     assert found["bands"].n_cells == 0

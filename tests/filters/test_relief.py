@@ -95,6 +95,32 @@ def test_a_turned_grid_has_its_shadow_turned(kind, angle):
         np.testing.assert_allclose(other[name], one[name], atol=2e-6)
 
 
+@pytest.mark.parametrize("angle", [1e-5, 0.05, 0.2, 0.4, 10, 89.9])
+@pytest.mark.parametrize("kind", ["ImageData", "StructuredGrid"])
+@pytest.mark.parametrize(
+    ("size", "spacing", "origin"),
+    [((100, 100), 10, (5e5, 5e6)), ((40, 30), 0.5, (5e6, 4e6)), ((2, 500), 0.5, (5e6, 4e6))],
+)
+def test_a_turned_grid_at_map_coordinates(size, spacing, origin, angle, kind):
+    """Flat, so t is the cosine; a ridge along y tells that the rows are turned too."""
+    grid = pv.ImageData(dimensions=(*size, 1), spacing=(spacing,) * 3, origin=(*origin, 0))
+    a = np.radians(angle)
+    turn = np.array([[np.cos(a), -np.sin(a), 0], [np.sin(a), np.cos(a), 0], [0, 0, 1]])
+    grid.direction_matrix = turn
+    if kind == "StructuredGrid":
+        grid = grid.cast_to_structured_grid()
+    assert np.asarray(grid.points).dtype == np.float64
+    straight = pv.ImageData(dimensions=(*size, 1), spacing=(spacing,) * 3)
+    ridge = spacing * np.abs(np.arange(size[0]) - size[0] // 2)
+    for heights in (np.zeros(size[0]), -ridge):
+        straight["h"] = grid["h"] = np.tile(heights, size[1]).astype(float)
+        way = np.array([3.0, 1, 4])
+        turned = Scene(lights=Light(direction=turn @ way))
+        t = relief_shadow(grid, turned, elevation="h", method="exact")["t"]
+        expected = relief_shadow(straight, Scene(lights=Light(direction=way)), method="exact")["t"]
+        np.testing.assert_allclose(t, expected, atol=1e-6)
+
+
 def test_grid_in_float32_far_from_the_origin():
     far = pv.StructuredGrid(
         *np.meshgrid(
@@ -194,6 +220,20 @@ def test_sphere_has_its_closed_form():
         middle = np.einsum("ij,ij->i", start, way)
         r = -middle + np.sqrt(middle**2 + 1 - (1 - depth) ** 2)
         assert np.abs(out["t"] - depth / np.maximum(r, depth)).max() < 1e-3
+
+
+@pytest.mark.parametrize("far", [1e20, 1e200, 1e308])
+@pytest.mark.parametrize("size", [1, 1e-120])
+def test_a_light_far_away_is_a_direction(far, size):
+    ball = pv.Sphere(theta_resolution=20, phi_resolution=20)
+    mesh = pv.PolyData(np.asarray(ball.points, dtype=float) * size, ball.faces)
+    mesh["Normals"] = np.asarray(ball.point_normals)
+    mesh.point_data.active_normals_name = "Normals"
+    one, other = (
+        relief_shadow(mesh, Scene(lights=Light(**where)))["t"]
+        for where in ({"direction": TOWARD}, {"position": far * TOWARD})
+    )
+    np.testing.assert_allclose(other, one, atol=1e-9)
 
 
 @pytest.mark.parametrize(("scale", "moved"), [(1e-120, 0.0), (1e120, 0.0), (1e3, 4e6)])
@@ -343,6 +383,38 @@ def test_hours_of_a_day():
     assert set(given.point_data) == {"height", "t", "t_mean"}
 
 
+def test_one_hour_of_a_day():
+    grid, _ = grids()["ImageData"]
+    when = {"latitude": 0.7, "day": 172}
+    one, many = (relief_day(grid, hours=hours, **when) for hours in (12, [12]))
+    np.testing.assert_array_equal(one["t"], many["t"])
+    assert one["t_mean"].shape == (63,)
+
+
+@pytest.mark.parametrize(
+    ("options", "error", "words"),
+    [
+        ({"directions": [[[0, 0, 1]]]}, ValueError, "directions: expected a list of one or more"),
+        ({"directions": np.zeros((0, 3))}, ValueError, "directions: expected a list of one"),
+        ({"directions": ()}, ValueError, "directions: expected vectors"),
+        (
+            {"directions": [(0, 0, 0)]},
+            ValueError,
+            r"directions\[0\]: expected a direction of non-z",
+        ),
+        ({"directions": [(0, 0, 1), (0, 0, np.nan)]}, ValueError, r"directions\[1\]: expected fin"),
+        ({"directions": [(0, 0, -1)]}, ValueError, "directions: expected the sun above the hor"),
+        ({"latitude": 0, "day": 9, "hours": [[12]]}, ValueError, "hours: expected a list of one"),
+        ({"latitude": 0, "day": 9, "hours": []}, ValueError, "hours: expected a list of one"),
+        ({"directions": (0, 0, 1), "scene": SCENE}, TypeError, "scene: expected no such option"),
+        ({"directions": (0, 0, 1), "lit": True}, TypeError, "lit: expected no such option"),
+    ],
+)
+def test_bad_days(options, error, words):
+    with pytest.raises(error, match=words):
+        relief_day(image(), **options)
+
+
 def test_a_bas_relief_of_a_sphere():
     ball = pv.Sphere(theta_resolution=200, phi_resolution=200)
     out = relief_from_mesh(ball, direction=(1, 1, 0.2), resolution=201, margin=0.1)
@@ -400,6 +472,18 @@ def test_loose_points_have_no_shadow():
     assert out["t"][-1] == 0
 
 
+@pytest.mark.parametrize("loose", [np.nan, np.inf, 9.0])
+@pytest.mark.parametrize("thickness", [None, 0.3])
+def test_a_loose_point_changes_no_other(loose, thickness):
+    ball = pv.Icosphere(nsub=2)
+    mesh = pv.PolyData(np.vstack([ball.points, [[loose] * 3]]), ball.faces)
+    with pytest.warns(UserWarning, match="1 of 163 points have no height or no normal"):
+        out = relief_shadow(mesh, SCENE, thickness=thickness)
+    t = relief_shadow(ball, SCENE, thickness=thickness)["t"]
+    np.testing.assert_allclose(out["t"], np.append(t, 0), atol=1e-6)
+    assert np.flatnonzero(~out["t_valid"].astype(bool)).tolist() == [162]
+
+
 def image(**changes):
     grid = pv.ImageData(dimensions=(4, 4, 1))
     grid["height"] = np.zeros(16)
@@ -425,6 +509,14 @@ def curved():
     return pv.StructuredGrid(r * np.cos(a), r * np.sin(a), 0 * r)
 
 
+def tilted(angle, axis):
+    grid = image()
+    c, s = np.cos(angle), np.sin(angle)
+    about_x = np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+    grid.direction_matrix = np.roll(about_x, axis, axis=(0, 1))
+    return grid
+
+
 BALL = pv.Sphere(theta_resolution=8, phi_resolution=8)
 
 
@@ -438,6 +530,15 @@ BALL = pv.Sphere(theta_resolution=8, phi_resolution=8)
         (layers(), {}, ValueError, "mesh: expected a grid of one layer, nx x ny x 1, got 3 x 3"),
         (row(), {}, ValueError, "y: expected two nodes or more.*repeat the row"),
         (curved(), {}, ValueError, "mesh: expected rows and columns that are straight"),
+        (tilted(0.3, 0), {}, ValueError, "mesh: expected a grid that lies level.*thickness="),
+        (tilted(-1e-3, 1), {}, ValueError, "mesh: expected a grid that lies level"),
+        (tilted(np.pi / 2, 0), {}, ValueError, "mesh: expected a grid that lies level"),
+        (
+            tilted(np.pi / 2, 1).cast_to_structured_grid(),
+            {"elevation": "height"},
+            ValueError,
+            "mesh: expected a grid that lies level",
+        ),
         (pv.ImageData(), {}, ValueError, "mesh: expected a grid of points, got an empty one"),
         (image(), {"thickness": 1}, ValueError, "thickness: expected none on a height field"),
         (image(), {"border": "x"}, ValueError, "border: expected 'extend' or 'wall'"),
@@ -447,6 +548,10 @@ BALL = pv.Sphere(theta_resolution=8, phi_resolution=8)
         (image(), {"name": ""}, ValueError, "name: expected a name for the point array"),
         (BALL, {"depth": -1}, ValueError, "depth: expected a finite number of at least 0"),
         (BALL, {"elevation": "z"}, ValueError, "elevation: expected none on a surface"),
+        (BALL, {"factor": 2}, ValueError, "factor: expected none on a surface, got 2"),
+        (BALL, {"base": 0}, ValueError, "base: expected none on a surface, got 0"),
+        (BALL, {"border": "wall"}, ValueError, "border: expected none on a surface, got 'wall'"),
+        (BALL, {"method": "exact"}, ValueError, "method: expected none on a surface, got 'exact'"),
         (BALL, {"thickness": 0}, ValueError, "thickness: expected more than 0"),
         (BALL, {"occluders": [pv.Plane()]}, ValueError, r"occluders\[0\]: expected a closed"),
         (pv.Line(), {}, ValueError, "mesh: expected a surface with faces"),

@@ -476,6 +476,37 @@ def test_holes(method):
     np.testing.assert_allclose(wall[row][~hole[row]], expected[~hole[row]], atol=1e-12)
 
 
+@pytest.mark.parametrize("normal", [np.zeros(3), [0, 0, np.nan], [np.inf, 0, 0]])
+@pytest.mark.parametrize("depth", [0, 0.1])
+def test_no_normal_no_light(normal, depth):
+    x, y, z = hills(12, 9)
+    normals = _field.normals(_field.make(x, y, z, base=None, border="extend"))
+    options = {"depth": depth, "direction": sun(50, 30), "method": "exact"}
+    expected = relief.shadow(x, y, z, normals=normals, **options)
+    expected[2, 3] = 0
+    normals[2, 3] = normal
+    given = normals.copy()
+    np.testing.assert_array_equal(relief.shadow(x, y, z, normals=normals, **options), expected)
+    np.testing.assert_array_equal(normals, given)
+
+
+@pytest.mark.parametrize("far", [1e20, 1e200, 1e308])
+@pytest.mark.parametrize("way", [(0, 0, 1), (-0.6, 0.5, 0.8)])
+def test_a_light_far_away_is_a_direction(way, far):
+    x, y, z = hills(12, 9)
+    position = far * np.array(way)
+    for depth in (0, 0.1):
+        near, sunny = (
+            relief.shadow(x, y, z, depth=depth, method="exact", **light)
+            for light in ({"position": position}, {"direction": way})
+        )
+        np.testing.assert_allclose(near, sunny, atol=1e-9)
+    length = relief.inside_length(
+        [0, 1], [0, 1], np.zeros((2, 2)), (0.5, 0.5, -1), position=(0.5, 0.5, far)
+    )
+    assert length == pytest.approx(1, abs=1e-12)
+
+
 def test_base():
     """Light from below comes through a slab of finite height, and not through one without end."""
     x = np.arange(5.0)

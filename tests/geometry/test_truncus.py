@@ -266,3 +266,16 @@ def test_laminae_hold_no_empty_one_and_close_the_far_side():
 def test_bad_input(arguments, options, words):
     with pytest.raises(ValueError, match=words):
         truncus(*arguments, direction=(0, 0, 1), **options)
+
+
+@pytest.mark.parametrize("far", [1e20, 1e200, 1e308])
+def test_a_light_far_away_is_a_direction(far):
+    """The first end is the brightest: its value is a plain dot product."""
+    solid = (0, 0, 0), (0, 0, 1), (1, 0.5)
+    way = np.array([0, 0.3, 1])
+    near, sunny = (
+        truncus(*solid, levels=0.05, **light)
+        for light in ({"position": far * way}, {"direction": way})
+    )
+    assert near.values.max() == pytest.approx(sunny.values.max(), abs=0.05)
+    assert near.steps.edges[-1] == pytest.approx(way[2] / np.hypot(0.3, 1), abs=1e-9)

@@ -25,6 +25,12 @@ if TYPE_CHECKING:
 
 #: A depth that is not given, as a share of the diagonal.
 DEPTH = 0.01
+#: Beyond this many sizes of a surface a light is as far: squares of its place do not overflow.
+FAR = 1e100
+#: Options of a height field alone, and what they are where none is given.
+FIELD_ALONE = {
+    "elevation": None, "factor": 1.0, "base": None, "border": "extend", "method": "fast",
+}  # fmt: skip
 GRIDS = pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid
 
 
@@ -64,9 +70,10 @@ def caster(
                 raise ValueError(_check.message(option, "none on a height field", got, remedy))
         return _FieldCaster(mesh, options, threads)
     if isinstance(mesh, pv.PolyData):
-        for option, default in (("elevation", None), ("base", None)):
-            if options[option] is not default:
-                raise ValueError(_check.message(option, "none on a surface", repr(options[option])))
+        for option, default in FIELD_ALONE.items():
+            given = options[option]
+            if given is not default and (default is None or np.any(given != default)):
+                raise ValueError(_check.message(option, "none on a surface", repr(given)))
         return _SolidCaster(mesh, scene, options, list(occluders))
     raise TypeError(
         _check.message(
@@ -189,7 +196,8 @@ class _SolidCaster:
             way = np.array(light.direction) / max(abs(c) for c in light.direction)
             way = np.repeat(way[np.newaxis] / np.linalg.norm(way), len(start), axis=0)
             return way, np.full(len(start), np.inf)
-        place = (np.array(light.position) - self._origin) / self._unit
+        place = np.array(light.position) - self._origin
+        place /= max(self._unit, np.abs(place).max() / FAR)
         for body in self._solids:
             if _solid.is_inside(body, place):
                 raise ValueError(

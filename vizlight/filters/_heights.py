@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 import pyvista as pv
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     Array = NDArray[np.floating[Any]]
 
 Grid = pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid
+#: The rise of a level grid, as a share of its size: that of directions kept in float32.
+LEVEL = 1e-6
 REMEDY = "sample it on a pv.ImageData, or pass its surface with thickness="
 
 
@@ -60,7 +62,8 @@ def heights_of(grid: Any, elevation: str | None, factor: float) -> Heights:
     Raises
     ------
     TypeError, ValueError
-        If it has more than one layer, no such elevation, or x and y are not those of a grid.
+        If it has more than one layer, no such elevation, is tilted, or x and y are not those of
+        a grid.
     """
     factor = _check.number("factor", factor)
     if grid.n_points == 0:
@@ -72,21 +75,30 @@ def heights_of(grid: Any, elevation: str | None, factor: float) -> Heights:
         )
     points = GridPoints(grid)[:] if not isinstance(grid, pv.StructuredGrid) else grid.points
     places: Array = np.asarray(points, dtype=np.float64).reshape(ny, nx, 3)
+    # A structured grid has places of its own, which may rise with its heights.
+    if not isinstance(grid, pv.StructuredGrid):
+        sides = np.ptp(places.reshape(-1, 3), axis=0)
+        if sides[2] > LEVEL * np.linalg.norm(sides):
+            _refuse_tilted()
     if elevation is None and isinstance(grid, pv.StructuredGrid):
         z = places[..., 2]
     else:
         z = _elevation(grid, elevation).reshape(ny, nx)
     place = np.arange(nx * ny).reshape(ny, nx)
-    turn = _turn(places)
+    # Coordinates have the rounding of the largest of them.
+    coarse = np.asarray(points).dtype == np.float32
+    eps = np.finfo(np.float32 if coarse else np.float64).eps
+    rounding = float(eps * np.nanmax(np.abs(places[..., :2])))
+    turn = _turn(places, rounding)
     if turn is not None:
         places = places @ turn.T
     x, y = places[..., 0], places[..., 1]
     if np.ptp(x[0]) < np.ptp(x[:, 0]):
         x, y, z, place = x.T, y.T, z.T, place.T
-    # float32 coordinates have the rounding of the largest of them.
-    coarse = np.asarray(points).dtype == np.float32
-    eps = np.finfo(np.float32 if coarse else np.float64).eps
-    wide = 8 * eps * np.nanmax(np.abs(places[..., :2]))
+    for nodes in (x[0], y[:, 0]):
+        if len(nodes) > 1 and np.ptp(nodes) <= 4 * rounding:
+            _refuse_tilted()
+    wide = 8 * rounding
     if not (np.ptp(x, axis=0).max() <= wide and np.ptp(y, axis=1).max() <= wide):
         raise ValueError(
             _check.message(
@@ -101,16 +113,23 @@ def heights_of(grid: Any, elevation: str | None, factor: float) -> Heights:
     return Heights(x, y, np.asarray(z, dtype=np.float64) * factor, place, turn)
 
 
-def _turn(places: Array) -> Array | None:
+def _refuse_tilted() -> NoReturn:
+    remedy = "lay it level and turn the light as much, or pass its surface with thickness="
+    raise ValueError(_check.message("mesh", "a grid that lies level", "a tilted one", remedy))
+
+
+def _turn(places: Array, rounding: float) -> Array | None:
     """Return the turn about the vertical that lays rows along x; None where they lie along an axis.
 
-    Places have shape (ny, nx, 3).
+    Places have shape (ny, nx, 3); each coordinate may be off by their rounding.
     """
-    x, y = places[0, -1, :2] - places[0, 0, :2]
-    size = np.hypot(x, y)
-    # Rounding of float32 coordinates is no turn.
-    if not min(abs(x), abs(y)) > 1e-5 * size + 1e-6 * np.abs(places[0, 0, :2]).max():
+    along, across = (places[end][:2] - places[0, 0, :2] for end in ((0, -1), (-1, 0)))
+    # The longer side tells the angle to more digits.
+    longer = np.hypot(*along) >= np.hypot(*across)
+    x, y = along if longer else (across[1], -across[0])
+    if not min(abs(x), abs(y)) > 2 * rounding:
         return None
+    size = np.hypot(x, y)
     return np.asarray(np.array([[x, y, 0], [-y, x, 0], [0, 0, size]]) / size)
 
 

@@ -148,7 +148,7 @@ def illuminate(
     out = mesh if inplace else _copy(mesh)
     leaves = list(_mesh.named_leaves(out))
     _light.refuse_overwriting(leaves, name, components=components, colored=scene.colored)
-    jobs = [_prepare(leaf, path, scene, options) for leaf, path in leaves]
+    jobs = [prepare(leaf, path, scene, options) for leaf, path in leaves]
     results, fitted = _light.light(
         jobs,
         scene,
@@ -181,7 +181,7 @@ def _copy(mesh: Any) -> Any:
     return out
 
 
-def _prepare(mesh: pv.DataSet, path: str, scene: Scene, options: dict[str, Any]) -> Job:
+def prepare(mesh: pv.DataSet, path: str, scene: Scene, options: dict[str, Any]) -> Job:
     """Take from one mesh what is lit; a block's errors say which block it is."""
     try:
         points = _mesh.points_of(mesh, options["positions"])

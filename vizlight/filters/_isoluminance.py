@@ -12,9 +12,9 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check, _report, engine
-from vizlight.filters import _mesh, _provenance
-from vizlight.filters._illuminate import illuminate
-from vizlight.filters._light import DEFAULT_NAME, VALID
+from vizlight.filters import _light, _mesh, _provenance
+from vizlight.filters._illuminate import prepare
+from vizlight.filters._light import DEFAULT_NAME
 from vizlight.filters._mesh import unit_rows
 from vizlight.geometry import _bands, _contours, _facets, _levels, solids
 from vizlight.geometry import isoluminance as closed
@@ -30,9 +30,6 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.floating[Any]]
     Index = NDArray[np.intp]
-
-#: The luminance of a mesh's points, on the way to bands.
-HIDDEN = "vizlight_isoluminance"
 
 
 def isoluminance(
@@ -95,7 +92,7 @@ def isoluminance(
     Warns
     -----
     UserWarning
-        If points could not be lit; triangles at such points have the band of the ambient light.
+        If points of faces could not be lit; triangles at such points have the band of the ambient light.
         If an allowed error is not kept, as where a highlight ends at the terminator.
 
     Notes
@@ -207,15 +204,19 @@ def _of_mesh(
     mesh: pv.DataSet, scene: Scene, levels: Levels, threads: int | None, options: dict[str, Any]
 ) -> tuple[pv.MultiBlock, Bands, _Light]:
     """Return bands and contours of a mesh."""
-    surface, triangles, ids = _surface(mesh)
-    own = ("levels", "tolerance", "name")
-    given = {key: value for key, value in options.items() if key not in own}
+    surface, triangles, used, ids = _surface(mesh)
+    given = {**options, "positions": None, "average_cells": False}
     if ids is not None:
         for key in ("normals", "tangents"):
             if given[key] is not None and not isinstance(given[key], str):
                 given[key] = _mesh.array_of(mesh, key, given[key], average_cells=False)[ids]
-    lit = illuminate(surface, scene, threads=threads, precision="float64", name=HIDDEN, **given)
-    values = np.asarray(lit.point_data[HIDDEN], dtype=np.float64)
+    (lit,), fitted = _light.light(
+        [prepare(surface, "", scene, given)], scene, threads=threads, progress_bar=False,
+        precision="float64", **{key: options[key] for key in ("model", "compensate", "two_sided")},
+    )  # fmt: skip
+    unlit = len(used) - np.count_nonzero(lit.valid[used])
+    if unlit:
+        _check.warn(_light.unlit(unlit, len(used)))
     points = np.array(surface.points, dtype=np.float64)
     light = _Light(scene, options["model"], options["two_sided"], options["flip_normals"], threads)
     if not len(triangles):
@@ -225,27 +226,27 @@ def _of_mesh(
     elif options["tangents"] is None:
         found = _mesh.normals_of(surface, given["normals"], 3, _mesh.onlooker(scene))
         unit = unit_rows(np.asarray(found, dtype=np.float64))
-        valid = lit.point_data.get(f"{HIDDEN}{VALID}")
-        able = np.ones(len(points), np.bool_) if valid is None else np.asarray(valid, np.bool_)
         rows = np.concatenate([points, unit], axis=1)
 
         def luminance(places: Array, directions: Array) -> Array:
             return light(places, unit_rows(directions))
 
-        bands = _contours.refine(_facets.Facets(rows, triangles, luminance, able), levels)
+        bands = _contours.refine(_facets.Facets(rows, triangles, luminance, lit.valid), levels)
     else:
-        used = values[triangles]
-        steps = _levels.steps(levels, float(used.min()), float(used.max()), exact=True)
-        bands, _ = _bands.cut(points, triangles, used, steps)
+        values = np.asarray(lit.luminance[triangles], dtype=np.float64)
+        steps = _levels.steps(levels, float(values.min()), float(values.max()), exact=True)
+        bands, _ = _bands.cut(points, triangles, values, steps)
         bands = dataclasses.replace(bands, error=steps.error)
-    told = _provenance.provenance(lit, HIDDEN)
-    told |= {"filter": "isoluminance", "options": _provenance.plain(options)}
+    told = _provenance.record(lit, "isoluminance", fitted, options)
     rgb = _rgb(bands, light) if scene.colored and options["tangents"] is None else None
     return _blocks(bands, options["name"], told, rgb, patches=False), bands, light
 
 
-def _surface(mesh: Any) -> tuple[pv.PolyData, Index, Any]:
-    """Return the surface of a mesh, its triangles with finite corners, and whose points it has."""
+def _surface(mesh: Any) -> tuple[pv.PolyData, Index, Index, Any]:
+    """Return the surface of a mesh, its triangles with finite corners, and points.
+
+    Points are those that faces use, and which of the mesh each one is.
+    """
     surface, ids = mesh, None
     if not isinstance(mesh, pv.PolyData):
         surface, ids = _mesh.outer_surface(mesh)
@@ -263,7 +264,7 @@ def _surface(mesh: Any) -> tuple[pv.PolyData, Index, Any]:
     bare = bare if bare.is_all_triangles else bare.triangulate()
     triangles = np.asarray(bare.regular_faces, dtype=np.intp).reshape(-1, 3)
     finite: Any = np.isfinite(np.asarray(surface.points)).all(axis=1)
-    return surface, triangles[finite[triangles].all(axis=1)], ids
+    return surface, triangles[finite[triangles].all(axis=1)], np.unique(triangles), ids
 
 
 def _note(bands: Bands, light: _Light, seconds: float, size: int, *, sampled: bool) -> None:

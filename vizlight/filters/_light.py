@@ -129,11 +129,15 @@ def finish(
     invalid = sum(shading.invalid for shading in results)
     if invalid:
         total = sum(shading.luminance.size for shading in results)
-        _check.warn(
-            f"{invalid} of {total} points could not be lit (a zero, infinite or NaN vector, "
-            "dependent tangents, or no surface normal there) and have the ambient light; "
-            f"the point array {name + VALID!r} marks them"
-        )
+        _check.warn(f"{unlit(invalid, total)}; the point array {name + VALID!r} marks them")
+
+
+def unlit(invalid: int, total: int) -> str:
+    """Return how many points could not be lit, and why, for a warning."""
+    return (
+        f"{invalid} of {total} points could not be lit (a zero, infinite or NaN vector, "
+        "dependent tangents, or no surface normal there) and have the ambient light"
+    )
 
 
 def attach(mesh: pv.DataSet, shading: engine.Shading, name: str, told: dict[str, Any]) -> None:

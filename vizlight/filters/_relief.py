@@ -59,12 +59,12 @@ def relief_shadow(
         Its lights, at infinity or near, in the mesh's unit.
     depth : float, optional
         d of 0 or more, how far below the surface the light is gathered, in the mesh's unit: the
-        deeper, the softer. Default: 0.01 of the diagonal of the mesh, a field's in x and y.
+        deeper, the softer. Default: 0.01 of the diagonal of the faces, a field's in x and y.
     elevation : str, optional
         A point array of heights. Default: z of a StructuredGrid, else the active scalars. NaN
         is a hole.
     factor : float, default: 1.0
-        By which heights are multiplied.
+        By which heights are multiplied: height fields alone.
     base, border, method
         As for :func:`vizlight.geometry.relief.inside_length`: height fields alone.
     thickness : float, optional
@@ -205,7 +205,7 @@ def relief_day(
         In radians, north positive.
     day : float, optional
         Of the year, 1 for the first of January.
-    hours : array_like, shape (H,), optional
+    hours : float or array_like, shape (H,), optional
         Of true solar time, 12 when the sun is highest; default: each hour from 4 to 20.
     directions : array_like, shape (H, 3), optional
         Toward the sun, in place of latitude, day and hours.
@@ -226,6 +226,11 @@ def relief_day(
     TypeError, ValueError
         As :func:`relief_shadow` and :func:`vizlight.geometry.sun.directions`.
     """
+    for other in ("scene", "lit", "components", "inplace"):
+        if other in options:
+            raise TypeError(
+                _check.message(other, "no such option", _check.describe(options[other]))
+            )
     own = {
         "latitude": latitude, "day": day, "hours": hours, "directions": directions,
     }  # fmt: skip
@@ -234,18 +239,21 @@ def relief_day(
             got = _check.message("latitude, day", "both, or directions=", (latitude, day))
             raise ValueError(got)
         hours = np.arange(4.0, 21.0) if hours is None else hours
-        toward = sun.directions(latitude, day, hours)
+        toward = np.atleast_2d(sun.directions(latitude, day, hours))
     elif latitude is not None or day is not None or hours is not None:
         expected = "directions alone, or latitude, day and hours"
         raise ValueError(_check.message("directions", expected, "both"))
     else:
         toward = np.atleast_2d(_check.vectors("directions", directions, n=3))
-    for other in ("lit", "components", "inplace"):
-        if other in options:
-            raise TypeError(_check.message(other, "no such option", repr(options[other])))
+    given, value = ("hours", hours) if directions is None else ("directions", directions)
+    if toward.ndim != 2 or not len(toward):
+        raise ValueError(_check.message(given, "a list of one or more", _check.describe(value)))
+    if directions is not None:
+        for i, way in enumerate(toward):
+            _check.vector(f"directions[{i}]", way, direction=True)
     up = [way for way in toward if way[2] > 0]
     if not up:
-        raise ValueError(_check.message("hours", "the sun above the horizon", "night"))
+        raise ValueError(_check.message(given, "the sun above the horizon", "night"))
     scene = Scene(lights=[Light(direction=way) for way in up], material=Material(specular=0.0))
     found = relief_shadow(
         mesh, scene, name=name, components=True, progress_bar=progress_bar, **options

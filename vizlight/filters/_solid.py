@@ -47,6 +47,12 @@ class Solid:
 
 def triangles_of(surface: Any, name: str) -> tuple[Array, Index]:
     """Return corners and triangles of a surface, corners of one place being one."""
+    vertices, triangles, _, _ = _merged(surface, name)
+    return vertices, triangles
+
+
+def _merged(surface: Any, name: str) -> tuple[Array, Index, Index, Index]:
+    """Return corners, triangles, the points that faces use, and which corner each of them is."""
     if not isinstance(surface, pv.PolyData):
         remedy = "take the mesh's extract_surface()"
         raise TypeError(
@@ -59,10 +65,12 @@ def triangles_of(surface: Any, name: str) -> tuple[Array, Index]:
     points = np.asarray(faces.points, dtype=np.float64)
     if not np.all(np.isfinite(points[corners])):
         raise ValueError(_check.message(name, "faces with finite points", "others"))
-    vertices, same = np.unique(points, axis=0, return_inverse=True)
-    corners = same.reshape(-1)[corners]
+    used, place = np.unique(corners, return_inverse=True)
+    vertices, same = np.unique(points[used], axis=0, return_inverse=True)
+    same = same.reshape(-1)
+    corners = same[place].reshape(-1, 3)
     a, b, c = corners.T
-    return vertices, corners[(a != b) & (b != c) & (c != a)]
+    return vertices, corners[(a != b) & (b != c) & (c != a)], used, same
 
 
 def closed(surface: Any, name: str = "mesh") -> tuple[Array, Index]:
@@ -101,12 +109,10 @@ def closed(surface: Any, name: str = "mesh") -> tuple[Array, Index]:
 
 def shell(surface: Any, thickness: float, normals: Array) -> tuple[Array, Index]:
     """Return an open surface made closed: itself, its copy along -normals, walls between."""
-    vertices, triangles = triangles_of(surface, "mesh")
+    vertices, triangles, used, same = _merged(surface, "mesh")
     # Corners of one place are one here, so they share the sum of their normals.
-    points = np.asarray(surface.points, dtype=np.float64)
-    _, same = np.unique(points, axis=0, return_inverse=True)
     total = np.zeros_like(vertices)
-    np.add.at(total, same.reshape(-1), normals)
+    np.add.at(total, same, normals[used])
     size = np.linalg.norm(total, axis=1, keepdims=True)
     under = vertices - thickness * total / np.where(size > 0, size, 1)
     n = len(vertices)

@@ -130,7 +130,8 @@ def shade(light: _axial.Source, center: Array) -> Any:
         if math.isinf(light.distance):
             return light.luminance(normals @ light.toward)
         toward = light.toward * light.distance - (points - center)
-        size = np.sqrt(np.einsum("ij,ij->i", toward, toward))
+        # Squares of a light far away would overflow.
+        size = np.hypot(np.hypot(toward[:, 0], toward[:, 1]), toward[:, 2])
         cosine = np.einsum("ij,ij->i", toward, normals) / np.where(size > 0, size, 1)
         return light.luminance(cosine, size)
 

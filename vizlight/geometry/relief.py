@@ -143,7 +143,8 @@ def shadow(
     -------
     ndarray, shape (ny, nx)
         ``t = d / r`` clamped to [0, 1]: r is the length inside the solid of the segment from
-        ``p' = p - d n`` to the light; 1 where r is less than d. 0 at NaN heights.
+        ``p' = p - d n`` to the light; 1 where r is less than d. 0 at NaN heights, and where a
+        normal is zero or not finite.
 
     Raises
     ------
@@ -161,6 +162,7 @@ def shadow(
     """
     field = _field.make(x, y, z, base=base, border=border)
     depth = _check.number("depth", depth, low=0.0)
+    dark = np.isnan(np.asarray(z, dtype=np.float64))
     if normals is None:
         normal = _field.normals(field)
     else:
@@ -168,9 +170,11 @@ def shadow(
         if normal.shape != (*field.heights.shape, 3):
             expected = f"shape {(*field.heights.shape, 3)}"
             raise ValueError(_check.message("normals", expected, _check.describe(normal)))
+        dark |= ~(np.any(normal, axis=-1) & np.all(np.isfinite(normal), axis=-1))
+        normal[dark] = 0
     ray = toward(field, direction=direction, position=position)
     t = ratio(field, normal, depth, ray, method=method, threads=threads)
-    t[np.isnan(np.asarray(z, dtype=np.float64))] = 0
+    t[dark] = 0
     return t
 
 
@@ -187,8 +191,9 @@ class Ray:
             return way, np.full(start.shape[1], _march.FAR)
         assert self.position is not None
         way = self.position[:, np.newaxis] - start
-        size = np.sqrt(np.einsum("ij,ij->j", way, way))
-        return way / np.where(size > 0, size, 1), size
+        # Squares of a light far away would overflow.
+        size = np.hypot(np.hypot(way[0], way[1]), way[2])
+        return way / np.where(size > 0, size, 1), np.minimum(size, _march.FAR)
 
 
 def toward(
