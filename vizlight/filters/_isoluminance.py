@@ -92,7 +92,8 @@ def isoluminance(
     Warns
     -----
     UserWarning
-        If points of faces could not be lit; triangles at such points have the band of the ambient light.
+        If points of faces could not be lit; triangles at such points have the band of the ambient
+        light.
         If an allowed error is not kept, as where a highlight ends at the terminator.
 
     Notes
@@ -209,12 +210,13 @@ def _of_mesh(
     if ids is not None:
         for key in ("normals", "tangents"):
             if given[key] is not None and not isinstance(given[key], str):
-                given[key] = _mesh.array_of(mesh, key, given[key], average_cells=False)[ids]
+                rows = _mesh.array_of(mesh, key, given[key], average_cells=False)
+                given[key] = np.where(ids[:, np.newaxis] < 0, 0, rows[ids])
     (lit,), fitted = _light.light(
         [prepare(surface, "", scene, given)], scene, threads=threads, progress_bar=False,
         precision="float64", **{key: options[key] for key in ("model", "compensate", "two_sided")},
     )  # fmt: skip
-    unlit = len(used) - np.count_nonzero(lit.valid[used])
+    unlit = int(np.count_nonzero(~lit.valid[used]))
     if unlit:
         _check.warn(_light.unlit(unlit, len(used)))
     points = np.array(surface.points, dtype=np.float64)
