@@ -215,6 +215,25 @@ def test_colour_goes_with_the_bands():
     assert "rgb" not in isoluminance(Sphere(), DULL)["bands"].cell_data
 
 
+def test_colour_goes_with_bands_of_tangents():
+    mesh = sphere_mesh(20)
+    mesh["V"] = np.cross(mesh["Normals"], [0.3, 0.1, 1.0]) + np.array([1e-3, 0, 0])
+    lights = Light(direction=TOWARD, color="red"), Light(direction=-TOWARD, color="blue")
+    scene = SHINY.replace(lights=lights)
+    bands = isoluminance(mesh, scene, levels=9, tangents="V")["bands"]
+    lit = vizlight.illuminate(mesh, scene, tangents="V", precision="float64")
+    middles = np.array([cell.points.mean(axis=0) for cell in bands.cell])
+    corners = mesh.regular_faces[mesh.find_closest_cell(middles)]
+    edges = np.moveaxis(np.asarray(mesh.points, dtype=float)[corners], 1, 2)
+    share = (np.linalg.pinv(edges) @ middles[:, :, np.newaxis])[..., 0]
+    rgb, value = (np.einsum("ij,ij...->i...", share, lit[k][corners]) for k in ("rgb", "luminance"))
+    expected = rgb * (bands["luminance"] / value)[:, np.newaxis]
+    np.testing.assert_allclose(bands["rgb"], expected, atol=1e-4)
+    assert np.ptp(bands["rgb"], axis=0)[[0, 2]].min() > 0.2
+    plain = isoluminance(mesh, SHINY, levels=9, tangents="V")["bands"]
+    assert "rgb" not in plain.cell_data
+
+
 @pytest.mark.parametrize("empty", [pv.PolyData, pv.UnstructuredGrid, pv.MultiBlock])
 def test_an_empty_mesh_has_no_bands(empty):
     found = isoluminance(empty(), DULL)

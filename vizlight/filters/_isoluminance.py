@@ -80,9 +80,9 @@ def isoluminance(
         ``bands``: polygons with the cell arrays ``luminance`` and ``band``, closed if the
         surface is, and for a solid ``patch``. ``contours``: lines with the cell array
         ``luminance``. ``rgb`` on the bands where the scene has a colour: that of each polygon's
-        middle, as bright as its band. Field data of the bands: ``luminance_error``, the bound of
-        a closed form, else what was measured at the middle and along the edges of each polygon;
-        ``luminance_provenance``.
+        middle, as bright as its band; with tangents interpolated as the luminance is. Field data
+        of the bands: ``luminance_error``, the bound of a closed form, else what was measured at
+        the middle and along the edges of each polygon; ``luminance_provenance``.
 
     Raises
     ------
@@ -221,6 +221,7 @@ def _of_mesh(
         _check.warn(_light.unlit(unlit, len(used)))
     points = np.array(surface.points, dtype=np.float64)
     light = _Light(scene, options["model"], options["two_sided"], options["flip_normals"], threads)
+    rgb: Array | None = None
     if not len(triangles):
         steps = _levels.steps(levels, 0.0, 0.0)
         bands, _ = _bands.cut(np.empty((0, 3)), triangles, np.empty((0, 3)), steps)
@@ -237,10 +238,16 @@ def _of_mesh(
     else:
         values = np.asarray(lit.luminance[triangles], dtype=np.float64)
         steps = _levels.steps(levels, float(values.min()), float(values.max()), exact=True)
-        bands, _ = _bands.cut(points, triangles, values, steps)
-        bands = dataclasses.replace(bands, error=steps.error)
+        # What comes with the luminance is interpolated as it is.
+        columns = [points, lit.luminance[:, np.newaxis], *([] if lit.rgb is None else [lit.rgb])]
+        cut, _ = _bands.cut(np.concatenate(columns, axis=1), triangles, values, steps)
+        bands = dataclasses.replace(cut, points=cut.points[:, :3], error=steps.error)
+        if lit.rgb is not None:
+            middles = cut.middles()
+            rgb = _as_bright(middles[:, 4:], middles[:, 3], bands)
     told = _provenance.record(lit, "isoluminance", fitted, options)
-    rgb = _rgb(bands, light) if scene.colored and options["tangents"] is None else None
+    if scene.colored and options["tangents"] is None:
+        rgb = _rgb(bands, light)
     return _blocks(bands, options["name"], told, rgb, patches=False), bands, light
 
 
@@ -294,8 +301,13 @@ def _middles(bands: Bands, light: _Light) -> tuple[Array, Array]:
 def _rgb(bands: Bands, light: _Light) -> Array:
     """Return the colour of each polygon: that of the light at its middle, as bright as its band."""
     value = light(*_middles(bands, light))
+    return _as_bright(light.last.rgb, value, bands)
+
+
+def _as_bright(rgb: Array, value: Array, bands: Bands) -> Array:
+    """Return colours of some luminance made as bright as the band of each polygon."""
     share = np.divide(bands.values, value, out=np.ones_like(value), where=value > 0)
-    return np.asarray(light.last.rgb * share[:, np.newaxis])
+    return np.asarray(rgb * share[:, np.newaxis])
 
 
 def _blocks(
