@@ -116,7 +116,7 @@ def relief_shadow(
     >>> sun = vizlight.Scene(lights=vizlight.Light(direction=(0, 3, 4)))
     >>> flat = pv.ImageData(dimensions=(5, 5, 1))
     >>> flat["height"] = [0.0] * 25
-    >>> float(vizlight.relief_shadow(flat, sun)["t"][7])
+    >>> round(float(vizlight.relief_shadow(flat, sun)["t"][7]), 9)
     0.8
     """
     options = dict(locals())
