@@ -195,6 +195,13 @@ TOUCHING = {
         Truncus((0, 0, 0), (0, 0, 1), (1, 1)) | Truncus((0, 0, 1), (0, 0, 1), (1, 1)),
         2 * PI, 6 * PI,
     ),
+    "three stacked cylinders": (
+        Truncus() | Truncus((0, 0, 1)) | Truncus((0, 0, 2)), 0.75 * PI, 3.5 * PI,
+    ),
+    "cones base to base": (
+        Truncus((0, 0, 0.5), radii=(0, 1)) | Truncus((0, 0, -0.5), radii=(1, 0)),
+        2 * PI / 3, 2 * PI * np.sqrt(2),
+    ),
     "overlapping cylinders": (
         Truncus((0, 0, 0), (0, 0, 1), (1, 1)) | Truncus((0, 0, 0.5), (0, 0, 1), (1, 1)),
         1.5 * PI, 5 * PI,
@@ -216,6 +223,21 @@ def test_coincident_and_tangent_faces(name):
         assert banded.is_closed(bands)
         assert banded.volume(bands) == pytest.approx(volume, rel=8e-3)
         assert banded.area(bands) == pytest.approx(area, rel=8e-3)
+
+
+@pytest.mark.parametrize("radius", [0.3, 0.5, 1])
+@pytest.mark.parametrize("tolerance", [1e-2, 3e-3, 1e-3])
+def test_glued_faces_vanish_however_points_fall(radius, tolerance):
+    """Also where points lie alike on both sides of them."""
+    ends = (radius, radius)
+    mesh = solids.tessellate(
+        Truncus(radii=ends) | Truncus((0, 0, 1), radii=ends), tolerance=tolerance
+    )
+    points = mesh.world(mesh.points)
+    assert np.hypot(*points[np.abs(points[:, 2] - 0.5) < 0.99, :2].T).min() > 0.99 * radius
+    bands = _contours.draw(mesh, lambert, 2, low=0.1)
+    expected = 4 * PI * radius + 2 * PI * radius**2
+    assert banded.area(bands) == pytest.approx(expected, rel=tolerance)
 
 
 def test_moved_and_scaled_solids_are_the_same():

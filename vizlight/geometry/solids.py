@@ -151,7 +151,7 @@ def _mesh(
     tetrahedra = Delaunay(moved)
     cells = tetrahedra.simplices.astype(np.intp)
     spacing = size.of(points[cells].mean(axis=1))
-    inside = _inside(unit, points[cells], spacing)
+    inside = _inside(unit, points[cells], spacing, random)
     beyond = np.asarray(tetrahedra.neighbors, dtype=np.intp)
     _smooth(inside, points[cells], beyond, spacing, random)
     open_face = inside[:, np.newaxis] & ((beyond < 0) | ~inside[beyond])
@@ -235,9 +235,14 @@ def _sheets(partners: Index) -> Index:
     return np.asarray(number, dtype=np.intp).reshape(-1, 3)
 
 
-def _inside(unit: Unit, corners: Array, spacing: Array) -> Bools:
-    """Return which tetrahedra are inside."""
-    center = corners.mean(axis=1)
+def _inside(unit: Unit, corners: Array, spacing: Array, random: np.random.Generator) -> Bools:
+    """Return which tetrahedra are inside.
+
+    Each is asked at a place of its own: the middle of corners that lie alike on both sides of a
+    face is in that face, which has no side.
+    """
+    weight = 1 + random.uniform(-0.2, 0.2, corners.shape[:2])
+    center = np.einsum("ij,ijk->ik", weight / weight.sum(axis=1)[:, np.newaxis], corners)
     inside = unit.inside(center)
     a, b, c = (corners[:, i] - corners[:, 3] for i in range(3))
     flat = np.abs(np.einsum("ij,ij->i", np.cross(a, b), c)) < 1e-7 * spacing**3
