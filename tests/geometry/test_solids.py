@@ -202,6 +202,16 @@ TOUCHING = {
         Truncus((0, 0, 0.5), radii=(0, 1)) | Truncus((0, 0, -0.5), radii=(1, 0)),
         2 * PI / 3, 2 * PI * np.sqrt(2),
     ),
+    "cylinder inscribed in a block": (Block() - Truncus(), 1 - PI / 4, 6 + PI / 2),
+    "ball inscribed in a cylinder": (
+        Truncus(axis=(0, 0, 2), radii=(1, 1)) - Sphere(), 2 * PI / 3, 10 * PI,
+    ),
+    "cylinder touches within": (
+        Truncus(radii=(1, 1)) - Truncus((0.5, 0, 0)), 0.75 * PI, 4.5 * PI,
+    ),
+    "cylinders touch": (
+        Truncus(radii=(1, 1)) | Truncus((2, 0, 0), radii=(1, 1)), 2 * PI, 8 * PI,
+    ),
     "overlapping cylinders": (
         Truncus((0, 0, 0), (0, 0, 1), (1, 1)) | Truncus((0, 0, 0.5), (0, 0, 1), (1, 1)),
         1.5 * PI, 5 * PI,

@@ -45,6 +45,8 @@ NARROW = 0.05
 JOGGLE = 1e-7
 #: Tetrahedra of less height, in units of the points' spacing, have no side of their own.
 FLAT = 1e-3
+#: With its middle closer to a surface, in units of the tolerance, a tetrahedron hugs it.
+HUG = 1
 
 
 def tessellate(solid: Any, /, *, tolerance: float = 3e-3) -> Mesh:
@@ -151,7 +153,7 @@ def _mesh(
     tetrahedra = Delaunay(moved)
     cells = tetrahedra.simplices.astype(np.intp)
     spacing = size.of(points[cells].mean(axis=1))
-    inside = _inside(unit, points[cells], spacing, random)
+    inside = _inside(unit, points, on, cells, spacing, tolerance, random)
     beyond = np.asarray(tetrahedra.neighbors, dtype=np.intp)
     _smooth(inside, points[cells], beyond, spacing, random)
     open_face = inside[:, np.newaxis] & ((beyond < 0) | ~inside[beyond])
@@ -235,15 +237,35 @@ def _sheets(partners: Index) -> Index:
     return np.asarray(number, dtype=np.intp).reshape(-1, 3)
 
 
-def _inside(unit: Unit, corners: Array, spacing: Array, random: np.random.Generator) -> Bools:
+def _inside(
+    unit: Unit,
+    points: Array,
+    on: Bools,
+    cells: Index,
+    spacing: Array,
+    tolerance: float,
+    random: np.random.Generator,
+) -> Bools:
     """Return which tetrahedra are inside.
 
     Each is asked at a place of its own: the middle of corners that lie alike on both sides of a
-    face is in that face, which has no side.
+    face is in that face, which has no side. Where one hugs a surface its corners decide: toward
+    a line where surfaces touch what is between them is thinner than chords are off.
     """
-    weight = 1 + random.uniform(-0.2, 0.2, corners.shape[:2])
+    weight = 1 + random.uniform(-0.2, 0.2, cells.shape)
+    corners = points[cells]
     center = np.einsum("ij,ijk->ik", weight / weight.sum(axis=1)[:, np.newaxis], corners)
-    inside = unit.inside(center)
+    found: list[Bools] = []
+    for i, surface in enumerate(unit.surfaces):
+        side = surface.distance(center)
+        gap = surface.distance(points)
+        gap[on[:, i]] = 0
+        low, high = gap[cells].min(axis=1), gap[cells].max(axis=1)
+        hug = np.abs(side) < HUG * tolerance
+        side[hug & (low < 0) & (high <= 0)] = -1
+        side[hug & (low >= 0) & (high > 0)] = 1
+        found.append(side < 0)
+    inside = unit.combine(found)
     a, b, c = (corners[:, i] - corners[:, 3] for i in range(3))
     flat = np.abs(np.einsum("ij,ij->i", np.cross(a, b), c)) < 1e-7 * spacing**3
     # One without volume may lie in a face: it is inside only if both its sides are.
