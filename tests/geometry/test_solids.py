@@ -7,6 +7,8 @@ import itertools
 import banded
 import numpy as np
 import pytest
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from vizlight.geometry import _contours, solids
 from vizlight.geometry.primitives import Block, Boolean, Sphere, Truncus
@@ -248,6 +250,42 @@ def test_glued_faces_vanish_however_points_fall(radius, tolerance):
     bands = _contours.draw(mesh, lambert, 2, low=0.1)
     expected = 4 * PI * radius + 2 * PI * radius**2
     assert banded.area(bands) == pytest.approx(expected, rel=tolerance)
+
+
+APEXES = {
+    "within a ball": (Sphere() - Truncus((0, 0, 0.5), radii=(0, 0.3)), 1e-2),
+    "beside a block": (
+        Block((0.5, 1, -1), (2, 1, 1)) | Truncus((-1, 0, 0), (1, 0, 0), (1, 0), height=2), 3e-3,
+    ),
+    "on an edge": (
+        Block((0.5, 1, -0.5), (1, 0.5, 1))
+        | Truncus((-0.5, 0, -0.5), (0, 1, 0), (1, 0), height=1), 3e-3,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", APEXES)
+def test_apexes_that_touch_stay_closed(name):
+    solid, tolerance = APEXES[name]
+    mesh = solids.tessellate(solid, tolerance=tolerance)
+    with np.errstate(all="raise", under="ignore"):
+        bands = _contours.draw(mesh, lambert, 8, low=0.1)
+    assert banded.is_closed(bands)
+
+
+def test_no_parts_without_volume():
+    """Four points in one straight line, as on an edge, make no part of their own."""
+    mesh = solids.tessellate(Block(size=(1.6, 1.6, 1)) - Sphere((0, 0, 1)))
+    corners = mesh.points[mesh.triangles]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    links = (
+        np.ones(3 * len(across)),
+        (mesh.triangles.ravel(), mesh.triangles[:, [1, 2, 0]].ravel()),
+    )
+    count, part = connected_components(coo_array(links), directed=False)
+    area = np.bincount(part[mesh.triangles[:, 0]], np.linalg.norm(across, axis=1))
+    assert count == 1
+    assert area.min() > 1e-3
 
 
 def test_moved_and_scaled_solids_are_the_same():

@@ -187,7 +187,26 @@ def _mesh(
     both = np.stack([patch[one[again] // 3], patch[partner.ravel()[one[again]] // 3]], axis=1)
     middle = _contours.onto(tuple(unit.surfaces), middle, both)
     corner, owner = _contours.split(corner, number[which.reshape(-1, 3)])
-    return corner, patch[owner], np.concatenate([places, middle])
+    return _thick(corner, patch[owner], np.concatenate([places, middle]), size)
+
+
+def _thick(triangles: Index, patch: Index, points: Array, size: Size) -> tuple[Index, Index, Array]:
+    """Return a mesh without parts of next to no height: tetrahedra along a straight line."""
+    a, b, c = triangles.T
+    links = np.concatenate([np.stack([a, b]), np.stack([b, c])], axis=1)
+    graph = coo_array((np.ones(links.shape[1], np.bool_), tuple(links)), shape=(len(points),) * 2)
+    count, part = connected_components(graph, directed=False)
+    if count > 1:
+        corners = points[triangles] - points.mean(axis=0)
+        across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        area = np.sqrt(np.einsum("ij,ij->i", across, across))
+        volume = np.einsum("ij,ij->i", across, corners[:, 0])
+        height = FLAT * area * size.of(points[a])
+        volume, height = (np.bincount(part[a], x, count) for x in (volume, height))
+        kept = (np.abs(volume) > height)[part[a]]
+        used, place = np.unique(triangles[kept], return_inverse=True)
+        triangles, patch, points = place.reshape(-1, 3).astype(np.intp), patch[kept], points[used]
+    return triangles, patch, points
 
 
 def _partners(
