@@ -273,6 +273,14 @@ def test_apexes_that_touch_stay_closed(name):
     assert banded.is_closed(bands)
 
 
+@pytest.mark.parametrize("radius", [0.2, 0.25, 0.5])
+def test_sharp_apexes_keep_the_error(radius):
+    solid = Truncus(radii=(0, radius)) | Sphere((0, 0, -1), 0.5)
+    bands = bands_of(solid, levels=0.05)
+    assert banded.is_closed(bands)
+    assert bands.error <= 0.05
+
+
 def test_no_parts_without_volume():
     """Four points in one straight line, as on an edge, make no part of their own."""
     mesh = solids.tessellate(Block(size=(1.6, 1.6, 1)) - Sphere((0, 0, 1)))

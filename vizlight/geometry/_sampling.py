@@ -174,7 +174,10 @@ def points(unit: Unit, size: Size, random: np.random.Generator) -> tuple[Array, 
         apex = getattr(surface, "apex", None)
         if apex is None:
             continue
-        ring = apex + PROBE * fibonacci(26)
+        # A sharp cone may lie between them all: its axis is asked too.
+        down = surface.center - apex
+        ways = np.concatenate([fibonacci(26), [down / np.sqrt(down @ down)]])
+        ring = apex + PROBE * ways
         inside = unit.inside(ring)
         if inside.any() and not inside.all():
             corners = np.concatenate([corners, apex[np.newaxis]])
