@@ -7,6 +7,8 @@ import itertools
 import banded
 import numpy as np
 import pytest
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from vizlight.geometry import _contours, solids
 from vizlight.geometry.primitives import Block, Boolean, Sphere, Truncus
@@ -195,6 +197,23 @@ TOUCHING = {
         Truncus((0, 0, 0), (0, 0, 1), (1, 1)) | Truncus((0, 0, 1), (0, 0, 1), (1, 1)),
         2 * PI, 6 * PI,
     ),
+    "three stacked cylinders": (
+        Truncus() | Truncus((0, 0, 1)) | Truncus((0, 0, 2)), 0.75 * PI, 3.5 * PI,
+    ),
+    "cones base to base": (
+        Truncus((0, 0, 0.5), radii=(0, 1)) | Truncus((0, 0, -0.5), radii=(1, 0)),
+        2 * PI / 3, 2 * PI * np.sqrt(2),
+    ),
+    "cylinder inscribed in a block": (Block() - Truncus(), 1 - PI / 4, 6 + PI / 2),
+    "ball inscribed in a cylinder": (
+        Truncus(axis=(0, 0, 2), radii=(1, 1)) - Sphere(), 2 * PI / 3, 10 * PI,
+    ),
+    "cylinder touches within": (
+        Truncus(radii=(1, 1)) - Truncus((0.5, 0, 0)), 0.75 * PI, 4.5 * PI,
+    ),
+    "cylinders touch": (
+        Truncus(radii=(1, 1)) | Truncus((2, 0, 0), radii=(1, 1)), 2 * PI, 8 * PI,
+    ),
     "overlapping cylinders": (
         Truncus((0, 0, 0), (0, 0, 1), (1, 1)) | Truncus((0, 0, 0.5), (0, 0, 1), (1, 1)),
         1.5 * PI, 5 * PI,
@@ -216,6 +235,65 @@ def test_coincident_and_tangent_faces(name):
         assert banded.is_closed(bands)
         assert banded.volume(bands) == pytest.approx(volume, rel=8e-3)
         assert banded.area(bands) == pytest.approx(area, rel=8e-3)
+
+
+@pytest.mark.parametrize("radius", [0.3, 0.5, 1])
+@pytest.mark.parametrize("tolerance", [1e-2, 3e-3, 1e-3])
+def test_glued_faces_vanish_however_points_fall(radius, tolerance):
+    """Also where points lie alike on both sides of them."""
+    ends = (radius, radius)
+    mesh = solids.tessellate(
+        Truncus(radii=ends) | Truncus((0, 0, 1), radii=ends), tolerance=tolerance
+    )
+    points = mesh.world(mesh.points)
+    assert np.hypot(*points[np.abs(points[:, 2] - 0.5) < 0.99, :2].T).min() > 0.99 * radius
+    bands = _contours.draw(mesh, lambert, 2, low=0.1)
+    expected = 4 * PI * radius + 2 * PI * radius**2
+    assert banded.area(bands) == pytest.approx(expected, rel=tolerance)
+
+
+APEXES = {
+    "within a ball": (Sphere() - Truncus((0, 0, 0.5), radii=(0, 0.3)), 1e-2),
+    "beside a block": (
+        Block((0.5, 1, -1), (2, 1, 1)) | Truncus((-1, 0, 0), (1, 0, 0), (1, 0), height=2), 3e-3,
+    ),
+    "on an edge": (
+        Block((0.5, 1, -0.5), (1, 0.5, 1))
+        | Truncus((-0.5, 0, -0.5), (0, 1, 0), (1, 0), height=1), 3e-3,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", APEXES)
+def test_apexes_that_touch_stay_closed(name):
+    solid, tolerance = APEXES[name]
+    mesh = solids.tessellate(solid, tolerance=tolerance)
+    with np.errstate(all="raise", under="ignore"):
+        bands = _contours.draw(mesh, lambert, 8, low=0.1)
+    assert banded.is_closed(bands)
+
+
+@pytest.mark.parametrize("radius", [0.2, 0.25, 0.5])
+def test_sharp_apexes_keep_the_error(radius):
+    solid = Truncus(radii=(0, radius)) | Sphere((0, 0, -1), 0.5)
+    bands = bands_of(solid, levels=0.05)
+    assert banded.is_closed(bands)
+    assert bands.error <= 0.05
+
+
+def test_no_parts_without_volume():
+    """Four points in one straight line, as on an edge, make no part of their own."""
+    mesh = solids.tessellate(Block(size=(1.6, 1.6, 1)) - Sphere((0, 0, 1)))
+    corners = mesh.points[mesh.triangles]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    links = (
+        np.ones(3 * len(across)),
+        (mesh.triangles.ravel(), mesh.triangles[:, [1, 2, 0]].ravel()),
+    )
+    count, part = connected_components(coo_array(links), directed=False)
+    area = np.bincount(part[mesh.triangles[:, 0]], np.linalg.norm(across, axis=1))
+    assert count == 1
+    assert area.min() > 1e-3
 
 
 def test_moved_and_scaled_solids_are_the_same():

@@ -6,6 +6,8 @@ import dataclasses
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from vizlight import _check
 from vizlight.geometry import _bands, _levels
@@ -280,24 +282,30 @@ def _next(bands: Bands) -> Index:
 
 
 def open_apexes(mesh: Mesh) -> Mesh:
-    """Return the mesh with a small hole at the apex of each cone, a point for each ruling."""
+    """Return the mesh with a small hole at the apex of each cone, a point for each ruling.
+
+    Where a solid touches itself there, each of its points at the apex has a hole of its own.
+    """
     for patch, surface in enumerate(mesh.surfaces):
         apex = getattr(surface, "apex", None)
         if apex is None:
             continue
+        count = len(mesh.points)
         gap = mesh.points - apex
         at = np.einsum("ij,ij->i", gap, gap) < 1e-20
-        start = at[mesh.triangles] & (mesh.patch == patch)[:, np.newaxis]
+        at &= np.isin(np.arange(count), mesh.triangles[mesh.patch == patch])
+        start = at[mesh.triangles]
         rows, slot = np.nonzero(start)
         if not len(rows):
             continue
-        b = mesh.triangles[rows, (slot + 1) % 3]
-        c = mesh.triangles[rows, (slot + 2) % 3]
-        ends, place = np.unique(np.concatenate([b, c]), return_inverse=True)
-        new = len(mesh.points) + place.reshape(2, -1)
-        way = mesh.points[ends] - apex
+        tip, b, c = (mesh.triangles[rows, (slot + i) % 3] for i in range(3))
+        key = np.concatenate([tip * count + b, tip * count + c])
+        ends, place = np.unique(key, return_inverse=True)
+        new = count + place.reshape(2, -1)
+        way = mesh.points[ends % count] - apex
         rim = apex + APEX * way / np.sqrt(np.einsum("ij,ij->i", way, way))[:, np.newaxis]
         kept = ~start.any(axis=1)
+        owner = mesh.patch[rows]
         mesh = mesh.replace(
             points=np.concatenate([mesh.points, rim]),
             triangles=np.concatenate(
@@ -307,22 +315,27 @@ def open_apexes(mesh: Mesh) -> Mesh:
                     np.stack([new[0], c, new[1]], 1),
                 ]
             ),
-            patch=np.concatenate([mesh.patch[kept], np.full(2 * len(rows), patch)]),
+            patch=np.concatenate([mesh.patch[kept], owner, owner]),
         )
     return mesh
 
 
 def _close_apexes(bands: Bands, mesh: Mesh) -> Bands:
-    clusters = np.arange(len(bands.points))
-    points = bands.points
+    count = len(bands.points)
+    clusters, points = np.arange(count), bands.points
+    ends = np.stack([bands.corners, bands.corners[_next(bands)]])
     for surface in mesh.surfaces:
         apex = getattr(surface, "apex", None)
         if apex is not None:
             gap = points - apex
-            near = np.flatnonzero(np.einsum("ij,ij->i", gap, gap) < (4 * APEX) ** 2)
-            if len(near):
-                clusters[near] = near[0]
-                points[near[0]] = apex
+            near = np.einsum("ij,ij->i", gap, gap) < (4 * APEX) ** 2
+            around = ends[:, near[ends].all(axis=0)]
+            graph = coo_array((np.ones(around.shape[1]), tuple(around)), shape=(count, count))
+            _, hole = connected_components(graph, directed=False)
+            _, first, which = np.unique(hole[near], return_index=True, return_inverse=True)
+            first = np.flatnonzero(near)[first]
+            clusters[near] = first[which]
+            points[first] = apex
     return _bands.weld(bands, clusters)
 
 

@@ -56,6 +56,18 @@ class Unit:
         tests = [none if part is None else part.inside(points) for part in self.parts]
         return np.asarray(self.solid.combine(iter(tests)))
 
+    def combine(self, sides: list[Bools]) -> Bools:
+        """Return what is inside the solid, given the inside of each surface."""
+        none = np.zeros(len(sides[0]), np.bool_)
+        tests = [
+            none if part is None
+            else np.logical_and.reduce(
+                [side for side, own in zip(sides, self.owners, strict=True) if own is part]
+            )
+            for part in self.parts
+        ]  # fmt: skip
+        return np.asarray(self.solid.combine(iter(tests)))
+
     def on(self, points: Array) -> Bools:
         """Return which surfaces each point is on."""
         if not len(points):
@@ -156,11 +168,16 @@ def points(unit: Unit, size: Size, random: np.random.Generator) -> tuple[Array, 
     fine = [size.samples(surface, 0.5, random) for surface in unit.surfaces]
     edges, pairs = _meetings(unit, fine, size)
     corners = _corners(unit, edges, pairs, size)
+    lines, ends = _touching(unit, fine, size)
+    edges, corners = np.concatenate([edges, lines]), np.concatenate([corners, ends])
     for surface in unit.surfaces:
         apex = getattr(surface, "apex", None)
         if apex is None:
             continue
-        ring = apex + PROBE * fibonacci(26)
+        # A sharp cone may lie between them all: its axis is asked too.
+        down = surface.center - apex
+        ways = np.concatenate([fibonacci(26), [down / np.sqrt(down @ down)]])
+        ring = apex + PROBE * ways
         inside = unit.inside(ring)
         if inside.any() and not inside.all():
             corners = np.concatenate([corners, apex[np.newaxis]])
@@ -225,6 +242,60 @@ def _meetings(unit: Unit, fine: list[Array], size: Size) -> tuple[Array, Index]:
         found.append(places[real])
         pairs.append(both[real])
     return np.concatenate(found), np.concatenate(pairs).astype(np.intp)
+
+
+def _touching(unit: Unit, fine: list[Array], size: Size) -> tuple[Array, Array]:
+    """Return points where two surfaces touch, and those of them that a third one meets."""
+    lines: list[Array] = [np.empty((0, 3))]
+    ends: list[Array] = [np.empty((0, 3))]
+    for i, j in itertools.permutations(range(len(unit.surfaces)), 2):
+        if isinstance(unit.surfaces[i], Plane) and isinstance(unit.surfaces[j], Plane):
+            continue
+        start = fine[i][np.abs(unit.surfaces[j].distance(fine[i])) < size.of(fine[i])]
+        lean = _along(unit, start, (i,), j)
+        lean = np.einsum("ij,ij->i", lean, lean)
+        # Surfaces that coincide touch everywhere: no line.
+        start = start[(lean > 1e-12) & (lean < 0.5)]
+        start = start[unit.edge(start, np.full((len(start), 1), i))]
+        places = _touch(unit, start, (i,), j, size)
+        lines.append(places)
+        for k, third in enumerate(unit.surfaces):
+            if k not in (i, j):
+                near = np.abs(third.distance(places)) < 1.5 * size.of(places)
+                ends.append(_touch(unit, places[near], (i, k), j, size))
+    return np.concatenate(lines), np.concatenate(ends)
+
+
+def _along(unit: Unit, points: Array, fixed: tuple[int, ...], moving: int) -> Array:
+    """Return the part of a surface's normals that lies along others."""
+    normal = np.stack([unit.surfaces[i].normal(points) for i in fixed], axis=1)
+    toward = unit.surfaces[moving].normal(points)
+    gram = normal @ normal.transpose(0, 2, 1) + 1e-14 * np.eye(len(fixed))
+    weight = np.linalg.solve(gram, normal @ toward[:, :, np.newaxis])
+    return np.asarray(toward - np.einsum("nij,ni->nj", normal, weight[:, :, 0]))
+
+
+def _touch(unit: Unit, start: Array, fixed: tuple[int, ...], moving: int, size: Size) -> Array:
+    """Return the points nearby on some surfaces at which another touches them.
+
+    Newton's method for a double root: steps are twice as long. Where surfaces cross it goes to
+    and fro, and is left after a few.
+    """
+    surface, surfaces = unit.surfaces[moving], tuple(unit.surfaces[i] for i in fixed)
+    places, far = start, 3 * size.of(start)
+    for rounds, missing in ((3, 1e-4), (9, 1e-13)):
+        for _ in range(rounds if len(places) else 0):
+            along = _along(unit, places, fixed, moving)
+            lean = np.maximum(np.einsum("ij,ij->i", along, along), 1e-16)
+            along *= (2 * surface.distance(places) / lean)[:, np.newaxis]
+            both = np.tile(np.arange(len(fixed)), (len(places), 1))
+            places = _contours.onto(surfaces, places - along, both)
+        step = places - start
+        good = np.abs(surface.distance(places)) < missing
+        good &= np.einsum("ij,ij->i", step, step) < far**2
+        start, places, far = start[good], places[good], far[good]
+    along = _along(unit, places, fixed, moving)
+    return np.asarray(places[np.abs(along).max(axis=1, initial=0) < 1e-5])
 
 
 def _corners(unit: Unit, edges: Array, pairs: Index, size: Size) -> Array:

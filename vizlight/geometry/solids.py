@@ -45,6 +45,8 @@ NARROW = 0.05
 JOGGLE = 1e-7
 #: Tetrahedra of less height, in units of the points' spacing, have no side of their own.
 FLAT = 1e-3
+#: With its middle closer to a surface, in units of the tolerance, a tetrahedron hugs it.
+HUG = 1
 
 
 def tessellate(solid: Any, /, *, tolerance: float = 3e-3) -> Mesh:
@@ -151,7 +153,7 @@ def _mesh(
     tetrahedra = Delaunay(moved)
     cells = tetrahedra.simplices.astype(np.intp)
     spacing = size.of(points[cells].mean(axis=1))
-    inside = _inside(unit, points[cells], spacing)
+    inside = _inside(unit, points, on, cells, spacing, tolerance, random)
     beyond = np.asarray(tetrahedra.neighbors, dtype=np.intp)
     _smooth(inside, points[cells], beyond, spacing, random)
     open_face = inside[:, np.newaxis] & ((beyond < 0) | ~inside[beyond])
@@ -185,7 +187,26 @@ def _mesh(
     both = np.stack([patch[one[again] // 3], patch[partner.ravel()[one[again]] // 3]], axis=1)
     middle = _contours.onto(tuple(unit.surfaces), middle, both)
     corner, owner = _contours.split(corner, number[which.reshape(-1, 3)])
-    return corner, patch[owner], np.concatenate([places, middle])
+    return _thick(corner, patch[owner], np.concatenate([places, middle]), size)
+
+
+def _thick(triangles: Index, patch: Index, points: Array, size: Size) -> tuple[Index, Index, Array]:
+    """Return a mesh without parts of next to no height: tetrahedra along a straight line."""
+    a, b, c = triangles.T
+    links = np.concatenate([np.stack([a, b]), np.stack([b, c])], axis=1)
+    graph = coo_array((np.ones(links.shape[1], np.bool_), tuple(links)), shape=(len(points),) * 2)
+    count, part = connected_components(graph, directed=False)
+    if count > 1:
+        corners = points[triangles] - points.mean(axis=0)
+        across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        area = np.sqrt(np.einsum("ij,ij->i", across, across))
+        volume = np.einsum("ij,ij->i", across, corners[:, 0])
+        height = FLAT * area * size.of(points[a])
+        volume, height = (np.bincount(part[a], x, count) for x in (volume, height))
+        kept = (np.abs(volume) > height)[part[a]]
+        used, place = np.unique(triangles[kept], return_inverse=True)
+        triangles, patch, points = place.reshape(-1, 3).astype(np.intp), patch[kept], points[used]
+    return triangles, patch, points
 
 
 def _partners(
@@ -235,10 +256,35 @@ def _sheets(partners: Index) -> Index:
     return np.asarray(number, dtype=np.intp).reshape(-1, 3)
 
 
-def _inside(unit: Unit, corners: Array, spacing: Array) -> Bools:
-    """Return which tetrahedra are inside."""
-    center = corners.mean(axis=1)
-    inside = unit.inside(center)
+def _inside(
+    unit: Unit,
+    points: Array,
+    on: Bools,
+    cells: Index,
+    spacing: Array,
+    tolerance: float,
+    random: np.random.Generator,
+) -> Bools:
+    """Return which tetrahedra are inside.
+
+    Each is asked at a place of its own: the middle of corners that lie alike on both sides of a
+    face is in that face, which has no side. Where one hugs a surface its corners decide: toward
+    a line where surfaces touch what is between them is thinner than chords are off.
+    """
+    weight = 1 + random.uniform(-0.2, 0.2, cells.shape)
+    corners = points[cells]
+    center = np.einsum("ij,ijk->ik", weight / weight.sum(axis=1)[:, np.newaxis], corners)
+    found: list[Bools] = []
+    for i, surface in enumerate(unit.surfaces):
+        side = surface.distance(center)
+        gap = surface.distance(points)
+        gap[on[:, i]] = 0
+        low, high = gap[cells].min(axis=1), gap[cells].max(axis=1)
+        hug = np.abs(side) < HUG * tolerance
+        side[hug & (low < 0) & (high <= 0)] = -1
+        side[hug & (low >= 0) & (high > 0)] = 1
+        found.append(side < 0)
+    inside = unit.combine(found)
     a, b, c = (corners[:, i] - corners[:, 3] for i in range(3))
     flat = np.abs(np.einsum("ij,ij->i", np.cross(a, b), c)) < 1e-7 * spacing**3
     # One without volume may lie in a face: it is inside only if both its sides are.
