@@ -263,6 +263,8 @@ def _beyond(body: Solid, start: Array) -> Array:
 
 def is_inside(body: Solid, place: Array) -> bool:
     """Say whether a place is inside a solid."""
+    if np.any(place < body.vertices.min(axis=0)) or np.any(place > body.vertices.max(axis=0)):
+        return False
     for way in np.array([[0.6, 0.48, 0.64], [-0.48, 0.64, 0.6], [0.64, 0.6, -0.48]]):
         start = place[np.newaxis]
         ray, _, change = _events(body, start, way[np.newaxis], np.array([np.inf]))

@@ -190,7 +190,8 @@ def fur(height: ArrayLike, sin_alpha: ArrayLike, density: float, /) -> Any:
 
     Notes
     -----
-    Absolute error at most ``3 eps``. Source: Banks (7) and (8).
+    Absolute error at most ``3 eps`` for a density of 0 or from 1e-300 on, in float32 from 1e-30.
+    Source: Banks (7) and (8).
     """
     density = _check.number("density", density, low=0.0, high=1.0)
     heights, sines = _check.floats("height", height), _check.floats("sin_alpha", sin_alpha)
