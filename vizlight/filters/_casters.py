@@ -140,11 +140,7 @@ class _SolidCaster:
         thickness = options["thickness"]
         if thickness is None:
             body = _solid.closed(mesh)
-        vectors = (
-            _mesh.normals_of(mesh, None, 3, _mesh.onlooker(scene))
-            if mesh.n_points
-            else np.zeros((0, 3))
-        )
+        vectors = _mesh.normals_of(mesh, None, 3, _mesh.onlooker(scene))
         self.normals = _mesh.unit_rows(np.asarray(vectors, dtype=np.float64))
         if thickness is not None:
             thickness = _check.number("thickness", thickness, low=0.0)

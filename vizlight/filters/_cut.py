@@ -9,7 +9,7 @@ import pyvista as pv
 from scipy.sparse import coo_array, csr_array
 
 from vizlight import _check, _pool
-from vizlight.filters import _mesh
+from vizlight.filters import _lines, _mesh
 from vizlight.geometry import slices
 
 if TYPE_CHECKING:
@@ -108,14 +108,9 @@ def _simplices(mesh: Any) -> tuple[Index, Index]:
         if mesh.GetNumberOfPolys() or mesh.GetNumberOfStrips():
             faces: Any = mesh.triangulate().regular_faces
             return np.asarray(faces, dtype=np.intp), none
-        cells: Any = mesh.GetLines()
-        ids = pv.convert_array(cells.GetConnectivityArray()).astype(np.intp)
-        ends = pv.convert_array(cells.GetOffsetsArray()).astype(np.intp)[1:] - 1
-        inside = np.ones(len(ids), dtype=np.bool_)
-        inside[ends] = False
-        start = np.flatnonzero(inside)
-        if len(start):
-            return np.stack([ids[start], ids[start + 1]], axis=1), none
+        segments = _lines.segments(mesh.GetLines())
+        if len(segments):
+            return segments, none
     else:
         grid = mesh.cast_to_unstructured_grid()
         kinds = dict(grid.cells_dict) if grid.n_cells else {}

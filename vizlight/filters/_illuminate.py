@@ -141,9 +141,7 @@ def illuminate(
     for own in ("mesh", "scene", "threads", "inplace", "progress_bar"):
         del options[own]
     _check.instance("scene", scene, Scene)
-    if not isinstance(mesh, pv.DataSet | pv.MultiBlock):
-        remedy = "read files by pyvista.read, wrap VTK objects by pyvista.wrap"
-        raise TypeError(_check.message("mesh", "a PyVista mesh", type(mesh).__name__, remedy))
+    _mesh.check(mesh)
 
     out = mesh if inplace else _copy(mesh)
     leaves = list(_mesh.named_leaves(out))

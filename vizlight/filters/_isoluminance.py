@@ -14,7 +14,6 @@ import pyvista as pv
 from vizlight import _check, _report, engine
 from vizlight.filters import _light, _mesh, _provenance
 from vizlight.filters._illuminate import prepare
-from vizlight.filters._light import DEFAULT_NAME
 from vizlight.filters._mesh import unit_rows
 from vizlight.geometry import _bands, _contours, _facets, _levels, solids
 from vizlight.geometry import isoluminance as closed
@@ -318,12 +317,11 @@ def _blocks(
     size = np.diff(bands.offsets)
     cells = np.insert(bands.corners, bands.offsets[:-1], size)
     surface = pv.PolyData(points, faces=cells) if len(size) else pv.PolyData()
-    prefix = "" if name == DEFAULT_NAME else f"{name}_"
-    surface.cell_data[f"{prefix}band"] = bands.band
+    surface.cell_data[_light.part_name(name, "band")] = bands.band
     if patches:
-        surface.cell_data[f"{prefix}patch"] = bands.patch
+        surface.cell_data[_light.part_name(name, "patch")] = bands.patch
     if rgb is not None and len(rgb):
-        surface.cell_data[f"{prefix}rgb"] = rgb
+        surface.cell_data[_light.part_name(name, "rgb")] = rgb
     surface.cell_data[name] = bands.values
     surface.cell_data.active_scalars_name = name
     surface.field_data[f"{name}_error"] = [bands.error]

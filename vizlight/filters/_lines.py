@@ -43,10 +43,7 @@ def line_tangents(mesh: pv.DataSet) -> Array:
         surface, origin = _mesh.outer_surface(mesh)
         if mesh.has_nonlinear_cells:
             # Each came as a line of its own.
-            ids, offsets = _cells(surface.GetLines())
-            first = np.delete(np.arange(len(ids)), offsets[1:] - 1)
-            pairs: Any = np.stack([ids[first], ids[first + 1]], axis=1)
-            surface.SetLines(pv.CellArray.from_regular_cells(pairs))
+            surface.SetLines(pv.CellArray.from_regular_cells(segments(surface.GetLines())))
         return _mesh.scattered(line_tangents(surface), origin, mesh.n_points)
     lines = mesh.GetLines()
     ids, offsets = _cells(lines)
@@ -57,6 +54,15 @@ def line_tangents(mesh: pv.DataSet) -> Array:
         ids, offsets = _cells(bare.strip(join=True, max_length=mesh.n_points + 1).GetLines())
     found: Array = polyline_tangents(np.asarray(mesh.points), connectivity=ids, offsets=offsets)
     return found
+
+
+def segments(lines: Any) -> Any:
+    """Return the ends of all segments of lines, shape (M, 2)."""
+    ids, offsets = _cells(lines)
+    inside = np.ones(len(ids), dtype=np.bool_)
+    inside[offsets[1:] - 1] = False
+    start = np.flatnonzero(inside)
+    return np.stack([ids[start], ids[start + 1]], axis=1)
 
 
 def before_turning_back(mesh: pv.PolyData) -> pv.PolyData:

@@ -57,6 +57,13 @@ class GridPoints:
         return self._place(ijk)
 
 
+def check(mesh: Any) -> None:
+    """Refuse what is neither a dataset nor blocks of them."""
+    if not isinstance(mesh, pv.DataSet | pv.MultiBlock):
+        remedy = "read files by pyvista.read, wrap VTK objects by pyvista.wrap"
+        raise TypeError(_check.message("mesh", "a PyVista mesh", type(mesh).__name__, remedy))
+
+
 def leaves(mesh: Any) -> Iterator[Any]:
     """Yield the meshes of a MultiBlock, however deep, or the mesh itself."""
     for leaf, _ in named_leaves(mesh):

@@ -258,7 +258,6 @@ def _plane(hyperplane: Any, n: int) -> tuple[Array, float]:
 
 def _record(job: Turning, mesh: Any, matrix: Array | None) -> str:
     """Return what is done to a mesh, and what was before, as a line of JSON."""
-    earlier = mesh.field_data.get(_provenance.key(RECORD))
     plane = job.hyperplane
     return json.dumps(
         {
@@ -273,6 +272,6 @@ def _record(job: Turning, mesh: Any, matrix: Array | None) -> str:
             "frame": job.frame,
             "vectors": list(job.vectors),
             "cut": job.cut,
-            "earlier": None if earlier is None else json.loads(str(earlier[0])),
+            "earlier": _provenance.told_of(mesh, RECORD),
         }
     )

@@ -119,9 +119,7 @@ def project(
     float64, block by block; arrays keep their type. Source: Banks, section 3.
     """
     told = {key: value for key, value in locals().items() if key not in UNTOLD}
-    if not isinstance(mesh, pv.DataSet | pv.MultiBlock):
-        remedy = "read files by pyvista.read, wrap VTK objects by pyvista.wrap"
-        raise TypeError(_check.message("mesh", "a PyVista mesh", type(mesh).__name__, remedy))
+    _mesh.check(mesh)
     if light not in get_args(LightWhen):
         raise ValueError(_check.message("light", "'before' or 'after'", repr(light)))
     _check.instance("scene", scene, Scene, optional=True)

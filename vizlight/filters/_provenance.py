@@ -40,11 +40,17 @@ def attach(mesh: pv.DataSet, name: str, arrays: Mapping[str, Any], told: dict[st
     mesh.field_data[key(name)] = [json.dumps(told | {"arrays": list(arrays)})]
 
 
+def told_of(mesh: pv.DataSet, name: str) -> dict[str, Any] | None:
+    """Return what a mesh tells of an array, None where it tells nothing."""
+    if key(name) not in mesh.field_data:
+        return None
+    told: dict[str, Any] = json.loads(str(mesh.field_data[key(name)][0]))
+    return told
+
+
 def made(mesh: pv.DataSet, name: str) -> set[str]:
     """Return the names of the point arrays that were attached under a name."""
-    if key(name) not in mesh.field_data:
-        return set()
-    return set(json.loads(str(mesh.field_data[key(name)][0])).get("arrays", ()))
+    return set((told_of(mesh, name) or {}).get("arrays", ()))
 
 
 def all_made(mesh: Any) -> set[str]:
@@ -101,10 +107,8 @@ def tell(filter_name: str, scene: Scene, options: dict[str, Any], **facts: Any) 
 
 def retell(mesh: pv.DataSet, name: str, filter_name: str, options: dict[str, Any]) -> None:
     """Tell of an array that another filter made it, by the help of the one that is told."""
-    told = json.loads(str(mesh.field_data[key(name)][0]))
-    mesh.field_data[key(name)] = [
-        json.dumps(told | {"filter": filter_name, "options": plain(options)})
-    ]
+    told = (told_of(mesh, name) or {}) | {"filter": filter_name, "options": plain(options)}
+    mesh.field_data[key(name)] = [json.dumps(told)]
 
 
 def plain(options: dict[str, Any]) -> dict[str, Any]:
@@ -158,9 +162,8 @@ def provenance(mesh: Any, /, name: str = "luminance") -> dict[str, Any]:
         raise TypeError(_check.message("mesh", "a PyVista mesh", type(mesh).__name__))
     told = set()
     for leaf in _mesh.leaves(mesh):
-        if key(name) in leaf.field_data:
-            result: dict[str, Any] = json.loads(str(leaf.field_data[key(name)][0]))
-            return result
+        if (found := told_of(leaf, name)) is not None:
+            return found
         told |= {k.removesuffix(key("")) for k in leaf.field_data if k.endswith(key(""))}
     if not told:
         remedy = "light it first, or read it from a file format that keeps field data"

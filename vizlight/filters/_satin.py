@@ -75,9 +75,10 @@ def satin(
     if isinstance(surface, pv.DataSet):
         _mesh.refuse_unnamed("tangents", tangents)
         _mesh.vectors_of(surface, "tangents", tangents, 3)
-    traced = {key: options.pop(key) for key in TRACED if key in options}
-    sides = {key: options.pop(key) for key in SIDES if key in options}
-    ends = {key: options.pop(key) for key in ENDS if key in options}
+    traced, sides, ends = (
+        {key: options.pop(key) for key in names if key in options}
+        for names in (TRACED, SIDES, ENDS)
+    )
     options["compensate"] = compensate
     own_light: dict[str, Any] = {"tangents": tangents, "model": model, **options}
     curves = streamlines(
