@@ -11,6 +11,7 @@ import numpy as np
 from vizlight import _check
 from vizlight.geometry import _axial, _contours, _levels, _meshes, primitives
 from vizlight.geometry._bands import Bands, Laminae
+from vizlight.model import _kernels
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -130,8 +131,7 @@ def shade(light: _axial.Source, center: Array) -> Any:
         if math.isinf(light.distance):
             return light.luminance(normals @ light.toward)
         toward = light.toward * light.distance - (points - center)
-        # Squares of a light far away would overflow.
-        size = np.hypot(np.hypot(toward[:, 0], toward[:, 1]), toward[:, 2])
+        size = _kernels.length(np.ascontiguousarray(toward.T))
         cosine = np.einsum("ij,ij->i", toward, normals) / np.where(size > 0, size, 1)
         return light.luminance(cosine, size)
 

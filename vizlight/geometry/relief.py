@@ -8,6 +8,7 @@ import numpy as np
 
 from vizlight import _check, _pool
 from vizlight.geometry import _field, _march, _sweep
+from vizlight.model import _kernels
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -191,8 +192,7 @@ class Ray:
             return way, np.full(start.shape[1], _march.FAR)
         assert self.position is not None
         way = self.position[:, np.newaxis] - start
-        # Squares of a light far away would overflow.
-        size = np.hypot(np.hypot(way[0], way[1]), way[2])
+        size = _kernels.length(way)
         return way / np.where(size > 0, size, 1), np.minimum(size, _march.FAR)
 
 
