@@ -228,7 +228,7 @@ def light(
     background
         Colour behind the mesh; default white, or black behind lines.
     line_width
-        Of lines, in pixels.
+        Of lines, in pixels of a picture of twice the size, as it is drawn.
     backend
         What draws: egl (the default) or osmesa.
     explain

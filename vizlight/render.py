@@ -310,7 +310,7 @@ def make_plotter(
     background : colour, optional
         Default: white, or black behind meshes of lines.
     line_width : float
-        In pixels.
+        In pixels; with "ssaa", which draws at twice the size, lines come out about half as wide.
     anti_aliasing : {"ssaa", "msaa", "fxaa"}, optional
     backend : {"egl", "osmesa"}, optional
         See :func:`choose_backend`.
