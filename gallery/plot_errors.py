@@ -4,7 +4,7 @@ Speed against error
 
 The same light by three ways, from 10 thousand to a million points: a plain NumPy script, and the
 engine in float32 and float64. See that the engine is both faster and more exact than the script in
-the same type, and what float64 costs: about twice the time, for eight more digits.
+the same type, and what float64 costs: about twice the time, for eight more _digits.
 
 Errors are the largest, against float64 formulas that share no code with the engine.
 """

@@ -23,29 +23,29 @@ NUMBERS = ["tests/model"]
 #: What is broken: file, what stands there, what is put in its place.
 MUTATIONS = {
     "Phong: sign of wo's tangential part (the slip of Banks' equation 2)": (
-        "_block.py", "along = lit.along + eye.along\n            return _kernels.phong",
-        "along = lit.along - eye.along\n            return _kernels.phong",
+        "shading/block.py", "along = lit.along + eye.along\n            return kernels.phong",
+        "along = lit.along - eye.along\n            return kernels.phong",
     ),
     "Phong: normal parts added": (
-        "model/_kernels.py", "deficit = sine_i - sine_o", "deficit = sine_i + sine_o",
+        "model/kernels.py", "deficit = sine_i - sine_o", "deficit = sine_i + sine_o",
     ),
     "Phong on a surface: half of the deficit": (
-        "model/_kernels.py", "deficit *= deficit.dtype.type(0.5)", "deficit *= 1",
+        "model/kernels.py", "deficit *= deficit.dtype.type(0.5)", "deficit *= 1",
     ),
     "Blinn: power halved": (
-        "model/_kernels.py", "power(normal / whole, shininess / 2, tangential / whole)",
+        "model/kernels.py", "power(normal / whole, shininess / 2, tangential / whole)",
         "power(normal / whole, shininess / 4, tangential / whole)",
     ),
     "Blinn, one half vector: power halved": (
-        "_block.py", "return _kernels.power(self.side(cosine), shininess)",
-        "return _kernels.power(self.side(cosine), shininess / 2)",
+        "shading/block.py", "return kernels.power(self.side(cosine), shininess)",
+        "return kernels.power(self.side(cosine), shininess / 2)",
     ),
     "diffuse: cosine to the tangent for the sine": (
-        "model/_kernels.py", "return along, length(residual)",
+        "model/kernels.py", "return along, length(residual)",
         "return along, np.sqrt(np.maximum(1 - length(residual) ** 2, 0))",
     ),
     "diffuse on a surface: not clamped": (
-        "_block.py", "if self.two_sided else np.maximum(cosine, 0)",
+        "shading/block.py", "if self.two_sided else np.maximum(cosine, 0)",
         "if self.two_sided else np.abs(cosine)",
     ),
     "diffuse: no compensation": (
@@ -57,7 +57,7 @@ MUTATIONS = {
         "model/brightness.py", "a, d, h = (n - k) / 2,", "a, d, h = (n - k) / 4,",
     ),
     "highlight: on the dark side too": (
-        "_block.py", "return value * (lit.across > 0)", "return value",
+        "shading/block.py", "return value * (lit.across > 0)", "return value",
     ),
     "distance: no linear term": (
         "model/falloff.py", "denominator += c2 * wide", "denominator += 0",
@@ -76,28 +76,29 @@ MUTATIONS = {
         "model/falloff.py", "np.log1p(-density)", "np.log(density)",
     ),
     "exact line: alpha for pi - alpha": (
-        "model/_cylinder.py", "np.arctan2(cross, -dot)", "np.arctan2(cross, dot)",
+        "model/cylinderkernels.py", "np.arctan2(cross, -dot)", "np.arctan2(cross, dot)",
     ),
-    "exact line: sine's term is missing": ("model/_cylinder.py", "    value += cross\n", ""),
+    "exact line: sine's term is missing": ("model/cylinderkernels.py", "    value += cross\n", ""),
     "exact line: highlight without its ends": (
-        "model/_cylinder.py", "    mean += ends\n", "",
+        "model/cylinderkernels.py", "    mean += ends\n", "",
     ),
     "turn in n-space: wrong way round": (
-        "geometry/projection.py", "matrix[j, i] = math.sin(angle)",
+        "geometry/nspace/projection.py", "matrix[j, i] = math.sin(angle)",
         "matrix[j, i] = -math.sin(angle)",
     ),
     "perspective in n-space: sign of the depth": (
-        "geometry/projection.py", "(1 - image[..., -1] / distance)",
+        "geometry/nspace/projection.py", "(1 - image[..., -1] / distance)",
         "(1 + image[..., -1] / distance)",
     ),
     "cos-theta: r / d (the slip of its section 3)": (
-        "geometry/relief.py", "np.divide(depth, t, out=t)", "np.divide(t, 2 * t.max(), out=t)",
+        "geometry/relief/shadowing.py", "np.divide(depth, t, out=t)",
+        "np.divide(t, 2 * t.max(), out=t)",
     ),
     "cos-theta: out of the ground in place of into it": (
-        "geometry/relief.py", "place - inset * normal", "place + inset * normal",
+        "geometry/relief/shadowing.py", "place - inset * normal", "place + inset * normal",
     ),
     "light 5 % too bright": (
-        "model/_kernels.py", "return power(sine, exponent)", "return 1.05 * power(sine, exponent)",
+        "model/kernels.py", "return power(sine, exponent)", "return 1.05 * power(sine, exponent)",
     ),
 }  # fmt: skip
 

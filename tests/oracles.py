@@ -1,7 +1,7 @@
 """The formulas a second time: one point at a time, mpmath at 50 digits, no code shared.
 
 Inputs are taken as the exact numbers that the floats are; frames and directions are made
-orthonormal here, in 50 digits.
+orthonormal here, in 50 _digits.
 """
 
 from __future__ import annotations

@@ -72,5 +72,6 @@ def test_the_wheel_carries_the_data_and_the_marker(tmp_path):
         check=True,
     )
     names = zipfile.ZipFile(tmp_path / run.stdout.split()[-1]).namelist()
-    for name in ("datasets/rotating_disk.vtu", "datasets/LICENSE-mayavi.txt", "py.typed", "cli.py"):
+    data = ("datasets/rotating_disk.vtu", "datasets/LICENSE-mayavi.txt")
+    for name in (*data, "py.typed", "render.pyi", "cli/__init__.py"):
         assert f"vizlight/{name}" in names

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import importlib
 import inspect
-import pkgutil
+import re
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 import vizlight
+from vizlight._aliases import ALIASES
 
+ROOT = Path(vizlight.__file__).parent
 PROBE = """
 import sys
 {code}
@@ -54,6 +57,23 @@ def test_mathematics_and_engine_load_no_pyvista(module):
     assert "vtk" not in loaded(f"import {module}")
 
 
+@pytest.mark.parametrize("module", ["vizlight.engine", "vizlight.shading.decide"])
+def test_the_engine_loads_neither_oracle_nor_report(module):
+    code = f"import sys, {module}; print([m for m in sys.modules if 'vizlight.verify' in m])"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.strip() == "[]"
+
+
+@pytest.mark.parametrize("name", [*ALIASES, "vizlight.geometry.relief", "vizlight.geometry.solids"])
+def test_public_names_of_modules_are_the_modules(name):
+    code = (
+        f"import {name}; from {name.rpartition('.')[0]} import {name.rpartition('.')[2]} as again"
+    )
+    space = {}
+    exec(code, space)
+    assert space["again"] is sys.modules[name] is sys.modules[ALIASES.get(name, name)]
+
+
 def test_the_probe_can_fail():
     assert "pyvista" in loaded("import vizlight.filters")
 
@@ -74,25 +94,24 @@ def test_every_public_name_is_there():
         vizlight.illuminated  # noqa: B018
 
 
-#: The command line and what it runs; the plan's names are the engine's.
-NOT_FOR_IMPORT = ("cli", "demo", "doctor", "plan")
+API = Path(__file__).parents[1] / "gallery" / "pages" / "api.rst"
 
 
 def public_modules():
-    found = (name for _, name, _ in pkgutil.walk_packages(vizlight.__path__, "vizlight."))
-    for name in found:
-        inner = name.split(".")[1:]
-        studies = inner[0] == "studies" and len(inner) > 1
-        if not any(part[0] == "_" or part in NOT_FOR_IMPORT for part in inner) and not studies:
-            yield name
+    """Yield the modules of the pages, and any other that declares public names."""
+    yield from re.findall(r"^   (vizlight[.\w]*)$", API.read_text(encoding="utf-8"), re.MULTILINE)
+    for path in ROOT.rglob("*.py"):
+        if re.search(r"^__all__", path.read_text(encoding="utf-8"), re.MULTILINE):
+            parts = path.relative_to(ROOT.parent).with_suffix("").parts
+            yield ".".join(parts).removesuffix(".__init__")
 
 
-@pytest.mark.parametrize("name", sorted(public_modules()))
+@pytest.mark.parametrize("name", sorted(set(public_modules())))
 def test_public_names_are_declared_and_described(name):
     module = importlib.import_module(name)
-    if not module.__file__.endswith("__init__.py") or hasattr(module, "__all__"):
-        assert sorted(module.__all__) == sorted(set(module.__all__))
-    for public in getattr(module, "__all__", ()):
+    assert module.__doc__
+    assert sorted(module.__all__) == sorted(set(module.__all__))
+    for public in module.__all__:
         value = getattr(module, public)
         if inspect.isfunction(value) or inspect.isclass(value):
             assert inspect.getdoc(value), public

@@ -9,34 +9,37 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
+from vizlight import _aliases
+from vizlight._version import __version__ as __version__
+
 if TYPE_CHECKING:
-    from vizlight._report import report
+    from vizlight import engine as engine
+    from vizlight import movie as movie
+    from vizlight import render as render
+    from vizlight import testing as testing
     from vizlight.data import example_path, load_example
-    from vizlight.filters import (
-        fur,
-        illuminate,
-        isoluminance,
-        manifold,
-        project,
-        provenance,
-        relief_day,
-        relief_from_mesh,
-        relief_shadow,
-        satin,
-        streamlines,
-    )
-    from vizlight.geometry.primitives import Block, Sphere, Truncus
-    from vizlight.light import Light
-    from vizlight.scene import DepthCue, Material, Scene, View
+    from vizlight.filters.bas_relief import relief_from_mesh
+    from vizlight.filters.fur import fur
+    from vizlight.filters.illuminate import illuminate
+    from vizlight.filters.isoluminance import isoluminance
+    from vizlight.filters.manifold import manifold
+    from vizlight.filters.project import project
+    from vizlight.filters.relief import relief_day, relief_shadow
+    from vizlight.filters.satin import satin
+    from vizlight.filters.streamlines import streamlines
+    from vizlight.geometry.solids.primitives import Block, Sphere, Truncus
+    from vizlight.mesh.records import provenance
+    from vizlight.scene import DepthCue, Light, Material, Scene, View
+    from vizlight.verify.report import report
 
 _HOMES = {
-    "Block": "vizlight.geometry.primitives",
+    "Block": "vizlight.geometry.solids.primitives",
     "DepthCue": "vizlight.scene",
-    "Light": "vizlight.light",
+    "Light": "vizlight.scene",
     "Material": "vizlight.scene",
     "Scene": "vizlight.scene",
-    "Sphere": "vizlight.geometry.primitives",
-    "Truncus": "vizlight.geometry.primitives",
+    "Sphere": "vizlight.geometry.solids.primitives",
+    "Truncus": "vizlight.geometry.solids.primitives",
     "View": "vizlight.scene",
     "example_path": "vizlight.data",
     "fur": "vizlight.filters",
@@ -49,13 +52,15 @@ _HOMES = {
     "relief_day": "vizlight.filters",
     "relief_from_mesh": "vizlight.filters",
     "relief_shadow": "vizlight.filters",
-    "report": "vizlight._report",
+    "report": "vizlight.verify.report",
     "satin": "vizlight.filters",
     "streamlines": "vizlight.filters",
 }
 _MODULES = (
     "accessor", "engine", "filters", "geometry", "model", "movie", "render", "studies", "testing",
 )  # fmt: skip
+
+_aliases.install()
 
 __all__ = [
     "Block",
@@ -85,10 +90,6 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     """Load a public name when it is first used."""
-    if name == "__version__":
-        from importlib.metadata import version
-
-        return version("vizlight")
     if name in _HOMES:
         value = getattr(importlib.import_module(_HOMES[name]), name)
         globals()[name] = value

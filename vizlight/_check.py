@@ -6,23 +6,17 @@ import math
 import numbers
 import sys
 import warnings
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
-    VectorLike: TypeAlias = Sequence[float] | NDArray[np.floating[Any]]
-    ColorLike: TypeAlias = str | VectorLike | Any
+    from vizlight._types import Array, Color, Vector
 
 #: The largest intensity, coefficient or power: products of three fit float32.
 LARGEST = 1e9
-
-Vector = tuple[float, ...]
-Color = tuple[float, float, float]
 
 
 def warn(text: str) -> None:
@@ -56,7 +50,7 @@ def describe(value: object) -> str:
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
-def floats(name: str, value: object) -> NDArray[np.floating[Any]]:
+def floats(name: str, value: object) -> Array:
     """Return ``value`` as a floating array; integers become float64, half becomes float32.
 
     Raises
@@ -77,7 +71,7 @@ def floats(name: str, value: object) -> NDArray[np.floating[Any]]:
     return array
 
 
-def vectors(name: str, value: object, *, n: int | None = None) -> NDArray[np.floating[Any]]:
+def vectors(name: str, value: object, *, n: int | None = None) -> Array:
     """Return ``value`` as floats of shape (..., n) with n of at least 2.
 
     Raises
@@ -172,7 +166,7 @@ def optional_vector(name: str, value: object, *, direction: bool = False) -> Vec
     return None if value is None else vector(name, value, direction=direction)
 
 
-def color(name: str, value: Any) -> Color | None:
+def color(name: str, value: object) -> Color | None:
     """Return three channels from numbers, a colour's name or hex, a ``pyvista.Color``, or None.
 
     Raises

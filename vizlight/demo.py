@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from vizlight import engine, files, render
+from vizlight import files
 from vizlight.data import load_example
 from vizlight.filters import illuminate
-from vizlight.light import Light
-from vizlight.scene import Scene, View
+from vizlight.pictures import render
+from vizlight.scene import Light, Scene, View
+from vizlight.shading import engine
 from vizlight.studies import reference
 
 LEVEL = 600.0

@@ -6,7 +6,8 @@ import platform
 from importlib.metadata import PackageNotFoundError, version
 from typing import get_args
 
-from vizlight import data, render
+from vizlight import data
+from vizlight.pictures import render
 
 PACKAGES = ("vizlight", "numpy", "scipy", "vtk", "pyvista")
 

@@ -10,7 +10,7 @@ import vtk
 import vizlight
 from vizlight import Light, Material, Scene, View, fur
 from vizlight.studies import fur as study
-from vizlight.studies._measure import peak_memory
+from vizlight.studies._measuring import peak_memory
 
 TOWARD = np.array([-1.0, -0.6, 0.9]) / np.linalg.norm([-1.0, -0.6, 0.9])
 EYE = np.array([0.3, -1, 0.8]) / np.linalg.norm([0.3, -1, 0.8])

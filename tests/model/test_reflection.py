@@ -1,4 +1,4 @@
-"""Diffuse and specular light of k-manifolds: laws first, then 50 digits."""
+"""Diffuse and specular light of k-manifolds: laws first, then 50 _digits."""
 
 from __future__ import annotations
 

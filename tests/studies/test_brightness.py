@@ -5,20 +5,20 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from vizlight.model import _kernels, brightness
+from vizlight.model import brightness, kernels
 from vizlight.studies import brightness as study
 
 
 @pytest.mark.parametrize(("p", "q"), [(4.7635, 5.0), (4.7635, 1.0), (0.5, 1.0), (19.57, 20.0)])
 def test_power_error_against_a_search(p, q):
     x = np.linspace(0, 1, 2_000_001)
-    assert _kernels.power_error(p, q) == pytest.approx(np.abs(x**p - x**q).max(), rel=1e-6)
-    assert _kernels.power_error(p, q) == _kernels.power_error(q, p)
+    assert kernels.power_error(p, q) == pytest.approx(np.abs(x**p - x**q).max(), rel=1e-6)
+    assert kernels.power_error(p, q) == kernels.power_error(q, p)
 
 
 def test_power_error_at_its_ends():
-    assert _kernels.power_error(3, 3) == 0
-    assert _kernels.power_error(0, 2) == 1
+    assert kernels.power_error(3, 3) == 0
+    assert kernels.power_error(0, 2) == 1
 
 
 def test_roots_are_the_power():

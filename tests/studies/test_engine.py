@@ -7,7 +7,7 @@ import time
 import numpy as np
 import pytest
 
-from vizlight.studies import Row, _measure, engine
+from vizlight.studies import Row, _measuring, engine
 
 
 def test_rows_of_the_study():
@@ -24,7 +24,7 @@ def test_rows_of_the_study():
 
 
 def test_peak_memory_counts_numpy():
-    assert _measure.peak_memory(lambda: np.ones(100_000)) >= 800_000
+    assert _measuring.peak_memory(lambda: np.ones(100_000)) >= 800_000
 
 
 def test_turns():
@@ -35,7 +35,7 @@ def test_turns():
         seen.append(1)
         time.sleep(next(waits))
 
-    seconds = _measure.take_turns({"a": first, "b": lambda: seen.append(2)}, 3)
+    seconds = _measuring.take_turns({"a": first, "b": lambda: seen.append(2)}, 3)
     assert seen == [1, 2] * 3
     assert all(0 < value < 0.02 for value in seconds.values())
 

@@ -7,7 +7,7 @@ import pytest
 
 from vizlight.model import cylinder
 from vizlight.studies import lines
-from vizlight.studies._study import words
+from vizlight.studies._framework import words
 
 
 @pytest.fixture(scope="module")

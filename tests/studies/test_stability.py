@@ -15,10 +15,10 @@ import pytest
 from hypothesis import HealthCheck, Phase, assume, given, settings, target
 from hypothesis import strategies as st
 
-from vizlight import _tolerance
 from vizlight.geometry import isoluminance, manifolds
 from vizlight.model import falloff, reflection
-from vizlight.studies import _digits, _hard, _stability, _stability_model, stability
+from vizlight.shading import bounds
+from vizlight.studies import _digits, _hard, _stability_checks, _stability_model, stability
 
 COUNT = 120
 
@@ -59,7 +59,7 @@ def test_a_kernel_that_loses_digits_fails(monkeypatch):
 def test_not_a_number_fails():
     nan = _digits.mp.nan
     for values, true in (([1.0, np.nan], [1, 2]), ([1.0, 2.0], [1, nan]), ([0.0, 0.0], [nan, 1])):
-        check = _stability.Check("a", np.array(values), true, np.array(5.0), 1.0)
+        check = _stability_checks.Check("a", np.array(values), true, np.array(5.0), 1.0)
         (row,) = stability.rows_of("kernel", np.float64, iter([check]))
         assert row.error == np.inf
         assert row.more[""] == "FAIL"
@@ -71,13 +71,13 @@ def test_defined_values_are_exact():
 
     nan = np.nan
     checks = [
-        _stability.exactly("good", [0.0, nan, np.inf], [0.0, nan, np.inf]),
-        _stability.exactly("off", [0.0, 1.0], [0.0, 1 + 1e-16 + 1e-15]),
-        _stability.exactly("NaN for 0", [nan], [0.0]),
-        _stability.exactly("shape", [0.0], [0.0, 0.0]),
-        _stability.refused("told", refuse, "radius"),
-        _stability.refused("told of another", refuse, "height"),
-        _stability.refused("taken", lambda: 0.0, "radius"),
+        _stability_checks.exactly("good", [0.0, nan, np.inf], [0.0, nan, np.inf]),
+        _stability_checks.exactly("off", [0.0, 1.0], [0.0, 1 + 1e-16 + 1e-15]),
+        _stability_checks.exactly("NaN for 0", [nan], [0.0]),
+        _stability_checks.exactly("shape", [0.0], [0.0, 0.0]),
+        _stability_checks.refused("told", refuse, "radius"),
+        _stability_checks.refused("told of another", refuse, "height"),
+        _stability_checks.refused("taken", lambda: 0.0, "radius"),
     ]
     rows = stability.rows_of("kernel", np.float64, iter(checks))
     said = {row.more["case"]: row.more[""] for row in rows}
@@ -86,7 +86,9 @@ def test_defined_values_are_exact():
 
 def test_a_claim_of_more_than_the_result_shows_no_tightness():
     """An error of half the claim does not make it tight where any number is within it."""
-    check = _stability.Check("a", np.array([1.0]), [0.5], np.array(1 / oracles.eps(float)), 1.0)
+    check = _stability_checks.Check(
+        "a", np.array([1.0]), [0.5], np.array(1 / oracles.eps(float)), 1.0
+    )
     (row,) = stability.rows_of("kernel", np.float64, iter([check]))
     assert (row.more[""], row.more["seen / claimed"]) == ("pass", 0)
     assert stability.loosest([row])["kernel", "float64"] == np.inf
@@ -102,8 +104,8 @@ def test_every_kernel_has_ten_thousand_inputs():
 def test_loose_claims_are_named():
     many = stability.ENOUGH
     checks = [
-        _stability.Check("a", np.ones(many), [1 - 1e-15] * many, 9.0, 1.0),
-        _stability.Check("a", np.ones(many), [1 - 1e-15] * many, 500.0, 1.0, "steep"),
+        _stability_checks.Check("a", np.ones(many), [1 - 1e-15] * many, 9.0, 1.0),
+        _stability_checks.Check("a", np.ones(many), [1 - 1e-15] * many, 500.0, 1.0, "steep"),
     ]
     rows = stability.rows_of("slack", np.float64, iter(checks))
     loose = stability.loosest(rows)
@@ -140,17 +142,17 @@ def test_the_cylinder_s_closed_form_is_its_quadrature(s, random):
 
 #: Docstrings that speak of eps and are no claim of the table, and why.
 UNTOLD = {
-    "_parametric.central_step": "a step, not an error",
-    "_parametric.parametric": "of any function: the study of frames measures both errors",
-    "_parametric._precision": "finds the type of a function's numbers",
-    "_cylinder._gentle_power": "a part of cylinder.specular, which is in the table",
+    "parametric.central_step": "a step, not an error",
+    "parametric.parametric": "of any function: the study of frames measures both errors",
+    "parametric._precision": "finds the type of a function's numbers",
+    "cylinder_kernels._gentle_power": "a part of cylinder.specular, which is in the table",
 }
 
 
 def claims():
     """Yield module.function for every docstring of model and geometry that speaks of eps."""
     root = pathlib.Path(stability.__file__).parents[1]
-    for file in sorted([*root.glob("model/*.py"), *root.glob("geometry/*.py")]):
+    for file in sorted([*root.glob("model/*.py"), *root.glob("geometry/**/*.py")]):
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
             if isinstance(node, ast.FunctionDef | ast.ClassDef):
                 name = f"{file.stem}.{node.name}"
@@ -159,12 +161,12 @@ def claims():
 
 
 def test_every_claim_is_in_the_table():
-    public = {"_tori": "manifolds", "_truncus": "isoluminance"}
-    assert manifolds.torus.__module__.endswith("_tori")
-    assert isoluminance.truncus.__module__.endswith("_truncus")
+    public = {"tori": "manifolds", "frustum": "isoluminance", "shadowing": "relief"}
+    assert manifolds.torus.__module__.endswith(".tori")
+    assert isoluminance.truncus.__module__.endswith(".frustum")
     told = {kernel.partition(",")[0] for kernel in stability.KERNELS}
     found = set(claims())
-    assert {"reflection.diffuse", "_tori.torus", "depth_map.depth_map"} <= found
+    assert {"reflection.diffuse", "tori.torus", "depth_map.depth_map"} <= found
     for name in found - set(UNTOLD):
         module, _, function = name.partition(".")
         assert f"{public.get(module, module)}.{function}" in told, name
@@ -242,7 +244,7 @@ def test_a_search_for_the_worst_diffuse(power, turn, exponent):
     value = reflection.diffuse(wi, frame, exponent=exponent)
     error = oracles.units(value, oracles.diffuse(wi, frame, exponent), np.float64)
     eps = oracles.eps(np.float64)
-    claim = _tolerance.diffuse_bound(exponent, eps) / eps
+    claim = bounds.diffuse_bound(exponent, eps) / eps
     target(error / claim)
     assert error <= claim
 

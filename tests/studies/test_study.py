@@ -11,7 +11,7 @@ import pytest
 import pyvista as pv
 
 from vizlight import cli, studies
-from vizlight.studies import Curve, Panel, Row, Study, _study
+from vizlight.studies import Curve, Panel, Row, Study, _framework
 
 
 @pytest.fixture
@@ -63,7 +63,7 @@ def test_run(toy, capsys):
     assert len(result.rows) == 3
     assert result.verdict == "at 1/255 use rough, 20"
     assert len(studies.run("toy", toy).rows) == 5
-    _study.print_result(result)
+    _framework.print_result(result)
     said = " ".join(capsys.readouterr().out.split())
     for part in ("vizlight study toy", "memory", "approximated: a toy", "verdict: at 1/255"):
         assert part in said
@@ -173,7 +173,7 @@ def test_bad_command_lines(tmp_path, capfd):
 
 def test_a_study_that_lacks_something(capfd, tmp_path, monkeypatch, toy):
     def missing(_):
-        raise _study.LackingError("mpmath is missing; pip install 'vizlight[test]'")
+        raise _framework.LackingError("mpmath is missing; pip install 'vizlight[test]'")
 
     monkeypatch.setattr(studies, "load", lambda _: toy.__class__(**{**vars(toy), "steps": missing}))
     assert cli.main(["study", "stability", "-o", str(tmp_path)]) == 1

@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from vizlight import _check
-from vizlight.model import _cylinder, _kernels, _layout
+from vizlight.model import cylinder_kernels, kernels, layout
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Array = NDArray[np.floating[Any]]
+    from vizlight._types import Array, Bools
 
 __all__ = ["Gradient", "diffuse", "diffuse_gradient", "specular", "specular_gradient"]
 
@@ -68,7 +68,7 @@ def diffuse(wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike, /) -> Any:
     Absolute error at most ``4 eps / |wo_N|``.
     """
     shape, seen, met, _ = _meeting(wi, wo, tangent)
-    return _finish(_cylinder.diffuse(met), seen, shape)
+    return _finish(cylinder_kernels.diffuse(met), seen, shape)
 
 
 def specular(wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike, /, *, shininess: float) -> Any:
@@ -103,8 +103,8 @@ def specular(wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike, /, *, shininess: 
     ``|h_N|^s / 2`` times the integral of ``max(0, cos(x - beta))^s cos(x)`` over
     ``[alpha - pi/2, pi/2]``, beta the angle from wo to the half vector across the line. The
     integral is a finite expression in the incomplete beta function; see
-    :func:`vizlight.model._cylinder.half_integral` for how it is evaluated. Blinn's ``|h_N|^s`` is
-    exact up to a factor for a headlight, as Banks' law is.
+    :func:`vizlight.model.cylinder_kernels.half_integral` for how it is evaluated. Blinn's
+    ``|h_N|^s`` is exact up to a factor for a headlight, as Banks' law is.
 
     Absolute error at most ``10 eps / d``, whatever s, where d is the smallest of ``|wi_N|``,
     ``|wo_N|`` and ``|wi + wo|``, for s below 1 ``|(wi + wo)_N|`` in its place: near a light along
@@ -112,7 +112,7 @@ def specular(wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike, /, *, shininess: 
     """
     shininess = _check.number("shininess", shininess, low=0.0, high=_check.LARGEST)
     shape, seen, met, tangential = _meeting(wi, wo, tangent)
-    return _finish(_cylinder.specular(met, tangential, shininess), seen, shape)
+    return _finish(cylinder_kernels.specular(met, tangential, shininess), seen, shape)
 
 
 def diffuse_gradient(wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike, /) -> Gradient:
@@ -179,15 +179,15 @@ def specular_gradient(
     to_eye, to_light = x.b * root, x.a * root
     cos_b, cos_c = (np.clip(u, -1, 1) for u in ((x.bb + x.dot) / to_eye, (x.aa + x.dot) / to_light))
     sin_b, sin_c = np.minimum(x.cross / to_eye, 1), np.minimum(x.cross / to_light, 1)
-    integral = _cylinder.half_integral(s, x.dtype)
+    integral = cylinder_kernels.half_integral(s, x.dtype)
     both = integral(cos_b) + integral(cos_c)
-    power_b, power_c = _kernels.power(sin_b, s), _kernels.power(sin_c, s)
+    power_b, power_c = kernels.power(sin_b, s), kernels.power(sin_c, s)
     mean = cos_b * both + sin_b * (power_b * sin_b - power_c * sin_c) / (s + 1)
     # Derivatives by beta and gamma over |wi_N x wo_N|: finite where light and eye are in line.
     by_beta = cos_b * (power_b / to_eye - power_c / to_light) / (s + 1) - both / to_eye
     by_gamma = -power_c / (x.a * x.b)
     share = np.minimum(x.ww / size, 1)
-    peak = _kernels.power(share, s / 2, np.square(x.p + x.q) / size) / 2
+    peak = kernels.power(share, s / 2, np.square(x.p + x.q) / size) / 2
     slope = peak * mean * s / 2
 
     def angle(ee: Array, ll: Array) -> tuple[Array, Array, Array]:
@@ -218,16 +218,16 @@ class _Invariants:
         self.shape, rows, directions = given
         self.vectors, self.sizes = [], []
         for v in (*directions, rows[0]):
-            row, size = _kernels.unit(v)
+            row, size = kernels.unit(v)
             self.vectors.append(row)
             self.sizes.append(size)
         light, eye, line = self.vectors
-        p, rest_i, a = _cylinder.across(light, line)
-        q, rest_o, b = _cylinder.across(eye, line)
-        w = _kernels.length(rest_i + rest_o)
-        met = _cylinder.meet(rest_i, a, rest_o, b, line)
-        self.dtype, self.p, self.q, self.m = a.dtype, p, q, _kernels.dot(light, eye)
-        least = _cylinder.ALONG * np.finfo(a.dtype).eps
+        p, rest_i, a = cylinder_kernels.across(light, line)
+        q, rest_o, b = cylinder_kernels.across(eye, line)
+        w = kernels.length(rest_i + rest_o)
+        met = cylinder_kernels.meet(rest_i, a, rest_o, b, line)
+        self.dtype, self.p, self.q, self.m = a.dtype, p, q, kernels.dot(light, eye)
+        least = cylinder_kernels.ALONG * np.finfo(a.dtype).eps
         self.good = (a > least) & (b > least) & (w > least)
         for size in self.sizes:
             self.good &= size > 0
@@ -250,7 +250,7 @@ class _Invariants:
         )
         found = []
         for part, own, size in zip(parts, self.vectors, self.sizes, strict=True):
-            across = part - _kernels.dot(part, own) * own
+            across = part - kernels.dot(part, own) * own
             across = np.where(self.good, across / np.where(self.good, size, 1), 0)
             found.append(across.T.reshape(*self.shape, 3).astype(self.dtype, copy=False))
         return Gradient(*found)
@@ -262,23 +262,23 @@ def _given(
     """Validate the three; return the batch's shape, the tangents as a frame, and wi and wo."""
     light, eye = _check.vectors("wi", wi, n=3), _check.vectors("wo", wo, n=3)
     line = _check.vectors("tangent", tangent, n=3)
-    return _layout.batch(line[..., np.newaxis, :], light, eye)
+    return layout.batch(line[..., np.newaxis, :], light, eye)
 
 
 def _meeting(
     wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike
-) -> tuple[tuple[int, ...], NDArray[np.bool_], _cylinder.Meeting, Array]:
+) -> tuple[tuple[int, ...], Bools, cylinder_kernels.Meeting, Array]:
     """Return shape, validity, the meeting, and the square of wi + wo along the line."""
     shape, rows, (light, eye) = _given(wi, wo, tangent)
-    line, line_size = _kernels.unit(rows[0])
-    light, light_size = _kernels.unit(light)
-    eye, eye_size = _kernels.unit(eye)
-    p, rest_i, a = _cylinder.across(light, line)
-    q, rest_o, b = _cylinder.across(eye, line)
-    met = _cylinder.meet(rest_i, a, rest_o, b, line)
+    line, line_size = kernels.unit(rows[0])
+    light, light_size = kernels.unit(light)
+    eye, eye_size = kernels.unit(eye)
+    p, rest_i, a = cylinder_kernels.across(light, line)
+    q, rest_o, b = cylinder_kernels.across(eye, line)
+    met = cylinder_kernels.meet(rest_i, a, rest_o, b, line)
     seen = (light_size > 0) & (eye_size > 0) & (line_size > 0)
     return shape, seen, met, np.square(p + q)
 
 
-def _finish(value: Array, seen: NDArray[np.bool_], shape: tuple[int, ...]) -> Any:
+def _finish(value: Array, seen: Bools, shape: tuple[int, ...]) -> Any:
     return np.where(seen, value, 0).astype(value.dtype, copy=False).reshape(shape)[()]

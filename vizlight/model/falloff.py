@@ -9,9 +9,9 @@ import numpy as np
 from vizlight import _check
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Array = NDArray[np.floating[Any]]
+    from vizlight._types import Array
 
 __all__ = ["depth_cue", "distance", "fur"]
 

@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vizlight import _check
-from vizlight.model import _kernels, _layout
+from vizlight.model import kernels, layout
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Array = NDArray[np.floating[Any]]
 
 __all__ = ["orthonormalize", "split"]
 
@@ -63,13 +62,13 @@ def orthonormalize(vectors: ArrayLike, /, *, rtol: float | None = None) -> tuple
     >>> int(rank)
     1
     """
-    array = _layout.as_rows("vectors", vectors, full=True)
+    array = layout.as_rows("vectors", vectors, full=True)
     k, n = array.shape[-2:]
     if rtol is None:
         rtol = default_rtol(n, array.dtype)
     rtol = _check.number("rtol", rtol, low=0.0)
     rows = np.ascontiguousarray(array.reshape(-1, k, n).transpose(1, 2, 0))
-    frame, rank = _kernels.orthonormalize(rows, rtol)
+    frame, rank = kernels.orthonormalize(rows, rtol)
     shape = array.shape[:-2]
     return (
         np.ascontiguousarray(frame.transpose(2, 0, 1)).reshape(*shape, k, n),
@@ -109,9 +108,9 @@ def split(direction: ArrayLike, frame: ArrayLike, /) -> tuple[Any, Any]:
     ``sqrt(1 - cos^2)``.
     Source: Banks, section 2 (parts in T and N).
     """
-    rows = _layout.as_frame(frame)
+    rows = layout.as_frame(frame)
     x = _check.vectors("direction", direction, n=rows.shape[-1])
-    shape, rows, (x,) = _layout.batch(rows, x)
+    shape, rows, (x,) = layout.batch(rows, x)
     x = np.where(np.isfinite(x).all(axis=0), x, np.nan)
-    along, normal = _kernels.split(x, rows)
+    along, normal = kernels.split(x, rows)
     return np.ascontiguousarray(along.T).reshape(*shape, len(along)), normal.reshape(shape)

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vizlight import _check
-from vizlight.model import _kernels
+from vizlight.model import kernels
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Array = NDArray[np.floating[Any]]
+    from vizlight._types import Array
 
 __all__ = ["identity", "reflection", "reflection_cosine", "reflection_from_half"]
 
@@ -99,10 +99,10 @@ def reflection(wi: ArrayLike, wo: ArrayLike, normal: ArrayLike, /) -> Any:
     Source: Fisher and Woo (8) and (12). Absolute error at most ``16 eps / |wi + wo|``.
     """
     light, eye, up, shape = _three(wi, wo, normal)
-    half, size = _kernels.unit(light + eye)
+    half, size = kernels.unit(light + eye)
     with np.errstate(invalid="ignore"):
-        value = 2 * np.square(_kernels.dot(up, half)) - 1 + 2 * np.square(_triple(light, half, up))
-        straight = 2 * _kernels.dot(up, light) * _kernels.dot(up, eye) - _kernels.dot(light, eye)
+        value = 2 * np.square(kernels.dot(up, half)) - 1 + 2 * np.square(_triple(light, half, up))
+        straight = 2 * kernels.dot(up, light) * kernels.dot(up, eye) - kernels.dot(light, eye)
     return np.where(size > 0, value, straight).reshape(shape)[()]
 
 
@@ -131,7 +131,7 @@ def identity(wi: ArrayLike, wo: ArrayLike, normal: ArrayLike, /) -> Any:
     triple product.
     """
     light, eye, up, shape = _three(wi, wo, normal)
-    le, en, nl = (_kernels.dot(a, b) for a, b in ((light, eye), (eye, up), (up, light)))
+    le, en, nl = (kernels.dot(a, b) for a, b in ((light, eye), (eye, up), (up, light)))
     value = le * le + en * en + nl * nl - 2 * le * en * nl - 1
     return (value + np.square(_triple(light, eye, up))).reshape(shape)[()]
 
@@ -145,7 +145,7 @@ def _three(*vectors: ArrayLike) -> tuple[Array, Array, Array, tuple[int, ...]]:
     shape = np.broadcast_shapes(*(v.shape for v in given))
     found = []
     for v in given:
-        row, size = _kernels.unit(np.ascontiguousarray(np.broadcast_to(v, shape).reshape(-1, 3).T))
+        row, size = kernels.unit(np.ascontiguousarray(np.broadcast_to(v, shape).reshape(-1, 3).T))
         found.append(np.where(size > 0, row, np.nan))
     return found[0], found[1], found[2], shape[:-1]
 

@@ -23,12 +23,12 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, get_args
 import numpy as np
 
 from vizlight import _check
-from vizlight.model._extremes import PEAK, extremes, sphere_errors
+from vizlight.model.extremes import PEAK, extremes, sphere_errors
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Array = NDArray[np.floating[Any]]
+    from vizlight._types import Array
 
 __all__ = [
     "MaximumError",

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 import numpy as np
 
 from vizlight import _check
-from vizlight.model import _kernels, _layout
+from vizlight.model import kernels, layout
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -50,12 +50,12 @@ def diffuse(wi: ArrayLike, frame: ArrayLike, /, *, exponent: float = 1.0) -> Any
     ``(8 eps)^p``. What the rows miss of being orthonormal comes on top.
     """
     exponent = _check.number("exponent", exponent, low=0.0, high=_check.LARGEST)
-    rows = _layout.as_frame(frame)
+    rows = layout.as_frame(frame)
     light = _check.vectors("wi", wi, n=rows.shape[-1])
-    shape, rows, (light,) = _layout.batch(rows, light)
-    light, size = _kernels.unit(light)
-    along, sine = _kernels.split(light, rows)
-    value = np.where(size > 0, _kernels.diffuse(sine, exponent, along), 0)
+    shape, rows, (light,) = layout.batch(rows, light)
+    light, size = kernels.unit(light)
+    along, sine = kernels.split(light, rows)
+    value = np.where(size > 0, kernels.diffuse(sine, exponent, along), 0)
     return value.astype(sine.dtype, copy=False).reshape(shape)
 
 
@@ -112,19 +112,19 @@ def specular(
     if model not in get_args(SpecularModel):
         raise ValueError(_check.message("model", "'phong' or 'blinn'", repr(model)))
     shininess = _check.number("shininess", shininess, low=0.0, high=_check.LARGEST)
-    rows = _layout.as_frame(frame)
+    rows = layout.as_frame(frame)
     n = rows.shape[-1]
     light, eye = _check.vectors("wi", wi, n=n), _check.vectors("wo", wo, n=n)
-    shape, rows, (light, eye) = _layout.batch(rows, light, eye)
-    light, light_size = _kernels.unit(light)
-    eye, eye_size = _kernels.unit(eye)
+    shape, rows, (light, eye) = layout.batch(rows, light, eye)
+    light, light_size = kernels.unit(light)
+    eye, eye_size = kernels.unit(eye)
     if model == "phong":
-        along_i, sine_i = _kernels.split(light, rows)
-        along_o, sine_o = _kernels.split(eye, rows)
+        along_i, sine_i = kernels.split(light, rows)
+        along_o, sine_o = kernels.split(eye, rows)
         along_i += along_o
-        value = _kernels.phong(_kernels.dot(along_i, along_i), sine_i, sine_o, shininess)
+        value = kernels.phong(kernels.dot(along_i, along_i), sine_i, sine_o, shininess)
     else:
-        along, normal = _kernels.split(light + eye, rows)
-        value = _kernels.blinn(_kernels.dot(along, along), normal * normal, shininess)
+        along, normal = kernels.split(light + eye, rows)
+        value = kernels.blinn(kernels.dot(along, along), normal * normal, shininess)
     seen = (light_size > 0) & (eye_size > 0)
     return np.where(seen, value, 0).astype(value.dtype, copy=False).reshape(shape)

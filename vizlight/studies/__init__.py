@@ -9,8 +9,9 @@ import importlib
 import pkgutil
 
 from vizlight import _check
-from vizlight.studies._study import (
+from vizlight.studies._framework import (
     Curve,
+    LackingError,
     Panel,
     Result,
     Row,
@@ -18,11 +19,14 @@ from vizlight.studies._study import (
     cheapest,
     holding,
     order,
+    print_list,
+    print_result,
     run,
 )
 
 __all__ = [
     "Curve",
+    "LackingError",
     "Panel",
     "Result",
     "Row",
@@ -32,6 +36,8 @@ __all__ = [
     "load",
     "names",
     "order",
+    "print_list",
+    "print_result",
     "run",
 ]
 

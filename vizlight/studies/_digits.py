@@ -1,7 +1,7 @@
 """The formulas a second time: one point at a time, mpmath at 50 digits, no code shared.
 
 Inputs are taken as the exact numbers that the floats are; frames and directions are made
-orthonormal here, in 50 digits. mpmath comes with the ``test`` extra.
+orthonormal here, in 50 _digits. mpmath comes with the ``test`` extra.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from vizlight.studies._study import LackingError
+from vizlight.studies._framework import LackingError
 
 try:
     import mpmath

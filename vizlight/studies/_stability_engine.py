@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vizlight import _tolerance, engine
-from vizlight.light import Light
-from vizlight.scene import Material, Scene, View
+from vizlight.scene import Light, Material, Scene, View
+from vizlight.shading import bounds as stated
+from vizlight.shading import engine
 from vizlight.studies import _hard
-from vizlight.studies._stability import TYPES, Check, exactly, spread, timed
+from vizlight.studies._stability_checks import TYPES, Check, exactly, spread, timed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -71,7 +71,7 @@ def _lit(
         work = partial(engine.shade, points, frame, scene, model=model, precision=precision)
     shading, seconds = timed(work)
     p, true, claim = shading.plan.exponent, [], []
-    bounds = _tolerance.diffuse_bound(p, eps) / eps, _tolerance.specular_bound(SHININESS, eps) / eps
+    bounds = stated.diffuse_bound(p, eps) / eps, stated.specular_bound(SHININESS, eps) / eps
     ends = [_digits.exact(end) for end in (light, eye)]
     for i, at in enumerate(points):
         wi, wo = (

@@ -7,9 +7,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vizlight.geometry import curves, depth_map, projection, relief, slices
+from vizlight.geometry.lines import curves
+from vizlight.geometry.nspace import projection, slices
+from vizlight.geometry.relief import depth_map, shadowing
 from vizlight.studies import _hard
-from vizlight.studies._stability import DOUBLE, TYPES, Check, exactly, off, refused, spread, timed
+from vizlight.studies._stability_checks import (
+    DOUBLE,
+    TYPES,
+    Check,
+    exactly,
+    off,
+    refused,
+    spread,
+    timed,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -446,7 +457,7 @@ def inside_length(_: Any, count: int, random: Any) -> Iterator[Check]:
             down = 10 ** random.uniform(low, low + 1, many)
             place = np.stack([random.uniform(x[3], x[5], many), random.uniform(y[3], y[5], many)])
             points = np.stack([*place, a * place[0] + b * place[1] - down], axis=1)
-            work = partial(relief.inside_length, x, y, z, points, direction=way, method="exact")
+            work = partial(shadowing.inside_length, x, y, z, points, direction=way, method="exact")
             value, taken = timed(work)
             seconds += taken
             size = _digits.exact(float(max(x[-1] - x[0], y[-1] - y[0])))
@@ -468,7 +479,7 @@ def inside_length(_: Any, count: int, random: Any) -> Iterator[Check]:
         points = np.column_stack([place, c * place[:, 0] * place[:, 1] - down])
         z = np.array([[0, 0], [0, c]])
         work = partial(
-            relief.inside_length, corners, corners, z, points, direction=way, method="exact"
+            shadowing.inside_length, corners, corners, z, points, direction=way, method="exact"
         )
         value, taken = timed(work)
         seconds += taken
@@ -492,7 +503,7 @@ def inside_ends(_: Any, count: int, random: Any) -> Iterator[Check]:
     x = y = np.cumsum(random.uniform(0.5, 2, 9))
     flat, size = np.zeros((9, 9)), float(x[-1] - x[0])
     inside = np.stack([*random.uniform(x[3], x[5], (2, many)), -random.uniform(0.1, 1, many)], 1)
-    solid = partial(relief.inside_length, x, y, method="exact")
+    solid = partial(shadowing.inside_length, x, y, method="exact")
     walls = partial(solid, border="wall", base=-2.0)
 
     def against(case: str, work: Callable[[], Array], true: Any) -> Check:
@@ -540,7 +551,7 @@ def inside_ends(_: Any, count: int, random: Any) -> Iterator[Check]:
     yield refused(
         "light inside", lambda: solid(flat, inside, position=np.array([4, 4, -1.0])), "position"
     )
-    yield refused("one row", lambda: relief.inside_length(
+    yield refused("one row", lambda: shadowing.inside_length(
         x, y[:1], flat[:1], inside, direction=(0, 0, 1)), "y")  # fmt: skip
 
 
@@ -559,7 +570,7 @@ def shadow(_: Any, count: int, random: Any) -> Iterator[Check]:
             size = float(max(np.ptp(x), np.ptp(y), np.ptp(z)))
             depth = 0.0 if case == "depth 0" else size * 10 ** random.uniform(low, high) / 30
             way = np.array([*random.uniform(-0.6, 0.6, 2), 1.0])
-            work = partial(relief.shadow, x, y, z, depth=depth, direction=way, method="exact")
+            work = partial(shadowing.shadow, x, y, z, depth=depth, direction=way, method="exact")
             value, taken = timed(work)
             seconds += taken
             normal = _digits.unit([-_digits.exact(a), -_digits.exact(b), 1])
@@ -570,9 +581,9 @@ def shadow(_: Any, count: int, random: Any) -> Iterator[Check]:
     z = np.zeros((5, 5))
     z[2, 2] = np.nan
     for depth in (0.0, 0.5):
-        t = relief.shadow(range(5), range(5), z, depth=depth, direction=(0, 0, 1))
+        t = shadowing.shadow(range(5), range(5), z, depth=depth, direction=(0, 0, 1))
         yield exactly("hole", t[2, 2], 0.0)
-        t = relief.shadow(range(5), range(5), 0 * z[:1] + np.zeros((5, 5)), depth=depth,
+        t = shadowing.shadow(range(5), range(5), 0 * z[:1] + np.zeros((5, 5)), depth=depth,
                           direction=(1, 0, -1))  # fmt: skip
         yield exactly("light below the horizon", t, np.zeros((5, 5)))
 

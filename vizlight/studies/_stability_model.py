@@ -7,27 +7,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vizlight import _tolerance
 from vizlight.model import (
-    _cylinder,
     brightness,
     cylinder,
+    cylinder_kernels,
     falloff,
     half_vector,
     highlights,
     reflection,
 )
 from vizlight.model import frames as spaces
+from vizlight.shading import bounds
 from vizlight.studies import _hard
-from vizlight.studies._stability import (
-    DOUBLE,
-    TYPES,
-    Check,
-    exactly,
-    off,
-    spread,
-    timed,
-)
+from vizlight.studies._stability_checks import DOUBLE, TYPES, Check, exactly, off, spread, timed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -145,7 +137,7 @@ def diffuse(dtype: Any, count: int, random: Any) -> Iterator[Check]:
             wi = _hard.directions(random, frame, case, p)
             value, seconds = timed(partial(reflection.diffuse, wi, frame, exponent=p))
             true = [_digits.diffuse(a, f, p) for a, f in zip(wi, frame, strict=True)]
-            claim = np.array(_tolerance.diffuse_bound(p, eps) / eps)
+            claim = np.array(bounds.diffuse_bound(p, eps) / eps)
             yield Check(case, value, true, claim, seconds, _steep(p))
     yield from _nothing(dtype, lambda v, f: reflection.diffuse(v, f, exponent=4.7635))
     small, frame = _denormal(dtype), np.eye(3, dtype=dtype)[:1]
@@ -184,7 +176,7 @@ def specular(model: Any, dtype: Any, count: int, random: Any) -> Iterator[Check]
             # The claim over |wi + wo| is a claim of its own where that is small.
             apart = ", over |wi + wo|" if model == "blinn" and case.startswith("opposite") else ""
             regime = f"{_steep(s)}{apart}".removeprefix(", ")
-            true, claim = [], np.full(many, _tolerance.specular_bound(s, eps) / eps)
+            true, claim = [], np.full(many, bounds.specular_bound(s, eps) / eps)
             for i in range(many):
                 true.append(_digits.specular(wi[i], wo[i], frame[i], s, model))
                 if model == "blinn":
@@ -193,9 +185,7 @@ def specular(model: Any, dtype: Any, count: int, random: Any) -> Iterator[Check]
                     size = float(_digits.mp.sqrt(_digits.dot(half, half)))
                     share = min(size, 1.0)
                     if s < 1:
-                        claim[i] = (
-                            _tolerance.specular_bound(s, eps / share) / eps if share else np.inf
-                        )
+                        claim[i] = bounds.specular_bound(s, eps / share) / eps if share else np.inf
                     else:
                         claim[i] = claim[i] / share if share else np.inf
             yield Check(f"eye {case}", value, true, claim, seconds, regime)
@@ -284,13 +274,13 @@ def half_integral(dtype: Any, count: int, random: Any) -> Iterator[Check]:
         ends = np.nextafter(np.array([1, -1], dtype), dtype(0))
         z = np.concatenate([random.uniform(-1, 1, many // 2), 10 ** random.uniform(-30, 0, many)])
         z = np.concatenate([z.astype(dtype)[:many], ends, np.array([0, 1, -1], dtype)])
-        value, seconds = timed(partial(_cylinder.half_integral(s, dtype), z))
+        value, seconds = timed(partial(cylinder_kernels.half_integral(s, dtype), z))
         whole = _digits.half_integral(_digits.exact(1.0), s)
         errors = [
             (_digits.exact(v) - _digits.half_integral(_digits.exact(x), s)) / whole
             for v, x in zip(value, z, strict=True)
         ]
-        how = "by the beta function" if s < _cylinder.TABLE_FROM else "by a table"
+        how = "by the beta function" if s < cylinder_kernels.TABLE_FROM else "by a table"
         yield off(how, errors, 16.0 if dtype == np.float64 else 2.0, seconds)
 
 
@@ -545,7 +535,7 @@ def pixel_error(dtype: Any, count: int, random: Any) -> Iterator[Check]:
 
 
 def max_pixel_error(_: Any, count: int, random: Any) -> Iterator[Check]:
-    """Check the largest difference of Phong and Blinn by a scan, Newton's method and 50 digits."""
+    """Check the largest difference of Phong and Blinn by a scan, Newton's method and 50 _digits."""
     from vizlight.studies import _digits
 
     powers = (0.2, 1.5, 10.0, 40.5, 400.0, 1e4, 1e6)
@@ -571,7 +561,7 @@ CHECKS: dict[str, tuple[Callable[..., Iterator[Check]], tuple[Any, ...]]] = {
     "reflection.specular, Blinn": (partial(specular, "blinn"), TYPES),
     "cylinder.diffuse": (partial(line_light, "diffuse"), TYPES),
     "cylinder.specular": (partial(line_light, "specular"), TYPES),
-    "_cylinder.half_integral": (half_integral, TYPES),
+    "cylinder_kernels.half_integral": (half_integral, TYPES),
     "brightness.mean_intensity": (mean_intensity, DOUBLE),
     "brightness.exponent": (exponent, DOUBLE),
     "falloff.distance": (distance, TYPES),

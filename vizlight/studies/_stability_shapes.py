@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vizlight.geometry import isoluminance, manifolds
-from vizlight.studies._stability import DOUBLE, Check, exactly, off, refused, timed
+from vizlight.geometry.contours import isoluminance
+from vizlight.geometry.nspace import manifolds
+from vizlight.studies._stability_checks import DOUBLE, Check, exactly, off, refused, timed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -13,16 +13,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy import integrate
 
-from vizlight.model import _kernels, brightness
-from vizlight.studies._measure import take_turns
-from vizlight.studies._study import PIXEL, Row, Study, cheapest, words
+from vizlight.model import brightness, kernels
+from vizlight.studies._framework import PIXEL, Row, Study, cheapest, words
+from vizlight.studies._measuring import take_turns
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.floating[Any]]
+    from vizlight._types import Array
 
 SPACES = ((1, 3), (1, 4), (2, 4), (1, 5), (2, 5), (3, 5), (1, 8), (3, 8), (5, 8), (7, 8))
 
@@ -41,7 +39,7 @@ def mean_by_quadrature(k: int, n: int, p: float) -> float:
 
 def by_roots(x: Array, quarters: int) -> Array:
     """Return x to a number of quarters, by multiplication and square roots."""
-    result = _kernels.power(x, quarters // 4)
+    result = kernels.power(x, quarters // 4)
     root = np.sqrt(x)
     if quarters & 2:
         result = result * root
@@ -58,13 +56,13 @@ def measure(k: int, n: int, count: int = 100_000, repeats: int = 5) -> list[Row]
     ways: dict[str, tuple[float, Callable[[], Any]]] = {
         "exact p": (p, lambda: np.power(x, np.float32(p))),
         "nearest quarter, by square roots": (quarters / 4, lambda: by_roots(x, quarters)),
-        "nearest integer, by multiplication": (whole, lambda: _kernels.power(x, whole)),
+        "nearest integer, by multiplication": (whole, lambda: kernels.power(x, whole)),
         "p = 1": (1.0, x.copy),
     }
     seconds = take_turns({way: work for way, (_, work) in ways.items()}, repeats)
     return [
         Row(
-            way, n - k, _kernels.power_error(p, q), 1e9 * seconds[way] / count,
+            way, n - k, kernels.power_error(p, q), 1e9 * seconds[way] / count,
             {"k": k, "n": n, "p": q, "mean - 1/2": mean_by_quadrature(k, n, q) - 0.5},
         )
         for way, (q, _) in ways.items()

@@ -16,19 +16,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vizlight.filters import manifold
-from vizlight.geometry import manifolds
-from vizlight.light import Light
+from vizlight.geometry.nspace import manifolds
 from vizlight.model import brightness, reflection
-from vizlight.scene import Material, Scene
-from vizlight.studies._measure import take_turns
-from vizlight.studies._study import Curve, Row, Study, span, words
+from vizlight.scene import Light, Material, Scene
+from vizlight.studies._framework import Curve, Row, Study, span, words
+from vizlight.studies._measuring import take_turns
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.floating[Any]]
+    from vizlight._types import Array, Indices
 
 #: The light of illustration 1; it names no coefficients or colours, so they are those of Banks'
 #: section 3: kd = Isource = 1, no other term, no colour.
@@ -100,7 +97,7 @@ def statistics(values: Array, weights: Array) -> tuple[float, float]:
     return mean, math.sqrt(np.average((values - mean) ** 2, weights=weights)) / mean
 
 
-def measures(points: Array, cells: NDArray[np.intp]) -> Array:
+def measures(points: Array, cells: Indices) -> Array:
     """Return the length or area at each point: an even share of each cell that it is a corner of.
 
     Parameters

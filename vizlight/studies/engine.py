@@ -11,20 +11,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vizlight import engine
-from vizlight.light import Light
 from vizlight.model import brightness
-from vizlight.scene import Scene, View
+from vizlight.scene import Light, Scene, View
+from vizlight.shading import engine
 from vizlight.studies import reference
-from vizlight.studies._measure import peak_memory, take_turns
-from vizlight.studies._study import PIXEL, Row, Study, cheapest, words
+from vizlight.studies._framework import PIXEL, Row, Study, cheapest, words
+from vizlight.studies._measuring import peak_memory, take_turns
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.floating[Any]]
+    from vizlight._types import Array
 
 SCENE = Scene(lights=Light(position=(4.0, 5.0, 6.0)), view=View(position=(0.0, 1.0, 9.0)))
 

@@ -11,18 +11,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vizlight import engine
-from vizlight.geometry import manifolds
-from vizlight.geometry._parametric import CENTRAL_STEP
-from vizlight.light import Light
-from vizlight.scene import Scene, View
-from vizlight.studies._measure import take_turns
-from vizlight.studies._study import PIXEL, Row, Study, holding, order, words
+from vizlight.geometry.nspace import manifolds
+from vizlight.geometry.nspace.parametric import CENTRAL_STEP
+from vizlight.scene import Light, Scene, View
+from vizlight.shading import engine
+from vizlight.studies._framework import PIXEL, Row, Study, holding, order, words
+from vizlight.studies._measuring import take_turns
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from vizlight.geometry.manifolds import Manifold
+    from vizlight.geometry.nspace.manifolds import Manifold
 
 R1, R2 = 1.5, 0.75
 DOMAIN = [(0.0, 2 * np.pi)] * 2

@@ -15,12 +15,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 
-from vizlight import render
 from vizlight.filters import fur
-from vizlight.light import Light
-from vizlight.scene import Material, Scene, View
-from vizlight.studies._measure import peak_memory, take_turns
-from vizlight.studies._study import PIXEL, Row, Study, holding, span, words
+from vizlight.pictures import render
+from vizlight.scene import Light, Material, Scene, View
+from vizlight.studies._framework import PIXEL, Row, Study, holding, span, words
+from vizlight.studies._measuring import peak_memory, take_turns
 from vizlight.studies.tubes import time_to_draw
 
 if TYPE_CHECKING:

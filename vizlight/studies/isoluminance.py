@@ -17,22 +17,19 @@ import numpy as np
 import pyvista as pv
 from scipy import ndimage
 
-from vizlight import render
-from vizlight.filters._isoluminance import isoluminance
-from vizlight.geometry._surfaces import fibonacci
-from vizlight.geometry.isoluminance import virtual_light
-from vizlight.geometry.primitives import Sphere, Truncus
-from vizlight.light import Light
-from vizlight.scene import Material, Scene
-from vizlight.studies._measure import take_turns
-from vizlight.studies._study import CLEAR, Curve, Panel, Row, Study, cheapest, words
+from vizlight.filters.isoluminance import isoluminance
+from vizlight.geometry.contours.isoluminance import virtual_light
+from vizlight.geometry.solids.exact_surfaces import fibonacci
+from vizlight.geometry.solids.primitives import Sphere, Truncus
+from vizlight.pictures import render
+from vizlight.scene import Light, Material, Scene
+from vizlight.studies._framework import CLEAR, Curve, Panel, Row, Study, cheapest, words
+from vizlight.studies._measuring import take_turns
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.floating[Any]]
+    from vizlight._types import Array
 
 #: Pixels that the shape covers, as in the source's tables, and the facets of its comparison.
 SIZES = (550, 4500, 9000, 55_000, 250_000)

@@ -20,19 +20,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 
-from vizlight import engine
-from vizlight.light import Light
 from vizlight.model import brightness, cylinder, highlights, reflection
-from vizlight.scene import Material, Scene, View
-from vizlight.studies._measure import take_turns
-from vizlight.studies._study import Curve, Panel, Row, Study, cheapest, words
+from vizlight.scene import Light, Material, Scene, View
+from vizlight.shading import engine
+from vizlight.studies._framework import Curve, Panel, Row, Study, cheapest, words
+from vizlight.studies._measuring import take_turns
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.floating[Any]]
+    from vizlight._types import Array
 
 SHININESS = 20.0
 SIDES = (3, 4, 6, 8, 12, 20, 40)

@@ -13,12 +13,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vizlight import engine
-from vizlight.geometry import manifolds
-from vizlight.light import Light
-from vizlight.scene import Material, Scene, View
-from vizlight.studies._measure import take_turns
-from vizlight.studies._study import PIXEL, Row, Study, holding, order, span, words
+from vizlight.geometry.nspace import manifolds
+from vizlight.scene import Light, Material, Scene, View
+from vizlight.shading import engine
+from vizlight.studies._framework import PIXEL, Row, Study, holding, order, span, words
+from vizlight.studies._measuring import take_turns
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

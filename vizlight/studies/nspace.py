@@ -11,12 +11,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 
-from vizlight import engine
 from vizlight.filters import project
-from vizlight.light import Light
-from vizlight.scene import Scene, View
-from vizlight.studies._measure import peak_memory, take_turns
-from vizlight.studies._study import PIXEL, Curve, Panel, Row, Study, span, words
+from vizlight.scene import Light, Scene, View
+from vizlight.shading import engine
+from vizlight.studies._framework import PIXEL, Curve, Panel, Row, Study, span, words
+from vizlight.studies._measuring import peak_memory, take_turns
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

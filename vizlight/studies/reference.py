@@ -12,11 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from vizlight._types import Array
     from vizlight.scene import Scene
-
-    Array = NDArray[np.floating[Any]]
 
 
 def light(

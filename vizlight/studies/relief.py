@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any, get_args
 import numpy as np
 from scipy import ndimage
 
-from vizlight.geometry import relief
-from vizlight.studies._measure import peak_memory, take_turns
-from vizlight.studies._study import Row, Study, cheapest, order, words
+from vizlight.geometry.relief import shadowing
+from vizlight.studies._framework import Row, Study, cheapest, order, words
+from vizlight.studies._measuring import peak_memory, take_turns
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -50,8 +50,8 @@ def measure(side: int, height: float = 20.0, repeats: int = 3) -> list[Row]:
     """Return the rows of one field of hills: the fast method against the exact one."""
     x, z = np.linspace(0, 1, side), hills(side)
 
-    def light(method: relief.Method) -> Any:
-        return relief.shadow(x, x, z, depth=DEPTH, direction=sun(height), method=method)
+    def light(method: shadowing.Method) -> Any:
+        return shadowing.shadow(x, x, z, depth=DEPTH, direction=sun(height), method=method)
 
     seconds = take_turns({"fast": lambda: light("fast"), "exact": lambda: light("exact")}, repeats)
     error = np.abs(light("fast") - light("exact"))
@@ -66,7 +66,9 @@ def measure(side: int, height: float = 20.0, repeats: int = 3) -> list[Row]:
     ]
 
 
-def hemisphere(side: int, method: relief.Method, depth: float = 0.1) -> tuple[float, float, float]:
+def hemisphere(
+    side: int, method: shadowing.Method, depth: float = 0.1
+) -> tuple[float, float, float]:
     """Return errors in t of a unit hemisphere on a plane of 6 x 6.
 
     The mean, the largest, and the mean further than MARGIN from the edges of dome and shadow.
@@ -82,7 +84,7 @@ def hemisphere(side: int, method: relief.Method, depth: float = 0.1) -> tuple[fl
     low = np.maximum(middle - half, ground)
     length = ground + np.maximum(middle + half - low, 0) * (half > 0)
     expected = depth / np.maximum(length, depth)
-    t = relief.shadow(x, x, z, depth=depth, direction=way, normals=normal, method=method)
+    t = shadowing.shadow(x, x, z, depth=depth, direction=way, normals=normal, method=method)
     error = np.abs(t - expected)
     kind = 2 * (z > 0) + (np.maximum(middle + half - low, 0) * (half > 0) > 0)
     near = 2 * math.ceil(MARGIN / (x[1] - x[0])) + 1
@@ -93,7 +95,7 @@ def hemisphere(side: int, method: relief.Method, depth: float = 0.1) -> tuple[fl
 def of_hemisphere(side: int, repeats: int = 1) -> list[Row]:
     """Return the rows of one hemisphere: both methods against the closed form."""
     rows = []
-    for method in get_args(relief.Method):
+    for method in get_args(shadowing.Method):
         found: list[tuple[float, float, float]] = []
         work = partial(hemisphere, side, method)
         taken = take_turns({"": lambda work=work, found=found: found.append(work())}, repeats)[""]  # type: ignore[misc]

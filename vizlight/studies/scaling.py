@@ -12,22 +12,20 @@ import tempfile
 import time
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vizlight import engine
+from vizlight.shading import engine
 from vizlight.studies import reference
-from vizlight.studies._measure import peak_memory
-from vizlight.studies._study import PIXEL, Row, Study, words
+from vizlight.studies._framework import PIXEL, Row, Study, words
+from vizlight.studies._measuring import peak_memory
 from vizlight.studies.engine import SCENE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.floating[Any]]
+    from vizlight._types import Array
 
 #: Points written to the files at a time, and checked against the script.
 CHUNK, CHECKED = 1_000_000, 10_000

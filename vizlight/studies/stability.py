@@ -21,13 +21,13 @@ from vizlight.studies import (
     _stability_model,
     _stability_shapes,
 )
-from vizlight.studies._stability import rows_of
-from vizlight.studies._study import Curve, Row, Study, words
+from vizlight.studies._framework import Curve, Row, Study, words
+from vizlight.studies._stability_checks import rows_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from vizlight.studies._stability import Check
+    from vizlight.studies._stability_checks import Check
 
 #: Inputs of a kernel and a type, and in a quick run.
 INPUTS, QUICK = 10_600, 600

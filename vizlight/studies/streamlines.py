@@ -14,10 +14,9 @@ import numpy as np
 import pyvista as pv
 
 from vizlight.filters import streamlines
-from vizlight.light import Light
-from vizlight.scene import Scene, View
-from vizlight.studies._measure import take_turns
-from vizlight.studies._study import Row, Study, holding, order, words
+from vizlight.scene import Light, Scene, View
+from vizlight.studies._framework import Row, Study, holding, order, words
+from vizlight.studies._measuring import take_turns
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

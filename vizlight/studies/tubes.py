@@ -12,15 +12,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vizlight import render
 from vizlight.data import load_example
 from vizlight.filters import illuminate, streamlines
-from vizlight.light import Light
 from vizlight.model import cylinder
-from vizlight.scene import Material, Scene, View
+from vizlight.pictures import render
+from vizlight.scene import Light, Material, Scene, View
 from vizlight.studies import lines
-from vizlight.studies._measure import take_turns
-from vizlight.studies._study import PIXEL, Row, Study, cheapest, holding, words
+from vizlight.studies._framework import PIXEL, Row, Study, cheapest, holding, words
+from vizlight.studies._measuring import take_turns
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -1,0 +1,280 @@
+"""Rulings of a truncus against 50 digits; a near light against the law and a closed form."""
+
+from __future__ import annotations
+
+import banded
+import numpy as np
+import oracles
+import pytest
+from vizlight.geometry.isoluminance import truncus
+
+mp = oracles.mp
+EPS = np.finfo(float).eps
+SHAPES = {
+    "cylinder": (2.0, (0.5, 0.5)),
+    "cone up": (1.5, (0.0, 0.7)),
+    "cone down": (1.5, (0.7, 0.0)),
+    "frustum": (1.0, (0.3, 0.8)),
+    "disc": (0.01, (1.0, 1.0)),
+    "rod": (50.0, (0.1, 0.1)),
+}
+AXIS = np.array([0.3, -0.2, 0.9])
+AXIS /= np.linalg.norm(AXIS)
+
+
+def made(shape, **options):
+    height, radii = SHAPES[shape]
+    return truncus((0, 0, 0), AXIS, radii, height=height, ambient=0.1, diffuse=0.8, **options)
+
+
+def source_normal(point, axis, height, radii):
+    """The source's N at a point of the side, by its h: p14 - (c - h a/|a|), in 50 _digits."""
+    a, p = oracles.exact(axis), oracles.exact(point)
+    r1, r2 = (mp.mpf(r) for r in radii)
+    h = (r2 * r2 - r1 * r1) / (2 * mp.mpf(height))
+    along = oracles.dot(p, a)
+    across = oracles.unit([x - along * y for x, y in zip(p, a, strict=True)])
+    middle = [(r1 + r2) / 2 * x for x in across]
+    return oracles.unit([m + h * y for m, y in zip(middle, a, strict=True)])
+
+
+def normals(points, shape):
+    height, radii = SHAPES[shape]
+    along = points @ AXIS
+    across = points - np.outer(along, AXIS)
+    size = np.linalg.norm(across, axis=1, keepdims=True)
+    across = across / np.where(size > 0, size, 1)
+    normal = across * height + (radii[1] - radii[0]) * AXIS
+    return normal / np.linalg.norm(normal, axis=1, keepdims=True)
+
+
+def law(points, normal, *, direction=None, position=None, power=1.0, attenuation=(1, 0, 0)):
+    toward = np.asarray(direction) + 0 * points if position is None else position - points
+    d = np.linalg.norm(toward, axis=1)
+    cosine = np.einsum("ij,ij->i", normal, toward) / d
+    c1, c2, c3 = attenuation
+    fading = 1 if position is None else np.minimum(1, 1 / (c1 + c2 * d + c3 * d * d))
+    return 0.1 + 0.8 * np.maximum(cosine, 0) ** power * (cosine > 0) * fading
+
+
+def onto(points, patch, shape):
+    """Return places of polygons on the true surface, and the normals there."""
+    height, radii = SHAPES[shape]
+    along = points @ AXIS
+    across = points - np.outer(along, AXIS)
+    across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-300)
+    radius = (radii[0] + radii[1]) / 2 + (radii[0] - radii[1]) / height * along
+    side = np.outer(along, AXIS) + radius[:, None] * across
+    on = np.where((patch == 0)[:, None], side, points)
+    normal = normals(side, shape)
+    normal[patch == 1], normal[patch == 2] = AXIS, -AXIS
+    return on, normal
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("power", [1.0, 25.0])
+def test_rulings_against_50_digits(shape, power, figure):
+    direction = (1, -2, 0.5)
+    bands = made(shape, direction=direction, power=power, levels=7)
+    assert len(np.unique(bands.line_levels)) == 7
+    light = oracles.unit(oracles.exact(direction))
+    for (top, bottom), level in zip(bands.lines, bands.line_levels, strict=True):
+        middle = (bands.points[top] + bands.points[bottom]) / 2
+        normal = source_normal(middle, AXIS, *SHAPES[shape])
+        cosine = max(oracles.dot(normal, light), 0)
+        error = abs(mp.mpf(0.1) + mp.mpf(0.8) * cosine**power - mp.mpf(float(level)))
+        # Where the level is the least, the terminator, only the cosine is at hand.
+        height, radii = SHAPES[shape]
+        bound = 8 + 4 * power + height / max(radii)
+        figure(
+            "isoluminance.truncus", f"{shape}, power {power:g}", float, float(error) / EPS, bound
+        )
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize(
+    "direction", [(1, -2, 0.5), (0.3, -0.2, 0.9), (-0.3, 0.2, -0.9), (2, 3, 0)]
+)
+def test_bands_of_a_far_light(shape, direction, random):
+    bands = made(shape, direction=direction, levels=9)
+    assert banded.is_closed(bands)
+    place, polygon = banded.places(bands, random, 8)
+    on, normal = onto(place, bands.patch[polygon], shape)
+    error = np.abs(law(on, normal, direction=direction) - bands.values[polygon])
+    assert error.max() <= bands.error + 1e-12
+    ends = bands.patch[polygon] > 0
+    assert error[ends].max() < 1e-14
+    assert banded.volume(bands) > 0
+
+
+@pytest.mark.parametrize("shape", ["cylinder", "cone up", "cone down", "frustum", "disc"])
+@pytest.mark.parametrize(
+    "light",
+    [
+        {"position": (1.5, -1.0, 0.8)},
+        {"position": (1.5, -1.0, 0.8), "attenuation": (0.2, 0.3, 0.4)},
+        {"position": (0.2, -0.1, 3.0), "power": 8.0},
+    ],
+)
+def test_curves_of_a_near_light(shape, light, random):
+    bands = made(shape, levels=8, **light)
+    assert banded.is_closed(bands)
+    place, polygon = banded.places(bands, random)
+    on, normal = onto(place, bands.patch[polygon], shape)
+    error = np.abs(law(on, normal, **light) - bands.values[polygon])
+    # Chords between exact contour points add a tenth of half a step to nearly all places.
+    assert np.quantile(error, 0.999) <= 1.15 * bands.steps.error
+    assert error.max() <= 1.5 * bands.steps.error
+
+
+def test_curves_are_the_roots_of_a_quadratic():
+    """Along a ruling N . (l - p) is constant: |l - p| = that / level has two roots."""
+    position = np.array([1.5, -1.0, 0.8])
+    bands = truncus((0, 0, 0), AXIS, (0.3, 0.8), height=1.0, position=position, levels=6)
+    lit = bands.line_levels > 0
+    point, level = bands.points[bands.lines[lit, 0]], bands.line_levels[lit]
+    along = point @ AXIS
+    side = np.abs(along) < 0.5 - 1e-9
+    point, level, along = point[side], level[side], along[side]
+    across = point - np.outer(along, AXIS)
+    across /= np.linalg.norm(across, axis=1, keepdims=True)
+    normal = across + 0.5 * AXIS
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    # The ruling: p(s) = foot + s way, s from -1/2 to 1/2.
+    foot, way = 0.55 * across, AXIS - 0.5 * across
+    constant = np.einsum("ij,ij->i", normal, position - foot)
+    a = np.einsum("ij,ij->i", way, way)
+    b = -2 * np.einsum("ij,ij->i", way, position - foot)
+    c = np.sum((position - foot) ** 2, axis=1) - (constant / level) ** 2
+    root = np.sqrt(b * b - 4 * a * c)
+    distance = np.minimum(
+        np.abs((-b - root) / (2 * a) - along), np.abs((-b + root) / (2 * a) - along)
+    )
+    assert len(point) > 50
+    assert distance.max() < 1e-7
+    assert np.median(distance) < 1e-12
+
+
+def test_terminator_of_a_near_light_is_a_ruling():
+    bands = truncus((0, 0, 0), (0, 0, 2), (0.5, 0.5), position=(3, 0, 0.2), levels=4)
+    on = np.unique(bands.lines[bands.line_levels == 0])
+    x = bands.points[on][np.abs(bands.points[on][:, 2]) < 0.99, 0]
+    np.testing.assert_allclose(x, 0.25 / 3, atol=1e-12)
+
+
+def test_the_sources_approximation_falls_with_distance():
+    """Rulings seen from the centre against the near light: first order in size / distance."""
+    worst = []
+    for distance in (8.0, 16.0, 32.0, 64.0):
+        position = distance * np.array([1.0, -0.6, 0.7]) / np.linalg.norm([1.0, -0.6, 0.7])
+        bands = made("frustum", position=position, method="rulings", levels=400)
+        place, polygon = banded.places(bands, np.random.default_rng(3), 20)
+        on, normal = onto(place, bands.patch[polygon], "frustum")
+        error = np.abs(law(on, normal, position=position) - bands.values[polygon])
+        worst.append(error.max() - bands.steps.error)
+    order = np.log2(np.array(worst[:-1]) / worst[1:])
+    np.testing.assert_allclose(order, 1, atol=0.2)
+
+
+@pytest.mark.parametrize(
+    ("radii", "height", "cells", "area"),
+    [
+        ((0.0, 0.0), 1.0, False, 0.0),
+        ((0.0, 0.0), 0.0, False, 0.0),
+        ((1.0, 1.0), 0.0, True, 2 * np.pi),
+        ((1.0, 0.0), 0.0, True, 2 * np.pi),
+        ((0.5, 1.0), 0.0, True, 2 * np.pi),
+    ],
+)
+@pytest.mark.parametrize("light", [{"direction": (1, 0, 1)}, {"direction": (0, 0, 1)},
+                                   {"position": (1, 0, 1)}])  # fmt: skip
+def test_degenerate_shapes(radii, height, cells, area, light):
+    bands = truncus((0, 0, 0), (0, 0, 1), radii, height=height, segments=200, levels=5, **light)
+    assert (len(bands.values) > 0) == cells
+    assert np.isfinite(bands.points).all()
+    assert np.isfinite(bands.values).all()
+    if cells:
+        assert banded.area(bands) == pytest.approx(area, rel=2e-3)
+        assert banded.is_closed(bands)
+
+
+def test_a_light_along_the_axis():
+    bands = truncus((0, 0, 0), (0, 0, 1), (0.5, 0.5), direction=(0, 0, 1), levels=5)
+    assert np.all(bands.values[bands.patch == 0] == 0)
+    assert bands.values[bands.patch == 1] == 1
+    assert bands.values[bands.patch == 2] == 0
+    cone = truncus((0, 0, 0), (0, 0, 1), (0, 1.0), direction=(0, 0, 1), levels=5)
+    np.testing.assert_allclose(cone.values[cone.patch == 0], np.sqrt(0.5))
+    assert len(cone.lines) == 0
+
+
+@pytest.mark.parametrize("size", [1e-150, 1e150])
+@pytest.mark.parametrize("method", ["rulings", "curves"])
+def test_any_scale(size, method):
+    options = {"levels": 4, "method": method}
+    bands = truncus(
+        (0, 0, 0), (0, 0, size), (0.2 * size, 0.5 * size), position=(3 * size, 0, size), **options
+    )
+    unit = truncus((0, 0, 0), (0, 0, 1), (0.2, 0.5), position=(3, 0, 1), **options)
+    np.testing.assert_allclose(bands.points / size, unit.points, atol=1e-9)
+    np.testing.assert_allclose(bands.values, unit.values, atol=1e-9)
+
+
+def test_an_allowed_error():
+    """Contours of a far light are exact: the smallest count, without a share for chords."""
+    bands = truncus((0, 0, 0), (0, 0, 1), (0.5, 0.5), direction=(1, 0, 0), levels=0.05)
+    assert len(bands.steps.edges) == 11
+    assert bands.error == pytest.approx(0.05)
+    near = truncus((0, 0, 0), (0, 0, 1), (0.5, 0.5), position=(2, 0, 0), levels=0.02)
+    assert near.error <= 0.02
+
+
+def test_laminae_hold_no_empty_one_and_close_the_far_side():
+    laminae = made("frustum", direction=(1, -2, 0.5), levels=8, form="laminae")
+    quads = [
+        laminae.points[a:b] for a, b in zip(laminae.offsets, laminae.offsets[1:], strict=False)
+    ]
+    for quad in quads:
+        assert np.linalg.norm(np.cross(quad[1] - quad[0], quad[2] - quad[0])) > 1e-6
+        # Plane, as the source says.
+        rel = quad - quad[0]
+        assert np.linalg.svd(rel)[1][2] < 1e-12
+    side = np.array([q.mean(axis=0) for q in quads[:-2]])
+    light = np.array([1, -2, 0.5]) - (np.array([1, -2, 0.5]) @ AXIS) * AXIS
+    assert (side @ light).min() < -0.4 * np.abs(side @ light).max()
+    assert laminae.values[-2] == pytest.approx(
+        max(0.1, 0.1 + 0.8 * (AXIS @ (1, -2, 0.5)) / np.sqrt(5.25))
+    )
+
+
+@pytest.mark.parametrize(
+    ("arguments", "options", "words"),
+    [
+        (((0, 0, 0), (0, 0, 0), (1, 1)), {}, "axis: expected a vector of non-zero length"),
+        (((0, 0, 0), (0, 0, 1), (1, -1)), {}, "radii: expected"),
+        (((0, 0, 0), (0, 0, 1), (1, 1, 1)), {}, "radii: expected two radii"),
+        (((0, 0, 0), (0, 0, 1), (1, 1)), {"height": -1}, "height: expected"),
+        (((0, 0, 0), (0, 0, 1), (1, 1)), {"method": "lines"}, "method: expected 'rulings'"),
+        (
+            ((0, 0, 0), (0, 0, 1), (1, 1)),
+            {"method": "curves", "form": "laminae"},
+            "method: expected",
+        ),
+    ],
+)
+def test_bad_input(arguments, options, words):
+    with pytest.raises(ValueError, match=words):
+        truncus(*arguments, direction=(0, 0, 1), **options)
+
+
+@pytest.mark.parametrize("far", [1e20, 1e200, 1e308])
+def test_a_light_far_away_is_a_direction(far):
+    """The first end is the brightest: its value is a plain dot product."""
+    solid = (0, 0, 0), (0, 0, 1), (1, 0.5)
+    way = np.array([0, 0.3, 1])
+    near, sunny = (
+        truncus(*solid, levels=0.05, **light)
+        for light in ({"position": far * way}, {"direction": way})
+    )
+    assert near.values.max() == pytest.approx(sunny.values.max(), abs=0.05)
+    assert near.steps.edges[-1] == pytest.approx(way[2] / np.hypot(0.3, 1), abs=1e-9)

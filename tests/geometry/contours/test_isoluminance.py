@@ -1,0 +1,243 @@
+"""Circles on a sphere: contours against 50 digits, bands against the law itself."""
+
+from __future__ import annotations
+
+import math
+
+import banded
+import numpy as np
+import oracles
+import pytest
+from vizlight.geometry.isoluminance import sphere, virtual_light
+
+from vizlight import Light, View
+from vizlight.geometry import isoluminance
+from vizlight.geometry.contours import spacing
+
+mp = oracles.mp
+EPS = np.finfo(float).eps
+LIGHTS = {
+    "far": {"direction": (1, -2, 0.5)},
+    "near": {"position": (0.3, 1.2, -0.4)},
+    "close": {"position": (0.0, 0.0, 1.0 + 1e-6)},
+    "fading": {"position": (0.3, 1.2, -2), "attenuation": (0.5, 0.3, 0.2)},
+    "highlight": {"direction": (1, 1, 1), "power": 40.0},
+    "sharp": {"direction": (1, 1, 1), "power": 1e5},
+}
+
+
+def luminance(point, *, direction=None, position=None, power=1.0, attenuation=(1, 0, 0),
+              ambient=0.1, diffuse=0.8):  # fmt: skip
+    """The law at one point of the unit sphere, in 50 _digits."""
+    normal = oracles.unit(oracles.exact(point))
+    if direction is not None:
+        toward, fading = oracles.exact(direction), mp.mpf(1)
+    else:
+        toward = [a - b for a, b in zip(oracles.exact(position), normal, strict=True)]
+        d = mp.sqrt(oracles.dot(toward, toward))
+        c1, c2, c3 = oracles.exact(attenuation)
+        fading = min(mp.mpf(1), 1 / (c1 + c2 * d + c3 * d * d))
+    cosine = oracles.dot(normal, oracles.unit(toward))
+    if cosine <= 0:
+        return mp.mpf(ambient)
+    return mp.mpf(ambient) + mp.mpf(diffuse) * cosine ** mp.mpf(power) * fading
+
+
+def many(points, *, direction=None, position=None, power=1.0, attenuation=(1, 0, 0)):
+    """The law at many points of the unit sphere, in float64."""
+    normal = points / np.linalg.norm(points, axis=1, keepdims=True)
+    toward = np.asarray(direction) + 0 * normal if position is None else position - normal
+    d = np.linalg.norm(toward, axis=1)
+    cosine = np.einsum("ij,ij->i", normal, toward) / d
+    c1, c2, c3 = attenuation
+    fading = 1 if position is None else np.minimum(1, 1 / (c1 + c2 * d + c3 * d * d))
+    return 0.1 + 0.8 * np.maximum(cosine, 0) ** power * (cosine > 0) * fading
+
+
+def made(light, **options):
+    return sphere((0, 0, 0), 1.0, ambient=0.1, diffuse=0.8, **LIGHTS[light], **options)
+
+
+@pytest.mark.parametrize("light", LIGHTS)
+def test_contours_against_50_digits(light, figure):
+    bands = made(light, levels=9, segments=5)
+    power = LIGHTS[light].get("power", 1.0)
+    span = bands.steps.edges[-1] - 0.1
+    seen = set()
+    for (a, _), level in zip(bands.lines, bands.line_levels, strict=True):
+        if level > 0.1:
+            error = abs(luminance(bands.points[a], **LIGHTS[light]) - mp.mpf(float(level)))
+            bound = (16 + 4 * power) * (1e6 if light == "close" else 1)
+            figure("isoluminance.sphere", light, float, float(error) / EPS / span, bound)
+            seen.add(float(level))
+    assert len(seen) == 8
+    assert bands.steps.edges[-1] == pytest.approx(
+        float(luminance(_pole(light), **LIGHTS[light])), rel=1e-14
+    )
+
+
+def _pole(light):
+    toward = np.asarray(LIGHTS[light].get("direction", LIGHTS[light].get("position")), float)
+    return toward / np.linalg.norm(toward)
+
+
+@pytest.mark.parametrize("light", LIGHTS)
+@pytest.mark.parametrize("count", [1, 5, 40])
+def test_bands_are_closed_and_right_everywhere(light, count, random):
+    bands = made(light, levels=count)
+    assert banded.is_closed(bands)
+    place, polygon = banded.places(bands, random)
+    error = np.abs(many(place, **LIGHTS[light]) - bands.values[polygon])
+    assert error.max() <= bands.error * (1 + 1e-9)
+    assert bands.error <= bands.steps.error * 1.06
+    assert error.max() > 0.8 * bands.steps.error
+    dark = bands.band[polygon] == 0
+    assert np.all(bands.values[polygon[dark]] == 0.1)
+    assert np.all(np.unique(bands.band) == np.arange(count + 1))
+
+
+def test_volume_and_area_converge(random):
+    missing = []
+    for segments in (24, 48, 96):
+        bands = made("near", levels=6, segments=segments)
+        missing.append(4 / 3 * np.pi - banded.volume(bands))
+        assert 0 < 4 * np.pi - banded.area(bands) < 30 * np.pi / segments**2 * 4
+    order = np.log2(np.array(missing[:-1]) / missing[1:])
+    np.testing.assert_allclose(order, 2, atol=0.2)
+
+
+@pytest.mark.parametrize("distance", [1.0 + 1e-9, 1.5, 10.0, 1e8])
+def test_terminator_of_a_near_light(distance):
+    bands = sphere((0, 0, 0), 1.0, position=(0, 0, distance), levels=4)
+    terminator = bands.points[np.unique(bands.lines[bands.line_levels == 0])]
+    np.testing.assert_allclose(terminator[:, 2], 1 / distance, atol=1e-15)
+
+
+@pytest.mark.parametrize("error", [0.2, 0.05, 0.01, 0.003])
+@pytest.mark.parametrize("light", ["far", "near", "highlight"])
+def test_an_allowed_error_is_kept_by_few_steps(light, error, random):
+    bands = made(light, levels=error)
+    place, polygon = banded.places(bands, random)
+    assert np.abs(many(place, **LIGHTS[light]) - bands.values[polygon]).max() <= error
+    assert bands.error <= error
+    n = len(bands.steps.edges) - 1
+    span = bands.steps.edges[-1] - 0.1
+    # One step less could not keep 95 % of it; the rest is for chords.
+    assert n == 1 or span / (n - 1) / 2 > 0.95 * error
+
+
+@pytest.mark.parametrize("position", [(0.5, 0, 0), (0, 0, 0), (1.0, 0, 0)])
+def test_no_light_from_within(position):
+    bands = sphere((0, 0, 0), 1.0, position=position, ambient=0.2)
+    assert np.all(bands.values == 0.2)
+    assert np.all(bands.band == 0)
+    assert banded.is_closed(bands)
+    assert len(bands.lines) == 0
+
+
+@pytest.mark.parametrize("size", [1e-150, 1e-8, 1.0, 1e150])
+def test_any_scale(size):
+    bands = sphere((0, 0, 0), size, position=(0, 3 * size, 0), levels=5)
+    unit = sphere((0, 0, 0), 1.0, position=(0, 3, 0), levels=5)
+    np.testing.assert_allclose(bands.points / size, unit.points, atol=1e-14)
+    np.testing.assert_array_equal(bands.band, unit.band)
+
+
+def test_far_from_the_origin_and_of_any_type(dtype):
+    center = np.array([5e6, -5e6, 0], dtype)
+    bands = sphere(center, dtype(2), position=center + np.array([0, 4, 0], dtype), levels=4)
+    unit = sphere((0, 0, 0), 1.0, position=(0, 2, 0), levels=4)
+    np.testing.assert_allclose((bands.points - center) / 2, unit.points, atol=2e-9)
+    assert bands.points.dtype == np.float64
+
+
+def test_a_sphere_of_radius_0_has_no_cells():
+    bands = sphere((1, 2, 3), 0, direction=(0, 0, 1))
+    assert len(bands.points) == len(bands.values) == len(bands.lines) == 0
+    assert len(sphere((1, 2, 3), 0, direction=(0, 0, 1), form="laminae").values) == 0
+
+
+def test_equal_steps_are_equally_far_along_the_axis():
+    """The source: latitudes have a cosine distribution along the light's direction."""
+    bands = sphere((0, 0, 0), 1.0, direction=(0, 0, 1), levels=8)
+    height = np.unique(np.round(bands.points[np.unique(bands.lines)][:, 2], 12))
+    np.testing.assert_allclose(height, np.arange(8) / 8, atol=1e-12)
+
+
+def test_laminae_from_the_light_from_behind_and_across(random):
+    """Painted farthest first, the last lamina that covers a pixel shows its value."""
+    toward = np.array([0.0, 0, 1])
+    laminae = sphere((0, 0, 0), 1.0, direction=toward, levels=10, form="laminae", segments=200)
+    circles = laminae.points.reshape(-1, 200, 3)
+    np.testing.assert_allclose(circles[:, :, 2], circles[:, :1, 2] + 0 * circles[:, :, 2])
+    pixel = random.uniform(-0.7, 0.7, (400, 2))
+    pixel = pixel[np.hypot(*pixel.T) < 0.98]
+    r = np.linalg.norm(circles[:, 0, :2], axis=1) * np.cos(np.pi / 200)
+    for eye, exact in (
+        (toward, np.sqrt(1 - np.sum(pixel**2, axis=1))),
+        (-toward, np.zeros(len(pixel))),
+    ):
+        shown = np.full(len(pixel), np.nan)
+        for i in laminae.order(eye):
+            shown[np.hypot(*pixel.T) < r[i]] = laminae.values[i]
+        assert np.nanmax(np.abs(shown - exact)) <= 0.05 + 1e-3
+        assert np.isnan(shown).sum() <= len(pixel) * 0.01
+    # Across the axis each is seen as a line: the whole picture is missing.
+    assert np.ptp(circles[:, :, 2], axis=1).max() < 1e-12
+
+
+def test_virtual_light_is_exact_for_the_half_vector(random):
+    light, eye = np.array([1.0, 0.2, 0.4]), np.array([-0.3, 0.9, 0.5])
+    toward = virtual_light((0, 0, 0), light=light, eye=eye)
+    bands = sphere((0, 0, 0), 1.0, direction=toward, power=30.0, levels=12)
+    point = bands.points[bands.lines[:, 0]]
+    unit = [v / np.linalg.norm(v) for v in (light, eye)]
+    half = (unit[0] + unit[1]) / np.linalg.norm(unit[0] + unit[1])
+    lit = bands.line_levels > 0
+    np.testing.assert_allclose((point[lit] @ half) ** 30, bands.line_levels[lit], rtol=1e-12)
+
+
+def test_virtual_light_of_lights_and_views():
+    direct = virtual_light((1, 0, 0), light=(0, 1, 0), eye=(0, 0, 1))
+    np.testing.assert_allclose(direct, np.array([0, 1, 1]) / math.sqrt(2))
+    placed = virtual_light((1, 0, 0), light=Light(position=(1, 5, 0)), eye=View(position=(1, 0, 9)))
+    np.testing.assert_allclose(placed, direct)
+    parallel = View(position=(5, 5, 5), direction=(0, 0, 2), parallel=True)
+    np.testing.assert_allclose(
+        virtual_light((1, 0, 0), light=Light(direction=(0, 3, 0)), eye=parallel), direct
+    )
+    with pytest.raises(ValueError, match="eye: expected an eye that is not opposite"):
+        virtual_light((0, 0, 0), light=(0, 0, 1), eye=(0, 0, -1))
+
+
+@pytest.mark.parametrize(
+    ("options", "kind", "words"),
+    [
+        ({}, ValueError, "direction: expected either direction="),
+        ({"direction": (0, 0, 1), "position": (0, 0, 2)}, ValueError, "got both"),
+        ({"direction": (0, 0, 0)}, ValueError, "direction"),
+        ({"direction": (0, 1)}, ValueError, "direction: expected 3 components"),
+        ({"direction": (0, 0, np.nan)}, ValueError, "direction: expected finite"),
+        ({"direction": "up"}, TypeError, "direction: expected"),
+        ({"direction": (0, 0, 1), "attenuation": (1, 1, 0)}, ValueError, "attenuation: expected a"),
+        ({"direction": (0, 0, 1), "power": -1}, ValueError, "power: expected"),
+        ({"direction": (0, 0, 1), "segments": 2}, ValueError, "segments: expected an integer"),
+        ({"direction": (0, 0, 1), "form": "strips"}, ValueError, "form: expected 'bands'"),
+        ({"direction": (0, 0, 1), "levels": 0}, ValueError, "levels: expected"),
+    ],
+)
+def test_bad_input(options, kind, words):
+    with pytest.raises(kind, match=words):
+        sphere((0, 0, 0), 1.0, **options)
+
+
+def test_bad_shapes():
+    with pytest.raises(ValueError, match="radius: expected"):
+        sphere((0, 0, 0), -1.0, direction=(0, 0, 1))
+    with pytest.raises(ValueError, match="center: expected 3 components"):
+        sphere((0, 0), 1.0, direction=(0, 0, 1))
+
+
+def test_public_names():
+    assert set(isoluminance.__all__) <= set(dir(isoluminance))
+    assert spacing.steps(3, 0, 1).error == pytest.approx(1 / 6)

@@ -1,0 +1,95 @@
+"""Steps: the worst error is half a step, and no count below the one returned keeps it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from vizlight.geometry.contours import spacing
+
+
+@given(st.integers(1, 300), st.floats(-5, 5), st.floats(1e-3, 10), st.integers(0, 2**32 - 1))
+def test_worst_error_is_half_a_step(count, low, span, seed):
+    steps = spacing.steps(count, low, low + span)
+    value = np.random.default_rng(seed).uniform(low, low + span, 500)
+    error = np.abs(steps.values[steps.band(value)] - value)
+    assert steps.error == pytest.approx(span / count / 2, rel=1e-9)
+    assert error.max() <= steps.error * (1 + 1e-9)
+    # It is reached at every contour, from below and from above.
+    k = np.arange(1, count + 1)
+    np.testing.assert_allclose(np.abs(steps.values[k] - steps.edges[k]), steps.error, rtol=1e-6)
+
+
+def test_mid_values_are_the_best():
+    """Any other values of the same bands have a larger worst error."""
+    steps = spacing.steps(7, 0.1, 0.9)
+    value = np.linspace(0.1, 0.9, 70_001)[1:]
+    band = steps.band(value)
+    best = np.abs(steps.values[band] - value).max()
+    for shift in (-0.01, -1e-3, 1e-3, 0.01):
+        for k in range(1, 8):
+            other = steps.values.copy()
+            other[k] += shift
+            assert np.abs(other[band] - value).max() > best + abs(shift) / 2
+
+
+@given(st.floats(1e-4, 1.9), st.floats(1e-3, 10))
+def test_smallest_count_for_an_error(error, span):
+    steps = spacing.steps(error, 0.0, span, exact=True)
+    n = len(steps.edges) - 1
+    assert steps.error <= error * (1 + 1e-9)
+    if n > 1:
+        assert span / (n - 1) / 2 > error * (1 - 1e-9)
+
+
+def test_the_lowest_luminance_is_exact():
+    steps = spacing.steps(5, 0.1, 1.0)
+    assert steps.band(np.array([0.1]))[0] == 0
+    assert steps.values[0] == 0.1
+    assert steps.band(np.nextafter([0.1], 1))[0] == 1
+
+
+def test_explicit_values():
+    steps = spacing.steps([0.5, 0.2, 0.2, 7.0, -1.0], 0.1, 0.9)
+    np.testing.assert_allclose(steps.edges, [0.1, 0.2, 0.5, 0.9])
+    np.testing.assert_allclose(steps.values, [0.1, 0.15, 0.35, 0.7])
+    assert steps.error == pytest.approx(0.2)
+    np.testing.assert_array_equal(spacing.steps([], 0.0, 1.0).edges, [0, 1])
+
+
+def test_one_luminance_has_one_band():
+    for given_levels in (5, 0.1, [0.3]):
+        steps = spacing.steps(given_levels, 0.4, 0.4)
+        np.testing.assert_array_equal(steps.edges, [0.4])
+        np.testing.assert_array_equal(steps.values, [0.4])
+        assert steps.error == 0
+
+
+@pytest.mark.parametrize(
+    ("value", "kind", "words"),
+    [
+        (0, ValueError, "levels: expected a count from 1"),
+        (-3, ValueError, "levels: expected a count from 1"),
+        (True, TypeError, "levels: expected a count"),
+        ("8", TypeError, "levels: expected a count"),
+        (None, TypeError, "levels: expected a count"),
+        (16.0, ValueError, "write 16 for a count"),
+        (0.0, ValueError, "an allowed error above 0"),
+        (-0.1, ValueError, "an allowed error above 0"),
+        (float("nan"), ValueError, "an allowed error above 0"),
+        ([0.1, float("nan")], ValueError, "levels: expected finite values"),
+        ([[0.1, 0.2]], ValueError, "levels: expected finite values in one row"),
+        (["a"], TypeError, "levels: expected real numbers"),
+        (1e-9, ValueError, "levels: expected an error that"),
+    ],
+)
+def test_bad_levels(value, kind, words):
+    with pytest.raises(kind, match=words):
+        spacing.steps(value, 0.0, 1.0)
+
+
+@pytest.mark.parametrize("value", [np.int32(4), np.float32(0.125), np.array([0.25, 0.5, 0.75])])
+def test_numbers_of_numpy(value):
+    assert spacing.steps(value, 0.0, 1.0, exact=True).error == pytest.approx(0.125)

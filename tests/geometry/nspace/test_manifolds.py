@@ -1,0 +1,421 @@
+"""Shapes in n-space: points and frames against 50 digits, no seams, laws of each shape."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+import oracles
+import pytest
+
+from vizlight.geometry import manifolds
+from vizlight.geometry.nspace import lattice
+
+mp = oracles.mp
+EVERY = {
+    "circle": lambda: manifolds.torus(2.0),
+    "torus": lambda: manifolds.torus(1.5, 0.75, resolution=(24, 16)),
+    "3-torus": lambda: manifolds.torus(1.0, 2.0, 3.0, resolution=6),
+    "Clifford torus": lambda: manifolds.clifford_torus(radius=2.0, resolution=16),
+    "curve on the torus": lambda: manifolds.torus_curve(7, r1=1.5, r2=0.75, resolution=200),
+    "open curve": lambda: manifolds.torus_curve(2**0.5, turns=3, resolution=200),
+    "Hopf fibres": lambda: manifolds.hopf_fibres(fibres=9, resolution=12),
+    "Klein bottle": lambda: manifolds.klein_bottle(resolution=(15, 12)),
+    "Veronese surface": lambda: manifolds.veronese(resolution=6),
+    "complex curve": lambda: manifolds.complex_curve(np.exp, resolution=9),
+    "3-sphere": lambda: manifolds.sphere3(radius=3.0, resolution=3),
+}
+
+
+def projector(frame):
+    return np.einsum("...ki,...kj->...ij", frame, frame)
+
+
+def miss(frame, tangents):
+    """Return how far the space of a frame is from that of exact tangents, in eps."""
+    rows = oracles.orthonormal(
+        [oracles.exact(t) if not isinstance(t, list) else t for t in tangents]
+    )
+    n = len(rows[0])
+    exact = [[mp.fsum(r[i] * r[j] for r in rows) for j in range(n)] for i in range(n)]
+    seen = projector(frame)
+    worst = max(abs(oracles.exact(seen[i, j]) - exact[i][j]) for i in range(n) for j in range(n))
+    return float(worst) / oracles.eps(float)
+
+
+def derivative(function, u):
+    """Return the tangents of a function of k exact parameters, by mpmath's differences."""
+    rows = []
+    for axis in range(len(u)):
+
+        def along(t, axis=axis):
+            return [*u[:axis], t, *u[axis + 1 :]]
+
+        count = len(function(*u))
+        rows.append([mp.diff(lambda t, i=i: function(*along(t))[i], u[axis]) for i in range(count)])
+    return rows
+
+
+def compare(figure, name, shape, function, parameters, bound, point=8):
+    """Compare some points and frames of a shape with a function of exact parameters."""
+    scale = np.abs(shape.points).max()
+    for index, u in parameters:
+        exact = function(*u)
+        error = max(
+            abs(oracles.exact(x) - y) for x, y in zip(shape.points[index], exact, strict=True)
+        )
+        figure(
+            "manifolds", f"{name}, point", float, float(error / scale) / oracles.eps(float), point
+        )
+        figure(
+            "manifolds",
+            f"{name}, frame",
+            float,
+            miss(shape.frame[index], derivative(function, u)),
+            bound,
+        )
+
+
+def angle(i, count):
+    return 2 * mp.pi * i / count
+
+
+def test_torus_against_50_digits(random, figure):
+    shape = manifolds.torus(1.5, 0.75, resolution=(24, 16))
+
+    def exact(t, f):
+        return [1.5 * mp.cos(t), 1.5 * mp.sin(t), 0.75 * mp.cos(f), 0.75 * mp.sin(f)]
+
+    some = [
+        (int(i), (angle(int(i) // 16, 24), angle(int(i) % 16, 16)))
+        for i in random.integers(0, 384, 20)
+    ]
+    compare(figure, "torus", shape, exact, some, 8)
+
+
+def test_curve_against_50_digits(random, figure):
+    shape = manifolds.torus_curve(Fraction(5, 3), r1=1.5, r2=0.75, resolution=300)
+
+    def exact(t):
+        f = mp.mpf(5) / 3 * t
+        return [1.5 * mp.cos(t), 1.5 * mp.sin(t), 0.75 * mp.cos(f), 0.75 * mp.sin(f)]
+
+    some = [(int(i), (angle(3 * int(i), 300),)) for i in random.integers(0, 300, 20)]
+    compare(figure, "curve on the torus", shape, exact, some, 40, point=40)
+
+
+def test_klein_bottle_against_50_digits(random, figure):
+    shape = manifolds.klein_bottle(major=2.0, minor=0.5, resolution=(15, 12))
+
+    def exact(u, v):
+        out, up = 2 + mp.cos(v) / 2, mp.sin(v) / 2
+        return [out * mp.cos(u), out * mp.sin(u), up * mp.cos(u / 2), up * mp.sin(u / 2)]
+
+    some = [
+        (int(i), (angle(int(i) // 12, 15), angle(int(i) % 12, 12)))
+        for i in random.integers(0, 180, 20)
+    ]
+    compare(figure, "Klein bottle", shape, exact, some, 12)
+
+
+def round_place(corner, size):
+    return oracles.unit([mp.tan(mp.pi / 4 * mp.mpf(int(c)) / size) for c in corner])
+
+
+def across(p, count):
+    """Return directions across a vector: its smallest components are free."""
+    axes = sorted(range(len(p)), key=lambda i: abs(p[i]))[:count]
+    return oracles.orthonormal([p, *oracles.exact(np.eye(len(p))[axes])])[1:]
+
+
+def test_veronese_against_50_digits(random, figure):
+    size = 6
+    shape = manifolds.veronese(resolution=size)
+    corners, _ = lattice.cube_skin(3, size, opposite=True)
+    for index in random.integers(0, len(corners), 20):
+        p = round_place(corners[index], size)
+        a = across(p, 2)
+
+        def exact(s, t, p=p, a=a):
+            q = oracles.unit([x + s * y + t * z for x, y, z in zip(p, a[0], a[1], strict=True)])
+            x, y, z = q
+            return [x * y, x * z, y * z, (x * x - y * y) / 2]
+
+        compare(figure, "Veronese surface", shape, exact, [(index, (mp.mpf(0), mp.mpf(0)))], 12)
+
+
+def test_sphere_against_50_digits(random, figure):
+    shape = manifolds.sphere3(radius=1.0, resolution=3)
+    corners, _ = lattice.cube_skin(4, 3)
+    for index in random.integers(0, len(corners), 20):
+        p = round_place(corners[index], 3)
+        basis = across(p, 3)
+        figure("manifolds", "3-sphere, frame", float, miss(shape.frame[index], basis), 4)
+        error = max(abs(oracles.exact(x) - y) for x, y in zip(shape.points[index], p, strict=True))
+        figure("manifolds", "3-sphere, point", float, float(error) / oracles.eps(float), 8)
+
+
+def test_hopf_fibres_against_50_digits(random, figure):
+    base = random.standard_normal((6, 3)) * [[1], [1], [1e150], [1e-150], [1], [1]]
+    base[4], base[5] = [1e-9, 2e-9, -1], [0, 0, -3]
+    shape = manifolds.hopf_fibres(base, resolution=12)
+    for fibre in range(6):
+        a, b, c = oracles.unit(oracles.exact(base[fibre]))
+        across = mp.sqrt(a * a + b * b)
+        direction = mp.mpc(a, -b) / across if across else mp.mpf(1)
+        z1, z2 = mp.sqrt((1 + c) / 2), mp.sqrt((1 - c) / 2) * direction
+
+        def exact(t, z1=z1, z2=z2):
+            one, two = z1 * mp.expj(t), z2 * mp.expj(t)
+            return [mp.re(one), mp.im(one), mp.re(two), mp.im(two)]
+
+        some = [(12 * fibre + i, (angle(i, 12),)) for i in range(0, 12, 3)]
+        compare(figure, "Hopf fibres", shape, exact, some, 12)
+
+
+def test_complex_curve_against_50_digits(figure):
+    for derivative_of, bound, name in (
+        (lambda z: 2 * z, 8, "given"),
+        (None, 5000, "by differences"),
+    ):
+        shape = manifolds.complex_curve(lambda z: z**2, derivative=derivative_of, resolution=9)
+
+        def exact(x, y):
+            return [x, y, x * x - y * y, 2 * x * y]
+
+        some = [(i, (mp.mpf(-1 + (i // 9) / 4), mp.mpf(-1 + (i % 9) / 4))) for i in range(0, 81, 7)]
+        compare(figure, f"complex curve, {name}", shape, exact, some, bound)
+
+
+def test_klein_bottle_near_its_axis_against_50_digits(figure):
+    """Where the tube nearly fills its hole, frames lose as many digits as the bound says."""
+    ratio = mp.mpf(1.0001)
+    shape = manifolds.klein_bottle(major=1.0001, minor=1.0, resolution=(36, 20))
+
+    def exact(u, v):
+        out, up = ratio + mp.cos(v), mp.sin(v)
+        return [out * mp.cos(u), out * mp.sin(u), up * mp.cos(u / 2), up * mp.sin(u / 2)]
+
+    some = [(20 * i + j, (angle(i, 36), angle(j, 20))) for i in (1, 5, 17, 30) for j in (3, 9, 10)]
+    bound = 12 * 1.0001 / 0.0001
+    compare(figure, "Klein bottle, R = 1.0001 r", shape, exact, some, bound, point=12)
+
+
+@pytest.mark.parametrize(
+    ("function", "derivative"),
+    [
+        (lambda z: z**5, lambda z: 5 * z**4),
+        (lambda z: z**7, lambda z: 7 * z**6),
+        (lambda z: 1 / (z - 1.2), lambda z: -1 / (z - 1.2) ** 2),
+        (lambda z: np.exp(8 * z), lambda z: 8 * np.exp(8 * z)),
+        (lambda z: 1e100 * z**3 + z, lambda z: 3e100 * z**2 + 1),
+        (lambda z: 3.0, lambda z: 0),
+        (np.tanh, lambda z: 1 / np.cosh(z) ** 2),
+    ],
+    ids=["z^5", "z^7", "pole", "exp", "large", "constant", "tanh"],
+)
+def test_slopes_of_complex_curves_by_differences(function, derivative):
+    """Within 1e-12 of the largest of f and f', as is said."""
+    found = manifolds.complex_curve(function, resolution=10)
+    exact = manifolds.complex_curve(function, derivative=derivative, resolution=10)
+    slope = [(s.frame[:, 0, 2] + 1j * s.frame[:, 0, 3]) / s.frame[:, 0, 0] for s in (found, exact)]
+    extent = max(np.abs(slope[1]).max(), np.abs(exact.points[:, 2:]).max())
+    assert np.abs(slope[0] - slope[1]).max() <= 1e-12 * extent
+
+
+def test_slopes_of_a_function_in_single_precision():
+    found = manifolds.complex_curve(lambda z: z.astype(np.complex64) ** 3, resolution=10)
+    exact = manifolds.complex_curve(lambda z: z**3, derivative=lambda z: 3 * z**2, resolution=10)
+    assert np.abs(projector(found.frame) - projector(exact.frame)).max() < 2e-6
+
+
+@pytest.mark.parametrize("resolution", [9, 16, 64, (30, 45)])
+def test_functions_that_are_not_analytic_are_refused(resolution):
+    """Depending on the conjugate however little, or with a cut that no sample lies on."""
+    for function in (
+        lambda z: z**2 + 0.0099 * np.conj(z),
+        lambda z: z**2 + 1e-9 * np.conj(z),
+        lambda z: np.exp(8 * z) + np.abs(z),
+        np.sqrt,
+        lambda z: np.log(z + 0.001),
+        lambda z: (z - 0.3j) ** 0.4,
+    ):
+        with pytest.raises(ValueError, match="function: expected an analytic one"):
+            manifolds.complex_curve(function, resolution=resolution)
+    with pytest.raises(ValueError, match="got one that jumps at z = .*without its branch cut"):
+        manifolds.complex_curve(np.sqrt, derivative=lambda z: 0.5 / np.sqrt(z), resolution=64)
+
+
+def test_functions_that_are_steep_but_analytic_are_taken():
+    """Steps that the slopes at both ends do not foresee need not be jumps."""
+    for function in (
+        lambda z: np.exp(40 * z),
+        lambda z: 1 / z,
+        lambda z: 1 / (z - 1.03),
+        lambda z: np.sin(20 * z),
+        lambda z: 1e17 + z,
+    ):
+        manifolds.complex_curve(function, resolution=16)
+    half = ((0.01, 1), (-1, 1))
+    assert manifolds.complex_curve(np.sqrt, domain=half, resolution=9).k == 2
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_frames_are_orthonormal_and_points_stand_apart(name):
+    shape = EVERY[name]()
+    gram = np.einsum("bki,bli->bkl", shape.frame, shape.frame)
+    assert np.abs(gram - np.eye(shape.k)).max() < 8 * oracles.eps(float)
+    assert shape.points.dtype == shape.frame.dtype == np.float64
+    assert shape.cells.shape[1] == 2**shape.k
+    np.testing.assert_array_equal(np.unique(shape.cells), np.arange(len(shape.points)))
+    # Nothing stands twice at a place: a seam would.
+    assert len(np.unique(np.round(shape.points, 9), axis=0)) == len(shape.points)
+
+
+@pytest.mark.parametrize("name", sorted(set(EVERY) - {"open curve", "complex curve"}))
+def test_closed_shapes_have_no_boundary(name):
+    shape = EVERY[name]()
+    size = shape.cells.shape[1]
+    facets = {
+        2: [(0,), (1,)],
+        4: [(0, 1), (1, 2), (2, 3), (3, 0)],
+        8: [(0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)],
+    }[size]
+    rows = np.concatenate([np.sort(shape.cells[:, list(f)], axis=1) for f in facets])
+    assert set(np.unique(rows, axis=0, return_counts=True)[1]) == {2}
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_cells_are_small(name):
+    """No cell reaches across the shape, as one over a wrong seam would."""
+    shape = EVERY[name]()
+    ends = shape.points[shape.cells]
+    step = np.linalg.norm(ends - np.roll(ends, 1, axis=1), axis=2)
+    assert step.max() < 2.5 * np.sqrt((step**2).mean()) + 1e-12
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_cells_are_along_the_frame(name):
+    """The step to a neighbour lies in the tangent space, to first order."""
+    shape = EVERY[name]()
+    a, b = shape.cells[:, 0], shape.cells[:, 1]
+    step = shape.points[b] - shape.points[a]
+    unit = step / np.linalg.norm(step, axis=1, keepdims=True)
+    along = np.linalg.norm(np.einsum("bki,bi->bk", shape.frame[a], unit), axis=1)
+    assert along.min() > 0.8
+
+
+def test_clifford_torus_lies_in_the_sphere():
+    points = manifolds.clifford_torus(radius=2.0).points
+    np.testing.assert_allclose(np.linalg.norm(points, axis=1), 2, rtol=1e-15)
+
+
+def test_hopf_map_takes_a_fibre_to_its_point(random):
+    base = random.standard_normal((20, 3))
+    shape = manifolds.hopf_fibres(base, resolution=7)
+    z = shape.points.view(np.complex128).reshape(20, 7, 2)
+    cross = 2 * z[..., 0] * np.conj(z[..., 1])
+    image = np.stack([cross.real, cross.imag, np.abs(z[..., 0]) ** 2 - np.abs(z[..., 1]) ** 2], -1)
+    unit = base / np.linalg.norm(base, axis=1, keepdims=True)
+    np.testing.assert_allclose(image, np.repeat(unit[:, None], 7, axis=1), atol=1e-14)
+
+
+def test_veronese_surface_is_the_projective_plane():
+    """V - E + F = 1, and the metric is that of a map that takes opposite points to one."""
+    shape = manifolds.veronese(resolution=5)
+    edges = np.unique(
+        np.concatenate([np.sort(shape.cells[:, [i, (i + 1) % 4]], axis=1) for i in range(4)]),
+        axis=0,
+    )
+    assert len(shape.points) - len(edges) + len(shape.cells) == 1
+
+
+def test_winding_numbers():
+    assert len(manifolds.torus_curve(3, resolution=50).cells) == 50
+    single = (np.float32(0.5), 2), (np.array(0.25), 4)
+    ratios = (Fraction(2, 7), 7), (0.2, 5), (5 / 49, 49), (1 / 3, 3), (0, 1), *single
+    for ratio, turns in ratios:
+        shape = manifolds.torus_curve(ratio, resolution=1000)
+        assert len(shape.cells) == len(shape.points) == 1000
+        t = np.unwrap(np.arctan2(shape.points[:, 1], shape.points[:, 0]))
+        assert t[-1] == pytest.approx(2 * np.pi * turns * 0.999, rel=1e-9)
+    open_curve = manifolds.torus_curve(0.3, turns=2, resolution=100)
+    assert len(open_curve.cells) == 99
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "words"),
+    [
+        (manifolds.torus, ValueError, "radii: expected 1 to 3 radii, got 0"),
+        (lambda: manifolds.torus(1, 0), ValueError, r"radii\[1\]: expected a number above 0"),
+        (lambda: manifolds.torus(1, -2), ValueError, r"radii\[1\]: expected a number from 0"),
+        (lambda: manifolds.torus(1, np.nan), ValueError, r"radii\[1\]: expected"),
+        (lambda: manifolds.torus("1"), TypeError, r"radii\[0\]: expected a number"),
+        (lambda: manifolds.torus(1, 1, resolution=(9, 2)), ValueError, "resolution"),
+        (lambda: manifolds.torus_curve(np.pi), ValueError, "ratio: .* pass turns="),
+        (lambda: manifolds.torus_curve(np.inf), ValueError, "ratio: expected a finite number"),
+        (
+            lambda: manifolds.torus_curve(Fraction(10**400, 1)),
+            ValueError,
+            "ratio: expected a finite number",
+        ),
+        (
+            lambda: manifolds.complex_curve(lambda z: z[:3]),
+            ValueError,
+            "function: expected one that returns numbers of the shape",
+        ),
+        (
+            lambda: manifolds.complex_curve(np.exp, derivative=lambda z: None),
+            TypeError,
+            "derivative: expected one that returns numbers",
+        ),
+        (
+            lambda: manifolds.complex_curve(lambda z: np.where(z.real > 1, np.nan, z)),
+            ValueError,
+            "function: expected finite numbers on its domain and .* around it.*pass derivative=",
+        ),
+        (lambda: manifolds.torus_curve(2, turns=0), ValueError, "turns: expected an integer"),
+        (lambda: manifolds.klein_bottle(minor=3.0), ValueError, "minor: expected less than major"),
+        (lambda: manifolds.veronese(resolution=1), ValueError, "resolution: expected an integer"),
+        (lambda: manifolds.hopf_fibres([[0, 0, 0.0]]), ValueError, "base: expected points of"),
+        (lambda: manifolds.hopf_fibres([[0, 1.0]]), ValueError, "base: expected vectors"),
+        (lambda: manifolds.hopf_fibres(fibres=0), ValueError, "fibres: expected an integer"),
+        (lambda: manifolds.sphere3(radius=1e200), ValueError, "radius: expected a number from"),
+        (lambda: manifolds.complex_curve(np.conj), ValueError, "function: expected an analytic"),
+        (lambda: manifolds.complex_curve(lambda z: 1 / z, resolution=5), ValueError, "finite"),
+        (lambda: manifolds.complex_curve(3), TypeError, "function: expected a function"),
+        (
+            lambda: manifolds.complex_curve(np.exp, derivative=3),
+            TypeError,
+            "derivative: expected a function",
+        ),
+        (
+            lambda: manifolds.complex_curve(np.sqrt, resolution=9),
+            ValueError,
+            "function: expected an analytic",
+        ),
+        (lambda: manifolds.complex_curve(lambda z: "w"), TypeError, "function: expected one that"),
+        (
+            lambda: manifolds.complex_curve(np.exp, domain=[0, 1]),
+            ValueError,
+            "domain: expected two",
+        ),
+    ],
+)
+def test_bad_shapes(call, error, words):
+    with pytest.raises(error, match=words):
+        call()
+
+
+@pytest.mark.parametrize("scale", [1e-150, 1e149])
+def test_any_scale(scale):
+    for shape in (
+        manifolds.torus(scale, scale / 2, resolution=8),
+        manifolds.klein_bottle(major=scale, minor=scale / 2, resolution=8),
+        manifolds.sphere3(radius=scale, resolution=2),
+        manifolds.torus_curve(3, r1=scale, r2=scale, resolution=20),
+        manifolds.veronese(radius=scale**0.5, resolution=3),
+    ):
+        assert np.all(np.isfinite(shape.points))
+        gram = np.einsum("bki,bli->bkl", shape.frame, shape.frame)
+        assert np.abs(gram - np.eye(shape.k)).max() < 1e-14

@@ -1,0 +1,388 @@
+"""Solids combined: closed, outward, volume and area against closed forms, bands kept."""
+
+from __future__ import annotations
+
+import itertools
+
+import banded
+import numpy as np
+import pytest
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from vizlight.geometry.primitives import Block, Boolean, Sphere, Truncus
+
+from vizlight.geometry import solids
+from vizlight.geometry.contours import refinement
+
+PI = np.pi
+TOWARD = np.array([1.0, -0.6, 0.8]) / np.linalg.norm([1.0, -0.6, 0.8])
+
+
+def lambert(points, normals):
+    return 0.1 + 0.9 * np.maximum(normals @ TOWARD, 0)
+
+
+def bands_of(solid, tolerance=3e-3, levels=8):
+    return refinement.draw(solids.tessellate(solid, tolerance=tolerance), lambert, levels, low=0.1)
+
+
+LENS = Sphere() & Sphere((1, 0, 0), 1)
+PAIR = Sphere() | Sphere((1, 0, 0), 1)
+DRILLED = Sphere() - Truncus((0, 0, 0), (0, 0, 3), (0.5, 0.5))
+STEINMETZ = Truncus((0, 0, 0), (0, 0, 4), (1, 1)) & Truncus((0, 0, 0), (4, 0, 0), (1, 1))
+BORE = np.sqrt(3.0)
+CLOSED_FORMS = {
+    "lens": (LENS, 5 * PI / 12, 2 * PI),
+    "pair": (PAIR, 8 * PI / 3 - 5 * PI / 12, 6 * PI),
+    "drilled": (DRILLED, PI * BORE**3 / 6, 2 * PI * BORE + PI * BORE),
+    "three cylinders": (
+        Boolean("intersection", STEINMETZ, Truncus((0, 0, 0), (0, 4, 0), (1, 1))),
+        16 - 8 * np.sqrt(2),
+        48 - 24 * np.sqrt(2),
+    ),
+    "steinmetz": (STEINMETZ, 16 / 3, 16.0),
+    "cap": (Sphere() - Block((0, 0, -1), (4, 4, 3)), PI * 0.25 * 2.5 / 3, PI + 0.75 * PI),
+    "cone in a ball": (
+        Sphere() & Truncus((0, 0, -1), (0, 0, 2), (0, 2)),
+        # From the apex in the middle: a sector of half angle 45 degrees.
+        2 * PI / 3 * (1 - np.sqrt(0.5)),
+        2 * PI * (1 - np.sqrt(0.5)) + PI * np.sqrt(0.5),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", CLOSED_FORMS)
+def test_volume_and_area_against_closed_forms(name):
+    solid, volume, area = CLOSED_FORMS[name]
+    missing = []
+    for tolerance in (1.2e-2, 3e-3, 7.5e-4):
+        bands = bands_of(solid, tolerance, 4)
+        assert banded.is_closed(bands)
+        missing.append((abs(banded.volume(bands) / volume - 1), abs(banded.area(bands) / area - 1)))
+    # A quarter of the tolerance leaves about a quarter of the error, whatever the shape; the
+    # tolerance is a share of all primitives' size.
+    missing = np.array(missing)
+    assert missing[-1].max() < (8e-3 if name == "cap" else 2.5e-3)
+    assert np.all(missing[-1] < missing[0] / 6)
+
+
+@pytest.mark.parametrize("name", CLOSED_FORMS)
+def test_bands_are_right_on_the_exact_surface(name, random):
+    solid, _, _ = CLOSED_FORMS[name]
+    bands = bands_of(solid)
+    mesh = solids.tessellate(solid)
+    place, polygon = banded.places(bands, random, 3)
+    # Independent of the mesh: the surface nearest to a place, among all of all primitives.
+    best, normal = np.full(len(place), np.inf), np.zeros_like(place)
+    second = best.copy()
+    for part in solid.primitives():
+        for surface in part.surfaces():
+            distance = np.abs(surface.distance(place))
+            near = distance < best
+            second = np.where(near, best, np.minimum(second, distance))
+            best[near], normal[near] = distance[near], surface.normal(place[near])
+    # On a bore the outside of the solid is the inside of the cylinder.
+    outside = solid.contains(place - 1e-2 * normal) | ~solid.contains(place + 1e-2 * normal)
+    normal[~outside] *= -1
+    # Next to an edge the nearest surface need not be the one.
+    sure = second > 0.03
+    error = np.abs(lambert(place, normal) - bands.values[polygon])[sure]
+    assert best.max() < 3e-3 * mesh.scale
+    assert sure.mean() > 0.7
+    assert np.quantile(error, 0.999) < 1.15 * bands.steps.error
+    assert error.max() < 1.5 * bands.steps.error
+
+
+@pytest.mark.parametrize("wall", [0.1, 0.03, 0.01])
+def test_thin_shells(wall):
+    bands = bands_of(Sphere() - Sphere((0, 0, 0), 1 - wall), levels=2)
+    assert banded.is_closed(bands)
+    expected = 4 * PI / 3 * (1 - (1 - wall) ** 3)
+    assert banded.volume(bands) == pytest.approx(expected, rel=3e-3)
+
+
+# Size of the block, and of what is taken out of it.
+THIN = {
+    "wall of 3 %": ((2, 2, 2), (1.94, 1.94, 3)),
+    "wall of 1 %": ((2, 2, 2), (1.98, 1.98, 3)),
+    "plate": ((2, 2, 0.01), (1, 1, 1)),
+}
+
+
+@pytest.mark.parametrize("name", THIN)
+def test_thin_plane_walls(name):
+    size, hole = (np.array(x, dtype=float) for x in THIN[name])
+    mesh = solids.tessellate(Block(size=size) - Block(size=hole))
+    bands = refinement.draw(mesh, lambert, 2, low=0.1)
+    assert banded.is_closed(bands)
+    height = min(size[2], hole[2])
+    expected = size.prod() - hole[0] * hole[1] * height
+    # What is missing are edges that triangles cut off, less than 0.4 % of the area.
+    assert banded.volume(bands) == pytest.approx(expected, rel=5e-3)
+    across = size[0] * size[1] - hole[0] * hole[1]
+    around = 4 * height * (size[0] + hole[0])
+    assert banded.area(bands) == pytest.approx(2 * across + around, rel=2e-3)
+
+
+def test_what_is_small_beside_the_rest():
+    # Points fine enough for the bore everywhere would be 400 thousand and more.
+    radius = 0.015
+    mesh = solids.tessellate(Block(size=(2, 2, 2)) - Truncus((0, 0, 0), (0, 0, 3), (radius,) * 2))
+    assert len(mesh.points) < 40_000
+    bands = refinement.draw(mesh, lambert, 2, low=0.1)
+    assert banded.is_closed(bands)
+    # The bore is a polygon of 10 sides or more: the volume is a little too large.
+    assert 0.85 < (8 - banded.volume(bands)) / (2 * PI * radius**2) < 1
+    expected = 24 - 2 * PI * radius**2 + 4 * PI * radius
+    assert banded.area(bands) == pytest.approx(expected, abs=0.1 * 4 * PI * radius)
+
+
+def test_points_are_on_the_exact_surfaces():
+    mesh = solids.tessellate(DRILLED)
+    points = mesh.world(mesh.points)
+    ball = np.linalg.norm(points, axis=1) - 1
+    bore = np.hypot(points[:, 0], points[:, 1]) - 0.5
+    assert np.minimum(np.abs(ball), np.abs(bore)).max() < 1e-14
+    edge = (np.abs(ball) < 1e-6) & (np.abs(bore) < 1e-6)
+    assert edge.sum() > 40
+    assert np.abs(ball[edge]).max() < 1e-14
+    assert np.abs(bore[edge]).max() < 1e-14
+
+
+def test_nested_to_any_depth_against_monte_carlo(random):
+    part = Truncus((0, 0, 0), (0, 0, 0.4), (1, 1)) | Truncus((0, 0, 0.5), (0, 0, 0.8), (0.4, 0.5))
+    part = part - Truncus((0, 0, 0.3), (0, 0, 3), (0.25, 0.25))
+    for k in range(6):
+        x, y = 0.75 * np.cos(k * PI / 3), 0.75 * np.sin(k * PI / 3)
+        part = part - Truncus((x, y, 0), (0, 0, 1), (0.1, 0.1))
+    part = (part - Block((0, -0.9, 0), (0.3, 0.6, 2))) | (
+        Sphere((0, 0.75, 0.3), 0.2) & Block((0, 0.75, 0.5), (1, 1, 0.4))
+    )
+    bands = bands_of(part)
+    assert banded.is_closed(bands)
+    low, high = np.array([-1, -1, -0.2]), np.array([1, 1, 0.9])
+    inside = part.contains(random.uniform(low, high, (400_000, 3)))
+    expected = inside.mean() * np.prod(high - low)
+    sigma = np.sqrt(inside.mean() / len(inside)) * np.prod(high - low)
+    assert abs(banded.volume(bands) - expected) < 4 * sigma + 2e-3
+    assert len(np.unique(bands.patch)) > 12
+
+
+def block(x=0.0, y=0.0, z=0.0, size=(1, 1, 1)):
+    return Block((x, y, z), size)
+
+
+TOUCHING = {
+    "glued faces": (block() | block(1), 2.0, 10.0),
+    "glued half way": (block() | block(1, 0.5), 2.0, 11.0),
+    "faces that cancel": (block() - block(1), 1.0, 6.0),
+    "common faces": (block() & block(0.5), 0.5, 4.0),
+    "flush pocket": (block() - Block((0, 0, 0.25), (0.5, 0.5, 0.5)), 0.875, 7.0),
+    "itself": (block() | block(), 1.0, 6.0),
+    "nothing": (block() - block(), 0.0, 0.0),
+    "apart": (block() & block(5), 0.0, 0.0),
+    "edge to edge": (block() | block(1, 1), 2.0, 12.0),
+    "corner to corner": (block() | block(1, 1, 1), 2.0, 12.0),
+    "same ball": (Sphere() | Sphere(), 4 * PI / 3, 4 * PI),
+    "balls touch": (Sphere() | Sphere((2, 0, 0)), 8 * PI / 3, 8 * PI),
+    "capsule": (
+        Truncus((0, 0, 0), (0, 0, 1), (0.5, 0.5)) | Sphere((0, 0, 0.5), 0.5),
+        PI / 4 + PI / 12,
+        PI + PI / 2 + PI / 4,
+    ),
+    "ball touches within": (Sphere() - Sphere((0.5, 0, 0), 0.5), 7 * PI / 6, 5 * PI),
+    "ball on a block": (
+        Sphere((0, 0, 1), 1) | Block((0, 0, -0.5), (2, 2, 1)), 4 * PI / 3 + 4, 4 * PI + 16,
+    ),
+    "stacked cylinders": (
+        Truncus((0, 0, 0), (0, 0, 1), (1, 1)) | Truncus((0, 0, 1), (0, 0, 1), (1, 1)),
+        2 * PI, 6 * PI,
+    ),
+    "three stacked cylinders": (
+        Truncus() | Truncus((0, 0, 1)) | Truncus((0, 0, 2)), 0.75 * PI, 3.5 * PI,
+    ),
+    "cones base to base": (
+        Truncus((0, 0, 0.5), radii=(0, 1)) | Truncus((0, 0, -0.5), radii=(1, 0)),
+        2 * PI / 3, 2 * PI * np.sqrt(2),
+    ),
+    "cylinder inscribed in a block": (Block() - Truncus(), 1 - PI / 4, 6 + PI / 2),
+    "ball inscribed in a cylinder": (
+        Truncus(axis=(0, 0, 2), radii=(1, 1)) - Sphere(), 2 * PI / 3, 10 * PI,
+    ),
+    "cylinder touches within": (
+        Truncus(radii=(1, 1)) - Truncus((0.5, 0, 0)), 0.75 * PI, 4.5 * PI,
+    ),
+    "cylinders touch": (
+        Truncus(radii=(1, 1)) | Truncus((2, 0, 0), radii=(1, 1)), 2 * PI, 8 * PI,
+    ),
+    "overlapping cylinders": (
+        Truncus((0, 0, 0), (0, 0, 1), (1, 1)) | Truncus((0, 0, 0.5), (0, 0, 1), (1, 1)),
+        1.5 * PI, 5 * PI,
+    ),
+    "cone on a cylinder": (
+        Truncus((0, 0, 0), (0, 0, 1), (1, 1)) | Truncus((0, 0, 1), (0, 0, 1), (0, 1)),
+        4 * PI / 3, PI + 2 * PI + PI * np.sqrt(2),
+    ),
+    "of no volume": (block() | Sphere((3, 0, 0), 0) | Block((2, 0, 0), (1, 1, 0)), 1.0, 6.0),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", TOUCHING)
+def test_coincident_and_tangent_faces(name):
+    solid, volume, area = TOUCHING[name]
+    bands = bands_of(solid)
+    assert bool(len(bands.values)) == (volume > 0)
+    if volume:
+        assert banded.is_closed(bands)
+        assert banded.volume(bands) == pytest.approx(volume, rel=8e-3)
+        assert banded.area(bands) == pytest.approx(area, rel=8e-3)
+
+
+@pytest.mark.parametrize("radius", [0.3, 0.5, 1])
+@pytest.mark.parametrize("tolerance", [1e-2, 3e-3, 1e-3])
+def test_glued_faces_vanish_however_points_fall(radius, tolerance):
+    """Also where points lie alike on both sides of them."""
+    ends = (radius, radius)
+    mesh = solids.tessellate(
+        Truncus(radii=ends) | Truncus((0, 0, 1), radii=ends), tolerance=tolerance
+    )
+    points = mesh.world(mesh.points)
+    assert np.hypot(*points[np.abs(points[:, 2] - 0.5) < 0.99, :2].T).min() > 0.99 * radius
+    bands = refinement.draw(mesh, lambert, 2, low=0.1)
+    expected = 4 * PI * radius + 2 * PI * radius**2
+    assert banded.area(bands) == pytest.approx(expected, rel=tolerance)
+
+
+APEXES = {
+    "within a ball": (Sphere() - Truncus((0, 0, 0.5), radii=(0, 0.3)), 1e-2),
+    "beside a block": (
+        Block((0.5, 1, -1), (2, 1, 1)) | Truncus((-1, 0, 0), (1, 0, 0), (1, 0), height=2), 3e-3,
+    ),
+    "on an edge": (
+        Block((0.5, 1, -0.5), (1, 0.5, 1))
+        | Truncus((-0.5, 0, -0.5), (0, 1, 0), (1, 0), height=1), 3e-3,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", APEXES)
+def test_apexes_that_touch_stay_closed(name):
+    solid, tolerance = APEXES[name]
+    mesh = solids.tessellate(solid, tolerance=tolerance)
+    with np.errstate(all="raise", under="ignore"):
+        bands = refinement.draw(mesh, lambert, 8, low=0.1)
+    assert banded.is_closed(bands)
+
+
+@pytest.mark.parametrize("radius", [0.2, 0.25, 0.5])
+def test_sharp_apexes_keep_the_error(radius):
+    solid = Truncus(radii=(0, radius)) | Sphere((0, 0, -1), 0.5)
+    bands = bands_of(solid, levels=0.05)
+    assert banded.is_closed(bands)
+    assert bands.error <= 0.05
+
+
+def test_no_parts_without_volume():
+    """Four points in one straight line, as on an edge, make no part of their own."""
+    mesh = solids.tessellate(Block(size=(1.6, 1.6, 1)) - Sphere((0, 0, 1)))
+    corners = mesh.points[mesh.triangles]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    links = (
+        np.ones(3 * len(across)),
+        (mesh.triangles.ravel(), mesh.triangles[:, [1, 2, 0]].ravel()),
+    )
+    count, part = connected_components(coo_array(links), directed=False)
+    area = np.bincount(part[mesh.triangles[:, 0]], np.linalg.norm(across, axis=1))
+    assert count == 1
+    assert area.min() > 1e-3
+
+
+def test_moved_and_scaled_solids_are_the_same():
+    """Far from the origin, and of sizes whose squares no float holds."""
+    for shift, size in ((5e6, 1.0), (0.0, 1e-150), (0.0, 1e150), (-1e3, 1e-3)):
+        center = np.array([shift, 0, 0])
+        solid = Sphere(center, size) - Truncus(center, (0, 0, 3 * size), (size / 2, size / 2))
+        mesh = solids.tessellate(solid, tolerance=1.2e-2)
+        unit = solids.tessellate(DRILLED, tolerance=1.2e-2)
+        assert len(mesh.triangles) == pytest.approx(len(unit.triangles), rel=0.02)
+        np.testing.assert_allclose(
+            np.abs(mesh.points).max(axis=0), np.abs(unit.points).max(axis=0), rtol=1e-2
+        )
+
+
+def test_any_turn_gives_the_same_solid(random):
+    volumes = []
+    for _ in range(4):
+        turn = np.linalg.qr(random.standard_normal((3, 3)))[0]
+        solid = Block(size=(1, 1, 1), axes=turn) - Truncus((0, 0, 0), 2 * turn[0], (0.3, 0.3))
+        bands = bands_of(solid)
+        assert banded.is_closed(bands)
+        volumes.append(banded.volume(bands))
+    np.testing.assert_allclose(volumes, 1 - PI * 0.09, rtol=2e-3)
+
+
+def test_contains_is_the_combination(random):
+    a, b, c = Sphere(), Block((0.5, 0, 0)), Truncus((0, 0, 0), (0, 0, 3), (0.2, 0.4))
+    solid = (a | b) - (c & a)
+    p = random.uniform(-1.5, 1.5, (5000, 3))
+    expected = (a.contains(p) | b.contains(p)) & ~(c.contains(p) & a.contains(p))
+    np.testing.assert_array_equal(solid.contains(p), expected)
+    assert [type(x) for x in solid.primitives()] == [Sphere, Block, Truncus, Sphere]
+    np.testing.assert_array_equal(a.contains(p), np.linalg.norm(p, axis=1) < 1)
+    radius = 0.3 - 0.2 / 3 * p[:, 2]
+    np.testing.assert_array_equal(
+        c.contains(p), (np.hypot(p[:, 0], p[:, 1]) < radius) & (np.abs(p[:, 2]) < 1.5)
+    )
+
+
+@pytest.mark.parametrize("solid", [Sphere(), Truncus(), Truncus(radii=(0, 1)), Block()])
+def test_single_primitives(solid, random):
+    bands = bands_of(solid)
+    assert banded.is_closed(bands)
+    box = random.uniform(-1, 1, (200_000, 3))
+    assert banded.volume(bands) == pytest.approx(8 * solid.contains(box).mean(), rel=0.02)
+    assert bands.error <= 1.3 * bands.steps.error
+
+
+def test_too_thin_or_too_fine_is_refused():
+    # Walls and gaps thinner than points are apart.
+    for solid in (Block() - Block(size=(0.998, 0.998, 0.998)), Block() | Block((1.001, 0, 0))):
+        with pytest.raises(ValueError, match="tolerance: expected one fine enough for the thinn"):
+            solids.tessellate(solid)
+    with pytest.raises(ValueError, match="tolerance: expected one that 400000 points"):
+        solids.tessellate(PAIR, tolerance=1e-6)
+    with pytest.raises(ValueError, match="tolerance: expected a number from"):
+        solids.tessellate(PAIR, tolerance=0)
+
+
+@pytest.mark.parametrize(
+    ("make", "kind", "words"),
+    [
+        (lambda: Sphere() | 3, TypeError, "second: expected a vizlight.Sphere"),
+        (lambda: Boolean("xor", Sphere(), Sphere()), ValueError, "operation: expected 'union'"),
+        (lambda: Sphere(radius=-1), ValueError, "radius: expected"),
+        (lambda: Sphere((0, np.inf, 0)), ValueError, "center: expected finite"),
+        (lambda: Block(size=(1, -1, 1)), ValueError, "size: expected lengths"),
+        (lambda: Block(axes=np.ones((3, 3))), ValueError, "axes: expected 3 orthonormal rows"),
+        (lambda: Truncus(axis=(0, 0, 0)), ValueError, "axis: expected a vector of non-zero"),
+        (lambda: solids.tessellate("ball"), TypeError, "solid: expected a vizlight.Sphere"),
+        (lambda: Sphere().contains([1, 2]), ValueError, "points: expected vectors"),
+    ],
+)
+def test_bad_input(make, kind, words):
+    with pytest.raises(kind, match=words):
+        make()
+
+
+def test_all_operations_of_two_shapes_keep_the_sum_of_volumes():
+    """|A or B| + |A and B| = |A| + |B|, and |A - B| + |A and B| = |A|."""
+    shapes = [
+        Sphere(),
+        Truncus((0.4, 0, 0), (0, 1, 1), (0.3, 0.6)),
+        Block((0, 0.5, 0.2), (1, 1, 1)),
+    ]
+    for a, b in itertools.combinations(shapes, 2):
+        both, either, less = (banded.volume(bands_of(s)) for s in (a & b, a | b, a - b))
+        first, second = (banded.volume(bands_of(s)) for s in (a, b))
+        assert either + both == pytest.approx(first + second, rel=8e-3)
+        assert less + both == pytest.approx(first, rel=8e-3)

@@ -1,0 +1,127 @@
+"""Lights: what they accept, where they stand, how VTK's are read."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from vizlight import Light, View
+from vizlight.scene.vtk import lights_of
+
+
+def test_plain_values():
+    light = Light(position=np.array([1, 2, 3]), intensity=2, attenuation=[1, 0.5, 0], color="red")
+    assert light.position == (1.0, 2.0, 3.0)
+    assert light.direction is None
+    assert light.intensity == 2.0
+    assert light.attenuation == (1.0, 0.5, 0.0)
+    assert light.color == (1.0, 0.0, 0.0)
+    assert light == Light(position=(1, 2, 3), intensity=2, attenuation=(1, 0.5, 0), color="#ff0000")
+
+
+def test_repr_tells_what_is_not_the_default():
+    assert repr(Light.headlight(intensity=2)) == "Light.headlight(intensity=2)"
+    assert repr(Light(direction=(0, 0, 1))) == "Light(direction=(0.0, 0.0, 1.0))"
+    near = Light(position=(0, 0, 1), color="red", attenuation=(1, 1, 0))
+    assert eval(repr(near)) == near
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "words"),
+    [
+        ({}, ValueError, "Light: expected either direction=.* or position=, got neither"),
+        ({"direction": (1, 0, 0), "position": (1, 0, 0)}, ValueError, "got both"),
+        ({"direction": (0, 0, 0)}, ValueError, "direction: expected a direction of non-zero"),
+        ({"position": (np.inf, 0, 0)}, ValueError, "position: .*direction="),
+        ({"direction": (1, 0, 0), "intensity": -1}, ValueError, "intensity: expected"),
+        ({"direction": (1, 0, 0), "intensity": 1e39}, ValueError, "from 0 to 1e\\+09"),
+        ({"position": (1, 0, 0), "attenuation": (0, 0, 0)}, ValueError, "attenuation: expected"),
+        ({"direction": (1, 0, 0), "attenuation": (1, 1, 0)}, ValueError, "has no distance"),
+        ({"direction": (1, 0, 0), "color": "nothing"}, ValueError, "color: expected"),
+        ({"direction": "up"}, TypeError, "direction: expected real numbers"),
+    ],
+)
+def test_bad_values(arguments, error, words):
+    with pytest.raises(error, match=words):
+        Light(**arguments)
+
+
+def test_headlight_follows_the_view():
+    headlight = Light.headlight(intensity=0.5)
+    near = headlight.seen_from(View(position=(1, 2, 3)))
+    assert (near.position, near.direction, near.intensity) == ((1.0, 2.0, 3.0), None, 0.5)
+    far = headlight.seen_from(View(direction=(0, 0, 1)))
+    assert (far.position, far.direction) == (None, (0.0, 0.0, 1.0))
+    along = headlight.seen_from(View(position=(1, 2, 3), direction=(0, 1, 0)))
+    assert (along.position, along.direction) == (None, (0.0, 1.0, 0.0))
+    with pytest.raises(ValueError, match="view: expected a View, which the headlight follows"):
+        headlight.seen_from(None)
+    fixed = Light(direction=(1, 0, 0))
+    assert fixed.seen_from(None) is fixed
+
+
+def camera():
+    made = pv.Camera()
+    made.position, made.focal_point, made.up = (3, -2, 4), (1, 0, 0.5), (0, 0, 1)
+    return made
+
+
+@pytest.mark.opengl
+def test_camera_lights_stand_where_vtk_has_them():
+    seen = camera()
+    light = pv.Light(position=(0.3, 0.4, 1.0), focal_point=(0, 0, 0), light_type="camera light")
+    renderer = pv.Plotter(lighting="none", off_screen=True).renderer
+    renderer.camera = seen
+    renderer.add_light(light)
+    renderer.UpdateLightsGeometryToFollowCamera()
+    toward = np.subtract(light.GetTransformedPosition(), light.GetTransformedFocalPoint())
+    (read,) = lights_of([light], seen)
+    np.testing.assert_allclose(
+        np.array(read.direction) / np.linalg.norm(read.direction),
+        toward / np.linalg.norm(toward),
+        atol=1e-12,
+    )
+
+
+def test_scene_lights_keep_position_attenuation_colour_and_transform():
+    light = pv.Light(position=(1, 2, 3), color="blue", intensity=0.7, light_type="scene light")
+    light.positional = True
+    light.cone_angle = 90
+    light.attenuation_values = (1, 0.2, 0.1)
+    light.transform_matrix = np.diag([1.0, 1, 1, 1]) + np.eye(4, k=3) * 5
+    (read,) = lights_of([light], camera())
+    assert read.position == (6.0, 2.0, 3.0)
+    assert read.attenuation == (1.0, 0.2, 0.1)
+    assert read.color == (0.0, 0.0, 1.0)
+    assert read.intensity == 0.7
+
+
+def test_a_headlight_with_a_position_stands_in_the_eye():
+    light = pv.Light(light_type="headlight")
+    light.positional, light.cone_angle = True, 90
+    light.attenuation_values = (1, 0.2, 0.1)
+    (read,) = lights_of([light], camera())
+    assert read.position == (3.0, -2.0, 4.0)
+    assert read.attenuation == (1.0, 0.2, 0.1)
+
+
+def test_a_light_without_direction_warns_and_is_left_out():
+    light = pv.Light(position=(1, 2, 3), focal_point=(1, 2, 3), light_type="scene light")
+    with pytest.warns(UserWarning, match="shines nowhere"):
+        assert list(lights_of([light], camera())) == []
+
+
+def test_lights_that_are_off_are_left_out_and_headlights_stay_headlights():
+    off = pv.Light(light_type="scene light")
+    off.switch_off()
+    (read,) = lights_of([off, pv.Light(light_type="headlight")], camera())
+    assert read.follows_view
+
+
+def test_a_spotlight_warns():
+    spot = pv.Light(position=(1, 2, 3), light_type="scene light")
+    spot.positional, spot.cone_angle = True, 20
+    with pytest.warns(UserWarning, match="spotlight of cone angle 20 degrees"):
+        (read,) = lights_of([spot], camera())
+    assert read.position == (1.0, 2.0, 3.0)

@@ -1,0 +1,529 @@
+"""The engine against one point at a time in 50 digits, and against its own laws."""
+
+from __future__ import annotations
+
+import numpy as np
+import oracles
+import pytest
+
+from vizlight import DepthCue, Light, Material, Scene, View, engine
+from vizlight.model import reflection
+from vizlight.studies._measuring import peak_memory
+
+SUN = Light(direction=(1, 2, 0.5))
+LAMP = Light(position=(0.5, 4, 2), intensity=0.7, attenuation=(0.5, 0.2, 0.05), color="red")
+NEAR = View(position=(0, 1, 6))
+FAR = View(direction=(0.2, -0.1, 1))
+WHITE = Material(ambient=0.1, diffuse=1.0, specular=1.0, shininess=20)
+
+SCENES = {
+    "sun, far eye": Scene(lights=SUN, view=FAR, material=WHITE),
+    "sun, near eye": Scene(lights=SUN, view=NEAR, material=WHITE),
+    "lamp, near eye": Scene(lights=LAMP, view=NEAR, material=WHITE),
+    "lamp, far eye": Scene(lights=LAMP, view=FAR, material=WHITE),
+    "headlights": Scene(lights=[Light.headlight()], view=NEAR, material=WHITE),
+    "three lights, colours": Scene(
+        lights=[SUN, LAMP, Light.headlight(intensity=0.3, color=(0, 1, 0.5))],
+        view=NEAR,
+        material=Material(color=(1, 0.25, 0.3), specular_color=(0.9, 0.9, 1), shininess=7.5),
+        ambient_intensity=0.5,
+        ambient_color=(0.2, 0.3, 0.9),
+    ),
+    "depth cue": Scene(
+        lights=SUN,
+        view=View(position=(0, 1, 6), direction=(0, 0.1, 1)),
+        material=WHITE,
+        depth_cue=DepthCue(front=3, back=9, front_scale=0.9, back_scale=0.2, cue=0.4),
+    ),
+    "smooth depth cue, colours": Scene(
+        lights=LAMP,
+        view=NEAR,
+        depth_cue=DepthCue(front=4, back=8, cue=0.5, color=(0.5, 0.6, 1), smooth=True),
+    ),
+    "parallel depth cue": Scene(
+        lights=SUN, view=FAR, material=WHITE, depth_cue=DepthCue(front=-2, back=2)
+    ),
+}
+
+
+def cloud(random, count, dtype, k=1, n=3):
+    points = random.standard_normal((count, n)).astype(dtype)
+    tangents = random.standard_normal((count, k, n)).astype(dtype)
+    normals = random.standard_normal((count, n)).astype(dtype)
+    return points, tangents, normals
+
+
+@pytest.mark.parametrize("model", ["phong", "blinn"])
+@pytest.mark.parametrize("what", ["line", "frame", "surface", "conditioned", "two-sided"])
+@pytest.mark.parametrize("name", SCENES)
+def test_every_term_against_50_digits(name, what, model, dtype, random, figure):
+    scene = SCENES[name]
+    points, tangents, normals = cloud(random, 6, dtype, k=2 if what == "frame" else 1)
+    with_normals = what in ("surface", "conditioned", "two-sided")
+    shaded = engine.shade(
+        points,
+        None if what in ("surface", "two-sided") else tangents,
+        scene,
+        normals=normals if with_normals else None,
+        model=model,
+        two_sided=what == "two-sided",
+        components=True,
+    )
+    assert shaded.luminance.dtype == dtype
+    assert shaded.valid.all()
+    fixed = scene.replace(lights=[light.seen_from(scene.view) for light in scene.lights])
+    for i in range(len(points)):
+        _, diffuse, specular, luminance, rgb = oracles.shade(
+            points[i],
+            None if what in ("surface", "two-sided") else tangents[i],
+            normals[i] if with_normals else None,
+            fixed,
+            exponent=shaded.plan.exponent,
+            model=model,
+            two_sided=what == "two-sided",
+        )
+        count = len(scene.lights)
+        bound = count * (4 + 2 * shaded.plan.exponent + 4 + scene.material.shininess) + 4
+        pairs = [(shaded.diffuse[i], diffuse), (shaded.specular[i], specular)]
+        pairs.append((shaded.luminance[i], luminance))
+        if shaded.rgb is not None:
+            pairs += list(zip(shaded.rgb[i], rgb, strict=True))
+        error = max(oracles.units(seen, true, dtype) for seen, true in pairs)
+        figure("engine.shade", f"{what}, {model}", dtype, error, bound)
+
+
+@pytest.mark.parametrize("what", ["conditioned", "free", "surface"])
+@pytest.mark.parametrize("name", ["sun, far eye", "lamp, near eye"])
+def test_fur_against_50_digits(name, what, dtype, random, figure):
+    scene, density = SCENES[name], 0.4
+    points, tangents, normals = cloud(random, 30, dtype)
+    depth = random.uniform(0, 0.5, 30).astype(dtype)
+    depth[:5] = 0
+    shaded = engine.shade(
+        points, None if what == "surface" else tangents, scene, normals=normals, depth=depth,
+        fur=density, conditioned=what == "conditioned", components=True,
+    )  # fmt: skip
+    exact = oracles.exact
+    for i in range(30):
+        _, diffuse, specular, _, _ = oracles.shade(
+            points[i],
+            None if what == "surface" else tangents[i],
+            None if what == "free" else normals[i],
+            scene,
+            exponent=shaded.plan.exponent,
+        )
+        normal = oracles.unit(exact(normals[i]))
+        wi, _ = oracles.toward(scene.lights[0], exact(points[i]))
+        wo, _ = oracles.toward(scene.view, exact(points[i]))
+        path = sum(exact(depth[i]) / abs(oracles.dot(normal, w)) for w in (wi, wo))
+        passes = (1 - exact(density)) ** path
+        for seen, true in ((shaded.diffuse[i], diffuse), (shaded.specular[i], specular)):
+            error = oracles.units(seen, true * passes, dtype)
+            figure("engine.shade", "fur", dtype, error, 40)
+
+
+def test_shadow_takes_the_place_of_the_cosine(random):
+    """Of a surface's diffuse term, and where normals condition tangents."""
+    points, normals = random.standard_normal((2, 50, 3))
+    tangents = random.standard_normal((50, 3))
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    dark = Light(direction=(0, 0, 1), intensity=0)
+    scene = Scene(lights=[SUN, dark, LAMP], view=NEAR, material=WHITE)
+    way = np.array(LAMP.position) - points
+    distance = np.linalg.norm(way, axis=1)
+    fade = 0.7 * np.minimum(1, 1 / (0.5 + 0.2 * distance + 0.05 * distance**2))
+    toward = np.array(SUN.direction) / np.linalg.norm(SUN.direction)
+    cosine = np.stack([normals @ toward, np.sum(normals * way, axis=1) / distance], axis=1)
+    t = random.random((50, 2))
+    lit = engine.shade(points, None, scene, normals=normals, shadow=t, components=True)
+    np.testing.assert_allclose(lit.diffuse, t[:, 0] + fade * t[:, 1], atol=1e-12)
+    # The cosine itself changes nothing; half of it halves all but the ambient light.
+    free = engine.shade(points, None, scene, normals=normals, components=True)
+    for share in (1, 0.5):
+        same = np.maximum(cosine, 0) * share
+        lit = engine.shade(points, None, scene, normals=normals, shadow=same, components=True)
+        np.testing.assert_allclose(lit.diffuse, share * free.diffuse, atol=1e-12)
+        np.testing.assert_allclose(lit.specular, share * free.specular, atol=1e-12)
+        fibre = engine.shade(points, tangents, scene, normals=normals, shadow=same)
+        bare = engine.shade(points, tangents, scene, normals=normals)
+        expected = bare.ambient + share * (bare.luminance - bare.ambient)
+        np.testing.assert_allclose(fibre.luminance, expected, atol=1e-12)
+
+
+def test_bad_shadow(random):
+    points, normals = random.standard_normal((2, 5, 3))
+    scene = Scene(lights=SUN, view=NEAR)
+    with pytest.raises(ValueError, match=r"shadow: expected shape \(5, 1\), normals, got shape"):
+        engine.shade(points, None, scene, normals=normals, shadow=np.ones((5, 2)))
+    with pytest.raises(ValueError, match="shadow: .* got no normals"):
+        engine.shade(points, normals, scene, shadow=np.ones((5, 1)))
+    t = np.array([[1.0], [0.5], [np.nan], [0.5], [0.5]])
+    lit = engine.shade(points, None, scene, normals=normals, shadow=t)
+    assert lit.invalid == 1
+    assert np.all(np.isfinite(lit.luminance))
+
+
+def test_bad_depth(random):
+    points, tangents, normals = cloud(random, 4, float)
+    scene = SCENES["sun, far eye"]
+    for options in ({"depth": np.ones(4)}, {"fur": 0.5}):
+        with pytest.raises(ValueError, match="depth: expected depth and fur= together"):
+            engine.shade(points, tangents, scene, normals=normals, **options)
+    with pytest.raises(ValueError, match=r"depth: expected shape \(4,\)"):
+        engine.shade(points, tangents, scene, normals=normals, fur=0.5, depth=np.ones(3))
+    shaded = engine.shade(
+        points, tangents, scene, normals=normals, fur=0.5, depth=[1.0, -1.0, np.nan, 0.0]
+    )
+    np.testing.assert_array_equal(shaded.valid, [True, False, False, True])
+    assert np.isfinite(shaded.luminance).all()
+
+
+@pytest.mark.parametrize(("k", "n"), [(1, 2), (1, 4), (2, 4), (3, 5), (1, 8)])
+def test_n_space_against_50_digits(k, n, dtype, random, figure):
+    points, tangents, _ = cloud(random, 5, dtype, k, n)
+    scene = Scene(
+        lights=[
+            Light(direction=random.standard_normal(n)),
+            Light(position=random.standard_normal(n)),
+        ],
+        view=View(position=3 * random.standard_normal(n)),
+        material=WHITE,
+    )
+    shaded = engine.shade(points, tangents, scene)
+    flat = engine.shade(points, tangents.reshape(len(points), -1), scene)
+    np.testing.assert_array_equal(shaded.luminance, flat.luminance)
+    for i in range(len(points)):
+        true = oracles.shade(points[i], tangents[i], None, scene, exponent=shaded.plan.exponent)[3]
+        bound = 2 * (4 + 2 * shaded.plan.exponent + 24) + 4
+        figure(
+            "engine.shade", "n-space", dtype, oracles.units(shaded.luminance[i], true, dtype), bound
+        )
+
+
+def test_far_from_the_origin_float32_points_lose_nothing(random, figure):
+    """Terrain in metres north of the equator, a lamp a few metres away."""
+    offset = np.array([4.5e5, 5e6, 800.0])
+    points = (offset + random.uniform(-8, 8, (40, 3))).astype(np.float32)
+    tangents = random.standard_normal((40, 1, 3)).astype(np.float32)
+    scene = Scene(
+        lights=Light(position=offset + np.array([0.3, 0.4, 5.1])),
+        view=View(position=offset + np.array([9, 1, 7.7])),
+        material=WHITE,
+    )
+    for precision in ("float32", "float64"):
+        shaded = engine.shade(points, tangents, scene, precision=precision)
+        for i in range(len(points)):
+            true = oracles.shade(
+                points[i], tangents[i], None, scene, exponent=shaded.plan.exponent
+            )[3]
+            error = oracles.units(shaded.luminance[i], true, np.dtype(precision).type)
+            figure("engine.shade", "5e6 from the origin", precision, error, 44)
+
+
+def test_float64_points_in_float32_work_keep_their_differences(random):
+    points = 5e6 + random.uniform(-1, 1, (50, 3))
+    tangents = random.standard_normal((50, 1, 3)).astype(np.float32)
+    scene = Scene(
+        lights=Light(position=[5e6 + 2] * 3), view=View(position=[5e6 - 3] * 3), material=WHITE
+    )
+    low = engine.shade(points, tangents, scene)
+    high = engine.shade(points, tangents, scene, precision="float64")
+    assert low.luminance.dtype == np.float32
+    np.testing.assert_allclose(low.luminance, high.luminance, atol=60 * oracles.eps(np.float32))
+
+
+def test_blocks_and_threads_change_nothing(dtype, random):
+    points, tangents, normals = cloud(random, 1003, dtype)
+    scene = SCENES["three lights, colours"]
+    whole = engine.shade(points, tangents, scene, normals=normals, threads=1, components=True)
+    for block, threads in [(1, 2), (7, 1), (100, 3), (1002, 2), (5000, 4)]:
+        parts = engine.shade(
+            points, tangents, scene, normals=normals, threads=threads, block=block, components=True
+        )
+        for name in ("luminance", "diffuse", "specular", "rgb", "valid"):
+            np.testing.assert_allclose(
+                getattr(parts, name), getattr(whole, name), atol=8 * oracles.eps(dtype)
+            )
+
+
+def test_result_equals_the_model(random):
+    points, tangents, _ = cloud(random, 50, float)
+    shaded = engine.shade(
+        points, tangents, SCENES["sun, far eye"], components=True, compensate=False
+    )
+    frame = tangents / np.linalg.norm(tangents, axis=2, keepdims=True)
+    np.testing.assert_allclose(shaded.diffuse, reflection.diffuse(SUN.direction, frame), atol=1e-14)
+    specular = reflection.specular(SUN.direction, FAR.direction, frame, shininess=20)
+    np.testing.assert_allclose(shaded.specular, specular, atol=1e-14)
+
+
+def test_two_sided_surface_equals_its_tangent_plane(random):
+    points, tangents, _ = cloud(random, 200, float, k=2)
+    normals = np.cross(tangents[:, 0], tangents[:, 1])
+    for model in ("phong", "blinn"):
+        by_frame = engine.shade(points, tangents, SCENES["lamp, near eye"], model=model)
+        by_normal = engine.shade(
+            points, None, SCENES["lamp, near eye"], normals=normals, two_sided=True, model=model
+        )
+        np.testing.assert_allclose(by_frame.luminance, by_normal.luminance, atol=1e-12)
+
+
+def test_light_adds_up_and_scales(random):
+    points, tangents, _ = cloud(random, 30, float)
+    dark = Material(ambient=0, diffuse=0.6, specular=0.3)
+
+    def lit(*lights):
+        scene = Scene(lights=lights, view=NEAR, material=dark)
+        return engine.shade(points, tangents, scene).luminance
+
+    double = Light(direction=SUN.direction, intensity=2)
+    np.testing.assert_allclose(lit(SUN, LAMP), lit(SUN) + lit(LAMP), rtol=1e-13)
+    np.testing.assert_allclose(lit(double), 2 * lit(SUN), rtol=1e-13)
+
+
+def test_length_of_vectors_does_not_matter(dtype, random):
+    points, tangents, normals = cloud(random, 60, dtype)
+    scene = SCENES["lamp, near eye"]
+    scale = (10.0 ** random.uniform(-30, 30, 60)).astype(dtype)
+    plain = engine.shade(points, tangents, scene, normals=normals)
+    scaled = engine.shade(
+        points, tangents * scale[:, None, None], scene, normals=normals * scale[::-1, None]
+    )
+    assert scaled.valid.all()
+    np.testing.assert_allclose(plain.luminance, scaled.luminance, atol=60 * oracles.eps(dtype))
+
+
+@pytest.mark.parametrize("bad", [0.0, np.nan, np.inf])
+def test_bad_vectors_and_points_get_the_ambient_light(bad, dtype, random):
+    points, tangents, normals = cloud(random, 8, dtype)
+    tangents[1] = bad
+    normals[2] = bad
+    if bad:
+        points[3] = bad
+    scene = SCENES["three lights, colours"].replace(depth_cue=DepthCue(front=1, back=9))
+    shaded = engine.shade(points, tangents, scene, normals=normals, components=True)
+    expected = np.ones(8, bool)
+    expected[[1, 2]] = False
+    if bad:
+        expected[3] = False
+    np.testing.assert_array_equal(shaded.valid, expected)
+    assert shaded.invalid == 8 - expected.sum()
+    for array in (shaded.luminance, shaded.diffuse, shaded.specular, shaded.rgb):
+        assert np.all(np.isfinite(array))
+    assert np.all(shaded.diffuse[~expected] == 0)
+    plain = engine.shade(points, tangents, scene.replace(depth_cue=None), normals=normals)
+    np.testing.assert_array_equal(plain.luminance[~expected], dtype(shaded.ambient))
+
+
+def test_dependent_tangents_are_invalid(dtype):
+    tangents = np.array([[[1, 0, 0], [2, 0, 0]], [[1, 0, 0], [0, 1, 0]]], dtype=dtype)
+    shaded = engine.shade(np.zeros((2, 3), dtype), tangents, SCENES["sun, far eye"])
+    np.testing.assert_array_equal(shaded.valid, [False, True])
+
+
+def test_light_and_eye_on_the_point(dtype):
+    """At d = 0 a light has no direction: it gives nothing, and nothing breaks."""
+    points = np.array([[0, 0, 0], [1, 0, 0]], dtype=dtype)
+    tangents = np.array([[0, 1, 0], [0, 1, 0]], dtype=dtype)
+    here = Light(position=(0, 0, 0), attenuation=(0, 0, 1))
+    shaded = engine.shade(points, tangents, Scene(lights=here, view=NEAR), components=True)
+    assert shaded.valid.all()
+    assert (shaded.diffuse[0], shaded.specular[0]) == (0, 0)
+    assert shaded.diffuse[1] > 0
+    eye = engine.shade(
+        points, tangents, Scene(lights=SUN, view=View(position=(0, 0, 0))), components=True
+    )
+    assert eye.valid.all()
+    assert eye.specular[0] == 0
+    assert eye.diffuse[0] > 0
+
+
+def test_a_light_on_the_point_is_dark_in_any_dimension():
+    """With p(1, 60) = 175 the power is taken through the deficit, which is 0 for no direction."""
+    points, tangents = np.zeros((1, 60)), np.eye(60)[:1]
+    scene = Scene(lights=Light(position=np.zeros(60)), view=View(position=np.ones(60)))
+    shaded = engine.shade(points, tangents, scene, components=True)
+    assert shaded.plan.exponent > 128
+    assert (shaded.diffuse[0], shaded.specular[0]) == (0, 0)
+
+
+def test_vectors_are_made_unit_before_they_are_rounded():
+    tangents = np.array([[1e-150, 0, 0], [1e150, 0, 0], [1, 0, 0]])
+    points, scene = np.zeros((3, 3)), SCENES["sun, far eye"]
+    lines = engine.shade(points, tangents, scene, precision="float32")
+    surface = engine.shade(points, None, scene, normals=tangents, precision="float32")
+    pairs = np.array([[[1, 0, 0], [1, 1e-8, 0]]] * 3)
+    planes = engine.shade(points, pairs, scene, precision="float32")
+    for shaded in (lines, surface, planes):
+        assert shaded.valid.all()
+        np.testing.assert_allclose(shaded.luminance, shaded.luminance[2])
+
+
+def test_lights_very_near_and_very_far(dtype):
+    points = np.zeros((1, 3), dtype)
+    tangents = np.array([[0, 1, 0]], dtype=dtype)
+    view = View(direction=(0, 0, 1))
+    far = engine.shade(
+        points, tangents, Scene(lights=Light(direction=(1, 0, 1)), view=view)
+    ).luminance
+    for size in (1e-30, 1e30, 1e300):
+        scene = Scene(lights=Light(position=(size, 0, size)), view=view)
+        np.testing.assert_allclose(engine.shade(points, tangents, scene).luminance, far, rtol=1e-5)
+        scene = Scene(lights=Light(position=(size, 0, size), attenuation=(1, 0, 1)), view=view)
+        assert np.isfinite(engine.shade(points, tangents, scene).luminance).all()
+
+
+@pytest.mark.parametrize("shininess", [0.0, 1e6])
+def test_extreme_shininess(shininess, dtype, random):
+    points, tangents, _ = cloud(random, 100, dtype)
+    scene = Scene(lights=SUN, view=NEAR, material=Material(shininess=shininess))
+    for model in ("phong", "blinn"):
+        assert np.isfinite(engine.shade(points, tangents, scene, model=model).luminance).all()
+
+
+def test_one_sided_surface_is_dark_behind():
+    normals = np.array([[0, 0, 1.0], [0, 0, -1.0]])
+    scene = Scene(lights=Light(direction=(0.3, 0, 1)), view=View(direction=(0, 0, 1)))
+    shaded = engine.shade(np.zeros((2, 3)), None, scene, normals=normals, components=True)
+    assert shaded.diffuse[0] > 0
+    assert shaded.specular[0] > 0
+    assert (shaded.diffuse[1], shaded.specular[1]) == (0, 0)
+
+
+@pytest.mark.parametrize("count", [0, 1])
+def test_no_point_and_one_point(count, dtype):
+    shaded = engine.shade(
+        np.zeros((count, 3), dtype), np.ones((count, 3), dtype), SCENES["depth cue"]
+    )
+    assert shaded.luminance.shape == (count,)
+    assert shaded.valid.shape == (count,)
+
+
+def test_inputs_stay(random):
+    arrays = cloud(random, 100, float)
+    kept = [a.copy() for a in arrays]
+    for scene in SCENES.values():
+        engine.shade(arrays[0], arrays[1], scene, normals=arrays[2])
+    for array, copy in zip(arrays, kept, strict=True):
+        np.testing.assert_array_equal(array, copy)
+
+
+def test_memory_beyond_the_output_does_not_grow(random):
+    points, tangents, _ = cloud(random, 60_000, np.float32)
+    scene = SCENES["lamp, near eye"]
+
+    def extra(count, threads):
+        def work():
+            engine.shade(points[:count], tangents[:count], scene, threads=threads, block=2000)
+
+        # luminance, validity, rgb
+        return peak_memory(work) - count * (4 + 1 + 12)
+
+    extra(2000, 1)
+    small, large = extra(15_000, 1), extra(60_000, 1)
+    assert large < 1.05 * small
+    assert small < 40 * 2000 * 12
+    # How far threads overlap differs from run to run; twice one thread is the most.
+    assert extra(60_000, 2) < 2.5 * small
+
+
+def test_progress_reaches_the_end(random):
+    points, tangents, _ = cloud(random, 95, float)
+    for threads in (1, 2):
+        seen = []
+        engine.shade(
+            points,
+            tangents,
+            SCENES["sun, far eye"],
+            block=10,
+            threads=threads,
+            progress=lambda done, total, seen=seen: seen.append((done, total)),
+        )
+        assert seen == [(min(10 * i, 95), 95) for i in range(1, 11)]
+
+
+def test_an_error_in_a_block_comes_out():
+    class Broken:
+        shape, dtype = (50, 3), np.dtype(float)
+
+        def __getitem__(self, rows):
+            raise OSError("the disk is gone")
+
+    with pytest.raises(OSError, match="the disk is gone"):
+        engine.shade(Broken(), np.ones((50, 3)), SCENES["lamp, near eye"], block=5, threads=2)
+
+
+def test_types_decide_the_precision(random):
+    points, tangents, _ = cloud(random, 4, np.float32)
+    scene = SCENES["sun, far eye"]
+    assert engine.shade(points, tangents, scene).luminance.dtype == np.float32
+    assert engine.shade(points.astype(float), tangents, scene).luminance.dtype == np.float32
+    assert engine.shade(points, tangents.astype(float), scene).luminance.dtype == np.float64
+    assert engine.shade(points, tangents.astype(np.float16), scene).luminance.dtype == np.float32
+    assert engine.shade(points, np.ones((4, 3), int), scene).luminance.dtype == np.float64
+
+
+def test_depth_range(random):
+    points = random.standard_normal((1000, 3))
+    points[7] = np.nan
+    scene = SCENES["depth cue"]
+    near, far = engine.depth_range(points, scene, block=64)
+    axis = np.array(scene.view.direction) / np.linalg.norm(scene.view.direction)
+    depth = (np.array(scene.view.position) - points) @ axis
+    assert (near, far) == (pytest.approx(np.nanmin(depth)), pytest.approx(np.nanmax(depth)))
+    assert engine.depth_range(np.empty((0, 3)), scene) == (np.inf, -np.inf)
+
+
+ONES = np.ones((4, 3))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "options", "error", "words"),
+    [
+        ((np.ones(3), ONES), {}, ValueError, r"points: expected shape \(N, n\)"),
+        ((ONES, np.ones((4, 5))), {}, ValueError, r"tangents: expected shape \(4, k, 3\)"),
+        ((ONES, np.ones((3, 3))), {}, ValueError, r"tangents: expected .* got shape \(3, 3\)"),
+        ((ONES, np.ones((4, 9))), {}, ValueError, "tangents: expected .* k < 3"),
+        ((ONES, None), {}, ValueError, "tangents: expected tangents .* or normals .*, got neither"),
+        (
+            (ONES, None),
+            {"normals": np.ones((4, 2))},
+            ValueError,
+            r"normals: expected shape \(4, 3\)",
+        ),
+        ((ONES, ONES), {"precision": "half"}, ValueError, "precision: expected 'float32' or"),
+        ((ONES, ONES), {"threads": 0}, ValueError, "threads: expected an integer of at least 1"),
+        ((ONES, ONES), {"block": 0}, ValueError, "block: expected an integer of at least 1"),
+        ((ONES, [["a"] * 3] * 4), {}, TypeError, "tangents: expected real numbers"),
+        ((ONES.astype(complex), ONES), {}, TypeError, "points: expected real numbers"),
+    ],
+)
+def test_bad_input(arguments, options, error, words):
+    with pytest.raises(error, match=words):
+        engine.shade(*arguments, SCENES["sun, far eye"], **options)
+
+
+@pytest.mark.parametrize("kind", [np.float32, np.float64])
+def test_points_that_share_a_normal(kind, random):
+    """As if each row of tangents and normals stood there once for each of its points."""
+    points = random.standard_normal((300, 3)).astype(kind)
+    tangents, normals = random.standard_normal((2, 100, 3)).astype(kind)
+    depth = random.random(300).astype(kind)
+    lights = [Light(direction=(1, 2, 3)), Light(position=(4, 0, 1), attenuation=(1, 0.1, 0))]
+    scene = Scene(lights=lights, view=View(position=(0, 0, 9)))
+    whole = {"normals": np.repeat(normals, 3, axis=0), "depth": depth, "fur": 0.3}
+    expected = engine.shade(points, np.repeat(tangents, 3, axis=0), scene, **whole)
+    shared = {**whole, "normals": normals, "repeat": 3, "block": 7}
+    for rows in (tangents, np.repeat(tangents, 3, axis=0)):
+        found = engine.shade(points, rows, scene, **shared)
+        np.testing.assert_allclose(found.luminance, expected.luminance, rtol=1e-5)
+    alone = engine.shade(points, None, scene, normals=normals, repeat=3)
+    np.testing.assert_allclose(
+        alone.luminance,
+        engine.shade(points, None, scene, normals=whole["normals"]).luminance,
+        rtol=1e-5,
+    )
+    with pytest.raises(ValueError, match="repeat: expected a divisor of 300 points, got 7"):
+        engine.shade(points, tangents, scene, normals=normals, repeat=7)
+    with pytest.raises(ValueError, match=r"tangents: expected shape \(100 or 300, k, 3\)"):
+        engine.shade(points, tangents[:50], scene, normals=normals, repeat=3)

@@ -1,0 +1,321 @@
+"""What light cost and how wrong it is: of every filter, by formulas that share no code with it."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import oracles
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight import (
+    DepthCue,
+    Light,
+    Material,
+    Scene,
+    Sphere,
+    Truncus,
+    View,
+    cli,
+    engine,
+    fur,
+    illuminate,
+    project,
+    relief_shadow,
+    satin,
+    streamlines,
+)
+from vizlight.geometry import manifolds
+from vizlight.mesh import casters
+from vizlight.shading import block
+from vizlight.verify import oracle
+
+SCENE = Scene(
+    lights=[Light(direction=(1, 1, 1)), Light(position=(2, 3, 4), attenuation=(1, 0.1, 0.01))],
+    view=View(position=(5, 4, 6)),
+    depth_cue=DepthCue(back_scale=0.5, smooth=True),
+)
+PLAIN = SCENE.replace(depth_cue=None)
+
+
+@pytest.fixture(scope="module")
+def surface():
+    return vizlight.load_example().contour([600], scalars="Temp")
+
+
+def terrain():
+    grid = pv.ImageData(dimensions=(60, 50, 1))
+    x, y, _ = grid.points.T
+    grid["z"] = 3 * np.sin(x / 5) * np.cos(y / 7)
+    return grid
+
+
+def torus():
+    return vizlight.manifold(manifolds.torus(1.5, 0.75, resolution=24))
+
+
+SCENE_4 = Scene(lights=Light(direction=(0.7, 0.6, 0.38, 0)), view=View(direction=(0, -1, 0.5, 0)))
+SUN = PLAIN.replace(lights=Light(direction=(1, 0.5, 1)))
+FILTERS = {
+    "surface": lambda s: illuminate(s, SCENE),
+    "two-sided": lambda s: illuminate(s, SCENE, two_sided=True, model="blinn"),
+    "terminator": lambda s: illuminate(s, SCENE, terminator=0.3),
+    "conditioned": lambda s: illuminate(s, SCENE, tangents="V", conditioned=True, components=True),
+    "uncompensated": lambda s: illuminate(s, SCENE, tangents="V", compensate=False),
+    "cylinder": lambda s: illuminate(s, SCENE, tangents="V", model="cylinder"),
+    "streamlines": lambda _: streamlines(vizlight.load_example(), SCENE, vectors="V", seeds=9),
+    "satin": lambda s: satin(s, SCENE, tangents="V", seeds=5),
+    "fur": lambda _: fur(pv.Sphere().compute_normals(), PLAIN, density=0.3, fibres=300),
+    "4-space": lambda _: illuminate(torus(), SCENE_4, tangents="frame", positions="position"),
+    "carrier": lambda _: illuminate(
+        torus(), SCENE_4, tangents="frame", positions="position", conditioned="frame"
+    ),
+    "project": lambda _: project(torus(), rotation=("xw", 0.5), distance=3.0, scene=SCENE_4),
+    "relief": lambda _: relief_shadow(
+        terrain(), SUN, elevation="z", method="exact", depth=0.5, lit=True
+    ),
+}
+
+
+@pytest.mark.parametrize("name", FILTERS)
+def test_every_filter(name, surface):
+    with vizlight.report(sample=40) as told:
+        FILTERS[name](surface)
+    assert told.runs
+    assert told.points > 0
+    assert told.bytes > 0
+    assert told.seconds > 0
+    limit = 3e-3 if name == "relief" else 3e-6
+    for run in told.runs:
+        assert run.sample > 0
+        assert 0 <= run.rms <= run.error < limit
+        assert run.disagreed == 0
+        assert run.nanoseconds > 0
+    said = str(told)
+    assert f"{told.points} points lit in {len(told.runs)} run(s)" in said
+    assert "lit again one by one in float64" in said
+
+
+SHADOWS = {
+    "two lights": (terrain, {"elevation": "z", "method": "exact"}),
+    "walls": (terrain, {"elevation": "z", "method": "exact", "border": "wall", "base": -5.0}),
+    "sun's disc": (terrain, {"elevation": "z", "method": "exact", "angular_diameter": 0.1}),
+    "ball": (pv.Sphere, {"occluders": pv.Cube(center=(1, 1, 1)).triangulate()}),
+    "ball, disc": (pv.Sphere, {"angular_diameter": 0.2}),
+    "shell": (pv.Plane, {"thickness": 0.1}),
+}
+
+
+@pytest.mark.parametrize("name", SHADOWS)
+def test_every_shadow_of_every_light(name, monkeypatch):
+    make, options = SHADOWS[name]
+    lights = [Light(direction=(1, 0.5, 1)), Light(position=(20, 90, 50), intensity=0.5)]
+    scene = SUN.replace(lights=lights)
+    with vizlight.report() as told:
+        mesh = relief_shadow(make(), scene, depth=0.5 if make is terrain else 0.05, **options)
+    (run,) = told.runs
+    assert (run.points, run.terms, run.invalid) == (mesh.n_points, ("t",), 0)
+    assert run.bytes == mesh["t"].nbytes
+    assert run.sample > 30
+    assert run.error < (4e-3 if make is terrain else 1e-9)
+    right = casters._FieldCaster.of if make is terrain else casters._SolidCaster.of
+    worse = lambda self, light: right(self, light) * (0.9 if light.position else 1)  # noqa: E731
+    caster = casters._FieldCaster if make is terrain else casters._SolidCaster
+    monkeypatch.setattr(caster, "of", worse)
+    with vizlight.report() as told:
+        relief_shadow(make(), scene, depth=0.5 if make is terrain else 0.05, **options)
+    assert told.error > 0.02
+
+
+def test_a_day_is_told_whole():
+    with vizlight.report() as told:
+        day = vizlight.relief_day(
+            terrain(), latitude=0.8, day=172, hours=[9, 12, 15], depth=0.5, method="exact"
+        )
+    assert told.points == day.n_points
+    assert told.bytes == day["t"].nbytes + day["t_mean"].nbytes
+    assert told.error < 4e-3
+
+
+def test_points_of_a_lit_shadow_count_once():
+    with vizlight.report() as told:
+        lit = relief_shadow(terrain(), SUN, depth=0.5, lit=True)
+    assert len(told.runs) == 2
+    assert told.points == lit.n_points
+
+
+@pytest.mark.parametrize("levels", [12, 0.02])
+@pytest.mark.parametrize("specular", [0.0, 0.4])
+@pytest.mark.parametrize("what", [Sphere(), Sphere() - Truncus(axis=(0, 0, 4)), pv.Sphere()])
+def test_bands_are_one_run(what, specular, levels):
+    material = Material(diffuse=0.5, specular=specular, color="tomato")
+    scene = Scene(
+        lights=Light(direction=(1, 1, 1)), view=View(direction=(0, 0, 1)), material=material
+    )
+    with vizlight.report() as told:
+        found = vizlight.isoluminance(what, scene, levels=levels)
+    (run,) = told.runs
+    assert run.points == found["bands"].n_points
+    assert run.bound == found["bands"].field_data["luminance_error"][0]
+    assert run.sample > 50
+    assert 0.1 * run.bound < run.error <= run.bound * 1.001
+
+
+def test_colours_are_checked_too(surface, monkeypatch):
+    scene = PLAIN.replace(
+        lights=[Light(direction=(1, 1, 1), color="gold"), Light(position=(9, 8, 7))],
+        material=Material(color="tomato", specular_color=(0.2, 1, 0.5)),
+        depth_cue=DepthCue(back_scale=0.3, color="navy", cue=0.4),
+        ambient_color="green",
+    )
+    with vizlight.report() as told:
+        illuminate(surface, scene, tangents="V")
+    assert told.error < 3e-6
+    monkeypatch.setattr(block, "WHITE", (1.0, 0.9, 1.0))
+    with vizlight.report() as told:
+        illuminate(surface, scene, tangents="V")
+    assert told.error > 1e-2
+
+
+def test_the_oracle_agrees_on_what_can_be_lit(random):
+    """Tangents nearly dependent are lit by both; points nowhere by neither."""
+    line = random.standard_normal((60, 1, 3))
+    near = np.concatenate([line, line + 3e-9 * random.standard_normal((60, 1, 3))], axis=1)
+    points = random.standard_normal((60, 3))
+    points[3], points[5, 1] = np.nan, np.inf
+    with vizlight.report() as told:
+        engine.shade(points, near, PLAIN)
+    (run,) = told.runs
+    assert (run.disagreed, run.sample, run.invalid) == (0, 58, 2)
+    assert run.error < 1e-5
+
+
+def test_a_wrong_engine_is_found_out(surface, monkeypatch):
+    right = block.kernels.diffuse
+    monkeypatch.setattr(block.kernels, "diffuse", lambda *a: 1.01 * right(*a))
+    with vizlight.report() as told:
+        illuminate(surface, SCENE, tangents="V")
+    assert told.error > 1e-3
+
+
+def test_the_error_includes_what_a_tolerance_chose(surface):
+    with vizlight.report() as told:
+        illuminate(surface, PLAIN, tangents="V", tolerance=0.05)
+    (run,) = told.runs
+    assert 1e-4 < run.error <= run.bound <= 0.05
+    assert "stated bound" in str(told)
+
+
+def test_invalid_points_are_counted(random):
+    vectors = random.standard_normal((50, 3))
+    vectors[:7] = 0
+    vectors[7:9] = np.nan
+    mesh = pv.PolyData(random.standard_normal((50, 3)))
+    mesh["V"] = vectors
+    with vizlight.report() as told, warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        illuminate(mesh, PLAIN, tangents="V")
+    assert told.invalid == 9
+    assert told.runs[0].sample == 41
+    assert told.runs[0].disagreed == 0
+    assert "9 invalid" in str(told)
+
+
+def test_no_report_no_work(surface, monkeypatch):
+    monkeypatch.setattr(oracle, "light", lambda *_a, **_o: pytest.fail("sampled"))
+    illuminate(surface, SCENE)
+    with vizlight.report(sample=0) as told:
+        illuminate(surface, SCENE)
+    assert np.isnan(told.error)
+    assert "no point to light again" in str(told)
+
+
+def test_nested_and_empty(surface):
+    with vizlight.report() as outer:
+        with vizlight.report() as inner:
+            illuminate(surface, SCENE)
+        illuminate(surface, SCENE)
+        engine.shade(np.empty((0, 3)), np.empty((0, 3)), PLAIN)
+    assert (len(inner.runs), len(outer.runs)) == (1, 2)
+    assert outer.runs[1].points == 0
+    assert np.isnan(outer.runs[1].nanoseconds)
+    assert outer.terms == ("ambient", "diffuse", "specular")
+
+
+def test_bad_samples():
+    with pytest.raises(ValueError, match="sample: expected an integer of at least 0"):
+        vizlight.report(sample=-1).__enter__()
+    with pytest.raises(TypeError, match="seed: expected an integer"):
+        vizlight.report(seed=0.5).__enter__()
+
+
+@pytest.mark.parametrize("model", ["phong", "blinn"])
+@pytest.mark.parametrize("what", ["line", "surface", "conditioned"])
+def test_the_scalar_formulas_against_50_digits(model, what, random):
+    scene = PLAIN.replace(depth_cue=DepthCue(front=3.0, back=9.0, back_scale=0.2))
+    for point, tangent, normal in random.standard_normal((20, 3, 3)):
+        lines = None if what == "surface" else [tangent]
+        up = None if what == "line" else normal
+        found = oracle.light(point, lines, up, scene, model=model)[0]
+        exponent = 1.0 if what == "surface" else oracle._exponent(1, 3)
+        true = oracles.shade(point, lines, up, scene, exponent=exponent, model=model)[3]
+        assert abs(found - float(true)) < 1e-13
+
+
+def test_the_scalar_cylinder_against_50_digits(random):
+    scene = Scene(
+        lights=Light(direction=(1, 2, 3)),
+        view=View(direction=(0, -1, 2)),
+        material=Material(ambient=0, diffuse=1, specular=1, shininess=17.5),
+    )
+    for line in random.standard_normal((5, 3)):
+        found = oracle.light((0, 0, 0), [line], None, scene, model="cylinder")[0]
+        true = sum(oracles.line_light((1, 2, 3), (0, -1, 2), line, 17.5))
+        assert abs(found - float(true)) < 1e-12
+
+
+def test_the_scalar_ray_has_the_closed_form_of_a_ball():
+    ball = pv.Icosphere(radius=0.5, nsub=5)
+    corners = np.asarray(ball.points, dtype=np.float64)[ball.regular_faces]
+    up, way, depth = np.array([0.1, 0.2, 1.0]), np.array([0.48, 0.6, 0.64]), 0.1
+    up /= np.linalg.norm(up)
+    place = ball.points.mean(axis=0) + 0.5 * up
+    along = (place - depth * up) @ way
+    length = -along + np.sqrt(along**2 + 0.25 - 0.4**2)
+    t = oracle.solid_ratio([corners], place, up, depth, way, 9.0)
+    assert t == pytest.approx(depth / length, abs=1e-3)
+    two = oracle.solid_ratio(
+        [corners, corners + np.array([0.3, 0.4, 0.4])], place, up, depth, way, 9.0
+    )
+    assert two < t - 0.01
+
+
+def test_a_flat_field_has_the_cosine():
+    x, z = np.arange(9.0), np.zeros((9, 9))
+    way = (0.6, 0, 0.8)
+    place, up = np.array([4.0, 4, 0]), np.array([0, 0, 1.0])
+    t = oracle.relief_ratio(x, x, z, place, up, 0.5, way=way)
+    assert t == pytest.approx(0.8, abs=1e-4)
+    t = oracle.relief_ratio(x, x, z, place, up, 0.5, way=None, end=(4 + 6e3, 4, 8e3 - 0.5))
+    assert t == pytest.approx(0.8, abs=1e-4)
+    assert oracle.relief_ratio(x, x, z, place, up, 0.5, way=None, end=(9.0, 4, 0)) == 0
+
+
+def test_command_line(tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    pv.Sphere().save("ball.vtp")
+    assert (
+        cli.main(
+            ["light", "ball.vtp", "-o", "lit.vtp", "--report", "--tolerance", "1/255", "--explain"]
+        )
+        == 0
+    )
+    said = capfd.readouterr().out
+    assert "842 points lit in 1 run(s)" in said
+    assert "ns a point" in said
+    assert "error" in said
+    assert "tolerance: 0.00392 of luminance, the bound of all is" in said
+    assert cli.main(["light", "ball.vtp", "-o", "lit.vtp", "--tolerance", "much"]) == 2
+    assert "--tolerance: expected a number or a fraction such as 1/255" in capfd.readouterr().err

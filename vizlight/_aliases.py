@@ -1,0 +1,62 @@
+"""Public names of modules that stand in a deeper folder: one module, two names."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from types import ModuleType
+
+#: Short names of the modules of ``vizlight.geometry``, and the folders that they are in.
+GEOMETRY = {
+    "curves": "lines",
+    "depth_map": "relief",
+    "fur": "lines",
+    "isoluminance": "contours",
+    "manifolds": "nspace",
+    "primitives": "solids",
+    "projection": "nspace",
+    "slices": "nspace",
+    "sun": "relief",
+}
+ALIASES = {
+    "vizlight.engine": "vizlight.shading.engine",
+    "vizlight.light": "vizlight.scene.light",
+    "vizlight.movie": "vizlight.pictures.movie",
+    "vizlight.plan": "vizlight.shading.plan",
+    "vizlight.render": "vizlight.pictures.render",
+    "vizlight.testing": "vizlight.pictures.testing",
+    **{f"vizlight.geometry.{m}": f"vizlight.geometry.{d}.{m}" for m, d in GEOMETRY.items()},
+}
+
+
+class _Alias(Loader):
+    """Gives the module that stands under the other name, itself and not a copy."""
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType:
+        module = importlib.import_module(ALIASES[spec.name])
+        self._spec = module.__spec__
+        return module
+
+    def exec_module(self, module: ModuleType) -> None:
+        # The import system has put the alias's specification in place of the module's own.
+        module.__spec__ = self._spec
+
+
+class _Finder(MetaPathFinder):
+    def find_spec(
+        self, fullname: str, _path: Sequence[str] | None, _target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        """Return where an alias is loaded from; None for any other module."""
+        return ModuleSpec(fullname, _Alias()) if fullname in ALIASES else None
+
+
+def install() -> None:
+    """Make the aliases known to ``import``."""
+    if not any(isinstance(finder, _Finder) for finder in sys.meta_path):
+        sys.meta_path.append(_Finder())

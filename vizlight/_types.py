@@ -1,0 +1,31 @@
+"""Types that annotations share."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+#: Real numbers of float32 or float64.
+Array: TypeAlias = NDArray[np.floating]
+Bools: TypeAlias = NDArray[np.bool_]
+Indices: TypeAlias = NDArray[np.intp]
+#: What may come from a user where real numbers are expected; complex numbers serve derivatives.
+Numbers: TypeAlias = NDArray[np.number]
+
+Vector: TypeAlias = tuple[float, ...]
+VectorLike: TypeAlias = Sequence[float] | Array
+Color: TypeAlias = tuple[float, float, float]
+
+
+class HasChannels(Protocol):
+    """A colour object, such as ``pyvista.Color``."""
+
+    @property
+    def float_rgb(self) -> tuple[float, float, float]:
+        """Red, green and blue from 0 to 1."""
+
+
+ColorLike: TypeAlias = str | VectorLike | HasChannels

@@ -1,0 +1,1 @@
+from vizlight.shading.engine import *

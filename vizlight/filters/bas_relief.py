@@ -1,0 +1,112 @@
+"""A bas-relief: the side of a mesh that an eye at infinity sees, as a height field."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pyvista as pv
+
+from vizlight import _check
+from vizlight.geometry.relief.depth_map import depth_map
+from vizlight.mesh import closed_meshes
+
+
+def relief_from_mesh(
+    mesh: Any,
+    /,
+    *,
+    direction: Any = (0.0, 0.0, 1.0),
+    up: Any = None,
+    resolution: int = 512,
+    height: float | None = None,
+    margin: float = 0.05,
+    name: str = "height",
+) -> Any:
+    """Return the bas-relief of a mesh: its depth map, flattened, on a plate.
+
+    Parameters
+    ----------
+    mesh : pyvista.PolyData
+        A surface, closed or open.
+    direction : vector of 3 components, default: (0, 0, 1)
+        Toward the eye, at infinity.
+    up : vector of 3 components, optional
+        What is up in the picture; default: z, or y if the eye looks along z.
+    resolution : int, default: 512
+        Nodes along the longer side, 2 or more.
+    height : float, optional
+        Of the relief above the plate, in the mesh's unit; default: as deep as what is seen.
+    margin : float, default: 0.05
+        Of the plate around the mesh, as a share of its longer side.
+    name : str, default: "height"
+
+    Returns
+    -------
+    pyvista.ImageData
+        In the plane of x (right) and y (up), centred, with the point array ``height``, 0 on the
+        plate: what :func:`vizlight.relief_shadow` lights.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument does not fit, or nothing of the mesh is seen.
+
+    Notes
+    -----
+    Sampled at the nodes (:func:`vizlight.geometry.depth_map.depth_map`), so that no OpenGL is
+    needed. Source: cos-theta, figure 1, lights a bas-relief of a statue.
+    """
+    vertices, triangles = closed_meshes.triangles_of(mesh, "mesh")
+    toward = _unit("direction", direction)
+    if up is None:
+        up = (0.0, 1.0, 0.0) if abs(toward[2]) > 0.999 else (0.0, 0.0, 1.0)
+    right = np.cross(_unit("up", up), toward)
+    if np.linalg.norm(right) < 1e-6:
+        raise ValueError(_check.message("up", "a direction across the view", tuple(up)))
+    right /= np.linalg.norm(right)
+    resolution = _check.integer("resolution", resolution, low=2)
+    margin = _check.number("margin", margin, low=0.0, high=10.0)
+    if height is not None:
+        height = _check.number("height", height, low=0.0)
+    if not isinstance(name, str) or not name:
+        raise ValueError(_check.message("name", "a name for the point array", repr(name)))
+
+    used = vertices[np.unique(triangles)]
+    if not len(used):
+        raise ValueError(_check.message("mesh", "faces of some area", "none"))
+    centre = (used.min(axis=0) + used.max(axis=0)) / 2
+    places = (vertices - centre) @ np.stack([right, np.cross(toward, right), toward], axis=1)
+    seen = places[np.unique(triangles)]
+    low, high = seen.min(axis=0), seen.max(axis=0)
+    side = float((high - low)[:2].max())
+    if not side > 0:
+        raise ValueError(_check.message("mesh", "an extent across the view", "none"))
+    step = side * (1 + 2 * margin) / (resolution - 1)
+    # Rounding must not add a node.
+    count = np.ceil(((high - low)[:2] + 2 * margin * side) / step - 1e-6).astype(int) + 1
+    count = np.maximum(count, 2)
+    first = ((low + high)[:2] - (count - 1) * step) / 2
+    axes = [first[k] + step * np.arange(count[k]) for k in (0, 1)]
+    depth = depth_map(axes[0], axes[1], places, triangles)
+    there = np.isfinite(depth)
+    if not there.any():
+        remedy = "raise resolution"
+        raise ValueError(_check.message("mesh", "a surface wider than a node", "thinner", remedy))
+    depth -= depth[there].min()
+    depth[~there] = 0
+    tall = float(depth.max())
+    if height is not None and tall > 0:
+        depth *= height / tall
+    out = pv.ImageData(dimensions=(*count, 1), spacing=(step, step, step), origin=(*first, 0.0))
+    out.point_data[name] = depth.ravel()
+    out.point_data.active_scalars_name = name
+    return out
+
+
+def _unit(name: str, value: Any) -> Any:
+    vector = np.array(_check.vector(name, value, direction=True))
+    if len(vector) != 3:
+        raise ValueError(_check.message(name, "3 components", len(vector)))
+    vector /= np.abs(vector).max()
+    return vector / np.linalg.norm(vector)

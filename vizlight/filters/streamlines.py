@@ -1,0 +1,278 @@
+"""Streamlines, free or confined to a surface, lit and conditioned."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyvista as pv
+
+from vizlight import _check
+from vizlight.filters.illuminate import illuminate
+from vizlight.filters.lighting import DEFAULT_NAME
+from vizlight.geometry.lines import fur
+from vizlight.mesh import point_arrays, polylines, surfaces
+from vizlight.mesh.records import all_made, retell
+from vizlight.model import kernels
+from vizlight.scene import Scene
+
+if TYPE_CHECKING:
+    from vizlight._types import Array
+
+
+#: The array that is traced, under a name that no user's array has.
+TRACED = "vizlight vectors"
+
+
+def streamlines(
+    mesh: Any,
+    /,
+    scene: Scene,
+    *,
+    vectors: str | None = None,
+    surface: Any = None,
+    confined: bool | None = None,
+    conditioned: bool | None = None,
+    seeds: Any = 200,
+    seed: int = 0,
+    step: float = 0.3,
+    max_length: float | None = None,
+    max_steps: int = 4000,
+    **options: Any,
+) -> Any:
+    """Integrate streamlines by VTK's tracer, light them, condition them by a surface.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Carries the vectors; not changed.
+    scene : Scene
+    vectors : str, optional
+        A point array of 3 components; default the active vectors.
+    surface : pyvista.PolyData, optional
+        Its normals condition the light of lines near it (Banks 6); confined lines stay on it.
+        Default for a mesh that is a surface: the mesh itself.
+    confined : bool, optional
+        Keep the lines on the surface: the tangential part of the vectors is integrated.
+        Default: whether the mesh itself is a surface and no other is given.
+    conditioned : bool, optional
+        Default: whether there is a surface.
+    seeds : int or array_like, shape (M, 3), or mesh, default: 200
+        Where lines start; a number is of points of the mesh, drawn without repetition, or, for
+        confined lines, of places on the surface, uniform in area.
+    seed : int, default: 0
+        Of the drawing.
+    step : float, default: 0.3
+        Largest step of the integration, in cell lengths.
+    max_length : float, optional
+        Of a line, in the unit of the mesh; default four diagonals of the bounding box.
+    max_steps : int, default: 4000
+        Of a line.
+    **options
+        Of :func:`vizlight.illuminate`, ``tangents=`` to light by another array than the lines'
+        own tangents.
+
+    Returns
+    -------
+    pyvista.PolyData
+        The lines that left their seed, with the point array ``luminance`` and the tracer's own
+        arrays; with a surface ``Normals``; for confined lines the field array ``drift``, the
+        largest distance from the surface before they were put back on it.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument does not fit, or no line could be traced.
+
+    Notes
+    -----
+    Confined lines are moved to the closest point of the surface after tracing, so that they lie
+    on its triangles to rounding: 1e-6 of the surface's size. VTK traces in float32; a mesh far
+    from the origin is therefore traced near it, and its lines come back in float64. Lines end
+    where vectors are less than a millionth of the median, zero or not finite, and where a line
+    turns back by more than a right angle from one step to the next, as it does at a wall.
+    Sources: Banks 4.1 and (6).
+
+    Examples
+    --------
+    >>> import vizlight
+    >>> flow = vizlight.load_example()
+    >>> scene = vizlight.Scene(view=vizlight.View(direction=(1, 1, 1)))
+    >>> lines = vizlight.streamlines(flow, scene, vectors="V", seeds=20)
+    >>> "luminance" in lines.point_data
+    True
+    """
+    told = {name: value for name, value in locals().items() if name not in ("mesh", "scene")}
+    if not isinstance(mesh, pv.DataSet):
+        remedy = "join its blocks by mesh.combine()" if isinstance(mesh, pv.MultiBlock) else ""
+        raise TypeError(_check.message("mesh", "a PyVista dataset", type(mesh).__name__, remedy))
+    if isinstance(mesh, pv.PointSet):
+        remedy = "interpolate its vectors onto a grid, between points there are none"
+        raise TypeError(_check.message("mesh", "a dataset with cells", "PointSet", remedy))
+    _check.instance("scene", scene, Scene)
+    if "inplace" in options:
+        remedy = "the lines are always a new mesh"
+        raise TypeError(_check.message("inplace", "no such option", options["inplace"], remedy))
+    vectors = _vectors_name(mesh, vectors)
+    is_surface = isinstance(mesh, pv.PolyData) and bool(
+        mesh.GetNumberOfPolys() or mesh.GetNumberOfStrips()
+    )
+    if confined is None:
+        confined = is_surface and surface is None
+    if surface is None and is_surface:
+        surface = mesh
+    if surface is None and (confined or conditioned):
+        what = "confined" if confined else "conditioned"
+        raise ValueError(_check.message("surface", f"a surface for {what} lines", None))
+    carrier, own = mesh, all_made(mesh)
+    if surface is not None:
+        own |= all_made(surface)
+        surface = surfaces.with_normals(surface, point_arrays.onlooker(scene))
+        if confined:
+            surface = carrier = _tangential(surface, mesh, vectors)
+    # VTK traces in float32 to an absolute error: near the origin, in a box of size 1.
+    origin, size = np.array(point_arrays.near_origin(carrier)), point_arrays.box(carrier)[1]
+    carrier = point_arrays.moved(_traceable(carrier, vectors, own), -origin, 1 / size)
+    lines = carrier.streamlines_from_source(
+        pv.PolyData(_seeds(carrier, seeds, seed, origin, size, on_surface=confined)),
+        vectors=TRACED,
+        surface_streamlines=confined,
+        integration_direction="both",
+        initial_step_length=_check.number("step", step, low=1e-6),
+        max_step_length=step,
+        min_step_length=min(0.01, step),
+        max_steps=int(_check.number("max_steps", max_steps, low=1, high=1e9)),
+        max_length=_max_length(carrier, max_length, size),
+        terminal_speed=1e-6,
+        compute_vorticity=False,
+    )
+    lines = polylines.before_turning_back(lines)
+    for key in (surfaces.NORMALS, TRACED):
+        if key in lines.point_data:
+            del lines.point_data[key]
+    if not lines.n_points:
+        raise ValueError(
+            _check.message(
+                "seeds", "points inside the mesh where the vectors are not zero", "no line"
+            )
+        )
+    places: Array = np.asarray(lines.points, dtype=np.float64)
+    if surface is not None:
+        nearest, normals = surfaces.closest(point_arrays.moved(surface, -origin, 1 / size), places)
+        if confined:
+            drift = size * np.linalg.norm(nearest - places, axis=1).max()
+            lines.field_data["drift"] = [drift]
+            places = nearest
+        lines.point_data["Normals"] = normals.astype(np.float32)
+    far = np.any(origin) or not 1e-30 < size < 1e30
+    lines.points = (size * places + origin).astype(np.float64 if far else np.float32)
+    if conditioned is None:
+        conditioned = surface is not None
+    if conditioned:
+        options.setdefault("normals", "Normals")
+    lit = illuminate(lines, scene, conditioned=conditioned, inplace=True, **options)
+    told |= {"vectors": vectors, **told.pop("options")}
+    retell(lit, options.get("name", DEFAULT_NAME), "streamlines", told)
+    return lit
+
+
+def _vectors_name(mesh: pv.DataSet, vectors: str | None) -> str:
+    point_arrays.refuse_unnamed("vectors", vectors)
+    if vectors is None:
+        vectors = mesh.point_data.active_vectors_name
+        if vectors is None:
+            raise _no_vectors(mesh, None)
+    if vectors not in mesh.point_data and vectors not in mesh.cell_data:
+        raise _no_vectors(mesh, vectors)
+    point_arrays.vectors_of(mesh, "vectors", vectors, 3)
+    return vectors
+
+
+def _no_vectors(mesh: pv.DataSet, got: str | None) -> ValueError:
+    """Return an error that names the arrays which could be traced."""
+    point, cell = (
+        [repr(key) for key in data if np.shape(data[key])[1:] == (3,)]
+        for data in (mesh.point_data, mesh.cell_data)
+    )
+    remedy = ""
+    if point:
+        remedy = " or ".join(f"vectors={key}" for key in point)
+        remedy = f"pass {remedy}"
+    elif cell:
+        remedy = (
+            f"the cells have {', '.join(cell)}: call mesh.cell_data_to_point_data() and pass "
+            f"vectors={cell[0]}"
+        )
+    there = ", ".join(point) or "none"
+    expected = f"the name of a point array of 3 components ({there})"
+    return ValueError(
+        _check.message("vectors", expected, None if got is None else repr(got), remedy)
+    )
+
+
+def _tangential(surface: pv.PolyData, mesh: pv.DataSet, vectors: str) -> pv.PolyData:
+    """Return the surface with the tangential part of the vectors, sampled where it lacks them."""
+    if vectors in surface.point_data:
+        point_arrays.vectors_of(surface, "vectors", vectors, 3)
+    else:
+        field = pv.PolyData(surface.points).sample(mesh)
+        surface.point_data[vectors] = np.asarray(field.point_data[vectors])
+    array = np.array(surface.point_data[vectors], dtype=np.float64)
+    array[~np.all(np.isfinite(array), axis=1)] = 0
+    normal = np.asarray(surface.point_data[surfaces.NORMALS], dtype=np.float64)
+    along = array - np.einsum("ij,ij->i", array, normal)[:, np.newaxis] * normal
+    surface.point_data[vectors] = along
+    return surface
+
+
+def _traceable(mesh: Any, vectors: str, own: set[str]) -> Any:
+    """Return a mesh that the tracer may change, with the vectors as TRACED.
+
+    Arrays of words, which end the tracer's process, and vizlight's own are left out. The vectors
+    are scaled to a median speed of 1: where it is below a millionth a line has come to rest.
+    """
+    bare = mesh.copy(deep=False)
+    for key in list(bare.point_data):
+        if key in own or np.asarray(bare.point_data[key]).dtype.kind not in "biuf":
+            del bare.point_data[key]
+    array = np.array(mesh.point_data[vectors], dtype=np.float64)
+    array[~np.all(np.isfinite(array), axis=1)] = 0
+    speed = kernels.length(np.ascontiguousarray(array.T))
+    moving = speed[(speed > 0) & np.isfinite(speed)]
+    scale = float(np.median(moving)) if len(moving) else 1.0
+    bare.point_data[TRACED] = np.clip(array / scale, -1e30, 1e30)
+    return bare
+
+
+def _seeds(
+    mesh: pv.DataSet, seeds: Any, seed: int, origin: Array, size: float, *, on_surface: bool
+) -> Array:
+    """Return where lines start in a mesh that was moved to the origin and scaled to size 1."""
+    if isinstance(seeds, pv.DataSet):
+        given: Array = np.asarray(seeds.points, dtype=np.float64)
+    else:
+        given = _check.floats("seeds", seeds).astype(np.float64)
+    if given.ndim:
+        places = (_check.vectors("seeds", given, n=3) - origin) / size
+        if places.ndim != 2 or not np.all(np.isfinite(places)):
+            what = "finite points of shape (M, 3)"
+            raise ValueError(_check.message("seeds", what, _check.describe(seeds)))
+        return places
+    count, seed = _check.integer("seeds", seeds, low=1), _check.integer("seed", seed, low=0)
+    points = np.asarray(mesh.points, dtype=np.float64)
+    if not on_surface:
+        count = min(count, mesh.n_points)
+        chosen = np.random.default_rng(seed).choice(mesh.n_points, count, replace=False)
+        return points[np.sort(chosen)]
+    faces = np.asarray(mesh.regular_faces)
+    face, weights = fur.seeds(points, faces, count, seed=seed)
+    b, c = weights[:, 1:, np.newaxis].astype(np.float64).transpose(1, 0, 2)
+    corner = points[faces[face]]
+    places = (1 - b - c) * corner[:, 0] + b * corner[:, 1] + c * corner[:, 2]
+    return np.asarray(places)
+
+
+def _max_length(mesh: pv.DataSet, max_length: float | None, size: float) -> float:
+    if max_length is None:
+        return 4 * float(mesh.length)
+    return _check.number("max_length", max_length, low=np.finfo(float).tiny) / size

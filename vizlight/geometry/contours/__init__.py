@@ -1,0 +1,1 @@
+"""Contours of equal luminance: in closed form, on solids and on triangles."""

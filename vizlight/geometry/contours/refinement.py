@@ -1,0 +1,405 @@
+"""Contours of any luminance on solids: refined, cut on the exact surfaces, and measured."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from vizlight import _check
+from vizlight.geometry.contours import banding, spacing
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from vizlight._types import Array, Bools, Indices
+    from vizlight.geometry.contours.banding import Bands
+    from vizlight.geometry.contours.spacing import Levels, Steps
+    from vizlight.geometry.solids.exact_surfaces import Surface
+    from vizlight.geometry.solids.triangle_mesh import Mesh
+
+    Luminance = Callable[[Array, Array], Array]
+
+#: Rounds of refinement, and triangles and polygons beyond which none begins.
+ROUNDS, ENOUGH, MANY = 20, 1_500_000, 300_000
+#: The share of a step that contours drawn as chords may add to the error.
+CURVED = 0.1
+#: Halvings of an edge while triangles are still refined.
+ROUGH = 20
+#: Polygons of less than this share of their triangle are not measured: where the luminance
+#: jumps, all its contours run together.
+SLIVER = 1e-4
+#: Where along the edges of polygons their error is measured, and how far within.
+ALONG, WITHIN = (0.25, 0.5, 0.75), 1e-3
+#: The share of an allowed error up to which a measured one is taken: between the places where
+#: it is measured it may be a little larger.
+KEPT = 0.98
+#: Triangles beyond which none is asked for highlights smaller than itself, and places along its
+#: edge where it is asked.
+ASKED, GRID = 3000, 10
+#: How far from its apex a cone is opened, so that each ruling has its own normal there.
+APEX = 1e-7
+
+
+def draw(mesh: Mesh, luminance: Luminance, levels: Levels, /, *, low: float | None = None) -> Bands:
+    """Return the bands of a luminance on the surfaces of a solid.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Of a solid. Its triangles are halved where the luminance is not linear over them.
+    luminance : callable
+        ``luminance(points, outward normals)``, in the solid's own unit. It is called for points
+        on the exact surfaces, with their exact normals.
+    levels : int, float or sequence of float
+        As :func:`vizlight.geometry.contours.spacing.steps`.
+    low : float, optional
+        The luminance of what no light reaches; default the lowest found.
+
+    Returns
+    -------
+    Bands
+        Closed if the mesh is. ``error`` is measured at the middle of each polygon and at three
+        places of each of its edges, on the exact surface.
+
+    Warns
+    -----
+    UserWarning
+        If an allowed error is not kept after 20 rounds of halving, 1.5 million triangles or
+        300 thousand polygons.
+
+    Notes
+    -----
+    Contour points are found by halving edges and lie on the exact surface (at creases, on both
+    surfaces); only between them are contours drawn as chords.
+    """
+    spacing.check(levels)
+    if not len(mesh.triangles):
+        none = spacing.steps(levels, low or 0.0, low or 0.0)
+        empty, _ = banding.cut(mesh.points[:0], mesh.triangles, np.empty((0, 3)), none)
+        return dataclasses.replace(empty, error=0.0)
+    made = refine(_Lit(open_apexes(mesh), luminance), levels, low=low)
+    made = _close_apexes(made, mesh)
+    return dataclasses.replace(made, points=mesh.world(made.points))
+
+
+def refine(surface: Any, levels: Levels, /, *, low: float | None = None) -> Bands:
+    """Return the bands of a lit surface, refined until they keep the allowed error.
+
+    Parameters
+    ----------
+    surface : object
+        With ``triangles``, ``corners()``, ``cut()``, ``measure()``, ``peaks()`` and ``split()``
+        as of solids here and of :class:`vizlight.geometry.contours.facets.Facets`.
+    levels, low
+        As for :func:`draw`.
+
+    Returns
+    -------
+    Bands
+        With the error that was measured.
+    """
+    bound = spacing.allowed(levels)
+    worst: float | None = None
+    for last in (*range(ROUNDS), None):
+        values = surface.corners()
+        bottom = float(values.min()) if low is None else low
+        steps = spacing.steps(levels, bottom, float(values.max()))
+        if last is None or len(surface.triangles) > ENOUGH:
+            break
+        allowed = (1 + CURVED) * steps.error if bound is None else KEPT * bound
+        rough, triangle = surface.cut(values, steps, ROUGH)
+        if len(rough.values) > MANY:
+            break
+        error = surface.measure(rough, triangle)
+        bad = np.unique(np.concatenate([triangle[error > allowed], surface.peaks(values, allowed)]))
+        if not len(bad):
+            worst = float(error.max(initial=0))
+            break
+        surface.split(bad)
+    made: Bands
+    made, triangle = surface.cut(values, steps, banding.HALVINGS)
+    if worst is None:
+        worst = float(surface.measure(made, triangle).max(initial=0))
+    if bound is not None and worst > bound:
+        _check.warn(f"levels={bound:g} is not kept everywhere: the largest error is {worst:.3g}")
+    return dataclasses.replace(made, error=worst)
+
+
+class _Lit:
+    """A mesh on exact surfaces, and the luminance on them."""
+
+    def __init__(self, mesh: Mesh, luminance: Luminance) -> None:
+        self.luminance = luminance
+        self._set(mesh)
+
+    def _set(self, mesh: Mesh) -> None:
+        self.mesh = mesh
+        self.size = len(mesh.points)
+        start, stop = mesh.triangles, np.roll(mesh.triangles, -1, axis=1)
+        code = np.minimum(start, stop) * self.size + np.maximum(start, stop)
+        self.codes, edge = np.unique(code, return_inverse=True)
+        self.edge = edge.reshape(-1, 3)
+        # The surfaces on both sides of each edge: the same one twice where it is smooth.
+        self.both = np.full((len(self.codes), 2), -1)
+        owner = np.repeat(mesh.patch, 3)
+        self.both[self.edge.ravel(), 0] = owner
+        other = owner != self.both[self.edge.ravel(), 0]
+        self.both[:, 1] = self.both[:, 0]
+        self.both[self.edge.ravel()[other], 1] = owner[other]
+
+    @property
+    def triangles(self) -> Indices:
+        """The triangles as they are now."""
+        return self.mesh.triangles
+
+    def light(self, points: Array, patch: Indices) -> Array:
+        """Return the luminance of points on given surfaces."""
+        found = normals_of(self.mesh, points, patch)
+        return np.asarray(self.luminance(self.mesh.world(points), found), dtype=np.float64)
+
+    def corners(self) -> Array:
+        """Return the luminance at the corners of all triangles."""
+        patches = len(self.mesh.surfaces)
+        key = self.mesh.triangles * patches + self.mesh.patch[:, np.newaxis]
+        codes, place = np.unique(key, return_inverse=True)
+        point, patch = np.divmod(codes, patches)
+        return np.asarray(self.light(self.mesh.points[point], patch)[place.reshape(-1, 3)])
+
+    def place(self, a: Indices, b: Indices, share: Array) -> Array:
+        """Return points on edges, on the surfaces of both sides."""
+        edge = np.searchsorted(self.codes, np.minimum(a, b) * self.size + np.maximum(a, b))
+        points = self.mesh.points
+        t = share[:, np.newaxis]
+        return onto(self.mesh.surfaces, points[a] * (1 - t) + points[b] * t, self.both[edge])
+
+    def at(self, a: Indices, b: Indices, share: Array, patch: Indices) -> Array:
+        """Return the luminance on edges, as seen from one side."""
+        return self.light(self.place(a, b, share), patch)
+
+    def cut(self, values: Array, steps: Steps, halvings: int) -> tuple[Bands, Indices]:
+        """Return the bands, and the triangle that each polygon was cut from."""
+        return banding.cut(
+            self.mesh.points, self.mesh.triangles, values, steps, patch=self.mesh.patch,
+            place=self.place, luminance=self.at, halvings=halvings,
+        )  # fmt: skip
+
+    def split(self, chosen: Indices) -> None:
+        """Halve the edges of some triangles; their neighbours are cut to fit."""
+        marked = np.zeros(len(self.codes), np.bool_)
+        marked[self.edge[chosen].ravel()] = True
+        a, b = np.divmod(self.codes[marked], self.size)
+        new = self.place(a, b, np.full(len(a), 0.5))
+        number = np.full(len(self.codes), -1)
+        number[marked] = self.size + np.arange(len(a))
+        triangles, owner = split(self.mesh.triangles, number[self.edge])
+        self._set(
+            self.mesh.replace(
+                points=np.concatenate([self.mesh.points, new]),
+                triangles=triangles,
+                patch=self.mesh.patch[owner],
+            )
+        )
+
+    def peaks(self, values: Array, bound: float) -> Indices:
+        """Return triangles in which the luminance rises above that of all corners by more.
+
+        A highlight may be smaller than a triangle: each is asked at a grid of places. Where there
+        are many triangles they are small, and none is asked.
+        """
+        triangles, patch = self.mesh.triangles, self.mesh.patch
+        if len(triangles) > ASKED:
+            return np.empty(0, np.intp)
+        top = values.max(axis=1) + bound
+        found = np.zeros(len(triangles), np.bool_)
+        for row in grid():
+            places = np.einsum("i,tij->tj", row, self.mesh.points[triangles])
+            found |= self.light(onto(self.mesh.surfaces, places, patch[:, None], 2), patch) > top
+        return np.flatnonzero(found)
+
+    def measure(self, bands: Bands, triangle: Indices) -> Array:
+        """Return the largest error of each polygon at its middle and along its edges."""
+        worst = np.zeros(len(bands.values))
+        for places, of in within(bands):
+            patch = bands.patch[of]
+            on = onto(self.mesh.surfaces, places, patch[:, np.newaxis])
+            miss = np.abs(self.light(on, patch) - bands.values[of])
+            worst = np.maximum(worst, largest(bands, miss))
+        worst[slivers(bands, triangle, len(self.mesh.triangles))] = 0
+        return worst
+
+
+def grid() -> Array:
+    """Return barycentric weights of places within a triangle, row by row."""
+    steps = np.array([(i, j) for i in range(GRID) for j in range(GRID - i)]) + 0.5
+    return np.column_stack([steps, GRID + 0.5 - steps.sum(axis=1)]) / (GRID + 0.5)
+
+
+def within(bands: Bands) -> Iterator[tuple[Array, Indices]]:
+    """Yield the places where the error of polygons is measured, and the polygon of each."""
+    middle = bands.middles()
+    yield middle, np.arange(len(middle))
+    size = np.diff(bands.offsets)
+    owner = np.repeat(np.arange(len(size)), size)
+    corner, after = bands.points[bands.corners], bands.points[bands.corners[_next(bands)]]
+    for share in ALONG:
+        # Just within the polygon: on a contour either band is right.
+        places = corner + share * (after - corner)
+        yield places + WITHIN * (middle[owner] - places), owner
+
+
+def largest(bands: Bands, miss: Array) -> Array:
+    """Return the largest of each polygon's numbers, one a polygon or one a corner."""
+    if len(miss) == len(bands.values):
+        return miss
+    return np.asarray(np.maximum.reduceat(miss, bands.offsets[:-1]))
+
+
+def slivers(bands: Bands, triangle: Indices, count: int) -> Bools:
+    """Return which polygons are next to nothing of the triangle, of so many, they are cut from."""
+    owner = np.repeat(np.arange(len(bands.values)), np.diff(bands.offsets))
+    # Over their size, as squares of tiny lengths vanish and those of huge ones overflow.
+    unit = float(np.ptp(bands.points[:, :3], axis=0).max(initial=0)) or 1.0
+    middle = bands.middles()[owner, :3] / unit
+    corner = bands.points[bands.corners, :3] / unit
+    across = np.cross(corner - middle, corner[_next(bands)] - middle)
+    area = np.bincount(owner, np.sqrt(np.einsum("ij,ij->i", across, across)), len(bands.values))
+    whole = np.bincount(triangle, area, count)
+    return np.asarray(area <= SLIVER * whole[triangle])
+
+
+def _next(bands: Bands) -> Indices:
+    """Return for each corner of a polygon the place of the next in ``corners``."""
+    after = np.arange(1, len(bands.corners) + 1)
+    after[bands.offsets[1:] - 1] = bands.offsets[:-1]
+    return after
+
+
+def open_apexes(mesh: Mesh) -> Mesh:
+    """Return the mesh with a small hole at the apex of each cone, a point for each ruling.
+
+    Where a solid touches itself there, each of its points at the apex has a hole of its own.
+    """
+    for patch, surface in enumerate(mesh.surfaces):
+        apex = getattr(surface, "apex", None)
+        if apex is None:
+            continue
+        count = len(mesh.points)
+        gap = mesh.points - apex
+        at = np.einsum("ij,ij->i", gap, gap) < 1e-20
+        at &= np.isin(np.arange(count), mesh.triangles[mesh.patch == patch])
+        start = at[mesh.triangles]
+        rows, slot = np.nonzero(start)
+        if not len(rows):
+            continue
+        tip, b, c = (mesh.triangles[rows, (slot + i) % 3] for i in range(3))
+        key = np.concatenate([tip * count + b, tip * count + c])
+        ends, place = np.unique(key, return_inverse=True)
+        new = count + place.reshape(2, -1)
+        way = mesh.points[ends % count] - apex
+        rim = apex + APEX * way / np.sqrt(np.einsum("ij,ij->i", way, way))[:, np.newaxis]
+        kept = ~start.any(axis=1)
+        owner = mesh.patch[rows]
+        mesh = mesh.replace(
+            points=np.concatenate([mesh.points, rim]),
+            triangles=np.concatenate(
+                [
+                    mesh.triangles[kept],
+                    np.stack([new[0], b, c], 1),
+                    np.stack([new[0], c, new[1]], 1),
+                ]
+            ),
+            patch=np.concatenate([mesh.patch[kept], owner, owner]),
+        )
+    return mesh
+
+
+def _close_apexes(bands: Bands, mesh: Mesh) -> Bands:
+    count = len(bands.points)
+    clusters, points = np.arange(count), bands.points
+    ends = np.stack([bands.corners, bands.corners[_next(bands)]])
+    for surface in mesh.surfaces:
+        apex = getattr(surface, "apex", None)
+        if apex is not None:
+            gap = points - apex
+            near = np.einsum("ij,ij->i", gap, gap) < (4 * APEX) ** 2
+            around = ends[:, near[ends].all(axis=0)]
+            graph = coo_array((np.ones(around.shape[1]), tuple(around)), shape=(count, count))
+            _, hole = connected_components(graph, directed=False)
+            _, first, which = np.unique(hole[near], return_index=True, return_inverse=True)
+            first = np.flatnonzero(near)[first]
+            clusters[near] = first[which]
+            points[first] = apex
+    return banding.weld(bands, clusters)
+
+
+def split(triangles: Indices, middles: Indices) -> tuple[Indices, Indices]:
+    """Return triangles with some edges halved, and which triangle each comes from.
+
+    ``middles`` has the point in the middle of the edges that begin at each corner, or -1.
+    """
+    count = np.count_nonzero(middles >= 0, axis=1)
+    rows = np.arange(len(triangles))
+    # Turn each triangle so that a single marked edge comes first, a single unmarked one last.
+    first = np.where(count == 1, np.argmax(middles >= 0, axis=1), 0)
+    first = np.where(count == 2, (np.argmax(middles < 0, axis=1) + 1) % 3, first)
+    turn = (first[:, np.newaxis] + np.arange(3)) % 3
+    a, b, c = triangles[rows[:, np.newaxis], turn].T
+    p, q, r = middles[rows[:, np.newaxis], turn].T
+    parts = [
+        (0, (a, b, c)),
+        (1, (a, p, c)), (1, (p, b, c)),
+        (2, (p, b, q)), (2, (a, p, q)), (2, (a, q, c)),
+        (3, (a, p, r)), (3, (p, b, q)), (3, (r, q, c)), (3, (p, q, r)),
+    ]  # fmt: skip
+    made = [np.stack([corner[count == n] for corner in corners], 1) for n, corners in parts]
+    owner = [rows[count == n] for n, _ in parts]
+    return np.concatenate(made), np.concatenate(owner)
+
+
+def normals_of(mesh: Mesh, points: Array, patch: Indices) -> Array:
+    """Return the outward normals of the solid at points on its surfaces."""
+    normals = np.empty_like(points)
+    for i, surface in enumerate(mesh.surfaces):
+        on = patch == i
+        if np.any(on):
+            normals[on] = mesh.signs[i] * surface.normal(points[on])
+    return normals
+
+
+def onto(surfaces: tuple[Surface, ...], points: Array, both: Indices, rounds: int = 4) -> Array:
+    """Return the points nearby on two surfaces each, which may be one.
+
+    Newton's method with the least step; each round squares what is missing. Where two surfaces
+    touch the step is bounded, so that no point runs away.
+    """
+    points = points.copy()
+    columns = [both[:, i] for i in range(both.shape[1])]
+    for _ in range(rounds):
+        distance = np.zeros((len(points), len(columns)))
+        normal = np.zeros((len(points), len(columns), 3))
+        for j, column in enumerate(columns):
+            for i in np.unique(column):
+                on = column == i
+                distance[on, j] = surfaces[i].distance(points[on])
+                normal[on, j] = surfaces[i].normal(points[on])
+        for j in range(1, len(columns)):
+            for k in range(j):
+                same = columns[j] == columns[k]
+                distance[same, j] = 0
+                normal[same, j] = 0
+        gram = normal @ normal.transpose(0, 2, 1)
+        gram += 1e-14 * np.eye(len(columns))
+        gram += np.eye(len(columns)) * (np.einsum("nii->ni", gram) < 0.5)[:, :, np.newaxis]
+        weight = np.linalg.solve(gram, distance[:, :, np.newaxis])
+        step = np.einsum("nji,nj->ni", normal, weight[:, :, 0])
+        size = np.sqrt(np.einsum("ij,ij->i", step, step))
+        limit = 4 * np.abs(distance).sum(axis=1)
+        step *= np.minimum(1, limit / np.where(size > 0, size, 1))[:, np.newaxis]
+        points -= step
+        if not np.abs(distance).max(initial=0) > 1e-15:
+            break
+    return points

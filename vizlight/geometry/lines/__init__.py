@@ -1,0 +1,1 @@
+"""Lines as arrays: tangents of polylines, fibres on a surface."""

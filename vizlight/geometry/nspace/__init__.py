@@ -1,0 +1,1 @@
+"""Shapes in n-space as arrays: manifolds with exact tangents, projections, cuts."""

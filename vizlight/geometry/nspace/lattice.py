@@ -1,0 +1,111 @@
+"""Cells on lattices of samples: wrapped where a direction is closed, and the skin of a cube."""
+
+from __future__ import annotations
+
+import itertools
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from vizlight import _check
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from vizlight._types import Indices
+
+
+#: The corners of a segment, a quadrilateral and a hexahedron, in the order that VTK wants.
+_CORNERS: dict[int, tuple[tuple[int, ...], ...]] = {
+    1: ((0,), (1,)),
+    2: ((0, 0), (1, 0), (1, 1), (0, 1)),
+    3: (
+        (0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0),
+        (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1),
+    ),
+}  # fmt: skip
+
+
+def resolution(value: Any, k: int, closed: Sequence[bool]) -> tuple[int, ...]:
+    """Return the number of samples in each of k directions: 3 or more if closed, else 2.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If it is not one integer or k of them, or one is too small.
+    """
+    sizes = (value,) * k if np.ndim(value) == 0 else tuple(value)
+    if len(sizes) != k:
+        raise ValueError(_check.message("resolution", f"1 or {k} integers", len(sizes)))
+    return tuple(
+        _check.integer("resolution", size, low=3 if wraps else 2)
+        for size, wraps in zip(sizes, closed, strict=True)
+    )
+
+
+def cells(shape: Sequence[int], closed: Sequence[bool], *, twisted: bool = False) -> Indices:
+    """Return the cells of a lattice of 1 to 3 directions, its last index running fastest.
+
+    Parameters
+    ----------
+    shape : sequence of int
+        Samples in each direction.
+    closed : sequence of bool
+        Whether the last sample of a direction is followed by its first.
+    twisted : bool, default: False
+        The first direction, which must be closed, comes back with the second one reversed
+        (``-j`` for ``j``), as on a Klein bottle.
+
+    Returns
+    -------
+    ndarray of int, shape (M, 2^k)
+        Segments, quadrilaterals or hexahedra, corners in VTK's order.
+    """
+    index = np.arange(int(np.prod(shape)), dtype=np.intp).reshape(tuple(shape))
+    if twisted:
+        back = np.roll(index[0, ::-1], 1, axis=0)
+        index = np.concatenate([index, back[np.newaxis]])
+        closed = (False, *closed[1:])
+    index = np.pad(index, [(0, int(wraps)) for wraps in closed], mode="wrap")
+    return np.stack([_shifted(index, corner).ravel() for corner in _CORNERS[len(shape)]], axis=1)
+
+
+def _shifted(index: Indices, corner: tuple[int, ...]) -> Indices:
+    part = tuple(slice(c, n - 1 + c) for c, n in zip(corner, index.shape, strict=True))
+    return index[part]
+
+
+def cube_skin(dimension: int, size: int, *, opposite: bool = False) -> tuple[Indices, Indices]:
+    """Return the lattice points on the skin of a cube, each once, and the cells between them.
+
+    Parameters
+    ----------
+    dimension : int
+        3 or 4, of the cube; its skin has one less.
+    size : int
+        Cells along an edge.
+    opposite : bool, default: False
+        Take each point for the same as the one opposite: the skin becomes a projective space.
+
+    Returns
+    -------
+    points : ndarray of int, shape (N, dimension)
+        Coordinates from ``-size`` to ``size`` in steps of 2.
+    cells : ndarray of int, shape (M, 2^(dimension - 1))
+    """
+    steps = 2 * np.arange(size + 1) - size
+    within = np.stack(np.meshgrid(*[steps] * (dimension - 1), indexing="ij"), axis=-1)
+    within = within.reshape(-1, dimension - 1)
+    local = cells([size + 1] * (dimension - 1), [False] * (dimension - 1))
+    places: list[Indices] = []
+    faces: list[Indices] = []
+    for axis, side in itertools.product(range(dimension), (1,) if opposite else (1, -1)):
+        faces.append(local + len(places) * len(within))
+        places.append(np.insert(within, axis, side * size, axis=1))
+    corner = np.concatenate(places)
+    if opposite:
+        # The first coordinate that is not zero decides which of the two stands for both.
+        first = np.argmax(corner != 0, axis=1)
+        corner = corner * np.sign(corner[np.arange(len(corner)), first])[:, np.newaxis]
+    points, number = np.unique(corner, axis=0, return_inverse=True)
+    return points, np.asarray(number, dtype=np.intp).reshape(-1)[np.concatenate(faces)]

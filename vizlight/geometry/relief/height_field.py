@@ -1,0 +1,248 @@
+"""A height field as cells: padded by what lies beyond its border, with bounds on every scale."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal, get_args
+
+import numpy as np
+from scipy import ndimage
+
+from vizlight import _check
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from vizlight._types import Array, Indices
+
+#: Nodes in a block.
+BLOCK = 1 << 16
+
+Border = Literal["extend", "wall"]
+
+
+@dataclass(frozen=True)
+class Field:
+    """The bilinear surface over a grid and the solid below it, as :func:`make` returns them.
+
+    Coordinates are float64, relative to ``origin``. Cell k of an axis lies between edges k and
+    k + 1; the first and the last have no end and carry the heights of the border.
+
+    Attributes
+    ----------
+    origin : ndarray, shape (3,)
+        First node of x and y, lowest height.
+    x, y : ndarray, shape (nx,), (ny,)
+        Nodes, rising.
+    heights : ndarray, shape (ny, nx)
+        NaN in holes, unless the field extends over them.
+    edges : tuple of ndarray, shapes (nx + 2,), (ny + 2,)
+        Ends of the cells, from -inf to inf.
+    corners : ndarray, shape (ny + 2, nx + 2)
+        Heights at the ends of the cells.
+    bounds : list of (ndarray, ndarray)
+        Largest and least height over 2^l x 2^l cells, for l = 0, 1, ...; both -inf where there
+        is no solid.
+    base : float
+    top : float
+    border : {"extend", "wall"}
+    """
+
+    origin: Array
+    x: Array
+    y: Array
+    heights: Array
+    edges: tuple[Array, Array]
+    corners: Array
+    bounds: list[tuple[Array, Array]]
+    base: float
+    top: float
+    border: Border
+
+    def height(self, x: Array, y: Array) -> Array:
+        """Return the surface at places relative to the origin, -inf where there is no solid."""
+        i, j = self.cell(0, x), self.cell(1, y)
+        u, v = self.share(0, i, x), self.share(1, j, y)
+        z = self.corners
+        low = z[j, i] + u * (z[j, i + 1] - z[j, i])
+        high = z[j + 1, i] + u * (z[j + 1, i + 1] - z[j + 1, i])
+        solid = np.isfinite(self.bounds[0][0][j, i])
+        return np.where(solid, low + v * (high - low), -np.inf)
+
+    def cell(self, axis: int, place: Array) -> Indices:
+        """Return the cell of an axis that holds each place."""
+        return locate(self.edges[axis][1:-1], place)
+
+    def share(self, axis: int, cell: Indices, place: Array) -> Array:
+        """Return how far through its cell a place is, 0 in a cell without end."""
+        edges = self.edges[axis]
+        low, high = edges[cell], edges[cell + 1]
+        ends = np.isfinite(low) & np.isfinite(high)
+        width = np.where(ends, high, 1.0) - np.where(ends, low, 0.0)
+        return np.where(ends, (place - np.where(ends, low, 0.0)) / width, 0.0)
+
+
+def locate(nodes: Array, place: Array) -> Indices:
+    """Return how many of rising nodes are not above each place, at once where they are even."""
+    with np.errstate(over="ignore"):
+        steps = (place - nodes[0]) / (nodes[1] - nodes[0])
+    guess: Indices = np.clip(steps, 0, len(nodes) - 2).astype(np.intp)
+    odd = np.flatnonzero((place < nodes.take(guess)) | (place >= nodes.take(guess + 1)))
+    guess += 1
+    guess[odd] = np.searchsorted(nodes, place.take(odd), side="right")
+    return guess
+
+
+def make(x: ArrayLike, y: ArrayLike, z: ArrayLike, *, base: float | None, border: Border) -> Field:
+    """Return the field of heights over a grid.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument does not fit.
+    """
+    axes = [_axis(name, values) for name, values in (("x", x), ("y", y))]
+    heights = _check.floats("z", z)
+    shape = (len(axes[1]), len(axes[0]))
+    if heights.shape != shape:
+        expected = f"heights of shape (len(y), len(x)) = {shape}"
+        raise ValueError(_check.message("z", expected, _check.describe(heights)))
+    if border not in get_args(Border):
+        raise ValueError(_check.message("border", "'extend' or 'wall'", repr(border)))
+    wide: Array = heights.astype(np.float64)
+    if np.isinf(wide).any():
+        raise ValueError(_check.message("z", "finite heights, NaN in holes", "infinite ones"))
+    there = ~np.isnan(wide)
+    if not there.any():
+        raise ValueError(_check.message("z", "heights", "NaN everywhere"))
+    # Differences from the origin come first: float64 then keeps what float32 was given.
+    low = float(wide[there].min())
+    wide -= low
+    top = float(wide[there].max())
+    sides = [float(axis[-1] - axis[0]) for axis in axes]
+    if not 1e-70 <= min(sides) <= max(*sides, top) <= 1e70:
+        raise ValueError(
+            _check.message("x, y, z", "a field between 1e-70 and 1e70 wide and high", (*sides, top))
+        )
+    if base is not None:
+        base = _check.number("base", base)
+        if base > low:
+            raise ValueError(
+                _check.message("base", f"a height not above the lowest, {low:g}", base)
+            )
+    wide = wide if border == "wall" else filled(wide)
+    corners = np.pad(wide, 1, mode="edge")
+    return Field(
+        origin=np.array([axes[0][0], axes[1][0], low]),
+        x=axes[0] - axes[0][0],
+        y=axes[1] - axes[1][0],
+        heights=wide,
+        edges=(_edges(axes[0]), _edges(axes[1])),
+        corners=corners,
+        bounds=_pyramid(corners, border),
+        base=-np.inf if base is None else base - low,
+        top=top,
+        border=border,
+    )
+
+
+def filled(heights: Array) -> Array:
+    """Return heights with each hole at the height of the node nearest by index."""
+    holes = np.isnan(heights)
+    if not holes.any():
+        return heights
+    nearest = ndimage.distance_transform_edt(holes, return_distances=False, return_indices=True)
+    result: Array = heights[tuple(nearest)]
+    return result
+
+
+def normals(field: Field) -> Array:
+    """Return the upward unit normal at each node, shape (ny, nx, 3).
+
+    The slope at a node is that of the parabola through it and its two neighbours, at a border
+    or beside a hole that of the one cell that is there.
+    """
+    normal = np.empty((*field.heights.shape, 3))
+    # Row by row in blocks that stay in the cache, each with a row more on either side.
+    rows = max(BLOCK // len(field.x), 1)
+    for first in range(0, len(field.y), rows):
+        last = min(first + rows, len(field.y))
+        low, high = max(first - 1, 0), min(last + 1, len(field.y))
+        heights, own = field.heights[low:high], slice(first - low, last - low)
+        right = _slope(heights[own], field.x, 1)
+        up = _slope(heights, field.y[low:high], 0)[own]
+        size = np.sqrt(right * right + up * up + 1)
+        part = normal[first:last]
+        part[..., 0], part[..., 1], part[..., 2] = -right / size, -up / size, 1 / size
+    return normal
+
+
+def _slope(heights: Array, nodes: Array, axis: int) -> Array:
+    """Return the slope at the nodes of one axis, 0 where no neighbour is."""
+    if not np.isnan(heights).any():
+        return np.asarray(np.gradient(heights, nodes, axis=axis))
+    z = np.moveaxis(heights, axis, -1)
+    step = np.diff(nodes)
+    rise = np.diff(z, axis=-1) / step
+    # The slope on one side weighs as much as the step on the other side is long.
+    weight = np.where(np.isnan(rise), 0.0, 1.0)
+    rise = np.where(np.isnan(rise), 0.0, rise)
+    total, weights = np.zeros(z.shape), np.zeros(z.shape)
+    for node, opposite in ((np.s_[..., :-1], step[:-1]), (np.s_[..., 1:], step[1:])):
+        # At a border there is no other side: what is there decides alone.
+        far = np.ones(len(nodes))
+        far[1:-1] = opposite
+        total[node] += rise * weight * far[node]
+        weights[node] += weight * far[node]
+    result: Array = np.moveaxis(total / np.where(weights > 0, weights, 1), -1, axis)
+    return result
+
+
+def _axis(name: str, values: ArrayLike) -> Array:
+    """Return the nodes of an axis in float64, rising."""
+    nodes = _check.floats(name, values).astype(np.float64)
+    if nodes.ndim != 1 or len(nodes) < 2:
+        raise ValueError(
+            _check.message(
+                name,
+                "two nodes or more",
+                _check.describe(nodes),
+                "a field of one row has no sides: repeat the row",
+            )
+        )
+    if not (np.all(np.isfinite(nodes)) and np.all(np.diff(nodes) > 0)):
+        raise ValueError(
+            _check.message(
+                name, "finite, rising nodes", _check.describe(nodes), "sort them, heights along"
+            )
+        )
+    return nodes
+
+
+def _edges(nodes: Array) -> Array:
+    return np.concatenate([[-np.inf], nodes - nodes[0], [np.inf]])
+
+
+def _pyramid(corners: Array, border: Border) -> list[tuple[Array, Array]]:
+    """Return largest and least height over ever larger squares of cells."""
+    four = [corners[:-1, :-1], corners[:-1, 1:], corners[1:, :-1], corners[1:, 1:]]
+    largest, least = np.maximum.reduce(four), np.minimum.reduce(four)
+    empty = np.isnan(largest)
+    if border == "wall":
+        empty[[0, -1]] = True
+        empty[:, [0, -1]] = True
+    largest[empty] = least[empty] = -np.inf
+    bounds = [(largest, least)]
+    while max(largest.shape) > 1:
+        largest = _halve(largest, np.maximum, -np.inf)
+        least = _halve(least, np.minimum, np.inf)
+        bounds.append((largest, least))
+    return bounds
+
+
+def _halve(cells: Array, larger: Any, neutral: float) -> Array:
+    odd = [(0, size % 2) for size in cells.shape]
+    even = np.pad(cells, odd, constant_values=neutral)
+    by_row = larger(even[::2], even[1::2])
+    result: Array = larger(by_row[:, ::2], by_row[:, 1::2])
+    return result

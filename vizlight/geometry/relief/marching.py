@@ -1,0 +1,174 @@
+"""Rays through a height field, cell by cell or by ever larger squares of cells where it can."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from vizlight._types import Array, Bools, Indices
+    from vizlight.geometry.relief.height_field import Field
+
+#: Stands for infinity on a ray: times 0 it is 0.
+FAR = 1e300
+
+
+def march(field: Field, start: Array, way: Array, reach: Array, *, coarse: bool) -> Array:
+    """Return the length of rays inside the solid, infinity where it has no end.
+
+    Parameters
+    ----------
+    field : Field
+    start : ndarray, shape (3, N)
+        Relative to the field's origin, in float64.
+    way : ndarray, shape (3, N)
+        Unit directions.
+    reach : ndarray, shape (N,)
+        Length of the rays, at most FAR.
+    coarse : bool
+        Cross 2^l x 2^l cells at once where all of them lie above or below the ray; else go
+        through every cell.
+    """
+    length = np.zeros(start.shape[1])
+    first, end = _clip(field, start, way, reach)
+    row = np.flatnonzero(first < end)
+    rays = _Rays(field, start[:, row], way[:, row], first[row], end[row], coarse=coarse)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        while len(row):
+            # Rays have rows of their own, so none is added twice.
+            length[row] += rays.step()
+            going = rays.s < rays.end
+            if np.count_nonzero(going) < 0.8 * len(row):
+                rays.keep(going)
+                row = row[going]
+    length[length >= 0.5 * FAR] = np.inf
+    return length
+
+
+def _clip(field: Field, start: Array, way: Array, reach: Array) -> tuple[Array, Array]:
+    """Return where rays enter and leave the slab between base and top."""
+    rise, z = way[2], start[2]
+    # A rise near 0 reaches top or base farther away than FAR.
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        up, down = (field.top - z) / rise, (field.base - z) / rise
+    first = np.where(rise > 0, down, np.where(rise < 0, up, 0.0))
+    last = np.where(rise > 0, up, np.where(rise < 0, down, FAR))
+    outside = (rise == 0) & ((z < field.base) | (z >= field.top))
+    return np.maximum(first, 0.0), np.where(outside, -1.0, np.minimum(last, reach))
+
+
+class _Rays:
+    """Rays on their way, each in a square of 2^l x 2^l cells; all change in every step."""
+
+    def __init__(
+        self, field: Field, start: Array, way: Array, s: Array, end: Array, *, coarse: bool
+    ) -> None:
+        levels = field.bounds if coarse else field.bounds[:1]
+        self.top = len(levels) - 1
+        self.columns = np.array([largest.shape[1] for largest, _ in levels], np.int32)
+        self.offset = np.cumsum([0] + [largest.size for largest, _ in levels], dtype=np.int32)
+        self.largest = np.concatenate([largest.ravel() for largest, _ in levels])
+        self.least = np.concatenate([least.ravel() for _, least in levels])
+        self.edges = field.edges
+        self.corners = field.corners.ravel()
+        self.stride = field.corners.shape[1]
+
+        self.start, self.way, self.s, self.end = start, way, s, end
+        self.level = np.zeros(len(s), np.int32)
+        place = start[:2] + s * way[:2]
+        self.cell = np.stack([field.cell(a, place[a]) for a in (0, 1)]).astype(np.int32)
+
+    def keep(self, going: Bools) -> None:
+        """Forget the rays that are at their end."""
+        for name in ("start", "way", "cell", "s", "end", "level"):
+            setattr(self, name, getattr(self, name)[..., going])
+
+    def step(self) -> Array:
+        """Take each ray through its square, or into a quarter of it; return the length inside."""
+        (x, y), (i, j), level, s = self.way[:2], self.cell, self.level, self.s
+        cross_x, cross_y = self._cross(0), self._cross(1)
+        by_x = cross_x <= cross_y
+        leave = np.minimum(np.maximum(np.where(by_x, cross_x, cross_y), s), self.end)
+        z0 = self.start[2] + s * self.way[2]
+        z1 = self.start[2] + leave * self.way[2]
+        at = self.offset[level] + j * self.columns[level] + i
+        above = np.minimum(z0, z1) >= self.largest[at]
+        below = np.maximum(z0, z1) <= self.least[at]
+        clear = above | below
+        inside = np.where(below, leave - s, 0.0)
+        leaf = np.flatnonzero(~clear & (level == 0))
+        inside[leaf] = self._in_cell(leaf, leave[leaf])
+
+        descend = ~clear & (level > 0)
+        onward = ~descend & (leave < self.end)
+        # Onward into the next square of the level ...
+        i += np.where(by_x & onward, np.where(x >= 0, 1, -1), 0).astype(np.int32)
+        j += np.where(onward & ~by_x, np.where(y >= 0, 1, -1), 0).astype(np.int32)
+        np.copyto(s, leave, where=~descend)
+        if self.top:
+            # ... or into the one twice as wide, where it begins with that one ...
+            entry = np.where(by_x, i ^ (x < 0), j ^ (y < 0)) & 1
+            ascend = (onward & (entry == 0) & (level < self.top)).astype(np.int32)
+            i >>= ascend
+            j >>= ascend
+            level += ascend
+            # ... or down into the quarter that the ray is in.
+            self._descend(np.flatnonzero(descend))
+        return inside
+
+    def _cross(self, axis: int) -> Array:
+        """Return where rays leave their square along an axis."""
+        way, edges = self.way[axis], self.edges[axis]
+        out = np.minimum((self.cell[axis] + (way >= 0)) << self.level, len(edges) - 1)
+        with np.errstate(over="ignore"):
+            return np.where(way == 0, np.inf, (edges[out] - self.start[axis]) / way)
+
+    def _descend(self, which: Indices) -> None:
+        if not len(which):
+            return
+        level = self.level[which] - 1
+        for axis in (0, 1):
+            edges = self.edges[axis]
+            place = self.start[axis, which] + self.s[which] * self.way[axis, which]
+            left = self.cell[axis, which] << 1
+            middle = edges[np.minimum((left + 1) << level, len(edges) - 1)]
+            self.cell[axis, which] = left + (place >= middle)
+        self.level[which] = level
+
+    def _in_cell(self, which: Indices, leave: Array) -> Array:
+        """Return the length below the bilinear surface of one cell: below f = h - z > 0."""
+        i, j, s = self.cell[0, which], self.cell[1, which], self.s[which]
+        at = j * self.stride + i
+        z00, z01 = self.corners[at], self.corners[at + 1]
+        z10, z11 = self.corners[at + self.stride], self.corners[at + self.stride + 1]
+        (u, du), (v, dv) = (self._share(axis, which, s) for axis in (0, 1))
+        # h = z00 + u a + v b + u v c, u and v linear in what is left of the ray.
+        a, b, c = z01 - z00, z10 - z00, (z11 - z10) - (z01 - z00)
+        z = self.start[2, which] + s * self.way[2, which]
+        f0 = (z00 - z) + u * a + v * (b + u * c)
+        f1 = du * (a + v * c) + dv * (b + u * c) - self.way[2, which]
+        return _positive(f0, f1, du * dv * c, leave - s)
+
+    def _share(self, axis: int, which: Indices, s: Array) -> tuple[Array, Array]:
+        """Return how far through its cell a ray is, and how fast; 0 in a cell without end."""
+        edges, cell, way = self.edges[axis], self.cell[axis, which], self.way[axis, which]
+        low, width = edges[cell], edges[cell + 1] - edges[cell]
+        place = self.start[axis, which] + s * way
+        ends = np.isfinite(width)
+        return np.where(ends, (place - low) / width, 0.0), np.where(ends, way / width, 0.0)
+
+
+def _positive(f0: Array, f1: Array, f2: Array, end: Array) -> Array:
+    """Return how much of [0, end] has f0 + f1 s + f2 s^2 > 0."""
+    square = f1 * f1 - 4 * f0 * f2
+    root = np.sqrt(np.maximum(square, 0))
+    # Both roots without cancellation; where f2 is 0 one of them is at infinity.
+    q = -0.5 * (f1 + np.copysign(root, f1))
+    one, other = q / np.where(f2 == 0, 0.0, f2), f0 / q
+    low, high = np.minimum(one, other), np.maximum(one, other)
+    between = np.minimum(np.maximum(high, 0), end) - np.minimum(np.maximum(low, 0), end)
+    length = np.where(f2 >= 0, end - between, between)
+    # No root, or f constant: one sign throughout.
+    whole = (square < 0) | (q == 0)
+    return np.where(whole, np.where(np.maximum(f0, f0 + f2) > 0, end, 0.0), length)

@@ -1,0 +1,331 @@
+"""Solids: sphere, truncus and block, and their union, intersection and difference.
+
+A solid is what is inside of all its surfaces, or a combination of two solids.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from vizlight import _check
+from vizlight.geometry.contours import axial
+from vizlight.geometry.solids.exact_surfaces import Ball, Cone, Plane
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from vizlight._types import Array, Bools
+    from vizlight.geometry.solids.exact_surfaces import Surface
+
+
+__all__ = ["Block", "Boolean", "Primitive", "Solid", "Sphere", "Truncus"]
+
+
+class Solid:
+    """What all solids can do: ``a | b``, ``a & b`` and ``a - b``, nested to any depth."""
+
+    def __or__(self, other: Solid) -> Boolean:
+        """Return the union."""
+        return Boolean("union", self, other)
+
+    def __and__(self, other: Solid) -> Boolean:
+        """Return the intersection."""
+        return Boolean("intersection", self, other)
+
+    def __sub__(self, other: Solid) -> Boolean:
+        """Return the difference."""
+        return Boolean("difference", self, other)
+
+    def primitives(self) -> Iterator[Primitive]:
+        """Yield spheres, truncuses and blocks from left to right."""
+        raise NotImplementedError
+
+    def combine(self, inside: Iterator[Any]) -> Any:
+        """Return whether points are inside, given it for each primitive in their order."""
+        raise NotImplementedError
+
+    def contains(self, points: Any, /) -> Any:
+        """Return which points are inside.
+
+        Parameters
+        ----------
+        points : array_like, shape (N, 3)
+
+        Returns
+        -------
+        ndarray of bool, shape (N,)
+            Analytic inside tests; a point on a surface may be either.
+        """
+        places = np.asarray(_check.vectors("points", points, n=3), dtype=np.float64)
+        return self.combine(iter([solid.inside(places) for solid in self.primitives()]))
+
+
+class Primitive(Solid):
+    """A convex solid: what is inside of all its surfaces."""
+
+    def surfaces(self) -> tuple[Surface, ...]:
+        """Return the surfaces."""
+        raise NotImplementedError
+
+    @functools.cached_property
+    def _faces(self) -> tuple[Surface, ...]:
+        return self.surfaces()
+
+    def moved(self, shift: Array, scale: float) -> Any:
+        """Return the solid ``(x - shift) / scale``."""
+        raise NotImplementedError
+
+    def box(self) -> tuple[Array, float]:
+        """Return the middle, and the radius of a ball around it that holds the solid."""
+        raise NotImplementedError
+
+    @property
+    def empty(self) -> bool:
+        """Whether there is no volume."""
+        raise NotImplementedError
+
+    def primitives(self) -> Iterator[Primitive]:
+        """Yield itself."""
+        yield self
+
+    def combine(self, inside: Iterator[Any]) -> Any:
+        """Return the next."""
+        return next(inside)
+
+    def inside(self, points: Array) -> Bools:
+        """Return which points are inside of all surfaces."""
+        if self.empty:
+            return np.zeros(len(points), np.bool_)
+        found = np.ones(len(points), np.bool_)
+        for surface in self._faces:
+            found &= surface.distance(points) < 0
+        return found
+
+
+@dataclass(frozen=True)
+class Boolean(Solid):
+    """Two solids combined.
+
+    Parameters
+    ----------
+    operation : {"union", "intersection", "difference"}
+    first, second : Solid
+    """
+
+    operation: Literal["union", "intersection", "difference"]
+    first: Solid
+    second: Solid
+
+    def __post_init__(self) -> None:
+        if self.operation not in ("union", "intersection", "difference"):
+            expected = "'union', 'intersection' or 'difference'"
+            raise ValueError(_check.message("operation", expected, repr(self.operation)))
+        for name, solid in (("first", self.first), ("second", self.second)):
+            if not isinstance(solid, Solid):
+                raise TypeError(
+                    _check.message(
+                        name, "a vizlight.Sphere, Truncus, Block or what was made of them",
+                        _check.describe(solid),
+                    )
+                )  # fmt: skip
+
+    def primitives(self) -> Iterator[Primitive]:
+        """Yield the primitives of both."""
+        yield from self.first.primitives()
+        yield from self.second.primitives()
+
+    def combine(self, inside: Iterator[Any]) -> Any:
+        """Combine what both say."""
+        first, second = self.first.combine(inside), self.second.combine(inside)
+        if self.operation == "union":
+            return first | second
+        if self.operation == "intersection":
+            return first & second
+        return first & ~second
+
+
+class Sphere(Primitive):
+    """A ball.
+
+    Parameters
+    ----------
+    center : vector of 3 components
+    radius : float
+        0 or more; of radius 0 it is empty.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument does not fit.
+    """
+
+    def __init__(self, center: Any = (0.0, 0.0, 0.0), radius: float = 1.0) -> None:
+        self.center = axial.triple("center", center)
+        self.radius = _check.number("radius", radius, low=0.0)
+
+    def __repr__(self) -> str:
+        return f"Sphere({tuple(map(float, self.center))}, {self.radius:g})"
+
+    @property
+    def empty(self) -> bool:
+        """Whether there is no volume."""
+        return self.radius == 0
+
+    def surfaces(self) -> tuple[Surface, ...]:
+        """Return the ball."""
+        return (Ball(self.center, self.radius),)
+
+    def moved(self, shift: Array, scale: float) -> Sphere:
+        """Return the solid ``(x - shift) / scale``."""
+        return Sphere((self.center - shift) / scale, self.radius / scale)
+
+    def box(self) -> tuple[Array, float]:
+        """Return centre and radius."""
+        return self.center, self.radius
+
+
+class Truncus(Primitive):
+    """A cylinder, disc, rod, cone or frustum with both its ends.
+
+    Parameters
+    ----------
+    center : vector of 3 components
+        The middle of the axis.
+    axis : vector of 3 components
+        From the second end to the first; its length is the height unless that is given.
+    radii : (float, float)
+        At the end ``center + axis / 2`` and at the other, 0 or more.
+    height : float, optional
+        0 or more; of height 0 it is empty.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument does not fit.
+    """
+
+    def __init__(
+        self,
+        center: Any = (0.0, 0.0, 0.0),
+        axis: Any = (0.0, 0.0, 1.0),
+        radii: Any = (0.5, 0.5),
+        *,
+        height: float | None = None,
+    ) -> None:
+        self.center = axial.triple("center", center)
+        along = axial.triple("axis", axis)
+        if not np.any(along):
+            remedy = "give its direction, and height=0 for a disc without thickness"
+            raise ValueError(_check.message("axis", "a vector of non-zero length", along, remedy))
+        self.axis = axial.unit("axis", axis)
+        self.height = (
+            axial.length(along) if height is None else _check.number("height", height, low=0.0)
+        )
+        given = _check.floats("radii", radii)
+        if given.shape != (2,):
+            raise ValueError(_check.message("radii", "two radii (R1, R2)", _check.describe(radii)))
+        first, second = (_check.number("radii", float(x), low=0.0) for x in given)
+        self.radii = (first, second)
+
+    def __repr__(self) -> str:
+        middle, axis = (tuple(map(float, v)) for v in (self.center, self.axis))
+        return f"Truncus({middle}, {axis}, {self.radii}, height={self.height:g})"
+
+    @property
+    def empty(self) -> bool:
+        """Whether there is no volume."""
+        return self.height == 0 or max(self.radii) == 0
+
+    def surfaces(self) -> tuple[Surface, ...]:
+        """Return the side, the first and the second end."""
+        side = Cone(self.center, self.axis, self.height, self.radii)
+        across = axial.frame(self.axis)
+        ends = (
+            Plane(self.center + s / 2 * self.height * self.axis, s * self.axis, (r, r), across)
+            for s, r in ((1, self.radii[0]), (-1, self.radii[1]))
+        )
+        return (side, *ends)
+
+    def moved(self, shift: Array, scale: float) -> Truncus:
+        """Return the solid ``(x - shift) / scale``."""
+        radii = tuple(r / scale for r in self.radii)
+        return Truncus((self.center - shift) / scale, self.axis, radii, height=self.height / scale)
+
+    def box(self) -> tuple[Array, float]:
+        """Return centre and the radius of a ball around it."""
+        return self.center, math.hypot(self.height / 2, max(self.radii))
+
+
+class Block(Primitive):
+    """A rectangular block.
+
+    Parameters
+    ----------
+    center : vector of 3 components
+    size : vector of 3 components
+        Lengths of the edges, 0 or more.
+    axes : array_like, shape (3, 3), optional
+        Orthonormal rows along the edges; default x, y and z.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument does not fit.
+    """
+
+    def __init__(
+        self,
+        center: Any = (0.0, 0.0, 0.0),
+        size: Any = (1.0, 1.0, 1.0),
+        *,
+        axes: Any = None,
+    ) -> None:
+        self.center = axial.triple("center", center)
+        self.size = axial.triple("size", size)
+        if np.any(self.size < 0):
+            raise ValueError(_check.message("size", "lengths of 0 or more", _check.describe(size)))
+        self.axes = (
+            np.eye(3) if axes is None else np.asarray(_check.vectors("axes", axes, n=3), float)
+        )
+        if self.axes.shape != (3, 3) or not np.allclose(
+            self.axes @ self.axes.T, np.eye(3), atol=1e-6
+        ):
+            remedy = "normalise them"
+            raise ValueError(
+                _check.message("axes", "3 orthonormal rows", _check.describe(axes), remedy)
+            )
+
+    def __repr__(self) -> str:
+        middle, size = (tuple(map(float, v)) for v in (self.center, self.size))
+        return f"Block({middle}, {size})"
+
+    @property
+    def empty(self) -> bool:
+        """Whether there is no volume."""
+        return bool(np.any(self.size == 0))
+
+    def surfaces(self) -> tuple[Surface, ...]:
+        """Return the six faces."""
+        found = []
+        for i in range(3):
+            j, k = (i + 1) % 3, (i + 2) % 3
+            for sign in (1, -1):
+                center = self.center + sign * self.size[i] / 2 * self.axes[i]
+                extent = (self.size[j] / 2, self.size[k] / 2)
+                found.append(
+                    Plane(center, sign * self.axes[i], extent, (self.axes[j], self.axes[k]))
+                )
+        return tuple(found)
+
+    def moved(self, shift: Array, scale: float) -> Block:
+        """Return the solid ``(x - shift) / scale``."""
+        return Block((self.center - shift) / scale, self.size / scale, axes=self.axes)
+
+    def box(self) -> tuple[Array, float]:
+        """Return centre and the radius of a ball around it."""
+        return self.center, axial.length(self.size) / 2

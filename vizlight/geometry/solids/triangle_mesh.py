@@ -1,0 +1,150 @@
+"""Coarse closed meshes of single primitives, each triangle on one exact surface."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from vizlight.geometry.contours import axial
+from vizlight.geometry.solids.exact_surfaces import Plane, fibonacci
+from vizlight.geometry.solids.primitives import Block, Primitive, Sphere, Truncus
+
+if TYPE_CHECKING:
+    from vizlight._types import Array, Indices
+    from vizlight.geometry.solids.exact_surfaces import Surface
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Triangles of a solid, each on one of its surfaces; lengths are divided by ``scale``.
+
+    Attributes
+    ----------
+    points : ndarray, shape (P, 3)
+        ``(x - shift) / scale`` of points x.
+    triangles : ndarray of int, shape (T, 3)
+        Counter-clockwise seen from outside.
+    patch : ndarray of int, shape (T,)
+        The surface of each.
+    surfaces : tuple of Surface
+    signs : ndarray, shape (number of surfaces,)
+        -1 where the solid lies outside of the surface.
+    """
+
+    points: Array
+    triangles: Indices
+    patch: Indices
+    surfaces: tuple[Surface, ...]
+    signs: Array
+    shift: Array
+    scale: float
+
+    def world(self, points: Array) -> Array:
+        """Return points in the solid's own unit."""
+        return np.asarray(self.shift + self.scale * points)
+
+    def replace(self, **changes: Any) -> Mesh:
+        """Return a mesh with some fields changed."""
+        return dataclasses.replace(self, **changes)
+
+
+def mesh(solid: Primitive, segments: int) -> Mesh:
+    """Return a coarse closed mesh of one primitive; a circle has so many segments at least.
+
+    Flat shapes without volume have their two faces; what has no area has no triangles.
+    """
+    shift, scale = solid.box()
+    scale = scale or 1.0
+    unit = solid.moved(shift, scale)
+    if isinstance(unit, Sphere):
+        points, triangles, patch = _ball(unit, segments)
+    elif isinstance(unit, Truncus):
+        points, triangles, patch = _truncus(unit, segments)
+    else:
+        points, triangles, patch = _block(unit)
+    if isinstance(unit, Truncus) and unit.height == 0:
+        # The side is a flat ring: a plane, or nothing.
+        up = 1.0 if unit.radii[1] > unit.radii[0] else -1.0
+        ends = unit.surfaces()[1:] if max(unit.radii) > 0 else ()
+        reach, across = (max(unit.radii),) * 2, axial.frame(unit.axis)
+        found: tuple[Surface, ...] = (Plane(unit.center, up * unit.axis, reach, across), *ends)
+    else:
+        found = unit.surfaces()
+    return Mesh(points, triangles, patch, found, np.ones(len(found)), np.asarray(shift), scale)
+
+
+def _ball(unit: Sphere, segments: int) -> tuple[Any, Any, Any]:
+    from scipy.spatial import ConvexHull
+
+    if unit.radius == 0:
+        return np.empty((0, 3)), np.empty((0, 3), np.intp), np.empty(0, np.intp)
+    points = fibonacci(max(int(4 * np.pi / (0.85 * (2 * np.pi / segments) ** 2)), 12))
+    faces = ConvexHull(points).simplices.astype(np.intp)
+    a, b, c = (points[faces[:, i]] for i in range(3))
+    inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), a) < 0
+    faces[inward] = faces[inward][:, ::-1]
+    return unit.center + unit.radius * points, faces, np.zeros(len(faces), np.intp)
+
+
+def _truncus(unit: Truncus, segments: int) -> tuple[Any, Any, Any]:
+    first, second = axial.frame(unit.axis)
+    angle = 2 * np.pi * np.arange(segments) / segments
+    ring = np.cos(angle)[:, None] * first + np.sin(angle)[:, None] * second
+    half = unit.height / 2 * unit.axis
+    parts, indices, start = [], [], 0
+    for sign, radius in ((1, unit.radii[0]), (-1, unit.radii[1])):
+        middle = unit.center + sign * half
+        there = middle + radius * ring if radius > 0 else middle[np.newaxis]
+        parts += [there, middle[np.newaxis]]
+        indices.append((start + np.arange(segments) % len(there), start + len(there)))
+        start += len(there) + 1
+    (top, top_middle), (bottom, bottom_middle) = indices
+    if unit.height == 0 and unit.radii[0] == unit.radii[1]:
+        # Two discs back to back have one rim.
+        bottom = top
+    after, below = np.roll(top, -1), np.roll(bottom, -1)
+    cells, patch = [], []
+    side = unit.height > 0 or unit.radii[0] != unit.radii[1]
+    if side and unit.radii[1] > 0:
+        cells.append(np.stack([top, bottom, below], axis=1))
+        patch.append(0)
+    if side and unit.radii[0] > 0:
+        cells.append(np.stack([top, below, after], axis=1))
+        patch.append(0)
+    if unit.radii[0] > 0:
+        cells.append(np.stack([np.full(segments, top_middle), top, after], axis=1))
+        patch.append(1)
+    if unit.radii[1] > 0:
+        cells.append(np.stack([np.full(segments, bottom_middle), below, bottom], axis=1))
+        patch.append(2)
+    triangles = np.concatenate([*cells, np.empty((0, 3), int)]).astype(np.intp)
+    return np.concatenate(parts), triangles, np.repeat(np.array(patch, np.intp), segments)
+
+
+def _block(unit: Block) -> tuple[Any, Any, Any]:
+    signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    points = unit.center + (signs * unit.size / 2) @ unit.axes
+    cells = []
+    right = np.linalg.det(unit.axes) > 0
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        for sign in (1, -1):
+            around = ((1, 1), (-1, 1), (-1, -1), (1, -1))
+            face = []
+            for u, v in around:
+                corner = np.zeros(3, int)
+                corner[[i, j, k]] = sign, u, v
+                face.append(int(np.flatnonzero(np.all(signs == corner, axis=1))[0]))
+            if (sign > 0) != right:
+                face = face[::-1]
+            cells += [[face[0], face[1], face[2]], [face[0], face[2], face[3]]]
+    patch = np.repeat(np.arange(6), 2)
+    there = np.repeat(unit.size > 0, 4)[: len(cells)]
+    if np.count_nonzero(unit.size) < 2:
+        there[:] = False
+    elif np.any(unit.size == 0):
+        there = np.repeat(unit.size == 0, 4)
+    return points, np.array(cells, np.intp)[there], patch[there]

@@ -1,0 +1,208 @@
+"""What casts shadows on itself: a height field, or a closed surface and others beside it."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+import pyvista as pv
+
+from vizlight import _check
+from vizlight.geometry.relief import height_field, shadowing
+from vizlight.mesh import closed_meshes, point_arrays
+from vizlight.mesh.height_grids import heights_of
+from vizlight.verify import oracle
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from vizlight._types import Array, Bools
+    from vizlight.scene import Light, Scene
+
+#: A depth that is not given, as a share of the diagonal.
+DEPTH = 0.01
+#: Beyond this many sizes of a surface a light is as far: squares of its place do not overflow.
+FAR = 1e100
+#: Options of a height field alone, and what they are where none is given.
+FIELD_ALONE = {
+    "elevation": None, "factor": 1.0, "base": None, "border": "extend", "method": "fast",
+}  # fmt: skip
+GRIDS = pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid
+
+
+class Caster(Protocol):
+    """What casts shadows on itself.
+
+    Points, unit normals, which of them count, the depth, and how many places or triangles
+    ``again`` tries for one t; 0 where it finds none.
+    """
+
+    points: Array
+    normals: Array
+    valid: Bools
+    depth: float
+    effort: int
+
+    def of(self, light: Light) -> Array:
+        """Return t at the points."""
+
+    def again(self, point: int, light: Light) -> float:
+        """Return t of one point by other means; NaN where they say nothing."""
+
+
+def caster(
+    mesh: Any,
+    scene: Scene,
+    options: dict[str, Any],
+    occluders: Iterable[Any],
+    threads: int | None,
+) -> Caster:
+    """Return what casts shadows, from a mesh and the options of the filter."""
+    if isinstance(mesh, GRIDS):
+        for option in ("thickness", "occluders"):
+            if options[option]:
+                got = options[option] if option == "thickness" else len(options[option])
+                remedy = "pass the grid's surface, made closed, to have them"
+                raise ValueError(_check.message(option, "none on a height field", got, remedy))
+        return _FieldCaster(mesh, options, threads)
+    if isinstance(mesh, pv.PolyData):
+        for option, default in FIELD_ALONE.items():
+            given = options[option]
+            if given is not default and (default is None or np.any(given != default)):
+                raise ValueError(_check.message(option, "none on a surface", repr(given)))
+        return _SolidCaster(mesh, scene, options, list(occluders))
+    raise TypeError(
+        _check.message(
+            "mesh",
+            "a height field (ImageData, RectilinearGrid, StructuredGrid) or a closed PolyData",
+            type(mesh).__name__,
+            "take the mesh's extract_surface()",
+        )
+    )
+
+
+class _FieldCaster:
+    """The shadows of a height field."""
+
+    def __init__(self, grid: Any, options: dict[str, Any], threads: int | None) -> None:
+        found = heights_of(grid, options["elevation"], options["factor"])
+        border: Any = options["border"]
+        self._field = height_field.make(
+            found.x, found.y, found.z, base=options["base"], border=border
+        )
+        self._normal = height_field.normals(self._field)
+        self._holes = np.isnan(found.z)
+        self._to_points, self._method, self._threads = found.to_points, options["method"], threads
+        self._turn = found.turn
+        side = float(np.hypot(self._field.x[-1], self._field.y[-1]))
+        self.depth = _depth(options["depth"], side)
+        self.points = found.points()
+        normals = self._normal if self._turn is None else self._normal @ self._turn
+        self.normals = found.to_points(np.where(self._holes[..., np.newaxis], 0, normals))
+        self.valid: Any = found.to_points(~self._holes)
+        field = self._field
+        size = max(field.x[-1], field.y[-1], field.top)
+        self.effort = oracle.SAMPLES if self.depth > shadowing.LEAST_DEPTH * size else 0
+
+    def of(self, light: Light) -> Array:
+        way: Any = [light.direction, light.position]
+        if self._turn is not None:
+            way = [None if v is None else self._turn @ np.array(v) for v in way]
+        ray = shadowing.toward(self._field, direction=way[0], position=way[1])
+        t = shadowing.ratio(
+            self._field, self._normal, self.depth, ray, method=self._method, threads=self._threads
+        )
+        t[self._holes] = 0
+        return self._to_points(t)
+
+    def again(self, point: int, light: Light) -> float:
+        field, turn = self._field, np.eye(3) if self._turn is None else self._turn
+        way = None if light.direction is None else turn @ np.array(light.direction)
+        if way is not None and way[2] <= 0:
+            return math.nan
+        return oracle.relief_ratio(
+            field.x, field.y, field.heights,
+            turn @ self.points[point] - field.origin, turn @ self.normals[point], self.depth,
+            way=way,
+            end=None if light.position is None else turn @ np.array(light.position) - field.origin,
+            base=field.base, wall=field.border != "extend",
+        )  # fmt: skip
+
+
+class _SolidCaster:
+    """The shadows of a closed surface, and of others beside it."""
+
+    def __init__(
+        self, mesh: pv.PolyData, scene: Scene, options: dict[str, Any], others: list[Any]
+    ) -> None:
+        thickness = options["thickness"]
+        if thickness is None:
+            body = closed_meshes.closed(mesh)
+        vectors = point_arrays.normals_of(mesh, None, 3, point_arrays.onlooker(scene))
+        self.normals = point_arrays.unit_rows(np.asarray(vectors, dtype=np.float64))
+        if thickness is not None:
+            thickness = _check.number("thickness", thickness, low=0.0)
+            if not thickness:
+                raise ValueError(_check.message("thickness", "more than 0", thickness))
+            body = closed_meshes.shell(mesh, thickness, self.normals)
+        bodies = [body] + [closed_meshes.closed(o, f"occluders[{i}]") for i, o in enumerate(others)]
+        # In units of the surface's own size products neither overflow nor vanish.
+        self._origin = body[0].mean(axis=0)
+        self._unit = float(np.linalg.norm(np.ptp(body[0], axis=0))) or 1.0
+        self._solids = [closed_meshes.solid(*one, self._origin, self._unit) for one in bodies]
+        self.depth = _depth(options["depth"], self._unit)
+        self.points: Array = np.asarray(mesh.points, dtype=np.float64)
+        self.valid = np.any(self.normals, axis=1) & np.all(np.isfinite(self.points), axis=1)
+        faces = sum(len(body.triangles) for body in self._solids)
+        self.effort = faces if self.depth / self._unit > shadowing.LEAST_DEPTH else 0
+        self._corners: list[Array] | None = None
+
+    def of(self, light: Light) -> Array:
+        good = self.valid
+        depth = self.depth / self._unit
+        limit = depth <= shadowing.LEAST_DEPTH
+        inset = 1e-7 if limit else depth
+        # The limit of a depth of 0 is seen from just outside, where nothing of the facet is.
+        place = (self.points[good] - self._origin) / self._unit
+        normal = self.normals[good]
+        start = place + inset * normal if limit else place - inset * normal
+        way, reach = self._toward(light, start)
+        length = closed_meshes.inside_length(self._solids, start, way, reach)
+        t = np.zeros(len(good))
+        if limit:
+            cosine = np.clip(np.einsum("ij,ij->i", normal, way), 0, 1)
+            t[good] = np.where(length > 0, 0.0, cosine)
+        else:
+            t[good] = depth / np.maximum(length, depth)
+        return t
+
+    def again(self, point: int, light: Light) -> float:
+        if self._corners is None:
+            self._corners = [body.vertices[body.triangles] for body in self._solids]
+        place = (self.points[point] - self._origin) / self._unit
+        depth, normal = self.depth / self._unit, self.normals[point]
+        way, reach = self._toward(light, (place - depth * normal)[np.newaxis])
+        far = min(float(reach[0]), 10.0 * max(float(np.abs(c).max()) for c in self._corners))
+        return oracle.solid_ratio(self._corners, place, normal, depth, way[0], far)
+
+    def _toward(self, light: Light, start: Array) -> tuple[Array, Array]:
+        if light.direction is not None:
+            way = np.array(light.direction) / max(abs(c) for c in light.direction)
+            way = np.repeat(way[np.newaxis] / np.linalg.norm(way), len(start), axis=0)
+            return way, np.full(len(start), np.inf)
+        place = np.array(light.position) - self._origin
+        place /= max(self._unit, np.abs(place).max() / FAR)
+        for body in self._solids:
+            if closed_meshes.is_inside(body, place):
+                raise ValueError(
+                    _check.message(
+                        "position", "a light outside the solid", light.position, "move it out"
+                    )
+                )
+        reach = np.linalg.norm(place - start, axis=1)
+        return (place - start) / np.where(reach > 0, reach, 1)[:, np.newaxis], reach
+
+
+def _depth(depth: float | None, size: float) -> float:
+    return DEPTH * size if depth is None else _check.number("depth", depth, low=0.0)

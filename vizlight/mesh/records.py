@@ -1,0 +1,173 @@
+"""What made an array, kept beside it as field data, so that a saved file can be reproduced."""
+
+from __future__ import annotations
+
+import json
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyvista as pv
+
+from vizlight import _check
+from vizlight._version import __version__
+from vizlight.mesh import point_arrays
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from vizlight.scene import Scene
+    from vizlight.shading.engine import Shading
+
+
+#: Arrays of no more numbers than this are told in full.
+WRITTEN_OUT = 100
+
+
+def key(name: str) -> str:
+    """Return the name of the field array that tells of a point array."""
+    return f"{name}_provenance"
+
+
+def attach(mesh: pv.DataSet, name: str, arrays: Mapping[str, Any], told: dict[str, Any]) -> None:
+    """Attach point arrays in place of those made under the name before; it becomes active."""
+    for stale in made(mesh, name):
+        if stale in mesh.point_data:
+            del mesh.point_data[stale]
+    for own, array in arrays.items():
+        point_arrays.attach_rows(mesh, own, array)
+    point_arrays.activate(mesh, name)
+    mesh.field_data[key(name)] = [json.dumps(told | {"arrays": list(arrays)})]
+
+
+def told_of(mesh: pv.DataSet, name: str) -> dict[str, Any] | None:
+    """Return what a mesh tells of an array, None where it tells nothing."""
+    if key(name) not in mesh.field_data:
+        return None
+    told: dict[str, Any] = json.loads(str(mesh.field_data[key(name)][0]))
+    return told
+
+
+def made(mesh: pv.DataSet, name: str) -> set[str]:
+    """Return the names of the point arrays that were attached under a name."""
+    return set((told_of(mesh, name) or {}).get("arrays", ()))
+
+
+def all_made(mesh: Any) -> set[str]:
+    """Return the names of all point arrays that vizlight attached to a mesh."""
+    names = [name.removesuffix(key("")) for name in getattr(mesh, "field_data", ())]
+    return set().union(*(made(mesh, name) for name in names))
+
+
+def refuse_overwriting(
+    leaves: Iterable[tuple[pv.DataSet, str]], name: str, arrays: Iterable[str]
+) -> None:
+    """Refuse to lose the user's own arrays; those that vizlight made may be made anew."""
+    for leaf, _ in leaves:
+        ours = made(leaf, name)
+        for array in arrays:
+            if array in leaf.point_data and array not in ours:
+                raise ValueError(
+                    _check.message(
+                        "name",
+                        "one under which the mesh has no array of its own",
+                        repr(array),
+                        "pass another name= or rename that array",
+                    )
+                )
+
+
+def record(
+    shading: Shading, filter_name: str, scene: Scene, options: dict[str, Any]
+) -> dict[str, Any]:
+    """Return what made the light, as values that JSON can hold."""
+    plan = shading.plan
+    return tell(
+        filter_name, scene, options,
+        precision=plan.dtype.name,
+        terms=list(plan.terms),
+        exponent=plan.exponent,
+        highlight_error=plan.highlight_error,
+        error_bound=plan.choice.bound if np.isfinite(plan.choice.bound) else None,
+        points=int(shading.luminance.size),
+        invalid=shading.invalid,
+    )  # fmt: skip
+
+
+def tell(filter_name: str, scene: Scene, options: dict[str, Any], **facts: Any) -> dict[str, Any]:
+    """Return what made an array that is no sum of an engine's terms."""
+    return {
+        "vizlight": __version__,
+        "filter": filter_name,
+        **facts,
+        "options": plain(options),
+        "scene": scene.to_dict(),
+    }
+
+
+def retell(mesh: pv.DataSet, name: str, filter_name: str, options: dict[str, Any]) -> None:
+    """Tell of an array that another filter made it, by the help of the one that is told."""
+    told = (told_of(mesh, name) or {}) | {"filter": filter_name, "options": plain(options)}
+    mesh.field_data[key(name)] = [json.dumps(told)]
+
+
+def plain(options: dict[str, Any]) -> dict[str, Any]:
+    """Return options as values that JSON can hold."""
+    return {name: _plain(value) for name, value in options.items()}
+
+
+def _plain(value: Any) -> Any:
+    """Return a value that JSON can hold; a mesh or a long array is only described."""
+    if value is None or isinstance(value, str | bool | int | float):
+        return value
+    if isinstance(value, pv.DataObject):
+        return f"{type(value).__name__} of {getattr(value, 'n_points', 0)} points"
+    if isinstance(value, Fraction):
+        return float(value)
+    if isinstance(value, list | tuple) and len(value) <= WRITTEN_OUT:
+        return [_plain(part) for part in value]
+    array = np.asarray(value)
+    if array.size <= WRITTEN_OUT and array.dtype.kind in "biufU":
+        # No JSON has more digits than float64.
+        return (array.astype(np.float64) if array.dtype.kind == "f" else array).tolist()
+    return _check.describe(array)
+
+
+def provenance(mesh: Any, /, name: str = "luminance") -> dict[str, Any]:
+    """Return what made a point array: scene, options, terms, precision, version.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet or pyvista.MultiBlock
+        A mesh that a filter of vizlight returned, or one read from a file of it.
+    name : str, default: "luminance"
+        The array.
+
+    Returns
+    -------
+    dict
+        ``p["filter"]`` names the filter, which makes the array again from the mesh it was given:
+        ``illuminate(mesh, Scene.from_dict(p["scene"]), **p["options"])``; ``project`` takes the
+        scene by ``scene=``, ``relief_day`` takes none. Meshes and arrays of more than 100 numbers
+        among the options are only described.
+
+    Raises
+    ------
+    TypeError
+        If it is not a mesh.
+    ValueError
+        If the mesh tells nothing of such an array.
+    """
+    if not isinstance(mesh, pv.DataSet | pv.MultiBlock):
+        raise TypeError(_check.message("mesh", "a PyVista mesh", type(mesh).__name__))
+    told = set()
+    for leaf in point_arrays.leaves(mesh):
+        if (found := told_of(leaf, name)) is not None:
+            return found
+        told |= {k.removesuffix(key("")) for k in leaf.field_data if k.endswith(key(""))}
+    if not told:
+        remedy = "light it first, or read it from a file format that keeps field data"
+        raise ValueError(_check.message("mesh", "one that vizlight made arrays on", "none", remedy))
+    raise ValueError(
+        _check.message("name", f"one of the arrays made by vizlight, {sorted(told)}", repr(name))
+    )

@@ -1,0 +1,174 @@
+"""Fibres of one number of points each, grown block by block when the engine first asks for them."""
+
+from __future__ import annotations
+
+import dataclasses
+import threading
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import pyvista as pv
+
+from vizlight import _pool
+from vizlight.geometry.lines.fur import SEED_BLOCK
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from vizlight._types import Array, Bools
+    from vizlight.shading import engine
+
+#: Points grown at once by all threads: few beside what is kept, many enough that threads seldom
+#: wait for the interpreter.
+POINTS_AT_ONCE = 1 << 18
+
+
+class Grown(NamedTuple):
+    """A block of F fibres of m points, in float32 and component by component.
+
+    ``offsets`` (m, 3, F) are points less roots; ``ways`` and ``normals`` (3, F) are unit.
+    """
+
+    roots: Array
+    offsets: Array
+    ways: Array
+    normals: Array
+    inside: Bools | None
+
+
+class Strands:
+    """Fibres as rows for the engine, which takes block after block and each block once.
+
+    What lights a block is kept for as long as a thread works on it; only points are kept whole.
+    """
+
+    def __init__(
+        self,
+        grow: Callable[[slice], Grown],
+        count: int,
+        m: int,
+        kind: Any,
+        *,
+        straight: bool,
+        threads: int | None,
+    ) -> None:
+        self._grow, self._straight, self._threads = grow, straight, threads
+        self._block = threading.local()
+        self.points = np.empty((count, m, 3), kind)
+        self.inside = np.zeros(count, np.bool_)
+
+    @property
+    def m(self) -> int:
+        """Points of a fibre."""
+        return int(self.points.shape[1])
+
+    @property
+    def block(self) -> int:
+        """Fibres in a block, a power of two so that no block has seeds of two."""
+        share = POINTS_AT_ONCE // (self.m * _pool.workers(self._threads))
+        return min(SEED_BLOCK, 1 << max(share, 1).bit_length() - 1)
+
+    def rows(self) -> dict[str, engine.Rows]:
+        """Return points, tangents, normals and depth, as the engine takes them."""
+        count, m = self.points.shape[:2]
+        tangents = self._ways if self._straight else self._tangents
+        return {
+            "points": _Rows((count * m, 3), self.points.dtype, self._points),
+            "tangents": _Rows((count if self._straight else count * m, 3), np.float32, tangents),
+            "normals": _Rows((count, 3), np.float32, self._normals),
+            "depth": _Rows((count * m,), np.float32, self._depth),
+        }
+
+    def _at(self, rows: slice) -> tuple[Grown, int]:
+        """Return the block that rows belong to, and which point of each fibre they are."""
+        step = rows.step or 1
+        fibres = slice(rows.start // step, rows.start // step + len(range(*rows.indices(1 << 62))))
+        if getattr(self._block, "fibres", None) != fibres:
+            block = self._grow(fibres)
+            points = self.points[fibres]
+            # One component at a time: NumPy is slow where the innermost axis has three.
+            for j, offset in enumerate(block.offsets):
+                for i in range(3):
+                    np.add(block.roots[i], offset[i], out=points[:, j, i])
+            if block.inside is not None:
+                self.inside[fibres] = block.inside
+            self._block.fibres, self._block.grown = fibres, block
+        grown: Grown = self._block.grown
+        return grown, rows.start % step
+
+    def _points(self, rows: slice) -> Array:
+        self._at(rows)
+        return self.points.reshape(-1, 3)[rows]
+
+    def _ways(self, rows: slice) -> Array:
+        return self._at(rows)[0].ways.T
+
+    def _normals(self, rows: slice) -> Array:
+        return self._at(rows)[0].normals.T
+
+    def _tangents(self, rows: slice) -> Array:
+        """Return tangents by the parabola through three points, of no particular length.
+
+        A fibre of no length has the direction that it would grow in.
+        """
+        block, j = self._at(rows)
+        offset, last = block.offsets, self.m - 1
+        if last == 1:
+            tangent = offset[1].copy()
+        elif j in (0, last):
+            near, far = (1, 2) if j == 0 else (last - 1, last - 2)
+            tangent = (3 * (offset[near] - offset[j]) - (offset[far] - offset[near])) * (
+                1 if j == 0 else -1
+            )
+        else:
+            tangent = offset[j + 1] - offset[j - 1]
+        lost = ~np.any(tangent, axis=0)
+        if lost.any():
+            tangent[:, lost] = block.ways[:, lost]
+        result: Array = tangent.T
+        return result
+
+    def _depth(self, rows: slice) -> Array:
+        """Return how far the highest point of its fibre stands above each point."""
+        block, j = self._at(rows)
+        last = self.m - 1
+        if self._straight:
+            tip = np.einsum("ib,ib->b", block.offsets[last], block.normals)
+            depth: Array = np.maximum(tip, 0) - np.float32(j / last) * tip
+        else:
+            heights = np.einsum("jib,ib->jb", block.offsets, block.normals)
+            depth = heights.max(axis=0) - heights[j]
+        return depth
+
+    def drop(self, shading: engine.Shading) -> engine.Shading:
+        """Leave out the fibres that point inward, and return the light of the others."""
+        kept = ~self.inside
+        points = np.repeat(kept, self.m)
+        self.points = self.points[kept]
+        light: dict[str, Any] = {
+            name: None if getattr(shading, name) is None else getattr(shading, name)[points]
+            for name in ("luminance", "valid", "diffuse", "specular", "rgb")
+        }
+        return dataclasses.replace(shading, **light)
+
+    def mesh(self) -> pv.PolyData:
+        """Return the fibres as lines; their points are not copied."""
+        count, m, _ = self.points.shape
+        # Numbers of 32 bits, where they suffice, take half the memory.
+        number = np.int32 if count * m < 2**31 else np.int64
+        offsets = np.arange(0, count * m + 1, m, dtype=number)
+        out = pv.PolyData()
+        out.points = self.points.reshape(-1, 3)
+        out.SetLines(pv.CellArray.from_arrays(offsets, np.arange(count * m, dtype=number)))
+        return out
+
+
+class _Rows:
+    """Rows that are made when the engine asks for them."""
+
+    def __init__(self, shape: tuple[int, ...], kind: Any, make: Callable[[slice], Array]) -> None:
+        self.shape, self.dtype = shape, np.dtype(kind)
+        self._make = make
+
+    def __getitem__(self, rows: slice, /) -> Array:
+        return self._make(rows)

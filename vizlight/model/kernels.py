@@ -1,0 +1,212 @@
+"""The formulas of light, once, on component-first arrays.
+
+A vector batch is ``(n, B)``, a frame batch ``(k, n, B)``, a number batch ``(B,)``; a batch of
+one broadcasts. The public functions of this package document and validate, turn the last axis
+to the front and call these; the engine calls these on blocks that fit the cache. Working
+component by component is what makes NumPy fast here: every operation runs along memory.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from vizlight._types import Array, Bools, Indices
+
+#: Above this exponent a power is taken through log1p of the deficit 1 - x, whose rounding
+#: error does not grow in step with the exponent; below it multiplication is as good and faster.
+DEFICIT_FROM = 64.0
+
+
+def dot(a: Array, b: Array) -> Array:
+    """Return the dot products of two vector batches."""
+    result: Array = np.einsum("ib,ib->b", a, b)
+    return result
+
+
+def length(v: Array) -> Array:
+    """Return lengths, right for any scale: NaN where a component is not finite."""
+    return _length(v)[0]
+
+
+def unit(v: Array) -> tuple[Array, Array]:
+    """Return unit vectors and the lengths they had.
+
+    A vector that is zero or not finite becomes the zero vector; its length is 0 or NaN, so
+    ``length > 0`` is the mask of good ones.
+    """
+    size, extreme = _length(v)
+    if extreme is None:
+        return v / size, size
+    result = np.empty(v.shape, dtype=v.dtype)
+    np.divide(v, size, out=result, where=~extreme)
+    scaled, _, _ = _rescale(v[:, extreme])
+    scaled_size = np.sqrt(dot(scaled, scaled))
+    result[:, extreme] = scaled / np.where(scaled_size > 0, scaled_size, 1)
+    return result, size
+
+
+def _length(v: Array) -> tuple[Array, Bools | None]:
+    """Return lengths, and a mask of vectors whose squares leave the range of the type."""
+    with np.errstate(over="ignore", under="ignore", invalid="ignore"):
+        square = dot(v, v)
+    info = np.finfo(v.dtype)
+    low, high = info.tiny / info.eps, info.max
+    if square.size == 0 or (square.min() >= low and square.max() <= high):
+        return np.sqrt(square, out=square), None
+    extreme = ~((square >= low) & (square <= high))
+    result: Array = np.sqrt(np.where(extreme, 1, square))
+    scaled, exponent, finite = _rescale(v[:, extreme])
+    with np.errstate(over="ignore", under="ignore"):
+        rest = np.ldexp(np.sqrt(dot(scaled, scaled)), exponent)
+    result[extreme] = np.where(finite, rest, np.nan)
+    return result, extreme
+
+
+def _rescale(v: Array) -> tuple[Array, NDArray[np.intc], Bools]:
+    """Scale each vector by an exact power of two to a largest component in [1/2, 1)."""
+    largest = np.abs(v).max(axis=0)
+    finite = np.isfinite(largest)
+    _, exponent = np.frexp(np.where(finite, largest, 1))
+    with np.errstate(under="ignore"):
+        scaled = np.ldexp(np.where(finite, v, 0), -exponent)
+    return scaled, exponent, finite
+
+
+def orthonormalize(v: Array, rtol: float) -> tuple[Array, Indices]:
+    """Return orthonormal rows spanning the input and their count.
+
+    Gram-Schmidt on unit vectors, each projected twice; a vector whose distance from the span
+    of those before it is at most ``rtol`` of its length is dropped. Rows past the rank are 0.
+    """
+    k = v.shape[0]
+    if k == 1:
+        row, size = unit(v[0])
+        return row[np.newaxis], (size > 0).astype(np.intp)
+    frame = np.zeros_like(v)
+    rank = np.zeros(v.shape[2], dtype=np.intp)
+    for j in range(k):
+        row, size = unit(v[j])
+        good = size > 0
+        if j:
+            row = _reject(row, frame[:j])
+            row, distance = unit(row)
+            good &= distance > rtol
+            row = _reject(row, frame[:j])
+            row, _ = unit(row)
+        if good.all() and (rank == j).all():
+            frame[j] = row
+        else:
+            frame[rank[good], :, good] = row[:, good].T
+        rank += good
+    return frame, rank
+
+
+def _reject(x: Array, frame: Array) -> Array:
+    """Return the part of x orthogonal to the frame, one row after the other."""
+    for row in frame:
+        x = x - dot(row, x) * row
+    return x
+
+
+def coefficients(x: Array, frame: Array) -> Array:
+    """Return the tangential coefficients ``(k, B)`` of x."""
+    if len(frame) == 1:
+        return dot(frame[0], x)[np.newaxis]
+    return np.stack([dot(row, x) for row in frame])
+
+
+def split(x: Array, frame: Array) -> tuple[Array, Array]:
+    """Return tangential coefficients ``(k, B)`` and the length of the normal part.
+
+    The length is that of the residual: sqrt(1 - cos^2) would lose half the digits.
+    """
+    along = coefficients(x, frame)
+    residual = x - along[0] * frame[0]
+    for c, row in zip(along[1:], frame[1:], strict=True):
+        residual -= c * row
+    return along, length(residual)
+
+
+def power(x: Array, exponent: float, deficit: Array | None = None) -> Array:
+    """Return x to a power, 0^0 = 1, for x in [0, 1] and, where known, its deficit 1 - x.
+
+    Integer powers up to 64 by multiplication. Above 64 a given deficit is used.
+    """
+    if exponent > DEFICIT_FROM and deficit is not None:
+        with np.errstate(divide="ignore", under="ignore", over="ignore"):
+            result: Array = np.log1p(-np.minimum(deficit, 1))
+            result *= exponent
+            return np.exp(result, out=result)
+    with np.errstate(under="ignore"):
+        if exponent != int(exponent) or exponent > DEFICIT_FROM:
+            return np.power(x, x.dtype.type(exponent))
+        return _integer_power(x, int(exponent))
+
+
+def _integer_power(x: Array, exponent: int) -> Array:
+    if exponent == 0:
+        return np.ones_like(x)
+    result = None
+    while exponent > 1:
+        if exponent & 1:
+            result = x if result is None else result * x
+        exponent >>= 1
+        x = x * x
+    return x if result is None else result * x
+
+
+def power_error(p: float, q: float) -> float:
+    """Return the largest |x^p - x^q| for x in [0, 1], exactly: where the derivatives agree."""
+    low, high = sorted((p, q))
+    if low == high:
+        return 0.0
+    if low == 0:
+        return 1.0
+    ratio = np.log(low / high) / (high - low)
+    return float(np.exp(low * ratio) * (1 - low / high))
+
+
+def diffuse(sine: Array, exponent: float, along: Array | None = None) -> Array:
+    """Return sin(a)^p; ``along``, the tangential coefficients, sharpens large p by cos^2."""
+    if exponent > DEFICIT_FROM and along is not None:
+        return power(sine * sine, exponent / 2, dot(along, along))
+    return power(sine, exponent)
+
+
+def phong(tangential: Array, sine_i: Array, sine_o: Array, shininess: float) -> Array:
+    """Return max(0, V.R)^s from 1 - V.R = (|wi_T + wo_T|^2 + (|wi_N| - |wo_N|)^2) / 2.
+
+    ``tangential`` is |wi_T + wo_T|^2. This difference is exact where V.R is near 1, so the
+    error of the power grows as sqrt(s), not as s.
+    """
+    deficit = sine_i - sine_o
+    deficit *= deficit
+    deficit = deficit + tangential
+    deficit *= deficit.dtype.type(0.5)
+    return power(np.maximum(1 - deficit, 0), shininess, deficit)
+
+
+def blinn(tangential: Array, normal: Array, shininess: float) -> Array:
+    """Return |h_N|^q from the squared parts of wi + wo; 0 where there is no half vector."""
+    whole = tangential + normal
+    nothing = whole == 0
+    whole = np.where(nothing, 1, whole)
+    value = power(normal / whole, shininess / 2, tangential / whole)
+    return np.where(nothing, 0, value) if nothing.any() else value
+
+
+def blinn_of_unit(tangential: Array, shininess: float) -> Array:
+    """Return |h_N|^q, q of 2 or more, from |h_T|^2 of a unit half vector."""
+    return power(np.maximum(1 - tangential, 0), shininess / 2, tangential)
+
+
+def smooth_step(t: Array) -> Array:
+    """Return t^2 (3 - 2 t) of t clamped to [0, 1]."""
+    t = np.clip(t, 0, 1)
+    result: Array = t * t * (3 - 2 * t)
+    return result

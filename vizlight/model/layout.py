@@ -1,0 +1,74 @@
+"""Turn ``(..., n)`` arrays to component-first batches and back."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vizlight import _check
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from vizlight._types import Array
+
+#: Frames whose rows miss orthonormality by more than this many sqrt(eps) are refused.
+SLACK = 16.0
+
+
+def batch(frame: Array, *directions: Array) -> tuple[tuple[int, ...], Array, list[Array]]:
+    """Broadcast a frame and directions; return batch shape and component-first arrays."""
+    k, n = frame.shape[-2:]
+    kind = np.result_type(frame, *directions)
+    shapes = [frame.shape[:-2], *(d.shape[:-1] for d in directions)]
+    try:
+        shape = np.broadcast_shapes(*shapes)
+    except ValueError as error:
+        got = ", ".join(str(one) for one in shapes)
+        expected = "batches of directions and tangents that broadcast"
+        raise ValueError(_check.message("shapes", expected, got)) from error
+    rows = np.broadcast_to(frame, (*shape, k, n)).reshape(-1, k, n).transpose(1, 2, 0)
+    columns = [np.broadcast_to(d, (*shape, n)).reshape(-1, n).T for d in directions]
+    return (
+        shape,
+        np.ascontiguousarray(rows, dtype=kind),
+        [np.ascontiguousarray(c, dtype=kind) for c in columns],
+    )
+
+
+def as_rows(name: str, value: ArrayLike, *, full: bool) -> Array:
+    """Validate k rows of n components, shape (..., k, n): k < n, or with ``full`` k <= n."""
+    array = _check.vectors(name, value)
+    limit = "0 < k <= n" if full else "0 < k < n"
+    k, n = array.shape[-2:] if array.ndim > 1 else (0, array.shape[-1])
+    if not 0 < k < n + full:
+        raise ValueError(
+            _check.message(
+                name,
+                f"{limit} rows of n components, shape (..., k, n)",
+                f"shape {array.shape}",
+                "for one vector a point pass v[..., None, :]",
+            )
+        )
+    return array
+
+
+def as_frame(frame: ArrayLike) -> Array:
+    """Validate a tangent frame ``(..., k, n)``: k < n, rows orthonormal or zero."""
+    array = as_rows("frame", frame, full=False)
+    k = array.shape[-2]
+    gram = array @ np.swapaxes(array, -1, -2)
+    diagonal = np.diagonal(gram, axis1=-2, axis2=-1)
+    off = np.abs(gram - np.eye(k) * np.where(diagonal == 0, 0, 1)[..., np.newaxis])
+    worst = float(off.max()) if off.size else 0.0
+    if not worst <= SLACK * float(np.sqrt(np.finfo(array.dtype).eps)):
+        raise ValueError(
+            _check.message(
+                "frame",
+                "orthonormal rows",
+                f"rows off by {worst:.2g}",
+                "call vizlight.model.frames.orthonormalize first",
+            )
+        )
+    return array

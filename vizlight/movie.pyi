@@ -1,0 +1,1 @@
+from vizlight.pictures.movie import *

@@ -1,0 +1,1 @@
+"""Pictures of lit meshes: offscreen rendering, movies, and tests that compare pictures."""

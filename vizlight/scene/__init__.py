@@ -1,0 +1,11 @@
+"""What a picture is lit by: lights, material, view, depth cue. Plain values, no VTK.
+
+Directions point away from the lit point: toward the light, toward the eye.
+"""
+
+from vizlight.scene.light import Light
+from vizlight.scene.material import Material
+from vizlight.scene.scene import Scene
+from vizlight.scene.view import DepthCue, View
+
+__all__ = ["DepthCue", "Light", "Material", "Scene", "View"]

@@ -1,0 +1,88 @@
+"""What rounding can change: bounds of a plan's luminance, in float32 and float64."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vizlight.scene.light import NO_ATTENUATION
+
+if TYPE_CHECKING:
+    from vizlight.scene import Light, View
+    from vizlight.shading.plan import Plan
+
+
+def weight(plan: Plan, coefficient: float) -> float:
+    """Return a coefficient times the intensities of all lights."""
+    return float(coefficient * sum(light.intensity for light in plan.scene.lights))
+
+
+def rounding(plan: Plan) -> float:
+    """Return the most that rounding changes the luminance; infinity where no bound holds.
+
+    Notes
+    -----
+    By the bounds of :mod:`vizlight.model.reflection`, with 8 eps more for each factor that a scene
+    puts to them. None holds for k tangents near each other, near opposite directions under Blinn's
+    law, near the line under a cylinder's, and for t and fur, whose own rounding is the data's.
+    """
+    eps = float(np.finfo(plan.dtype).eps)
+    scene, material = plan.scene, plan.scene.material
+    if not (plan.diffuse or plan.specular):
+        return 4 * eps * plan.ambient
+    if plan.model == "cylinder" or plan.shadowed or plan.fur or plan.carrier:
+        return math.inf
+    if not plan.surface and plan.k > 1:
+        return math.inf
+    factors = 8.0 * (
+        1 + plan.conditioned + any(x.attenuation != NO_ATTENUATION for x in scene.lights)
+    )
+    total = 4 * eps * (plan.ambient + weight(plan, material.diffuse + material.specular))
+    if plan.factors != (1.0, 1.0):
+        # Of a line's mean brightness I, 9 (1 + |ln I|) eps of it, which is most at I = 1.
+        total += 10 * eps * weight(plan, material.diffuse + material.specular)
+    if plan.diffuse:
+        term = diffuse_bound(plan.exponent, eps) + factors * eps
+        total += plan.factors[0] * term * weight(plan, material.diffuse)
+    if plan.specular:
+        if plan.terminator:
+            factors += 6 / plan.terminator
+        for light, highlight in zip(scene.lights, plan.highlights, strict=True):
+            share = 1.0
+            if highlight.model == "blinn" and highlight.half is None:
+                apart = angle(light, scene.view)
+                if apart is None or apart > 3:
+                    return math.inf
+                share = min(2 * math.cos(apart / 2), 1.0)
+            term = specular_bound(highlight.shininess, eps / share) + factors * eps
+            total += plan.factors[1] * term * material.specular * light.intensity
+    return total
+
+
+def diffuse_bound(p: float, eps: float) -> float:
+    """Return the absolute error of :func:`vizlight.model.reflection.diffuse`."""
+    if p < 1:
+        return float((8 * eps) ** p)
+    return (4 + 2 * p if p <= 128 else 8 + math.sqrt(p)) * eps
+
+
+def specular_bound(s: float, eps: float) -> float:
+    """Return the absolute error of :func:`vizlight.model.reflection.specular`, |wi + wo| >= 1."""
+    if s < 1:
+        return float((8 * eps) ** s)
+    return (4 + s if s <= 128 else 8 + 3 * math.sqrt(s)) * eps
+
+
+def angle(light: Light, view: View | None) -> float | None:
+    """Return the angle from light to eye where it is one for all points; 0 for a headlight."""
+    if view is None:
+        return None
+    if light.position is not None:
+        same = not view.parallel and light.position == view.position
+        return 0.0 if same else None
+    if not view.parallel or light.direction is None or view.direction is None:
+        return None
+    a, b = (np.array(v) / np.linalg.norm(v) for v in (light.direction, view.direction))
+    return 2 * math.atan2(float(np.linalg.norm(a - b)), float(np.linalg.norm(a + b)))

@@ -1,0 +1,1 @@
+from vizlight.pictures.testing import *
