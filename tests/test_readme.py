@@ -36,8 +36,9 @@ def blocks(path, language):
 
 
 def lines(path):
-    """Return the lines of the shell blocks of a file."""
-    return [line for block in blocks(path, "sh") for line in block.split("\n") if line]
+    """Return the lines of the shell blocks of a file, continued lines as one."""
+    joined = [re.sub(r"\\\n\s*", "", block) for block in blocks(path, "sh")]
+    return [line for block in joined for line in block.split("\n") if line]
 
 
 def named_commands(path):
