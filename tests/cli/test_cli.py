@@ -197,7 +197,7 @@ def test_points_that_cannot_be_lit_are_told_and_no_error(volume, capfd):
         (["light", "flow.vti", "-o", "x.gif"], "output: expected a name that ends in"),
         (["light", "flow.vti", "-o", "none/x.vtp"], "output: expected a folder that exists"),
         (["light", "flow.vti", "-o", "x.vti"], "output: expected a name that ends in .vtp"),
-        (["light", "flow.vti", "--light", "1,2"], "--light: expected three numbers x,y,z"),
+        (["light", "flow.vti", "--light", "1"], "--light: expected three numbers x,y,z"),
         (
             ["light", "flow.vti", "--light", "0,0,0"],
             "--light: expected a direction x,y,z, not all zero",

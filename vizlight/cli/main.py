@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -12,7 +13,6 @@ from vizlight import _check, _console
 from vizlight._version import __version__
 from vizlight.cli import arguments
 from vizlight.cli.arguments import Backend  # noqa: TC001 - cyclopts reads the annotations
-from vizlight.cli.light import light
 from vizlight.cli.output import BAD_INPUT, LACKING, OK, complain, draw, say
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ def demo(
     """
     from rich.table import Table
 
-    from vizlight import demo, files
+    from vizlight import demo, files, render
 
     pixels = arguments.pixels(size)
     try:
@@ -102,10 +102,29 @@ def demo(
     console.print("Error: float32 luminance against plain NumPy in float64. The flow's plan:")
     console.print(explained, highlight=False)
     console.print(f"mesh     {mesh}", highlight=False)
-    return draw(demo.panels(lit), out / "flow.png", camera=camera, size=pixels, backend=backend)
+    picture = functools.partial(
+        render.save_png,
+        demo.panels(lit),
+        out / "flow.png",
+        camera=camera,
+        size=pixels,
+        backend=backend,
+    )
+    return draw(picture)
 
 
-app.command(light)
+for _name, _help in {
+    "light": "Light a mesh, and write the lit mesh and a picture.",
+    "streamlines": "Trace streamlines, free or on a surface, and light them.",
+    "relief": "Cast shadows on a height field or a closed surface.",
+    "fur": "Cover a surface with fibres, and light them and the skin below.",
+    "contours": "Find the contours of equal luminance, and the bands between them.",
+    "project": "Turn, cut and project a mesh of n-space to 3-space, and light it.",
+}.items():
+    # By their path, so that PyVista is loaded for the command that is called alone.
+    _module = "light" if _name == "light" else "filters"
+    app.command(f"vizlight.cli.{_module}:{_name}", name=_name, help=_help)
+app.register_install_completion_command(help="Install the completion of options in the shell.")
 
 
 @app.command

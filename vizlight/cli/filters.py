@@ -1,0 +1,262 @@
+"""``vizlight streamlines``, ``relief``, ``fur``, ``contours`` and ``project``."""
+
+from __future__ import annotations
+
+from pathlib import Path  # noqa: TC003 - cyclopts reads the annotations
+from typing import TYPE_CHECKING, Annotated
+
+import vizlight
+from vizlight.cli import options, scenes
+from vizlight.cli.arguments import (
+    CAMERA,
+    LIGHT,
+    LIT,
+    MATERIAL,
+    OUTPUT,
+    Eye,
+    Finish,
+    Lamps,
+    Output,
+    Part,
+    Shape,
+)
+from vizlight.cli.job import Job, carry_out
+from vizlight.cli.script import Step
+from vizlight.filters.fur import FurOptions
+from vizlight.filters.project import ProjectOptions
+from vizlight.filters.relief_shadow import ReliefOptions
+from vizlight.filters.streamlines import StreamlineOptions
+
+if TYPE_CHECKING:
+    import pyvista as pv
+
+#: Option of ``project`` that the lights have the name of.
+RENAMED = {"light": "when"}
+
+
+@options.takes(vizlight.streamlines, "Streamlines", without=("positions", "tangents"))
+def streamlines(
+    file: Path,
+    /,
+    *files: Path,
+    part: Annotated[Part, LIT] = Part(),  # noqa: B008
+    how: object = None,
+    lamps: Annotated[Lamps, LIGHT] = Lamps(),  # noqa: B008
+    finish: Annotated[Finish, MATERIAL] = Finish(),  # noqa: B008
+    eye: Annotated[Eye, CAMERA] = Eye(),  # noqa: B008
+    out: Annotated[Output, OUTPUT] = Output(),  # noqa: B008
+) -> int:
+    """Trace streamlines of a vector field, free or on a surface, and light them.
+
+    With --contour the isosurface conditions the light of the lines, and --confined keeps them
+    on it.
+
+    Example: vizlight streamlines flow.vtu --vectors V --model cylinder --diffuse 0.8
+
+    Parameters
+    ----------
+    file
+        Mesh with vectors; of several files each is lit by itself.
+    """
+    scenes.check_target(part)
+    look = scenes.Look(lamps, finish, eye, out.size)
+    given = options.keywords(how)
+    asked = StreamlineOptions(**given)  # type: ignore[arg-type]
+
+    def job(path: Path) -> Job:
+        mesh = scenes.data(path, part, average_cells=asked.average_cells)
+        on = {} if part.contour is None else {"surface": scenes.surface(mesh, part)}
+        camera = look.camera(on.get("surface", mesh) if asked.confined else mesh)
+        lit = _step("lit", "streamlines", mesh, look.scene(camera), given | on, out)
+        return Job(lit, asked.name, look, camera)
+
+    return carry_out((file, *files), job, out, "streamlines")
+
+
+@options.takes(vizlight.relief_shadow, "Relief")
+def relief(
+    file: Path,
+    /,
+    *files: Path,
+    shape: Annotated[Shape, LIT] = Shape(),  # noqa: B008
+    how: object = None,
+    lamps: Annotated[Lamps, LIGHT] = Lamps(),  # noqa: B008
+    finish: Annotated[Finish, MATERIAL] = Finish(),  # noqa: B008
+    eye: Annotated[Eye, CAMERA] = Eye(),  # noqa: B008
+    out: Annotated[Output, OUTPUT] = Output(),  # noqa: B008
+) -> int:
+    """Cast shadows on a height field or a closed surface: the cos-theta shadow t.
+
+    Example: vizlight relief terrain.dem --light 315,20 --depth 60
+
+    Parameters
+    ----------
+    file
+        Height field, or closed surface; of several files each is lit by itself.
+    """
+    scenes.check_target(shape)
+    look = scenes.Look(lamps, finish, eye, out.size)
+    given = options.keywords(how)
+    asked = ReliefOptions(**given)  # type: ignore[arg-type]
+
+    def job(path: Path) -> Job:
+        mesh = scenes.data(path, shape)
+        found = mesh.run()
+        if shape.contour is not None or shape.slice is not None or not _is_field(found):
+            mesh = scenes.surface(mesh, shape)
+            found = None
+        raised, raise_ = mesh, None
+        if found is not None and found.bounds.z_min == found.bounds.z_max:
+            raise_ = (asked.elevation or found.point_data.active_scalars_name, asked.factor)
+            raised = Step("raised", "files.warped", mesh, *raise_)
+        camera = look.camera(raised, is_map=found is not None)
+        lit = _step("shaded", "relief_shadow", mesh, look.scene(camera), given, out)
+        shown = None if raise_ is None else Step("shown", "files.warped", lit, *raise_)
+        scalars = None if asked.lit else asked.name
+        made = Job(lit, asked.name, look, camera, shown=shown, scalars=scalars, before=mesh)
+        made.suffix = ".vtp" if found is None else _suffix(found)
+        if asked.lit:
+            made.scalars = "rgb" if look.colored else "luminance"
+        return made
+
+    return carry_out((file, *files), job, out, "relief")
+
+
+@options.takes(vizlight.fur, "Fur")
+def fur(
+    file: Path,
+    /,
+    *files: Path,
+    how: object,
+    shape: Annotated[Shape, LIT] = Shape(),  # noqa: B008
+    lamps: Annotated[Lamps, LIGHT] = Lamps(),  # noqa: B008
+    finish: Annotated[Finish, MATERIAL] = Finish(),  # noqa: B008
+    eye: Annotated[Eye, CAMERA] = Eye(),  # noqa: B008
+    out: Annotated[Output, OUTPUT] = Output(),  # noqa: B008
+) -> int:
+    """Cover a surface with fibres, and light them and the skin below.
+
+    Example: vizlight fur bunny.ply --density 0.9 --length 0.01
+
+    Parameters
+    ----------
+    file
+        Surface, or a mesh with one; of several files each is lit by itself.
+    """
+    scenes.check_target(shape)
+    look = scenes.Look(lamps, finish, eye, out.size)
+    given = options.keywords(how)
+    asked = FurOptions(**given)  # type: ignore[arg-type]
+
+    def job(path: Path) -> Job:
+        mesh = scenes.surface(scenes.data(path, shape), shape)
+        camera = look.camera(mesh)
+        lit = _step("furry", "fur", mesh, look.scene(camera), given, out)
+        return Job(lit, asked.name, look, camera, parts=("fibres", "skin"))
+
+    return carry_out((file, *files), job, out, "fur")
+
+
+# The tolerance is that of solids, which no file holds.
+@options.takes(vizlight.isoluminance, "Contours", without=("tolerance",))
+def contours(
+    file: Path,
+    /,
+    *files: Path,
+    shape: Annotated[Shape, LIT] = Shape(),  # noqa: B008
+    how: object = None,
+    lamps: Annotated[Lamps, LIGHT] = Lamps(),  # noqa: B008
+    finish: Annotated[Finish, MATERIAL] = Finish(),  # noqa: B008
+    eye: Annotated[Eye, CAMERA] = Eye(),  # noqa: B008
+    out: Annotated[Output, OUTPUT] = Output(),  # noqa: B008
+) -> int:
+    """Find the contours of equal luminance of a surface, and the bands between them.
+
+    The levels are a number of equal steps (8), the largest error (0.02), or the luminance of
+    each contour (0.2,0.4,0.6).
+
+    Example: vizlight contours part.stl --levels 8 --specular 0
+
+    Parameters
+    ----------
+    file
+        Surface, or a mesh with one; of several files each is lit by itself.
+    """
+    scenes.check_target(shape)
+    look = scenes.Look(lamps, finish, eye, out.size)
+    given = options.keywords(how)
+
+    def job(path: Path) -> Job:
+        mesh = scenes.surface(scenes.data(path, shape), shape)
+        camera = look.camera(mesh)
+        lit = Step("found", "vizlight.isoluminance", mesh, look.scene(camera), **given)
+        name = str(given.get("name", "luminance"))
+        bands = Step("", "[]", lit, "bands")
+        return Job(lit, name, look, camera, shown=bands, parts=("bands", "contours"))
+
+    return carry_out((file, *files), job, out, "contours")
+
+
+@options.takes(vizlight.project, "Projection", renamed=RENAMED)
+def project(
+    file: Path,
+    /,
+    *files: Path,
+    how: object = None,
+    lamps: Annotated[Lamps, LIGHT] = Lamps(),  # noqa: B008
+    finish: Annotated[Finish, MATERIAL] = Finish(),  # noqa: B008
+    eye: Annotated[Eye, CAMERA] = Eye(),  # noqa: B008
+    out: Annotated[Output, OUTPUT] = Output(),  # noqa: B008
+) -> int:
+    """Turn, cut and project a mesh of n-space to 3-space, lit before or after.
+
+    Lights and eye have 3 numbers, or n before the projection; what they lack is 0. The light is
+    that of an eye at infinity.
+
+    Example: vizlight project torus.vtp --rotation xw:0.5 --distance 3
+
+    Parameters
+    ----------
+    file
+        Mesh with positions and tangents in n-space; of several files each is lit by itself.
+    """
+    look = scenes.Look(lamps, finish, eye, out.size)
+    given = options.keywords(how, RENAMED)
+    asked = ProjectOptions(**given)  # type: ignore[arg-type]
+
+    def job(path: Path) -> Job:
+        mesh = scenes.data(path, Part())
+        found = mesh.run()
+        rows = found.point_data.get(asked.positions or "")
+        n = 3 if asked.light == "after" or rows is None or rows.ndim == 1 else rows.shape[1]
+        scene = look.scene_in(n)
+        lit = _step("projected", "project", mesh, None, given | {"scene": scene}, out)
+        return Job(lit, asked.name, look, look.camera(lit), before=None, suffix=".vtk")
+
+    return carry_out((file, *files), job, out, "projected")
+
+
+def _step(
+    name: str,
+    filter_: str,
+    mesh: Step,
+    scene: Step | None,
+    given: dict[str, object],
+    out: Output,
+) -> Step:
+    """Return the step that runs a filter."""
+    progress = {"progress_bar": True} if out.progress else {}
+    arguments = (mesh,) if scene is None else (mesh, scene)
+    return Step(name, f"vizlight.{filter_}", *arguments, **given, **progress)
+
+
+def _is_field(mesh: pv.DataSet) -> bool:
+    """Tell whether a mesh is a grid of one layer."""
+    sizes: tuple[int, ...] = getattr(mesh, "dimensions", ())
+    return sum(size > 1 for size in sizes) == 2
+
+
+def _suffix(mesh: pv.DataSet) -> str:
+    from vizlight import files
+
+    return files.FORMATS[type(mesh).__name__][0]
