@@ -39,12 +39,11 @@ class Part:
     Parameters
     ----------
     clip
-        Plane beyond which the mesh is cut away: NORMAL:OFFSET as x,y,z:d, or x:d; repeatable.
+        Plane NORMAL:OFFSET beyond which is cut away: 0,0,1:5 or z:5.
     threshold
-        Range of an array in which cells are kept: NAME:LOW:HIGH, one of the two may be empty;
-        repeatable.
+        Range NAME:LOW:HIGH of an array that is kept; an end may be empty.
     contour
-        Point array of which an isosurface is taken. Default: the outer surface.
+        Point array of which an isosurface is taken.
     level
         Value of the isosurface. Default: the middle of the range.
     """
@@ -62,9 +61,9 @@ class Shape(Part):
     Parameters
     ----------
     slice
-        Plane of which the section is taken, written as for --clip.
+        Plane NORMAL:OFFSET of which the section is taken.
     warp
-        Point array by which the points of a grid are raised, such as heights.
+        Point array, such as heights, by which points are raised.
     warp_factor
         Factor of that array's values. Default: 1.
     """
@@ -81,7 +80,7 @@ class Target(Shape):
     Parameters
     ----------
     surface
-        Take the surface of a volume; --no-surface lights all its points.
+        Take the outer surface; otherwise light all points.
     """
 
     surface: bool = True
@@ -94,16 +93,15 @@ class Lamps:
     Parameters
     ----------
     light
-        Direction toward a light at infinity: x,y,z, or azimuth,altitude in degrees, clockwise
-        from y and above the horizon; repeatable. Default: over the left shoulder of the eye.
+        Direction x,y,z to a far light, or azimuth,altitude in degrees.
     light_position
-        Position x,y,z of a light; repeatable.
+        Position x,y,z of a light.
     headlight
-        Add a light that follows the view; alone it replaces the default light.
+        Add a light that follows the view.
     depth_cue
         Fade to half with depth.
     scene
-        JSON file of a scene, as Scene.to_dict() gives it; other options replace its values.
+        JSON file of Scene.to_dict(); other options replace its values.
     """
 
     light: Texts | None = None
@@ -128,7 +126,7 @@ class Finish:
     shininess
         Power of the specular term. Default: 20.
     color
-        Name of a colour or #rrggbb; the picture is then in colour.
+        Name of a colour, or #rrggbb, for a picture in colour.
     """
 
     ambient: float | None = None
@@ -145,8 +143,7 @@ class Eye:
     Parameters
     ----------
     view
-        Direction x,y,z from the mesh toward the eye, or a JSON file of PyVista's camera
-        position. Default: 1,1,1; for a height field 0,0,1, a map.
+        Direction x,y,z to the eye, or a JSON file of a camera position. Default: 1,1,1.
     up
         Direction that is up in the picture. Default: z, or y seen along z.
     parallel
@@ -168,18 +165,17 @@ class Output:
     Parameters
     ----------
     output
-        A .png for the picture; a .vtp, .vtu, .vtk, .vts, .vti or .vtr for the mesh; or a folder;
-        repeatable. Default: a mesh and a picture here, named after the file and the command.
+        Picture .png, mesh .vtp, .vtu, .vtk, .vts, .vti or .vtr, or a folder.
     size
         Width and height of the picture in pixels.
     background
         Colour behind the mesh. Default: white, or black behind lines.
     line_width
-        Width of lines, in pixels of a picture of twice the size, as it is drawn.
+        Width of lines, in pixels of twice the picture's size.
     backend
         Library that draws. Default: egl.
     report
-        Print the cost, and the error of a sample that is lit again in float64.
+        Print the cost, and the error of a sample lit again in float64.
     progress
         Show a progress bar.
     script

@@ -36,9 +36,9 @@ RENAMED = {"light": "when"}
 
 @options.takes(vizlight.streamlines, "Streamlines", without=("positions", "tangents"))
 def streamlines(
-    file: Path,
+    files: list[Path],
     /,
-    *files: Path,
+    *,
     part: Annotated[Part, LIT] = Part(),  # noqa: B008
     how: object = None,
     lamps: Annotated[Lamps, LIGHT] = Lamps(),  # noqa: B008
@@ -51,12 +51,10 @@ def streamlines(
     With --contour the isosurface conditions the light of the lines, and --confined keeps them
     on it.
 
-    Example: vizlight streamlines flow.vtu --vectors V --model cylinder --diffuse 0.8
-
     Parameters
     ----------
-    file
-        Mesh with vectors; of several files each is lit by itself.
+    files
+        Mesh with vectors; of several each is lit by itself.
     """
     scenes.check_target(part)
     look = scenes.Look(lamps, finish, eye, out.size)
@@ -70,14 +68,14 @@ def streamlines(
         lit = _step("lit", "streamlines", mesh, look.scene(camera), given | on, out)
         return Job(lit, asked.name, look, camera)
 
-    return carry_out((file, *files), job, out, "streamlines")
+    return carry_out(files, job, out, "streamlines")
 
 
 @options.takes(vizlight.relief_shadow, "Relief")
 def relief(
-    file: Path,
+    files: list[Path],
     /,
-    *files: Path,
+    *,
     shape: Annotated[Shape, LIT] = Shape(),  # noqa: B008
     how: object = None,
     lamps: Annotated[Lamps, LIGHT] = Lamps(),  # noqa: B008
@@ -87,12 +85,10 @@ def relief(
 ) -> int:
     """Cast shadows on a height field or a closed surface: the cos-theta shadow t.
 
-    Example: vizlight relief terrain.dem --light 315,20 --depth 60
-
     Parameters
     ----------
-    file
-        Height field, or closed surface; of several files each is lit by itself.
+    files
+        Height field, or closed surface; of several each is lit by itself.
     """
     scenes.check_target(shape)
     look = scenes.Look(lamps, finish, eye, out.size)
@@ -119,14 +115,14 @@ def relief(
             made.scalars = "rgb" if look.colored else "luminance"
         return made
 
-    return carry_out((file, *files), job, out, "relief")
+    return carry_out(files, job, out, "relief")
 
 
 @options.takes(vizlight.fur, "Fur")
 def fur(
-    file: Path,
+    files: list[Path],
     /,
-    *files: Path,
+    *,
     how: object,
     shape: Annotated[Shape, LIT] = Shape(),  # noqa: B008
     lamps: Annotated[Lamps, LIGHT] = Lamps(),  # noqa: B008
@@ -136,12 +132,10 @@ def fur(
 ) -> int:
     """Cover a surface with fibres, and light them and the skin below.
 
-    Example: vizlight fur bunny.ply --density 0.9 --length 0.01
-
     Parameters
     ----------
-    file
-        Surface, or a mesh with one; of several files each is lit by itself.
+    files
+        Surface, or a mesh with one; of several each is lit by itself.
     """
     scenes.check_target(shape)
     look = scenes.Look(lamps, finish, eye, out.size)
@@ -154,15 +148,15 @@ def fur(
         lit = _step("furry", "fur", mesh, look.scene(camera), given, out)
         return Job(lit, asked.name, look, camera, parts=("fibres", "skin"))
 
-    return carry_out((file, *files), job, out, "fur")
+    return carry_out(files, job, out, "fur")
 
 
 # The tolerance is that of solids, which no file holds.
 @options.takes(vizlight.isoluminance, "Contours", without=("tolerance",))
 def contours(
-    file: Path,
+    files: list[Path],
     /,
-    *files: Path,
+    *,
     shape: Annotated[Shape, LIT] = Shape(),  # noqa: B008
     how: object = None,
     lamps: Annotated[Lamps, LIGHT] = Lamps(),  # noqa: B008
@@ -172,15 +166,10 @@ def contours(
 ) -> int:
     """Find the contours of equal luminance of a surface, and the bands between them.
 
-    The levels are a number of equal steps (8), the largest error (0.02), or the luminance of
-    each contour (0.2,0.4,0.6).
-
-    Example: vizlight contours part.stl --levels 8 --specular 0
-
     Parameters
     ----------
-    file
-        Surface, or a mesh with one; of several files each is lit by itself.
+    files
+        Surface, or a mesh with one; of several each is lit by itself.
     """
     scenes.check_target(shape)
     look = scenes.Look(lamps, finish, eye, out.size)
@@ -194,14 +183,14 @@ def contours(
         bands = Step("", "[]", lit, "bands")
         return Job(lit, name, look, camera, shown=bands, parts=("bands", "contours"))
 
-    return carry_out((file, *files), job, out, "contours")
+    return carry_out(files, job, out, "contours")
 
 
 @options.takes(vizlight.project, "Projection", renamed=RENAMED)
 def project(
-    file: Path,
+    files: list[Path],
     /,
-    *files: Path,
+    *,
     how: object = None,
     lamps: Annotated[Lamps, LIGHT] = Lamps(),  # noqa: B008
     finish: Annotated[Finish, MATERIAL] = Finish(),  # noqa: B008
@@ -213,12 +202,10 @@ def project(
     Lights and eye have 3 numbers, or n before the projection; what they lack is 0. The light is
     that of an eye at infinity.
 
-    Example: vizlight project torus.vtp --rotation xw:0.5 --distance 3
-
     Parameters
     ----------
-    file
-        Mesh with positions and tangents in n-space; of several files each is lit by itself.
+    files
+        Mesh with positions and tangents in n-space; of several each is lit by itself.
     """
     look = scenes.Look(lamps, finish, eye, out.size)
     given = options.keywords(how, RENAMED)
@@ -233,7 +220,7 @@ def project(
         lit = _step("projected", "project", mesh, None, given | {"scene": scene}, out)
         return Job(lit, asked.name, look, look.camera(lit), before=None, suffix=".vtk")
 
-    return carry_out((file, *files), job, out, "projected")
+    return carry_out(files, job, out, "projected")
 
 
 def _step(

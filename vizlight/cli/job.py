@@ -174,10 +174,6 @@ def _last_steps(job: Job, out: Output) -> list[Step]:
 def _run(job: Job, out: Output) -> int:
     from vizlight import files
 
-    lit_mesh = job.lit.arguments[0]
-    if isinstance(lit_mesh, Step) and not lit_mesh.run().n_points:
-        expected = "points that --threshold, --clip and --slice leave"
-        raise ValueError(_check.message("file", expected, "none"))
     if job.before is not None:
         mesh = job.before.run()
         for _, path in job.meshes:

@@ -36,9 +36,9 @@ if TYPE_CHECKING:
 # Places in n-space need lights and an eye in n-space, which scripts have.
 @options.takes(vizlight.illuminate, "Shading", without=("positions",))
 def light(
-    file: Path,
+    files: list[Path],
     /,
-    *files: Path,
+    *,
     target: Annotated[Target, LIT] = Target(),  # noqa: B008
     how: object = None,
     lamps: Annotated[Lamps, LIGHT] = Lamps(),  # noqa: B008
@@ -49,12 +49,10 @@ def light(
 ) -> int:
     """Light a mesh from any file that PyVista reads, and write the lit mesh and a picture.
 
-    Example: vizlight light flow.vtu --contour Temp --tangents V --conditioned
-
     Parameters
     ----------
-    file
-        Mesh to light; of several files each is lit by itself.
+    files
+        Mesh to light; of several each is lit by itself.
     explain
         Print what is computed and what is skipped.
     """
@@ -80,7 +78,7 @@ def light(
             made.explain = lambda mesh: _explain(mesh, asked)
         return made
 
-    return carry_out((file, *files), job, out, "lit")
+    return carry_out(files, job, out, "lit")
 
 
 def _hint(mesh: pv.DataSet | pv.MultiBlock, *, surface: bool) -> str:

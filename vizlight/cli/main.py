@@ -47,7 +47,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _fail(error: object) -> int:
     text = " ".join(str(error).split())
     # The library names its options as Python does.
-    text = re.sub(r"\b([a-z]+(?:_[a-z]+)*)=(?:True)?(?=[ ,;.)]|$)", _option, text)
+    text = re.sub(r"(?<![\w.(])([a-z]+(?:_[a-z]+)*)=(?:True)?(?=[ ,;.)]|$)", _option, text)
     complain(text)
     return BAD_INPUT
 
@@ -113,18 +113,48 @@ def demo(
     return draw(picture)
 
 
-for _name, _help in {
-    "light": "Light a mesh, and write the lit mesh and a picture.",
-    "streamlines": "Trace streamlines, free or on a surface, and light them.",
-    "relief": "Cast shadows on a height field or a closed surface.",
-    "fur": "Cover a surface with fibres, and light them and the skin below.",
-    "contours": "Find the contours of equal luminance, and the bands between them.",
-    "project": "Turn, cut and project a mesh of n-space to 3-space, and light it.",
-}.items():
+#: Commands that light files: module, what they do, and an example.
+LIGHTING = {
+    "light": (
+        "light",
+        "Light a mesh, and write the lit mesh and a picture.",
+        "flow.vtu --contour Temp --tangents V --conditioned",
+    ),
+    "streamlines": (
+        "filters",
+        "Trace streamlines, free or on a surface, and light them.",
+        "flow.vtu --vectors V --model cylinder --diffuse 0.8",
+    ),
+    "relief": (
+        "filters",
+        "Cast shadows on a height field or a closed surface.",
+        "terrain.dem --depth 60 --light 315,20",
+    ),
+    "fur": (
+        "filters",
+        "Cover a surface with fibres, and light them and the skin.",
+        "bunny.ply --density 0.2 --length 0.01",
+    ),
+    "contours": (
+        "filters",
+        "Find contours of equal luminance and the bands between.",
+        "part.stl --levels 8 --specular 0",
+    ),
+    "project": (
+        "filters",
+        "Turn a mesh of n-space, project it to 3-space and light it.",
+        "torus.vtp --rotation xw:0.5 --distance 3",
+    ),
+}
+for _name, (_module, _help, _example) in LIGHTING.items():
     # By their path, so that PyVista is loaded for the command that is called alone.
-    _module = "light" if _name == "light" else "filters"
-    app.command(f"vizlight.cli.{_module}:{_name}", name=_name, help=_help)
-app.register_install_completion_command(help="Install the completion of options in the shell.")
+    app.command(
+        f"vizlight.cli.{_module}:{_name}",
+        name=_name,
+        help=_help,
+        help_epilogue=f"Example: vizlight {_name} {_example}",
+    )
+app.register_install_completion_command(help="Install shell completion.")
 
 
 @app.command

@@ -40,8 +40,8 @@ TYPES: Mapping[str, object] = {
 }
 #: Keywords of filters that are not options of what they make.
 NOT_OPTIONS = ("scene", "threads", "inplace", "progress_bar")
-#: Number of letters of a description.
-LENGTH = 72
+#: Number of letters of a description that is shortened.
+SHORTEST, LENGTH = 10, 64
 
 
 def _levels(name: str, text: str) -> object:
@@ -78,14 +78,16 @@ def _hyperplane(name: str, text: str) -> object:
     return values, distance[0]
 
 
-#: Options whose text is read in a way of its own.
-READ: Mapping[str, Callable[[str, str], object]] = {
-    "tolerance": fraction,
-    "levels": _levels,
-    "toward": _name_or_vector,
-    "hyperplane": _hyperplane,
+#: Options whose text is read in a way of its own, and its description.
+READ: Mapping[str, tuple[Callable[[str, str], object], str]] = {
+    "tolerance": (fraction, "Largest error that is accepted for speed, such as 1/255."),
+    "levels": (_levels, "Number of steps (8), largest error (0.02) or values (0.2,0.4,0.6)."),
+    "toward": (_name_or_vector, "Direction x,y,z to which fibres bend, or name of an array."),
+    "hyperplane": (_hyperplane, "Hyperplane NORMAL:OFFSET that cuts the mesh: 0,0,0,1:0.2."),
 }
-READ_LISTS: Mapping[str, Callable[[str, list[str]], object]] = {"rotation": _rotations}
+READ_LISTS: Mapping[str, tuple[Callable[[str, list[str]], object], str]] = {
+    "rotation": (_rotations, "Turn PLANE:ANGLE in radians, such as xw:0.5."),
+}
 
 
 def arguments_of(
@@ -114,9 +116,9 @@ def arguments_of(
             continue
         default = parameter.default
         option = Parameter(
-            help=_first_clause(_text(name, texts)),
+            help=first_clause(_text(name, texts)),
             negative=() if default is False or name in READ_LISTS else None,
-            show_default=bool(default),
+            show_default=bool(default) and not isinstance(default, bool),
             allow_leading_hyphen=name in READ,
         )
         required = default is parameter.empty
@@ -143,9 +145,9 @@ def keywords(arguments: object, renamed: Mapping[str, str] | None = None) -> dic
         if value != one.default or type(value) is not type(one.default):
             option = one.name.replace("_", "-")
             if name in READ:
-                value = READ[name](option, value)
+                value = READ[name][0](option, value)
             elif name in READ_LISTS:
-                value = READ_LISTS[name](option, value)
+                value = READ_LISTS[name][0](option, value)
             found[name] = value
     return found
 
@@ -170,6 +172,10 @@ def _documented(function: Callable[..., object]) -> dict[str, str]:
 
 def _text(name: str, texts: Mapping[str, str]) -> str:
     """Return the description of an option; one that refers to another function is taken there."""
+    if name in READ:
+        return READ[name][1]
+    if name in READ_LISTS:
+        return READ_LISTS[name][1]
     names = [*texts]
     at = names.index(name) if name in texts else 0
     # An entry of several options stands at the first of them.
@@ -189,16 +195,19 @@ def _flat(entry: str) -> str:
     return re.sub(r":\w+:`~?(?:[\w.]+\.)?(\w+)`", r"\1", text)
 
 
-def _first_clause(text: str) -> str:
+def first_clause(text: str) -> str:
     """Return the first sentence, or as much of it as fits a line and ends where a clause does."""
-    sentence = re.split(r"(?<=[.;])\s(?=[A-Z0-9\"])", text)[0].rstrip(".")
+    sentence = re.split(r"(?<=\S[.;])\s(?=[A-Z0-9\"])", text)[0].rstrip(".")
     ends = []
-    for found in re.finditer(r"[:;,] | \(", sentence):
+    for found in re.finditer(
+        r"[:;] |, (?=which|such|see|or its|before|in )| \((?=[A-Z])", sentence
+    ):
         before = sentence[: found.start()]
         if all(before.count(a) == before.count(b) for a, b in ("()", "{}", "[]")):
             ends.append(found.start())
+    ends = [end for end in ends if end >= SHORTEST]
     short = [end for end in ends if end <= LENGTH]
-    if len(sentence) > LENGTH + 12 and ends:
+    if len(sentence) > LENGTH and ends:
         sentence = sentence[: max(short, default=min(ends))]
     return f"{sentence}."
 

@@ -50,7 +50,7 @@ def data(file: Path, target: Part, *, average_cells: bool = False) -> Step:
     for text in target.threshold or ():
         mesh = _threshold(mesh, text)
     for text in target.clip or ():
-        mesh = _cut("clipped", ".clip", mesh, "clip", text)
+        mesh = _cut("clipped", "clip", mesh, text)
     return mesh
 
 
@@ -63,24 +63,29 @@ def _threshold(mesh: Step, text: str) -> Step:
         expected = f"the name of an array, {_check.one_of(there)}"
         raise ValueError(_check.message("--threshold", expected, repr(name)))
     if math.isinf(high):
-        return Step("kept", ".threshold", mesh, low, scalars=name)
-    if math.isinf(low):
-        return Step("kept", ".threshold", mesh, high, scalars=name, method="lower")
-    return Step("kept", ".threshold", mesh, (low, high), scalars=name)
+        step = Step("kept", ".threshold", mesh, low, scalars=name)
+    elif math.isinf(low):
+        step = Step("kept", ".threshold", mesh, high, scalars=name, method="lower")
+    else:
+        step = Step("kept", ".threshold", mesh, (low, high), scalars=name)
+    step.asked = ("--threshold", repr(text))
+    return step
 
 
-def _cut(name: str, method: str, mesh: Step, option: str, text: str) -> Step:
+def _cut(name: str, option: str, mesh: Step, text: str) -> Step:
     """Return the step that cuts a mesh by a plane."""
     normal, offset = arguments.plane(option, text)
     length = math.hypot(*normal)
     origin = tuple(offset * component / length for component in normal)
-    return Step(name, method, mesh, normal=normal, origin=origin)
+    step = Step(name, f".{option}", mesh, normal=normal, origin=origin)
+    step.asked = (f"--{option}", repr(text))
+    return step
 
 
 def surface(mesh: Step, target: Part) -> Step:
     """Return the step that takes the surface, an isosurface or a section of a mesh."""
     if isinstance(target, Shape) and target.slice is not None:
-        return _cut("section", ".slice", mesh, "slice", target.slice)
+        return _cut("section", "slice", mesh, target.slice)
     options: dict[str, object] = {"contour": target.contour, "level": target.level}
     return Step("surface", "files.surface_of", mesh, **_given(options))
 

@@ -9,6 +9,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from vizlight import _check
+
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
@@ -47,6 +49,8 @@ class Step:
         self.arguments, self.keywords = arguments, keywords
         #: Attributes that the result is given.
         self.attributes: dict[str, object] = {}
+        #: Option and value of a user, with which the result must have points.
+        self.asked = ("", "")
 
     def run(self) -> Any:
         """Return the result; the call is made once."""
@@ -54,6 +58,16 @@ class Step:
 
     @functools.cached_property
     def _result(self) -> Any:
+        made = self._called()
+        if self.asked[0] and not made.n_points:
+            raise ValueError(
+                _check.message(self.asked[0], "a value that leaves points", self.asked[1])
+            )
+        for key, value in self.attributes.items():
+            setattr(made, key, _run(value))
+        return made
+
+    def _called(self) -> Any:
         arguments: list[Any] = [_run(value) for value in self.arguments]
         keywords = {key: _run(value) for key, value in self.keywords.items()}
         if self.path == "[]":
@@ -64,10 +78,7 @@ class Step:
         function: Any = importlib.import_module(HOMES.get(head, head))
         for name in names:
             function = getattr(function, name)
-        made = function(*arguments, **keywords)
-        for key, value in self.attributes.items():
-            setattr(made, key, _run(value))
-        return made
+        return function(*arguments, **keywords)
 
     def parts(self) -> Iterator[object]:
         """Yield the arguments, keywords and attributes."""
