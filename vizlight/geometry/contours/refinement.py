@@ -377,29 +377,50 @@ def onto(surfaces: tuple[Surface, ...], points: Array, both: Indices, rounds: in
     touch the step is bounded, so that no point runs away.
     """
     points = points.copy()
-    columns = [both[:, i] for i in range(both.shape[1])]
+    single = np.all(both == both[:, :1], axis=1)
+    for i in np.unique(both[single, 0]):
+        on = np.flatnonzero(single & (both[:, 0] == i))
+        points[on] = _onto_one(surfaces[i], points[on], rounds)
+    on = np.flatnonzero(~single)
+    if len(on):
+        points[on] = _onto_all(surfaces, points[on], both[on], rounds)
+    return points
+
+
+def _onto_one(surface: Surface, points: Array, rounds: int) -> Array:
     for _ in range(rounds):
-        distance = np.zeros((len(points), len(columns)))
-        normal = np.zeros((len(points), len(columns), 3))
-        for j, column in enumerate(columns):
-            for i in np.unique(column):
-                on = column == i
-                distance[on, j] = surfaces[i].distance(points[on])
-                normal[on, j] = surfaces[i].normal(points[on])
-        for j in range(1, len(columns)):
-            for k in range(j):
-                same = columns[j] == columns[k]
-                distance[same, j] = 0
-                normal[same, j] = 0
+        distance = surface.distance(points)
+        if not np.abs(distance).max(initial=0) > 1e-15:
+            break
+        points = points - distance[:, np.newaxis] * surface.normal(points)
+    return points
+
+
+def _onto_all(surfaces: tuple[Surface, ...], points: Array, which: Indices, rounds: int) -> Array:
+    count = which.shape[1]
+    used = np.unique(which)
+    on = [(j, i, np.flatnonzero(which[:, j] == i)) for j in range(count) for i in used]
+    pairs = [(j, k) for j in range(count) for k in range(j)]
+    same = [(j, which[:, j] == which[:, k]) for j, k in pairs]
+    for _ in range(rounds):
+        distance = np.zeros(which.shape)
+        normal = np.zeros((*which.shape, 3))
+        for j, i, rows in on:
+            if len(rows):
+                distance[rows, j] = surfaces[i].distance(points[rows])
+                normal[rows, j] = surfaces[i].normal(points[rows])
+        for j, rows in same:
+            distance[rows, j] = 0
+            normal[rows, j] = 0
         gram = normal @ normal.transpose(0, 2, 1)
-        gram += 1e-14 * np.eye(len(columns))
-        gram += np.eye(len(columns)) * (np.einsum("nii->ni", gram) < 0.5)[:, :, np.newaxis]
+        gram += 1e-14 * np.eye(count)
+        gram += np.eye(count) * (np.einsum("nii->ni", gram) < 0.5)[:, :, np.newaxis]
         weight = np.linalg.solve(gram, distance[:, :, np.newaxis])
         step = np.einsum("nji,nj->ni", normal, weight[:, :, 0])
         size = np.sqrt(np.einsum("ij,ij->i", step, step))
         limit = 4 * np.abs(distance).sum(axis=1)
         step *= np.minimum(1, limit / np.where(size > 0, size, 1))[:, np.newaxis]
-        points -= step
+        points = points - step
         if not np.abs(distance).max(initial=0) > 1e-15:
             break
     return points

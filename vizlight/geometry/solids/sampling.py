@@ -112,22 +112,28 @@ class Size:
 
     def __init__(self, unit: Unit, coarse: float, own: Array) -> None:
         self.coarse = coarse
-        self.small = [(i, float(need)) for i, need in enumerate(own) if need < 0.99 * coarse]
         self.unit = unit
-        finest = min([coarse, *(need for _, need in self.small)])
+        small = np.flatnonzero(own < 0.99 * coarse)
+        #: For each primitive its surfaces, and those of them that need a finer spacing.
+        self.small: dict[Primitive, tuple[list[int], dict[int, float]]] = {}
+        for i in small:
+            faces = [j for j, owner in enumerate(unit.owners) if owner is unit.owners[i]]
+            _, needs = self.small.setdefault(unit.owners[i], (faces, {}))
+            needs[int(i)] = float(own[i])
+        finest = min([coarse, *own[small]])
         count = max(int(np.ceil(np.log2(coarse / finest))), 0) + 1
         self.levels = [coarse / 2**k for k in range(count)]
 
     def of(self, points: Array) -> Array:
         """Return the spacing at some points."""
         found = np.full(len(points), self.coarse)
-        for i, need in self.small:
+        for faces, needs in self.small.values():
+            gaps = {i: self.unit.surfaces[i].distance(points) for i in faces}
             # No farther than the surface's own piece: it lies within its primitive.
-            far = np.abs(self.unit.surfaces[i].distance(points))
-            for j, owner in enumerate(self.unit.owners):
-                if owner is self.unit.owners[i]:
-                    far = np.maximum(far, self.unit.surfaces[j].distance(points))
-            found = np.minimum(found, need + GROWTH * far)
+            outside = np.max(list(gaps.values()), axis=0)
+            for i, need in needs.items():
+                far = np.maximum(np.abs(gaps[i]), outside)
+                found = np.minimum(found, need + GROWTH * far)
         return found
 
     def samples(self, surface: Surface, share: float, random: np.random.Generator) -> Array:
@@ -219,24 +225,27 @@ def _meetings(unit: Unit, fine: list[Array], size: Size) -> tuple[Array, Indices
     """Return points of the curves where two surfaces meet, densely, and which two."""
     found: list[Array] = [np.empty((0, 3))]
     pairs: list[Indices] = [np.empty((0, 2), np.intp)]
-    for i, j in itertools.permutations(range(len(unit.surfaces)), 2):
-        first, second = unit.surfaces[i], unit.surfaces[j]
-        start = fine[i][np.abs(second.distance(fine[i])) < size.of(fine[i])]
-        if not len(start):
-            continue
-        both = np.tile([0, 1], (len(start), 1))
-        places = refinement.onto((first, second), start, both, rounds=8)
-        step = places - start
-        good = np.abs(first.distance(places)) + np.abs(second.distance(places)) < ON
-        good &= np.einsum("ij,ij->i", step, step) < (3 * size.of(start)) ** 2
-        # Surfaces that coincide do not cross: no curve.
-        cross = np.cross(first.normal(places), second.normal(places))
-        good &= np.einsum("ij,ij->i", cross, cross) > 1e-12
-        places = places[good]
-        both = np.tile([i, j], (len(places), 1))
-        real = unit.edge(places, both)
-        found.append(places[real])
-        pairs.append(both[real])
+    for i, first in enumerate(unit.surfaces):
+        spacing = size.of(fine[i])
+        for j, second in enumerate(unit.surfaces):
+            near = np.abs(second.distance(fine[i])) < spacing
+            if i == j or not np.any(near):
+                continue
+            start = fine[i][near]
+            places = refinement.onto(
+                (first, second), start, np.tile([0, 1], (len(start), 1)), rounds=8
+            )
+            step = places - start
+            good = np.abs(first.distance(places)) + np.abs(second.distance(places)) < ON
+            good &= np.einsum("ij,ij->i", step, step) < (3 * spacing[near]) ** 2
+            # Surfaces that coincide do not cross: no curve.
+            cross = np.cross(first.normal(places), second.normal(places))
+            good &= np.einsum("ij,ij->i", cross, cross) > 1e-12
+            places = places[good]
+            both = np.tile([i, j], (len(places), 1))
+            real = unit.edge(places, both)
+            found.append(places[real])
+            pairs.append(both[real])
     return np.concatenate(found), np.concatenate(pairs).astype(np.intp)
 
 
@@ -244,21 +253,26 @@ def _touching(unit: Unit, fine: list[Array], size: Size) -> tuple[Array, Array]:
     """Return points where two surfaces touch, and those of them that a third one meets."""
     lines: list[Array] = [np.empty((0, 3))]
     ends: list[Array] = [np.empty((0, 3))]
-    for i, j in itertools.permutations(range(len(unit.surfaces)), 2):
-        if isinstance(unit.surfaces[i], Plane) and isinstance(unit.surfaces[j], Plane):
-            continue
-        start = fine[i][np.abs(unit.surfaces[j].distance(fine[i])) < size.of(fine[i])]
-        lean = _along(unit, start, (i,), j)
-        lean = np.einsum("ij,ij->i", lean, lean)
-        # Surfaces that coincide touch everywhere: no line.
-        start = start[(lean > 1e-12) & (lean < 0.5)]
-        start = start[unit.edge(start, np.full((len(start), 1), i))]
-        places = _touch(unit, start, (i,), j, size)
-        lines.append(places)
-        for k, third in enumerate(unit.surfaces):
-            if k not in (i, j):
-                near = np.abs(third.distance(places)) < 1.5 * size.of(places)
-                ends.append(_touch(unit, places[near], (i, k), j, size))
+    for i, surface in enumerate(unit.surfaces):
+        spacing = size.of(fine[i])
+        for j, other in enumerate(unit.surfaces):
+            if i == j or (isinstance(surface, Plane) and isinstance(other, Plane)):
+                continue
+            start = fine[i][np.abs(other.distance(fine[i])) < spacing]
+            lean = _along(unit, start, (i,), j)
+            lean = np.einsum("ij,ij->i", lean, lean)
+            # Surfaces that coincide touch everywhere: no line.
+            start = start[(lean > 1e-12) & (lean < 0.5)]
+            start = start[unit.edge(start, np.full((len(start), 1), i))]
+            places = _touch(unit, start, (i,), j, size)
+            if not len(places):
+                continue
+            lines.append(places)
+            reach = 1.5 * size.of(places)
+            for k, third in enumerate(unit.surfaces):
+                if k not in (i, j):
+                    near = places[np.abs(third.distance(places)) < reach]
+                    ends.append(_touch(unit, near, (i, k), j, size))
     return np.concatenate(lines), np.concatenate(ends)
 
 
@@ -277,6 +291,8 @@ def _touch(unit: Unit, start: Array, fixed: tuple[int, ...], moving: int, size: 
     Newton's method for a double root: steps are twice as long. Where surfaces cross it goes to
     and fro, and is left after a few.
     """
+    if not len(start):
+        return start
     surface, surfaces = unit.surfaces[moving], tuple(unit.surfaces[i] for i in fixed)
     places, far = start, 3 * size.of(start)
     for rounds, missing in ((3, 1e-4), (9, 1e-13)):
