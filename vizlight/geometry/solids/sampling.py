@@ -45,6 +45,8 @@ class Unit:
                 if not (isinstance(surface, Plane) and max(surface.extent) == 0):
                     self.surfaces.append(surface)
                     self.owners.append(part)
+        #: Which pairs of surfaces are parallel planes, which meet nowhere or everywhere.
+        self.parallel = np.array([[_parallel(a, b) for b in self.surfaces] for a in self.surfaces])
 
     def inside(self, points: Array) -> Bools:
         """Return which points are inside the solid."""
@@ -83,14 +85,12 @@ class Unit:
                 on = which[:, j] == i
                 normal[on, j] = self.surfaces[i].normal(points[on])
         gram = normal @ normal.transpose(0, 2, 1) + 1e-9 * np.eye(k)
-        inside = np.empty((len(points), *(2,) * k), np.bool_)
-        for sector in itertools.product((0, 1), repeat=k):
-            signs = np.tile(2.0 * np.array(sector)[:, np.newaxis] - 1, (len(points), 1, 1))
-            weight = np.linalg.solve(gram, signs)
-            step = np.einsum("nji,nj->ni", normal, weight[:, :, 0])
-            step /= np.sqrt(np.einsum("ij,ij->i", step, step))[:, np.newaxis]
-            there: Any = (slice(None), *sector)
-            inside[there] = self.inside(points + PROBE * step)
+        signs = 2.0 * np.array(list(itertools.product((0, 1), repeat=k))).T - 1
+        weight = np.linalg.solve(gram, np.broadcast_to(signs, (len(points), *signs.shape)))
+        step = np.einsum("nji,njs->nsi", normal, weight)
+        step /= np.sqrt(np.einsum("nsi,nsi->ns", step, step))[:, :, np.newaxis]
+        places = (points[:, np.newaxis] + PROBE * step).reshape(-1, 3)
+        inside = self.inside(places).reshape(-1, *(2,) * k)
         matter = np.ones(len(points), np.bool_)
         for axis in range(1, k + 1):
             differ = np.diff(inside, axis=axis)
@@ -150,6 +150,13 @@ class Size:
         return np.concatenate(found)
 
 
+def _parallel(first: Surface, second: Surface) -> bool:
+    if not (isinstance(first, Plane) and isinstance(second, Plane)):
+        return False
+    across = np.cross(first.outward, second.outward)
+    return bool(across @ across <= 1e-12)
+
+
 def estimate(surfaces: list[Surface], spacing: float) -> float:
     """Return how many points of a spacing the surfaces have, whole as they are."""
     return sum(surface.area for surface in surfaces) / spacing**2
@@ -183,7 +190,9 @@ def points(unit: Unit, size: Size, random: np.random.Generator) -> tuple[Array, 
         inside = unit.inside(ring)
         if inside.any() and not inside.all():
             corners = np.concatenate([corners, apex[np.newaxis]])
-    corners = _thin(corners, np.full(len(corners), 1e-5), None)
+    # Each corner is found from many starts: copies to rounding go before pairs are counted.
+    _, first = np.unique(np.round(corners, 7), axis=0, return_index=True)
+    corners = _thin(corners[first], np.full(len(first), 1e-5), None)
     lines = _away(edges, corners, 0.5 * size.of(edges))
     lines = _thin(lines, 0.5 * size.of(lines), unit.on(lines), shared=2)
     faces: list[Array] = []
@@ -228,8 +237,10 @@ def _meetings(unit: Unit, fine: list[Array], size: Size) -> tuple[Array, Indices
     for i, first in enumerate(unit.surfaces):
         spacing = size.of(fine[i])
         for j, second in enumerate(unit.surfaces):
+            if i == j or unit.parallel[i, j]:
+                continue
             near = np.abs(second.distance(fine[i])) < spacing
-            if i == j or not np.any(near):
+            if not np.any(near):
                 continue
             start = fine[i][near]
             places = refinement.onto(
@@ -313,8 +324,10 @@ def _touch(unit: Unit, start: Array, fixed: tuple[int, ...], moving: int, size: 
 def _corners(unit: Unit, edges: Array, pairs: Indices, size: Size) -> Array:
     """Return the points where three surfaces meet."""
     found: list[Array] = [np.empty((0, 3))]
+    reach = 1.5 * size.of(edges)
     for k, third in enumerate(unit.surfaces):
-        near = (np.abs(third.distance(edges)) < 1.5 * size.of(edges)) & ~np.any(pairs == k, axis=1)
+        near = (np.abs(third.distance(edges)) < reach) & ~np.any(pairs == k, axis=1)
+        near &= ~unit.parallel[pairs, k].any(axis=1)
         start = edges[near]
         which = np.column_stack([pairs[near], np.full(len(start), k)])
         if not len(start):
