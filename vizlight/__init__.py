@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from vizlight.filters.relief import relief_day, relief_shadow
     from vizlight.filters.satin import satin
     from vizlight.filters.streamlines import streamlines
-    from vizlight.geometry.solids.primitives import Block, Sphere, Truncus
+    from vizlight.geometry.solids.primitives import Block, Frustum, Sphere, Truncus
     from vizlight.mesh.records import provenance
     from vizlight.scene import DepthCue, Light, Material, Scene, View
     from vizlight.verify.report import report
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 _HOMES = {
     "Block": "vizlight.geometry.solids.primitives",
     "DepthCue": "vizlight.scene",
+    "Frustum": "vizlight.geometry.solids.primitives",
     "Light": "vizlight.scene",
     "Material": "vizlight.scene",
     "Scene": "vizlight.scene",
@@ -65,6 +66,7 @@ _aliases.install()
 __all__ = [
     "Block",
     "DepthCue",
+    "Frustum",
     "Light",
     "Material",
     "Scene",
