@@ -202,8 +202,8 @@ class _Rulings:
         return np.asarray(self.solid.center + half + radius * ring)
 
 
-def _bands(side: _Rulings, steps: Steps, segments: int) -> Bands:
-    """Return the closed surface: strips between rulings, and one polygon per end."""
+def _around(side: _Rulings, steps: Steps, segments: int) -> tuple[Array, Indices]:
+    """Return the angles of all rulings around the axis, and the contour of each, or -1."""
     places = side.contours(steps) if len(steps.edges) > 1 else np.empty(0)
     inside = (places > 0) & (places < np.pi)
     contour = np.concatenate([np.flatnonzero(inside), [-1, -1]])
@@ -218,53 +218,46 @@ def _bands(side: _Rulings, steps: Steps, segments: int) -> Bands:
     contour = np.where(step == 0, np.repeat(contour[:-1], pieces), -1)
     # The angles run from the light to the far side and, mirrored, back.
     full = np.concatenate([angle, [np.pi], 2 * np.pi - angle[:0:-1]])
-    of_ruling = np.concatenate([contour, [-1], contour[:0:-1]])
-    count = len(full)
-    top = np.arange(count) if side.solid.radii[0] > 0 else np.zeros(count, int)
-    shared = top.max() + 1
-    bottom = shared + (np.arange(count) if side.solid.radii[1] > 0 else np.zeros(count, int))
-    upper = side.place(full[:shared], first=True)
-    lower = side.place(full[: bottom.max() + 1 - shared], first=False)
-    points = np.concatenate([upper, lower])
-    # No contour lies within a strip, so the band at its middle is that of the strip.
-    band = steps.band(side.luminance((full + np.append(full[1:], 2 * np.pi)) / 2))
+    return full, np.concatenate([contour, [-1], contour[:0:-1]])
 
-    quads = np.stack([top, bottom, np.roll(bottom, -1), np.roll(top, -1)], axis=1)
-    has_side = max(side.solid.radii) > 0 and (
-        side.solid.height > 0 or side.solid.radii[0] != side.solid.radii[1]
-    )
-    if not has_side and side.solid.height == 0:
+
+def _bands(side: _Rulings, steps: Steps, segments: int) -> Bands:
+    """Return the closed surface: strips between rulings, and one polygon per end."""
+    angle, contour = _around(side, steps, segments)
+    (first, second), height, count = side.solid.radii, side.solid.height, len(angle)
+    top = np.arange(count) if first > 0 else np.zeros(count, int)
+    shared = top.max() + 1
+    bottom = shared + (np.arange(count) if second > 0 else np.zeros(count, int))
+    upper = side.place(angle[:shared], first=True)
+    points = np.concatenate([upper, side.place(angle[: bottom.max() + 1 - shared], first=False)])
+    if height == 0 and first == second:
         # Two discs back to back share one rim.
         points, bottom = upper, top
     cells: list[Indices] = []
     parts: list[tuple[int, int, float]] = []
-    if has_side:
-        if side.solid.radii[0] == 0:
-            quads = quads[:, :3]
-        elif side.solid.radii[1] == 0:
-            quads = quads[:, [0, 1, 3]]
-        cells += list(quads)
+    on = np.empty(0, int)
+    if max(first, second) > 0 and (height > 0 or first != second):
+        quads = np.stack([top, bottom, np.roll(bottom, -1), np.roll(top, -1)], axis=1)
+        # At an apex quadrilaterals become triangles.
+        cells += list(quads[:, [0, 1, 2] if first == 0 else [0, 1, 3] if second == 0 else slice(4)])
+        # No contour lies within a strip, so the band at its middle is that of the strip.
+        band = steps.band(side.luminance((angle + np.append(angle[1:], 2 * np.pi)) / 2))
         parts += [(0, int(k), float(steps.values[k])) for k in band]
-    for patch, radius, ring in (
-        (1, side.solid.radii[0], top),
-        (2, side.solid.radii[1], bottom[::-1]),
-    ):
+        on = np.flatnonzero(contour >= 0)
+    for patch, radius, ring in ((1, first, top), (2, second, bottom[::-1])):
         if radius > 0:
             value = side.end(first=patch == 1)
             cells.append(ring)
             parts.append((patch, int(steps.band(np.array(value))), value))
-    if not cells:
-        points = np.empty((0, 3))
-    on = np.flatnonzero(of_ruling >= 0) if has_side else np.empty(0, int)
     return Bands(
-        points=points,
+        points=points if cells else np.empty((0, 3)),
         offsets=np.concatenate([[0], np.cumsum([len(cell) for cell in cells])]).astype(np.intp),
         corners=np.concatenate([*cells, np.empty(0, int)]).astype(np.intp),
         band=np.array([k for _, k, _ in parts], dtype=np.intp),
         values=np.array([value for _, _, value in parts], dtype=np.float64),
         patch=np.array([patch for patch, _, _ in parts], dtype=np.intp),
         lines=np.stack([top[on], bottom[on]], axis=1).astype(np.intp),
-        line_levels=steps.edges[of_ruling[on]],
+        line_levels=steps.edges[contour[on]],
         steps=steps,
         error=steps.error,
     )
