@@ -111,8 +111,8 @@ def test_thin_shells(wall):
 
 # Size of the block, and of what is taken out of it.
 THIN = {
-    "wall of 3 %": ((2, 2, 2), (1.94, 1.94, 3)),
-    "wall of 1 %": ((2, 2, 2), (1.98, 1.98, 3)),
+    "wall of 3 %": ((2, 2, 0.5), (1.94, 1.94, 1)),
+    "wall of 1 %": ((2, 2, 0.5), (1.98, 1.98, 1)),
     "plate": ((2, 2, 0.01), (1, 1, 1)),
 }
 

@@ -271,6 +271,8 @@ def _touching(unit: Unit, fine: list[Array], size: Size) -> tuple[Array, Array]:
             if i == j or (isinstance(surface, Plane) and isinstance(other, Plane)):
                 continue
             start = fine[i][np.abs(other.distance(fine[i])) < spacing]
+            if not len(start):
+                continue
             lean = _along(unit, start, (i,), j)
             lean = np.einsum("ij,ij->i", lean, lean)
             # Coincident surfaces do not touch along a line.
