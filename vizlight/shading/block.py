@@ -216,7 +216,7 @@ def _spanned(plan: Plan, k: int, tangents: ArraySource, rows: slice) -> tuple[Ar
 
 
 def columns(rows: ArraySource, block: slice, work: DTypeLike = np.float32) -> Array:
-    """Return a block of rows component by component, in the wider of their precision and the work's.
+    """Return a block of rows component by component, in the wider precision of rows and work.
 
     Float64 vectors are thus normalised before float32 work rounds them.
     """
