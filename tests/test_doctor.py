@@ -5,6 +5,7 @@ from __future__ import annotations
 from importlib.metadata import version
 
 from vizlight import doctor, render
+from vizlight.cli import main
 
 
 def test_findings():
@@ -24,3 +25,11 @@ def test_a_missing_package_is_reported_with_its_remedy(monkeypatch):
     assert found["no-such-camera [movie]"] == (
         "missing; needed for films (try: pip install 'vizlight[movie]')"
     )
+
+
+def test_the_remedy_is_printed_with_the_name_of_the_extra(monkeypatch, capfd):
+    monkeypatch.setattr(doctor, "OPTIONAL", (("films", "no-such-camera", "movie"),))
+    main(["doctor"])
+    out = capfd.readouterr().out
+    assert "no-such-camera [movie]" in out
+    assert "pip install 'vizlight[movie]'" in out
