@@ -241,7 +241,7 @@ def light(
     from vizlight import files
     from vizlight.filters import illuminate, provenance
     from vizlight.filters.lighting import part_name
-    from vizlight.mesh.point_arrays import leaves
+    from vizlight.mesh.blocks import leaves
     from vizlight.mesh.polylines import has_lines_only
     from vizlight.pictures import render
     from vizlight.shading import engine
@@ -432,7 +432,7 @@ def study(
 
 def _hint(mesh: Any) -> str | None:
     """Return what may have been meant for a volume, of which the hull is lit, or a flat field."""
-    from vizlight.mesh.point_arrays import leaves
+    from vizlight.mesh.blocks import leaves
 
     parts = [leaf for leaf in leaves(mesh) if leaf.n_cells]
     names = [
