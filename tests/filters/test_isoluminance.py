@@ -185,7 +185,7 @@ def test_coarse_meshes_keep_the_allowed_error(random):
     place, polygon = banded.places(polygons(found), random, 2)
     some = random.choice(len(place), 3000, replace=False)
     place, polygon = place[some], polygon[some]
-    # The triangle that a place is on, by itself: all weights from 0 to 1 and no distance.
+    # Find the triangle of a place independently: all weights are from 0 to 1, the distance is 0.
     a, b, c = np.asarray(mesh.points, dtype=float)[mesh.regular_faces.T]
     best = np.full(len(place), np.inf)
     normal = np.zeros_like(place)
@@ -208,7 +208,7 @@ def test_colour_goes_with_the_bands():
     tint = np.array(pv.Color("orange").float_rgb)
     for shape in (pv.Sphere(), Sphere(), Sphere() - Block((0, 0, 1))):
         bands = isoluminance(shape, scene)["bands"]
-        # The source may be as bright as its tint; what counts is one colour a band.
+        # The source may be as bright as its tint; what counts is one colour per band.
         expected = tint * bands["luminance"][:, np.newaxis]
         scale = bands["rgb"].max() / expected.max()
         np.testing.assert_allclose(bands["rgb"], scale * expected, atol=1e-6)
@@ -318,16 +318,16 @@ def test_points_that_are_not_finite_or_have_no_normal():
     assert found["bands"]["luminance"].min() == pytest.approx(0.1)
 
 
-def test_points_that_no_face_uses_are_not_told_of():
+def test_points_that_no_face_uses_are_not_reported():
     mesh = pv.Icosphere(nsub=2)
     found = isoluminance(mesh + pv.Line(), DULL, levels=4)["bands"]
     np.testing.assert_allclose(found["luminance"].max(), 0.9, atol=0.2)
     bent = mesh + pv.Line()
     bent["N"] = np.array(bent.points)
     bent["N"][[5, -1]] = 0
-    with pytest.warns(UserWarning, match=r"1 of 162 points could not be lit") as told:
+    with pytest.warns(UserWarning, match=r"1 of 162 points could not be lit") as caught:
         isoluminance(bent, DULL, levels=4, normals="N")
-    assert "array" not in str(told[0].message)
+    assert "array" not in str(caught[0].message)
 
 
 def test_nothing_left_and_nothing_there():
@@ -353,7 +353,7 @@ def test_bad_input(mesh, options, kind, words):
         isoluminance(mesh, DULL, **options)
 
 
-def test_a_scene_is_asked_for():
+def test_a_scene_is_required():
     with pytest.raises(TypeError, match="scene: expected"):
         isoluminance(Sphere(), "bright")
 

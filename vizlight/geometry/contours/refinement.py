@@ -281,7 +281,7 @@ def largest(bands: Bands, miss: Array) -> Array:
 
 
 def slivers(bands: Bands, triangle: Indices, count: int) -> Bools:
-    """Return the polygons of negligible area compared with their triangle, one of ``count``."""
+    """Return which polygons have a negligible share of the area of their triangle."""
     owner = np.repeat(np.arange(len(bands.values)), np.diff(bands.offsets))
     # Relative to the extent: squares of tiny lengths underflow and those of huge ones overflow.
     unit = float(np.ptp(bands.points[:, :3], axis=0).max(initial=0)) or 1.0
