@@ -64,7 +64,7 @@ def test_volume_and_area_against_closed_forms(name):
     solid, volume, area = CLOSED_FORMS[name]
     missing = []
     for tolerance in (1.2e-2, 7.5e-4):
-        bands = bands_of(solid, tolerance, 4)
+        bands = bands_of(solid, tolerance, 2)
         assert banded.is_closed(bands)
         missing.append((abs(banded.volume(bands) / volume - 1), abs(banded.area(bands) / area - 1)))
     # The error is about proportional to the tolerance, whatever the shape; the tolerance is a
