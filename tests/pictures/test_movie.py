@@ -295,5 +295,5 @@ def test_nothing_to_draw(tmp_path):
     mesh = pv.PolyData()
     mesh.points = np.empty((0, 3))
     mesh.GetPointData().AddArray(pv.convert_array(np.empty((0, 4)), "position"))
-    with pytest.raises(ValueError, match="mesh: expected points to draw"):
+    with pytest.raises(ValueError, match="mesh: expected a mesh with points"):
         movie.turn(mesh, tmp_path / "t.png", frame=None)
