@@ -169,7 +169,7 @@ def test_points_that_cannot_be_lit_are_told_and_no_error(volume, capfd):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["light", "no.vtp"], "file: expected a file, got 'no.vtp' (nothing there)"),
+        (["light", "no.vtp"], "file: expected a file, got 'no.vtp' (no such file)"),
         (["light", "."], "file: expected a file, got '.' (a folder)"),
         (["light", "flow.vti", "-o", "flow.vti", "--no-surface"], "another file than the input"),
         (["light", "flow.vti", "--level", "3"], "--level: expected --contour with it"),
