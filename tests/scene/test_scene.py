@@ -124,7 +124,11 @@ def test_scene_from_plotter_with_the_default_light_kit():
             r"lights: expected a vizlight.Light, got 1; Light\(direction=\(1, 1, 1\)\) makes one",
         ),
         (lambda: Scene(lights=["sun"]), TypeError, "lights: expected a vizlight.Light, got 'sun'"),
-        (lambda: Scene(lights=3), TypeError, "lights: expected vizlight.Light or several, got 3"),
+        (
+            lambda: Scene(lights=3),
+            TypeError,
+            "lights: expected a vizlight.Light or a sequence of them, got 3",
+        ),
         (lambda: Scene(view=(0, 0, 1)), TypeError, "view: expected a vizlight.View or None"),
         (lambda: Scene(material=0.5), TypeError, "material: expected a vizlight.Material"),
         (lambda: Scene(depth_cue=True), TypeError, "depth_cue: expected a vizlight.DepthCue"),

@@ -15,7 +15,7 @@ from vizlight import _check
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["Backend", "BackendError", "Probe", "choose_backend", "probe", "window_class"]
+__all__ = ["Backend", "BackendError", "Probe", "choose_backend", "probe"]
 
 Backend = Literal["egl", "osmesa"]
 
