@@ -43,7 +43,6 @@ __all__ = [
     "make_plotter",
     "over_shoulder",
     "pictures",
-    "pixels_of",
     "probe",
     "save_png",
 ]
