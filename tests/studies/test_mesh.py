@@ -25,7 +25,7 @@ def test_the_verdict_names_a_row_that_holds():
     best = cheapest(rows[:3])
     assert best.error <= 1 / 255
     said = mesh.verdict(rows)
-    assert f"steps: {best.parameter} at power 20" in said
+    assert f"normals: {best.parameter} for power 20" in said
     assert "off the terminator, in theory 2, and" in said
 
 
@@ -34,9 +34,9 @@ def test_the_verdict_leaves_no_power_out():
     rows = [row for power in (5.0, 100.0) for row in mesh.measure(3, power, (128, 256, 512))]
     rows += mesh.every_pixel()
     said = mesh.verdict(rows)
-    assert "512 at power 5, more than 512 at power 100 (which leave 1.04 of 255)" in said
+    assert "512 for power 5, more than 512 for power 100 (whose error is 1.04 of 255)" in said
     better = [row._replace(error=1e-3) if row.parameter == 512 else row for row in rows]
-    assert "512 at power 5, 512 at power 100, at" in mesh.verdict(better)
+    assert "512 for power 5, 512 for power 100, at" in mesh.verdict(better)
 
 
 def test_streamlines_drift_with_the_square_of_the_cells():
