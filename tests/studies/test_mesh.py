@@ -68,14 +68,14 @@ def drifts():
 def test_the_largest_step_that_holds_is_taken(drifts):
     """Whatever the steps cost; and the one that drifts more is refined first."""
     said = streamlines.verdict(drifts)
-    assert "use step=2 cell lengths, the largest measured, which drifts by 2e-05" in said
+    assert "use step=2 cell lengths, the largest measured, with a drift of 2e-05" in said
     assert "refine the cells rather than the step" in said
     assert "2.00 in a volume and 2.00 on a surface, in theory 2" in said
     off = [row._replace(error=2e-3) if row.parameter == 2 else row for row in drifts]
-    assert "use step=1 cell lengths, which drifts by 1e-05" in streamlines.verdict(off)
+    assert "use step=1 cell lengths, with a drift of 1e-05" in streamlines.verdict(off)
     off = [row._replace(error=0.1) if row.way == streamlines.STEP else row for row in drifts]
     said = streamlines.verdict(off)
-    assert said.startswith("take a step below 1 cell lengths, which drifts by 0.1 of the radius")
+    assert said.startswith("use a step below 1 cell lengths, whose drift is 0.1 of the radius")
     assert "refine the step before the cells" in said
 
 

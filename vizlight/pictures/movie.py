@@ -177,13 +177,18 @@ def _draw_active(mesh: Mesh, drawing: render.PlotterOptions) -> None:
     if not arrays or any(x.ndim == 2 and x.shape[1] != 3 for x in arrays):
         expected = "a scene, or a mesh with active scalars of 1 or 3 components"
         raise ValueError(_check.message("scene", expected, f"none, and {name!r}"))
-    if "clim" in drawing or name == DEFAULT_NAME:
-        return
-    finite = [x[np.isfinite(x)] for x in arrays if x.ndim == 1 and x.dtype.kind in "biuf"]
-    ends = [float(end(x)) for x in finite if len(x) for end in (np.min, np.max)]
-    if ends:
-        low, high = min(ends), max(ends)
-        drawing["clim"] = (low, high) if low < high else (low - 0.5, low + 0.5)
+    if "clim" not in drawing and name != DEFAULT_NAME and (ends := _range(arrays)):
+        drawing["clim"] = ends
+
+
+def _range(arrays: Iterable[NDArray[np.generic]]) -> tuple[float, float] | None:
+    """Return the minimum and the maximum of the finite numbers in arrays of one component."""
+    numbers = [x for x in arrays if x.ndim == 1 and x.dtype.kind in "biuf"]
+    finite = np.concatenate([[], *(x[np.isfinite(x)] for x in numbers)])
+    if not finite.size:
+        return None
+    low, high = float(finite.min()), float(finite.max())
+    return (low, high) if low < high else (low - 0.5, low + 0.5)
 
 
 def _counted(items: Iterable[Item], report: Callable[[int], None], done: int) -> Iterator[Item]:

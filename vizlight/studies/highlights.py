@@ -230,13 +230,14 @@ def verdict(rows: Sequence[Row]) -> str:
 
 def _substitution(rows: Sequence[Row]) -> str:
     """Return up to which angles the engine substitutes Blinn within 1 of 255, and the time."""
-    blinn = [row for row in rows if row.way.startswith("engine, Blinn")]
-    phong = [row for row in rows if row.way.startswith("engine, Phong")]
+    blinn: dict[float, list[Row]] = {}
+    for row in rows:
+        if row.way.startswith("engine, Blinn"):
+            bound = row._replace(error=float(row.more["bound"]))
+            blinn.setdefault(float(row.more["power"]), []).append(bound)
     ranges, allowed = [], []
-    for power in sorted({float(row.more["power"]) for row in blinn}):
-        own = [row for row in blinn if row.more["power"] == power]
-        bounds = [row._replace(error=float(row.more["bound"])) for row in own]
-        last, first = holding(bounds, 1.0), min(bounds, key=lambda row: float(row.parameter))
+    for power, own in sorted(blinn.items()):
+        last, first = holding(own, 1.0), min(own, key=lambda row: float(row.parameter))
         if last is None:
             ranges.append(
                 f"at no angle for power {power:g} (its bound is {words(first.error)} of 255 at "
@@ -248,9 +249,9 @@ def _substitution(rows: Sequence[Row]) -> str:
     where = f"highlight_error=1 permits the engine the Blinn model {', '.join(ranges)}"
     if not allowed:
         return f"{where}, so do not set it"
-    places = {(row.way.rsplit(" ", 1)[1], row.parameter) for row in allowed}
-    same = [row for row in phong if (row.way.rsplit(" ", 1)[1], row.parameter) in places]
-    ratio = sum(row.cost for row in allowed) / sum(row.cost for row in same)
+    exact = [(f"engine, Phong of power {row.more['power']:g}", row.parameter) for row in allowed]
+    phong = sum(row.cost for row in rows if (row.way, row.parameter) in exact)
+    ratio = sum(row.cost for row in allowed) / phong
     but = ", but do not set it: " if ratio >= 1 else ": "
     return f"{where}{but}the time is {words(ratio)} times that of the Phong model"
 
