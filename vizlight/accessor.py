@@ -17,13 +17,12 @@ if TYPE_CHECKING:
 
 __all__ = ["Accessor"]
 
-Mesh = TypeVar("Mesh")
 Options = ParamSpec("Options")
 Result = TypeVar("Result")
 
 
 def _method(
-    function: Callable[Concatenate[Mesh, Options], Result],
+    function: Callable[Concatenate[Any, Options], Result],
 ) -> Callable[Concatenate[Accessor, Options], Result]:
     """Return a filter as a method with the signature and the documentation of the filter."""
 

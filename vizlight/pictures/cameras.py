@@ -9,7 +9,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.mesh.point_arrays import leaves
+from vizlight.mesh.blocks import leaves
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

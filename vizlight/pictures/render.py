@@ -11,7 +11,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.files import check_output, replace_file
-from vizlight.mesh.point_arrays import leaves
+from vizlight.mesh.blocks import leaves
 from vizlight.mesh.polylines import has_lines_only
 from vizlight.pictures.backends import (
     Backend,

@@ -14,6 +14,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pyvista as pv
 
 from vizlight.filters import manifold
 from vizlight.geometry.nspace import manifolds
@@ -24,8 +25,6 @@ from vizlight.studies._measuring import take_turns
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
-
-    import pyvista as pv
 
     from vizlight._types import Array, Indices
 
@@ -87,6 +86,7 @@ def panels(resolution: int = 192) -> list[Panel]:
                 light="after" if n == 3 else "before",
                 compensate=compensated,
             )
+            assert isinstance(mesh, pv.PolyData)
             places = np.asarray(mesh.points) if n == 3 else shapes[k].points
             size = measures(places, shapes[k].cells)
             mean, contrast = statistics(np.asarray(mesh["luminance"]), size)
