@@ -15,11 +15,12 @@ from PIL import Image
 from vizlight import _check
 from vizlight._progress import progress
 from vizlight.files import check_output, replace_file
-from vizlight.filters import project
 from vizlight.filters.lighting import DEFAULT_NAME
+from vizlight.filters.project import ProjectOptions, project
 from vizlight.mesh.blocks import leaves
 from vizlight.pictures import render
 from vizlight.pictures.cameras import Mesh, common_bounds
+from vizlight.shading.options import accepts
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -27,6 +28,10 @@ if TYPE_CHECKING:
 
     import pyvista as pv
     from numpy.typing import NDArray
+    from typing_extensions import Unpack
+
+    from vizlight.filters.project import ProjectKeywords
+    from vizlight.scene import Scene
 
     Picture = NDArray[np.uint8]
 
@@ -44,19 +49,22 @@ class MovieError(RuntimeError):
     """The package that writes movies is not installed; the message says how to install it."""
 
 
+@accepts(ProjectOptions)
 def turn(
     mesh: Mesh,
     path: str | Path,
     /,
     *,
+    scene: Scene | None = None,
     plane: str | tuple[int, int] = "xw",
     frames: int = 72,
     angle: float = TURN,
     fps: float = 24.0,
     camera: pv.Camera | None = None,
-    picture: render.PlotterOptions | None = None,
+    picture: render.PlotterKeywords | None = None,
+    threads: int | None = None,
     progress_bar: bool = False,
-    **options: Any,
+    **options: Unpack[ProjectKeywords],
 ) -> list[Path]:
     """Rotate a mesh in a plane of n-space, light it at every step, and save the pictures.
 
@@ -69,6 +77,10 @@ def turn(
         Path of a movie, ``.gif`` or ``.mp4``, or of a sequence: ``turn.png`` stands for
         ``turn_0000.png``, ``turn_0001.png`` and so on. The folder must exist. An earlier
         sequence of the same name is overwritten; its frames beyond the last new one are removed.
+    scene : Scene, optional
+        Scene that lights the mesh, fixed while the mesh rotates. Without a scene the mesh's
+        active scalars are drawn: luminance from 0 to 1, other scalars from their minimum to
+        their maximum.
     plane : str or (int, int), default: "xw"
         Plane of the rotation, as for :func:`vizlight.geometry.projection.plane_rotation`.
     frames : int, default: 72
@@ -82,13 +94,13 @@ def turn(
     picture : mapping, optional
         Further options of :func:`vizlight.render.make_plotter`: size, scalars, cmap, clim,
         background.
+    threads : int, optional
+        Number of threads for the light. Default: the processors that this process may use.
     progress_bar : bool, default: False
         Show progress on standard error.
     **options
-        Options of :func:`vizlight.project`: ``scene=``, which is fixed while the mesh rotates;
-        ``light=`` before or after the projection; distance, hyperplane, cut. ``rotation=`` is
-        applied before the rotation of the movie. Without a scene the mesh's active scalars are
-        drawn: luminance from 0 to 1, other scalars from their minimum to their maximum.
+        Options of :func:`vizlight.project`; ``rotation=`` is applied before the rotation of the
+        movie.
 
     Returns
     -------
@@ -118,7 +130,7 @@ def turn(
     whole = _check.number("angle", angle)
     fps = _check.number("fps", fps, low=0.01, high=100.0)
     drawing = _drawing(picture)
-    if options.get("scene") is not None:
+    if scene is not None:
         drawing.setdefault("scalars", options.get("name", DEFAULT_NAME))
     else:
         _draw_active(mesh, drawing)
@@ -126,13 +138,13 @@ def turn(
     before = options.pop("rotation", None)
     notes: list[str] = []
 
-    def steps(settings: Mapping[str, Any]) -> Iterator[Mesh]:
+    def steps(settings: Mapping[str, Any], scene: Scene | None) -> Iterator[Mesh]:
         for i in range(count):
             turned = (plane, whole * i / count)
             rotation = turned if before is None else [before, turned]
             with warnings.catch_warnings(record=True) as caught:
                 warnings.simplefilter("always")
-                step = project(mesh, rotation=rotation, **settings)
+                step = project(mesh, scene=scene, threads=threads, rotation=rotation, **settings)
             notes.extend(str(warning.message) for warning in caught[:1])
             yield step
 
@@ -140,26 +152,27 @@ def turn(
         done = 0
         if camera is None:
             # The light does not affect the positions, so the camera is found without it.
-            where = {name: options[name] for name in PLACING if name in options}
-            camera = render.camera_on(common_bounds("mesh", _counted(steps(where), report, done)))
+            placing = {name: value for name, value in options.items() if name in PLACING}
+            unlit = _counted(steps(placing, None), report, done)
+            camera = render.camera_on(common_bounds("mesh", unlit))
             done = count
             notes.clear()
         drawing["camera"] = camera
-        files = writer(_counted(render.pictures(steps(options), **drawing), report, done))
+        files = writer(_counted(render.pictures(steps(options, scene), **drawing), report, done))
     if notes:
         _check.warn(f"in {len(notes)} of {count} frames: {notes[0]}")
     return files
 
 
-def _drawing(picture: render.PlotterOptions | None) -> render.PlotterOptions:
+def _drawing(picture: render.PlotterKeywords | None) -> render.PlotterKeywords:
     """Return the validated options of the pictures, except the camera."""
     if not (picture is None or isinstance(picture, Mapping)):
         raise TypeError(_check.message("picture", "a mapping", _check.describe(picture)))
-    drawing: render.PlotterOptions = {"size": (640, 480)}
+    drawing: render.PlotterKeywords = {"size": (640, 480)}
     drawing.update(picture or {})
     if "camera" in drawing:
         raise ValueError(_check.message("picture", "no camera", "one", "pass it as camera="))
-    known = set(render.PlotterOptions.__annotations__) - {"camera"}
+    known = set(render.PlotterKeywords.__annotations__) - {"camera"}
     for name in drawing:
         if name not in known:
             expected = f"options of a picture ({', '.join(sorted(known))})"
@@ -167,7 +180,7 @@ def _drawing(picture: render.PlotterOptions | None) -> render.PlotterOptions:
     return drawing
 
 
-def _draw_active(mesh: Mesh, drawing: render.PlotterOptions) -> None:
+def _draw_active(mesh: Mesh, drawing: render.PlotterKeywords) -> None:
     """Choose the scalars of a mesh that is not lit: the requested ones, otherwise the active."""
     parts = [leaf for leaf in leaves(mesh) if leaf.n_points]
     if not parts:

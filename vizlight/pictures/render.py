@@ -36,7 +36,7 @@ __all__ = [
     "Backend",
     "BackendError",
     "Panel",
-    "PlotterOptions",
+    "PlotterKeywords",
     "Probe",
     "camera_on",
     "choose_backend",
@@ -62,7 +62,7 @@ class Panel:
     title: str = ""
 
 
-class PlotterOptions(TypedDict, total=False):
+class PlotterKeywords(TypedDict, total=False):
     """Keyword options of :func:`make_plotter`."""
 
     camera: pv.Camera | None
@@ -230,7 +230,7 @@ def save_png(
     panels: Mesh | Panel | Sequence[Mesh | Panel],
     path: str | Path,
     /,
-    **options: Unpack[PlotterOptions],
+    **options: Unpack[PlotterKeywords],
 ) -> Path:
     """Draw lit meshes offscreen with one camera and save the picture as a PNG file.
 
@@ -268,7 +268,7 @@ def save_png(
 def pictures(
     sequence: Iterable[Mesh | Panel | Sequence[Mesh | Panel]],
     /,
-    **options: Unpack[PlotterOptions],
+    **options: Unpack[PlotterKeywords],
 ) -> Iterator[NDArray[np.uint8]]:
     """Yield one picture after the other, all drawn with the same options.
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["Scene"]
 
 
-class SceneFields(TypedDict, total=False):
+class SceneKeywords(TypedDict, total=False):
     """The fields of a scene, as its keyword arguments."""
 
     lights: Light | Iterable[Light] | None
@@ -124,7 +124,7 @@ class Scene:
             or any(getattr(owner, "color", None) is not None for owner in owners)
         )
 
-    def replace(self, **changes: Unpack[SceneFields]) -> Scene:
+    def replace(self, **changes: Unpack[SceneKeywords]) -> Scene:
         """Return a copy of the scene with some fields changed."""
         return Scene(**{**vars(self), **changes})
 
@@ -181,7 +181,7 @@ class Scene:
         return cls(**parts)
 
     @classmethod
-    def from_plotter(cls, plotter: pv.Plotter, **fields: Unpack[SceneFields]) -> Scene:
+    def from_plotter(cls, plotter: pv.Plotter, **fields: Unpack[SceneKeywords]) -> Scene:
         """Return the scene of a PyVista plotter: its camera and the lights that are switched on.
 
         A headlight at infinity continues to follow the view. Other lights that move with the
