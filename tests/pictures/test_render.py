@@ -5,6 +5,7 @@ Each picture test has limits of its own, with the reason. Numbers are asserted a
 
 from __future__ import annotations
 
+import inspect
 import os
 import subprocess
 import sys
@@ -243,6 +244,11 @@ def test_bad_input(tmp_path):
     with pytest.raises(ValueError, match="panels: expected a mesh with points"):
         render.save_png(empty, tmp_path / "x.png")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_the_typed_keywords_are_those_of_the_function():
+    expected = set(inspect.signature(render.make_plotter).parameters) - {"panels"}
+    assert set(render.PlotterKeywords.__annotations__) == expected
 
 
 def test_probe_tells_what_draws():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 import pyvista as pv
 
 from vizlight import DepthCue, Light, Material, Scene, View, engine
+from vizlight.scene import scene as scene_module
 
 
 def full_scene():
@@ -173,3 +175,8 @@ def test_a_moved_scene_lights_moved_points_the_same(random):
 def test_a_dict_of_another_kind_is_refused(values, words):
     with pytest.raises((TypeError, ValueError), match=words):
         Scene.from_dict(values)
+
+
+def test_the_typed_keywords_are_those_of_the_scene():
+    fields = {field.name for field in dataclasses.fields(Scene)}
+    assert set(scene_module.SceneKeywords.__annotations__) == fields

@@ -28,12 +28,12 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Indices
 
-#: Light of illustration 1. Its coefficients are not given; these are of Banks' section 3:
+#: Light of illustration 1. Its coefficients are not given; these are those of Banks' section 3:
 #: kd = Isource = 1, no other term, no colour.
 LIGHT = (0.7, 0.6, 0.38)
 MATTE = Material(ambient=0.0, diffuse=1.0, specular=0.0)
-#: The radii are not given either; these are of illustration 3. The curve advances equally fast
-#: along both circles, so its tangents have many directions.
+#: The radii are not given either; these are those of illustration 3. The curve advances as fast
+#: along one circle as along the other, so its tangents have many directions.
 R1, R2 = 1.5, 0.75
 WINDING = Fraction(161, 80)
 #: At this distance of the eye the projection is stereographic, and the torus has circular sections.

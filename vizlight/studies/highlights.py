@@ -246,7 +246,7 @@ def _substitution(rows: Sequence[Row]) -> str:
             continue
         allowed += [row for row in own if float(row.parameter) <= float(last.parameter)]
         ranges.append(f"up to {last.parameter:g} degrees between light and eye for power {power:g}")
-    where = f"highlight_error=1 permits the engine the Blinn model {', '.join(ranges)}"
+    where = f"with highlight_error=1 the engine uses the Blinn model {', '.join(ranges)}"
     if not allowed:
         return f"{where}, so do not set it"
     exact = [(f"engine, Phong of power {row.more['power']:g}", row.parameter) for row in allowed]
