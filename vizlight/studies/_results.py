@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from vizlight import _console, _progress, files
+from vizlight import _console, _progress
 from vizlight.studies._framework import PIXEL, Curve
 
 if TYPE_CHECKING:
@@ -43,6 +43,8 @@ class Result:
 
     def write_csv(self, path: Path, /) -> Path:
         """Write the table with all digits to a CSV file; no partial file is left."""
+        from vizlight import files
+
         headings, lines = self.table()
 
         def write(place: str) -> None:
@@ -55,6 +57,8 @@ class Result:
         """Draw the panels of the study with logarithmic axes to a PNG file."""
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
+
+        from vizlight import files
 
         panels = (self.study, *self.study.beside)
         figure = Figure(figsize=(4 + 4 * len(panels), 6), dpi=120, layout="constrained")
