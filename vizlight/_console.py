@@ -15,5 +15,6 @@ def console() -> Console:
     """Return a console as wide as the terminal, or wide enough for a table where there is none."""
     from rich.console import Console
 
-    own = Console()
-    return own if own.is_terminal else Console(width=WIDTH)
+    # Brackets in the text, such as those of an extra of a package, are not markup.
+    own = Console(markup=False)
+    return own if own.is_terminal else Console(width=WIDTH, markup=False)
