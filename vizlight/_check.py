@@ -1,4 +1,4 @@
-"""Validators: every message says name, expected, got and, where there is one, the remedy."""
+"""Validators; every message has the name, what was expected, what was passed and a remedy."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Color, Vector
 
-#: The largest intensity, coefficient or power: products of three fit float32.
+#: Largest intensity, coefficient or power: the product of three of them fits float32.
 LARGEST = 1e9
 
 
 def warn(text: str) -> None:
-    """Warn at the line outside this package that called it."""
+    """Issue a warning that points at the caller's line outside this package."""
     level, frame = 2, sys._getframe(1)
     while frame.f_back and frame.f_globals.get("__name__", "").partition(".")[0] == "vizlight":
         level, frame = level + 1, frame.f_back
@@ -34,8 +34,21 @@ def message(name: str, expected: str, got: object, remedy: str = "") -> str:
 
 
 def one_of(names: Sequence[str]) -> str:
-    """Return ``one of`` some names, for an error message, or that there is none."""
-    return f"one of {list(names)}" if names else "of which there is none"
+    """Return the names that the user may choose from, as part of an error message."""
+    return f"one of {list(names)}" if names else "but the mesh has none"
+
+
+def choice(name: str, value: object, allowed: Sequence[str]) -> None:
+    """Check that a value is one of the allowed strings.
+
+    Raises
+    ------
+    ValueError
+        If it is none of them.
+    """
+    if value not in allowed:
+        *others, last = (repr(text) for text in allowed)
+        raise ValueError(message(name, f"{', '.join(others)} or {last}", describe(value)))
 
 
 def describe(value: object) -> str:
@@ -44,24 +57,28 @@ def describe(value: object) -> str:
         return f"an array of shape {value.shape} and type {value.dtype}"
     try:
         text = " ".join(repr(value).split())
-    except ValueError:  # Python writes no integer of more than 4300 digits
+    except ValueError:  # Python does not print integers of more than 4300 digits
         kind = "an integer" if isinstance(value, int) else "a number"
-        text = f"{kind} of more digits than can be written"
+        text = f"{kind} of more digits than Python prints"
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 def floats(name: str, value: object) -> Array:
-    """Return ``value`` as a floating array; integers become float64, half becomes float32.
+    """Return ``value`` as a floating-point array.
+
+    Integers and booleans become float64 and float16 becomes float32; float32 and float64 stay.
 
     Raises
     ------
     TypeError
-        If the value does not hold real numbers.
+        If the value does not hold real numbers, or its rows differ in length.
     """
     try:
         array = np.asarray(value)
     except ValueError as error:
-        raise TypeError(message(name, "numbers of one shape", describe(value))) from error
+        raise TypeError(
+            message(name, "numbers in rows of equal length", describe(value))
+        ) from error
     if array.dtype.kind in "iub":
         return array.astype(np.float64)
     if array.dtype.kind != "f":
@@ -72,38 +89,32 @@ def floats(name: str, value: object) -> Array:
 
 
 def vectors(name: str, value: object, *, n: int | None = None) -> Array:
-    """Return ``value`` as floats of shape (..., n) with n of at least 2.
+    """Return ``value`` as a floating-point array of shape (..., n), where n is at least 2.
 
     Raises
     ------
     TypeError
         If the value does not hold real numbers.
     ValueError
-        If the last axis has another length.
+        If the last axis has the wrong length.
     """
     array = floats(name, value)
     if n is not None and (array.ndim == 0 or array.shape[-1] != n):
         raise ValueError(message(name, f"vectors of shape (..., {n})", describe(array)))
     if array.ndim == 0 or array.shape[-1] < 2:
         raise ValueError(
-            message(name, "vectors of shape (..., n), n of 2 or more", describe(array))
+            message(name, "vectors of shape (..., n) with n of 2 or more", describe(array))
         )
     return array
 
 
-def number(
-    name: str,
-    value: object,
-    *,
-    low: float = -math.inf,
-    high: float = math.inf,
-) -> float:
+def number(name: str, value: object, *, low: float = -math.inf, high: float = math.inf) -> float:
     """Return ``value`` as a finite float in the closed range [low, high].
 
     Raises
     ------
     TypeError
-        If the value is not one real number.
+        If the value is not a single real number.
     ValueError
         If it is outside the range, infinite or NaN.
     """
@@ -117,6 +128,20 @@ def number(
         result = math.inf
     if not (math.isfinite(result) and low <= result <= high):
         raise ValueError(message(name, _range(low, high), describe(value)))
+    return result
+
+
+def positive(name: str, value: object, *, high: float = math.inf) -> float:
+    """Return ``value`` as a finite float above 0 and not above ``high``.
+
+    Raises
+    ------
+    TypeError, ValueError
+        As :func:`number`, and ValueError for 0.
+    """
+    result = number(name, value, low=0.0, high=high)
+    if result == 0:
+        raise ValueError(message(name, "a number above 0", describe(value)))
     return result
 
 
@@ -140,21 +165,21 @@ def integer(name: str, value: object, *, low: int) -> int:
 def vector(name: str, value: object, *, direction: bool = False) -> Vector:
     """Return one finite vector as a tuple of floats.
 
-    With ``direction=True`` its length must not be zero; it is returned as it came.
+    With ``direction=True`` the vector must not be zero; it is not normalised.
 
     Raises
     ------
     TypeError
         If the value does not hold real numbers.
     ValueError
-        If it is not one vector of at least 2 components, is not finite, or is a zero direction.
+        If it is not a single vector of at least 2 finite components, or is a zero direction.
     """
     array = vectors(name, value)
     if array.ndim != 1:
         raise ValueError(message(name, "one vector of n components", describe(array)))
     result = tuple(float(x) for x in array)
     if not all(math.isfinite(x) for x in result):
-        remedy = "a light or eye at infinity is given by direction=" if "position" in name else ""
+        remedy = "for a light or an eye at infinity pass direction=" if "position" in name else ""
         raise ValueError(message(name, "finite components", result, remedy))
     if direction and not any(result):
         raise ValueError(message(name, "a direction of non-zero length", result))
@@ -162,19 +187,21 @@ def vector(name: str, value: object, *, direction: bool = False) -> Vector:
 
 
 def optional_vector(name: str, value: object, *, direction: bool = False) -> Vector | None:
-    """Return :func:`vector` of a value, or None."""
+    """Return None for None, and otherwise the value as a :func:`vector`."""
     return None if value is None else vector(name, value, direction=direction)
 
 
 def color(name: str, value: object) -> Color | None:
-    """Return three channels from numbers, a colour's name or hex, a ``pyvista.Color``, or None.
+    """Return the three channels of a colour, or None for None.
+
+    A colour is three numbers, a name, a hexadecimal string or a ``pyvista.Color``.
 
     Raises
     ------
     TypeError
         If the value does not hold real numbers.
     ValueError
-        If it is no colour.
+        If it is not a colour.
     """
     if value is None:
         return None
@@ -185,7 +212,7 @@ def color(name: str, value: object) -> Color | None:
             value = pv.Color(value).float_rgb
         except ValueError as error:
             raise ValueError(
-                message(name, "a colour's name, '#rrggbb' or (r, g, b)", repr(value))
+                message(name, "the name of a colour, '#rrggbb' or (r, g, b)", describe(value))
             ) from error
     return rgb(name, getattr(value, "float_rgb", value))
 
@@ -199,14 +226,15 @@ def instance(
     home: str = "",
     remedy: str = "",
 ) -> None:
-    """Check that a value is of one of this package's classes, or None where that may be.
+    """Check that a value is an instance of a class of this package.
 
-    ``home`` is the public module of a class that is not at the package's top.
+    With ``optional=True`` None is allowed too. ``home`` is the public module that holds the
+    class, if the package itself does not export it.
 
     Raises
     ------
     TypeError
-        If it is not.
+        If it is not an instance.
     """
     if not (isinstance(value, kind) or (optional and value is None)):
         where = f"vizlight.{home}." if home else "vizlight."
@@ -215,7 +243,7 @@ def instance(
 
 
 def set_fields(frozen: object, **values: object) -> None:
-    """Set the validated fields of a frozen dataclass that is being made."""
+    """Set validated fields of a frozen dataclass while it is being constructed."""
     for name, value in values.items():
         object.__setattr__(frozen, name, value)
 
@@ -228,7 +256,7 @@ def rgb(name: str, value: object) -> Color:
     TypeError
         If the value does not hold real numbers.
     ValueError
-        If there are not three, or one is not from 0 to 1.
+        If there are not three channels, or one of them is outside [0, 1].
     """
     array = floats(name, value)
     if array.shape != (3,) or not np.all((array >= 0) & (array <= 1)):
@@ -237,7 +265,7 @@ def rgb(name: str, value: object) -> Color:
                 name,
                 "three channels (r, g, b) from 0 to 1",
                 describe(value),
-                "divide bytes by 255; intensity= makes light brighter",
+                "divide channels from 0 to 255 by 255; brighten a light with intensity=",
             )
         )
     r, g, b = (float(x) for x in array)
