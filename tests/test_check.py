@@ -69,7 +69,7 @@ def test_numbers_beyond_the_largest_and_beyond_what_python_writes():
 
 
 def test_infinite_position_names_the_remedy():
-    with pytest.raises(ValueError, match="at infinity is given by direction="):
+    with pytest.raises(ValueError, match="at infinity pass direction="):
         _check.vector("position", [np.inf, 0, 0])
 
 

@@ -13,7 +13,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from vizlight._types import Array, Color, Vector
+    from vizlight._types import Array, Color, Indices, Vector
 
 #: Largest intensity, coefficient or power: the product of three of them fits float32.
 LARGEST = 1e9
@@ -105,6 +105,24 @@ def vectors(name: str, value: object, *, n: int | None = None) -> Array:
         raise ValueError(
             message(name, "vectors of shape (..., n) with n of 2 or more", describe(array))
         )
+    return array
+
+
+def cells(name: str, value: object, count: int, sizes: Sequence[int]) -> Indices:
+    """Return ``value`` as cells: rows of indices of ``count`` points, of one of some sizes.
+
+    Raises
+    ------
+    ValueError
+        If the value is not an array of integers of such a shape, or an index is out of range.
+    """
+    array = np.asarray(value)
+    if array.ndim != 2 or array.shape[1] not in sizes or array.dtype.kind not in "iu":
+        shapes = " or ".join(f"(M, {size})" for size in sizes)
+        raise ValueError(message(name, f"integers of shape {shapes}", describe(array)))
+    if array.size and not 0 <= array.min() <= array.max() < count:
+        got = f"{array.min()} to {array.max()}"
+        raise ValueError(message(name, f"indices of points from 0 to {count - 1}", got))
     return array
 
 
@@ -212,7 +230,7 @@ def color(name: str, value: object) -> Color | None:
             value = pv.Color(value).float_rgb
         except ValueError as error:
             raise ValueError(
-                message(name, "the name of a colour, '#rrggbb' or (r, g, b)", describe(value))
+                message(name, "a colour's name, '#rrggbb' or (r, g, b)", describe(value))
             ) from error
     return rgb(name, getattr(value, "float_rgb", value))
 
@@ -265,7 +283,7 @@ def rgb(name: str, value: object) -> Color:
                 name,
                 "three channels (r, g, b) from 0 to 1",
                 describe(value),
-                "divide channels from 0 to 255 by 255; brighten a light with intensity=",
+                "divide bytes by 255; brighten a light with intensity=",
             )
         )
     r, g, b = (float(x) for x in array)
