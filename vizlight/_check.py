@@ -1,4 +1,7 @@
-"""Validators; every message has the name, what was expected, what was passed and a remedy."""
+"""Validators, whose messages have the name, the expectation, the actual value and a remedy.
+
+They raise TypeError for a value of the wrong type, ValueError for a wrong shape or value.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +31,8 @@ def warn(text: str) -> None:
 
 
 def message(name: str, expected: str, got: object, remedy: str = "") -> str:
-    """Return ``name: expected ..., got ...; remedy`` on one line."""
+    """Return ``name: expected ..., got ...; remedy`` on one line, with arrays described."""
+    got = describe(got) if isinstance(got, np.ndarray) else got
     text = f"{name}: expected {expected}, got {got}"
     return f"{text}; {remedy}" if remedy else text
 
@@ -39,13 +43,7 @@ def one_of(names: Sequence[str]) -> str:
 
 
 def choice(name: str, value: object, allowed: Sequence[str]) -> None:
-    """Check that a value is one of the allowed strings.
-
-    Raises
-    ------
-    ValueError
-        If it is none of them.
-    """
+    """Check that a value is one of the allowed strings."""
     if value not in allowed:
         *others, last = (repr(text) for text in allowed)
         raise ValueError(message(name, f"{', '.join(others)} or {last}", describe(value)))
@@ -67,18 +65,12 @@ def floats(name: str, value: object) -> Array:
     """Return ``value`` as a floating-point array.
 
     Integers and booleans become float64 and float16 becomes float32; float32 and float64 stay.
-
-    Raises
-    ------
-    TypeError
-        If the value does not hold real numbers, or its rows differ in length.
     """
     try:
         array = np.asarray(value)
     except ValueError as error:
-        raise TypeError(
-            message(name, "numbers in rows of equal length", describe(value))
-        ) from error
+        expected = "numbers in rows of equal length"
+        raise TypeError(message(name, expected, describe(value))) from error
     if array.dtype.kind in "iub":
         return array.astype(np.float64)
     if array.dtype.kind != "f":
@@ -89,37 +81,21 @@ def floats(name: str, value: object) -> Array:
 
 
 def vectors(name: str, value: object, *, n: int | None = None) -> Array:
-    """Return ``value`` as a floating-point array of shape (..., n), where n is at least 2.
-
-    Raises
-    ------
-    TypeError
-        If the value does not hold real numbers.
-    ValueError
-        If the last axis has the wrong length.
-    """
+    """Return ``value`` as a floating-point array of shape (..., n), where n is at least 2."""
     array = floats(name, value)
     if n is not None and (array.ndim == 0 or array.shape[-1] != n):
-        raise ValueError(message(name, f"vectors of shape (..., {n})", describe(array)))
+        raise ValueError(message(name, f"vectors of shape (..., {n})", array))
     if array.ndim == 0 or array.shape[-1] < 2:
-        raise ValueError(
-            message(name, "vectors of shape (..., n) with n of 2 or more", describe(array))
-        )
+        raise ValueError(message(name, "vectors of shape (..., n) with n of 2 or more", array))
     return array
 
 
 def cells(name: str, value: object, count: int, sizes: Sequence[int]) -> Indices:
-    """Return ``value`` as cells: rows of indices of ``count`` points, of one of some sizes.
-
-    Raises
-    ------
-    ValueError
-        If the value is not an array of integers of such a shape, or an index is out of range.
-    """
+    """Return ``value`` as cells: rows of indices of ``count`` points, of one of some sizes."""
     array = np.asarray(value)
     if array.ndim != 2 or array.shape[1] not in sizes or array.dtype.kind not in "iu":
         shapes = " or ".join(f"(M, {size})" for size in sizes)
-        raise ValueError(message(name, f"integers of shape {shapes}", describe(array)))
+        raise ValueError(message(name, f"integers of shape {shapes}", array))
     if array.size and not 0 <= array.min() <= array.max() < count:
         got = f"{array.min()} to {array.max()}"
         raise ValueError(message(name, f"indices of points from 0 to {count - 1}", got))
@@ -127,15 +103,7 @@ def cells(name: str, value: object, count: int, sizes: Sequence[int]) -> Indices
 
 
 def number(name: str, value: object, *, low: float = -math.inf, high: float = math.inf) -> float:
-    """Return ``value`` as a finite float in the closed range [low, high].
-
-    Raises
-    ------
-    TypeError
-        If the value is not a single real number.
-    ValueError
-        If it is outside the range, infinite or NaN.
-    """
+    """Return ``value`` as a finite float in the closed range [low, high]."""
     if isinstance(value, np.ndarray) and value.ndim == 0:
         value = value.item()
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
@@ -150,13 +118,7 @@ def number(name: str, value: object, *, low: float = -math.inf, high: float = ma
 
 
 def positive(name: str, value: object, *, high: float = math.inf) -> float:
-    """Return ``value`` as a finite float above 0 and not above ``high``.
-
-    Raises
-    ------
-    TypeError, ValueError
-        As :func:`number`, and ValueError for 0.
-    """
+    """Return ``value`` as a finite float above 0 and not above ``high``."""
     result = number(name, value, low=0.0, high=high)
     if result == 0:
         raise ValueError(message(name, "a number above 0", describe(value)))
@@ -164,15 +126,7 @@ def positive(name: str, value: object, *, high: float = math.inf) -> float:
 
 
 def integer(name: str, value: object, *, low: int) -> int:
-    """Return ``value`` as an int of at least ``low``.
-
-    Raises
-    ------
-    TypeError
-        If the value is not an integer.
-    ValueError
-        If it is less than ``low``.
-    """
+    """Return ``value`` as an int of at least ``low``."""
     if isinstance(value, bool) or not isinstance(value, numbers.Integral):
         raise TypeError(message(name, "an integer", describe(value)))
     if value < low:
@@ -184,17 +138,10 @@ def vector(name: str, value: object, *, direction: bool = False) -> Vector:
     """Return one finite vector as a tuple of floats.
 
     With ``direction=True`` the vector must not be zero; it is not normalised.
-
-    Raises
-    ------
-    TypeError
-        If the value does not hold real numbers.
-    ValueError
-        If it is not a single vector of at least 2 finite components, or is a zero direction.
     """
     array = vectors(name, value)
     if array.ndim != 1:
-        raise ValueError(message(name, "one vector of n components", describe(array)))
+        raise ValueError(message(name, "one vector of n components", array))
     result = tuple(float(x) for x in array)
     if not all(math.isfinite(x) for x in result):
         remedy = "for a light or an eye at infinity pass direction=" if "position" in name else ""
@@ -213,13 +160,6 @@ def color(name: str, value: object) -> Color | None:
     """Return the three channels of a colour, or None for None.
 
     A colour is three numbers, a name, a hexadecimal string or a ``pyvista.Color``.
-
-    Raises
-    ------
-    TypeError
-        If the value does not hold real numbers.
-    ValueError
-        If it is not a colour.
     """
     if value is None:
         return None
@@ -229,9 +169,8 @@ def color(name: str, value: object) -> Color | None:
         try:
             value = pv.Color(value).float_rgb
         except ValueError as error:
-            raise ValueError(
-                message(name, "a colour's name, '#rrggbb' or (r, g, b)", describe(value))
-            ) from error
+            expected = "a colour's name, '#rrggbb' or (r, g, b)"
+            raise ValueError(message(name, expected, describe(value))) from error
     return rgb(name, getattr(value, "float_rgb", value))
 
 
@@ -248,11 +187,6 @@ def instance(
 
     With ``optional=True`` None is allowed too. ``home`` is the public module that holds the
     class, if the package itself does not export it.
-
-    Raises
-    ------
-    TypeError
-        If it is not an instance.
     """
     if not (isinstance(value, kind) or (optional and value is None)):
         where = f"vizlight.{home}." if home else "vizlight."
@@ -267,25 +201,12 @@ def set_fields(frozen: object, **values: object) -> None:
 
 
 def rgb(name: str, value: object) -> Color:
-    """Return a colour as three linear channels from 0 to 1.
-
-    Raises
-    ------
-    TypeError
-        If the value does not hold real numbers.
-    ValueError
-        If there are not three channels, or one of them is outside [0, 1].
-    """
+    """Return a colour as three linear channels from 0 to 1."""
     array = floats(name, value)
     if array.shape != (3,) or not np.all((array >= 0) & (array <= 1)):
-        raise ValueError(
-            message(
-                name,
-                "three channels (r, g, b) from 0 to 1",
-                describe(value),
-                "divide bytes by 255; brighten a light with intensity=",
-            )
-        )
+        remedy = "divide bytes by 255; brighten a light with intensity="
+        expected = "three channels (r, g, b) from 0 to 1"
+        raise ValueError(message(name, expected, describe(value), remedy))
     r, g, b = (float(x) for x in array)
     return r, g, b
 

@@ -68,7 +68,7 @@ def diffuse(wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike, /) -> Array:
     light, line and eye are in one plane with light and eye on the same side of the line, and
     nowhere else. The absolute error is at most ``4 eps / |wo_N|``.
     """
-    shape, valid, met, _ = _meeting(wi, wo, tangent)
+    shape, valid, met, _ = _normal_parts(wi, wo, tangent)
     return _finish(cylinder_kernels.diffuse(met), valid, shape)
 
 
@@ -113,7 +113,7 @@ def specular(wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike, /, *, shininess: 
     light along the line the value depends on the azimuth of the light about the line.
     """
     shininess = _check.number("shininess", shininess, low=0.0, high=_check.LARGEST)
-    shape, valid, met, tangential = _meeting(wi, wo, tangent)
+    shape, valid, met, tangential = _normal_parts(wi, wo, tangent)
     return _finish(cylinder_kernels.specular(met, tangential, shininess), valid, shape)
 
 
@@ -187,7 +187,7 @@ def specular_gradient(
     both = integral(cos_b) + integral(cos_c)
     power_b, power_c = kernels.power(sin_b, s), kernels.power(sin_c, s)
     mean = cos_b * both + sin_b * (power_b * sin_b - power_c * sin_c) / (s + 1)
-    # Divided by |wi_N x wo_N|, so that they stay finite where wi_N and wo_N are parallel.
+    # Both are divided by |wi_N x wo_N|, so they stay finite where wi_N and wo_N are parallel.
     by_beta = cos_b * (power_b / to_eye - power_c / to_light) / (s + 1) - both / to_eye
     by_gamma = -power_c / (x.a * x.b)
     share = np.minimum(x.ww / size, 1)
@@ -268,10 +268,10 @@ def _validated(
     return layout.batch(line[..., np.newaxis, :], light, eye)
 
 
-def _meeting(
+def _normal_parts(
     wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike
-) -> tuple[tuple[int, ...], Bools, cylinder_kernels.Meeting, Array]:
-    """Return the batch's shape, a mask of valid elements, the meeting, and |(wi + wo)_T|^2."""
+) -> tuple[tuple[int, ...], Bools, cylinder_kernels.NormalParts, Array]:
+    """Return the batch's shape, a mask of valid elements, the normal parts, and |(wi + wo)_T|^2."""
     shape, rows, (light, eye) = _validated(wi, wo, tangent)
     line, line_size = kernels.unit(rows[0])
     light, light_size = kernels.unit(light)

@@ -38,7 +38,7 @@ TABLE_FROM = 8.0
 CELLS, DEGREE, REACH = 64, 5, 9.0
 
 
-class Meeting(NamedTuple):
+class NormalParts(NamedTuple):
     """Parts of the directions to light and eye in the normal plane of a line.
 
     Attributes
@@ -70,13 +70,13 @@ def across(x: Array, tangent: Array) -> tuple[Array, Array, Array]:
     return along, rest, kernels.length(rest)
 
 
-def meet(rest_i: Array, a: Array, rest_o: Array, b: Array, tangent: Array) -> Meeting:
-    """Return the :class:`Meeting` of two normal parts with the given lengths."""
+def meet(rest_i: Array, a: Array, rest_o: Array, b: Array, tangent: Array) -> NormalParts:
+    """Return the :class:`NormalParts` of two normal parts with the given lengths."""
     cross = np.abs(kernels.triple(rest_i, rest_o, tangent))
-    return Meeting(a, b, kernels.dot(rest_i, rest_o), cross, rest_i, rest_o)
+    return NormalParts(a, b, kernels.dot(rest_i, rest_o), cross, rest_i, rest_o)
 
 
-def diffuse(met: Meeting) -> Array:
+def diffuse(met: NormalParts) -> Array:
     """Return the mean of Lambert's reflection over the visible half of a thin cylinder."""
     a, b, dot, cross, _, _ = met
     value = np.arctan2(cross, -dot)
@@ -90,7 +90,7 @@ def diffuse(met: Meeting) -> Array:
     return value
 
 
-def specular(met: Meeting, tangential: Array, shininess: float) -> Array:
+def specular(met: NormalParts, tangential: Array, shininess: float) -> Array:
     """Return the mean of Blinn's reflection over the visible half.
 
     ``tangential`` is |(wi + wo)_T|^2.

@@ -54,14 +54,9 @@ def attenuation(name: str, value: object) -> tuple[float, float, float]:
     """Return the three coefficients of :func:`distance`, validated."""
     array = _check.floats(name, value)
     if array.shape != (3,) or not np.all(np.isfinite(array) & (array >= 0)) or not array.any():
-        raise ValueError(
-            _check.message(
-                name,
-                "three coefficients (constant, linear, quadratic) of 0 or more, not all 0",
-                _check.describe(value),
-                "pass (1, 0, 0) for a light without attenuation",
-            )
-        )
+        expected = "three coefficients (constant, linear, quadratic) of 0 or more, not all 0"
+        remedy = "pass (1, 0, 0) for a light without attenuation"
+        raise ValueError(_check.message(name, expected, _check.describe(value), remedy))
     c1, c2, c3 = (float(c) for c in array)
     return c1, c2, c3
 

@@ -153,10 +153,8 @@ def max_pixel_error(
     ----------
     light_eye_angle : array_like, shape (...)
         Angle 2 beta between light and eye, in radians, from 0 to pi.
-    r : array_like, shape (...)
-        Phong's shininess, from 0 to 1e9.
-    factor : array_like, shape (...), default: 4.0
-        Ratio of Blinn's shininess ``factor * r`` to Phong's, from 0 to 1e9.
+    r, factor
+        As for :func:`pixel_error`.
     lit : bool, default: False
         Whether only normals that face the light are searched; otherwise all that face the eye.
 
@@ -385,7 +383,7 @@ def phong_from_blinn(
     by = _factor(light_eye_angle, factor)
     if np.any(by < 1e-9):
         remedy = "at pi no half vector exists"
-        raise ValueError(_check.message("light_eye_angle", "angles below pi", "pi", remedy))
+        raise ValueError(_check.message("light_eye_angle", "an angle below pi", "pi", remedy))
     power = _powers("shininess", shininess, high=_check.LARGEST**2)
     power, by = _together({"shininess": power, "light_eye_angle": by})
     return result(power / by)
@@ -531,17 +529,16 @@ def _together(arrays: dict[str, Array]) -> list[Array]:
         return list(np.broadcast_arrays(*arrays.values()))
     except ValueError as error:
         shapes = ", ".join(str(array.shape) for array in arrays.values())
-        names = ", ".join(arrays)
-        raise ValueError(_check.message(names, "shapes that broadcast", shapes)) from error
+        expected = "shapes that broadcast"
+        raise ValueError(_check.message(", ".join(arrays), expected, shapes)) from error
 
 
 def _angles(name: str, value: ArrayLike) -> Array:
     """Return angles from 0 to pi; pi rounded up to a narrower type is accepted and clamped."""
     angle = _check.floats(name, value)
     if not np.all((angle >= 0) & (angle <= np.pi * (1 + 1e-6))):
-        raise ValueError(
-            _check.message(name, "angles from 0 to pi, in radians", _check.describe(value))
-        )
+        expected = "angles from 0 to pi, in radians"
+        raise ValueError(_check.message(name, expected, _check.describe(value)))
     clamped: Array = np.minimum(angle, angle.dtype.type(np.pi))
     return clamped
 
@@ -549,7 +546,6 @@ def _angles(name: str, value: ArrayLike) -> Array:
 def _powers(name: str, value: ArrayLike, low: float = 0.0, high: float = _check.LARGEST) -> Array:
     power = _check.floats(name, value)
     if not np.all((power >= low) & (power <= high)):
-        raise ValueError(
-            _check.message(name, f"numbers from {low:g} to {high:g}", _check.describe(value))
-        )
+        expected = f"numbers from {low:g} to {high:g}"
+        raise ValueError(_check.message(name, expected, _check.describe(value)))
     return power

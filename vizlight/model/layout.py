@@ -40,17 +40,11 @@ def batch(frame: Array, *directions: Array) -> tuple[tuple[int, ...], Array, lis
 def as_rows(name: str, value: ArrayLike, *, full: bool) -> Array:
     """Validate k rows of n components, shape (..., k, n), where k < n, or k <= n if ``full``."""
     array = _check.vectors(name, value)
-    limit = "0 < k <= n" if full else "0 < k < n"
     k, n = array.shape[-2:] if array.ndim > 1 else (0, array.shape[-1])
     if not 0 < k < n + full:
-        raise ValueError(
-            _check.message(
-                name,
-                f"{limit} rows of n components, shape (..., k, n)",
-                f"shape {array.shape}",
-                "for one vector per point pass v[..., None, :]",
-            )
-        )
+        expected = f"0 < k {'<=' if full else '<'} n rows of n components, shape (..., k, n)"
+        remedy = "for one vector per point pass v[..., None, :]"
+        raise ValueError(_check.message(name, expected, f"shape {array.shape}", remedy))
     return array
 
 
@@ -63,14 +57,9 @@ def as_frame(frame: ArrayLike) -> Array:
     off = np.abs(gram - np.eye(k) * np.where(diagonal == 0, 0, 1)[..., np.newaxis])
     worst = float(off.max()) if off.size else 0.0
     if not worst <= SLACK * float(np.sqrt(np.finfo(array.dtype).eps)):
-        raise ValueError(
-            _check.message(
-                "frame",
-                "orthonormal rows",
-                f"rows off by {worst:.2g}",
-                "call vizlight.model.frames.orthonormalize first",
-            )
-        )
+        remedy = "call vizlight.model.frames.orthonormalize first"
+        got = f"rows off by {worst:.2g}"
+        raise ValueError(_check.message("frame", "orthonormal rows", got, remedy))
     return array
 
 

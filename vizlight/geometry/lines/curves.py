@@ -59,20 +59,16 @@ def polyline_tangents(
     """
     positions = _check.vectors("points", points)
     if positions.ndim != 2:
-        raise ValueError(_check.message("points", "shape (N, n)", _check.describe(positions)))
+        raise ValueError(_check.message("points", "shape (N, n)", positions))
     count = len(positions)
-    ids = (
-        np.arange(count) if connectivity is None else _indices("connectivity", connectivity, count)
-    )
-    starts = (
-        np.array([0, len(ids)]) if offsets is None else _indices("offsets", offsets, len(ids) + 1)
-    )
+    ids = np.arange(count)
+    if connectivity is not None:
+        ids = _indices("connectivity", connectivity, count)
+    starts = np.array([0, len(ids)])
+    if offsets is not None:
+        starts = _indices("offsets", offsets, len(ids) + 1)
     if len(starts) == 0 or starts[0] != 0 or starts[-1] != len(ids) or np.any(np.diff(starts) < 0):
-        raise ValueError(
-            _check.message(
-                "offsets", f"rising indices from 0 to {len(ids)}", _check.describe(starts)
-            )
-        )
+        raise ValueError(_check.message("offsets", f"rising indices from 0 to {len(ids)}", starts))
     tangents = np.zeros_like(positions)
     line = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
     place = positions[ids].astype(np.float64, copy=False)
@@ -92,13 +88,10 @@ def _indices(name: str, value: ArrayLike, limit: int) -> Indices:
     if array.size == 0:
         array = array.astype(np.intp)
     if array.dtype.kind not in "iu":
-        raise TypeError(_check.message(name, "integers", _check.describe(array)))
+        raise TypeError(_check.message(name, "integers", array))
     if array.ndim != 1 or (array.size and not 0 <= array.min() <= array.max() < limit):
-        raise ValueError(
-            _check.message(
-                name, f"a 1-D array of indices from 0 to {limit - 1}", _check.describe(array)
-            )
-        )
+        expected = f"a 1-D array of indices from 0 to {limit - 1}"
+        raise ValueError(_check.message(name, expected, array))
     return array.astype(np.intp, copy=False)
 
 

@@ -208,7 +208,7 @@ def complex_curve(
     eps^(1/5) of the domain's larger side, 7.4e-4, that is 1e-12 of the largest ``|f|`` and ``|f'|``
     unless a pole is nearer than 40 h. The mean of ``f(z + d)/d*`` is the derivative by the
     conjugate, which is 0 if f is analytic. The inverse of f, a root or a logarithm, has the same
-    surface: rotate z into w with ``project``.
+    surface with z and w exchanged, which a rotation in ``project`` does.
     """
     check_callable("function", function)
     if derivative is not None:
@@ -256,22 +256,19 @@ def _complex(name: str, function: Callable[[Complex], ArrayLike], z: Complex) ->
 def _slope(value: Function, z: Complex, side: float) -> Complex:
     """Return f' by Cauchy's integral over eight points around z, if f is analytic there.
 
-    Coefficient m of the discrete Fourier transform of f on the circle is the term ``f^(m) d^m /
-    m!`` of the Taylor series. Coefficient 7 is also coefficient -1, the term of the conjugate of d.
+    Coefficient m of the discrete Fourier transform of f on the circle is the term
+    ``f^(m) d^m / m!`` of the Taylor series. Coefficient 7 is also coefficient -1, the term of the
+    conjugate of d.
     """
     w = value(z)
     eps = float(np.finfo(w.dtype if w.dtype.kind in "fc" else np.float64).eps)
     h = eps**0.2 * side
     turns = np.exp(2j * np.pi / 8 * np.arange(8))
     around = np.stack([value(z + h * turn) for turn in turns], axis=-1)
-    remedy = "choose a domain away from poles and branch cuts"
+    remedy = "choose a domain away from poles and branch cuts, or pass derivative="
     if not np.all(np.isfinite(around)):
         expected = f"finite values on its domain and up to {h:.2g} outside it"
-        raise ValueError(
-            _check.message(
-                "function", expected, "NaN or infinity", f"{remedy}, or pass derivative="
-            )
-        )
+        raise ValueError(_check.message("function", expected, "NaN or infinity", remedy))
     with np.errstate(all="ignore"):
         part = np.fft.fft(around, axis=-1) / 8
         size = np.abs(part)

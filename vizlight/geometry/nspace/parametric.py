@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     Function = Callable[..., Iterable[ArrayLike]]
     TangentFunction = Callable[..., Iterable[Iterable[ArrayLike]]]
+    Samples = Callable[..., tuple[Array, Array]]
 
 Tangents = Literal["complex", "central"]
 
@@ -194,9 +195,7 @@ def check_callable(name: str, value: object) -> None:
 def _domain(domain: object, closed: object) -> tuple[Array, tuple[bool, ...] | None]:
     ends = _check.floats("domain", domain).astype(np.float64)
     if ends.ndim != 2 or ends.shape[1] != 2 or not 1 <= len(ends) <= 3:
-        raise ValueError(
-            _check.message("domain", "1 to 3 pairs (low, high)", f"shape {ends.shape}")
-        )
+        raise ValueError(_check.message("domain", "1 to 3 pairs (low, high)", ends))
     sizes = ends[:, 1] - ends[:, 0]
     if not np.all(np.isfinite(ends) & (sizes[:, np.newaxis] > 0)):
         raise ValueError(_check.message("domain", "finite pairs with low < high", ends.tolist()))
@@ -367,16 +366,9 @@ def _complex_step(function: Function, u: Sequence[Array], n: int, steps: Array) 
 
 
 def _is_closed(
-    sample: Callable[..., tuple[Array, Array]],
-    ends: Array,
-    axis: int,
-    eps: float,
-    same: float | None = None,
+    sample: Samples, ends: Array, axis: int, eps: float, same: float | None = None
 ) -> bool:
-    """Return whether both ends of a direction coincide, with tangent spaces at most ``same`` apart.
-
-    None for ``same`` compares the points alone.
-    """
+    """Return whether the points, and to ``same`` the tangent spaces, at both ends coincide."""
     across = [np.linspace(low, high, 9) for low, high in ends]
 
     def on(axes: Sequence[ArrayLike]) -> tuple[Array, Array]:

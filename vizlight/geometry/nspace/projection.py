@@ -128,10 +128,9 @@ def _special_orthogonal(n: int, value: object) -> Array:
     small = np.clip(matrix, -2, 2)
     miss = float(np.abs(small @ small.T - np.eye(n)).max())
     if miss > SLACK:
+        got = f"rows off by {miss:.2g}"
         remedy = "pass the nearest one, scipy.linalg.polar(matrix)[0]"
-        raise ValueError(
-            _check.message("rotation", "an orthogonal matrix", f"rows off by {miss:.2g}", remedy)
-        )
+        raise ValueError(_check.message("rotation", "an orthogonal matrix", got, remedy))
     if np.linalg.det(matrix) < 0:
         remedy = "change the sign of one row"
         raise ValueError(_check.message("rotation", "a rotation", "a reflection", remedy))
@@ -341,8 +340,9 @@ def push_frame(
     Notes
     -----
     The rank is the number of singular values of the image of an orthonormal frame that exceed
-    ``rtol`` times a bound on the rounding. The bound is the product over the projected axes of ``f
-    (1 + |y|/d (1 + f |x_n|/d))`` with ``f = d/(d - x_n)``; it is 1 for an orthographic projection.
+    ``rtol`` times a bound on the rounding. The bound is the product over the projected axes of
+    ``f (1 + |y|/d (1 + f |x_n|/d))`` with ``f = d/(d - x_n)``; it is 1 for an orthographic
+    projection.
     For orthonormal tangents the space that the rows span is known to 4 eps divided by the smallest
     singular value that is counted.
     """

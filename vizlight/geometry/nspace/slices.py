@@ -74,7 +74,7 @@ def cut(values: ArrayLike, simplices: ArrayLike, /) -> tuple[Indices, Array, NDA
     """
     height = _check.floats("values", values).astype(np.float64)
     if height.ndim != 1:
-        raise ValueError(_check.message("values", "shape (N,)", _check.describe(height)))
+        raise ValueError(_check.message("values", "shape (N,)", height))
     corners = _check.cells("simplices", simplices, len(height), list(_EDGES))
     size = corners.shape[1]
     corners = corners[np.all(np.isfinite(height[corners]), axis=1)]

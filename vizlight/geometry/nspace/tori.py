@@ -130,13 +130,12 @@ def torus_curve(
     if turns is None:
         exact_ratio = ratio if isinstance(ratio, Fraction) else Fraction(number)
         turns = exact_ratio.limit_denominator(1000).denominator
-        if turns * number != round(turns * number):
-            # In doubles 1/3 times 3 is exactly 1, but 5/49 times 49 need not be exactly 5.
-            exact = abs(Fraction(number) * turns - round(turns * number)) < Fraction(1, 2**40)
-            if not exact:
-                remedy = "pass turns="
-                expected = "a fraction with a denominator of at most 1000"
-                raise ValueError(_check.message("ratio", expected, number, remedy))
+        product = turns * number
+        # In doubles 1/3 times 3 is exactly 1, but 5/49 times 49 need not be exactly 5.
+        miss = abs(Fraction(number) * turns - round(product))
+        if product != round(product) and miss >= Fraction(1, 2**40):
+            expected = "a fraction with a denominator of at most 1000"
+            raise ValueError(_check.message("ratio", expected, number, "pass turns="))
     turns = _check.integer("turns", turns, low=1)
     whole = round(turns * number)
     closed = abs(turns * number - whole) < 1e-9
@@ -199,7 +198,7 @@ def hopf_fibres(
     size = np.linalg.norm(places.reshape(-1, 3), axis=1, keepdims=True)
     if not np.all((size > 0) & np.isfinite(size)):
         expected = "points of the sphere, finite and not at its centre"
-        raise ValueError(_check.message("base", expected, _check.describe(places)))
+        raise ValueError(_check.message("base", expected, places))
     a, b, c = (places.reshape(-1, 3) / size).T
     across = np.hypot(a, b)
     # |z1|^2 = (1 + c)/2 without cancellation where c is near -1, and z2 likewise.

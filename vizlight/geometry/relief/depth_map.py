@@ -51,9 +51,7 @@ def depth_map(x: ArrayLike, y: ArrayLike, points: ArrayLike, triangles: ArrayLik
     for name, axis in zip("xy", axes, strict=True):
         step = np.diff(axis)
         if axis.ndim != 1 or len(axis) < 2 or not np.allclose(step, step[0]) or step[0] <= 0:
-            raise ValueError(
-                _check.message(name, "rising nodes of equal spacing", _check.describe(axis))
-            )
+            raise ValueError(_check.message(name, "rising nodes of equal spacing", axis))
     vertices = _check.vectors("points", points, n=3).astype(np.float64)
     faces = _check.cells("triangles", triangles, len(vertices), (3,))
     # Positions are in units of the grid's spacing, from its first node.

@@ -109,7 +109,7 @@ def make(x: ArrayLike, y: ArrayLike, z: ArrayLike, *, base: float | None, border
     shape = (len(axes[1]), len(axes[0]))
     if heights.shape != shape:
         expected = f"heights of shape (len(y), len(x)) = {shape}"
-        raise ValueError(_check.message("z", expected, _check.describe(heights)))
+        raise ValueError(_check.message("z", expected, heights))
     _check.choice("border", border, get_args(Border))
     wide: Array = heights.astype(np.float64)
     if np.isinf(wide).any():
@@ -123,15 +123,13 @@ def make(x: ArrayLike, y: ArrayLike, z: ArrayLike, *, base: float | None, border
     top = float(wide[there].max())
     sides = [float(axis[-1] - axis[0]) for axis in axes]
     if not 1e-70 <= min(sides) <= max(*sides, top) <= 1e70:
-        raise ValueError(
-            _check.message("x, y, z", "a field with sides between 1e-70 and 1e70", (*sides, top))
-        )
+        expected = "a field with sides between 1e-70 and 1e70"
+        raise ValueError(_check.message("x, y, z", expected, (*sides, top)))
     if base is not None:
         base = _check.number("base", base)
         if base > low:
-            raise ValueError(
-                _check.message("base", f"a height not above the lowest one, {low:g}", base)
-            )
+            expected = f"a height not above the lowest one, {low:g}"
+            raise ValueError(_check.message("base", expected, base))
     wide = wide if border == "wall" else filled(wide)
     corners = np.pad(wide, 1, mode="edge")
     return Field(
@@ -204,23 +202,11 @@ def _axis(name: str, values: ArrayLike) -> Array:
     """Return the nodes of an axis in float64, validated."""
     nodes = _check.floats(name, values).astype(np.float64)
     if nodes.ndim != 1 or len(nodes) < 2:
-        raise ValueError(
-            _check.message(
-                name,
-                "two nodes or more",
-                _check.describe(nodes),
-                "for a field of one row repeat the row",
-            )
-        )
+        remedy = "for a field of one row repeat the row"
+        raise ValueError(_check.message(name, "two nodes or more", nodes, remedy))
     if not (np.all(np.isfinite(nodes)) and np.all(np.diff(nodes) > 0)):
-        raise ValueError(
-            _check.message(
-                name,
-                "finite, rising nodes",
-                _check.describe(nodes),
-                "sort the nodes and the heights",
-            )
-        )
+        remedy = "sort the nodes and the heights"
+        raise ValueError(_check.message(name, "finite, rising nodes", nodes, remedy))
     return nodes
 
 

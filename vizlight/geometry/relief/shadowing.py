@@ -88,7 +88,7 @@ def inside_length(
     Notes
     -----
     The surface is bilinear, not triangulated. It has no diagonals to choose, so a mirrored field
-    has the mirrored shadow, and its height along a ray is a quadratic in each cell, whose roots are
+    has the mirrored shadow. Along a ray its height is a quadratic in each cell, whose roots are
     found in closed form. The error of "exact" is at most ``3 eps`` times the size of the field for
     each time that a ray crosses the surface without grazing it. The error of "fast" decreases with
     the square of the spacing, as does that of the bilinear surface for a smooth one. The cost of
@@ -169,7 +169,7 @@ def shadow(
         normal = _check.vectors("normals", normals, n=3).astype(np.float64)
         if normal.shape != (*field.heights.shape, 3):
             expected = f"shape {(*field.heights.shape, 3)}"
-            raise ValueError(_check.message("normals", expected, _check.describe(normal)))
+            raise ValueError(_check.message("normals", expected, normal))
         dark |= ~(np.any(normal, axis=-1) & np.all(np.isfinite(normal), axis=-1))
         normal[dark] = 0
     ray = toward(field, direction=direction, position=position)
@@ -214,14 +214,8 @@ def toward(
     height = float(field.height(place[:1], place[1:2])[0])
     size = max(field.x[-1], field.y[-1], field.top)
     if field.base <= place[2] < height - 1e-9 * size:
-        raise ValueError(
-            _check.message(
-                "position",
-                f"a light outside the solid, above {height + field.origin[2]:.9g} there",
-                vector,
-                "raise the light",
-            )
-        )
+        expected = f"a light outside the solid, above {height + field.origin[2]:.9g} there"
+        raise ValueError(_check.message("position", expected, vector, "raise the light"))
     return Ray(None, place)
 
 
@@ -284,7 +278,7 @@ def lengths(
         return length
     if method == "fast" and ray.direction is not None and count:
         if below is None:
-            below = _beside(field, start(np.arange(count)))
+            below = _largest_offset(field, start(np.arange(count)))
         profiles = sweeping.profiles(field, ray.direction, below)
         if profiles is not None:
             _by_profile(profiles, start, length, threads)
@@ -313,7 +307,7 @@ def _by_profile(
     band = np.empty(count, np.uint16)
 
     def sort(rows: slice) -> int:
-        band[rows] = profiles.beside(start(np.arange(rows.start, rows.stop))) // width
+        band[rows] = profiles.profile_index(start(np.arange(rows.start, rows.stop))) // width
         return int(rows.stop)
 
     _all(sort, _pool.blocks(count, BLOCK), threads)
@@ -338,7 +332,7 @@ def _all(work: Callable[[slice], int], parts: list[slice], threads: int | None) 
         pass
 
 
-def _beside(field: Field, places: Array) -> float:
+def _largest_offset(field: Field, places: Array) -> float:
     """Return the largest distance of positions from the field, sideways or downwards."""
     ends = [(0.0, field.x[-1]), (0.0, field.y[-1]), (0.0, np.inf)]
     out = [np.maximum(low - p, p - high) for p, (low, high) in zip(places, ends, strict=True)]

@@ -113,7 +113,7 @@ class Profiles:
         inner = slice(len(before), len(before) + len(columns))
         return np.concatenate([before, columns, after]), inner
 
-    def beside(self, start: Array) -> Array:
+    def profile_index(self, start: Array) -> Array:
         """Return the fractional index of the profile at each position."""
         across = start[self.side] - self.slope * self.sign * start[self.main]
         return np.asarray((across - self.first) / self.spacing)
@@ -192,8 +192,8 @@ class _Band:
         """Return the length inside the solid of rays that start at positions (3, N)."""
         world = self.profiles
         x = world.sign * start[world.main]
-        beside = world.beside(start) - self.first
-        rays = _Level(self, x, beside, (start[2] - world.rise * x) / world.unit)
+        index = world.profile_index(start) - self.first
+        rays = _Level(self, x, index, (start[2] - world.rise * x) / world.unit)
         length = np.zeros(len(x))
         row = np.arange(len(x))
         # The field itself gives the surface at the start, which matters for a shallow start.
@@ -213,10 +213,10 @@ class _Band:
 class _Level:
     """Level rays, each between two profiles; every step advances all of them."""
 
-    def __init__(self, world: _Band, x: Array, beside: Array, z: Array) -> None:
+    def __init__(self, world: _Band, x: Array, index: Array, z: Array) -> None:
         self.world, self.x, self.z = world, x, z
-        self.profile = np.floor(beside).astype(np.intp)
-        self.share = beside - self.profile
+        self.profile = np.floor(index).astype(np.intp)
+        self.share = index - self.profile
         #: Column of each ray, and scale l of its next step, which leads to the end of the
         #: 2^(LEAF + l) columns that contain it; the ray need not be at their beginning.
         self.at = locate(world.columns, x) - 1
