@@ -253,7 +253,7 @@ def best_factor(light_eye_angle: ArrayLike, r: ArrayLike, /, *, by: Measure = "w
 
 
 def simple_factor(light_eye_angle: ArrayLike, r: ArrayLike | None = None, /) -> Array:
-    """Return 4 cos(beta), where beta is half the angle between light and eye: better than 4.
+    """Return 4 cos(beta), a better factor than 4; beta is half the angle between light and eye.
 
     Parameters
     ----------

@@ -116,7 +116,7 @@ def make(x: ArrayLike, y: ArrayLike, z: ArrayLike, *, base: float | None, border
         raise ValueError(_check.message("z", "finite heights, NaN in holes", "infinite heights"))
     there = ~np.isnan(wide)
     if not there.any():
-        raise ValueError(_check.message("z", "at least one height", "NaN everywhere"))
+        raise ValueError(_check.message("z", "heights", "NaN everywhere"))
     # The origin is subtracted in float64 first, so that no digit of float32 input is lost.
     low = float(wide[there].min())
     wide -= low
