@@ -177,7 +177,7 @@ def test_vectors_that_point_inward():
     mesh["up"] = np.tile([0, 0, 1.0], (mesh.n_points, 1))
     options = {"density": 0.02, "fibres": 1000, "vectors": "up", "length": 0.2}
     counts = {}
-    for inward, words in (("flip", "turned over"), ("keep", "kept"), ("drop", "left out")):
+    for inward, words in (("flip", "reversed"), ("keep", "kept"), ("drop", "dropped")):
         with pytest.warns(
             UserWarning, match=rf"(\d+) of 1000 fibres point into .* were {words}"
         ) as caught:
@@ -355,7 +355,7 @@ def test_no_fibres():
         ({"segments": 0}, ValueError, "segments: expected an integer of at least 1"),
         ({"vectors": "U"}, ValueError, "vectors: expected the name of a point array"),
         ({"inward": "cut"}, ValueError, "inward: expected 'keep', 'flip' or 'drop'"),
-        ({"bend": 1.0}, ValueError, "toward: expected what fibres bend to"),
+        ({"bend": 1.0}, ValueError, "toward: expected the direction of the bend"),
         (
             {"bend": 1.0, "toward": (0, 0, 0)},
             ValueError,

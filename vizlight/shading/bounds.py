@@ -32,7 +32,7 @@ def rounding(plan: Plan) -> float:
     scene, material = plan.scene, plan.scene.material
     if not (plan.diffuse or plan.specular):
         return 4 * eps * plan.ambient
-    if plan.model == "cylinder" or plan.shadowed or plan.fur or plan.carrier:
+    if plan.model == "cylinder" or plan.shadowed or plan.fur or plan.base:
         return math.inf
     if not plan.surface and plan.k > 1:
         return math.inf
@@ -47,8 +47,8 @@ def rounding(plan: Plan) -> float:
         term = diffuse_bound(plan.exponent, eps) + factors * eps
         total += plan.factors[0] * term * weight(plan, material.diffuse)
     if plan.specular:
-        if plan.terminator:
-            factors += 6 / plan.terminator
+        if plan.options.terminator:
+            factors += 6 / plan.options.terminator
         for light, highlight in zip(scene.lights, plan.highlights, strict=True):
             share = 1.0
             if highlight.model == "blinn" and highlight.half is None:

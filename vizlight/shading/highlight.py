@@ -71,7 +71,7 @@ def choose(
             left -= error
             chosen[i] = offer
         else:
-            chosen[i] = asked._replace(refused=error)
+            chosen[i] = asked._replace(rejected=error)
     return tuple(chosen)
 
 

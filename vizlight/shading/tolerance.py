@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,6 +19,8 @@ from vizlight.shading.highlight import choose
 from vizlight.shading.plan import Choice
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from vizlight.shading.plan import Plan
 
 
@@ -39,21 +41,23 @@ def relax(plan: Plan, tolerance: float, *, any_precision: bool) -> Plan:
     ValueError
         If float32 is asked for whose rounding is not within the tolerance.
     """
-    said, unsaid, spent = [], [], 0.0
+    notes: list[str] = []
+    rejected: list[str] = []
+    spent = 0.0
 
     def offer(error: float, made: Plan, words: str, *, low: bool = False) -> None:
         nonlocal plan, spent
         rounds = bounds.rounding(made)
         if spent + error + (rounds if low else _finite(rounds)) <= tolerance:
             plan, spent = made, spent + error
-            said.append(f"{words}, within {rounds if low else error:.3g}")
+            notes.append(f"{words}, within {rounds if low else error:.3g}")
         else:
             most = rounds if low else error
             finite = math.isfinite(most)
             why = (
                 f"it would differ by up to {most:.3g}" if finite else "no bound holds for all data"
             )
-            unsaid.append(f"{words}: {why}")
+            rejected.append(f"{words}: {why}")
 
     if plan.model == "cylinder" and (plan.diffuse or plan.specular):
         offer(*_flat_line(plan))
@@ -82,7 +86,7 @@ def relax(plan: Plan, tolerance: float, *, any_precision: bool) -> Plan:
             remedy = "leave precision away, or pass 'float64'"
             raise ValueError(_check.message("tolerance", "more than rounding", got, remedy))
         bound = math.inf
-    choice = Choice(tolerance, bound, tuple(said), tuple(unsaid))
+    choice = Choice(tolerance, bound, tuple(notes), tuple(rejected))
     return dataclasses.replace(plan, choice=choice)
 
 
@@ -90,7 +94,7 @@ def _finite(bound: float) -> float:
     return bound if math.isfinite(bound) else 0.0
 
 
-def _offer_whole_shininess(plan: Plan, offer: Any) -> None:
+def _offer_whole_shininess(plan: Plan, offer: Callable[[float, Plan, str], None]) -> None:
     """Offer whole powers for the highlights of the law asked for."""
     half = 2.0 if plan.model == "blinn" else 1.0
     shininess = plan.scene.material.shininess
