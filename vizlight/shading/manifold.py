@@ -26,7 +26,7 @@ class Pair(NamedTuple):
 
     lit: Split
     eye: Split | None
-    met: cylinder_kernels.Meeting | None = None
+    met: cylinder_kernels.NormalParts | None = None
 
 
 class Manifold(Protocol):
