@@ -388,7 +388,7 @@ def test_bad_surfaces_and_scenes():
     with pytest.raises(ValueError, match="surface: expected a size from 1e-30 to 1e30"):
         fur(huge, SCENE, density=0.02)
     ragged = [[1.0, 2], [3]]
-    with pytest.raises(TypeError, match="length: expected numbers of one shape"):
+    with pytest.raises(TypeError, match="length: expected numbers in rows of equal length"):
         fur(torus(), SCENE, density=0.02, length=ragged)
     scene = Scene(lights=Light(direction=(0, 0, 1)), material=Material(specular=0))
     with pytest.raises(ValueError, match="view: expected a View, which the fur needs"):

@@ -27,7 +27,13 @@ app = App(
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line and return its exit code; errors are one line on standard error."""
+    """Run the command line and return its exit code; errors are one line on standard error.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        Words after ``vizlight``. Default: those of the process.
+    """
     try:
         result = app(
             None if arguments is None else list(arguments),
