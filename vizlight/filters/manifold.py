@@ -1,4 +1,4 @@
-"""Sampled manifolds as meshes that carry where they are in n-space and how they lie there."""
+"""Sampled manifolds as meshes with their positions and frames in n-space."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def manifold(
     Parameters
     ----------
     shape : Manifold
-        From :mod:`vizlight.geometry.manifolds`.
+        Manifold, such as one of :mod:`vizlight.geometry.manifolds`.
     scene, threads, progress_bar
         As for :func:`project`.
     **options
@@ -46,9 +46,10 @@ def manifold(
     Returns
     -------
     pyvista.PolyData or pyvista.UnstructuredGrid
-        Lines or quadrilaterals; hexahedra for k = 3. A closed 3-manifold has no outside to
-        draw: cut it by ``hyperplane=``, or draw its points. With the point arrays ``position``
-        (n components), ``frame`` (k n) and, for k < 3, ``projected_frame`` (3 k).
+        Lines for k = 1, quadrilaterals for k = 2, hexahedra for k = 3, with the point arrays
+        ``position`` (n components), ``frame`` (k n) and, for k < 3, ``projected_frame`` (3 k). A
+        closed 3-manifold has no outer surface to draw: cut it by ``hyperplane=``, or draw its
+        points.
 
     Raises
     ------
@@ -65,7 +66,7 @@ def manifold(
     """
     _check.instance("shape", shape, Manifold, home="geometry.manifolds")
     count, n = shape.points.shape
-    # Places are put in by the projection; until then the points only have to be there.
+    # The projection sets the points.
     points = np.zeros((count, 3))
     if shape.k == 3:
         cells = {pv.CellType.HEXAHEDRON: shape.cells}
@@ -78,7 +79,10 @@ def manifold(
 
 
 def polydata(points: ArrayLike, cells: Indices) -> pv.PolyData:
-    """Return a mesh of points, segments, triangles or quadrilaterals, by the corners of a cell."""
+    """Return a mesh of points, segments, triangles or quadrilaterals.
+
+    Cells are rows of 1 to 4 points.
+    """
     mesh = pv.PolyData()
     mesh.points = points
     corners = cells.shape[1]

@@ -88,7 +88,7 @@ def heights_of(grid: Grid, elevation: str | None, factor: float) -> Heights:
 def _nodes(grid: Grid) -> tuple[Array, float]:
     """Return the points of a level grid, shape (ny, nx, 3), and the rounding of their x and y."""
     if grid.n_points == 0:
-        raise ValueError(_check.message("mesh", "a grid of points", "an empty grid", REMEDY))
+        raise ValueError(_check.message("mesh", "a grid of points", "an empty one"))
     nx, ny, nz = grid.dimensions
     if nz != 1:
         got = f"{nx} x {ny} x {nz}"
@@ -112,13 +112,13 @@ def _check_square(x: Array, y: Array, rounding: float) -> None:
         if len(axis) > 1 and np.ptp(axis) <= 4 * rounding:
             raise _tilted()
     if not max(np.ptp(x, axis=0).max(), np.ptp(y, axis=1).max()) <= 8 * rounding:
-        expected = "straight rows and columns at right angles"
+        expected = "rows and columns that are straight and at right angles"
         raise ValueError(_check.message("mesh", expected, "other rows and columns", REMEDY))
 
 
 def _tilted() -> ValueError:
     remedy = "make it level and rotate the light with it, or pass its surface with thickness="
-    return ValueError(_check.message("mesh", "a level grid", "a tilted one", remedy))
+    return ValueError(_check.message("mesh", "a grid that lies level", "a tilted one", remedy))
 
 
 def _turn(nodes: Array, rounding: float) -> Array | None:

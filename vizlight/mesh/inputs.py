@@ -71,9 +71,12 @@ def _check_options(tangents: Array | None, n: int, options: LightOptions) -> Non
         if options.conditioned:
             remedy = "a surface without tangents has its own shadow in any case"
             raise ValueError(_check.message("conditioned", "tangents to condition", None, remedy))
-        return
-    if options.conditioned and not isinstance(options.conditioned, str):
-        return
+    elif not options.conditioned or isinstance(options.conditioned, str):
+        _refuse_sides(options)
+
+
+def _refuse_sides(options: LightOptions) -> None:
+    """Raise ValueError if an option fits only a surface, which has two sides."""
     for name in ("normals", "two_sided", "flip_normals"):
         value = getattr(options, name)
         if value is not None and value is not False:

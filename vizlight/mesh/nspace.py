@@ -110,17 +110,12 @@ class Turning:
             array = _named(mesh, argument, name)
             most = n - 1 if argument == "frame" else array.shape[1]
             if array.shape[1] % n or not 0 < array.shape[1] // n <= most:
-                expected = f"a point array of k rows of {n} components, as many as positions have"
+                expected = f"a point array of {n} k components, as positions have {n}"
                 got = f"{name!r} with {array.shape[1]} components"
                 remedy = "name another array"
                 raise ValueError(_check.message(argument, expected, got, remedy))
             found[name] = array
-        ours = records.key(RECORD) in mesh.field_data
-        for name in list(found)[1:]:
-            if PROJECTED + name in mesh.point_data and not ours:
-                expected = "a mesh without an array under the name of a result"
-                remedy = "rename that array"
-                raise ValueError(_check.message("mesh", expected, repr(PROJECTED + name), remedy))
+        _refuse_overwriting(mesh, [PROJECTED + name for name in list(found)[1:]])
         return {
             name: array if array.dtype.kind == "f" else array.astype(np.float64)
             for name, array in found.items()
@@ -246,8 +241,19 @@ def _blocks(
 
 
 def _named(mesh: pv.DataSet, argument: str, name: object) -> Array:
-    point_arrays.refuse_unnamed(argument, name or 0)
+    if not isinstance(name, str):
+        raise TypeError(_check.message(argument, "the name of a point array", repr(name)))
     return point_arrays.array_of(mesh, argument, name)
+
+
+def _refuse_overwriting(mesh: pv.DataSet, names: list[str]) -> None:
+    """Raise ValueError if a result would replace a user's array."""
+    if records.key(RECORD) in mesh.field_data:
+        return
+    for name in names:
+        if name in mesh.point_data:
+            expected = "a mesh without an array under the name of a result"
+            raise ValueError(_check.message("mesh", expected, repr(name), "rename that array"))
 
 
 def _without(mesh: pv.DataSet, lost: Bools) -> pv.DataSet:
