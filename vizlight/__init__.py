@@ -1,13 +1,13 @@
 """Light that makes scientific data legible, as point scalars on PyVista meshes.
 
-The names below load when they are first used, so that ``import vizlight`` is quick and
+The public names are loaded on first use, so ``import vizlight`` is fast and
 ``import vizlight.model`` needs neither PyVista nor VTK.
 """
 
 from __future__ import annotations
 
 import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from vizlight import _aliases
 from vizlight._version import __version__ as __version__
@@ -89,8 +89,8 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
-    """Load a public name when it is first used."""
+def __getattr__(name: str) -> object:
+    """Load a public name on first use."""
     if name in _HOMES:
         value = getattr(importlib.import_module(_HOMES[name]), name)
         globals()[name] = value
