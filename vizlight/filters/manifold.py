@@ -10,14 +10,13 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.filters.project import ProjectOptions, project
 from vizlight.geometry.nspace.parametric import Manifold
+from vizlight.mesh.blocks import polydata
 from vizlight.mesh.nspace import FRAME, POSITION
 from vizlight.shading.options import accepts
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
     from typing_extensions import Unpack
 
-    from vizlight._types import Indices
     from vizlight.filters.project import ProjectKeywords
     from vizlight.scene import Scene
 
@@ -76,16 +75,3 @@ def manifold(
     mesh.point_data[POSITION] = shape.points
     mesh.point_data[FRAME] = shape.frame.reshape(count, shape.k * n)
     return project(mesh, scene=scene, threads=threads, progress_bar=progress_bar, **options)
-
-
-def polydata(points: ArrayLike, cells: Indices) -> pv.PolyData:
-    """Return a mesh of points, segments, triangles or quadrilaterals.
-
-    Cells are rows of 1 to 4 points.
-    """
-    mesh = pv.PolyData()
-    mesh.points = points
-    corners = cells.shape[1]
-    made = pv.CellArray.from_regular_cells(np.asarray(cells, dtype=int))
-    (mesh.SetVerts, mesh.SetLines, mesh.SetPolys, mesh.SetPolys)[corners - 1](made)
-    return mesh

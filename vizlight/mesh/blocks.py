@@ -1,4 +1,4 @@
-"""Checks on meshes and MultiBlocks, iteration over blocks, size and translation."""
+"""Meshes and MultiBlocks: checks, iteration over blocks, bounding box, motion, construction."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from vizlight import _check
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from vizlight._types import Array, Vector
+    from vizlight._types import Array, Indices, Vector
 
 #: Type of a mesh that a filter takes and returns.
 MeshT = TypeVar("MeshT", bound="pv.DataSet | pv.MultiBlock")
@@ -105,3 +105,12 @@ def moved(mesh: DataSetT, offset: Array, scale: float = 1.0) -> DataSetT:
         # Assigning to out.points would move the points that the shallow copy shares with the mesh.
         out.SetPoints(pv.vtk_points(points))
     return out
+
+
+def polydata(points: Array, cells: Indices) -> pv.PolyData:
+    """Return a mesh of points, segments, triangles or quadrilaterals, given as rows of points."""
+    mesh = pv.PolyData()
+    mesh.points = points
+    made = pv.CellArray.from_regular_cells(np.asarray(cells, dtype=int))
+    (mesh.SetVerts, mesh.SetLines, mesh.SetPolys, mesh.SetPolys)[cells.shape[1] - 1](made)
+    return mesh

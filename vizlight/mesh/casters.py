@@ -90,16 +90,8 @@ class CasterOptions:
 class Caster(Protocol):
     """A mesh that casts shadows on itself.
 
-    Attributes
-    ----------
-    points, normals : ndarray, shape (N, 3)
-        Points and their unit normals.
-    valid : ndarray of bool, shape (N,)
-        Mask of the points that have a t.
-    depth : float
-        Depth d.
-    effort : int
-        Number of samples or triangles that ``reference`` visits for one t; 0 if it has no t.
+    ``valid`` is the mask of the points that have a t, ``depth`` the depth d, and ``effort`` the
+    number of samples or triangles that ``reference`` visits for one t, 0 if it finds none.
     """
 
     points: Array
@@ -133,14 +125,9 @@ def caster(mesh: pv.DataSet, scene: Scene, options: CasterOptions, threads: int 
                 remedy = "leave it out, or pass a grid"
                 raise ValueError(_check.message(option, "none on a surface", repr(given), remedy))
         return _SolidCaster(mesh, scene, options)
-    raise TypeError(
-        _check.message(
-            "mesh",
-            "a height field (ImageData, RectilinearGrid, StructuredGrid) or a closed PolyData",
-            type(mesh).__name__,
-            "take the mesh's extract_surface()",
-        )
-    )
+    expected = "a height field (ImageData, RectilinearGrid, StructuredGrid) or a closed PolyData"
+    remedy = "take the mesh's extract_surface()"
+    raise TypeError(_check.message("mesh", expected, type(mesh).__name__, remedy))
 
 
 class _FieldCaster:
@@ -256,11 +243,8 @@ class _SolidCaster:
         place /= max(self._unit, np.abs(place).max() / FAR)
         for body in self._solids:
             if closed_meshes.is_inside(body, place):
-                raise ValueError(
-                    _check.message(
-                        "position", "a light outside the solid", light.position, "move the light"
-                    )
-                )
+                expected, got = "a light outside the solid", light.position
+                raise ValueError(_check.message("position", expected, got, "move the light"))
         reach = np.linalg.norm(place - start, axis=1)
         return (place - start) / np.where(reach > 0, reach, 1)[:, np.newaxis], reach
 

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkIdList
 from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 
@@ -76,26 +75,22 @@ def closed(surface: object, name: str = "mesh") -> tuple[Array, Indices]:
     vertices, triangles = triangles_of(surface, name)
     opened = _open_edges(triangles, directed=False)
     if len(opened):
-        raise ValueError(
-            _check.message(
-                name,
-                "a closed surface",
-                f"one with {len(opened)} open edges",
-                "mesh.clean(tolerance=) joins seams and mesh.fill_holes(size) closes holes; "
-                "thickness= lights an open surface as a shell",
-            )
+        remedy = (
+            "mesh.clean(tolerance=) joins seams and mesh.fill_holes(size) closes holes; "
+            "thickness= lights an open surface as a shell"
         )
+        got = f"one with {len(opened)} open edges"
+        raise ValueError(_check.message(name, "a closed surface", got, remedy))
     if len(_open_edges(triangles, directed=True)):
-        oriented = _mesh_of(vertices, triangles).compute_normals(
+        oriented = blocks.polydata(vertices, triangles).compute_normals(
             cell_normals=False, split_vertices=False, auto_orient_normals=True
         )
         # VTK drops points without faces, which changes the indices.
         vertices = np.asarray(oriented.points, dtype=np.float64)
         triangles = np.asarray(oriented.regular_faces, dtype=np.intp)
         if len(_open_edges(triangles, directed=True)):
-            raise ValueError(
-                _check.message(name, "a surface with an inside", "one that cannot be oriented")
-            )
+            got = "one that cannot be oriented"
+            raise ValueError(_check.message(name, "a surface with an inside", got))
     return vertices, triangles
 
 
@@ -143,16 +138,9 @@ def solid(
     tree = embree_rays.tree(place[triangles]) if embree else None
     if tree is None:
         tree = vtkStaticCellLocator()
-        tree.SetDataSet(_mesh_of(place, triangles))
+        tree.SetDataSet(blocks.polydata(place, triangles))
         tree.BuildLocator()
     return Solid(place, triangles, np.cross(b - a, c - a), tree)
-
-
-def _mesh_of(vertices: Array, triangles: Indices) -> pv.PolyData:
-    mesh: pv.PolyData = pv.PolyData.from_regular_faces(
-        np.asarray(vertices, dtype=float), np.asarray(triangles, dtype=int)
-    )
-    return mesh
 
 
 def hits(body: Solid, start: Array, way: Array, reach: Array) -> tuple[Indices, Indices]:

@@ -56,7 +56,7 @@ def cut(
         If the mesh has neither lines nor faces nor volumes.
     """
     simplices, middles = _simplices(mesh)
-    heights = np.concatenate([heights, _mean(heights, middles)])
+    heights = np.concatenate([heights, heights[middles].mean(axis=1)])
     edges, weights, cells = slices.cut(heights, simplices)
     count, total = mesh.n_points, mesh.n_points + len(middles)
     rows = np.repeat(np.arange(len(edges)), 2)
@@ -73,10 +73,7 @@ def cut(
         between = between[:, :count] + between[:, count:] @ spread
     # A point with weight 0 must not contribute a NaN.
     between.eliminate_zeros()
-    out = pv.PolyData()
-    out.points = between @ np.asarray(mesh.points, dtype=np.float64)
-    made = pv.CellArray.from_regular_cells(np.asarray(cells, dtype=int))
-    (out.SetVerts, out.SetLines, out.SetPolys)[cells.shape[1] - 1](made)
+    out = blocks.polydata(between @ np.asarray(mesh.points, dtype=np.float64), cells)
     for key, value in mesh.point_data.items():
         array = np.asarray(value)
         if spaces and key in spaces:
@@ -153,9 +150,3 @@ def _tetrahedra(kinds: Mapping[int, Indices], count: int) -> tuple[Indices, Indi
         for part in ([0, 1, 2], [0, 2, 3])
     ]
     return np.concatenate([kinds.get(pv.CellType.TETRA, none[:, :4]), *found]), corners
-
-
-def _mean(values: Array, groups: Indices) -> Array:
-    """Return the mean value of each group of points."""
-    mean: Array = values[groups].mean(axis=1) if len(groups) else np.empty(0)
-    return mean

@@ -144,9 +144,6 @@ def _elevation(grid: Grid, name: str | None) -> Array:
     if name is None and len(there) == 1:
         name = there[0]
     if name not in there:
-        raise ValueError(
-            _check.message(
-                "elevation", f"a point array of one component, {_check.one_of(there)}", repr(name)
-            )
-        )
+        expected = f"a point array of one component, {_check.one_of(there)}"
+        raise ValueError(_check.message("elevation", expected, repr(name)))
     return _check.floats("elevation", np.asarray(grid.point_data[name]))

@@ -29,14 +29,9 @@ def normals_of(mesh: pv.DataSet, value: object, n: int, view: View | None) -> Ar
     if value is not None:
         return vectors_of(mesh, "normals", value, n)
     if n != 3:
-        raise ValueError(
-            _check.message(
-                "normals",
-                f"a point array of {n} components for {n}-space",
-                None,
-                "without normals pass tangents=, conditioned by the name of the surface's tangents",
-            )
-        )
+        expected = f"a point array of {n} components for {n}-space"
+        remedy = "without one pass tangents=, conditioned by the name of the surface's tangents"
+        raise ValueError(_check.message("normals", expected, None, remedy))
     carried = mesh.point_data.active_normals
     if carried is not None:
         return np.asarray(carried)
@@ -65,14 +60,9 @@ def surface_normals(mesh: pv.DataSet, view: View | None) -> Array:
     else:
         surface, origin = outer_surface(mesh)
     if not has_faces(surface):
-        raise ValueError(
-            _check.message(
-                "mesh",
-                "a surface with normals, as no tangents are named",
-                f"a {type(mesh).__name__} without faces",
-                "name its tangent vectors by tangents=",
-            )
-        )
+        expected, got = "a surface, whose normals are lit", f"a {type(mesh).__name__} without faces"
+        remedy = "name its tangent vectors by tangents="
+        raise ValueError(_check.message("mesh", expected, got, remedy))
     bare = pv.PolyData()
     bare.copy_structure(surface)
     closed = bare.n_open_edges == 0

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -62,7 +61,7 @@ class Turning:
         n = arrays[self.positions].shape[1]
         matrix = None if self.rotation is None else projection.rotation(n, self.rotation)
         plane = None if self.hyperplane is None else _plane(self.hyperplane, n)
-        record = self._record(mesh, matrix)
+        exact = None if matrix is None else matrix.tolist()
         for name, array in arrays.items():
             if matrix is not None:
                 rows = array.shape[1] // n
@@ -72,27 +71,19 @@ class Turning:
             point_arrays.attach_rows(out, name, array)
         if plane is not None:
             out = self._sliced(out, *plane, lost)
-        out.field_data[records.key(RECORD)] = [record]
+        records.write(out, RECORD, self._record(exact, records.read(mesh, RECORD)))
         done.add(mesh.n_points)
         return out
 
-    def _record(self, mesh: pv.DataSet, matrix: Array | None) -> str:
-        """Return what is done to a mesh, and the record that it has of earlier steps, as JSON."""
+    def _record(self, rotation: object, earlier: object) -> records.Record:
+        """Return the record of the steps, with the rotation as a matrix, and of earlier steps."""
         plane = self.hyperplane
-        return json.dumps(
-            {
-                "vizlight": __version__,
-                "filter": "project",
-                "rotation": None if matrix is None else matrix.tolist(),
-                "hyperplane": plane and [[float(x) for x in plane[0]], float(plane[1])],
-                "distance": self.distance,
-                "positions": self.positions,
-                "frame": self.frame,
-                "vectors": list(self.vectors),
-                "cut": self.cut,
-                "earlier": records.read(mesh, RECORD),
-            }
-        )
+        exact = {
+            "rotation": rotation,
+            "hyperplane": plane and [[float(x) for x in plane[0]], float(plane[1])],
+            "earlier": earlier,
+        }
+        return {"vizlight": __version__, "filter": "project"} | records.plain(self) | exact
 
     def _arrays(self, mesh: pv.DataSet) -> dict[str, Array]:
         """Return the arrays that are rotated, by name, after a check of each."""

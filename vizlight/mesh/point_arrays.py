@@ -58,18 +58,10 @@ def points_of(mesh: pv.DataSet, positions: str | None) -> ArraySource:
 def array_of(
     mesh: pv.DataSet, name: str, value: object, *, average_cells: bool | None = None
 ) -> Array:
-    """Return a point array as real numbers with one row per point.
+    """Return an array or the point array of a name: real numbers, one row per point.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-    name : str
-        Name of the argument, for error messages.
-    value : str or array_like
-        Name of a point array, or an array.
-    average_cells : bool or None
-        Whether a cell array is averaged to the points; otherwise it is an error, whose message
-        suggests the option unless it is None.
+    A cell array is averaged to the points if ``average_cells`` is set, else it is an error; None
+    stands for a filter without that option.
 
     Raises
     ------
@@ -86,20 +78,14 @@ def array_of(
         if array.ndim == 3:
             array = array.reshape(len(array), -1)
         if array.ndim == 0 or len(array) != mesh.n_points:
-            raise ValueError(
-                _check.message(name, f"{mesh.n_points} rows, one per point", _check.describe(array))
-            )
+            expected = f"{mesh.n_points} rows, one per point"
+            raise ValueError(_check.message(name, expected, _check.describe(array)))
     if array.dtype.kind not in "iubf":
         raise TypeError(_check.message(name, "real numbers", f"{what}type {array.dtype}"))
     if array.ndim != 2:
-        raise ValueError(
-            _check.message(
-                name,
-                "vectors, an array of 2 or more components",
-                f"{what}1 component" if array.ndim == 1 else f"{what}shape {array.shape}",
-                "name another array",
-            )
-        )
+        expected = "vectors, an array of 2 or more components"
+        got = f"{what}1 component" if array.ndim == 1 else f"{what}shape {array.shape}"
+        raise ValueError(_check.message(name, expected, got, "name another array"))
     return array
 
 
@@ -124,9 +110,8 @@ def refuse_unnamed(name: str, value: object) -> None:
     """Raise TypeError for anything but a name of an array or None."""
     if value is not None and not isinstance(value, str):
         remedy = "attach the array to the mesh and pass its name"
-        raise TypeError(
-            _check.message(name, "the name of a point array", _check.describe(value), remedy)
-        )
+        got = _check.describe(value)
+        raise TypeError(_check.message(name, "the name of a point array", got, remedy))
 
 
 def vectors_of(mesh: pv.DataSet, name: str, value: object, n: int) -> Array:
@@ -165,14 +150,9 @@ def tangents_of(
     array = array_of(mesh, argument, value, average_cells=average_cells)
     if array.shape[1] % n or not 0 < array.shape[1] // n < n:
         allowed = " or ".join(str(k * n) for k in range(1, min(n, 5)))
-        raise ValueError(
-            _check.message(
-                argument,
-                f"a point array of {allowed} components, rows of {n}",
-                _components(value, array),
-                "name another array, or name the positions in n-space by positions=",
-            )
-        )
+        expected = f"a point array of {allowed} components, rows of {n}"
+        remedy = "name another array, or name the positions in n-space by positions="
+        raise ValueError(_check.message(argument, expected, _components(value, array), remedy))
     return array
 
 
