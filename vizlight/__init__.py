@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from vizlight.filters.relief_shadow import relief_shadow
     from vizlight.filters.satin import satin
     from vizlight.filters.streamlines import streamlines
-    from vizlight.geometry.solids.primitives import Block, Sphere, Truncus
+    from vizlight.geometry.solids.primitives import Block, Frustum, Sphere, Truncus
     from vizlight.mesh.records import provenance
     from vizlight.scene import DepthCue, Light, Material, Scene, View
     from vizlight.verify.report import report
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 _HOMES = {
     "Block": "vizlight.geometry.solids.primitives",
     "DepthCue": "vizlight.scene",
+    "Frustum": "vizlight.geometry.solids.primitives",
     "Light": "vizlight.scene",
     "Material": "vizlight.scene",
     "Scene": "vizlight.scene",
@@ -66,6 +67,7 @@ _aliases.install()
 __all__ = [
     "Block",
     "DepthCue",
+    "Frustum",
     "Light",
     "Material",
     "Scene",

@@ -18,7 +18,7 @@ import pyvista as pv
 from scipy import ndimage
 
 from vizlight.filters.isoluminance import isoluminance
-from vizlight.geometry.solids.primitives import Sphere, Truncus
+from vizlight.geometry.solids.primitives import Frustum, Sphere
 from vizlight.pictures import render
 from vizlight.scene import Light, Material, Scene
 from vizlight.studies._framework import CLEAR, Curve, Panel, Row, Study, cheapest, words
@@ -41,7 +41,7 @@ LOW, SCALE = 0.1, 0.9
 SCENE = Scene(
     lights=Light(direction=TOWARD), material=Material(ambient=LOW, diffuse=SCALE, specular=0)
 )
-SHAPES = {"sphere": Sphere(), "cone": Truncus((0, 0, 0), (0, 0, 1.6), (0.0, 0.8))}
+SHAPES = {"sphere": Sphere(), "cone": Frustum((0, 0, 0), (0, 0, 1.6), (0.0, 0.8))}
 
 
 @dataclass(frozen=True)
