@@ -1,4 +1,4 @@
-"""Meshes and MultiBlocks: checks, iteration over blocks, bounding box, motion, construction."""
+"""Meshes and MultiBlocks: checks, iteration over blocks, bounding box, translation, constructor."""
 
 from __future__ import annotations
 
@@ -80,9 +80,9 @@ def box(mesh: pv.DataSet) -> tuple[Array, float]:
 
 
 def near_origin(mesh: pv.DataSet) -> Vector:
-    """Return an origin for the points of a mesh such that float32 keeps their digits.
+    """Return an origin relative to which float32 resolves the points of a mesh.
 
-    This is the centre of the mesh if that is farther from 0 than the longest side, else 0.
+    It is the centre of the mesh if that is farther from 0 than the longest side, else 0.
     """
     middle, side = box(mesh)
     far = np.abs(middle).max() > side
@@ -108,7 +108,7 @@ def moved(mesh: DataSetT, offset: Array, scale: float = 1.0) -> DataSetT:
 
 
 def polydata(points: Array, cells: Indices) -> pv.PolyData:
-    """Return a mesh of points, segments, triangles or quadrilaterals, given as rows of points."""
+    """Return a mesh of cells of 1 to 4 points each; a row of ``cells`` has the points of a cell."""
     mesh = pv.PolyData()
     mesh.points = points
     made = pv.CellArray.from_regular_cells(np.asarray(cells, dtype=int))

@@ -87,7 +87,7 @@ def cut(
 
 
 def _mean_frames(array: Array, between: csr_array, n: int) -> Array:
-    """Return the mean frames of n components a row, weighted by a matrix of results by points."""
+    """Return weighted means of frames in n-space; a row of ``between`` has the weights of one."""
     found = np.empty((between.shape[0], array.shape[1]), dtype=array.dtype)
     for block in _pool.blocks(len(found), BLOCK):
         part = between[block]

@@ -24,7 +24,7 @@ MOST = 10_000
 
 
 def tree(corners: Array) -> EmbreeScene | None:
-    """Return Embree's search tree of triangles, shape (T, 3, 3); None if embreex is not there."""
+    """Return Embree's search tree of triangles, shape (T, 3, 3); None without embreex."""
     try:
         from embreex.mesh_construction import TriangleMesh
         from embreex.rtcore_scene import EmbreeScene

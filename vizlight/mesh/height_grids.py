@@ -22,14 +22,14 @@ REMEDY = "sample it on a pv.ImageData, or pass its surface with thickness="
 
 @dataclass(frozen=True)
 class Heights:
-    """A height field, and the point of the grid that each of its nodes is.
+    """A height field, and the indices of its nodes among the points of the grid.
 
     Attributes
     ----------
     x, y : ndarray, shapes (nx,), (ny,)
     z : ndarray, shape (ny, nx)
     place : ndarray of int, shape (ny, nx)
-        Index of the point of the grid at each node.
+        Index of each node among the points of the grid.
     turn : ndarray, shape (3, 3), optional
         Rotation about the vertical from the axes of the mesh to those of x and y; None where they
         are the same.
@@ -137,7 +137,7 @@ def _turn(nodes: Array, rounding: float) -> Array | None:
 
 
 def _elevation(grid: Grid, name: str | None) -> Array:
-    """Return heights from a point array of one component: the named, the active or the only one."""
+    """Return the heights in a point array: the array of that name, the active or the only one."""
     if name is None:
         name = grid.point_data.active_scalars_name
     there = [key for key in grid.point_data if np.ndim(grid.point_data[key]) == 1]

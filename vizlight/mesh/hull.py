@@ -1,4 +1,4 @@
-"""The outer surface of a mesh, and the point of the mesh that each of its points is."""
+"""The outer surface of a mesh, and the indices of its points in the mesh."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ NUMBERS = "vizlight numbers"
 
 
 def outer_surface(mesh: pv.DataSet) -> tuple[pv.PolyData, Indices]:
-    """Return the outer surface of a mesh, and for each of its points the index in the mesh.
+    """Return the outer surface of a mesh, and the index of each of its points in the mesh.
 
     The index is -1 where the mesh has no such point. Each curved cell is replaced by a flat cell
     with the same nodes.
@@ -39,7 +39,7 @@ def outer_surface(mesh: pv.DataSet) -> tuple[pv.PolyData, Indices]:
 
 
 def scattered(rows: Array, origin: Indices, count: int) -> Array:
-    """Return rows per point of the surface as rows per point of the mesh, else zero."""
+    """Return an array of all points of a mesh from one of its surface; other rows are zero."""
     found = np.zeros((count, *rows.shape[1:]), dtype=rows.dtype)
     there = origin >= 0
     found[origin[there]] = rows[there]

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def inputs_of(mesh: pv.DataSet, path: str, scene: Scene, options: LightOptions) -> ShadingInputs:
-    """Return the inputs of the engine from one mesh; errors have the path of its block.
+    """Return the inputs of the engine from one mesh; an error names the path of its block.
 
     Raises
     ------
@@ -62,7 +62,7 @@ def _tangents(mesh: pv.DataSet, n: int, options: LightOptions) -> Array | None:
 
 
 def _check_options(tangents: Array | None, n: int, options: LightOptions) -> None:
-    """Check the options for a surface, or those for tangents."""
+    """Check that the options fit a surface, or tangents if there are any."""
     one_line = tangents is not None and n == 3 and tangents.shape[1:] == (3,)
     if options.model == "cylinder" and not one_line:
         components = "" if tangents is None else f"{n}-space, {tangents.shape[-1]} components"

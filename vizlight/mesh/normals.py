@@ -25,7 +25,7 @@ NEARLY_CLOSED = 0.2
 
 
 def normals_of(mesh: pv.DataSet, value: object, n: int, view: View | None) -> Array:
-    """Return the outward normals in ``value``, or those of the mesh, or those of its surface."""
+    """Return outward normals: those in ``value``, else those of the mesh or of its surface."""
     if value is not None:
         return vectors_of(mesh, "normals", value, n)
     if n != 3:

@@ -51,7 +51,7 @@ class Turning:
     cut: bool
 
     def turned(self, mesh: pv.DataSet, done: Counter, lost: Counter) -> pv.DataSet:
-        """Return a mesh with its arrays rotated and cut; its points are those of the mesh."""
+        """Return a mesh with its arrays rotated, and cut by the hyperplane; not yet projected."""
         if isinstance(mesh, pv.ImageData | pv.RectilinearGrid):
             mesh = mesh.cast_to_structured_grid()
         out = mesh.copy(deep=False)
@@ -76,7 +76,7 @@ class Turning:
         return out
 
     def _record(self, rotation: object, earlier: object) -> records.Record:
-        """Return the record of the steps, with the rotation as a matrix, and of earlier steps."""
+        """Return the record of the steps, given the rotation as a matrix and the earlier record."""
         plane = self.hyperplane
         exact = {
             "rotation": rotation,
@@ -86,7 +86,7 @@ class Turning:
         return {"vizlight": __version__, "filter": "project"} | records.plain(self) | exact
 
     def _arrays(self, mesh: pv.DataSet) -> dict[str, Array]:
-        """Return the arrays that are rotated, by name, after a check of each."""
+        """Check the arrays that are rotated, and return them by name."""
         position = _named(mesh, "positions", self.positions)
         n = position.shape[1]
         if n < 2:
@@ -113,7 +113,7 @@ class Turning:
         }
 
     def _sliced(self, mesh: pv.DataSet, normal: Array, offset: float, lost: Counter) -> pv.PolyData:
-        """Return the section of a mesh by a hyperplane, with its frame cut down to it."""
+        """Return the section of a mesh by a hyperplane, with its frame restricted to it."""
         position = np.asarray(mesh.point_data[self.positions])
         heights = np.empty(len(position))
         with np.errstate(all="ignore"):

@@ -58,9 +58,9 @@ def points_of(mesh: pv.DataSet, positions: str | None) -> ArraySource:
 def array_of(
     mesh: pv.DataSet, name: str, value: object, *, average_cells: bool | None = None
 ) -> Array:
-    """Return an array or the point array of a name: real numbers, one row per point.
+    """Return a point array of real numbers, from its name or from an array with those values.
 
-    A cell array is averaged to the points if ``average_cells`` is set, else it is an error; None
+    A cell array is averaged to the points if ``average_cells`` is true, else it is an error; None
     stands for a filter without that option.
 
     Raises
@@ -137,7 +137,7 @@ def attach_rows(mesh: pv.DataSet, name: str, array: NDArray[np.generic]) -> None
 
 
 def activate(mesh: pv.DataSet, name: str) -> None:
-    """Make a point array the active scalars of a mesh, in place of a cell array too."""
+    """Make a point array the active scalars of a mesh, even if a cell array was active."""
     mesh.point_data.active_scalars_name = name
     if mesh.n_points:
         mesh.set_active_scalars(name, preference="point")

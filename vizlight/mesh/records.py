@@ -112,7 +112,7 @@ def of_filter(filter_name: str, scene: Scene, options: object, **facts: object) 
 
 
 def amend(mesh: pv.DataSet, name: str, filter_name: str, *options: object) -> None:
-    """Replace the filter in the record of an array, and its options by several of them together."""
+    """Replace the filter and the options in the record of an array; options are merged."""
     own = {key: value for each in options for key, value in plain(each).items()}
     write(mesh, name, (read(mesh, name) or {}) | {"filter": filter_name, "options": own})
 
@@ -143,12 +143,12 @@ def _plain(value: object) -> object:
 
 
 def provenance(mesh: pv.DataSet | pv.MultiBlock, /, name: str = "luminance") -> dict[str, Any]:
-    """Return what made a point array: scene, options, terms, precision, version.
+    """Return the record of a point array: filter, scene, options, terms, precision, version.
 
     Parameters
     ----------
     mesh : pyvista.DataSet or pyvista.MultiBlock
-        Mesh that a filter of vizlight returned, or one read from a file of it.
+        Mesh that a filter of vizlight returned, or one read from a file of such a mesh.
     name : str, default: "luminance"
         Name of the point array.
 

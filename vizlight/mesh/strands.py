@@ -1,4 +1,4 @@
-"""Fibres with equal numbers of points, grown block by block when the engine asks for them."""
+"""Fibres with equal numbers of points, grown block by block when the engine reads them."""
 
 from __future__ import annotations
 
