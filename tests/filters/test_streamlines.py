@@ -338,3 +338,30 @@ def test_errors_name_the_arrays_that_could_be_traced():
         streamlines(grid, SCENE)
     with pytest.raises(TypeError, match="got MultiBlock; join its blocks by mesh.combine()"):
         streamlines(pv.MultiBlock([grid]), SCENE)
+
+
+def test_lines_run_from_their_seeds_both_ways():
+    grid = pv.ImageData(dimensions=(21, 5, 5), origin=(-1, 0, 0), spacing=(0.1, 0.1, 0.1))
+    grid["V"] = np.tile([2.0, 0, 0], (grid.n_points, 1))
+    lines = streamlines(grid, SCENE, vectors="V", seeds=[[0.3, 0.2, 0.2]], max_length=0.5)
+    x = np.asarray(lines.points)[:, 0]
+    assert x.min() == pytest.approx(0.3 - 0.5, abs=0.1)
+    assert x.max() == pytest.approx(0.3 + 0.5, abs=0.1)
+
+
+def test_seeds_on_a_surface_are_uniform_in_its_area():
+    """A square of two triangles; lines so short that each shows where its seed is."""
+    square = pv.Plane(i_resolution=1, j_resolution=1).triangulate()
+    square["V"] = np.tile([1.0, 0, 0], (4, 1))
+    lines = streamlines(square, SCENE, vectors="V", seeds=640, max_length=0.02, step=0.01)
+    seeds = np.array([line.mean(axis=0) for line in parts(lines)])
+    assert len(seeds) > 600
+    number, _, _ = np.histogram2d(*seeds[:, :2].T, bins=4, range=[[-0.5, 0.5]] * 2)
+    chi2 = np.sum((number - len(seeds) / 16) ** 2) / (len(seeds) / 16)
+    assert chi2 < 15 + 5 * np.sqrt(2 * 15)
+
+
+def parts(lines):
+    """Return the points of each line."""
+    ends = np.cumsum([lines.get_cell(i).n_points for i in range(lines.n_cells)])
+    return np.split(np.asarray(lines.points, dtype=float), ends[:-1])

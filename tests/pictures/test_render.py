@@ -387,3 +387,33 @@ def test_picture_of_a_furry_ball(verify_image_cache):
     scene = Scene(lights=Light(direction=(1, -1, 0.8)), view=View.from_camera(camera))
     coat = vizlight.fur(mesh, scene, density=0.9, fibres=20_000, length=0.25)
     render.make_plotter(coat, camera=camera, size=(300, 300), background="white").show()
+
+
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e6])
+def test_what_is_up_is_up_in_the_picture(size):
+    """A plate 4 wide and 1 high, seen from above: what is up decides its height."""
+    plate = pv.Plane(i_size=4 * size, j_size=size)
+    for up, height in ((None, 1), ((0, -1, 0), 1), ((1, 0, 0), 4)):
+        camera = render.camera_on(plate, (0, 0, 1), up=up, parallel=True, aspect=4.0)
+        assert camera.up == (up or (0, 1, 0))
+        assert camera.parallel_scale == pytest.approx(1.05 * size * height / 2)
+        camera = render.camera_on(plate, (0, 0, 1), up=up, aspect=4.0)
+        seen = camera.distance * np.tan(np.radians(15))
+        assert seen == pytest.approx(1.05 * size * height / 2)
+    assert render.camera_on(plate.bounds, (1, 0, 0)).up == (0, 0, 1)
+
+
+@pytest.mark.parametrize("zoom", [0.5, 1.0, 3.0, 50.0])
+@pytest.mark.parametrize("direction", [(1, 1, 1), (0, 0, -1), (0.3, -1, 0.2)])
+def test_nothing_before_the_eye_is_clipped(direction, zoom):
+    """The near plane stands before the box or close to the eye, the far one behind it."""
+    bounds = (-3, 5, 1, 2, 1e3, 1004)
+    camera = render.camera_on(bounds, direction, zoom=zoom)
+    corners = np.stack(np.meshgrid(*np.reshape(bounds, (3, 2))), axis=-1).reshape(-1, 3)
+    way = np.subtract(camera.focal_point, camera.position)
+    depth = (corners - camera.position) @ way / camera.distance
+    near, far = camera.clipping_range
+    assert 0 < near <= max(depth.min(), camera.distance * 1.001e-3)
+    assert depth.max() <= far
+    # Depth is kept in few digits: no more than the box twice over.
+    assert far - near < 2.01 * np.linalg.norm(corners[0] - corners[-1])

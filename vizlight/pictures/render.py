@@ -248,7 +248,7 @@ def _fit(mesh: Any, centre: Any, toward: Any, up: Any, aspect: float) -> tuple[A
     depth = float(np.ptp(points[:, 2]))
     distance = float(np.max(1.05 * across / math.tan(math.radians(15.0)) + points[:, 2]))
     # A mesh that is nothing but a point, or seen edge on, has no size.
-    size = 0.05 * depth or 1.0
+    size = 0.05 * depth or (0.0 if height else 1.0)
     return middle @ axes, max(distance, float(points[:, 2].max()) + size), max(height, size)
 
 

@@ -50,13 +50,11 @@ def rounding(plan: Plan) -> float:
         if plan.terminator:
             factors += 6 / plan.terminator
         for light, highlight in zip(scene.lights, plan.highlights, strict=True):
-            share = 1.0
             if highlight.model == "blinn" and highlight.half is None:
-                apart = angle(light, scene.view)
-                if apart is None or apart > 3:
+                # A half vector for each point is as long as for the bound with a headlight alone.
+                if angle(light, scene.view) != 0:
                     return math.inf
-                share = min(2 * math.cos(apart / 2), 1.0)
-            term = specular_bound(highlight.shininess, eps / share) + factors * eps
+            term = specular_bound(highlight.shininess, eps) + factors * eps
             total += plan.factors[1] * term * material.specular * light.intensity
     return total
 

@@ -35,8 +35,11 @@ def hills(n=60, ny=None, seed=3, size=10.0):
     return x, y, z
 
 
-def quadrature(x, y, z, start, way, reach, steps=400_000, base=-np.inf, wall=False):
+def quadrature(x, y, z, start, way, reach, steps=100_000, base=-np.inf, wall=False):
     """Return the length inside by sampling one ray: no cells, no roots."""
+    if way[2] > 0:
+        # Above the highest point there is nothing to be in.
+        reach = min(reach, max((z.max() - start[2]) / way[2], 1e-9))
     surface = RegularGridInterpolator((y, x), z)
     s = (np.arange(steps) + 0.5) * reach / steps
     p = start + s[:, None] * way
@@ -119,7 +122,7 @@ def test_fast_rays_may_start_anywhere(border, random):
 @pytest.mark.parametrize("border", ["extend", "wall"])
 def test_bands_of_profiles_change_nothing(border, monkeypatch):
     """One band for all rays, or many narrow ones; holes and uneven nodes."""
-    x, y, z = hills(60, 45)
+    x, y, z = hills(32, 26)
     z[10:14, 20:26] = np.nan
     for way in (sun(12, 20), sun(9, 110), sun(15, 200), sun(14, 305), sun(8, 0), sun(10, 90)):
         field = height_field.make(x, y, z, base=None, border=border)
@@ -375,9 +378,9 @@ def test_both_methods_are_of_second_order_on_a_smooth_field(method, random):
         return 0.4 * np.sin(1.3 * x) * np.cos(1.1 * y) + 0.2 * np.sin(0.7 * x + y)
 
     way = sun(18, 35)
-    start = random.uniform(3, 7, (200, 2))
+    start = random.uniform(3, 7, (120, 2))
     start = np.column_stack([start, height(*start.T) - 0.1])
-    s = np.linspace(0, 4, 40_001)
+    s = np.linspace(0, 4, 20_001)
     p = start[:, None] + s[:, None] * way
     f = height(p[..., 0], p[..., 1]) - p[..., 2]
     share = np.clip(np.maximum(f[:, :-1], f[:, 1:]) / np.abs(np.diff(f, axis=1)), 0, 1)
@@ -395,10 +398,9 @@ def test_both_methods_are_of_second_order_on_a_smooth_field(method, random):
 
 def test_the_hard_boundary_is_that_of_the_horizon_angle():
     """A point is lit where it faces a light above its horizon, found by sampling the field."""
-    n = 120
-    x, y, z = hills(n)
+    x, y, z = hills(80)
     surface = RegularGridInterpolator((y, x), z)
-    s = np.arange(1, 1500) * 0.01
+    s = np.arange(1, 750) * 0.02
     for azimuth in (20, 130, 265):
         elevation = 14.0
         way = sun(0, azimuth)
