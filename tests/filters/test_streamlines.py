@@ -43,7 +43,7 @@ def test_free_lines_follow_the_field():
 def test_confined_lines_stay_on_the_surface_and_follow_meridians():
     sphere = ball()
     before = sphere.copy()
-    lines = streamlines(sphere, SCENE, vectors="V", seeds=50)
+    lines = streamlines(sphere, SCENE, vectors="V", seeds=20)
     assert lines.field_data["drift"][0] < 1e-6
     distance = np.abs(lines.compute_implicit_distance(sphere)["implicit_distance"])
     assert distance.max() < 1e-6
@@ -60,7 +60,7 @@ def test_drift_is_measured_against_the_true_sphere_as_the_mesh_is_refined():
     """On triangles of size h a sphere is missed by h^2: order 2."""
     sizes, misses = [20, 40, 80], []
     for n in sizes:
-        lines = streamlines(ball(n), SCENE, vectors="V", seeds=40)
+        lines = streamlines(ball(n), SCENE, vectors="V", seeds=12)
         misses.append(np.abs(np.linalg.norm(lines.points, axis=1) - 0.5).max())
     order = -np.polyfit(np.log(sizes), np.log(misses), 1)[0]
     assert abs(order - 2) < 0.3
@@ -69,8 +69,8 @@ def test_drift_is_measured_against_the_true_sphere_as_the_mesh_is_refined():
 def test_a_surface_conditions_the_lines():
     sphere = ball()
     dark = SCENE.replace(material=Material(ambient=0.1))
-    free = streamlines(sphere, dark, vectors="V", conditioned=False, seeds=60)
-    shadowed = streamlines(sphere, dark, vectors="V", seeds=60)
+    free = streamlines(sphere, dark, vectors="V", conditioned=False, seeds=20)
+    shadowed = streamlines(sphere, dark, vectors="V", seeds=20)
     np.testing.assert_allclose(free.points, shadowed.points)
     outward = np.asarray(shadowed.points) / 0.5
     toward = np.array([1, -1, 0.8]) / np.linalg.norm([1, -1, 0.8])
@@ -206,11 +206,11 @@ def test_far_from_the_origin():
     sphere = ball()
     moved = sphere.copy()
     moved.points = np.asarray(sphere.points, float) + offset
-    here = streamlines(sphere, SCENE, vectors="V", seeds=sphere.points[100:110])
-    there = streamlines(moved, SCENE, vectors="V", seeds=np.asarray(moved.points)[100:110])
+    here = streamlines(sphere, SCENE, vectors="V", seeds=sphere.points[100:106])
+    there = streamlines(moved, SCENE, vectors="V", seeds=np.asarray(moved.points)[100:106])
     assert there.field_data["drift"][0] < 1e-6
-    drawn = streamlines(moved, SCENE, vectors="V", seeds=50)
-    assert drawn.n_lines == streamlines(sphere, SCENE, vectors="V", seeds=50).n_lines
+    drawn = streamlines(moved, SCENE, vectors="V", seeds=15)
+    assert drawn.n_lines == streamlines(sphere, SCENE, vectors="V", seeds=15).n_lines
     assert drawn.field_data["drift"][0] < 1e-6
     np.testing.assert_allclose(there.points - offset, here.points, atol=1e-5)
     np.testing.assert_allclose(there["luminance"], here["luminance"], atol=1e-3)
@@ -287,7 +287,7 @@ def test_carotid_artery():
 
 def test_provenance_makes_the_lines_again():
     sphere = ball()
-    lines = streamlines(sphere, SCENE, vectors="V", seeds=20, compensate=False)
+    lines = streamlines(sphere, SCENE, vectors="V", seeds=6, compensate=False)
     told = vizlight.provenance(lines)
     assert told["filter"] == "streamlines"
     again = streamlines(sphere, Scene.from_dict(told["scene"]), **told["options"])
