@@ -9,8 +9,7 @@ import pytest
 import pyvista as pv
 
 import vizlight
-from vizlight import cli, render
-from vizlight.scene import Scene
+from vizlight import Scene, cli, render
 
 
 @pytest.fixture

@@ -110,7 +110,8 @@ def test_the_half_integral(s, random, figure):
     whole = mp.beta(mp.mpf("0.5"), oracles.exact(s) / 2 + 1) / 2
     reach = min(1.0, 10 / np.sqrt(1 + s))
     z = np.concatenate([[0.0, 1.0, -1.0], random.uniform(-reach, reach, 25)])
-    size = [min(abs(oracles.exact(x)), mp.mpf(12) / mp.sqrt(1 + oracles.exact(s)), mp.mpf(1)) for x in z]
+    most = min(mp.mpf(12) / mp.sqrt(1 + oracles.exact(s)), mp.mpf(1))
+    size = [min(abs(oracles.exact(x)), most) for x in z]
     true, before = {}, mp.mpf(0)
     for x in sorted(set(size)):
         # Each integral goes on from the next smaller one.

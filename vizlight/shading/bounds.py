@@ -50,10 +50,10 @@ def rounding(plan: Plan) -> float:
         if plan.terminator:
             factors += 6 / plan.terminator
         for light, highlight in zip(scene.lights, plan.highlights, strict=True):
-            if highlight.model == "blinn" and highlight.half is None:
-                # A half vector for each point is as long as for the bound with a headlight alone.
-                if angle(light, scene.view) != 0:
-                    return math.inf
+            own = highlight.model == "blinn" and highlight.half is None
+            if own and angle(light, scene.view) != 0:
+                # |wi + wo| may be as small as its rounding, except for a headlight.
+                return math.inf
             term = specular_bound(highlight.shininess, eps) + factors * eps
             total += plan.factors[1] * term * material.specular * light.intensity
     return total
