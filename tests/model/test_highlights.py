@@ -110,7 +110,8 @@ def normal(theta, phi):
 @lru_cache(maxsize=1)
 def phong_of_the_grid(degrees, r):
     """Phong's light of a fine grid of normals, the cosine of H, and which are lit."""
-    theta, phi = np.meshgrid(np.linspace(0, np.pi, 721), np.linspace(0, np.pi, 721))
+    # Light and eye have the other side, theta above a right angle, for a mirror image.
+    theta, phi = np.meshgrid(np.linspace(0, np.pi / 2, 361), np.linspace(0, np.pi, 721))
     mirror, half, facing = cosines(np.deg2rad(degrees), normal(theta, phi).reshape(-1, 3))
     # A normal with neither highlight has no error.
     seen = (mirror > 0) | (half > 0)
