@@ -340,6 +340,18 @@ def test_errors_name_the_arrays_that_could_be_traced():
         streamlines(pv.MultiBlock([grid]), SCENE)
 
 
+def test_what_points_out_of_a_surface_does_not_count():
+    """The tangential part alone is traced, however large the rest is."""
+    sphere = ball(30)
+    normals = np.asarray(sphere["Normals"], dtype=float)
+    seeds = np.asarray(sphere.points)[100:106]
+    along = streamlines(sphere, SCENE, vectors="V", seeds=seeds)
+    sphere["V"] = sphere["V"] + normals * np.linspace(-3, 3, sphere.n_points)[:, np.newaxis]
+    tilted = streamlines(sphere, SCENE, vectors="V", seeds=seeds)
+    np.testing.assert_allclose(tilted.points, along.points, atol=1e-6)
+    np.testing.assert_allclose(tilted["luminance"], along["luminance"], atol=1e-5)
+
+
 def test_lines_run_from_their_seeds_both_ways():
     grid = pv.ImageData(dimensions=(21, 5, 5), origin=(-1, 0, 0), spacing=(0.1, 0.1, 0.1))
     grid["V"] = np.tile([2.0, 0, 0], (grid.n_points, 1))
