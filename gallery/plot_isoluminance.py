@@ -3,12 +3,13 @@ Contours of equal luminance on solids
 =====================================
 
 The primitives of Conway and Cottingham, *The Isoluminance Contour Model*: sphere, cylinder, cone,
-frustum and disc, in bands of one luminance each between their contours; and a machined part made
-of them by union and difference, which keeps its bands.
+frustum and disc, in bands of constant luminance between contours; and a machined part made from
+them by union and difference, which has such bands too.
 
-On the sphere contours are circles about the light, on the others rulings; the ends have one
-luminance each. The machined part is what the source left open, set operations; the last two panels
-have contours found by halving where it approximates: a highlight and a near light.
+The contours of the sphere are circles about the direction of the light, those of the other
+primitives are rulings; each end has one luminance. The source leaves set operations, as in the
+machined part, as an open problem. The last two panels show cases that the source approximates, a
+highlight and a nearby light; here their contours are found by bisection.
 """
 
 import numpy as np
@@ -54,7 +55,7 @@ plotter = render.make_plotter(
 for number, found in enumerate(drawn):
     plotter.subplot(*divmod(number, 4))
     lines = plotter.add_mesh(found["contours"], color="black", line_width=1)
-    # Lines lie in the bands: they are drawn as if a little nearer.
+    # The lines lie in the bands: shift them slightly toward the viewer.
     lines.mapper.SetResolveCoincidentTopologyToPolygonOffset()
     lines.mapper.SetRelativeCoincidentTopologyLineOffsetParameters(-4, -4)
 plotter.show()

@@ -24,7 +24,7 @@ PICTURES = ["tests/test_pictures.py"]
 #: What the pictures show: file, text in it, replacement.
 MUTATIONS = {
     "Phong: sign of wo's tangential part (the slip of Banks' equation 2)": (
-        "shading/block.py", "along = lit.along + eye.along\n            return kernels.phong",
+        "shading/manifold.py", "along = lit.along + eye.along\n            return kernels.phong",
         "along = lit.along - eye.along\n            return kernels.phong",
     ),
     "Phong: normal parts added": (
@@ -38,7 +38,7 @@ MUTATIONS = {
         "power(normal / whole, shininess / 4, tangential / whole)",
     ),
     "Blinn, one half vector: power halved": (
-        "shading/block.py", "return kernels.power(self.side(cosine), shininess)",
+        "shading/manifold.py", "return kernels.power(self.side(cosine), shininess)",
         "return kernels.power(self.side(cosine), shininess / 2)",
     ),
     "diffuse: cosine to the tangent for the sine": (
@@ -46,7 +46,7 @@ MUTATIONS = {
         "return along, np.sqrt(np.maximum(1 - length(residual) ** 2, 0))",
     ),
     "diffuse on a surface: not clamped": (
-        "shading/block.py", "if self.two_sided else np.maximum(cosine, 0)",
+        "shading/manifold.py", "if self.two_sided else np.maximum(cosine, 0)",
         "if self.two_sided else np.abs(cosine)",
     ),
     "diffuse: no compensation": (
@@ -58,7 +58,7 @@ MUTATIONS = {
         "model/brightness.py", "a, d, h = (n - k) / 2,", "a, d, h = (n - k) / 4,",
     ),
     "highlight: on the dark side too": (
-        "shading/block.py", "return value * (lit.across > 0)", "return value",
+        "shading/manifold.py", "return value * (lit.across > 0)", "return value",
     ),
     "distance: no linear term": (
         "model/falloff.py", "denominator += c2 * wide", "denominator += 0",
@@ -106,15 +106,15 @@ MUTATIONS = {
 #: What no picture is needed for.
 OF_NUMBERS = {
     "Phong in numbers: sign of wo's tangential part": (
-        "shading/block.py", "along = lit.along + eye.along\n            return kernels.phong",
+        "shading/manifold.py", "along = lit.along + eye.along\n            return kernels.phong",
         "along = lit.along - eye.along\n            return kernels.phong",
     ),
     "half vector: tangential parts subtracted": (
-        "shading/block.py", "kernels.split(lit.vector + eye.vector, self.frame)",
+        "shading/manifold.py", "kernels.split(lit.vector + eye.vector, self.frame)",
         "kernels.split(lit.vector - eye.vector, self.frame)",
     ),
     "fur of cylinders: the skin's own model is lost": (
-        "filters/fur.py", 'own={"model": surface_model(model)}', "own={}",
+        "filters/fur.py", "options.shading.for_surface()", "options.shading",
     ),
     "streamlines: the part across the surface added": (
         "filters/streamlines.py", "along = array - np.einsum", "along = array + np.einsum",
@@ -144,7 +144,7 @@ OF_NUMBERS = {
         "distance * 1e-3), distance)",
     ),
     "surface: Bezier's control points taken as nodes": (
-        "mesh/point_arrays.py",
+        "mesh/hull.py",
         "np.where(off <= 1e-5 * np.abs(surface.points).max(initial=0), ids, -1)", "ids",
     ),
     "report: no time": ("verify/report.py", "made.seconds += time.perf_counter() - start", "pass"),

@@ -99,7 +99,7 @@ def test_warp():
         (lambda g: files.surface_of(g, "s"), r"contour: .*one of \['r'\], got 's'"),
         (
             lambda g: files.surface_of(pv.Cube(), "s"),
-            "contour: expected .* of one component, of which there is none, got 's'",
+            "contour: expected .* of one component, but the mesh has none, got 's'",
         ),
         (lambda g: files.surface_of(g, "V"), "contour: .*got 'V' with 3 components"),
         (lambda g: files.surface_of(g, "C"), "contour: .*got the cell array 'C'"),

@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     from vizlight.filters.isoluminance import isoluminance
     from vizlight.filters.manifold import manifold
     from vizlight.filters.project import project
-    from vizlight.filters.relief import relief_day, relief_shadow
+    from vizlight.filters.relief_day import relief_day
+    from vizlight.filters.relief_shadow import relief_shadow
     from vizlight.filters.satin import satin
     from vizlight.filters.streamlines import streamlines
     from vizlight.geometry.solids.primitives import Block, Sphere, Truncus

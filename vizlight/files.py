@@ -16,7 +16,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.mesh import point_arrays
+from vizlight.mesh import hull
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -137,7 +137,7 @@ def surface_of(mesh: Any, /, contour: str | None = None, level: float | None = N
     if contour is None:
         if isinstance(mesh, pv.PolyData):
             return mesh
-        return point_arrays.outer_surface(mesh)[0]
+        return hull.outer_surface(mesh)[0]
     values = _scalars(mesh, "contour", contour)
     finite = values[np.isfinite(values)]
     if not finite.size:

@@ -1,4 +1,4 @@
-"""The pages of the studies: each is run, quickly, by the machine that builds the pages."""
+"""The pages of the studies: each study is run with ``--quick`` when the pages are built."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def write(app):
 
 
 def _plain(text):
-    """Return text of which reStructuredText reads nothing as markup."""
+    """Return text with the markup characters of reStructuredText escaped."""
     return re.sub(r"([\\`*_|])", r"\\\1", text)
 
 

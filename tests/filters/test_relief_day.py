@@ -51,9 +51,9 @@ def test_one_hour_of_a_day():
         (
             {"directions": (0, 0, 1), "scene": Scene(lights=[])},
             TypeError,
-            "scene: expected no such option",
+            "scene: expected an option of",
         ),
-        ({"directions": (0, 0, 1), "lit": True}, TypeError, "lit: expected no such option"),
+        ({"directions": (0, 0, 1), "lit": True}, TypeError, "lit: expected an option of"),
     ],
 )
 def test_bad_days(options, error, words):

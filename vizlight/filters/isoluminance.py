@@ -13,15 +13,16 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.filters import lighting
-from vizlight.filters.illuminate import prepare
 from vizlight.geometry.contours import banding, facets, refinement, spacing
 from vizlight.geometry.contours import isoluminance as closed
 from vizlight.geometry.solids import tessellation
 from vizlight.geometry.solids.primitives import Solid, Sphere, Truncus
-from vizlight.mesh import point_arrays, records
+from vizlight.mesh import hull, normals, point_arrays, records
+from vizlight.mesh.inputs import inputs_of
 from vizlight.mesh.point_arrays import unit_rows
 from vizlight.scene import Scene
 from vizlight.shading import engine
+from vizlight.shading.options import LightOptions
 from vizlight.verify import report
 
 if TYPE_CHECKING:
@@ -171,7 +172,7 @@ class _Light:
         """Return what made the bands."""
         if self.last is None:
             self(np.zeros((1, 3)), np.array([[0.0, 0, 1]]))
-        return records.record(self.last, "isoluminance", self.scene, options)
+        return records.of_light(self.last, "isoluminance", self.scene, options)
 
 
 def _of_solid(solid: Solid, light: _Light, levels: Levels, tolerance: float) -> Bands:
@@ -205,16 +206,19 @@ def _of_mesh(
 ) -> tuple[pv.MultiBlock, Bands, _Light]:
     """Return bands and contours of a mesh."""
     surface, triangles, used, ids = _surface(mesh)
-    given = {**options, "positions": None, "average_cells": False}
+    given = dict(options)
     if ids is not None:
         for key in ("normals", "tangents"):
             if given[key] is not None and not isinstance(given[key], str):
                 rows = point_arrays.array_of(mesh, key, given[key], average_cells=False)
                 given[key] = np.where(ids[:, np.newaxis] < 0, 0, rows[ids])
+    names = {field.name for field in dataclasses.fields(LightOptions)} - {"tolerance"}
+    asked = LightOptions(
+        precision="float64", **{key: value for key, value in given.items() if key in names}
+    )
     (lit,), fitted = lighting.light(
-        [prepare(surface, "", scene, given)], scene, threads=threads, progress_bar=False,
-        precision="float64", **{key: options[key] for key in ("model", "compensate", "two_sided")},
-    )  # fmt: skip
+        [(inputs_of(surface, "", scene, asked), asked)], scene, threads=threads, progress_bar=False
+    )
     unlit = int(np.count_nonzero(~lit.valid[used]))
     if unlit:
         _check.warn(lighting.unlit(unlit, len(used)))
@@ -226,7 +230,7 @@ def _of_mesh(
         bands, _ = banding.cut(np.empty((0, 3)), triangles, np.empty((0, 3)), steps)
         bands = dataclasses.replace(bands, error=0.0)
     elif options["tangents"] is None:
-        found = point_arrays.normals_of(surface, given["normals"], 3, point_arrays.onlooker(scene))
+        found = normals.normals_of(surface, given["normals"], 3, normals.onlooker(scene))
         unit = unit_rows(np.asarray(found, dtype=np.float64))
         rows = np.concatenate([points, unit], axis=1)
 
@@ -244,7 +248,7 @@ def _of_mesh(
         if lit.rgb is not None:
             middles = cut.middles()
             rgb = _as_bright(middles[:, 4:], middles[:, 3], bands)
-    told = records.record(lit, "isoluminance", fitted, options)
+    told = records.of_light(lit, "isoluminance", fitted, options)
     if scene.colored and options["tangents"] is None:
         rgb = _rgb(bands, light)
     return _blocks(bands, options["name"], told, rgb, patches=False), bands, light
@@ -257,7 +261,7 @@ def _surface(mesh: Any) -> tuple[pv.PolyData, Indices, Indices, Any]:
     """
     surface, ids = mesh, None
     if not isinstance(mesh, pv.PolyData):
-        surface, ids = point_arrays.outer_surface(mesh)
+        surface, ids = hull.outer_surface(mesh)
     if surface.n_points and not (surface.GetNumberOfPolys() or surface.GetNumberOfStrips()):
         remedy = "take a contour or the mesh's extract_surface()"
         raise ValueError(

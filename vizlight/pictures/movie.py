@@ -19,7 +19,7 @@ from vizlight._progress import progress
 from vizlight.files import check_output, replace_file
 from vizlight.filters import project
 from vizlight.filters.lighting import DEFAULT_NAME
-from vizlight.mesh.point_arrays import leaves
+from vizlight.mesh.blocks import leaves
 from vizlight.pictures import render
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.files import check_output, replace_file
-from vizlight.mesh.point_arrays import leaves
+from vizlight.mesh.blocks import leaves
 from vizlight.mesh.polylines import has_lines_only
 
 if TYPE_CHECKING:

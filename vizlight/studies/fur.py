@@ -76,7 +76,7 @@ def along_fibres(segments: int) -> float:
             toward=(0, 0, -1),
             bend=0.5,
         )
-        return np.asarray(coat["fibres"]["luminance"], dtype=np.float64).reshape(-1, count + 1)
+        return np.asarray(fibres_of(coat)["luminance"], dtype=np.float64).reshape(-1, count + 1)
 
     at, fine, rough = np.linspace(0, 1, FINE + 1), light(FINE), light(segments)
     nodes = np.linspace(0, 1, segments + 1)
@@ -84,13 +84,20 @@ def along_fibres(segments: int) -> float:
     return float(np.sqrt(np.mean((between - fine) ** 2)))
 
 
+def fibres_of(coat: pv.MultiBlock) -> pv.PolyData:
+    """Return the fibres of fur as lines."""
+    fibres = coat["fibres"]
+    assert isinstance(fibres, pv.PolyData)
+    return fibres
+
+
 def over_patches(fibres: int, seed: int = 0) -> Any:
     """Return the mean light of the fibres that stand on each patch of the torus."""
     mesh = torus(64)
     scene, _ = scene_of(mesh)
-    coat = fur(mesh, scene, density=0.02, fibres=fibres, length=0.3, segments=3, seed=seed)[
-        "fibres"
-    ]
+    coat = fibres_of(
+        fur(mesh, scene, density=0.02, fibres=fibres, length=0.3, segments=3, seed=seed)
+    )
     light = np.asarray(coat["luminance"], dtype=np.float64).reshape(-1, 4).mean(axis=1)
     x, y, z = np.asarray(coat.points)[::4].T
     u, v = np.arctan2(y, x), np.arctan2(z, np.hypot(x, y) - 1.5)

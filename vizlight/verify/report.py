@@ -20,8 +20,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from vizlight.scene import Scene
-    from vizlight.shading.block import Given
     from vizlight.shading.engine import Shading
+    from vizlight.shading.inputs import ShadingInputs
+    from vizlight.shading.options import ShadingOptions
 
 
 #: Rays through a solid that are sampled again, at most.
@@ -191,7 +192,7 @@ def report(*, sample: int = 256, seed: int = 0) -> Iterator[Report]:
         _ACTIVE.reset(token)
 
 
-def note(given: Given, scene: Scene, shading: Shading, options: dict[str, Any]) -> None:
+def note(given: ShadingInputs, scene: Scene, shading: Shading, options: ShadingOptions) -> None:
     """Add a run of the engine to the report that is asked for, if one is."""
     active = _ACTIVE.get()
     if active is None:
@@ -202,7 +203,7 @@ def note(given: Given, scene: Scene, shading: Shading, options: dict[str, Any]) 
     drawn = np.sort(random.choice(count, min(active.sample, count), replace=False))
     apart = frames.default_rtol(shading.plan.n, shading.plan.dtype)
     width = 1 if shading.rgb is None else 4
-    again = [_again(given, int(i), scene, options | {"apart": apart}) for i in drawn]
+    again = [_again(given, int(i), scene, options, apart) for i in drawn]
     true = np.array(again, dtype=np.float64).reshape(-1, width)
     got = shading.luminance[drawn, np.newaxis]
     got = got if shading.rgb is None else np.hstack([got, shading.rgb[drawn]])
@@ -307,7 +308,9 @@ def paused() -> Iterator[None]:
         _ACTIVE.reset(token)
 
 
-def _again(given: Given, i: int, scene: Scene, options: dict[str, Any]) -> list[float]:
+def _again(
+    given: ShadingInputs, i: int, scene: Scene, options: ShadingOptions, apart: float
+) -> list[float]:
     """Return the light of one point by the scalar formulas."""
     n, row = given.points.shape[1], i // given.repeat
     own, shared = slice(i, (row + 1) * given.repeat, given.repeat), slice(row, row + 1)
@@ -326,8 +329,14 @@ def _again(given: Given, i: int, scene: Scene, options: dict[str, Any]) -> list[
         vectors(given.tangents),
         None if given.normals is None else numbers(given.normals, shared).tolist(),
         scene,
-        carrier=vectors(given.carrier),
-        depth=None if given.depth is None else float(numbers(given.depth, own)[0]),
+        carrier=vectors(given.base_tangents),
+        depth=(None if given.fur_height is None else float(numbers(given.fur_height, own)[0])),
         shadow=None if given.shadow is None else numbers(given.shadow, own).tolist(),
-        **options,
+        model=options.model,
+        compensate=options.compensate,
+        conditioned=bool(options.conditioned),
+        two_sided=options.two_sided,
+        terminator=options.terminator,
+        fur=given.fur,
+        apart=apart,
     )
