@@ -128,19 +128,19 @@ OF_NUMBERS = {
         "(1 - b - c) * corner[:, 0] + b * corner[:, 1] + c * corner[:, 2]",
         "(1 - b) * corner[:, 0] + b * corner[:, 1]",
     ),
-    "camera: up is not set": ("pictures/render.py", "    camera.up = tuple(up)\n", ""),
+    "camera: up is not set": ("pictures/cameras.py", "    camera.up = tuple(up)\n", ""),
     "camera: fitted with another up": (
-        "pictures/render.py", "right = np.cross(up, toward)",
+        "pictures/cameras.py", "right = np.cross(up, toward)",
         "right = np.cross((0.1, 1.0, 0.2), toward)",
     ),
     "camera: clipping range is VTK's own": (
-        "pictures/render.py", "    camera.clipping_range = (", "    _ = (",
+        "pictures/cameras.py", "    camera.clipping_range = (", "    _ = (",
     ),
     "camera: clipped at the centre": (
-        "pictures/render.py", "(max(distance - 2 * radius, distance * 1e-3)", "(max(distance, 0)",
+        "pictures/cameras.py", "(max(distance - 2 * radius, distance * 1e-3)", "(max(distance, 0)",
     ),
     "camera: clipped behind the centre": (
-        "pictures/render.py", "distance * 1e-3), distance + 2 * radius)",
+        "pictures/cameras.py", "distance * 1e-3), distance + 2 * radius)",
         "distance * 1e-3), distance)",
     ),
     "surface: Bezier's control points taken as nodes": (

@@ -43,7 +43,7 @@ def test_damaged_files_give_one_clear_error(name, content, tmp_path, capfd):
 
 
 def test_missing_file(tmp_path):
-    with pytest.raises(files.FileError, match=r"file: expected a file, got .*\(nothing there\)"):
+    with pytest.raises(files.FileError, match=r"file: expected a file, got .*\(no such file\)"):
         files.read_mesh(tmp_path / "no.vtp")
     with pytest.raises(files.FileError, match=r"file: expected a file, got .*\(a folder\)"):
         files.read_mesh(tmp_path)

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     import pyvista as pv
 
-    from vizlight.pictures.render import Panel
+    from vizlight.pictures.render import Backend, Panel
 
 #: Exit codes: success; no picture or a machine that lacks something; bad input.
 OK, LACKING, BAD_INPUT = 0, 1, 2
@@ -35,7 +35,7 @@ def draw(
     size: tuple[int, int],
     background: str | None = None,
     line_width: float = 1.0,
-    backend: str | None = None,
+    backend: Backend | None = None,
 ) -> int:
     """Draw a picture and return the exit code; without a library that draws print a message."""
     from vizlight import render
