@@ -10,7 +10,7 @@ from pathlib import Path
 from sphinx.util.display import status_iterator
 
 from vizlight import studies
-from vizlight.studies._framework import number
+from vizlight.studies._results import number
 
 #: All inputs of the stability suite: ``vizlight study stability -o gallery/pages``.
 KEPT = "stability.csv"

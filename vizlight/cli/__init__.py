@@ -1,5 +1,6 @@
 """The command line: ``vizlight demo``, ``light FILE``, ``study NAME``, ``doctor``."""
 
 from vizlight.cli.main import app, main
+from vizlight.cli.output import BAD_INPUT, LACKING, OK
 
-__all__ = ["app", "main"]
+__all__ = ["BAD_INPUT", "LACKING", "OK", "app", "main"]

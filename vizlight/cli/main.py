@@ -27,7 +27,13 @@ app = App(
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line and return its exit code; errors are one line on standard error."""
+    """Run the command line and return its exit code; errors are one line on standard error.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        Words after ``vizlight``. Default: those of the process.
+    """
     try:
         result = app(
             None if arguments is None else list(arguments),
@@ -193,7 +199,7 @@ def study(
     Parameters
     ----------
     name
-        Of the study.
+        Name of the study.
     quick
         Measure less: under 20 s on 2 cores.
     out

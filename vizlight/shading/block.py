@@ -1,4 +1,4 @@
-"""The light of one block of points: a plan's terms on component-first arrays."""
+"""The light of one block of points: the terms of a plan on component-first arrays."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class _Lit(NamedTuple):
 
 
 class _Shape:
-    """The manifold at some rows, and the directions toward lights at infinity that it has split."""
+    """The manifold at some rows, with the split directions toward lights at infinity."""
 
     def __init__(
         self,
@@ -68,7 +68,7 @@ class _Shape:
         self._distant: dict[int, _Lit] = {}
 
     def toward(self, number: int, position: Array | None) -> _Lit:
-        """Return the direction toward a light, found once for a light at infinity."""
+        """Return the direction toward a light; that of a light at infinity is computed once."""
         if number in self._distant:
             return self._distant[number]
         vector, distance = _toward(self.plan.scene.lights[number], position, self.plan.dtype)
@@ -89,7 +89,7 @@ class _Shape:
 def shade_block(plan: Plan, rows: slice, inputs: ShadingInputs, output: Output) -> None:
     """Light the points of some rows of normals or tangents.
 
-    Overflow and underflow are taken care of; the caller silences NumPy's warnings of them.
+    Overflow and underflow are handled; the caller silences NumPy's warnings about them.
     """
     surface = sheet = shape = None
     tangents, repeat = inputs.tangents, inputs.repeat
@@ -207,7 +207,7 @@ def _kept(passed: Array, side: Array) -> Array:
 
 
 def _spanned(plan: Plan, k: int, tangents: ArraySource, rows: slice) -> tuple[Array, Bools]:
-    """Return an orthonormal frame of what k tangents a point span, and where these are k."""
+    """Return an orthonormal frame of the span of k tangents per point, and where its rank is k."""
     vectors = columns(tangents, rows, plan.dtype)
     vectors = vectors.reshape(k, plan.n, vectors.shape[1])
     rtol = frames.default_rtol(plan.n, vectors.dtype)
@@ -216,9 +216,9 @@ def _spanned(plan: Plan, k: int, tangents: ArraySource, rows: slice) -> tuple[Ar
 
 
 def columns(rows: ArraySource, block: slice, work: DTypeLike = np.float32) -> Array:
-    """Return a block of rows component by component, in their precision or the work's, the wider.
+    """Return a block of rows component by component, in the wider precision of rows and work.
 
-    Float64 vectors are thus made unit before float32 work rounds them.
+    Float64 vectors are thus normalised before float32 work rounds them.
     """
     part = rows[block]
     narrow = work == np.float32 and part.dtype in (np.float16, np.float32)
@@ -286,7 +286,7 @@ def _store(
     block: slice,
     output: Output,
 ) -> None:
-    """Weigh the sums by the material, fade them with depth, write them to the output."""
+    """Multiply the sums by the material, fade them with depth, write them to the output."""
     scene, number = plan.scene, plan.dtype.type
     material, cue = scene.material, scene.depth_cue
     diffuse, specular = plan.factors
@@ -345,7 +345,7 @@ def _store(
 
 
 def view_depth(view: View | None, points: Array) -> Array:
-    """Return the depth of points: along the view's axis, or from the eye where it has none."""
+    """Return the depth of points: along the axis of the view, or from the eye without an axis."""
     assert view is not None
     origin = np.array(view.position or np.zeros(len(points)), dtype=np.float64)[:, np.newaxis]
     if view.direction is None:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Split(NamedTuple):
-    """A direction as the manifold sees it: the vector, its tangential and its normal part."""
+    """A direction at the manifold: the vector, its tangential and its normal part."""
 
     vector: Array
     along: Array
@@ -22,11 +22,11 @@ class Split(NamedTuple):
 
 
 class Pair(NamedTuple):
-    """A light and the eye as the manifold sees them; no eye where nothing needs its split."""
+    """Light and eye at the manifold; no eye where no term needs its split."""
 
     lit: Split
     eye: Split | None
-    met: cylinder_kernels.Meeting | None = None
+    met: cylinder_kernels.NormalParts | None = None
 
 
 class Manifold(Protocol):
@@ -48,7 +48,7 @@ class Manifold(Protocol):
 
 
 class Tangents:
-    """A k-manifold given by its tangents, good where these are independent; it has no sides."""
+    """A k-manifold given by its tangents, good where they are independent; it has no sides."""
 
     def __init__(self, frame: Array, good: Bools) -> None:
         self.frame, self.good = frame, good
@@ -110,9 +110,9 @@ class Line:
 
 
 class Surface:
-    """A (n - 1)-manifold given by its unit normals; one-sided unless asked otherwise.
+    """An (n - 1)-manifold given by its unit normals, lit on one side or on both.
 
-    The tangential part is kept as what is left of the vector, and only where it is needed.
+    The tangential part is kept as the rest of the vector, and only where it is needed.
     """
 
     def __init__(self, normal: Array, good: Bools, *, two_sided: bool, terminator: float) -> None:
@@ -171,7 +171,7 @@ class Surface:
         return kernels.dot(rest, rest), up
 
     def _cut(self, lit: Split, value: Array) -> Array:
-        """Take the highlight from the side that the light does not reach, sharply or smoothly."""
+        """Remove the highlight from the side that the light does not reach, sharply or smoothly."""
         if self.two_sided:
             return value
         if self.terminator:
