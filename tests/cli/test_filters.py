@@ -74,6 +74,8 @@ COMMANDS = {
     "view of a scene": "light flow.vti --contour r --scene view.json",
     "saved camera": "light flow.vti --contour r --view camera.json --zoom 2 --parallel",
     "streamlines": "streamlines flow.vti --vectors V --seeds 12 --model cylinder --max-steps 90",
+    "colour of data": "light flow.vti --slice z:4 --scalars r --diffuse 0.9",
+    "streamlines by data": "streamlines flow.vti --vectors V --seeds 9 --scalars r --cmap plasma",
     "streamlines on a surface": "streamlines flow.vti --vectors V --contour r --confined --seeds 9",
     "relief": "relief terrain.vti --light 315,20 --depth 0.5 --border wall",
     "relief, lit": "relief terrain.vti --lit --color white --factor 2 --elevation height",
@@ -136,7 +138,7 @@ IN_SCRIPTS = {
     "streamlines": {"positions", "tangents", "surface"},
     "relief": {"occluders"},
     "fur": set(),
-    "contours": {"tolerance", "normals", "tangents"},
+    "contours": {"tolerance"},
     "project": set(),
 }
 
@@ -297,6 +299,8 @@ def test_report_stands_in_the_script_too(folder, capfd):
         ("light flow.vti --threshold r:3:1", "--threshold: expected NAME:LOW:HIGH"),
         ("light flow.vti --threshold q:3:4", "--threshold: expected the name of an array, one of"),
         ("light flow.vti --threshold r:99:", "--threshold: expected a value that leaves"),
+        ("light flow.vti --scalars V", "--scalars: expected a point array of one component, one"),
+        ("light flow.vti --scalars r --cmap no", "--cmap: expected the name of a colour map"),
         ("light flow.vti --scene no.json", "--scene: expected a JSON file, got 'no.json' (No such"),
         ("light flow.vti --scene flow.vti", "--scene: expected a JSON file"),
         ("light flow.vti --scene list.json", "scene: 'list.json': values: expected a dict of"),

@@ -30,6 +30,7 @@ GROUPS = {
 LIT, _, LIGHT, MATERIAL, CAMERA, OUTPUT = (
     Parameter(name="*", group=group) for group in GROUPS.values()
 )
+COMMON = Parameter(name="*")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -190,6 +191,32 @@ class Output:
     report: Flag = False
     progress: Flag = False
     script: Flag = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class Color:
+    """Colour of a picture by data.
+
+    Parameters
+    ----------
+    scalars
+        Point array that colours the picture, times the light.
+    cmap
+        Name of the colour map of --scalars.
+    """
+
+    scalars: str | None = None
+    cmap: str = "viridis"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Common:
+    """Options of every command that lights files."""
+
+    lamps: Annotated[Lamps, LIGHT] = Lamps()
+    finish: Annotated[Finish, MATERIAL] = Finish()
+    eye: Annotated[Eye, CAMERA] = Eye()
+    out: Annotated[Output, OUTPUT] = Output()
 
 
 def numbers(text: str, counts: tuple[int, ...] = (3,)) -> tuple[float, ...]:

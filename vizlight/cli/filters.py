@@ -7,28 +7,19 @@ from typing import TYPE_CHECKING, Annotated
 
 import vizlight
 from vizlight.cli import options, scenes
-from vizlight.cli.arguments import (
-    CAMERA,
-    LIGHT,
-    LIT,
-    MATERIAL,
-    OUTPUT,
-    Eye,
-    Finish,
-    Lamps,
-    Output,
-    Part,
-    Shape,
-)
+from vizlight.cli.arguments import COMMON, LIT, OUTPUT, Color, Common, Part, Shape
 from vizlight.cli.job import Job, carry_out
 from vizlight.cli.script import Step
 from vizlight.filters.fur import FurOptions
+from vizlight.filters.isoluminance import ContourOptions
 from vizlight.filters.project import ProjectOptions
 from vizlight.filters.relief_shadow import ReliefOptions
 from vizlight.filters.streamlines import StreamlineOptions
 
 if TYPE_CHECKING:
     import pyvista as pv
+
+    from vizlight.cli.arguments import Output
 
 #: Option of ``project`` that the lights have the name of.
 RENAMED = {"light": "when"}
@@ -41,10 +32,8 @@ def streamlines(
     *,
     part: Annotated[Part, LIT] = Part(),  # noqa: B008
     how: object = None,
-    lamps: Annotated[Lamps, LIGHT] = Lamps(),  # noqa: B008
-    finish: Annotated[Finish, MATERIAL] = Finish(),  # noqa: B008
-    eye: Annotated[Eye, CAMERA] = Eye(),  # noqa: B008
-    out: Annotated[Output, OUTPUT] = Output(),  # noqa: B008
+    common: Annotated[Common, COMMON] = Common(),  # noqa: B008
+    color: Annotated[Color, OUTPUT] = Color(),  # noqa: B008
 ) -> int:
     """Trace streamlines of a vector field, free or on a surface, and light them.
 
@@ -57,18 +46,21 @@ def streamlines(
         Mesh with vectors; of several each is lit by itself.
     """
     scenes.check_target(part)
-    look = scenes.Look(lamps, finish, eye, out.size)
+    scenes.check_color(color)
+    look = scenes.Look(common)
     given = options.keywords(how)
-    asked = StreamlineOptions(**given)  # type: ignore[arg-type]
+    asked = StreamlineOptions(**given)
 
     def job(path: Path) -> Job:
         mesh = scenes.data(path, part, average_cells=asked.average_cells)
         on = {} if part.contour is None else {"surface": scenes.surface(mesh, part)}
         camera = look.camera(on.get("surface", mesh) if asked.confined else mesh)
-        lit = _step("lit", "streamlines", mesh, look.scene(camera), given | on, out)
-        return Job(lit, asked.name, look, camera)
+        lit = _step("lit", "streamlines", mesh, look.scene(camera), given | on, common.out)
+        made = Job(lit, asked.name, look, camera)
+        made.tint(scenes.tinted(lit, asked.name, mesh, color))
+        return made
 
-    return carry_out(files, job, out, "streamlines")
+    return carry_out(files, job, common.out, "streamlines")
 
 
 @options.takes(vizlight.relief_shadow, "Relief")
@@ -78,10 +70,7 @@ def relief(
     *,
     shape: Annotated[Shape, LIT] = Shape(),  # noqa: B008
     how: object = None,
-    lamps: Annotated[Lamps, LIGHT] = Lamps(),  # noqa: B008
-    finish: Annotated[Finish, MATERIAL] = Finish(),  # noqa: B008
-    eye: Annotated[Eye, CAMERA] = Eye(),  # noqa: B008
-    out: Annotated[Output, OUTPUT] = Output(),  # noqa: B008
+    common: Annotated[Common, COMMON] = Common(),  # noqa: B008
 ) -> int:
     """Cast shadows on a height field or a closed surface: the cos-theta shadow t.
 
@@ -91,9 +80,9 @@ def relief(
         Height field, or closed surface; of several each is lit by itself.
     """
     scenes.check_target(shape)
-    look = scenes.Look(lamps, finish, eye, out.size)
+    look = scenes.Look(common)
     given = options.keywords(how)
-    asked = ReliefOptions(**given)  # type: ignore[arg-type]
+    asked = ReliefOptions(**given)
 
     def job(path: Path) -> Job:
         mesh = scenes.data(path, shape)
@@ -101,21 +90,18 @@ def relief(
         if shape.contour is not None or shape.slice is not None or not _is_field(found):
             mesh = scenes.surface(mesh, shape)
             found = None
-        raised, raise_ = mesh, None
-        if found is not None and found.bounds.z_min == found.bounds.z_max:
-            raise_ = (asked.elevation or found.point_data.active_scalars_name, asked.factor)
-            raised = Step("raised", "files.warped", mesh, *raise_)
+        heights = None if found is None else _heights(found, asked)
+        raised = mesh if heights is None else Step("raised", "files.warped", mesh, *heights)
         camera = look.camera(raised, is_map=found is not None)
-        lit = _step("shaded", "relief_shadow", mesh, look.scene(camera), given, out)
-        shown = None if raise_ is None else Step("shown", "files.warped", lit, *raise_)
-        scalars = None if asked.lit else asked.name
-        made = Job(lit, asked.name, look, camera, shown=shown, scalars=scalars, before=mesh)
+        lit = _step("shaded", "relief_shadow", mesh, look.scene(camera), given, common.out)
+        shown = None if heights is None else Step("shown", "files.warped", lit, *heights)
+        made = Job(lit, asked.name, look, camera, shown=shown, scalars=asked.name, before=mesh)
         made.suffix = ".vtp" if found is None else _suffix(found)
         if asked.lit:
             made.scalars = "rgb" if look.colored else "luminance"
         return made
 
-    return carry_out(files, job, out, "relief")
+    return carry_out(files, job, common.out, "relief")
 
 
 @options.takes(vizlight.fur, "Fur")
@@ -125,10 +111,7 @@ def fur(
     *,
     how: object,
     shape: Annotated[Shape, LIT] = Shape(),  # noqa: B008
-    lamps: Annotated[Lamps, LIGHT] = Lamps(),  # noqa: B008
-    finish: Annotated[Finish, MATERIAL] = Finish(),  # noqa: B008
-    eye: Annotated[Eye, CAMERA] = Eye(),  # noqa: B008
-    out: Annotated[Output, OUTPUT] = Output(),  # noqa: B008
+    common: Annotated[Common, COMMON] = Common(),  # noqa: B008
 ) -> int:
     """Cover a surface with fibres, and light them and the skin below.
 
@@ -138,17 +121,17 @@ def fur(
         Surface, or a mesh with one; of several each is lit by itself.
     """
     scenes.check_target(shape)
-    look = scenes.Look(lamps, finish, eye, out.size)
+    look = scenes.Look(common)
     given = options.keywords(how)
-    asked = FurOptions(**given)  # type: ignore[arg-type]
+    asked = FurOptions(**given)
 
     def job(path: Path) -> Job:
         mesh = scenes.surface(scenes.data(path, shape), shape)
         camera = look.camera(mesh)
-        lit = _step("furry", "fur", mesh, look.scene(camera), given, out)
+        lit = _step("furry", "fur", mesh, look.scene(camera), given, common.out)
         return Job(lit, asked.name, look, camera, parts=("fibres", "skin"))
 
-    return carry_out(files, job, out, "fur")
+    return carry_out(files, job, common.out, "fur")
 
 
 # The tolerance is that of solids, which no file holds.
@@ -159,10 +142,7 @@ def contours(
     *,
     shape: Annotated[Shape, LIT] = Shape(),  # noqa: B008
     how: object = None,
-    lamps: Annotated[Lamps, LIGHT] = Lamps(),  # noqa: B008
-    finish: Annotated[Finish, MATERIAL] = Finish(),  # noqa: B008
-    eye: Annotated[Eye, CAMERA] = Eye(),  # noqa: B008
-    out: Annotated[Output, OUTPUT] = Output(),  # noqa: B008
+    common: Annotated[Common, COMMON] = Common(),  # noqa: B008
 ) -> int:
     """Find the contours of equal luminance of a surface, and the bands between them.
 
@@ -172,18 +152,18 @@ def contours(
         Surface, or a mesh with one; of several each is lit by itself.
     """
     scenes.check_target(shape)
-    look = scenes.Look(lamps, finish, eye, out.size)
+    look = scenes.Look(common)
     given = options.keywords(how)
+    asked = ContourOptions(**given)
 
     def job(path: Path) -> Job:
         mesh = scenes.surface(scenes.data(path, shape), shape)
         camera = look.camera(mesh)
         lit = Step("found", "vizlight.isoluminance", mesh, look.scene(camera), **given)
-        name = str(given.get("name", "luminance"))
         bands = Step("", "[]", lit, "bands")
-        return Job(lit, name, look, camera, shown=bands, parts=("bands", "contours"))
+        return Job(lit, asked.name, look, camera, shown=bands, parts=("bands", "contours"))
 
-    return carry_out(files, job, out, "contours")
+    return carry_out(files, job, common.out, "contours")
 
 
 @options.takes(vizlight.project, "Projection", renamed=RENAMED)
@@ -192,10 +172,7 @@ def project(
     /,
     *,
     how: object = None,
-    lamps: Annotated[Lamps, LIGHT] = Lamps(),  # noqa: B008
-    finish: Annotated[Finish, MATERIAL] = Finish(),  # noqa: B008
-    eye: Annotated[Eye, CAMERA] = Eye(),  # noqa: B008
-    out: Annotated[Output, OUTPUT] = Output(),  # noqa: B008
+    common: Annotated[Common, COMMON] = Common(),  # noqa: B008
 ) -> int:
     """Turn, cut and project a mesh of n-space to 3-space, lit before or after.
 
@@ -207,9 +184,9 @@ def project(
     files
         Mesh with positions and tangents in n-space; of several each is lit by itself.
     """
-    look = scenes.Look(lamps, finish, eye, out.size)
+    look = scenes.Look(common)
     given = options.keywords(how, RENAMED)
-    asked = ProjectOptions(**given)  # type: ignore[arg-type]
+    asked = ProjectOptions(**given)
 
     def job(path: Path) -> Job:
         mesh = scenes.data(path, Part())
@@ -217,10 +194,10 @@ def project(
         rows = found.point_data.get(asked.positions or "")
         n = 3 if asked.light == "after" or rows is None or rows.ndim == 1 else rows.shape[1]
         scene = look.scene_in(n)
-        lit = _step("projected", "project", mesh, None, given | {"scene": scene}, out)
+        lit = _step("projected", "project", mesh, None, given | {"scene": scene}, common.out)
         return Job(lit, asked.name, look, look.camera(lit), before=None, suffix=".vtk")
 
-    return carry_out(files, job, out, "projected")
+    return carry_out(files, job, common.out, "projected")
 
 
 def _step(
@@ -235,6 +212,14 @@ def _step(
     progress = {"progress_bar": True} if out.progress else {}
     arguments = (mesh,) if scene is None else (mesh, scene)
     return Step(name, f"vizlight.{filter_}", *arguments, **given, **progress)
+
+
+def _heights(field: pv.DataSet, asked: ReliefOptions) -> tuple[str, float] | None:
+    """Return the heights that raise a flat grid in a picture, and their factor."""
+    name = asked.elevation or field.point_data.active_scalars_name
+    if name is None or name not in field.point_data or field.bounds.z_min != field.bounds.z_max:
+        return None
+    return name, asked.factor
 
 
 def _is_field(mesh: pv.DataSet) -> bool:

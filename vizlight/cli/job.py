@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import vizlight
 from vizlight import _check
 from vizlight.cli.output import BAD_INPUT, OK, complain, draw, say
+from vizlight.cli.scenes import TINT
 from vizlight.cli.script import Step, source
 
 if TYPE_CHECKING:
@@ -64,6 +65,11 @@ class Job:
     explain: Callable[[pv.DataSet], None] | None = None
     meshes: list[tuple[Step, Path]] = field(default_factory=list)
     pictures: list[Path] = field(default_factory=list)
+
+    def tint(self, shown: Step | None) -> None:
+        """Show another mesh by its colours, if there is one."""
+        if shown is not None:
+            self.shown, self.scalars = shown, TINT
 
     def of_parts(self, path: Path) -> list[tuple[Step, Path]]:
         """Return what is written for the path of a mesh: the mesh, or each part beside it."""

@@ -9,20 +9,7 @@ from cyclopts import Parameter
 
 import vizlight
 from vizlight.cli import options, scenes
-from vizlight.cli.arguments import (
-    CAMERA,
-    GROUPS,
-    LIGHT,
-    LIT,
-    MATERIAL,
-    OUTPUT,
-    Eye,
-    Finish,
-    Flag,
-    Lamps,
-    Output,
-    Target,
-)
+from vizlight.cli.arguments import COMMON, GROUPS, LIT, OUTPUT, Color, Common, Flag, Target
 from vizlight.cli.job import Job, carry_out
 from vizlight.cli.output import say
 from vizlight.cli.script import Step
@@ -41,10 +28,8 @@ def light(
     *,
     target: Annotated[Target, LIT] = Target(),  # noqa: B008
     how: object = None,
-    lamps: Annotated[Lamps, LIGHT] = Lamps(),  # noqa: B008
-    finish: Annotated[Finish, MATERIAL] = Finish(),  # noqa: B008
-    eye: Annotated[Eye, CAMERA] = Eye(),  # noqa: B008
-    out: Annotated[Output, OUTPUT] = Output(),  # noqa: B008
+    common: Annotated[Common, COMMON] = Common(),  # noqa: B008
+    color: Annotated[Color, OUTPUT] = Color(),  # noqa: B008
     explain: Annotated[Flag, Parameter(group=GROUPS["Output"])] = False,
 ) -> int:
     """Light a mesh from any file that PyVista reads, and write the lit mesh and a picture.
@@ -59,9 +44,10 @@ def light(
     from vizlight.shading.options import LightOptions
 
     scenes.check_target(target)
-    look = scenes.Look(lamps, finish, eye, out.size)
+    scenes.check_color(color)
+    look = scenes.Look(common)
     given = options.keywords(how)
-    asked = LightOptions(**given)  # type: ignore[arg-type]
+    asked = LightOptions(**given)
 
     def job(path: Path) -> Job:
         mesh = data = scenes.data(path, target, average_cells=asked.average_cells)
@@ -69,16 +55,17 @@ def light(
         if taken:
             mesh = scenes.surface(data, target)
         camera = look.camera(mesh)
-        progress = {"progress_bar": True} if out.progress else {}
+        progress = {"progress_bar": True} if common.out.progress else {}
         lit = Step("lit", "vizlight.illuminate", mesh, look.scene(camera), **given, **progress)
         made = Job(lit, asked.name, look, camera, before=mesh, suffix=".vtp" if taken else "")
+        made.tint(scenes.tinted(lit, asked.name, data, color))
         if not (target.contour or target.warp or target.slice):
             made.hint = lambda: _hint(data.run(), surface=target.surface)
         if explain:
             made.explain = lambda mesh: _explain(mesh, asked)
         return made
 
-    return carry_out(files, job, out, "lit")
+    return carry_out(files, job, common.out, "lit")
 
 
 def _hint(mesh: pv.DataSet | pv.MultiBlock, *, surface: bool) -> str:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import importlib
 import inspect
 import re
-from dataclasses import field, fields, make_dataclass
-from typing import TYPE_CHECKING, Annotated, Literal, Union
+from dataclasses import field, make_dataclass
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
 
 from cyclopts import Group, Parameter
 
@@ -134,16 +134,16 @@ def arguments_of(
     return kind
 
 
-def keywords(arguments: object, renamed: Mapping[str, str] | None = None) -> dict[str, object]:
+def keywords(arguments: object, renamed: Mapping[str, str] | None = None) -> dict[str, Any]:
     """Return the options that differ from their defaults, by the filter's names."""
     if arguments is None:
         return {}
     names = {new: old for old, new in (renamed or {}).items()}
-    found = {}
-    for one in fields(arguments):  # type: ignore[arg-type]
-        name, value = names.get(one.name, one.name), getattr(arguments, one.name)
-        if value != one.default or type(value) is not type(one.default):
-            option = one.name.replace("_", "-")
+    found: dict[str, Any] = {}
+    for shown, parameter in inspect.signature(type(arguments)).parameters.items():
+        name, value = names.get(shown, shown), getattr(arguments, shown)
+        if value != parameter.default or type(value) is not type(parameter.default):
+            option = shown.replace("_", "-")
             if name in READ:
                 value = READ[name][0](option, value)
             elif name in READ_LISTS:

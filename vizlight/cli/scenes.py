@@ -14,13 +14,15 @@ from vizlight.cli.arguments import Shape
 from vizlight.cli.script import Step
 
 if TYPE_CHECKING:
-    from vizlight.cli.arguments import Eye, Finish, Lamps, Part
+    from vizlight.cli.arguments import Color, Common, Eye, Part
     from vizlight.scene import Scene
 
 #: Direction toward the eye where none is given: of anything, and of a map.
 VIEW, MAP = (1.0, 1.0, 1.0), (0.0, 0.0, 1.0)
 #: Bounding box that shows where a camera looks.
 BOX = (-1, 1, -1, 1, -1, 1)
+#: Name of the array of colours times light.
+TINT = "tint"
 #: Angle of view, in degrees.
 ANGLE = 30.0
 
@@ -35,6 +37,17 @@ def check_target(target: Part) -> None:
     for option, value, needs, given in together:
         if value is not None and given is None:
             raise ValueError(_check.message(f"--{option}", f"--{needs} with it", "it alone"))
+
+
+def check_color(color: Color) -> None:
+    """Check the options of a picture in colour that need no mesh."""
+    import pyvista as pv
+
+    try:
+        pv.LookupTable(color.cmap)
+    except ValueError as error:
+        expected = "the name of a colour map"
+        raise ValueError(_check.message("--cmap", expected, repr(color.cmap))) from error
 
 
 def data(file: Path, target: Part, *, average_cells: bool = False) -> Step:
@@ -94,15 +107,35 @@ def _given(options: dict[str, object]) -> dict[str, object]:
     return {name: value for name, value in options.items() if value is not None}
 
 
+def tinted(lit: Step, name: str, data: Step, color: Color) -> Step | None:
+    """Return the step that colours a lit mesh by an array, the colour times the light."""
+    if color.scalars is None:
+        return None
+    values = data.run().point_data.get(color.scalars)
+    if values is None or values.ndim != 1:
+        there = [key for key, array in data.run().point_data.items() if array.ndim == 1]
+        expected = f"a point array of one component, {_check.one_of(there)}"
+        raise ValueError(_check.message("--scalars", expected, repr(color.scalars)))
+    values = Step("", "[]", lit, color.scalars)
+    ends = Step("", ".get_data_range", lit, color.scalars)
+    table = Step("colors", "pyvista.LookupTable", color.cmap, scalar_range=ends)
+    rgb = Step("", "numpy.delete", Step("", "()", table, values), 3, axis=1)
+    light = Step("", "numpy.expand_dims", Step("", "[]", lit, name), 1)
+    shown = Step("shown", ".copy", lit, deep=False)
+    shown.items = {TINT: Step("", "numpy.multiply", rgb, light)}
+    return shown
+
+
 class Look:
     """Camera and scene as the options describe them; what needs no mesh is checked first."""
 
-    def __init__(self, lamps: Lamps, finish: Finish, eye: Eye, size: str) -> None:
-        self._lamps, self._eye, self.size = lamps, eye, arguments.pixels(size)
+    def __init__(self, common: Common) -> None:
+        lamps, eye = common.lamps, common.eye
+        self._lamps, self._eye, self.size = lamps, eye, arguments.pixels(common.out.size)
         self._file = None if lamps.scene is None else read_scene(lamps.scene)
         base = vizlight.Scene() if self._file is None else self._file
         self._material: Step | None = None
-        changes = {name: value for name, value in vars(finish).items() if value is not None}
+        changes = {name: value for name, value in vars(common.finish).items() if value is not None}
         if changes:
             kept = {} if self._file is None else _given(vars(base.material))
             self._material = Step("", "vizlight.Material", **(kept | changes))

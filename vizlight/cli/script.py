@@ -14,17 +14,9 @@ from vizlight import _check
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-#: Import statement for the first name of a path, in groups.
-IMPORTS = (
-    {"json": "import json", "pathlib": "import pathlib"},
-    {"pyvista": "import pyvista"},
-    {
-        "vizlight": "import vizlight",
-        "files": "from vizlight import files",
-        "render": "from vizlight import render",
-    },
-)
-HOMES = {"files": "vizlight.files", "render": "vizlight.render"}
+#: First names of paths: modules in groups, and modules of vizlight.
+MODULES = (("json", "pathlib"), ("numpy", "pyvista"), ("vizlight",))
+OWN = ("files", "render")
 INDENT, WIDTH = 4, 88
 #: Indentation at which nothing is broken.
 ONE_LINE = -(10**6)
@@ -39,7 +31,7 @@ class Step:
         Name of the variable that holds the result; without one the call stands where it is used.
     path : str
         Dotted path of a public function; ``.name`` is a method of the first argument, ``[]`` an
-        item of it.
+        item of it, ``()`` the call of it.
     *arguments, **keywords : object
         Arguments: plain values, steps, or lists, tuples and dicts of them.
     """
@@ -49,6 +41,8 @@ class Step:
         self.arguments, self.keywords = arguments, keywords
         #: Attributes that the result is given.
         self.attributes: dict[str, object] = {}
+        #: Items that the result is given.
+        self.items: dict[str, object] = {}
         #: Option and value of a user, with which the result must have points.
         self.asked = ("", "")
 
@@ -65,6 +59,8 @@ class Step:
             )
         for key, value in self.attributes.items():
             setattr(made, key, _run(value))
+        for key, value in self.items.items():
+            made[key] = _run(value)
         return made
 
     def _called(self) -> Any:
@@ -72,19 +68,22 @@ class Step:
         keywords = {key: _run(value) for key, value in self.keywords.items()}
         if self.path == "[]":
             return arguments[0][arguments[1]]
+        if self.path == "()":
+            return arguments[0](*arguments[1:], **keywords)
         if self.path.startswith("."):
             return getattr(arguments[0], self.path[1:])(*arguments[1:], **keywords)
         head, *names = self.path.split(".")
-        function: Any = importlib.import_module(HOMES.get(head, head))
+        function: Any = importlib.import_module(f"vizlight.{head}" if head in OWN else head)
         for name in names:
             function = getattr(function, name)
         return function(*arguments, **keywords)
 
     def parts(self) -> Iterator[object]:
-        """Yield the arguments, keywords and attributes."""
+        """Yield the arguments, keywords, attributes and items."""
         yield from self.arguments
         yield from self.keywords.values()
         yield from self.attributes.values()
+        yield from self.items.values()
 
 
 def _run(value: object) -> object:
@@ -109,7 +108,9 @@ def source(jobs: Sequence[Sequence[Step]], *, reported: Sequence[Step] = ()) -> 
             heads.add(step.path.partition(".")[0])
             if step.name or any(step is last for last in job):
                 lines += _statement(step, reported=any(step is one for one in reported))
-    groups = [[line for head, line in group.items() if head in heads] for group in IMPORTS]
+    groups = [[f"import {head}" for head in group if head in heads] for group in MODULES]
+    if own := [head for head in OWN if head in heads]:
+        groups[-1].append(f"from vizlight import {', '.join(own)}")
     return "\n\n".join("\n".join(group) for group in (*groups, lines) if group)
 
 
@@ -138,6 +139,9 @@ def _statement(step: Step, *, reported: bool) -> list[str]:
     head = f"{step.name} = " if step.name else ""
     lines = [f"{' ' * indent}{head}{_call(step, indent, len(head))}"]
     lines += [f"{step.name}.{key} = {_text(value)}" for key, value in step.attributes.items()]
+    for key, value in step.items.items():
+        start = f"{step.name}[{_text(key)}] = "
+        lines.append(start + _text(value, indent, len(start)))
     return ["with vizlight.report() as report:", *lines, "print(report)"] if reported else lines
 
 
@@ -159,7 +163,9 @@ def _call(step: Step, indent: int, taken: int) -> str:
     arguments = list(step.arguments)
     if step.path == "[]":
         return f"{_text(arguments[0])}[{_text(arguments[1])}]"
-    head = f"{_text(arguments.pop(0))}{step.path}" if step.path.startswith(".") else step.path
+    head = "" if step.path == "()" else step.path
+    if head[:1] in ("", "."):
+        head = f"{_text(arguments.pop(0))}{head}"
     parts = [("", value) for value in arguments]
     parts += [(f"{key}=", value) for key, value in step.keywords.items()]
     return _joined(f"{head}(", parts, ")", indent, taken)
