@@ -307,6 +307,7 @@ def test_report_stands_in_the_script_too(folder, capfd):
         ("light flow.vti --view list.json", "--view: expected a JSON list of the camera's"),
         ("light flow.vti --view no.json", "--view: expected a JSON file"),
         ("light flow.vti --view up", "--view: expected three numbers x,y,z"),
+        ("light flow.vti flow.vti", "file: expected files of different names"),
         ("light flow.vti torus.vtp -o a.png", "output: expected a folder that exists"),
         ("light flow.vti -o none/a.png", "output: expected a folder that exists, got 'none'"),
     ],

@@ -87,6 +87,10 @@ def carry_out(files_: Sequence[Path], build: Callable[[Path], Job], out: Output,
     With several files an error is reported, and the other files are still done.
     """
     _check_output(out, several=len(files_) > 1)
+    stems = [path.stem for path in files_]
+    for twice in (name for name in stems if stems.count(name) > 1):
+        expected = "files of different names, after which the outputs are named"
+        raise ValueError(_check.message("file", expected, f"{twice!r} twice"))
     jobs, codes = [], [OK]
     for path in files_:
         try:
