@@ -303,7 +303,7 @@ def test_report_stands_in_the_script_too(folder, capfd):
         ("light flow.vti --scalars r --cmap no", "--cmap: expected the name of a colour map"),
         ("light flow.vti --scene no.json", "--scene: expected a JSON file, got 'no.json' (No such"),
         ("light flow.vti --scene flow.vti", "--scene: expected a JSON file"),
-        ("light flow.vti --scene list.json", "scene: 'list.json': values: expected a dict of"),
+        ("light flow.vti --scene list.json", "--scene 'list.json': values: expected a dict of"),
         ("light flow.vti --view list.json", "--view: expected a JSON list of the camera's"),
         ("light flow.vti --view no.json", "--view: expected a JSON file"),
         ("light flow.vti --view up", "--view: expected three numbers x,y,z"),

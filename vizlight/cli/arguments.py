@@ -88,7 +88,7 @@ class Target(Shape):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Lamps:
+class Lights:
     """Lights.
 
     Parameters
@@ -213,7 +213,7 @@ class Color:
 class Common:
     """Options of every command that lights files."""
 
-    lamps: Annotated[Lamps, LIGHT] = Lamps()
+    lights: Annotated[Lights, LIGHT] = Lights()
     finish: Annotated[Finish, MATERIAL] = Finish()
     eye: Annotated[Eye, CAMERA] = Eye()
     out: Annotated[Output, OUTPUT] = Output()

@@ -14,8 +14,14 @@ from vizlight.cli.arguments import Shape
 from vizlight.cli.script import Step
 
 if TYPE_CHECKING:
-    from vizlight.cli.arguments import Color, Common, Eye, Part
-    from vizlight.scene import Scene
+    from typing import TypeAlias
+
+    from vizlight._types import Vector
+    from vizlight.cli.arguments import Color, Common, Part
+    from vizlight.scene import Scene, View
+
+    #: Position, focal point and direction up of a camera that no mesh changes.
+    Fixed: TypeAlias = tuple[Vector, Vector, Vector | None]
 
 #: Direction toward the eye where none is given: of anything, and of a map.
 VIEW, MAP = (1.0, 1.0, 1.0), (0.0, 0.0, 1.0)
@@ -130,57 +136,45 @@ class Look:
     """Camera and scene as the options describe them; what needs no mesh is checked first."""
 
     def __init__(self, common: Common) -> None:
-        lamps, eye = common.lamps, common.eye
-        self._lamps, self._eye, self.size = lamps, eye, arguments.pixels(common.out.size)
-        self._file = None if lamps.scene is None else read_scene(lamps.scene)
+        self._lights, self._eye = common.lights, common.eye
+        self.size = arguments.pixels(common.out.size)
+        file = common.lights.scene
+        self._file = None if file is None else read_scene(file)
         base = vizlight.Scene() if self._file is None else self._file
+        changes = _given(vars(common.finish))
         self._material: Step | None = None
-        changes = {name: value for name, value in vars(common.finish).items() if value is not None}
         if changes:
             kept = {} if self._file is None else _given(vars(base.material))
             self._material = Step("", "vizlight.Material", **(kept | changes))
             base = base.replace(material=self._material.run())
         #: Whether the light has a colour.
         self.colored = base.colored
-        #: Position, focal point and direction up of a camera that no mesh changes.
-        self._fixed = _saved_camera(eye)
-        self._keeps_view = eye.view is None and base.view is not None
-        view = base.view
-        self._toward: tuple[float, ...] | None = None
-        if self._fixed is None and eye.view is not None:
-            self._toward = arguments.numbers(eye.view, tuple(range(3, 100)))
-            if not self._toward:
-                arguments.vector("view", eye.view)
-        if self._keeps_view and view is not None:
-            if view.direction is None:
-                remedy = "give the file's view a direction too, or pass --view"
-                raise ValueError(_check.message("scene", "a view with a direction", view, remedy))
-            self._toward = view.direction
-            if view.position is not None and not view.parallel and len(view.position) == 3:
-                target = tuple(p - d for p, d in zip(view.position, view.direction, strict=True))
-                self._fixed = (view.position, target, None)
+        #: View of the scene's file, if it is that of the picture.
+        self._view = base.view if self._eye.view is None else None
+        self._toward, self._fixed = (
+            _asked_view(self._eye.view) if self._view is None else _file_view(self._view)
+        )
 
     def camera(self, mesh: Step, *, is_map: bool = False) -> Step:
         """Return the step that sets the camera on a mesh."""
         eye = self._eye
         up = None if eye.up is None else arguments.vector("up", eye.up)
         if self._fixed is not None:
-            return self._fixed_camera(up)
+            return self._fixed_camera(self._fixed, up)
         toward = (self._toward or (MAP if is_map else VIEW))[:3]
-        view = None if self._file is None or not self._keeps_view else self._file.view
         parallel = eye.parallel or (is_map and self._toward is None)
+        parallel = parallel or (self._view is not None and self._view.parallel)
         options: dict[str, object] = {
             "up": up,
-            "parallel": True if parallel or (view is not None and view.parallel) else None,
+            "parallel": True if parallel else None,
             "zoom": None if eye.zoom == 1 else eye.zoom,
         }
         aspect = self.size[0] / self.size[1]
         return Step("camera", "render.camera_on", mesh, toward, **_given(options), aspect=aspect)
 
-    def _fixed_camera(self, up: tuple[float, ...] | None) -> Step:
+    def _fixed_camera(self, fixed: Fixed, up: Vector | None) -> Step:
         """Return the step that sets a camera where it was saved."""
-        assert self._fixed is not None
-        position, focus, saved_up = self._fixed
+        position, focus, saved_up = fixed
         zoom = _check.number("zoom", self._eye.zoom, low=1e-6)
         along_z = not any(p - f for p, f in zip(position[:2], focus[:2], strict=True))
         camera = Step("camera", "pyvista.Camera")
@@ -217,10 +211,10 @@ class Look:
         return self._scene(view, (*shoulder, *(0.0,) * (n - 3)), n)
 
     def _scene(self, view: Step, shoulder: object, n: int) -> Step:
-        lamps = self._lamps
+        asked = self._lights
         lights = [
             Step("", "vizlight.Light", direction=arguments.vector("light", text, n=n))
-            for text in lamps.light or ()
+            for text in asked.light or ()
         ]
         lights += [
             Step(
@@ -228,24 +222,24 @@ class Look:
                 "vizlight.Light",
                 position=arguments.vector("light-position", text, n=n, direction=False),
             )
-            for text in lamps.light_position or ()
+            for text in asked.light_position or ()
         ]
-        if lamps.headlight:
+        if asked.headlight:
             lights.append(Step("", "vizlight.Light.headlight"))
         if not lights and self._file is None:
             lights = [Step("", "vizlight.Light", direction=shoulder)]
-        cue = Step("", "vizlight.DepthCue", back_scale=0.5) if lamps.depth_cue else None
+        cue = Step("", "vizlight.DepthCue", back_scale=0.5) if asked.depth_cue else None
         values = _given(
             {
                 "lights": lights or None,
                 "material": self._material,
-                "view": None if self._keeps_view else view,
+                "view": view if self._view is None else None,
                 "depth_cue": cue,
             }
         )
-        if lamps.scene is None:
+        if asked.scene is None:
             return Step("scene", "vizlight.Scene", **values)
-        text = Step("", ".read_text", Step("", "pathlib.Path", lamps.scene))
+        text = Step("", ".read_text", Step("", "pathlib.Path", asked.scene))
         read = Step("scene", "vizlight.Scene.from_dict", Step("", "json.loads", text))
         return Step("scene", ".replace", read, **values) if values else read
 
@@ -255,13 +249,14 @@ def read_scene(path: Path) -> Scene:
 
     Raises
     ------
-    FileError
+    ValueError
         If the file cannot be read or holds no scene.
     """
+    values = _json("scene", path)
     try:
-        return vizlight.Scene.from_dict(_json("scene", path))
+        return vizlight.Scene.from_dict(values)
     except (TypeError, ValueError) as error:
-        raise ValueError(f"scene: '{path}': {error}") from error
+        raise ValueError(f"--scene '{path}': {error}") from error
 
 
 def _json(option: str, path: Path) -> Any:
@@ -275,21 +270,35 @@ def _json(option: str, path: Path) -> Any:
         raise ValueError(_check.message(f"--{option}", "a JSON file", got)) from error
 
 
-def _saved_camera(
-    eye: Eye,
-) -> tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...] | None] | None:
-    """Return position, focal point and direction up of a saved camera, None where none is."""
-    if eye.view is None or not eye.view.lower().endswith(".json"):
-        return None
+def _asked_view(view: str | None) -> tuple[Vector | None, Fixed | None]:
+    """Return the direction toward the eye, or a camera that was saved, from an option."""
+    if view is None:
+        return None, None
+    if view.lower().endswith(".json"):
+        return None, _saved_camera(view)
+    # In n-space the eye has n components.
+    return arguments.numbers(view, tuple(range(3, 100))) or arguments.vector("view", view), None
+
+
+def _file_view(view: View) -> tuple[Vector | None, Fixed | None]:
+    """Return the direction toward the eye, and where the camera stands if that is known."""
+    if view.direction is None:
+        remedy = "give the view a direction too, or pass --view"
+        raise ValueError(_check.message("--scene", "a view with a direction", view, remedy))
+    if view.position is None or view.parallel or len(view.position) != 3:
+        return view.direction, None
+    target = tuple(p - d for p, d in zip(view.position, view.direction, strict=True))
+    return view.direction, (view.position, target, None)
+
+
+def _saved_camera(file: str) -> Fixed:
+    """Return the position, the focal point and the direction up of a saved camera."""
+    saved = _json("view", Path(file))
     try:
-        position, focus, up = (
-            _check.vector("view", part) for part in _json("view", Path(eye.view))
-        )
+        position, focus, up = (_check.vector("view", part) for part in saved)
         if {len(position), len(focus), len(up)} != {3} or position == focus or not any(up):
             raise ValueError
     except (TypeError, ValueError) as error:
-        if str(error).startswith("--view"):
-            raise
         expected = "a JSON list of the camera's position, focal point and direction up"
-        raise ValueError(_check.message("--view", expected, f"'{eye.view}'")) from error
+        raise ValueError(_check.message("--view", expected, f"'{file}'")) from error
     return position, focus, up
