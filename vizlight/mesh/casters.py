@@ -12,7 +12,7 @@ from vizlight import _check
 from vizlight.geometry.relief import height_field, shadowing
 from vizlight.mesh import closed_meshes, point_arrays
 from vizlight.mesh.height_grids import heights_of
-from vizlight.verify import oracle
+from vizlight.verify import rays
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -103,7 +103,7 @@ class _FieldCaster:
         self.valid: Any = found.to_points(~self._holes)
         field = self._field
         size = max(field.x[-1], field.y[-1], field.top)
-        self.effort = oracle.SAMPLES if self.depth > shadowing.LEAST_DEPTH * size else 0
+        self.effort = rays.SAMPLES if self.depth > shadowing.LEAST_DEPTH * size else 0
 
     def of(self, light: Light) -> Array:
         way: Any = [light.direction, light.position]
@@ -121,7 +121,7 @@ class _FieldCaster:
         way = None if light.direction is None else turn @ np.array(light.direction)
         if way is not None and way[2] <= 0:
             return math.nan
-        return oracle.relief_ratio(
+        return rays.relief_ratio(
             field.x, field.y, field.heights,
             turn @ self.points[point] - field.origin, turn @ self.normals[point], self.depth,
             way=way,
@@ -184,7 +184,7 @@ class _SolidCaster:
         depth, normal = self.depth / self._unit, self.normals[point]
         way, reach = self._toward(light, (place - depth * normal)[np.newaxis])
         far = min(float(reach[0]), 10.0 * max(float(np.abs(c).max()) for c in self._corners))
-        return oracle.solid_ratio(self._corners, place, normal, depth, way[0], far)
+        return rays.solid_ratio(self._corners, place, normal, depth, way[0], far)
 
     def _toward(self, light: Light, start: Array) -> tuple[Array, Array]:
         if light.direction is not None:
