@@ -47,7 +47,7 @@ def hard_cases(random, dtype):
 
 
 @pytest.mark.parametrize("s", SHININESS)
-def test_against_quadrature_in_50_digits(s, dtype, random, figure):
+def test_against_50_digits(s, dtype, random, figure):
     for wi, wo, t in hard_cases(random, dtype):
         diffuse, specular = oracles.line_light(wi, wo, t, s)
         a, b, half = parts(wi, wo, t)

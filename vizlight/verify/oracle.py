@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     Vector: TypeAlias = Sequence[Real]
 
 WHITE = (1.0, 1.0, 1.0)
+#: Length below which numbers of float64 lose digits.
+TINY = 1e-300
 
 
 class Lit(NamedTuple):
@@ -234,7 +236,7 @@ class Oracle:
         else:
             both = cosine * self.dot(normal, wo)
             base = (abs(both) if two_sided else both) + both - self.dot(wi, wo)
-        value = max(base, none) ** place.shininess
+        value: Real = max(base, none) ** place.shininess
         if place.terminator and not two_sided:
             value *= self.smooth(min(cosine / place.terminator, self.number(1.0)))
         return value
@@ -304,23 +306,18 @@ class Oracle:
         if half is None or not any(both):
             return diffuse, self.number(0.0)
         beta, gamma = self.angle(both, across_o), self.angle(both, across_i)
-        whole = sum(
-            self.cosine_integral(self.pi / 2 - angle, self.number(shininess) + 1)
-            for angle in (beta, gamma)
-        )
-        ends = self.sin(beta) ** (shininess + 1) - self.sin(gamma) ** (shininess + 1)
-        mean = self.cos(beta) * whole + self.sin(beta) * ends / (shininess + 1)
+        p, quarter = self.number(shininess) + 1, self.pi / 2
+        whole = sum(self.cosine_integral(quarter - angle, p) for angle in (beta, gamma))
+        ends = self.sin(beta) ** p - self.sin(gamma) ** p
+        mean = self.cos(beta) * whole + self.sin(beta) * ends / p
         scale = self.hypot(*both) / self.hypot(*(x + y for x, y in zip(wi, wo, strict=True)))
         return diffuse, scale**shininess * mean / 2
 
     def end_on(self, wi: Vector, wo: Vector, line: Vector, shininess: float) -> tuple[Real, Real]:
         """Return both terms of a thin cylinder seen along its line: means over its round."""
-        half, quarter = self.half(wi, wo), self.pi / 2
-        mean = self.cosine_integral(quarter, self.number(shininess)) / self.pi
-        specular = (
-            self.number(0.0) if half is None else self.across(half, [line]) ** shininess * mean
-        )
-        return self.across(wi, [line]) / self.pi, specular
+        mean = self.cosine_integral(self.pi / 2, self.number(shininess)) / self.pi
+        specular = self.specular(wi, wo, [line], shininess, "blinn")
+        return self.across(wi, [line]) / self.pi, specular * mean
 
     def attenuation(self, distance: Real, coefficients: Sequence[float]) -> Real:
         """Return min(1, 1 / (c1 + c2 d + c3 d^2)), of the Lecture."""
@@ -381,12 +378,15 @@ class Oracle:
 
     def unit(self, v: Vector) -> Vector | None:
         """Return a unit vector; None where a vector has no direction."""
-        largest = max(map(abs, v))
-        if not 0 < largest < math.inf:
-            return None
-        scaled = [x / largest for x in v]
-        size = self.hypot(*scaled)
-        return [x / size for x in scaled] if size == size else None
+        size = self.hypot(*v)
+        if not TINY < size < math.inf:
+            # The length itself has no digits left, or the vector has no direction.
+            largest = max(map(abs, v))
+            if not 0 < largest < math.inf or size != size:
+                return None
+            v = [x / largest for x in v]
+            size = self.hypot(*v)
+        return [x / size for x in v]
 
     def half(self, wi: Vector, wo: Vector) -> Vector | None:
         """Return the half vector of two directions; None where they are opposite."""
@@ -417,9 +417,11 @@ class Oracle:
             own = self.unit(self.vector(row))
             if own is not None and frame:
                 rest = self.rest(own, frame)
-                # A second pass removes what rounding left of the frame.
-                own = self.unit(rest) if self.hypot(*rest) > apart else None
-                own = None if own is None else self.unit(self.rest(own, frame))
+                size = self.hypot(*rest)
+                own = self.unit(rest) if size > apart else None
+                if own is not None and size < 0.5:
+                    # A second pass removes what rounding left of the frame.
+                    own = self.unit(self.rest(own, frame))
             if own is not None:
                 frame.append(own)
         return frame
