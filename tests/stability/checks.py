@@ -66,6 +66,13 @@ def spread(count, kinds):
     return max(count // len(kinds), 1)
 
 
+def some(random, kinds, count):
+    """Return all kinds, or as many at random as there are inputs if there are fewer."""
+    if count >= len(kinds):
+        return kinds
+    return [kinds[i] for i in np.sort(random.permutation(len(kinds))[:count])]
+
+
 def rows_of(kernel, dtype, checks):
     """Return a row for each case: the input that comes nearest to its claim, or passes it."""
     eps = float(np.finfo(dtype).eps)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from functools import partial
 
 import numpy as np
@@ -9,7 +10,7 @@ import oracles
 from oracles import dot, exact
 
 from stability import hard, references
-from stability.checks import DOUBLE, TYPES, Check, exactly, off, spread, timed
+from stability.checks import DOUBLE, TYPES, Check, exactly, off, some, spread, timed
 from vizlight.model import (
     brightness,
     cylinder,
@@ -149,31 +150,29 @@ def specular(model, dtype, count, random):
     """Phong and Blinn; hard cases 1, 2, 4, 5. Blinn's in units of eps / |wi + wo| below 1."""
     eps = float(np.finfo(dtype).eps)
     cases = (*hard.EYES, *hard.STEEP)
-    kinds = [(d, e) for d in ("random", "near it", "near across") for e in cases]
-    for turn, (at, case) in enumerate(kinds):
-        for j, s in enumerate(SHININESS):
-            k, n = SIZES[(turn + j) % len(SIZES)]
-            many = spread(count, kinds * len(SHININESS))
-            frame = hard.frames(random, many, k, n, dtype)
-            wi, wo = hard.pairs(random, frame, at, case, s)
-            work = partial(reflection.specular, wi, wo, frame, shininess=s, model=model)
-            value, seconds = timed(work)
-            # The claim over |wi + wo| is a claim of its own where that is small.
-            apart = ", over |wi + wo|" if model == "blinn" and case.startswith("opposite") else ""
-            regime = f"{_steep(s)}{apart}".removeprefix(", ")
-            true, claim = [], np.full(many, bounds.specular_bound(s, eps) / eps)
-            for i in range(many):
-                true.append(oracles.specular(wi[i], wo[i], frame[i], s, model))
-                if model == "blinn":
-                    a, b = (oracles.unit(oracles.exact(v[i])) for v in (wi, wo))
-                    half = [x + y for x, y in zip(a, b, strict=True)]
-                    size = float(oracles.mp.sqrt(oracles.dot(half, half)))
-                    share = min(size, 1.0)
-                    if s < 1:
-                        claim[i] = bounds.specular_bound(s, eps / share) / eps if share else np.inf
-                    else:
-                        claim[i] = claim[i] / share if share else np.inf
-            yield Check(f"eye {case}", value, true, claim, seconds, regime)
+    ends = itertools.product(("random", "near it", "near across"), cases)
+    kinds = list(itertools.product(enumerate(ends), enumerate(SHININESS)))
+    for (turn, (at, case)), (j, s) in some(random, kinds, count):
+        k, n = SIZES[(turn + j) % len(SIZES)]
+        many = spread(count, kinds)
+        frame = hard.frames(random, many, k, n, dtype)
+        wi, wo = hard.pairs(random, frame, at, case, s)
+        work = partial(reflection.specular, wi, wo, frame, shininess=s, model=model)
+        value, seconds = timed(work)
+        # The claim over |wi + wo| is a claim of its own where that is small.
+        apart = ", over |wi + wo|" if model == "blinn" and case.startswith("opposite") else ""
+        regime = f"{_steep(s)}{apart}".removeprefix(", ")
+        true, claim = [], np.full(many, bounds.specular_bound(s, eps) / eps)
+        for i in range(many):
+            true.append(oracles.specular(wi[i], wo[i], frame[i], s, model))
+            if model == "blinn":
+                a, b = (oracles.unit(oracles.exact(v[i])) for v in (wi, wo))
+                share = min(float(oracles.size([x + y for x, y in zip(a, b, strict=True)])), 1.0)
+                if s < 1:
+                    claim[i] = bounds.specular_bound(s, eps / share) / eps if share else np.inf
+                else:
+                    claim[i] = claim[i] / share if share else np.inf
+        yield Check(f"eye {case}", value, true, claim, seconds, regime)
     here = np.ones(3, dtype)
     yield from _nothing(
         dtype,
@@ -195,26 +194,25 @@ def specular(model, dtype, count, random):
 
 def line_light(which, dtype, count, random):
     """Check the line light, in units of eps over the least of |wi_N|, |wo_N|, |wi + wo|."""
-    kinds = [(d, e) for d in ("random", "near it", "across") for e in hard.EYES]
     powers = (0.0,) if which == "diffuse" else CYLINDER
-    for at, case in kinds:
-        for s in powers:
-            many = max(count // (len(kinds) * len(powers)), 1)
-            frame = hard.frames(random, many, 1, 3, dtype)
-            wi = hard.directions(random, frame, at)
-            wo = hard.eyes(random, wi, frame, case)
-            t = frame[:, 0]
-            if which == "diffuse":
-                value, seconds = timed(partial(cylinder.diffuse, wi, wo, t))
-            else:
-                value, seconds = timed(partial(cylinder.specular, wi, wo, t, shininess=s))
-            true, claim = [], []
-            for i in range(many):
-                light, shine, a, b, size = references.cylinder(wi[i], wo[i], t[i], s)
-                least = float(b if which == "diffuse" else min(a, b, size))
-                true.append(light if which == "diffuse" else shine)
-                claim.append((4.0 if which == "diffuse" else 10.0) / least if least else np.inf)
-            yield Check(f"light {at}, eye {case}", value, true, np.array(claim), seconds)
+    kinds = list(itertools.product(("random", "near it", "across"), hard.EYES, powers))
+    for at, case, s in some(random, kinds, count):
+        many = spread(count, kinds)
+        frame = hard.frames(random, many, 1, 3, dtype)
+        wi = hard.directions(random, frame, at)
+        wo = hard.eyes(random, wi, frame, case)
+        t = frame[:, 0]
+        if which == "diffuse":
+            value, seconds = timed(partial(cylinder.diffuse, wi, wo, t))
+        else:
+            value, seconds = timed(partial(cylinder.specular, wi, wo, t, shininess=s))
+        true, claim = [], []
+        for i in range(many):
+            light, shine, a, b, size = references.cylinder(wi[i], wo[i], t[i], s)
+            least = float(b if which == "diffuse" else min(a, b, size))
+            true.append(light if which == "diffuse" else shine)
+            claim.append((4.0 if which == "diffuse" else 10.0) / least if least else np.inf)
+        yield Check(f"light {at}, eye {case}", value, true, np.array(claim), seconds)
     call = cylinder.diffuse
     if which == "specular":
         call = partial(cylinder.specular, shininess=9.0)

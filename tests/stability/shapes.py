@@ -12,8 +12,8 @@ from stability.checks import DOUBLE, Check, exactly, off, refused, timed
 from vizlight.geometry.contours import isoluminance
 from vizlight.geometry.nspace import manifolds
 
-#: How many shapes share the inputs of a check.
-SHAPES = 8
+#: Largest number of shapes that share the inputs of a check, and least number of inputs of one.
+SHAPES, INPUTS = 8, 60
 
 
 def _radii(random, count):
@@ -39,11 +39,11 @@ def _outside(rows, space):
 
 def torus(_, count, random):
     """Points, of the largest radius, and tangents, of tori of 1, 2 and 3 circles."""
-    mp = oracles.mp
+    mp, shapes = oracles.mp, min(max(count // INPUTS, 1), SHAPES)
     for k in (1, 2, 3):
         errors, seconds = [], 0.0
-        for _i in range(SHAPES):
-            side = max(round((count / (3 * SHAPES)) ** (1 / k)), 3)
+        for _i in range(shapes):
+            side = max(round((count / (3 * shapes)) ** (1 / k)), 3)
             shape = [int(n) for n in side + random.integers(0, 5, k)]
             radii = _radii(random, k)
             made, taken = timed(partial(manifolds.torus, *radii, resolution=shape))
@@ -128,14 +128,14 @@ def hopf_fibres(_, count, random):
 
 def klein_bottle(_, count, random):
     """Points, of the major radius, and the space of the frame, over R / (R - r)."""
-    mp = oracles.mp
+    mp, shapes = oracles.mp, min(max(count // INPUTS, 1), SHAPES)
     for case, low, high in (("R/(R - r) to 10", -1.0, 0.0), ("R near r", -9.0, -3.0)):
         points, spaces, seconds, claim = [], [], 0.0, []
-        for _i in range(SHAPES):
+        for _i in range(shapes):
             major = float(_radii(random, 1)[0])
             gap = 10 ** random.uniform(low, high)
             minor = min(major * (1 - gap) + major * 1e-4 * (gap > 0.9999), np.nextafter(major, 0))
-            side = max(round((count / (2 * SHAPES)) ** 0.5), 3)
+            side = max(round((count / (2 * shapes)) ** 0.5), 3)
             shape = (side + int(random.integers(0, 5)), side)
             work = partial(manifolds.klein_bottle, major=major, minor=minor, resolution=shape)
             made, taken = timed(work)
