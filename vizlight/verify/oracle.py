@@ -144,34 +144,21 @@ class Oracle:
         Lit
             Light of the point; NaN where the point cannot be lit.
         """  # noqa: E501
-        view, n, normals = scene.view, len(point), None if normal is None else [normal]
-        given = [() if rows is None else rows for rows in (tangents, base_tangents, normals)]
-        frame, base, up = made = [self.orthonormal(rows, apart) for rows in given]
-        whole = (frame or up) and all(len(a) == len(b) for a, b in zip(made, given, strict=True))
-        placed = any(end is not None and end.position for end in (*scene.lights, view))
-        if not whole or (placed and not all(map(math.isfinite, point))):
+        at, n, view = self.vector(point), len(point), scene.view
+        frames = self._frames(tangents, base_tangents, normal, apart)
+        if frames is None or not _placed(point, scene):
             dark = self.number(math.nan)
             return Lit(dark, (dark,) * (3 if scene.colored else 0), dark, dark, dark)
-
-        def power(k: int) -> Real:
-            return self.exponent(k, n) if compensate else self.number(1.0)
-
-        at = self.vector(point)
+        frame, base, up = frames
+        if exponent is None:
+            exponent = self._power(len(frame) or n - 1, n, compensate)
         place = _Place(
-            normal=up[0] if up else None,
-            frame=frame,
-            base=base,
-            wo=None if view is None else self.toward(view, at)[0],
-            exponent=power(len(frame) or n - 1) if exponent is None else exponent,
-            base_exponent=power(len(base)) if base else self.number(1.0),
-            shininess=scene.material.shininess,
-            model=model,
-            conditioned=conditioned,
-            two_sided=two_sided,
-            terminator=terminator,
-            fur=fur,
-            fur_height=fur_height,
-        )
+            normal=up[0] if up else None, frame=frame, base=base,
+            wo=None if view is None else self.toward(view, at)[0], exponent=exponent,
+            base_exponent=self._power(len(base), n, compensate),
+            shininess=scene.material.shininess, model=model, conditioned=conditioned,
+            two_sided=two_sided, terminator=terminator, fur=fur, fur_height=fur_height,
+        )  # fmt: skip
         parts: list[tuple[Light, Real, Real]] = []
         for i, light in enumerate(light for light in scene.lights if light.intensity > 0):
             wi, distance = self.toward(light.seen_from(view), at)
@@ -181,6 +168,23 @@ class Oracle:
                 diffuse, specular = self._reflected(wi, passed, place)
                 parts.append((light, scale * diffuse, scale * specular))
         return self._sum(at, scene, parts)
+
+    def _frames(
+        self,
+        tangents: Sequence[Vector] | None,
+        base_tangents: Sequence[Vector] | None,
+        normal: Vector | None,
+        apart: float,
+    ) -> list[list[Vector]] | None:
+        """Return orthonormal frames, empty for None; None if rows are dependent or all are None."""
+        normals = None if normal is None else [normal]
+        given = [() if rows is None else rows for rows in (tangents, base_tangents, normals)]
+        made = [self.orthonormal(rows, apart) for rows in given]
+        whole = list(map(len, made)) == list(map(len, given))
+        return made if whole and (made[0] or made[2]) else None
+
+    def _power(self, k: int, n: int, compensate: bool) -> Real:
+        return self.exponent(k, n) if compensate and k else self.number(1.0)
 
     def _arriving(self, wi: Vector, distance: Real | None, light: Light, place: _Place) -> Real:
         """Return the intensity after distance, fur and a base's diffuse term."""
@@ -425,6 +429,13 @@ class Oracle:
             if own is not None:
                 frame.append(own)
         return frame
+
+
+def _placed(point: Vector, scene: Scene) -> bool:
+    """Return whether a point is finite, or no direction depends on it."""
+    ends = (*scene.lights, scene.view)
+    near = any(end is not None and end.position is not None for end in ends)
+    return not near or all(map(math.isfinite, point))
 
 
 def _dot(u: Vector, v: Vector) -> float:
