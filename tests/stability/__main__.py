@@ -1,7 +1,7 @@
 """Run the stability suite, print the worst case of each kernel, and write all cases to a CSV file.
 
-``.venv/bin/python tests/stability`` makes the table of the pages, ``gallery/pages/stability.csv``;
-with ``--quick`` a sample, in half a minute, writes no file unless ``--out`` names one.
+``.venv/bin/python tests/stability`` makes the table of the pages, ``gallery/pages/stability.csv``,
+in some 5 minutes. With ``--quick`` a sample takes 20 s; no file is written without ``--out``.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ def main():
     parser.add_argument("--quick", action="store_true", help="run a sample of the inputs")
     parser.add_argument("--out", type=Path, help=f"file to write; default: {TABLE}")
     options = parser.parse_args()
-    # The folder of this file, which Python puts first, would hide no module but its own.
+    # Python puts the folder of this file first: its modules are a package of the one above.
     sys.path[0] = str(TESTS)
     try:
         from stability import suite

@@ -31,20 +31,15 @@ def _orthonormal(v, dtype):
     return np.asarray(np.swapaxes(np.linalg.qr(np.swapaxes(v, -1, -2))[0], -1, -2).astype(dtype))
 
 
-def _size(v):
-    """Return a length."""
-    return oracles.mp.sqrt(oracles.dot(v, v))
-
-
 def _apart(value, true):
     """Return the length of a difference."""
-    return _size([oracles.exact(float(a)) - b for a, b in zip(value, true, strict=True)])
+    return oracles.size([oracles.exact(float(a)) - b for a, b in zip(value, true, strict=True)])
 
 
 def _outside(rows, space):
     """Return the most that rows are outside a space."""
     frame = oracles.orthonormal(space)
-    return max((oracles.split(row, frame)[1] for row in oracles.exact(rows)), default=0)
+    return max((oracles.digits.across(row, frame) for row in oracles.exact(rows)), default=0)
 
 
 def _lines(points, count):
@@ -86,7 +81,7 @@ def tangents(dtype, count, random):
             p = oracles.exact(line)
             for i in range(3):
                 mean = _parabola(p, i, closed=closed)
-                size = _size(mean)
+                size = oracles.size(mean)
                 off_by = zip(rows[i], oracles.unit(mean), strict=True)
                 errors.append(max(abs(oracles.exact(x) - y) for x, y in off_by))
                 claim.append(1 + 4 * work / float(size))
@@ -110,7 +105,7 @@ def _parabola(p, i, *, closed):
 
     def step(a, b):
         way = [y - x for x, y in zip(a, b, strict=True)]
-        return oracles.unit(way), _size(way)
+        return oracles.unit(way), oracles.size(way)
 
     if closed or i == 1:
         (u, g), (v, h) = step(p[i - 1], p[i]), step(p[i], p[(i + 1) % 3])
@@ -131,7 +126,8 @@ def turn(dtype, count, random):
         rows, errors = oracles.exact(matrix), []
         for given, found in zip(x, value, strict=True):
             own = oracles.exact(given)
-            errors.append(_apart(found, [oracles.dot(row, own) for row in rows]) / _size(own))
+            true = [oracles.dot(row, own) for row in rows]
+            errors.append(_apart(found, true) / oracles.size(own))
         yield off(f"n = {n}", errors, float(n), seconds)
     value, seconds = timed(
         partial(projection.turn, np.empty((0, 3), dtype), np.eye(3, dtype=dtype))
@@ -170,7 +166,7 @@ def perspective(dtype, count, random):
             errors, claim = [], []
             for p, image in zip(points, value, strict=True):
                 whole, product, _ = _projected(oracles.exact(p))
-                errors.append(_apart(image, whole) / _size(whole))
+                errors.append(_apart(image, whole) / oracles.size(whole))
                 claim.append(float(3 * (n - 3) / product))
             yield off(f"{case}, n = {n}", errors, np.array(claim), seconds)
     flat = random.standard_normal((20, 4)).astype(dtype)
@@ -213,7 +209,7 @@ def push_forward(dtype, count, random):
             place, product, _ = _projected(x)
             f = 2 / (2 - x[3])
             true = [f * (a + y * u[3] / 2) for a, y in zip(u[:3], place, strict=True)]
-            whole = abs(f) * (_size(u[:3]) + _size(place) * abs(u[3]) / 2)
+            whole = abs(f) * (oracles.size(u[:3]) + oracles.size(place) * abs(u[3]) / 2)
             errors.append(_apart(image, true) / whole)
             claim.append(float(3 / product))
         yield off(case, errors, np.array(claim), seconds)
@@ -241,7 +237,7 @@ def push_frame(dtype, count, random):
             image = [
                 [f * (a + y * u[3] / 2) for a, y in zip(u[:3], place, strict=True)] for u in own
             ]
-            bound = abs(f) * (1 + _size(place) / 2 * (1 + abs(f * x[3]) / 2))
+            bound = abs(f) * (1 + oracles.size(place) / 2 * (1 + abs(f * x[3]) / 2))
             gram = [[oracles.dot(a, b) for a in image] for b in image]
             least = gram[0][0]
             if k == 2:
@@ -277,7 +273,7 @@ def slice_frame(dtype, count, random):
         for rows, found in zip(v, value, strict=True):
             own = oracles.orthonormal(oracles.exact(rows))
             a = [oracles.dot(t, across) for t in own]
-            sine = _size(a)
+            sine = oracles.size(a)
             steep = [oracles.dot(a, column) / sine for column in zip(*own, strict=True)]
             r = oracles.exact(found)
             loose.append(max(
@@ -377,7 +373,7 @@ def highest(_, count, random):
             area = _doubled(a, b, c)
             if not area:
                 continue
-            edges = [_size([p[0] - q[0], p[1] - q[1]]) for p, q in ((a, b), (b, c), (c, a))]
+            edges = [oracles.size([p[0] - q[0], p[1] - q[1]]) for p, q in ((a, b), (b, c), (c, a))]
             size = mp.mpf(24 * step)
             rise = max(p[2] for p in (a, b, c)) - min(p[2] for p in (a, b, c))
             unit = max(abs(p[2]) for p in (a, b, c)) + rise * max(edges) * size / abs(area)
@@ -506,7 +502,7 @@ def inside_ends(_, count, random):
     near = []
     for p in oracles.exact(inside):
         way = [a - b for a, b in zip(oracles.exact(place), p, strict=True)]
-        near.append(-p[2] * _size(way) / way[2])
+        near.append(-p[2] * oracles.size(way) / way[2])
     yield against("light nearby", lambda: solid(flat, inside, position=place), near)
     for case, toward in (("at the horizon", (1, 0, 0)), ("below it", (1, 0, -1))):
         value, seconds = timed(partial(solid, flat, inside, direction=toward))

@@ -94,7 +94,7 @@ def split(dtype, count, random):
             values, true = [], []
             for i in range(many):
                 own, f = oracles.exact(x[i]), oracles.orthonormal(oracles.exact(frame[i]))
-                size = oracles.mp.sqrt(oracles.dot(own, own))
+                size = oracles.size(own)
                 exact_along, exact_normal = oracles.split(own, f)
                 pairs = [*zip(along[i], exact_along, strict=True), (normal[i], exact_normal)]
                 off = max(abs(oracles.exact(a) - b) for a, b in pairs)
@@ -107,7 +107,7 @@ def split(dtype, count, random):
     yield exactly("zero, NaN, infinite", [*along[:, 0], *normal], [*true, *true], seconds)
     whole = hard.units(random, 20, 3).astype(dtype)
     (along, normal), seconds = timed(partial(spaces.split, whole, np.zeros((1, 3), dtype)))
-    sizes = [oracles.mp.sqrt(oracles.dot(v, v)) for v in oracles.exact(whole)]
+    sizes = [oracles.size(v) for v in oracles.exact(whole)]
     yield Check("frame of rank 0", [*along[:, 0], *normal], [0] * 20 + sizes, 10.0, seconds)
     (along, normal), seconds = timed(lambda: spaces.split(np.empty((0, 3), dtype), frame))
     yield exactly("none", [*along.shape, *normal.shape], [0, 1, 0], seconds)
@@ -382,7 +382,7 @@ def reflection_by_half(dtype, count, random):
             a, b, up = (oracles.unit(oracles.exact(v[i])) for v in (wi, wo, normal))
             half = [x + y for x, y in zip(a, b, strict=True)]
             true.append(2 * oracles.dot(up, a) * oracles.dot(up, b) - oracles.dot(a, b))
-            size = float(oracles.mp.sqrt(oracles.dot(half, half)))
+            size = float(oracles.size(half))
             claim.append(16 / size if size else np.inf)
         regime = "over |wi + wo|" if case.startswith("opposite") else ""
         yield Check(f"eye {case}", value, true, np.array(claim), seconds, regime)

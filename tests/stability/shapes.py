@@ -31,9 +31,8 @@ def _outside(rows, space):
     worst = oracles.mp.mpf(0)
     frame = oracles.orthonormal(space)
     for row in oracles.exact(rows):
-        along, rest = oracles.split(row, frame)
+        rest = oracles.digits.across(row, frame)
         worst = max(worst, rest, abs(oracles.dot(row, row) - 1) / 2)
-        del along
     return worst
 
 
