@@ -40,9 +40,12 @@ digits = Oracle(
     number=exact, pi=+mp.pi, dot=mp.fdot, hypot=lambda *v: mp.sqrt(mp.fdot(v, v)), sin=mp.sin,
     cos=mp.cos, exp=mp.exp, log_gamma=mp.loggamma, atan2=mp.atan2, cosine_integral=cosine_integral,
 )  # fmt: skip
-dot, unit, orthonormal, mean_intensity = (
-    digits.dot, digits.unit, digits.orthonormal, digits.mean_intensity
-)  # fmt: skip
+dot, orthonormal, mean_intensity = digits.dot, digits.orthonormal, digits.mean_intensity
+
+
+def unit(v):
+    """Return a unit vector; a zero one as it is."""
+    return digits.unit(v) or v
 
 
 def size(v):
