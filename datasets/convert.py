@@ -1,8 +1,8 @@
 """Make the embedded data: ``python datasets/convert.py mayavi.whl dipy.whl etopo20.cdf``.
 
-The wheels are fetched by ``pip download --no-deps mayavi==4.9.0 dipy==1.12.1``; the relief is
-``usr/share/ferret-vis/data/etopo20.cdf`` of Debian's package ferret-datasets, which
-``apt-get download ferret-datasets`` fetches and ``dpkg-deb -x`` unpacks.
+The command ``pip download --no-deps mayavi==4.9.0 dipy==1.12.1`` fetches the wheels. The relief is
+the file ``usr/share/ferret-vis/data/etopo20.cdf`` of Debian's package ferret-datasets: the command
+``apt-get download ferret-datasets`` fetches the package, ``dpkg-deb -x`` unpacks it.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ FIBRES = "dipy/data/files/tracks300.trk"
 
 
 def rotating_disk(wheel: Path) -> Path:
-    """Write the volume block of the CFD solution with all its fields, in float32."""
+    """Write the volume block of the flow with all its point arrays, in float32."""
     with tempfile.TemporaryDirectory() as folder, zipfile.ZipFile(wheel) as archive:
         blocks: Any = pv.read(archive.extract(DISK, folder))
     volume = blocks[0][0]
@@ -40,7 +40,7 @@ def rotating_disk(wheel: Path) -> Path:
 
 
 def fibre_bundle(wheel: Path) -> Path:
-    """Write the tracks of a TrackVis file without scalars or properties as lines, in float32."""
+    """Write the tracks of a TrackVis file as lines, in float32."""
     with zipfile.ZipFile(wheel) as archive:
         content = archive.read(FIBRES)
     scalars, properties, count = (
@@ -48,7 +48,7 @@ def fibre_bundle(wheel: Path) -> Path:
         for kind, offset in (("<i2", 36), ("<i2", 238), ("<i4", 988))
     )
     if (scalars, properties) != (0, 0):
-        raise ValueError("tracks without scalars and properties expected")
+        raise ValueError("wheel: expected tracks without scalars and properties; take dipy 1.12.1")
     points, sizes, offset = [], [], 1000
     for _ in range(count):
         size = int(np.frombuffer(content, "<i4", 1, offset)[0])
@@ -65,12 +65,12 @@ def fibre_bundle(wheel: Path) -> Path:
 
 
 def earth_relief(source: Path) -> Path:
-    """Write the heights of the earth from 180 degrees west to east, to the nearest metre."""
+    """Write the heights of the earth from west to east, to the nearest metre."""
     with netcdf_file(source, "r", mmap=False) as file:
         east, north, heights = (
             np.array(file.variables[name].data) for name in ("ETOPO20X1_1081", "ETOPO20Y", "ROSE")
         )
-    # The last column is the first again; the columns from 180 degrees on come before the others.
+    # The last column repeats the first; the columns from 180 degrees on become the first ones.
     east, heights = east[:-1], np.rint(heights[:, :-1]).astype(np.int16)
     first = int(np.searchsorted(east, 180))
     heights = np.roll(heights, -first, axis=1)
@@ -82,7 +82,7 @@ def earth_relief(source: Path) -> Path:
     west = np.sort((east + 180) % 360 - 180)
     grid = [out.origin[axis] + np.arange(out.dimensions[axis]) / 3 for axis in (0, 1)]
     if not (np.allclose(west, grid[0], atol=1e-3) and np.allclose(north, grid[1], atol=1e-3)):
-        raise ValueError("a grid of 20 minutes of arc expected")
+        raise ValueError("source: expected a grid of 20 minutes of arc; take etopo20.cdf")
     out.point_data["elevation"] = heights.ravel()
     path = HERE / "earth_relief.vti"
     out.save(path)

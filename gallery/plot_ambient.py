@@ -2,11 +2,13 @@
 Ambient light
 =============
 
-The ambient term is a product: what the material returns, ka, grows from left to right, and the
-light all around, Ia, from above to below. See that the highlight and the lit side stay as they are
-added to, and that the dark side, which has no other light, loses its shape as it brightens.
+Spheres lit with increasing ambient light. The ambient term is the product of the material's
+ambient coefficient ka, which increases from left to right, and the intensity of the ambient light
+Ia, which increases from top to bottom. The ambient term is added to the highlight and to the lit
+side, which keep their shape. The dark side receives no other light and loses its shape as it
+brightens.
 
-After a figure of a lecture on illumination and shading; each ball is lit from above on the left.
+After a figure in a lecture on illumination and shading. Each sphere is lit from the upper left.
 """
 
 import pyvista as pv

@@ -2,10 +2,10 @@
 Light that fades with distance
 ==============================
 
-A lamp over the left end of a row of balls, with the light ``min(1, 1 / (c1 + c2 d + c3 d^2))`` of
-the distance d. See the first row, without attenuation, as bright at its end as at its start; the
-last, the inverse square, dark after three balls; and the middle ones, which keep the far balls
-legible.
+A light source above the left end of each row of spheres, with the attenuation ``min(1, 1 / (c1 +
+c2 d + c3 d^2))`` of the distance d. The first row has no attenuation and is as bright at its end
+as at its start. The last row has the inverse square law and is dark after three spheres. The two
+rows between them keep the distant spheres legible.
 """
 
 import pyvista as pv

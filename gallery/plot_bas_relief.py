@@ -2,12 +2,12 @@
 A bas-relief under one light
 ============================
 
-The depth map of a statue, flattened on a plate, and one light near it: three of its places from
-left to right, and three depths. With a single number, t, come direct light, the shadow on the
-plate and the light that seeps through thin parts; the deeper it is gathered, the more of it, as in
-the figures of the source on cos-theta shadows.
+The depth map of a statue, flattened onto a plate and lit by one nearby light. From left to right
+the light has three positions and the shadow three depths. The single number t contains the direct
+light, the shadow on the plate and the light that passes through thin parts. A larger depth lets
+more light through, as in the figures of the source on cos-theta shadows.
 
-The statue is Lucy where it can be downloaded, else the ant that comes with PyVista.
+The statue is Lucy if it can be downloaded, otherwise the ant that comes with PyVista.
 """
 
 import numpy as np
@@ -18,7 +18,7 @@ from vizlight import Light, Material, Scene, render
 
 try:
     statue, toward, up = pv.examples.download_lucy(), (0, -1, 0), (0, 0, 1)
-except Exception:  # noqa: BLE001 (no network has many names)
+except Exception:  # noqa: BLE001 (a missing network raises many types)
     statue = pv.examples.load_ant().subdivide(2, "butterfly")
     toward, up = (0.25, 1, 0.3), (0, 0, 1)
 side = max(np.diff(np.reshape(statue.bounds, (3, 2))))[0]

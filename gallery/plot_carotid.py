@@ -3,10 +3,10 @@ Streamlines in the carotid
 ==========================
 
 Measured blood flow in the carotid arteries: 400 streamlines, coloured by speed from slow (blue) to
-fast (yellow) and shaded by their own tangents. See how the strands wind around one another where a
-vessel bends, on the right as in a coil, and run straight and fast where it is narrow.
+fast (yellow) and shaded by their own tangents. The strands wind around one another where a vessel
+bends, on the right like a coil, and run straight and fast where it is narrow.
 
-The data are downloaded; where they cannot be had, the flow over a rotating disk stands in.
+The data are downloaded. If they are not available, the flow over a rotating disk is used instead.
 """
 
 import matplotlib as mpl
@@ -19,12 +19,12 @@ from vizlight import Light, Material, Scene, View, render
 try:
     flow = pv.examples.download_carotid()
     name, least, seen = "vectors", 0.5, (0.2, -1, 0.25)
-except Exception as error:  # noqa: BLE001 (no network has many names)
-    print(f"no carotid here ({type(error).__name__}): a rotating disk in its place")
+except Exception as error:  # noqa: BLE001 (a missing network raises many types)
+    print(f"carotid not available ({type(error).__name__}): using a rotating disk")
     flow = vizlight.load_example()
     name, least, seen = "V", 0.0, (1, 0.5, 0.3)
 
-# Outside the vessel is noise, slower than all blood: lines end where there is no flow.
+# Noise outside the vessel is slower than the blood: setting it to zero ends the lines there.
 speed = np.linalg.norm(flow[name], axis=1)
 flow[name] = np.where(speed[:, np.newaxis] > least, flow[name], 0)
 inside = flow.points[speed > 4 * least]
@@ -37,7 +37,7 @@ scene = Scene(
 )
 lines = vizlight.streamlines(flow, scene, vectors=name, seeds=seeds, model="cylinder")
 
-# Colour tells speed, light tells direction: their product tells both.
+# Colour shows speed and light shows direction: their product shows both.
 speed = np.linalg.norm(lines[name], axis=1)
 top = float(np.percentile(speed, 99))
 colour = mpl.colormaps["viridis"](np.clip(0.25 + 0.75 * speed / top, 0, 1))[:, :3]

@@ -6,10 +6,11 @@ The eight panels of illustration 1 of Banks, *Illumination in Diverse Codimensio
 4-space (k = 2) and a curve wound on it (k = 1), lit in 4-space before the projection (n = 4) or in
 3-space after it (n = 3).
 
-Above, light as it comes: the larger the codimension, the brighter and the flatter; the curve in
-4-space hardly shows its shape. Below, compensated by the exponent p(k, n): all four have a mean
-near 1/2. Contrasts come nearer to each other, but not to one: 0.58 of the surface in 3-space and
-0.61 of that in 4-space, 0.75 and 0.71 of the curve. The numbers are over length or area.
+The upper row is not compensated: a larger codimension gives a brighter picture with less contrast,
+and the curve in 4-space hardly shows its shape. The lower row is compensated with the exponent
+p(k, n): all four means are near 1/2. The contrasts become more similar but not equal: 0.58 for the
+surface in 3-space and 0.61 in 4-space, 0.75 and 0.71 for the curve. Means and contrasts are
+weighted by length or area.
 """
 
 from vizlight import render

@@ -2,10 +2,11 @@
 A complex curve turning in 4-space
 ==================================
 
-The graph of ``w = z^3 / 3 - z / 2``, a surface in 4-space (Re z, Im z, Re w, Im w), turned in the
-plane of x and w and lit there before it is seen in 3-space. See how the graph of Re w, a sheet
-with two saddles on the left, becomes that of the inverse a quarter turn later: its three sheets
-cross in what is seen, though the surface itself never meets itself.
+The graph of ``w = z^3 / 3 - z / 2``, a surface in 4-space (Re z, Im z, Re w, Im w), rotated in the
+plane of x and w and lit in 4-space before it is projected to 3-space. The graph of Re w, on the
+left a sheet with two saddles, becomes the graph of the inverse function after a quarter turn. The
+three sheets of the inverse cross in the projection, although the surface in 4-space does not
+intersect itself.
 """
 
 # sphinx_gallery_thumbnail_number = 2
@@ -40,7 +41,7 @@ plotter = render.make_plotter(panels, camera=camera, size=(2000, 560), backgroun
 plotter.show()
 
 # %%
-# One of them, to be turned in 3-space.
+# One of them as an interactive scene in 3-space.
 
 plotter = render.make_plotter(panels[2], camera=camera, size=(1000, 700), background="#203048")
 plotter.show()

@@ -2,10 +2,10 @@
 Depth cue
 =========
 
-Streamlines over a rotating disk, unchanged on the left; then fading with depth, ``S I + (1 - S)
-Icue``, where the scale S falls from 1 in front to 0 at the back. See which lines pass in front of
-which: without the cue near and far lines are alike; the smooth step keeps more of the front and of
-the back.
+Streamlines over a rotating disk: without a depth cue on the left, then fading with depth by ``S I
++ (1 - S) Icue``, where the scale S falls from 1 at the front to 0 at the back. With the cue it is
+clear which lines pass in front of which; without it, near and far lines look alike. The smooth
+step on the right changes less near the front and near the back than the linear ramp in the middle.
 """
 
 import vizlight

@@ -1,11 +1,11 @@
 """
-The earth in the light of a morning
-===================================
+The relief of the earth in morning light
+========================================
 
-The embedded relief of the earth, land and sea floor, heights times 60, lit from the
-west-north-west at 19 degrees, with ``t`` in place of the cosine: trenches and the walls of plateaus
-cast shadows, and ridges under the sea stand out. Left shallow, right with light gathered twenty
-times deeper, which rounds what is small.
+The embedded relief of the earth, land and sea floor, with heights multiplied by 60. The light
+comes from the west-north-west at 19 degrees, and ``t`` replaces the cosine: trenches and the edges
+of plateaus cast shadows, and ridges on the sea floor stand out. On the left the shadow depth is
+small; on the right it is twenty times as large, which smooths small features.
 """
 
 import numpy as np
@@ -19,7 +19,7 @@ scene = Scene(
     lights=Light(direction=(-np.cos(e), 0.3 * np.cos(e), np.sin(e))),
     material=Material(ambient=0.05, diffuse=1.5, specular=0),
 )
-# x and y are in degrees of 111 km.
+# x and y are in degrees of 111.195 km.
 metre = 60 / 111_195
 panels = []
 for depth in (0.1, 2.0):

@@ -2,11 +2,12 @@
 Speed against error
 ===================
 
-The same light by three ways, from 10 thousand to a million points: a plain NumPy script, and the
-engine in float32 and float64. See that the engine is both faster and more exact than the script in
-the same type, and what float64 costs: about twice the time, for eight more _digits.
+Three ways to compute the same light, for 10 thousand to a million points: a plain NumPy script,
+and the engine in float32 and in float64. The engine is both faster and more accurate than the
+script of the same precision. Float64 takes about twice as long as float32 and gives eight more
+digits.
 
-Errors are the largest, against float64 formulas that share no code with the engine.
+The error is the largest difference from float64 formulas that share no code with the engine.
 """
 
 import pyvista as pv
@@ -21,7 +22,7 @@ for count in counts:
             ways[row.way].append(row)
 
 charts = (
-    ("ns a point", (20, 1000), lambda row: row.cost),
+    ("ns per point", (20, 1000), lambda row: row.cost),
     ("largest error", (1e-15, 1e-3), lambda row: row.error),
 )
 plotter = pv.Plotter(shape=(1, 2), window_size=(1500, 620), border=False)

@@ -2,9 +2,9 @@
 A bundle of brain fibres
 ========================
 
-Three hundred fibres from diffusion imaging of a brain. Left, drawn in one colour, they are a blot;
-right, lit by their own tangents, the sheets of the bundle come apart, and so does a strand that
-crosses over it.
+Three hundred nerve fibres from diffusion imaging of a brain. On the left they are drawn in one
+colour and form a blot. On the right they are lit by their own tangents: the sheets of the bundle
+can be told apart, and so can a strand that crosses over it.
 """
 
 # sphinx_gallery_thumbnail_number = 2
@@ -34,7 +34,8 @@ plotter = render.make_plotter(
 plotter.show()
 
 # %%
-# Alone, to be turned. The light stays with the fibres: it is data now.
+# The lit bundle as an interactive scene. The light is stored with the fibres as data, so it does
+# not change with the view.
 
 plotter = render.make_plotter(lit, camera=camera, size=(1000, 700), line_width=2)
 plotter.show()

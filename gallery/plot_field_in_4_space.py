@@ -2,14 +2,15 @@
 A tangent field on a surface in 4-space
 =======================================
 
-A Clifford torus in 4-space with a field on it, unit vectors along curves that wind around both
-circles. Left: the surface's own light (k = 2). Middle: the field's light alone (k = 1), which knows
-nothing of the surface. Right: the field's light times the surface's brightness.
+A Clifford torus in 4-space with a tangent field on it: unit vectors along curves that wind around
+both circles. Left: the light of the surface (k = 2). Middle: the light of the field alone (k = 1),
+which does not depend on the surface. Right: the light of the field times the brightness of the
+surface.
 
-In codimension 1 a field inherits the self-shadow of its surface, for the surface has an outside. A
-surface in 4-space has codimension 2: its unit normals at a point are a circle, no part of which is
-outside, so there is no shadow side to inherit. Its own brightness is the factor instead, which in
-codimension 1 is the two-sided form of the same law.
+In codimension 1 a field inherits the self-shadow of its surface, because the surface has an outer
+side. A surface in 4-space has codimension 2: its unit normals at a point form a circle, so there
+is neither an outer side nor a shadow side to inherit. The brightness of the surface is the factor
+instead. In codimension 1 this factor is the two-sided form of the same formula.
 """
 
 import numpy as np

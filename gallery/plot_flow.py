@@ -2,10 +2,10 @@
 A flow over an isosurface
 =========================
 
-The isosurface Temp = 600 of the gas over a heated, rotating disk, lit by the velocity on it, under
-the clamped light of the surface itself. See the swirl: the bright streak lies where the mirror
-cone of the flow meets the eye, and turns with it around the axis; a surface's own light shows none
-of it.
+The isosurface Temp = 600 of the gas over a heated, rotating disk, lit by the velocity on it and
+conditioned by the clamped light of the surface itself. The velocity makes the swirl visible: the
+bright streak lies where the mirror cone of the flow meets the eye and turns with it around the
+axis. Lighting by the surface normals shows none of this.
 """
 
 import vizlight
@@ -13,7 +13,7 @@ from vizlight import Light, Material, Scene, View, render
 
 surface = vizlight.load_example().contour([600], scalars="Temp")
 surface = surface.compute_normals(cell_normals=False, auto_orient_normals=True)
-# Each triangle in 16: a highlight is narrower than the triangles of the simulation.
+# Split each triangle into 16: a highlight is narrower than the triangles of the simulation.
 surface = surface.subdivide(2, "linear")
 
 camera = render.camera_on(surface.bounds, (1, 0.5, 0.45), zoom=1.65)
@@ -25,7 +25,7 @@ scene = Scene(
 lit = vizlight.illuminate(surface, scene, tangents="V", conditioned=True)
 
 # %%
-# ``luminance`` is a point array like any other, so the highlight can be asked where it is.
+# ``luminance`` is an ordinary point array, so the highlight can be located by a threshold.
 
 bright = lit.threshold(0.6, scalars="luminance")
 print(f"{bright.n_points} of {lit.n_points} points are brighter than 0.6;")

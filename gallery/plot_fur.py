@@ -5,11 +5,11 @@ A furry torus
 Fibres on a torus of radii 1.5 and 0.75: the three panels of illustration 3 of Banks, *Illumination
 in Diverse Codimensions*, with its coefficients.
 
-A: the fibres alone are lit. B: conditioned by the torus' normals. C: also attenuated by the fur on
-the way in and out, so that the base of a fibre is darker than its tip and single fibres can be told
-apart near the shadow's edge. All with the plain cosine law of the paper (``compensate=False``).
-Fur of density 0.02 to the unit of the torus would hardly show at a
-length of 0.3, so lengths are meant in hundredths here.
+A: the fibres alone are lit. B: the light is conditioned by the normals of the torus. C: the light
+is also attenuated by the fur on its way in and out, so that the base of a fibre is darker than its
+tip and single fibres can be distinguished near the edge of the shadow. All panels use the plain
+cosine law of the paper (``compensate=False``). Fur of density 0.02 per unit of the torus would
+hardly be visible at a length of 0.3, so lengths are counted in hundredths here.
 """
 
 import numpy as np

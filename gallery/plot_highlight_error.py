@@ -2,15 +2,15 @@
 Where Phong's and Blinn's highlights differ
 ===========================================
 
-Figure 5 of Fisher and Woo, *R.E versus N.H Specular Highlights*: Phong minus Blinn for each normal
-of a sphere, light and eye at a right angle, r = 10. The angle phi runs in the plane of light and
-eye, theta away from it; height and colour are the error in pixel values of 255.
+Figure 5 of Fisher and Woo, *R.E versus N.H Specular Highlights*: the difference Phong minus Blinn
+for each normal of a sphere, with light and eye at a right angle and r = 10. The angle phi is
+measured in the plane of light and eye, theta away from it. Height and colour are the error in
+pixel values of 255.
 
 Left: f = 4. Two bumps of 63.75 stand off the plane, on both sides of the highlight at phi = 45
-degrees, where Blinn's falls off more rapidly; in the plane the two agree. Right:
-``f = 4 cos(beta) = 2.83``: the bumps are half as high, and in the plane are two dents, as deep.
-The spheres mark the largest error and where :func:`vizlight.model.highlights.max_pixel_error`
-finds it.
+degrees, where Blinn's highlight falls off more rapidly; in the plane the two agree. Right: ``f = 4
+cos(beta) = 2.83``. The bumps are half as high, and two dents of the same depth lie in the plane.
+The spheres mark the largest error, as found by :func:`vizlight.model.highlights.max_pixel_error`.
 """
 
 import numpy as np

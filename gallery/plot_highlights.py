@@ -3,12 +3,14 @@ Phong's and Blinn's highlights on spheres
 =========================================
 
 Figure 2 of Fisher and Woo, *R.E versus N.H Specular Highlights*. Columns: the angle between light
-and eye is 0, 45, 90, 135 and 160 degrees; light, sphere and eye lie in the plane of the page's
-width. Rows: Phong's R.E to the power 8, and Blinn's N.H to the powers 8 f for f = 1, 2, 4 and 6.
+and eye is 0, 45, 90, 135 and 160 degrees; light, sphere and eye lie in the horizontal plane
+through the line of sight. Rows: Phong's R.E to the power 8, and Blinn's N.H to the power 8 f for f
+= 1, 2, 4 and 6.
 
-Up to 45 degrees Phong and Blinn with f = 4 look alike; beyond, Phong's highlight wraps around the
-sphere and Blinn's stays round. In the column of 135 degrees highlights end sharply where the light
-does. The last row is the rule ``4 cos(beta)``, half the angle to the light: as wide as Phong's.
+Up to 45 degrees Phong's highlight and Blinn's with f = 4 look alike. At larger angles Phong's
+highlight wraps around the sphere and Blinn's stays round. In the column of 135 degrees highlights
+end sharply at the terminator. The last row uses f = ``4 cos(beta)``, where beta is half the angle
+between light and eye: these highlights are as wide as Phong's.
 """
 
 import numpy as np

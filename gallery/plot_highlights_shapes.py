@@ -3,11 +3,11 @@ Phong's and Blinn's highlights on other shapes
 ==============================================
 
 Figure 3 of Fisher and Woo, *R.E versus N.H Specular Highlights*: a bottle cap, a cylinder and a
-sphere under one light at infinity. Left: R.E to the powers 4, 8, 16 and 32 from left to right.
-Right: N.H to four times these.
+sphere under one light at infinity. Left: R.E to the powers 4, 8, 16 and 32, from left to right.
+Right: N.H to four times these powers.
 
-The shapes show different normals, and yet the halves look much alike; the broad highlights of the
-smallest power, at the left of each half, differ most.
+The shapes have different distributions of normals, yet the two halves look much alike. The broad
+highlights of the smallest power, on the left of each half, differ most.
 """
 
 import numpy as np
@@ -18,7 +18,7 @@ from vizlight import Light, Material, Scene, View, render
 
 
 def turned(radius, height):
-    """Return the surface that a profile, from its foot up, sweeps around the y axis."""
+    """Return the surface of revolution of a profile, given from its foot up, about the y axis."""
     t = np.linspace(0, 2 * np.pi, 181)
     rise, run = np.gradient(height), np.gradient(radius)
     length = np.hypot(rise, run)
@@ -45,7 +45,7 @@ profile = [
 cap = turned(*np.concatenate(profile, axis=1))
 cap = cap.rotate_x(35, transform_all_input_vectors=True)
 cylinder = turned(np.full(40, 0.33), np.linspace(-0.45, 0.45, 40))
-# Across the half vector, so that the highlight runs along it.
+# Perpendicular to the half vector, so that the highlight runs along the cylinder.
 cylinder = cylinder.rotate_z(-50, transform_all_input_vectors=True)
 angle = np.linspace(-np.pi / 2, np.pi / 2, 91)
 sphere = turned(0.5 * np.cos(angle), 0.5 * np.sin(angle))

@@ -3,18 +3,19 @@ Contours of equal luminance on solids
 =====================================
 
 The primitives of Conway and Cottingham, *The Isoluminance Contour Model*: sphere, cylinder, cone,
-frustum and disc, in bands of one luminance each between their contours; and a machined part made
-of them by union and difference, which keeps its bands.
+frustum and disc, in bands of constant luminance between contours; and a machined part made from
+them by union and difference, which has such bands too.
 
-On the sphere contours are circles about the light, on the others rulings; the ends have one
-luminance each. The machined part is what the source left open, set operations; the last two panels
-have contours found by halving where it approximates: a highlight and a near light.
+The contours of the sphere are circles about the direction of the light, those of the other
+primitives are rulings; each end has one luminance. The source leaves set operations, as in the
+machined part, as an open problem. The last two panels show cases that the source approximates, a
+highlight and a nearby light; here their contours are found by bisection.
 """
 
 import numpy as np
 
 import vizlight
-from vizlight import Block, Light, Material, Scene, Sphere, Truncus, View, render
+from vizlight import Block, Frustum, Light, Material, Scene, Sphere, View, render
 
 far = Light(direction=(0.8, -1, 1.1))
 dull = Scene(lights=far, material=Material(ambient=0.1, diffuse=0.9, specular=0))
@@ -24,23 +25,23 @@ shiny = Scene(
 )
 near = dull.replace(lights=Light(position=(1.0, -1.2, 0.6)))
 
-flange = Truncus((0, 0, -0.5), (0, 0, 0.35), (1, 1))
-neck = Truncus((0, 0, 0), (0, 0, 0.9), (0.4, 0.55))
-part = (flange | neck) - Truncus((0, 0, 0), (0, 0, 3), (0.25, 0.25))
+flange = Frustum((0, 0, -0.5), (0, 0, 0.35), (1, 1))
+neck = Frustum((0, 0, 0), (0, 0, 0.9), (0.4, 0.55))
+part = (flange | neck) - Frustum((0, 0, 0), (0, 0, 3), (0.25, 0.25))
 part = part - Block((0, 0, 0.5), (2, 0.2, 0.3))
 for angle in np.arange(6) * np.pi / 3:
     place = (0.77 * np.cos(angle), 0.77 * np.sin(angle), -0.5)
-    part = part - Truncus(place, (0, 0, 1), (0.11, 0.11))
+    part = part - Frustum(place, (0, 0, 1), (0.11, 0.11))
 
 shapes = {
     "sphere": (Sphere(), dull),
-    "cylinder": (Truncus((0, 0, 0), (0, 0, 1.6), (0.6, 0.6)), dull),
-    "cone": (Truncus((0, 0, 0), (0, 0, 1.6), (0, 0.8)), dull),
-    "frustum": (Truncus((0, 0, 0), (0, 0, 1.2), (0.4, 0.9)), dull),
-    "disc": (Truncus((0, 0, 0), (0, 0, 0.2), (1, 1)), dull),
+    "cylinder": (Frustum((0, 0, 0), (0, 0, 1.6), (0.6, 0.6)), dull),
+    "cone": (Frustum((0, 0, 0), (0, 0, 1.6), (0, 0.8)), dull),
+    "frustum": (Frustum((0, 0, 0), (0, 0, 1.2), (0.4, 0.9)), dull),
+    "disc": (Frustum((0, 0, 0), (0, 0, 0.2), (1, 1)), dull),
     "machined part": (part, dull),
     "highlight": (Sphere(), shiny),
-    "near light": (Truncus((0, 0, 0), (0, 0, 1.6), (0.6, 0.6)), near),
+    "near light": (Frustum((0, 0, 0), (0, 0, 1.6), (0.6, 0.6)), near),
 }
 drawn = [vizlight.isoluminance(solid, scene, levels=12) for solid, scene in shapes.values()]
 plotter = render.make_plotter(
@@ -54,7 +55,7 @@ plotter = render.make_plotter(
 for number, found in enumerate(drawn):
     plotter.subplot(*divmod(number, 4))
     lines = plotter.add_mesh(found["contours"], color="black", line_width=1)
-    # Lines lie in the bands: they are drawn as if a little nearer.
+    # The lines lie in the bands: shift them slightly toward the viewer.
     lines.mapper.SetResolveCoincidentTopologyToPolygonOffset()
     lines.mapper.SetRelativeCoincidentTopologyLineOffsetParameters(-4, -4)
 plotter.show()

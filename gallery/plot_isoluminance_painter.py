@@ -2,10 +2,10 @@
 Laminae and bands
 =================
 
-The source fills plane polygons, the laminae, farthest first. Left: seen from the light that is
-as good as bands. Where the light stands across the view each lamina is seen as a line, and no
-order of painting helps: the middle picture has gaps. Bands (right) are a closed surface, right
-from any view.
+The source fills plane polygons, the laminae, from the farthest to the nearest. Left: viewed from
+the direction of the light this looks the same as bands. Middle: when the light is perpendicular to
+the view, each lamina is seen edge-on, and gaps remain for any order of painting. Right: bands form
+a closed surface, which is correct from any view.
 """
 
 import numpy as np
@@ -23,7 +23,7 @@ laminae = sphere(
 
 
 def painted(eye):
-    """Return the laminae in painter's order, each a hair nearer than the one before it."""
+    """Return the laminae in painter's order, from the farthest to the nearest."""
     order = laminae.order(eye)
     pieces = [np.arange(laminae.offsets[i], laminae.offsets[i + 1]) for i in order]
     faces = np.concatenate([np.insert(piece, 0, len(piece)) for piece in pieces])

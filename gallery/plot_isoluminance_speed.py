@@ -2,13 +2,13 @@
 Contours, facets and a ray cast: speed against error
 ====================================================
 
-The source's evaluation today, on a sphere and a cone: the time to model and to draw a picture over
-the mean error of its pixels, for 200 contour levels, for the 70 and 15 Gouraud-shaded facets of the
-source, for as many facets as have no larger worst error than the contours, and for a ray cast in
-NumPy. Larger marks are pictures of more pixels. The source found contours two to six times as fast
-as either; here the ray cast is faster than both, by 10 times and more for few pixels, and contours
-beat facets of equal error on the larger spheres alone. The figures are those of the machine that
-builds this page.
+The evaluation of the source, repeated today on a sphere and a cone: the time to model and draw a
+picture against the mean error of its pixels. The methods are 200 contour levels, the 70 and 15
+Gouraud-shaded facets of the source, facets with the same worst error as the contours, and a ray
+cast in NumPy. Larger marks stand for pictures with more pixels. The source found contours two to
+six times as fast as either alternative. Here the ray cast is the fastest, by 10 times and more for
+few pixels, and contours are faster than facets of equal error only on the larger spheres. The
+times are those of the machine that built this page.
 """
 
 import matplotlib.pyplot as plt

@@ -2,13 +2,14 @@
 Line models against the exact line light
 ========================================
 
-A line drawn one pixel wide ought to show the mean light of a thin cylinder. Root mean square errors
-of the cheap models, each with its best factor, and of tubes of 3 to 40 sides, for lines, lights and
-eyes that point anywhere; highlights to the power 20.
+A line that is one pixel wide should show the mean light of a thin cylinder. The charts show root
+mean square errors of the inexpensive models, each with its best factor, and of tubes with 3 to 40
+sides, for random directions of line, light and eye. The power of the highlights is 20.
 
-Tubes come nearer with the square of their sides, at a cost for each side. Left: no law that knows
-only the angle to the light gets the diffuse term right, since a line shows its dark side too.
-Right: Blinn's highlight is about as good as a tube of 3 sides, and ``model="cylinder"`` is exact.
+The error of tubes falls with the square of the number of sides, and their cost grows with that
+number. Left: no model that depends only on the angle to the light reproduces the diffuse term,
+because the dark side of a line is visible too. Right: Blinn's highlight is about as accurate as a
+tube with 3 sides, and ``model="cylinder"`` is exact.
 """
 
 import pyvista as pv

@@ -2,10 +2,10 @@
 Streamlines, free and on a surface
 ==================================
 
-Streamlines of the flow over a rotating disk, each lit by its own tangents; on the right the same
-flow confined to an isosurface and conditioned by its normals. See on the left how the gas falls,
-turns and leaves along the disk; on the right only the near side is bright, so that the dome has a
-front and a back although nothing but lines is drawn.
+Streamlines of the flow over a rotating disk, each lit by its own tangents. On the right the same
+flow is confined to an isosurface and conditioned by the surface normals. The left panel shows how
+the gas falls, turns and leaves along the disk. In the right panel only the near side is bright, so
+the dome has a front and a back although only lines are drawn.
 """
 
 import vizlight

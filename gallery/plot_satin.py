@@ -2,13 +2,13 @@
 A satin ball, lit in four ways
 ==============================
 
-A sphere with a field in north-south directions, as on a ball wound with satin thread: the four
-panels of illustration 2 of Banks, *Illumination in Diverse Codimensions*.
+A sphere with a tangent field in north-south direction, like a ball wound with satin thread: the
+four panels of illustration 2 of Banks, *Illumination in Diverse Codimensions*.
 
 A: integral curves, each lit as a line. B: the sphere, lit by its normals. C: the sphere lit by the
-field alone, also where the light cannot reach. D: lit by the field, conditioned by the sphere's
-normals; its dark side is as dark as that of B. All with the plain cosine law of the paper
-(``compensate=False``); a dark ball hides the threads on the far side of A.
+field alone, including the side that the light cannot reach. D: the sphere lit by the field and
+conditioned by its normals; its dark side is as dark as that of B. All panels use the plain cosine
+law of the paper (``compensate=False``). In A a dark sphere hides the threads on the far side.
 """
 
 import numpy as np

@@ -1,9 +1,10 @@
 """
-Light that seeps through a statue
-=================================
+Light that passes through a statue
+==================================
 
-A closed mesh with the light behind it. A: the clamped cosine, all is dark. B and C: ``t = d / r``
-at two depths; limbs, which are thin, glow, the body does not, and one limb darkens another.
+A closed mesh with the light behind it. A: with the clamped cosine, everything is dark. B and C:
+with ``t = d / r`` at two depths, the thin limbs glow, the body stays dark, and one limb casts a
+shadow on another.
 """
 
 import numpy as np

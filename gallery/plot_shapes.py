@@ -2,10 +2,10 @@
 Shapes in 4-space
 =================
 
-What ``vizlight.geometry.manifolds`` makes, seen in 3-space and lit in 4-space. From left to right:
-the Klein bottle and the Veronese surface (a projective plane), neither of which meets itself in
-4-space although what is seen of it does; the graph of w = z^2; fibres of the Hopf map, circles of
-the 3-sphere no two of which meet; and the section of the 3-sphere by a hyperplane.
+Shapes from ``vizlight.geometry.manifolds``, lit in 4-space and projected to 3-space. From left to
+right: the Klein bottle and the Veronese surface (a projective plane), neither of which intersects
+itself in 4-space although its projection does; the graph of w = z^2; fibres of the Hopf map, which
+are disjoint circles of the 3-sphere; and the section of the 3-sphere by a hyperplane.
 """
 
 import numpy as np
@@ -21,7 +21,7 @@ scene = Scene(
     material=Material(ambient=0.1, diffuse=0.6, specular=0.3),
 )
 slanted = ("xw", 0.08)
-# Over three circles of latitude the fibres cover three tori, one in the other.
+# The fibres over three circles of latitude cover three nested tori.
 t = np.linspace(0, 2 * np.pi, 36, endpoint=False)
 base = np.concatenate([np.stack([np.cos(t), np.sin(t), z + 0 * t], 1) for z in (0.4, 1.2, 5)])
 shapes = {

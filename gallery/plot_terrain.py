@@ -2,14 +2,15 @@
 A volcano at three heights of the sun
 =====================================
 
-Mount St. Helens from above, the sun in the north-west at 10, 25 and 45 degrees. In each pair left
-the cos-theta shadow ``t``, right the classic hillshade, the clamped cosine: it knows no shadow
-that falls. ``t`` is the cosine where light falls freely, dark where the mountain stands in the way,
-and soft over 60 m, for light is gathered that far below the ground.
+Mount St. Helens from above, with the sun in the north-west at 10, 25 and 45 degrees. Each pair
+shows the cos-theta shadow ``t`` on the left and the classic hillshade, the clamped cosine, on the
+right. The hillshade has no cast shadows. ``t`` equals the cosine where the light is not blocked
+and is dark where the mountain stands in the way. Its edges are soft over 60 m, because the light
+is gathered that far below the ground.
 
-The border of the data has no heights; such points are holes. Where the terrain cannot be
-downloaded, the Himalaya of the embedded relief of the earth stands in, in kilometres, its heights
-times 10.
+The border of the data has no heights; these points are holes. If the terrain cannot be downloaded,
+the Himalaya of the embedded relief of the earth is used, in kilometres and with heights multiplied
+by 10.
 """
 
 import warnings
@@ -25,10 +26,10 @@ try:
     heights = np.array(terrain["Elevation"], dtype=float)
     heights[heights == heights.min()] = np.nan
     depth = 60.0
-except Exception:  # noqa: BLE001 (no network has many names)
+except Exception:  # noqa: BLE001 (a missing network raises many types)
     earth = vizlight.load_example("earth_relief.vti")
     part = earth.extract_subset((750, 850, 340, 390, 0, 0))
-    # A degree of longitude is 87 % of one of latitude at 30 degrees north.
+    # At 30 degrees north a degree of longitude is 87 % as long as a degree of latitude.
     terrain = pv.ImageData(dimensions=part.dimensions, spacing=(32.1, 37.1, 1.0))
     heights = np.array(part["elevation"], dtype=float) / 100
     depth = 40.0
@@ -42,7 +43,7 @@ for height in (10, 25, 45):
     toward = (-np.cos(e) / 2**0.5, np.cos(e) / 2**0.5, np.sin(e))
     scene = Scene(lights=Light(direction=toward), material=Material(specular=0))
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # the holes are known
+        warnings.simplefilter("ignore")  # the holes are expected
         lit = vizlight.relief_shadow(terrain, scene, depth=depth, elevation="height")
     columns, rows = terrain.dimensions[:2]
     x, y = (np.arange(n) * s for n, s in zip((columns, rows), terrain.spacing, strict=False))

@@ -2,11 +2,12 @@
 Terrain through a day
 =====================
 
-Mount St. Helens on an autumn day from after sunrise to before sunset, the sun where it is at 46
-degrees north. See the crater's wall throw its shadow westward in the morning and eastward in the
-afternoon, and, last, the mean of the day: what a slope has had of the sun.
+Mount St. Helens on an autumn day, from after sunrise to before sunset, with the position of the
+sun at 46 degrees north. The wall of the crater casts its shadow westward in the morning and
+eastward in the afternoon. The last panel is the mean of the day: the share of the sunlight that
+each slope receives.
 
-Where the terrain cannot be downloaded, the Himalaya of the embedded relief of the earth stands in.
+If the terrain cannot be downloaded, the Himalaya of the embedded relief of the earth is used.
 """
 
 import warnings
@@ -24,8 +25,8 @@ try:
     terrain = terrain.extract_subset((12, columns - 13, 12, rows - 13, 0, 0))
     heights = np.array(terrain["Elevation"], dtype=float)
     depth, latitude, shape, size = 60.0, 46.2, 2, (1500, 1000)
-except Exception as error:  # noqa: BLE001 (no network has many names)
-    print(f"no terrain here ({type(error).__name__}): the Himalaya in its place")
+except Exception as error:  # noqa: BLE001 (a missing network raises many types)
+    print(f"terrain not available ({type(error).__name__}): using the Himalaya")
     earth = vizlight.load_example("earth_relief.vti")
     part = earth.extract_subset((750, 850, 340, 390, 0, 0))
     terrain = pv.ImageData(dimensions=part.dimensions, spacing=(32.1, 37.1, 1.0))
@@ -36,7 +37,7 @@ terrain["height"] = heights
 
 hours = np.array([7.0, 9.0, 12.0, 15.0, 17.0])
 with warnings.catch_warnings():
-    warnings.simplefilter("ignore")  # the border has no heights, which is known
+    warnings.simplefilter("ignore")  # the border has no heights, as expected
     day = vizlight.relief_day(
         terrain,
         latitude=np.radians(latitude),

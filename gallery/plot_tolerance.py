@@ -2,11 +2,12 @@
 Choosing by tolerance
 =====================
 
-Say how wrong the light may be, and the cheapest evaluation whose stated bound is within that is
-taken: left the exact law, middle what one step of a picture of 8 bits allows, which is Blinn's
-highlight for Phong's, in float32. Right how far they differ: nowhere as much as was allowed.
+With ``tolerance=`` you state the largest acceptable error, and the cheapest evaluation whose error
+bound is within it is used. Left: the exact model. Middle: one step of an 8-bit picture is allowed,
+which selects Blinn's highlight in place of Phong's, in float32. Right: the difference of the two,
+which is below the tolerance everywhere.
 
-Below, what each tolerance took and what it left, with the bounds.
+The output below lists what each tolerance selected and what it rejected, with the error bounds.
 """
 
 import numpy as np
@@ -28,7 +29,7 @@ off = 255 * np.abs(near["luminance"] - exact["luminance"])
 bound = 255 * vizlight.provenance(near)["error_bound"]
 difference = bundle.copy()
 difference["luminance"] = off
-worst = f"they differ, black 0, white 1 of 255:\nat most {off.max():.2f}, bound {bound:.2f}"
+worst = f"difference, black 0, white 1 of 255:\nat most {off.max():.2f}, bound {bound:.2f}"
 
 plotter = render.make_plotter(
     [
@@ -43,12 +44,11 @@ plotter = render.make_plotter(
 plotter.show()
 
 # %%
-# Without a tolerance the exact forms are computed. With one:
+# Without a tolerance the exact forms are computed. With a tolerance:
 
 for tolerance in (1e-6, 1e-4, 1 / 255, 0.05):
     plan = engine.plan(scene, k=1, tolerance=tolerance)
-    told = plan.explain().splitlines()
-    kept = [
-        line for line in told if any(word in line for word in ("tolerance", "within", "differ"))
-    ]
-    print(*kept, "", sep="\n")
+    for line in plan.explain().splitlines():
+        if any(word in line for word in ("tolerance", "within", "differ")):
+            print(line)
+    print()

@@ -2,12 +2,12 @@
 Lit lines beside tubes
 ======================
 
-The same streamlines over the rotating disk: left as they come from a tracer, drawn in one colour,
-in the middle as lines lit as thin cylinders, right as tubes of 20 sides under the same light. See
-that the last two can hardly be told apart at this width, with a twentieth of the points; tubes are
-for lines that must be wider, or hide one another.
+The same streamlines over the rotating disk drawn in three ways. Left: in one colour, as a tracer
+returns them. Middle: as lines, lit as thin cylinders. Right: as tubes with 20 sides under the same
+light. At this width the last two look almost the same, but the lines need a twentieth of the
+points. Use tubes for lines that must be wider or hide one another.
 
-``vizlight study tubes`` has the errors, and the times to build and to draw.
+``vizlight study tubes`` measures the errors and the times to build and to draw.
 """
 
 import numpy as np

@@ -2,10 +2,10 @@
 Turning in 4-space
 ==================
 
-A torus in 4-space turns in the xw plane; light, eye and camera stay. In the upper row it is lit in
-4-space, before the projection: the light moves over it as over a rigid body, although what is seen
-of it in 3-space swells, passes through itself and turns inside out. In the lower row it is lit in
-3-space, after the projection, as the surface that is seen.
+A torus in 4-space rotates in the xw plane, while light, eye and camera stay fixed. In the upper
+row it is lit in 4-space, before the projection: the light moves over it as over a rigid body,
+although its projection to 3-space swells, passes through itself and turns inside out. In the lower
+row the projected surface is lit in 3-space, after the projection.
 
 ``vizlight.movie.turn(mesh, "turn.gif", scene=scene, distance=3.0)`` writes the whole turn.
 """

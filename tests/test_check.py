@@ -46,7 +46,7 @@ def test_good_values(validate, value, expected):
         (_check.vector, [1, np.nan, 0], ValueError, "finite components"),
         (lambda n, v: _check.vector(n, v, direction=True), [0, 0, 0], ValueError, "non-zero"),
         (_check.vector, "abc", TypeError, "real numbers, got 'abc'"),
-        (_check.vectors, [[1, 2], [3]], TypeError, "numbers of one shape"),
+        (_check.vectors, [[1, 2], [3]], TypeError, "numbers in rows of equal length"),
         (_check.rgb, [1, 2], ValueError, "three channels"),
         (_check.rgb, [0, -1, 0], ValueError, "three channels"),
         (_check.rgb, [255, 0, 0], ValueError, "three channels .*divide bytes by 255"),
@@ -69,7 +69,7 @@ def test_numbers_beyond_the_largest_and_beyond_what_python_writes():
 
 
 def test_infinite_position_names_the_remedy():
-    with pytest.raises(ValueError, match="at infinity is given by direction="):
+    with pytest.raises(ValueError, match="at infinity pass direction="):
         _check.vector("position", [np.inf, 0, 0])
 
 

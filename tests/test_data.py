@@ -63,6 +63,7 @@ def test_unknown_data():
 
 
 def test_the_wheel_carries_the_data_and_the_marker(tmp_path):
+    pytest.importorskip("hatchling", reason="pip install 'vizlight[dev]' for hatchling")
     code = "from hatchling.build import build_wheel; import sys; print(build_wheel(sys.argv[1]))"
     run = subprocess.run(
         [sys.executable, "-c", code, str(tmp_path)],
@@ -71,7 +72,13 @@ def test_the_wheel_carries_the_data_and_the_marker(tmp_path):
         text=True,
         check=True,
     )
-    names = zipfile.ZipFile(tmp_path / run.stdout.split()[-1]).namelist()
+    wheel = zipfile.ZipFile(tmp_path / run.stdout.split()[-1])
+    names = wheel.namelist()
     data = ("datasets/rotating_disk.vtu", "datasets/LICENSE-mayavi.txt")
     for name in (*data, "py.typed", "render.pyi", "cli/__init__.py"):
         assert f"vizlight/{name}" in names
+    info = f"vizlight-{vizlight.__version__}.dist-info"
+    for name in ("LICENSE", "datasets/LICENSE-dipy.txt", "datasets/LICENSE-mayavi.txt"):
+        assert f"{info}/licenses/{name}" in names
+    metadata = wheel.read(f"{info}/METADATA").decode()
+    assert "\nLicense-Expression: MIT AND BSD-3-Clause\n" in metadata

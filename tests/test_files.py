@@ -43,7 +43,7 @@ def test_damaged_files_give_one_clear_error(name, content, tmp_path, capfd):
 
 
 def test_missing_file(tmp_path):
-    with pytest.raises(files.FileError, match=r"file: expected a file, got .*\(nothing there\)"):
+    with pytest.raises(files.FileError, match=r"file: expected a file, got .*\(no such file\)"):
         files.read_mesh(tmp_path / "no.vtp")
     with pytest.raises(files.FileError, match=r"file: expected a file, got .*\(a folder\)"):
         files.read_mesh(tmp_path)
@@ -99,7 +99,7 @@ def test_warp():
         (lambda g: files.surface_of(g, "s"), r"contour: .*one of \['r'\], got 's'"),
         (
             lambda g: files.surface_of(pv.Cube(), "s"),
-            "contour: expected .* of one component, of which there is none, got 's'",
+            "contour: expected .* of one component, but the mesh has none, got 's'",
         ),
         (lambda g: files.surface_of(g, "V"), "contour: .*got 'V' with 3 components"),
         (lambda g: files.surface_of(g, "C"), "contour: .*got the cell array 'C'"),

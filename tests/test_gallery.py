@@ -1,7 +1,8 @@
-"""The built pages: no dead link, no missing picture, no error in a browser, scenes that show.
+"""The built pages: no dead link, no missing picture, no error in a browser, no blank scene.
 
-Pages are looked for where README's line builds them. What needs a browser takes Debian's
-``chromium``. Where ``VIZLIGHT_PAGES`` names the folder of the pages, what is missing is an error.
+The tests read the pages from the folder into which README's command builds them. Tests that need a
+browser use Debian's ``chromium``. If ``VIZLIGHT_PAGES`` names the folder of the pages, a missing
+page or browser is an error; otherwise the tests are skipped.
 """
 
 from __future__ import annotations
@@ -31,24 +32,20 @@ browser = pytest.mark.skipif(CHROMIUM is None and not WANTED, reason="no chromiu
 
 
 class _Links(HTMLParser):
-    """What a page refers to, the places that can be referred to, and its words."""
+    """Links of a page, and its anchors."""
 
     def __init__(self) -> None:
         super().__init__()
         self.targets: list[str] = []
-        self.places: set[str] = set()
-        self.words = 0
+        self.anchors: set[str] = set()
 
     def handle_starttag(self, tag, attrs):
         given = dict(attrs)
-        self.places.update(given[key] for key in ("id", "name") if given.get(key))
+        self.anchors.update(given[key] for key in ("id", "name") if given.get(key))
         for key in ("href", "src"):
             if given.get(key):
                 self.targets.append(given[key])
         self.targets += [part.split()[0] for part in (given.get("srcset") or "").split(",") if part]
-
-    def handle_data(self, data):
-        self.words += len(data.split())
 
 
 @functools.cache
@@ -72,7 +69,7 @@ def broken_links(page):
         if not place.exists() or (
             parts.fragment
             and place.suffix == ".html"
-            and unquote(parts.fragment) not in read(place).places
+            and unquote(parts.fragment) not in read(place).anchors
         ):
             broken.append(target)
     return broken
@@ -114,7 +111,7 @@ def test_every_public_name_has_a_page():
 
 
 def open_in_browser(page, picture, profile):
-    """Open a page from disk; return what it says on the console, and its picture."""
+    """Open a page from disk; return its console messages and a screenshot."""
     run = subprocess.run(
         [
             CHROMIUM, "--headless=new", "--no-sandbox", "--use-angle=swiftshader",
@@ -125,23 +122,25 @@ def open_in_browser(page, picture, profile):
         capture_output=True, text=True, errors="replace", timeout=120, check=False,
     )  # fmt: skip
     assert run.returncode == 0, run.stderr[-2000:]
-    said = re.findall(r":(\w+):CONSOLE[:(]\d+\)?\] (.*)", run.stderr)
-    return said, np.asarray(Image.open(picture).convert("RGB"))
+    messages = re.findall(r":(\w+):CONSOLE[:(]\d+\)?\] (.*)", run.stderr)
+    return messages, np.asarray(Image.open(picture).convert("RGB"))
 
 
-#: What the theme and the viewer say when all is well.
+#: Messages of the theme and the viewer that are not errors.
 HARMLESS = re.compile(r"Got invalid theme mode|\[PST\]|hashes,scene|GPU stall|GL Driver Message")
 
 
-def errors(said):
-    return [text for _, text in said if not HARMLESS.search(text)]
+def errors(messages):
+    return [text for _, text in messages if not HARMLESS.search(text)]
 
 
 @browser
-@pytest.mark.parametrize("name", ["index", "examples/index", "formulas", "api", "studies"])
+@pytest.mark.parametrize(
+    "name", ["index", "guide", "examples/index", "formulas", "architecture", "api", "studies"]
+)
 def test_a_page_opens_without_an_error(name, tmp_path):
-    said, picture = open_in_browser(PAGES / f"{name}.html", tmp_path / "a.png", tmp_path / "p")
-    assert not errors(said)
+    messages, picture = open_in_browser(PAGES / f"{name}.html", tmp_path / "a.png", tmp_path / "p")
+    assert not errors(messages)
     assert picture.std() > 5
 
 
@@ -150,11 +149,11 @@ def test_scenes_are_not_blank(tmp_path):
     scenes = sorted((PAGES / "_static" / "scenes").glob("*.html"))
     assert len({re.sub(r"_\d+$", "", scene.stem) for scene in scenes}) >= 3
     for scene in scenes:
-        said, picture = open_in_browser(scene, tmp_path / f"{scene.stem}.png", tmp_path / "p")
-        assert not errors(said), scene.name
+        messages, picture = open_in_browser(scene, tmp_path / f"{scene.stem}.png", tmp_path / "p")
+        assert not errors(messages), scene.name
         back = picture[0, 0].astype(int)
         drawn = np.any(np.abs(picture.astype(int) - back) > 24, axis=-1)
-        # Something is drawn, in its middle, and in many tones: it is lit.
+        # The scene is drawn, in the middle of the page, and in many tones: it is lit.
         assert drawn.mean() > 0.01, scene.name
         assert drawn[200:500, 250:650].any(), scene.name
         assert len(np.unique(picture[drawn], axis=0)) > 50, scene.name
@@ -164,5 +163,5 @@ def test_scenes_are_not_blank(tmp_path):
 def test_the_browser_tests_can_fail(tmp_path):
     page = tmp_path / "bad.html"
     page.write_text("<p>nothing</p><script>console.error('no'); nowhere()</script>")
-    said, _ = open_in_browser(page, tmp_path / "a.png", tmp_path / "p")
-    assert len(errors(said)) == 2
+    messages, _ = open_in_browser(page, tmp_path / "a.png", tmp_path / "p")
+    assert len(errors(messages)) == 2

@@ -133,9 +133,9 @@ def test_a_field_takes_the_brightness_of_what_carries_it(random):
         factor = engine.shade(points, carrier, Scene(lights=white, material=MATTE))
         expected = expected + own.luminance * factor.luminance
     scene = Scene(lights=lights, view=view, material=parts)
-    found = engine.shade(points, field, scene, carrier=carrier)
+    found = engine.shade(points, field, scene, base_tangents=carrier)
     np.testing.assert_allclose(found.luminance, expected, rtol=1e-12)
-    assert "carrier: brightness |wi_N| to the power 2" in found.plan.explain()
+    assert "base tangents: brightness |wi_N| to the power 2" in found.plan.explain()
 
 
 def test_in_codimension_1_the_carrier_is_the_surface_seen_from_both_sides(random):
@@ -146,7 +146,7 @@ def test_in_codimension_1_the_carrier_is_the_surface_seen_from_both_sides(random
         lights=Light(direction=(1, 0.4, 0.8)), view=View(direction=(0, 0.3, 1)), material=Material()
     )
     points = np.zeros((300, 3))
-    by_frame = engine.shade(points, field, scene, carrier=frame)
+    by_frame = engine.shade(points, field, scene, base_tangents=frame)
     by_normal = engine.shade(points, field, scene, normals=normal, two_sided=True)
     np.testing.assert_allclose(by_frame.luminance, by_normal.luminance, atol=1e-13)
 
@@ -154,12 +154,12 @@ def test_in_codimension_1_the_carrier_is_the_surface_seen_from_both_sides(random
 @pytest.mark.parametrize(
     ("k", "carrier", "normals", "words"),
     [
-        (None, (5, 8), True, "carrier: expected tangents"),
-        (1, (5, 8), True, "carrier: expected tangents .* no normals"),
-        (2, (5, 4), False, "carrier: expected from k = 2"),
-        (1, (5, 16), False, "carrier: expected shape"),
-        (1, (5, 7), False, "carrier: expected shape"),
-        (1, (4, 8), False, "carrier: expected shape"),
+        (None, (5, 8), True, "base_tangents: expected tangents"),
+        (1, (5, 8), True, "base_tangents: expected tangents .* no normals"),
+        (2, (5, 4), False, "base_tangents: expected from k = 2"),
+        (1, (5, 16), False, "base_tangents: expected shape"),
+        (1, (5, 7), False, "base_tangents: expected shape"),
+        (1, (4, 8), False, "base_tangents: expected shape"),
     ],
 )
 def test_bad_carriers(k, carrier, normals, words):
@@ -169,7 +169,7 @@ def test_bad_carriers(k, carrier, normals, words):
             np.zeros((5, 4)),
             None if k is None else np.ones((5, 4 * k)),
             scene,
-            carrier=np.ones(carrier),
+            base_tangents=np.ones(carrier),
             normals=np.ones((5, 4)) if normals else None,
         )
 
@@ -179,6 +179,6 @@ def test_dependent_tangents_of_a_carrier_are_marked(random):
     carrier[1, 1] = 3 * carrier[1, 0]
     carrier[2] = np.nan
     scene = Scene(lights=Light(direction=(1, 2, 0.5, -1)), material=Material(specular=0))
-    lit = engine.shade(np.zeros((4, 4)), carrier[[0, 0, 0, 0], 0], scene, carrier=carrier)
+    lit = engine.shade(np.zeros((4, 4)), carrier[[0, 0, 0, 0], 0], scene, base_tangents=carrier)
     np.testing.assert_array_equal(lit.valid, [True, False, False, True])
     np.testing.assert_array_equal(lit.luminance[1:3], 0.1)

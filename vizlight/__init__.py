@@ -1,13 +1,13 @@
 """Light that makes scientific data legible, as point scalars on PyVista meshes.
 
-The names below load when they are first used, so that ``import vizlight`` is quick and
+The public names are loaded on first use, so ``import vizlight`` is fast and
 ``import vizlight.model`` needs neither PyVista nor VTK.
 """
 
 from __future__ import annotations
 
 import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from vizlight import _aliases
 from vizlight._version import __version__ as __version__
@@ -24,10 +24,11 @@ if TYPE_CHECKING:
     from vizlight.filters.isoluminance import isoluminance
     from vizlight.filters.manifold import manifold
     from vizlight.filters.project import project
-    from vizlight.filters.relief import relief_day, relief_shadow
+    from vizlight.filters.relief_day import relief_day
+    from vizlight.filters.relief_shadow import relief_shadow
     from vizlight.filters.satin import satin
     from vizlight.filters.streamlines import streamlines
-    from vizlight.geometry.solids.primitives import Block, Sphere, Truncus
+    from vizlight.geometry.solids.primitives import Block, Frustum, Sphere, Truncus
     from vizlight.mesh.records import provenance
     from vizlight.scene import DepthCue, Light, Material, Scene, View
     from vizlight.verify.report import report
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
 _HOMES = {
     "Block": "vizlight.geometry.solids.primitives",
     "DepthCue": "vizlight.scene",
+    "Frustum": "vizlight.geometry.solids.primitives",
     "Light": "vizlight.scene",
     "Material": "vizlight.scene",
     "Scene": "vizlight.scene",
@@ -65,6 +67,7 @@ _aliases.install()
 __all__ = [
     "Block",
     "DepthCue",
+    "Frustum",
     "Light",
     "Material",
     "Scene",
@@ -88,8 +91,8 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
-    """Load a public name when it is first used."""
+def __getattr__(name: str) -> object:
+    """Load a public name on first use."""
     if name in _HOMES:
         value = getattr(importlib.import_module(_HOMES[name]), name)
         globals()[name] = value

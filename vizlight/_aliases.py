@@ -1,4 +1,4 @@
-"""Public names of modules that stand in a deeper folder: one module, two names."""
+"""Import aliases: short public names of modules that are in deeper folders."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from types import ModuleType
 
-#: Short names of the modules of ``vizlight.geometry``, and the folders that they are in.
+#: Folder of each module that ``vizlight.geometry`` also offers under a short name.
 GEOMETRY = {
     "curves": "lines",
     "depth_map": "relief",
@@ -36,7 +36,7 @@ ALIASES = {
 
 
 class _Alias(Loader):
-    """Gives the module that stands under the other name, itself and not a copy."""
+    """Loader that returns the original module itself, not a copy."""
 
     def create_module(self, spec: ModuleSpec) -> ModuleType:
         module = importlib.import_module(ALIASES[spec.name])
@@ -44,7 +44,7 @@ class _Alias(Loader):
         return module
 
     def exec_module(self, module: ModuleType) -> None:
-        # The import system has put the alias's specification in place of the module's own.
+        # The import system has replaced the module's own specification with the alias's.
         module.__spec__ = self._spec
 
 
@@ -52,11 +52,11 @@ class _Finder(MetaPathFinder):
     def find_spec(
         self, fullname: str, _path: Sequence[str] | None, _target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """Return where an alias is loaded from; None for any other module."""
+        """Return the specification of an alias, or None for any other module."""
         return ModuleSpec(fullname, _Alias()) if fullname in ALIASES else None
 
 
 def install() -> None:
-    """Make the aliases known to ``import``."""
+    """Make ``import`` recognise the aliases."""
     if not any(isinstance(finder, _Finder) for finder in sys.meta_path):
         sys.meta_path.append(_Finder())

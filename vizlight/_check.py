@@ -1,4 +1,7 @@
-"""Validators: every message says name, expected, got and, where there is one, the remedy."""
+"""Validators, whose messages have the name, the expectation, the actual value and a remedy.
+
+They raise TypeError for a value of the wrong type, ValueError for a wrong shape or value.
+"""
 
 from __future__ import annotations
 
@@ -13,14 +16,14 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from vizlight._types import Array, Color, Vector
+    from vizlight._types import Array, Color, Indices, Vector
 
-#: The largest intensity, coefficient or power: products of three fit float32.
+#: Largest intensity, coefficient or power: the product of three of them fits float32.
 LARGEST = 1e9
 
 
 def warn(text: str) -> None:
-    """Warn at the line outside this package that called it."""
+    """Issue a warning that points at the caller's line outside this package."""
     level, frame = 2, sys._getframe(1)
     while frame.f_back and frame.f_globals.get("__name__", "").partition(".")[0] == "vizlight":
         level, frame = level + 1, frame.f_back
@@ -28,14 +31,22 @@ def warn(text: str) -> None:
 
 
 def message(name: str, expected: str, got: object, remedy: str = "") -> str:
-    """Return ``name: expected ..., got ...; remedy`` on one line."""
+    """Return ``name: expected ..., got ...; remedy`` on one line, with arrays described."""
+    got = describe(got) if isinstance(got, np.ndarray) else got
     text = f"{name}: expected {expected}, got {got}"
     return f"{text}; {remedy}" if remedy else text
 
 
 def one_of(names: Sequence[str]) -> str:
-    """Return ``one of`` some names, for an error message, or that there is none."""
-    return f"one of {list(names)}" if names else "of which there is none"
+    """Return the names that the user may choose from, as part of an error message."""
+    return f"one of {list(names)}" if names else "but the mesh has none"
+
+
+def choice(name: str, value: object, allowed: Sequence[str]) -> None:
+    """Check that a value is one of the allowed strings."""
+    if value not in allowed:
+        *others, last = (repr(text) for text in allowed)
+        raise ValueError(message(name, f"{', '.join(others)} or {last}", describe(value)))
 
 
 def describe(value: object) -> str:
@@ -44,24 +55,22 @@ def describe(value: object) -> str:
         return f"an array of shape {value.shape} and type {value.dtype}"
     try:
         text = " ".join(repr(value).split())
-    except ValueError:  # Python writes no integer of more than 4300 digits
+    except ValueError:  # Python does not print integers of more than 4300 digits
         kind = "an integer" if isinstance(value, int) else "a number"
-        text = f"{kind} of more digits than can be written"
+        text = f"{kind} of more digits than Python prints"
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 def floats(name: str, value: object) -> Array:
-    """Return ``value`` as a floating array; integers become float64, half becomes float32.
+    """Return ``value`` as a floating-point array.
 
-    Raises
-    ------
-    TypeError
-        If the value does not hold real numbers.
+    Integers and booleans become float64 and float16 becomes float32; float32 and float64 stay.
     """
     try:
         array = np.asarray(value)
     except ValueError as error:
-        raise TypeError(message(name, "numbers of one shape", describe(value))) from error
+        expected = "numbers in rows of equal length"
+        raise TypeError(message(name, expected, describe(value))) from error
     if array.dtype.kind in "iub":
         return array.astype(np.float64)
     if array.dtype.kind != "f":
@@ -72,41 +81,29 @@ def floats(name: str, value: object) -> Array:
 
 
 def vectors(name: str, value: object, *, n: int | None = None) -> Array:
-    """Return ``value`` as floats of shape (..., n) with n of at least 2.
-
-    Raises
-    ------
-    TypeError
-        If the value does not hold real numbers.
-    ValueError
-        If the last axis has another length.
-    """
+    """Return ``value`` as a floating-point array of shape (..., n), where n is at least 2."""
     array = floats(name, value)
     if n is not None and (array.ndim == 0 or array.shape[-1] != n):
-        raise ValueError(message(name, f"vectors of shape (..., {n})", describe(array)))
+        raise ValueError(message(name, f"vectors of shape (..., {n})", array))
     if array.ndim == 0 or array.shape[-1] < 2:
-        raise ValueError(
-            message(name, "vectors of shape (..., n), n of 2 or more", describe(array))
-        )
+        raise ValueError(message(name, "vectors of shape (..., n) with n of 2 or more", array))
     return array
 
 
-def number(
-    name: str,
-    value: object,
-    *,
-    low: float = -math.inf,
-    high: float = math.inf,
-) -> float:
-    """Return ``value`` as a finite float in the closed range [low, high].
+def cells(name: str, value: object, count: int, sizes: Sequence[int]) -> Indices:
+    """Return ``value`` as cells: rows of indices of ``count`` points, of one of some sizes."""
+    array = np.asarray(value)
+    if array.ndim != 2 or array.shape[1] not in sizes or array.dtype.kind not in "iu":
+        shapes = " or ".join(f"(M, {size})" for size in sizes)
+        raise ValueError(message(name, f"integers of shape {shapes}", array))
+    if array.size and not 0 <= array.min() <= array.max() < count:
+        got = f"{array.min()} to {array.max()}"
+        raise ValueError(message(name, f"indices of points from 0 to {count - 1}", got))
+    return array
 
-    Raises
-    ------
-    TypeError
-        If the value is not one real number.
-    ValueError
-        If it is outside the range, infinite or NaN.
-    """
+
+def number(name: str, value: object, *, low: float = -math.inf, high: float = math.inf) -> float:
+    """Return ``value`` as a finite float in the closed range [low, high]."""
     if isinstance(value, np.ndarray) and value.ndim == 0:
         value = value.item()
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
@@ -120,16 +117,16 @@ def number(
     return result
 
 
-def integer(name: str, value: object, *, low: int) -> int:
-    """Return ``value`` as an int of at least ``low``.
+def positive(name: str, value: object, *, high: float = math.inf) -> float:
+    """Return ``value`` as a finite float above 0 and not above ``high``."""
+    result = number(name, value, low=0.0, high=high)
+    if result == 0:
+        raise ValueError(message(name, "a number above 0", describe(value)))
+    return result
 
-    Raises
-    ------
-    TypeError
-        If the value is not an integer.
-    ValueError
-        If it is less than ``low``.
-    """
+
+def integer(name: str, value: object, *, low: int) -> int:
+    """Return ``value`` as an int of at least ``low``."""
     if isinstance(value, bool) or not isinstance(value, numbers.Integral):
         raise TypeError(message(name, "an integer", describe(value)))
     if value < low:
@@ -140,21 +137,14 @@ def integer(name: str, value: object, *, low: int) -> int:
 def vector(name: str, value: object, *, direction: bool = False) -> Vector:
     """Return one finite vector as a tuple of floats.
 
-    With ``direction=True`` its length must not be zero; it is returned as it came.
-
-    Raises
-    ------
-    TypeError
-        If the value does not hold real numbers.
-    ValueError
-        If it is not one vector of at least 2 components, is not finite, or is a zero direction.
+    With ``direction=True`` the vector must not be zero; it is not normalised.
     """
     array = vectors(name, value)
     if array.ndim != 1:
-        raise ValueError(message(name, "one vector of n components", describe(array)))
+        raise ValueError(message(name, "one vector of n components", array))
     result = tuple(float(x) for x in array)
     if not all(math.isfinite(x) for x in result):
-        remedy = "a light or eye at infinity is given by direction=" if "position" in name else ""
+        remedy = "for a light or an eye at infinity pass direction=" if "position" in name else ""
         raise ValueError(message(name, "finite components", result, remedy))
     if direction and not any(result):
         raise ValueError(message(name, "a direction of non-zero length", result))
@@ -162,19 +152,14 @@ def vector(name: str, value: object, *, direction: bool = False) -> Vector:
 
 
 def optional_vector(name: str, value: object, *, direction: bool = False) -> Vector | None:
-    """Return :func:`vector` of a value, or None."""
+    """Return None for None, and otherwise the value as a :func:`vector`."""
     return None if value is None else vector(name, value, direction=direction)
 
 
 def color(name: str, value: object) -> Color | None:
-    """Return three channels from numbers, a colour's name or hex, a ``pyvista.Color``, or None.
+    """Return the three channels of a colour, or None for None.
 
-    Raises
-    ------
-    TypeError
-        If the value does not hold real numbers.
-    ValueError
-        If it is no colour.
+    A colour is three numbers, a name, a hexadecimal string or a ``pyvista.Color``.
     """
     if value is None:
         return None
@@ -184,9 +169,8 @@ def color(name: str, value: object) -> Color | None:
         try:
             value = pv.Color(value).float_rgb
         except ValueError as error:
-            raise ValueError(
-                message(name, "a colour's name, '#rrggbb' or (r, g, b)", repr(value))
-            ) from error
+            expected = "a colour's name, '#rrggbb' or (r, g, b)"
+            raise ValueError(message(name, expected, describe(value))) from error
     return rgb(name, getattr(value, "float_rgb", value))
 
 
@@ -199,14 +183,10 @@ def instance(
     home: str = "",
     remedy: str = "",
 ) -> None:
-    """Check that a value is of one of this package's classes, or None where that may be.
+    """Check that a value is an instance of a class of this package.
 
-    ``home`` is the public module of a class that is not at the package's top.
-
-    Raises
-    ------
-    TypeError
-        If it is not.
+    With ``optional=True`` None is allowed too. ``home`` is the public module that holds the
+    class, if the package itself does not export it.
     """
     if not (isinstance(value, kind) or (optional and value is None)):
         where = f"vizlight.{home}." if home else "vizlight."
@@ -215,31 +195,18 @@ def instance(
 
 
 def set_fields(frozen: object, **values: object) -> None:
-    """Set the validated fields of a frozen dataclass that is being made."""
+    """Set validated fields of a frozen dataclass while it is being constructed."""
     for name, value in values.items():
         object.__setattr__(frozen, name, value)
 
 
 def rgb(name: str, value: object) -> Color:
-    """Return a colour as three linear channels from 0 to 1.
-
-    Raises
-    ------
-    TypeError
-        If the value does not hold real numbers.
-    ValueError
-        If there are not three, or one is not from 0 to 1.
-    """
+    """Return a colour as three linear channels from 0 to 1."""
     array = floats(name, value)
     if array.shape != (3,) or not np.all((array >= 0) & (array <= 1)):
-        raise ValueError(
-            message(
-                name,
-                "three channels (r, g, b) from 0 to 1",
-                describe(value),
-                "divide bytes by 255; intensity= makes light brighter",
-            )
-        )
+        remedy = "divide bytes by 255; brighten a light with intensity="
+        expected = "three channels (r, g, b) from 0 to 1"
+        raise ValueError(message(name, expected, describe(value), remedy))
     r, g, b = (float(x) for x in array)
     return r, g, b
 

@@ -1,4 +1,4 @@
-"""Where tables are printed."""
+"""The console that tables are printed on."""
 
 from __future__ import annotations
 
@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from rich.console import Console
 
-#: Characters in a line of a file or a pipe, which has no width of its own.
+#: Characters per line where the output is a file or a pipe, which has no width of its own.
 WIDTH = 140
 
 
 def console() -> Console:
-    """Return a console as wide as the terminal, or wide enough for a table where there is none."""
+    """Return a console as wide as the terminal, or ``WIDTH`` wide where there is no terminal."""
     from rich.console import Console
 
-    own = Console()
-    return own if own.is_terminal else Console(width=WIDTH)
+    # Brackets in the text, such as those of an extra of a package, are not markup.
+    own = Console(markup=False)
+    return own if own.is_terminal else Console(width=WIDTH, markup=False)

@@ -1,4 +1,4 @@
-"""Threads for work in blocks: results in order, a few blocks ahead of the reader."""
+"""A thread pool that yields the results of blocks in order and limits how many wait to be read."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ if TYPE_CHECKING:
 
 
 def blocks(count: int, size: int) -> list[slice]:
-    """Cut ``count`` rows into slices of at most ``size``."""
+    """Return slices of at most ``size`` rows that together cover ``count`` rows."""
     return [slice(i, min(i + size, count)) for i in range(0, count, size)]
 
 
 def workers(threads: int | None) -> int:
-    """Return the number of threads asked for, or of processors that this process may use."""
+    """Return ``threads``, or for None the number of processors that this process may use."""
     if threads is not None:
         return _check.integer("threads", threads, low=1)
     try:
         return len(os.sched_getaffinity(0))
-    except AttributeError:  # not on macOS and Windows
+    except AttributeError:  # macOS and Windows lack this function
         return os.cpu_count() or 1
 
 
 def run(work: Callable[[slice], int], parts: list[slice], threads: int | None) -> Iterator[int]:
-    """Yield what work returns for each part, in order."""
+    """Yield the result of ``work`` for each part, in the order of the parts."""
     count = min(workers(threads), len(parts))
     if count <= 1:
         yield from map(work, parts)

@@ -1,4 +1,4 @@
-"""A progress bar for long work, on standard error, where the caller asks for one."""
+"""A progress bar on standard error, shown where the caller asks for one."""
 
 from __future__ import annotations
 
@@ -8,12 +8,10 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    Report = Callable[[int, int], None]
-
 
 @contextlib.contextmanager
 def progress(what: str, total: int, *, show: bool) -> Iterator[Callable[[int], None]]:
-    """Yield a function that takes how much is done of a total."""
+    """Yield a function that takes the amount of work done so far, out of ``total``."""
     if not show:
         yield lambda _: None
         return

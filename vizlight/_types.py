@@ -1,4 +1,4 @@
-"""Types that annotations share."""
+"""Type aliases that the annotations of the package share."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from typing import Protocol, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-#: Real numbers of float32 or float64.
+#: Real numbers, float32 or float64.
 Array: TypeAlias = NDArray[np.floating]
 Bools: TypeAlias = NDArray[np.bool_]
 Indices: TypeAlias = NDArray[np.intp]
-#: What may come from a user where real numbers are expected; complex numbers serve derivatives.
+#: Real or complex numbers; complex ones appear in derivatives by the complex step.
 Numbers: TypeAlias = NDArray[np.number]
 
 Vector: TypeAlias = tuple[float, ...]
@@ -21,11 +21,11 @@ Color: TypeAlias = tuple[float, float, float]
 
 
 class HasChannels(Protocol):
-    """A colour object, such as ``pyvista.Color``."""
+    """Object with the channels of a colour, such as ``pyvista.Color``."""
 
     @property
     def float_rgb(self) -> tuple[float, float, float]:
-        """Red, green and blue from 0 to 1."""
+        """Red, green and blue channels from 0 to 1."""
 
 
 ColorLike: TypeAlias = str | VectorLike | HasChannels

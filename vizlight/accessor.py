@@ -1,13 +1,12 @@
-"""``mesh.vizlight``: the filters as methods of every PyVista mesh.
+"""The accessor ``mesh.vizlight``: the filters as methods of every PyVista mesh.
 
-Installed as an entry point of PyVista, so that no import is needed.
+It is registered as an entry point of PyVista, so it is available without importing vizlight.
 """
 
 from __future__ import annotations
 
 import functools
-import inspect
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
 
 import pyvista as pv
 
@@ -18,25 +17,29 @@ if TYPE_CHECKING:
 
 __all__ = ["Accessor"]
 
+Options = ParamSpec("Options")
+Result = TypeVar("Result")
 
-def _method(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a filter as a method: signature and documentation are the filter's."""
+
+def _method(
+    function: Callable[Concatenate[Any, Options], Result],
+) -> Callable[Concatenate[Accessor, Options], Result]:
+    """Return a filter as a method with the signature and the documentation of the filter."""
 
     @functools.wraps(function)
-    def method(self: Accessor, *arguments: Any, **options: Any) -> Any:
-        return function(self._mesh, *arguments, **options)
+    def method(self: Accessor, /, *args: Options.args, **kwargs: Options.kwargs) -> Result:
+        return function(self._mesh, *args, **kwargs)
 
-    mesh, *others = inspect.signature(function).parameters.values()
-    method.__signature__ = inspect.Signature([mesh.replace(name="self"), *others])  # type: ignore[attr-defined]
     return method
 
 
 @pv.register_dataset_accessor("vizlight", pv.DataObject)
 class Accessor:
-    """The filters of vizlight on one mesh."""
+    """Methods that apply the filters of vizlight to one mesh."""
 
-    def __init__(self, mesh: Any) -> None:
-        self._mesh = mesh
+    def __init__(self, mesh: pv.DataObject) -> None:
+        # Each filter checks the kind of mesh that it takes.
+        self._mesh: Any = mesh
 
     def __repr__(self) -> str:
         known = ", ".join(name for name in dir(type(self)) if name[0] != "_")

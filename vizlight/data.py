@@ -1,34 +1,41 @@
-"""The data that come with the package; ``datasets/README.md`` tells where they are from."""
+"""Data sets of the package; ``datasets/README.md`` names their sources."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from vizlight import _check
+
+if TYPE_CHECKING:
+    import pyvista as pv
 
 __all__ = ["example_path", "load_example"]
 
 
 def _folder() -> Path:
     package = Path(__file__).parent
-    # In a wheel the data are inside the package, in a checkout beside it.
+    # The data are inside the package in a wheel, and next to it in a checkout.
     inside, beside = package / "datasets", package.parent / "datasets"
     return inside if inside.is_dir() else beside
 
 
 def example_path(name: str = "rotating_disk.vtu") -> Path:
-    """Return the path of an embedded data set.
+    """Return the path of a data set of the package.
 
     Parameters
     ----------
     name : str, default: "rotating_disk.vtu"
-        The file's name.
+        Name of the file.
+
+    Returns
+    -------
+    pathlib.Path
 
     Raises
     ------
     ValueError
-        If there is no such data set.
+        If there is no data set of that name.
     """
     names = sorted(p.name for p in _folder().glob("*.vt?"))
     if name not in names:
@@ -36,13 +43,13 @@ def example_path(name: str = "rotating_disk.vtu") -> Path:
     return _folder() / name
 
 
-def load_example(name: str = "rotating_disk.vtu") -> Any:
-    """Return an embedded data set as a PyVista mesh.
+def load_example(name: str = "rotating_disk.vtu") -> pv.DataSet:
+    """Return a data set of the package as a PyVista mesh.
 
     Parameters
     ----------
     name : str, default: "rotating_disk.vtu"
-        The file's name; "fibre_bundle.vtp" and "earth_relief.vti" are others.
+        Name of the file; other files are "fibre_bundle.vtp" and "earth_relief.vti".
 
     Returns
     -------
@@ -51,8 +58,10 @@ def load_example(name: str = "rotating_disk.vtu") -> Any:
     Raises
     ------
     ValueError
-        If there is no such data set.
+        If there is no data set of that name.
     """
     import pyvista as pv
 
-    return pv.read(example_path(name))
+    mesh = pv.read(example_path(name))
+    assert isinstance(mesh, pv.DataSet)
+    return mesh

@@ -1,9 +1,9 @@
-"""The main job, from a file to a picture: light an isosurface of a real flow by its velocity."""
+"""Demonstration from file to picture: light an isosurface of a simulated flow by its velocity."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +15,11 @@ from vizlight.scene import Light, Scene, View
 from vizlight.shading import engine
 from vizlight.studies import reference
 
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import pyvista as pv
+
 LEVEL = 600.0
 EYE = (1.0, 0.5, 0.45)
 TOWARD_LIGHT = (1.0, 0.9, 0.5)
@@ -22,7 +27,7 @@ TOWARD_LIGHT = (1.0, 0.9, 0.5)
 
 @dataclass(frozen=True)
 class Row:
-    """One line of the demo's table."""
+    """Row of the table of the demonstration."""
 
     light: str
     points: int
@@ -31,20 +36,27 @@ class Row:
     error: float
 
 
-def flow_surface() -> Any:
+def flow_surface() -> pv.PolyData:
     """Return the isosurface Temp = 600 of the rotating disk, with normals and velocity ``V``.
 
-    Each triangle is split in 16, so that normals and velocities, interpolated and made unit
-    again, give a highlight that the coarse triangles of the simulation cannot.
+    Each triangle is divided into 16, because the triangles of the simulation are too coarse for
+    a highlight. Normals and velocities are interpolated.
     """
     surface = files.surface_of(load_example(), "Temp", LEVEL).compute_normals(
         cell_normals=False, split_vertices=False, auto_orient_normals=True
     )
-    return surface.triangulate().subdivide(2, "linear")
+    fine: pv.PolyData = surface.triangulate().subdivide(2, "linear")
+    return fine
 
 
-def flow_scene(bounds: Any) -> tuple[Scene, Any]:
-    """Return the scene of the demo, and the camera that its view is taken from."""
+def flow_scene(bounds: Sequence[float]) -> tuple[Scene, pv.Camera]:
+    """Return the scene of the demonstration and the camera of its view.
+
+    Parameters
+    ----------
+    bounds : (xmin, xmax, ymin, ymax, zmin, zmax)
+        Bounds of the surface.
+    """
     camera = render.camera_on(bounds, EYE, zoom=1.5)
     scene = Scene(
         lights=Light(direction=TOWARD_LIGHT),
@@ -53,8 +65,8 @@ def flow_scene(bounds: Any) -> tuple[Scene, Any]:
     return scene, camera
 
 
-def light_flow() -> tuple[Any, Any, list[Row], str]:
-    """Return the lit surface, its camera, the table and the plan of the flow's light in words."""
+def light_flow() -> tuple[pv.PolyData, pv.Camera, list[Row], str]:
+    """Return the lit surface, its camera, the table, and the explained plan of the flow's light."""
     surface = flow_surface()
     scene, camera = flow_scene(surface.bounds)
     points, normals = np.asarray(surface.points), np.asarray(surface["Normals"])
@@ -76,8 +88,8 @@ def light_flow() -> tuple[Any, Any, list[Row], str]:
     return surface, camera, rows, plan.explain()
 
 
-def panels(lit: Any) -> list[render.Panel]:
-    """Return the demo's two pictures: the surface's light beside the flow's."""
+def panels(lit: pv.PolyData) -> list[render.Panel]:
+    """Return the two panels of the demonstration: light of the surface, and light of the flow."""
     return [
         render.Panel(lit, "surface_light", "lit as a surface"),
         render.Panel(lit, "flow_light", "lit by the flow"),

@@ -1,4 +1,4 @@
-"""Meshes from and to files: clear errors in, whole files out."""
+"""Reading and writing of meshes: readers with clear errors, writers that leave no partial file."""
 
 from __future__ import annotations
 
@@ -10,20 +10,22 @@ import sys
 import tempfile
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.mesh import point_arrays
+from vizlight.mesh import hull
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    from numpy.typing import NDArray
+
 __all__ = ["FileError", "read_mesh", "surface_of", "warped", "write_mesh"]
 
-#: File formats that keep point and field arrays, by kind of mesh.
+#: File formats that keep point and field arrays, by type of mesh.
 FORMATS: dict[str, tuple[str, ...]] = {
     "PolyData": (".vtp", ".vtk", ".vtu"),
     "UnstructuredGrid": (".vtu", ".vtk"),
@@ -35,15 +37,16 @@ SUFFIXES = tuple(dict.fromkeys(suffix for kind in FORMATS.values() for suffix in
 
 
 class FileError(ValueError):
-    """A file that cannot be read or written as asked."""
+    """A file cannot be read or written."""
 
 
-def read_mesh(path: str | Path, /) -> Any:
+def read_mesh(path: str | Path, /) -> pv.DataSet:
     """Read a mesh from any file that PyVista reads; several blocks become one grid.
 
     Parameters
     ----------
     path : path
+        Path of the file.
 
     Returns
     -------
@@ -52,26 +55,26 @@ def read_mesh(path: str | Path, /) -> Any:
     Raises
     ------
     FileError
-        If there is no such file, PyVista does not read it, or it holds no points.
+        If the file does not exist, PyVista cannot read it, or it has no points.
     """
     path = Path(path)
     if not path.is_file():
-        what = "a folder" if path.is_dir() else "nothing there"
+        what = "a folder" if path.is_dir() else "no such file"
         raise FileError(_check.message("file", "a file", f"'{path}' ({what})"))
     if not os.access(path, os.R_OK):
-        raise FileError(_check.message("file", "a file that may be read", f"'{path}'"))
+        raise FileError(_check.message("file", "a readable file", f"'{path}'"))
     reason = "no points"
-    with _quiet() as said, warnings.catch_warnings():
+    mesh: pv.DataSet | None = None
+    with _captured_errors() as errors, warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
-            mesh: Any = pv.read(path)
-            if isinstance(mesh, pv.MultiBlock):
-                mesh = _one_grid(mesh)
-        except Exception as error:  # noqa: BLE001 - readers raise whatever they like
-            mesh, reason = None, f"{type(error).__name__}: {_first_line(error)}"
+            read = pv.read(path)
+            mesh = _one_grid(read) if isinstance(read, pv.MultiBlock) else read
+        except Exception as error:  # noqa: BLE001 - readers raise exceptions of any type
+            reason = f"{type(error).__name__}: {_first_line(error)}"
     if not isinstance(mesh, pv.DataSet) or mesh.n_points == 0:
-        if said and reason == "no points":
-            reason = f"no points: {said[0]}"
+        if errors and reason == "no points":
+            reason = f"no points: {errors[0]}"
         raise FileError(_check.message("file", "a mesh that PyVista reads", f"'{path}' ({reason})"))
     return mesh
 
@@ -80,8 +83,8 @@ def _first_line(error: Exception) -> str:
     return next((line.strip() for line in str(error).splitlines() if line.strip()), "no reason")
 
 
-def _one_grid(blocks: pv.MultiBlock) -> Any:
-    """Return the cells of highest dimension of all blocks: a volume leaves its side sets out."""
+def _one_grid(blocks: pv.MultiBlock) -> pv.UnstructuredGrid:
+    """Return the cells of the highest dimension of all blocks, without side sets of a volume."""
     grid = blocks.combine()
     dimension = {kind: grid.GetCell(index).GetCellDimension() for kind, index in _samples(grid)}
     highest = max(dimension.values(), default=0)
@@ -90,61 +93,69 @@ def _one_grid(blocks: pv.MultiBlock) -> Any:
         grid = grid.extract_cells(
             np.isin(grid.celltypes, keep), pass_point_ids=False, pass_cell_ids=False
         )
-    return grid
+    result: pv.UnstructuredGrid = grid
+    return result
 
 
 def _samples(grid: pv.UnstructuredGrid) -> Iterator[tuple[int, int]]:
-    """Yield every type of cell with the index of one such cell."""
+    """Yield each cell type with the index of one cell of that type."""
     kinds, first = np.unique(grid.celltypes, return_index=True)
     yield from zip(kinds.tolist(), first.tolist(), strict=True)
 
 
 @contextlib.contextmanager
-def _quiet() -> Iterator[list[str]]:
-    """Catch what C and C++ readers print on standard error; afterwards the errors among it."""
-    said: list[str] = []
+def _captured_errors() -> Iterator[list[str]]:
+    """Capture the standard error of C and C++ readers; the list holds VTK's errors afterwards."""
+    errors: list[str] = []
     sys.stderr.flush()
     with tempfile.TemporaryFile() as sink:
         kept = os.dup(2)
         os.dup2(sink.fileno(), 2)
         try:
-            yield said
+            yield errors
         finally:
             sys.stderr.flush()
             os.dup2(kept, 2)
             os.close(kept)
             sink.seek(0)
             text = sink.read().decode(errors="replace")
-            said += re.findall(r"ERR\|.*\(0x[0-9a-f]+\): ([^\x1b\n]+)", text)
+            errors += re.findall(r"ERR\|.*\(0x[0-9a-f]+\): ([^\x1b\n]+)", text)
 
 
-def surface_of(mesh: Any, /, contour: str | None = None, level: float | None = None) -> Any:
-    """Return an isosurface of a mesh, or without a contour its outer surface.
+def surface_of(
+    mesh: pv.DataSet, /, contour: str | None = None, level: float | None = None
+) -> pv.PolyData:
+    """Return an isosurface of a mesh, or its outer surface if no contour is given.
 
     Parameters
     ----------
     mesh : pyvista.DataSet
+        Mesh, which is not changed.
     contour : str, optional
-        A point array of one component.
+        Name of a point array of one component.
     level : float, optional
-        Default: the middle of the array's range.
+        Value of the array on the isosurface. Default: the middle of its range.
+
+    Returns
+    -------
+    pyvista.PolyData
 
     Raises
     ------
     ValueError
-        If there is no such array, or nothing lies at the level.
+        If the array does not exist, or the isosurface is empty.
     """
     if contour is None:
         if isinstance(mesh, pv.PolyData):
             return mesh
-        return point_arrays.outer_surface(mesh)[0]
+        return hull.outer_surface(mesh)[0]
     values = _scalars(mesh, "contour", contour)
     finite = values[np.isfinite(values)]
     if not finite.size:
         raise ValueError(_check.message("contour", "an array with finite values", repr(contour)))
     low, high = float(finite.min()), float(finite.max())
     level = (low + high) / 2 if level is None else _check.number("level", level)
-    found = mesh.contour([level], scalars=contour)
+    found: pv.PolyData = mesh.contour([level], scalars=contour)
     if not found.n_points:
         raise ValueError(
             _check.message("level", f"a value between {low:g} and {high:g}", f"{level:g}")
@@ -152,27 +163,34 @@ def surface_of(mesh: Any, /, contour: str | None = None, level: float | None = N
     return found
 
 
-def warped(mesh: Any, name: str, factor: float, /) -> Any:
-    """Return a mesh whose points are raised by a point array of one component.
+def warped(mesh: pv.DataSet, name: str, factor: float, /) -> pv.DataSet:
+    """Return a mesh whose points are displaced by a point array of one component.
 
     Parameters
     ----------
     mesh : pyvista.DataSet
+        Mesh, which is not changed.
     name : str
-        Of the array, in the unit of height.
+        Name of the array of heights.
     factor : float
-        Lengths of the mesh in a unit of height.
+        Length in the unit of the mesh that corresponds to one unit of height.
+
+    Returns
+    -------
+    pyvista.DataSet
 
     Raises
     ------
     ValueError
-        If there is no such array, or the factor is not finite.
+        If the array does not exist, or the factor is not finite.
     """
     _scalars(mesh, "warp", name)
-    return mesh.warp_by_scalar(name, factor=_check.number("warp_factor", factor))
+    moved: pv.DataSet = mesh.warp_by_scalar(name, factor=_check.number("warp_factor", factor))
+    return moved
 
 
-def _scalars(mesh: Any, argument: str, name: str) -> Any:
+def _scalars(mesh: pv.DataSet, argument: str, name: str) -> NDArray[np.generic]:
+    """Return a point array of one component, or raise an error that names the argument."""
     data = mesh.point_data
     if name in data and data[name].ndim == 1:
         return data[name]
@@ -181,19 +199,30 @@ def _scalars(mesh: Any, argument: str, name: str) -> Any:
         got = f"{name!r} with {data[name].shape[1]} components"
     elif name in mesh.cell_data:
         got = f"the cell array {name!r}"
-    there = [key for key in data if data[key].ndim == 1]
+    known = [key for key in data if data[key].ndim == 1]
     remedy = "average it to the points" if name in mesh.cell_data else ""
-    expected = f"a point array of one component, {_check.one_of(there)}"
+    expected = f"a point array of one component, {_check.one_of(known)}"
     raise ValueError(_check.message(argument, expected, got, remedy))
 
 
 def check_output(path: str | Path, /, formats: tuple[str, ...]) -> Path:
-    """Return the path of a file that is yet to be written, if it can be.
+    """Return the path of an output file, if the file can be written.
+
+    Parameters
+    ----------
+    path : path
+        Path of the file.
+    formats : tuple of str
+        Allowed file name extensions, each with its dot.
+
+    Returns
+    -------
+    pathlib.Path
 
     Raises
     ------
     FileError
-        If the ending is not of a known format, or the folder is missing or not writable.
+        If the extension is not allowed, or the folder is missing or not writable.
     """
     path = Path(path)
     if path.suffix.lower() not in formats:
@@ -206,17 +235,17 @@ def check_output(path: str | Path, /, formats: tuple[str, ...]) -> Path:
         raise FileError(_check.message("output", "a file", f"the folder '{path}'"))
     if not os.access(path.parent, os.W_OK):
         got = f"'{path.parent}', which is read-only"
-        raise FileError(_check.message("output", "a folder that can be written to", got))
+        raise FileError(_check.message("output", "a writable folder", got))
     return path
 
 
-def check_format(mesh: Any, path: str | Path, /) -> Path:
-    """Return the path, if its ending is of a format that holds such a mesh.
+def check_format(mesh: pv.DataSet, path: str | Path, /) -> Path:
+    """Return the path, if its extension is that of a format for this type of mesh.
 
     Raises
     ------
     FileError
-        If it is not.
+        If the format does not support the type of mesh.
     """
     path, kind = Path(path), type(mesh).__name__
     formats = FORMATS[kind]
@@ -226,27 +255,29 @@ def check_format(mesh: Any, path: str | Path, /) -> Path:
     return path
 
 
-def write_mesh(mesh: Any, path: str | Path, /) -> Path:
-    """Write a mesh with its arrays, whole or not at all.
+def write_mesh(mesh: pv.DataSet, path: str | Path, /) -> Path:
+    """Write a mesh with its arrays; no partial file is left.
 
     Parameters
     ----------
     mesh : pyvista.DataSet
+        Mesh to write.
     path : path
-        Its ending, one of .vtp, .vtu, .vtk, .vts, .vti and .vtr, is the format; its folder must
-        exist. A file that is there is replaced.
+        Path of the file, in an existing folder. Its extension, one of .vtp, .vtu, .vtk, .vts,
+        .vti and .vtr, determines the format. An existing file is replaced.
 
     Returns
     -------
     pathlib.Path
+        Path of the file.
 
     Raises
     ------
     FileError
-        If the format does not hold such a mesh, or the file cannot be written.
+        If the format does not support the type of mesh, or the file cannot be written.
     """
     path = check_format(mesh, path)
-    # VTK's writers end the process where the disk is full.
+    # VTK's writers terminate the process if the disk is full.
     needed, free = mesh.actual_memory_size * 1024, shutil.disk_usage(path.parent).free
     if needed > free:
         got = f"{free / 1e6:.1f} MB in '{path.parent}'"
@@ -257,7 +288,19 @@ def write_mesh(mesh: Any, path: str | Path, /) -> Path:
 
 
 def replace_file(path: Path, write: Callable[[str], object]) -> Path:
-    """Write a file in a folder of its own and move it to its place: whole, or not at all.
+    """Write a file in a temporary folder and move it to its path, so that no partial file is left.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Path of the file. An existing file is replaced.
+    write : callable
+        Function that writes the file to a path given as a string.
+
+    Returns
+    -------
+    pathlib.Path
+        Path of the file.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Formulas as MathML, which browsers draw by themselves: pages need no network and no script."""
+"""Formulas as MathML, which browsers render without a network and without a script."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from docutils.utils.math.latex2mathml import tex2mathml
 
 
 def inline(visitor, node):
-    """Write a formula within a line."""
+    """Write an inline formula."""
     visitor.body.append(tex2mathml(node.astext()))
     raise nodes.SkipNode
 
 
 def block(visitor, node):
-    """Write a formula of its own."""
+    """Write a displayed formula."""
     visitor.body.append(f'<div class="formula">{tex2mathml(node.astext(), as_block=True)}</div>')
     raise nodes.SkipNode
 

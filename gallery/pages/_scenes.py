@@ -1,7 +1,7 @@
-"""What the scripts draw: pictures, their thumbnails, and scenes that can be turned.
+"""The output of the scripts: pictures, their thumbnails, and interactive scenes.
 
-PyVista's own viewer fetches its scene, which browsers refuse for files on disk, so each scene is
-written into a page of its own instead, together with the viewer.
+PyVista's own viewer fetches its scene, which browsers do not allow for files on disk. Each scene is
+therefore written together with the viewer into a page of its own.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from pyvista.plotting.utilities.sphinx_gallery import generate_images
 from sphinx_gallery.scrapers import figure_rst, matplotlib_scraper
 from trame_vtk.tools.vtksz2html import embed_data_to_viewer_file
 
-#: The scripts with a scene: one view of one mesh, of a few megabytes.
+#: Scripts with an interactive scene: one view of one mesh, of a few megabytes.
 INTERACTIVE = ("plot_flow", "plot_carotid", "plot_fibres", "plot_complex_curve")
 
-# Lines and flows, then surfaces, 4-space, terrain, laws and their errors; what is not named here
-# comes last.
+# Lines and flows, then surfaces, terrain, 4-space, formulas and their errors; scripts that are not
+# listed come last.
 ORDER = [
     "plot_flow", "plot_carotid", "plot_lines", "plot_tubes", "plot_fibres", "plot_satin",
     "plot_fur", "plot_ambient", "plot_depth_cue", "plot_attenuation", "plot_terrain_day",
@@ -30,7 +30,7 @@ ORDER = [
     "plot_isoluminance_speed",
 ]  # fmt: skip
 
-#: What of a wide picture its thumbnail shows: left, top, right and bottom of 1.
+#: Part of a wide picture that its thumbnail shows: left, top, right and bottom as shares of 1.
 PARTS = {
     "plot_bas_relief": (0.335, 0.05, 0.665, 0.95),
     "plot_carotid": (0.08, 0.12, 0.92, 0.88),
@@ -61,7 +61,7 @@ PARTS = {
 
 
 class Order:
-    """Place scripts as ``ORDER`` has them."""
+    """Sort scripts in the order of ``ORDER``."""
 
     def __init__(self, folder):
         self.folder = folder
@@ -78,19 +78,19 @@ _export = pv.Plotter._trame_component
 
 
 def reset(_conf, script):
-    """Leave scenes away from scripts without one: PyVista would export each in vain."""
+    """Disable the export of scenes for scripts that show none: it takes time."""
 
     def none(_plotter):
-        raise ImportError("no scene is wanted")
+        raise ImportError("this script has no interactive scene")
 
     pv.close_all()
     pv.Plotter._trame_component = _export if Path(script).stem in INTERACTIVE else none
 
 
 def scrape(block, block_vars, gallery_conf):
-    """Return reST for what a block of a script has drawn: its pictures and scenes."""
+    """Return reST for the pictures and scenes that a block of a script has drawn."""
     if plt.get_fignums():
-        # A chart: what its study has drawn is not to be shown.
+        # The script shows a chart; what its study has drawn is not shown.
         pv.close_all()
         return matplotlib_scraper(block, block_vars, gallery_conf)
     names = generate_images(block_vars["image_path_iterator"], dynamic=True)
@@ -124,7 +124,7 @@ def _tabs(name, source):
 
 
 def cut_thumbnails(app):
-    """Make thumbnails of parts of pictures that would be too small as a whole."""
+    """Crop thumbnails of pictures that would be too small as a whole."""
     folder = Path(app.srcdir) / "examples" / "images"
     size = app.config.sphinx_gallery_conf["thumbnail_size"]
     for script, part in PARTS.items():
@@ -138,6 +138,6 @@ def cut_thumbnails(app):
 
 
 def setup(app):
-    """Register with Sphinx, after the gallery's own work."""
+    """Register with Sphinx, after the gallery is generated."""
     app.connect("builder-inited", cut_thumbnails, priority=900)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,4 +1,4 @@
-"""The pages of the studies: each is run, quickly, by the machine that builds the pages."""
+"""The pages of the studies: each study is run with ``--quick`` when the pages are built."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 from sphinx.util.display import status_iterator
 
 from vizlight import studies
-from vizlight.studies._framework import number
+from vizlight.studies._results import number
 
 #: Table of the stability suite, which ``.venv/bin/python tests/stability`` writes here.
 KEPT = Path(__file__).resolve().with_name("stability.csv")
@@ -55,7 +55,7 @@ def write(app):
 
 
 def _plain(text):
-    """Return text of which reStructuredText reads nothing as markup."""
+    """Return text with the markup characters of reStructuredText escaped."""
     return re.sub(r"([\\`*_|])", r"\\\1", text)
 
 

@@ -1,4 +1,4 @@
-"""The pages: ``sphinx-build -W gallery/pages build/gallery``, offscreen, to be read from disk."""
+"""Sphinx configuration: ``sphinx-build -W gallery/pages build/gallery``, drawn offscreen."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import sys
 import warnings
 from pathlib import Path
 
-# PyVista reads these when it is imported, here and in a second process that draws.
+# PyVista reads these on import, here and in the worker processes that draw.
 os.environ["PYVISTA_BUILDING_GALLERY"] = "true"
 os.environ["PYVISTA_OFF_SCREEN"] = "true"
 
@@ -34,7 +34,7 @@ extensions = [
     "_studies",
 ]
 templates_path = ["_templates"]
-# The table of run times loads a script from elsewhere.
+# The table of run times loads a script from the network.
 exclude_patterns = ["_build", "**sg_execution_times.rst"]
 html_theme = "pydata_sphinx_theme"
 html_title = "vizlight"
@@ -51,7 +51,9 @@ html_theme_options = {
 html_show_sourcelink = False
 html_sidebars = {
     "index": [],
+    "guide": [],
     "formulas": [],
+    "architecture": [],
     "studies": [],
     "studies/**": [],
     "sources": [],
@@ -89,5 +91,5 @@ sphinx_gallery_conf = {
 }
 
 pv.global_theme.notebook = False
-# A script that warns is a script to mend.
+# A warning of vizlight in a script is an error.
 warnings.filterwarnings("error", module=r"vizlight(\.|$)")

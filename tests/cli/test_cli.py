@@ -10,6 +10,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight import cli, render
+from vizlight.pictures import backends
 from vizlight.scene import Scene
 
 
@@ -168,14 +169,17 @@ def test_points_that_cannot_be_lit_are_told_and_no_error(volume, capfd):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["light", "no.vtp"], "file: expected a file, got 'no.vtp' (nothing there)"),
+        (["light", "no.vtp"], "file: expected a file, got 'no.vtp' (no such file)"),
         (["light", "."], "file: expected a file, got '.' (a folder)"),
         (["light", "flow.vti", "-o", "flow.vti", "--no-surface"], "another file than the input"),
         (["light", "flow.vti", "--level", "3"], "--level: expected --contour with it"),
         (["light", "flow.vti", "--warp-factor", "3"], "--warp-factor: expected --warp with it"),
         (["light", "flow.vti", "--background", "nocolor"], "background: expected a colour's name"),
         (["light", "flow.vti", "--line-width", "-1"], "line_width: expected a number from 0.1"),
-        (["light", "flow.vti", "--size", "9000x100"], "size: expected at most 8192 pixels a side"),
+        (
+            ["light", "flow.vti", "--size", "9000x100"],
+            "size: expected at most 8192 pixels per side",
+        ),
         (
             ["light", "flow.vti", "--view", "0,0,1", "--up", "0,0,2"],
             "up: expected a direction across",
@@ -249,7 +253,9 @@ def test_without_opengl_the_mesh_is_written_and_the_exit_code_is_1(
     volume, tmp_path, capfd, monkeypatch
 ):
     monkeypatch.delenv("VTK_DEFAULT_OPENGL_WINDOW", raising=False)
-    monkeypatch.setattr(render, "_PROBE", "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)")
+    monkeypatch.setattr(
+        backends, "_PROBE", "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"
+    )
     render.probe.cache_clear()
     try:
         code, _, err = run(capfd, "light", volume, "--tangents", "V")

@@ -177,7 +177,7 @@ def test_vectors_that_point_inward():
     mesh["up"] = np.tile([0, 0, 1.0], (mesh.n_points, 1))
     options = {"density": 0.02, "fibres": 1000, "vectors": "up", "length": 0.2}
     counts = {}
-    for inward, words in (("flip", "turned over"), ("keep", "kept"), ("drop", "left out")):
+    for inward, words in (("flip", "reversed"), ("keep", "kept"), ("drop", "dropped")):
         with pytest.warns(
             UserWarning, match=rf"(\d+) of 1000 fibres point into .* were {words}"
         ) as caught:
@@ -355,7 +355,7 @@ def test_no_fibres():
         ({"segments": 0}, ValueError, "segments: expected an integer of at least 1"),
         ({"vectors": "U"}, ValueError, "vectors: expected the name of a point array"),
         ({"inward": "cut"}, ValueError, "inward: expected 'keep', 'flip' or 'drop'"),
-        ({"bend": 1.0}, ValueError, "toward: expected what fibres bend to"),
+        ({"bend": 1.0}, ValueError, "toward: expected the direction of the bend"),
         (
             {"bend": 1.0, "toward": (0, 0, 0)},
             ValueError,
@@ -388,7 +388,7 @@ def test_bad_surfaces_and_scenes():
     with pytest.raises(ValueError, match="surface: expected a size from 1e-30 to 1e30"):
         fur(huge, SCENE, density=0.02)
     ragged = [[1.0, 2], [3]]
-    with pytest.raises(TypeError, match="length: expected numbers of one shape"):
+    with pytest.raises(TypeError, match="length: expected numbers in rows of equal length"):
         fur(torus(), SCENE, density=0.02, length=ragged)
     scene = Scene(lights=Light(direction=(0, 0, 1)), material=Material(specular=0))
     with pytest.raises(ValueError, match="view: expected a View, which the fur needs"):

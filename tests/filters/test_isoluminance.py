@@ -8,7 +8,7 @@ import pytest
 import pyvista as pv
 
 import vizlight
-from vizlight import Block, Light, Material, Scene, Sphere, Truncus, View, isoluminance, render
+from vizlight import Block, Frustum, Light, Material, Scene, Sphere, View, isoluminance, render
 from vizlight.studies import fur
 
 TOWARD = np.array([1.0, -0.6, 0.8]) / np.linalg.norm([1.0, -0.6, 0.8])
@@ -68,7 +68,7 @@ def test_closed_forms_and_halved_edges_agree():
     """A dull sphere and truncus have closed forms; with the least highlight they do not."""
     nearly = DULL.replace(material=Material(diffuse=0.8, specular=1e-12), view=View(direction=EYE))
     levels = [0.2, 0.4, 0.6, 0.8]
-    for solid in (Sphere(), Truncus(radii=(0.2, 0.6)), Truncus(radii=(0, 0.6))):
+    for solid in (Sphere(), Frustum(radii=(0.2, 0.6)), Frustum(radii=(0, 0.6))):
         closed, general = (isoluminance(solid, scene, levels=levels) for scene in (DULL, nearly))
         for level in levels:
             lengths = []
@@ -84,7 +84,7 @@ def test_a_highlight_on_a_cylinder(model, random):
     """Far light and eye: the highlight's contours are rulings, by either law."""
     scene = SHINY.replace(material=Material(ambient=0.1, diffuse=0, specular=0.9, shininess=12))
     axis = np.cross(TOWARD, EYE) / np.linalg.norm(np.cross(TOWARD, EYE))
-    found = isoluminance(Truncus(axis=axis), scene, levels=[0.3, 0.6], model=model)
+    found = isoluminance(Frustum(axis=axis), scene, levels=[0.3, 0.6], model=model)
     lines, bands = found["contours"], found["bands"]
     along = np.asarray(lines.points, float) @ axis
     normal = lines.points - np.outer(along, axis)
@@ -135,8 +135,8 @@ def exact_sharp(normals, power):
 
 
 def test_a_machined_part():
-    part = Truncus((0, 0, 0), (0, 0, 0.4), (1, 1)) | Block((0, 0, 0.4), (0.6, 0.6, 0.6))
-    part = part - Truncus((0, 0, 0.3), (0, 0, 3), (0.2, 0.2))
+    part = Frustum((0, 0, 0), (0, 0, 0.4), (1, 1)) | Block((0, 0, 0.4), (0.6, 0.6, 0.6))
+    part = part - Frustum((0, 0, 0.3), (0, 0, 3), (0.2, 0.2))
     found = isoluminance(part, SHINY, levels=8, tolerance=5e-3)
     bands = found["bands"]
     assert bands.is_manifold
@@ -185,7 +185,7 @@ def test_coarse_meshes_keep_the_allowed_error(random):
     place, polygon = banded.places(polygons(found), random, 2)
     some = random.choice(len(place), 3000, replace=False)
     place, polygon = place[some], polygon[some]
-    # The triangle that a place is on, by itself: all weights from 0 to 1 and no distance.
+    # Find the triangle of a place independently: all weights are from 0 to 1, the distance is 0.
     a, b, c = np.asarray(mesh.points, dtype=float)[mesh.regular_faces.T]
     best = np.full(len(place), np.inf)
     normal = np.zeros_like(place)
@@ -208,7 +208,7 @@ def test_colour_goes_with_the_bands():
     tint = np.array(pv.Color("orange").float_rgb)
     for shape in (pv.Sphere(), Sphere(), Sphere() - Block((0, 0, 1))):
         bands = isoluminance(shape, scene)["bands"]
-        # The source may be as bright as its tint; what counts is one colour a band.
+        # The source may be as bright as its tint; what counts is one colour per band.
         expected = tint * bands["luminance"][:, np.newaxis]
         scale = bands["rgb"].max() / expected.max()
         np.testing.assert_allclose(bands["rgb"], scale * expected, atol=1e-6)
@@ -318,16 +318,16 @@ def test_points_that_are_not_finite_or_have_no_normal():
     assert found["bands"]["luminance"].min() == pytest.approx(0.1)
 
 
-def test_points_that_no_face_uses_are_not_told_of():
+def test_points_that_no_face_uses_are_not_reported():
     mesh = pv.Icosphere(nsub=2)
     found = isoluminance(mesh + pv.Line(), DULL, levels=4)["bands"]
     np.testing.assert_allclose(found["luminance"].max(), 0.9, atol=0.2)
     bent = mesh + pv.Line()
     bent["N"] = np.array(bent.points)
     bent["N"][[5, -1]] = 0
-    with pytest.warns(UserWarning, match=r"1 of 162 points could not be lit") as told:
+    with pytest.warns(UserWarning, match=r"1 of 162 points could not be lit") as caught:
         isoluminance(bent, DULL, levels=4, normals="N")
-    assert "array" not in str(told[0].message)
+    assert "array" not in str(caught[0].message)
 
 
 def test_nothing_left_and_nothing_there():
@@ -353,7 +353,7 @@ def test_bad_input(mesh, options, kind, words):
         isoluminance(mesh, DULL, **options)
 
 
-def test_a_scene_is_asked_for():
+def test_a_scene_is_required():
     with pytest.raises(TypeError, match="scene: expected"):
         isoluminance(Sphere(), "bright")
 
@@ -362,7 +362,7 @@ def test_a_scene_is_asked_for():
 def test_picture_of_bands(verify_image_cache):
     """Limits: edges of bands move by a pixel between drivers; a wrong band is far above."""
     verify_image_cache.high_variance_test = False
-    part = Sphere() - Truncus((0, 0, 0), (0, 0, 3), (0.5, 0.5))
+    part = Sphere() - Frustum((0, 0, 0), (0, 0, 3), (0.5, 0.5))
     camera = render.camera_on((-1, 1, -1, 1, -1, 1), (0.4, -1, 0.9))
     found = isoluminance(part, SHINY.replace(view=View.from_camera(camera)), levels=8)
     plotter = render.make_plotter(found["bands"], camera=camera, size=(300, 300), cmap="cividis")

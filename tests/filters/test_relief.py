@@ -406,8 +406,16 @@ def test_one_hour_of_a_day():
         ({"directions": [(0, 0, -1)]}, ValueError, "directions: expected the sun above the hor"),
         ({"latitude": 0, "day": 9, "hours": [[12]]}, ValueError, "hours: expected a list of one"),
         ({"latitude": 0, "day": 9, "hours": []}, ValueError, "hours: expected a list of one"),
-        ({"directions": (0, 0, 1), "scene": SCENE}, TypeError, "scene: expected no such option"),
-        ({"directions": (0, 0, 1), "lit": True}, TypeError, "lit: expected no such option"),
+        (
+            {"directions": (0, 0, 1), "scene": SCENE},
+            TypeError,
+            "scene: expected an option of",
+        ),
+        (
+            {"directions": (0, 0, 1), "lit": True},
+            TypeError,
+            "lit: expected an option of",
+        ),
     ],
 )
 def test_bad_days(options, error, words):

@@ -169,7 +169,7 @@ def test_rotation_of_everything_changes_nothing(vectors, seed):
         (np.ones((4, 3)), ValueError, "vectors: expected 0 < k <= n.*shape \\(4, 3\\)"),
         ("abc", TypeError, "vectors: expected real numbers"),
         (np.ones((2, 3), complex), TypeError, "vectors: expected real numbers"),
-        ([[1.0], [2.0, 3.0]], TypeError, "vectors: expected numbers of one shape"),
+        ([[1.0], [2.0, 3.0]], TypeError, "vectors: expected numbers in rows of equal length"),
         (np.ones((1, 1)), ValueError, "n of 2 or more"),
     ],
 )

@@ -274,7 +274,7 @@ def test_a_missing_package_is_named_before_anything_is_drawn(
         ("t.png", {"picture": {"camera": 1}}, ValueError, "picture: expected no camera"),
         ("t.png", {"picture": "abc"}, TypeError, "picture: expected a mapping, got 'abc'"),
         ("t.png", {"picture": {"foo": 1}}, ValueError, "picture: expected options of a picture"),
-        ("t.png", {"rotate": 1}, TypeError, "rotate: expected an option of project or of"),
+        ("t.png", {"rotate": 1}, TypeError, "rotate: expected an option of turn, got"),
         ("t.png", {"scene": None}, ValueError, "scene: expected a scene, or a mesh with active"),
         ("t.mp4", {"picture": {"size": (81, 60)}}, ValueError, "size: expected an even width"),
     ],
@@ -295,5 +295,5 @@ def test_nothing_to_draw(tmp_path):
     mesh = pv.PolyData()
     mesh.points = np.empty((0, 3))
     mesh.GetPointData().AddArray(pv.convert_array(np.empty((0, 4)), "position"))
-    with pytest.raises(ValueError, match="mesh: expected points to draw"):
+    with pytest.raises(ValueError, match="mesh: expected a mesh with points"):
         movie.turn(mesh, tmp_path / "t.png", frame=None)

@@ -5,6 +5,7 @@ Each picture test has limits of its own, with the reason. Numbers are asserted a
 
 from __future__ import annotations
 
+import inspect
 import os
 import subprocess
 import sys
@@ -207,7 +208,7 @@ def test_bad_input(tmp_path):
     with pytest.raises(ValueError, match="direction: expected 3 components"):
         render.camera_on(sphere.bounds, (1, 0))
     for size, words in (
-        ((9000, 10), "at most 8192 pixels a side"),
+        ((9000, 10), "at most 8192 pixels per side"),
         ((8000, 8000), "33 million in all, got 8000x8000"),
         (3, "size: expected .width, height."),
     ):
@@ -224,7 +225,7 @@ def test_bad_input(tmp_path):
         render.camera_on(sphere.bounds, (1, 1, 1), up=(2, 2, 2))
     for options, words in (
         ({"clim": (0, 1, 2)}, "clim: expected a lower and a higher number"),
-        ({"cmap": "greyish"}, "cmap: expected a colour map's name, got 'greyish'"),
+        ({"cmap": "greyish"}, "cmap: expected the name of a colour map, got 'greyish'"),
         ({"anti_aliasing": "best"}, "anti_aliasing: expected 'ssaa', 'msaa', 'fxaa' or None"),
         ({"size": (np.nan, 5)}, "size: expected finite components"),
     ):
@@ -234,7 +235,7 @@ def test_bad_input(tmp_path):
         render.make_plotter(lit, camera=camera, size=("a", "b"))
     with pytest.raises(TypeError, match="panels: expected PyVista meshes or Panels, got None"):
         render.make_plotter([lit, None], camera=camera)
-    with pytest.raises(TypeError, match="title: expected words, got 3"):
+    with pytest.raises(TypeError, match="title: expected a string, got 3"):
         render.make_plotter(render.Panel(lit, title=3), camera=camera)
     with pytest.raises(ValueError, match="bounds: expected a mesh or six finite numbers"):
         render.camera_on((0, 1))
@@ -243,6 +244,11 @@ def test_bad_input(tmp_path):
     with pytest.raises(ValueError, match="panels: expected a mesh with points"):
         render.save_png(empty, tmp_path / "x.png")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_the_typed_keywords_are_those_of_the_function():
+    expected = set(inspect.signature(render.make_plotter).parameters) - {"panels"}
+    assert set(render.PlotterKeywords.__annotations__) == expected
 
 
 def test_probe_tells_what_draws():

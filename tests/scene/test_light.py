@@ -108,7 +108,7 @@ def test_a_headlight_with_a_position_stands_in_the_eye():
 
 def test_a_light_without_direction_warns_and_is_left_out():
     light = pv.Light(position=(1, 2, 3), focal_point=(1, 2, 3), light_type="scene light")
-    with pytest.warns(UserWarning, match="shines nowhere"):
+    with pytest.warns(UserWarning, match="left out, because its focal point is its position"):
         assert list(lights_of([light], camera())) == []
 
 

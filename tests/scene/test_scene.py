@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 import pyvista as pv
 
 from vizlight import DepthCue, Light, Material, Scene, View, engine
+from vizlight.scene import scene as scene_module
 
 
 def full_scene():
@@ -124,7 +126,11 @@ def test_scene_from_plotter_with_the_default_light_kit():
             r"lights: expected a vizlight.Light, got 1; Light\(direction=\(1, 1, 1\)\) makes one",
         ),
         (lambda: Scene(lights=["sun"]), TypeError, "lights: expected a vizlight.Light, got 'sun'"),
-        (lambda: Scene(lights=3), TypeError, "lights: expected vizlight.Light or several, got 3"),
+        (
+            lambda: Scene(lights=3),
+            TypeError,
+            "lights: expected a vizlight.Light or a sequence of them, got 3",
+        ),
         (lambda: Scene(view=(0, 0, 1)), TypeError, "view: expected a vizlight.View or None"),
         (lambda: Scene(material=0.5), TypeError, "material: expected a vizlight.Material"),
         (lambda: Scene(depth_cue=True), TypeError, "depth_cue: expected a vizlight.DepthCue"),
@@ -169,3 +175,8 @@ def test_a_moved_scene_lights_moved_points_the_same(random):
 def test_a_dict_of_another_kind_is_refused(values, words):
     with pytest.raises((TypeError, ValueError), match=words):
         Scene.from_dict(values)
+
+
+def test_the_typed_keywords_are_those_of_the_scene():
+    fields = {field.name for field in dataclasses.fields(Scene)}
+    assert set(scene_module.SceneKeywords.__annotations__) == fields

@@ -9,7 +9,7 @@ import pytest
 import pyvista as pv
 
 from vizlight import Light, Material, Scene, View, illuminate
-from vizlight.scene.vtk import vtk_law
+from vizlight.scene.vtk import vtk_model
 
 AXIS = View(direction=(0, 0, 1))
 
@@ -69,11 +69,11 @@ def as_vtk(light):
 @pytest.mark.parametrize(
     ("lights", "model", "shininess", "parallel"),
     [
-        # VTK's own law, so that nothing is exchanged.
+        # VTK's own model, so that nothing is exchanged.
         ([turned(40)], "phong", 12.0, False),
         ([turned(75, 0.5), turned(20, 0.5)], "phong", 30.0, False),
         ([Light.headlight()], "blinn", 20.0, True),
-        # A dark light beside the headlight changes its law.
+        # A dark light beside the headlight changes its model.
         ([Light.headlight(), Light(direction=(1, 0, 0), intensity=0)], "phong", 20.0, False),
         # Exchanged: Phong asked for under one headlight, Blinn under a light near the eye.
         ([Light.headlight()], "phong", 20.0, True),
@@ -104,11 +104,11 @@ def test_without_exchange_the_highlights_differ():
     assert off > 60
 
 
-def test_the_law_that_vtk_takes():
+def test_the_reflection_model_of_vtk():
     head = Light.headlight()
-    assert vtk_law([head]) == "blinn"
+    assert vtk_model([head]) == "blinn"
     for lights in ([head, head], [turned(0)], [head, turned(30)], []):
-        assert vtk_law(lights) == "phong"
+        assert vtk_model(lights) == "phong"
 
 
 def test_values_of_the_property():
@@ -176,18 +176,22 @@ def test_colours_are_not_rounded():
 def test_warnings_tell_what_vtk_cannot():
     shiny = Material(specular=1.0, shininess=100.0)
     with pytest.warns(
-        UserWarning, match=r"blinn's law of power 128: .* exactly one light switched on"
+        UserWarning, match=r"the Blinn model and power 128; .* exactly one light is switched on"
     ):
         assert shiny.to_property().specular_power == 128
-    with pytest.warns(UserWarning, match=r"phong's law of power 128: .* from phong's of 500"):
+    with pytest.warns(
+        UserWarning, match=r"the Phong model and power 128; .* Phong model with power 500"
+    ):
         Material(specular=1.0, shininess=500.0).to_property(lights=[turned(30)])
-    with pytest.warns(UserWarning, match=r"can differ by 33\.\d of 255 from blinn's of 40"):
+    with pytest.warns(
+        UserWarning, match=r"can differ by 33\.\d of 255 from that of the Blinn model with power 40"
+    ):
         Material(specular=1.0, shininess=40.0).to_property(
             lights=[turned(90)], view=AXIS, model="blinn"
         )
     odd = pv.Property(color="red")
     odd.ambient_color = "blue"
-    with pytest.warns(UserWarning, match="ambient colour is not its diffuse one"):
+    with pytest.warns(UserWarning, match="ambient colour of the property differs from its diffuse"):
         Material.from_property(odd)
 
 
@@ -200,11 +204,15 @@ def test_warnings_tell_what_vtk_cannot():
             ValueError,
             "model: expected 'phong' or 'blinn'",
         ),
-        (lambda: Material().to_property(lights=3), TypeError, "lights: expected vizlight.Light or"),
+        (
+            lambda: Material().to_property(lights=3),
+            TypeError,
+            "lights: expected a vizlight.Light or",
+        ),
         (
             lambda: Material().to_property(lights="sun"),
             TypeError,
-            "lights: expected vizlight.Light",
+            "lights: expected a vizlight.Light or",
         ),
         (lambda: Material().to_property(view=(0, 0, 1)), TypeError, "view: expected a vizlight.Vi"),
         (lambda: Material().to_property(lights=["sun"]), TypeError, "lights: expected a vizlight"),

@@ -100,7 +100,7 @@ def test_fur_against_50_digits(name, what, dtype, random, figure):
     depth = random.uniform(0, 0.5, 30).astype(dtype)
     depth[:5] = 0
     shaded = engine.shade(
-        points, None if what == "surface" else tangents, scene, normals=normals, depth=depth,
+        points, None if what == "surface" else tangents, scene, normals=normals, fur_height=depth,
         fur=density, conditioned=what == "conditioned", components=True,
     )  # fmt: skip
     exact = oracles.exact
@@ -166,13 +166,13 @@ def test_bad_shadow(random):
 def test_bad_depth(random):
     points, tangents, normals = cloud(random, 4, float)
     scene = SCENES["sun, far eye"]
-    for options in ({"depth": np.ones(4)}, {"fur": 0.5}):
-        with pytest.raises(ValueError, match="depth: expected depth and fur= together"):
+    for options in ({"fur_height": np.ones(4)}, {"fur": 0.5}):
+        with pytest.raises(ValueError, match="fur_height: expected fur_height and fur= together"):
             engine.shade(points, tangents, scene, normals=normals, **options)
-    with pytest.raises(ValueError, match=r"depth: expected shape \(4,\)"):
-        engine.shade(points, tangents, scene, normals=normals, fur=0.5, depth=np.ones(3))
+    with pytest.raises(ValueError, match=r"fur_height: expected shape \(4,\)"):
+        engine.shade(points, tangents, scene, normals=normals, fur=0.5, fur_height=np.ones(3))
     shaded = engine.shade(
-        points, tangents, scene, normals=normals, fur=0.5, depth=[1.0, -1.0, np.nan, 0.0]
+        points, tangents, scene, normals=normals, fur=0.5, fur_height=[1.0, -1.0, np.nan, 0.0]
     )
     np.testing.assert_array_equal(shaded.valid, [True, False, False, True])
     assert np.isfinite(shaded.luminance).all()
@@ -511,7 +511,7 @@ def test_points_that_share_a_normal(kind, random):
     depth = random.random(300).astype(kind)
     lights = [Light(direction=(1, 2, 3)), Light(position=(4, 0, 1), attenuation=(1, 0.1, 0))]
     scene = Scene(lights=lights, view=View(position=(0, 0, 9)))
-    whole = {"normals": np.repeat(normals, 3, axis=0), "depth": depth, "fur": 0.3}
+    whole = {"normals": np.repeat(normals, 3, axis=0), "fur_height": depth, "fur": 0.3}
     expected = engine.shade(points, np.repeat(tangents, 3, axis=0), scene, **whole)
     shared = {**whole, "normals": normals, "repeat": 3, "block": 7}
     for rows in (tangents, np.repeat(tangents, 3, axis=0)):

@@ -58,14 +58,14 @@ def test_the_cheaper_light_first_and_the_sum_kept():
     assert low.error > sun.error > 0 == near.error
     some = plan(scene, k=1, highlight_error=low.error)
     assert [h.model for h in some.highlights] == ["phong", "blinn", "phong"]
-    assert some.highlights[0].refused == low.error
+    assert some.highlights[0].rejected == low.error
     assert some.highlight_error == sun.error
     said = some.explain()
-    assert "light 1: Blinn's law of power" in said
+    assert "light 1: Blinn's model of power" in said
     assert f"it would differ by up to {low.error:.3g} of 255" in said
     assert "skip     eye: no split" not in said
     alone = plan(scene.replace(lights=[SUN]), k=1, highlight_error=50)
-    assert "eye: no split a point" in alone.explain()
+    assert "eye: no split per point" in alone.explain()
     assert not alone.splits_eye
 
 

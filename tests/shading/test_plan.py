@@ -56,9 +56,9 @@ def test_words_for_lights_and_views():
     made = plan(Scene(lights=[SUN, near], view=View(position=(0, 0, 9))), k=1)
     said = words(made, "compute")
     assert any(line.startswith("light 0: one direction for all points") for line in said)
-    assert any(line.startswith("light 1: a direction a point") for line in said)
+    assert any(line.startswith("light 1: one direction per point") for line in said)
     assert any("attenuation (1.0, 0.0, 1.0)" in line for line in said)
-    assert any("once a point, shared by all lights" in line for line in said)
+    assert any("once per point, shared by all lights" in line for line in said)
     assert made.needs_points
 
 

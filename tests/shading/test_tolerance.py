@@ -138,12 +138,12 @@ def test_a_precision_that_is_asked_for_stays(random):
 def test_float32_that_cannot_keep_the_tolerance_is_refused():
     scene = Scene(lights=Light(direction=(1, 0, 1)), view=PARALLEL)
     assert lines_of(scene, tolerance=1e-4, dtype=np.float32).choice.bound < 1e-4
-    with pytest.raises(ValueError, match=r"tolerance: expected .* rounding may be .*e-06; leave"):
+    with pytest.raises(ValueError, match=r"tolerance: expected .* rounding may be .*e-06; omit"):
         lines_of(scene, tolerance=1e-7, dtype=np.float32)
     for options in ({"model": "cylinder"}, {"k": 2, "n": 4}):
         asked = {"k": 1, "tolerance": 0.1} | options
         still = scene if asked["k"] == 1 else Scene(view=View(direction=(0, 0, 0, 1)))
-        with pytest.raises(ValueError, match="rounding has no bound here; leave precision away"):
+        with pytest.raises(ValueError, match="rounding has no bound here; omit precision="):
             engine.plan(still, dtype=np.float32, **asked)
         assert engine.plan(still, dtype=np.float64, **asked).choice.bound == np.inf
         assert "no bound holds for all data" in engine.plan(still, **asked).explain()

@@ -117,8 +117,8 @@ def test_rows_of_the_study():
     rows = codimension.rows_of_panels(24) + codimension.rows_of_directions(1, 4, 2000)
     assert len(rows) == 9
     assert rows[0].parameter == 2
-    assert codimension.verdict(rows).startswith("keep compensate=True where")
-    assert "it evens out contrast" in codimension.verdict(rows)
+    assert codimension.verdict(rows).startswith("keep compensate=True if")
+    assert "compensation equalises contrast" in codimension.verdict(rows)
 
 
 def test_the_verdict_follows_from_the_rows():
@@ -132,8 +132,8 @@ def test_the_verdict_follows_from_the_rows():
         return row._replace(error=row.error + 0.5, more=more)
 
     said = codimension.verdict([worse(row) for row in codimension.rows_of_panels(24)])
-    assert said.startswith("take compensate=False where")
-    assert "does not even out contrast" in said
+    assert said.startswith("use compensate=False if")
+    assert "does not equalise contrast" in said
 
 
 def test_panels_can_be_made_again(panels):

@@ -55,16 +55,16 @@ def known(one_thread=0.9):
 @pytest.mark.parametrize(
     ("one_thread", "chosen", "float64"),
     [
-        (0.9, "the engine as it is, 'engine, float32'", 1.5),
+        (0.9, "the engine's defaults, 'engine, float32'", 1.5),
         (0.75, "'engine, float32, 1 thread'", 2),
     ],
 )
 def test_the_default_is_kept_unless_another_is_clearly_faster(one_thread, chosen, float64):
     said = engine.verdict(known(one_thread))
-    assert f"use {chosen} in blocks of 64" in said
+    assert f"use {chosen} with blocks of 64 points" in said
     assert f"float64 costs {float64:g} times" in said
 
 
 def test_no_way_is_near_enough():
     rows = [row._replace(error=1.0) for row in known()]
-    assert engine.verdict(rows) == "no way is within 1/255; float64 is within 1"
+    assert engine.verdict(rows) == "no method is within 1/255; the error of float64 is 1"

@@ -9,7 +9,7 @@ from vizlight.studies import Row, fur, order
 
 @pytest.mark.opengl
 def test_row():
-    row = fur.measure(32, 3, repeats=1)
+    (row,) = fur.measure(32, 3, repeats=1)
     assert row.more["fibres"] == 32 * 32 * 49
     assert row.cost > 0
     assert 0 < row.error < 0.05
@@ -28,16 +28,19 @@ def test_more_fibres_are_nearer():
 
 
 def test_the_verdict_follows_error_and_time():
-    more = {"VTK glyphs unlit, s": 1.0}
+    more = {"VTK glyphs without light, s": 1.0}
 
     def rows(errors):
         return [
-            Row("segments of a fibre", n, error, 1.0, {**more, "s": 2.0 / n})
+            Row(fur.SEGMENTS, n, error, 1.0, {**more, "s": 2.0 / n})
             for n, error in zip((1, 3, 7), errors, strict=True)
-        ] + [Row("fibres a patch", n, 1e-3, 1.0) for n in (8, 32)]
+        ] + [Row(fur.FIBRES, n, 1e-3, 1.0) for n in (8, 32)]
 
     said = fur.verdict(rows((0.1, 1e-3, 1e-4)))
-    assert said.startswith("at an RMS error of 1/255 use 3 segments a fibre (error 0.001), and 8 ")
-    assert said.endswith("0.5 to 3.5 times as fast as VTK's glyph filter grows it unlit")
+    assert said.startswith("for an RMS error of 1/255 use 3 segments per fibre (error 0.001); ")
+    assert "use 8 fibres per patch" in said
+    assert "generating and lighting the fibres is 0.5 to 3.5 times as fast" in said
     # One that is near by chance, where finer ones are not, is not enough.
-    assert fur.verdict(rows((0.1, 1e-3, 0.1))).startswith("7 segments a fibre leave 26 of 255")
+    assert fur.verdict(rows((0.1, 1e-3, 0.1))).startswith(
+        "the error of 7 segments per fibre is 26 of 255"
+    )

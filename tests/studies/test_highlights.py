@@ -40,9 +40,9 @@ def test_rows_of_the_study():
     ]
     assert len({row.way for row in rows}) == 6 + 3 + 2 + 4
     said = highlights.verdict(rows)
-    assert "take 4 cos(beta) corrected for r times Phong's power" in said
-    assert "(4: 26.56, 4 cos(beta): 14.13, the best that a search finds: 13.63)" in said
-    assert "up to 2 degrees between light and eye for power 100: there it takes" in said
+    assert "use 4 cos(beta) corrected for r times the Phong power" in said
+    assert "(4: 26.56, 4 cos(beta): 14.13, the best factor by search: 13.63)" in said
+    assert "up to 2 degrees between light and eye for power 100: the time is" in said
 
 
 @pytest.fixture(scope="module")
@@ -66,18 +66,18 @@ def test_the_verdict_names_each_power(rows):
 def test_the_rule_follows_from_the_rows(rows):
     worse = [row._replace(error=250.0) if row.way.startswith("rule 4 cos") else row for row in rows]
     assert highlights.verdict(worse).startswith(
-        "take 4 times Phong's power, whose worst error is 26"
+        "use 4 times the Phong power, with a largest error of 26"
     )
 
 
 def test_what_is_dearer_is_left_out(rows):
     dear = [row._replace(cost=1e6) if "Blinn" in row.way else row for row in rows]
-    assert "but leave it out: there it takes" in highlights.verdict(dear)
+    assert "but do not set it: the time is" in highlights.verdict(dear)
     off = [
         row._replace(more={**row.more, "bound": 9.0}) if "bound" in row.more else row
         for row in rows
     ]
-    assert highlights.verdict(off).endswith("at 2 degrees), so leave it out")
+    assert highlights.verdict(off).endswith("at 2 degrees), so do not set it")
 
 
 def test_the_figure_shows_few_curves_and_no_rounding(rows):

@@ -66,9 +66,9 @@ def test_rows_and_verdict():
     rows += study.pictures("sphere", 300, 12, 1) + study.virtual(30.0)
     assert {row.way for row in rows} >= {"sphere, contours", "virtual light, 30 degrees"}
     said = study.verdict(rows)
-    assert "either way for a sphere at an error of 0.05 (758, facets 762)" in said
-    assert "contours for a cone at an error of 0.05 (43, facets 150)" in said
-    assert "for the time of a picture as good" in said
+    assert "either method for a sphere at an error of 0.05 (contours 758, facets 762)" in said
+    assert "contours for a cone at an error of 0.05 (contours 43, facets 150)" in said
+    assert "for the fastest picture of that quality use" in said
     panels = (study.STUDY, *study.STUDY.beside)
     assert all(sum(panel.curve(row) is not None for panel in panels) == 1 for row in rows)
 
@@ -87,9 +87,15 @@ def test_the_verdict_follows_vertices_and_times():
         ("ray cast", 0.0, 20.0),
     )
     rows += [
-        Row(f"picture of a cone, {way}", 550, error, 10, {"ms to model": ms - 1, "ms a frame": 1.0})
+        Row(
+            f"picture of a cone, {way}",
+            550,
+            error,
+            10,
+            {"ms to model": ms - 1, "ms per frame": 1.0},
+        )
         for way, error, ms in ways
     ]
     said = study.verdict(rows)
-    assert "take facets for a sphere at an error of 0.01 (1000, facets 100)" in said
-    assert "as good 900 facets of equal error for a cone of 550 pixels (5 ms, 50 levels 9" in said
+    assert "use facets for a sphere at an error of 0.01 (contours 1000, facets 100)" in said
+    assert "use 900 facets of equal error for a cone of 550 pixels (5 ms, 50 levels 9" in said

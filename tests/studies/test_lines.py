@@ -48,14 +48,14 @@ def test_rows_of_the_study(monkeypatch):
     assert {row.parameter for row in rows} == {0, 3, 40}
     said = lines.verdict(rows)
     assert said.startswith(
-        "at an RMS error of 1/255, each model by its best factor, use, diffuse: "
+        "models to use for an RMS error of 1/255, each with its best factor: diffuse: "
     )
-    assert "diffuse by a headlight: 'Banks, p = 1'" in said
+    assert "diffuse with a headlight: 'Banks, p = 1'" in said
     # The errors are those by the best factor, as in the table.
     blinn = next(row for row in rows if row.way == "Blinn, specular, random")
-    assert f"('Blinn' at {words(blinn.cost)} ns is off by {blinn.error:.2g})" in said
-    assert blinn.error < 0.04 < 0.2 < blinn.more["RMS without it"]
+    assert f"('Blinn' at {words(blinn.cost)} ns has an error of {blinn.error:.2g})" in said
+    assert blinn.error < 0.04 < 0.2 < blinn.more["RMS error without factor"]
     far = [row._replace(error=0.5) for row in rows]
-    assert "diffuse: none, 'Banks, p = 1' is off by 0.5" in lines.verdict(far)
+    assert "diffuse: none, 'Banks, p = 1' has an error of 0.5" in lines.verdict(far)
     shown = {lines.STUDY.curve(row) for row in rows} - {None}
     assert {name for name, _ in shown} == {"Banks, p = 1", "Banks, p(1, 3)", "tube", "exact"}

@@ -25,7 +25,7 @@ def test_the_verdict_names_a_row_that_holds():
     best = cheapest(rows[:3])
     assert best.error <= 1 / 255
     said = mesh.verdict(rows)
-    assert f"steps: {best.parameter} at power 20" in said
+    assert f"normals: {best.parameter} for power 20" in said
     assert "off the terminator, in theory 2, and" in said
 
 
@@ -34,9 +34,9 @@ def test_the_verdict_leaves_no_power_out():
     rows = [row for power in (5.0, 100.0) for row in mesh.measure(3, power, (128, 256, 512))]
     rows += mesh.every_pixel()
     said = mesh.verdict(rows)
-    assert "512 at power 5, more than 512 at power 100 (which leave 1.04 of 255)" in said
+    assert "512 for power 5, more than 512 for power 100 (whose error is 1.04 of 255)" in said
     better = [row._replace(error=1e-3) if row.parameter == 512 else row for row in rows]
-    assert "512 at power 5, 512 at power 100, at" in mesh.verdict(better)
+    assert "512 for power 5, 512 for power 100, at" in mesh.verdict(better)
 
 
 def test_streamlines_drift_with_the_square_of_the_cells():
@@ -68,14 +68,14 @@ def drifts():
 def test_the_largest_step_that_holds_is_taken(drifts):
     """Whatever the steps cost; and the one that drifts more is refined first."""
     said = streamlines.verdict(drifts)
-    assert "use step=2 cell lengths, the largest measured, which drifts by 2e-05" in said
+    assert "use step=2 cell lengths, the largest measured, with a drift of 2e-05" in said
     assert "refine the cells rather than the step" in said
     assert "2.00 in a volume and 2.00 on a surface, in theory 2" in said
     off = [row._replace(error=2e-3) if row.parameter == 2 else row for row in drifts]
-    assert "use step=1 cell lengths, which drifts by 1e-05" in streamlines.verdict(off)
+    assert "use step=1 cell lengths, with a drift of 1e-05" in streamlines.verdict(off)
     off = [row._replace(error=0.1) if row.way == streamlines.STEP else row for row in drifts]
     said = streamlines.verdict(off)
-    assert said.startswith("take a step below 1 cell lengths, which drifts by 0.1 of the radius")
+    assert said.startswith("use a step below 1 cell lengths, whose drift is 0.1 of the radius")
     assert "refine the step before the cells" in said
 
 

@@ -11,7 +11,7 @@ from vizlight.studies import Row, nspace
 def test_costs():
     rows = nspace.cost(2, 4, 20_000, repeats=1)
     assert [row.way for row in rows] == [
-        "light", "light, float32", "turn and project", "project",
+        "light", "light, float32", nspace.ROTATE, "project",
     ]  # fmt: skip
     assert all(row.cost > 0 for row in rows)
     assert 0 < rows[1].error < 1e-5
@@ -40,7 +40,7 @@ def test_float32_is_for_where_it_is_faster(gains, said):
         for (k, n), gain in zip(((2, 4), (7, 8)), gains, strict=True)
         for way, error, cost in (
             ("light", np.nan, 100.0), ("light, float32", 1e-6, 100 / gain),
-            ("turn and project", np.nan, 300.0),
+            (nspace.ROTATE, np.nan, 300.0),
         )
     ]  # fmt: skip
     assert said in nspace.verdict(rows)

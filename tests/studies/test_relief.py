@@ -11,7 +11,7 @@ def test_error_and_memory_of_the_fast_method():
     fast, exact = relief.measure(256, repeats=1)
     assert 0 < fast.error < 3e-2
     # What is worked on at a time has a fixed size; the rest grows with the field.
-    assert fast.more["bytes a point"] * 256**2 < 50e6 + 100 * 256**2
+    assert fast.more["bytes per point"] * 256**2 < 50e6 + 100 * 256**2
     assert min(fast.cost, exact.cost) > 0
 
 
@@ -37,8 +37,8 @@ def test_the_verdict_follows_error_and_time():
         rows = [Row("hills, fast", 64, error, cost), Row("hills, exact", 64, 0.0, 4.0), *dome]
         return relief.verdict(rows)
 
-    assert "use method='fast' for pictures of 64 x 64" in said(1e-3, 1.0)
+    assert "use method='fast' on fields of 64 x 64" in said(1e-3, 1.0)
     assert "use method='exact'" in said(1e-3, 8.0)
     assert "use method='exact'" in said(1e-1, 1.0)
-    assert "to the power 2.00 (fast), 2.00 (exact) off the edges" in said(1e-3, 1.0)
-    assert "in theory 2, and 1.50 (fast), 1.50 (exact) with them" in said(1e-3, 1.0)
+    assert "of convergence is 2.00 (fast), 2.00 (exact) off the edges" in said(1e-3, 1.0)
+    assert "in theory 2, and 1.50 (fast), 1.50 (exact) with the edges" in said(1e-3, 1.0)

@@ -35,7 +35,7 @@ def test_exponent_of_known_times(power):
     ]
     rows[0] = rows[0]._replace(more={**rows[0].more, "processor s": 1.0})
     assert scaling.exponent(rows) == pytest.approx(power)
-    assert scaling.verdict(rows).startswith("count on") == (power == 1.0)
+    assert scaling.verdict(rows).startswith("expect") == (power == 1.0)
     assert f"grows with the power {power:.3f}, in theory 1" in scaling.verdict(rows)
 
 

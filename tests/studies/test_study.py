@@ -1,4 +1,4 @@
-"""One shape for all studies: found by name, run, told as table, CSV, figure and verdict."""
+"""Form of the studies: found by name, run, shown as table, CSV file, figure and verdict."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pytest
 import pyvista as pv
 
 from vizlight import cli, studies
-from vizlight.studies import Curve, Panel, Row, Study, _framework
+from vizlight.studies import Curve, Panel, Row, Study
 
 
 @pytest.fixture
@@ -63,7 +63,7 @@ def test_run(toy, capsys):
     assert len(result.rows) == 3
     assert result.verdict == "at 1/255 use rough, 20"
     assert len(studies.run("toy", toy).rows) == 5
-    _framework.print_result(result)
+    studies.print_result(result)
     said = " ".join(capsys.readouterr().out.split())
     for part in ("vizlight study toy", "memory", "approximated: a toy", "verdict: at 1/255"):
         assert part in said
@@ -74,7 +74,7 @@ def test_csv_keeps_all_digits(toy, tmp_path):
     path = result.write_csv(tmp_path / "toy.csv")
     with path.open(newline="") as file:
         head, *rows = csv.reader(file)
-    assert head == ["way", "points", "error", "ns", "memory"]
+    assert head == ["method", "points", "error", "ns", "memory"]
     assert float(rows[1][2]) == 1 / 400
     assert rows[-1] == ["exact", "none", "0.0", "500.0", ""]
 
@@ -173,7 +173,7 @@ def test_bad_command_lines(tmp_path, capfd):
 
 def test_a_study_that_lacks_something(capfd, tmp_path, monkeypatch, toy):
     def missing(_):
-        raise _framework.LackingError("embreex is missing; pip install 'vizlight[rays]'")
+        raise studies.LackingError("embreex is missing; pip install 'vizlight[rays]'")
 
     monkeypatch.setattr(studies, "load", lambda _: toy.__class__(**{**vars(toy), "steps": missing}))
     assert cli.main(["study", "engine", "-o", str(tmp_path)]) == 1

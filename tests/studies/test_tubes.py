@@ -32,9 +32,11 @@ def known(line=1.0, errors=(0.1, 0.003, 0.002)):
 
 def test_the_verdict_follows_from_the_rows():
     said = tubes.verdict(known(0.5))
-    assert "use lit lines (model='cylinder'), the cheaper to draw: a tube needs 10 sides" in said
-    assert "(8 are too few), and such a tube takes 3 times the memory" in said
-    assert "use tubes of 10 sides, the cheaper to draw" in tubes.verdict(known(50.0))
+    assert (
+        "use lit lines (model='cylinder'), which are faster to draw: a tube needs 10 sides" in said
+    )
+    assert "(8 are too few); such a tube needs 3 times the memory" in said
+    assert "use tubes of 10 sides, which are faster to draw" in tubes.verdict(known(50.0))
     said = tubes.verdict(known(50.0, (0.1, 0.1, 0.1)))
-    assert "use lit lines (model='cylinder'), the only ones within 1/255" in said
-    assert "tubes of 20 sides miss by 26 of 255" in said
+    assert "use lit lines (model='cylinder'), which alone are within 1/255" in said
+    assert "tubes of 20 sides have an error of 26 of 255" in said

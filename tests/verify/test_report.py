@@ -12,11 +12,11 @@ import pyvista as pv
 import vizlight
 from vizlight import (
     DepthCue,
+    Frustum,
     Light,
     Material,
     Scene,
     Sphere,
-    Truncus,
     View,
     cli,
     engine,
@@ -148,7 +148,7 @@ def test_points_of_a_lit_shadow_count_once():
 
 @pytest.mark.parametrize("levels", [12, 0.02])
 @pytest.mark.parametrize("specular", [0.0, 0.4])
-@pytest.mark.parametrize("what", [Sphere(), Sphere() - Truncus(axis=(0, 0, 4)), pv.Sphere()])
+@pytest.mark.parametrize("what", [Sphere(), Sphere() - Frustum(axis=(0, 0, 4)), pv.Sphere()])
 def test_bands_are_one_run(what, specular, levels):
     material = Material(diffuse=0.5, specular=specular, color="tomato")
     scene = Scene(

@@ -6,7 +6,8 @@ from vizlight.filters.illuminate import illuminate
 from vizlight.filters.isoluminance import isoluminance
 from vizlight.filters.manifold import manifold
 from vizlight.filters.project import project
-from vizlight.filters.relief import relief_day, relief_shadow
+from vizlight.filters.relief_day import relief_day
+from vizlight.filters.relief_shadow import relief_shadow
 from vizlight.filters.satin import satin
 from vizlight.filters.streamlines import streamlines
 from vizlight.mesh.records import provenance

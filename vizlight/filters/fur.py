@@ -2,99 +2,182 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, TypedDict, get_args
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
 from vizlight.filters import lighting
-from vizlight.filters.lighting import Job
 from vizlight.geometry.lines import fur as geometry
-from vizlight.mesh import point_arrays, surfaces
+from vizlight.mesh import blocks, point_arrays, surfaces
+from vizlight.mesh.normals import onlooker
 from vizlight.mesh.point_arrays import unit_rows
 from vizlight.mesh.strands import Grown, Strands
 from vizlight.model import kernels
 from vizlight.scene import Scene
-from vizlight.shading.options import surface_model
+from vizlight.shading.inputs import ShadingInputs
+from vizlight.shading.options import ShadingOptions, accepts
 
 if TYPE_CHECKING:
-    from vizlight._types import Array, Bools, Indices
-    from vizlight.shading import engine
+    from collections.abc import Sequence
+
+    from typing_extensions import Required, Unpack
+
+    from vizlight._types import Array, Bools, Indices, VectorLike
+    from vizlight.shading.options import Model
 
 Inward = Literal["keep", "flip", "drop"]
-#: Of a fibre: differences of longer ones leave the range of float32.
+#: Largest length of a fibre: differences of longer ones leave the range of float32.
 LONGEST = 1e30
 
 
+class FurKeywords(TypedDict, total=False):
+    """The fields of :class:`FurOptions` as keyword arguments."""
+
+    density: Required[float]
+    fibres: int
+    length: float | str | Sequence[float] | Array
+    segments: int
+    vectors: str | None
+    inward: Inward
+    toward: str | VectorLike | None
+    bend: float
+    curl: float
+    turns: float
+    seed: int
+    conditioned: bool
+    attenuated: bool
+    compensate: bool
+    model: Model
+    name: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class FurOptions:
+    """How fur grows and is lit.
+
+    Parameters
+    ----------
+    density : float
+        Share rho of light, in [0, 1], that fur absorbs over a unit of length.
+    fibres : int, default: 50_000
+        Number of fibres, uniform in area, jittered, the same for the same seed.
+    length : float, str or array_like, default: 0.1
+        Length of a fibre, in the unit of the mesh, 0 or more: one for all, or a point array of
+        one component, interpolated.
+    segments : int, default: 3
+        Number of segments of a fibre, of equal lengths.
+    vectors : str, optional
+        Name of a point array of 3 components along which fibres grow, whatever their length.
+        Default: the normals, also where a vector is zero.
+    inward : {"flip", "keep", "drop"}
+        Treatment of fibres whose vector points into the surface; a warning counts them.
+    toward : str or vector of 3 components, optional
+        Direction to which fibres bend: one for all, or the name of a point array.
+    bend : float, default: 0.0
+        Share of ``toward`` in the direction at the tip.
+    curl, turns : float
+        Sideways share of the direction, and number of its turns from root to tip.
+    seed : int, default: 0
+        Seed of the random numbers.
+    conditioned : bool, default: True
+        Whether fibres inherit the self-shadow of the surface (Banks 6).
+    attenuated : bool, default: True
+        Whether light is attenuated by the fur above a point on its way in and out (Banks 7, 8):
+        most at the base, not at all at the tip.
+    compensate, model, name
+        As for :func:`vizlight.illuminate`; with ``model="cylinder"`` the highlight of the skin is
+        Blinn's.
+    """
+
+    density: float
+    fibres: int = 50_000
+    length: float | str | Sequence[float] | Array = 0.1
+    segments: int = 3
+    vectors: str | None = None
+    inward: Inward = "flip"
+    toward: str | VectorLike | None = None
+    bend: float = 0.0
+    curl: float = 0.0
+    turns: float = 1.0
+    seed: int = 0
+    conditioned: bool = True
+    attenuated: bool = True
+    compensate: bool = True
+    model: Model = "phong"
+    name: str = "luminance"
+
+    def __post_init__(self) -> None:
+        if self.inward not in get_args(Inward):
+            got = repr(self.inward)
+            raise ValueError(_check.message("inward", "'keep', 'flip' or 'drop'", got))
+        for option in ("bend", "curl", "turns"):
+            value = getattr(self, option)
+            _check.number(option, value, low=-_check.LARGEST, high=_check.LARGEST)
+        point_arrays.refuse_unnamed("vectors", self.vectors)
+        if self.bend and self.toward is None:
+            raise ValueError(
+                _check.message("toward", "the direction of the bend, with bend=", None)
+            )
+        _check.set_fields(
+            self,
+            density=_check.number("density", self.density, low=0.0, high=1.0),
+            fibres=_check.integer("fibres", self.fibres, low=0),
+            segments=_check.integer("segments", self.segments, low=1),
+            seed=_check.integer("seed", self.seed, low=0),
+        )
+
+    @property
+    def straight(self) -> bool:
+        """Whether fibres neither bend nor curl."""
+        return not (self.bend or self.curl)
+
+    @property
+    def absorption(self) -> float:
+        """Density by which light is attenuated, 0 for none."""
+        return self.density if self.attenuated else 0.0
+
+    @property
+    def shading(self) -> ShadingOptions:
+        """The options of the fibres' light."""
+        return ShadingOptions(
+            compensate=self.compensate, model=self.model, conditioned=self.conditioned
+        )
+
+
+@accepts(FurOptions)
 def fur(
-    surface: Any,
+    surface: pv.PolyData,
     /,
     scene: Scene,
     *,
-    density: float,
-    fibres: int = 50_000,
-    length: Any = 0.1,
-    segments: int = 3,
-    vectors: str | None = None,
-    inward: Inward = "flip",
-    toward: Any = None,
-    bend: float = 0.0,
-    curl: float = 0.0,
-    turns: float = 1.0,
-    seed: int = 0,
-    conditioned: bool = True,
-    attenuated: bool = True,
-    compensate: bool = True,
-    model: engine.Model = "phong",
     threads: int | None = None,
-    name: str = "luminance",
     progress_bar: bool = False,
-) -> Any:
+    **options: Unpack[FurKeywords],
+) -> pv.MultiBlock:
     """Cover a surface with fibres and light them and the skin below.
 
     Parameters
     ----------
     surface : pyvista.PolyData
-        Not changed. Its active point normals, or those computed, say what is outside.
+        Surface that is covered; not changed. Its active point normals, or those computed, point
+        outward.
     scene : Scene
-        With a view, if the light is attenuated.
-    density : float
-        rho in [0, 1], the share of light that fur absorbs over a unit of length.
-    fibres : int, default: 50_000
-        How many, uniform in area, jittered, the same for the same seed.
-    length : float, str or array_like, default: 0.1
-        Of a fibre, in the unit of the mesh, 0 or more: one for all, or a point array of one
-        component, interpolated.
-    segments : int, default: 3
-        Of a fibre, all of one length.
-    vectors : str, optional
-        A point array of 3 components along which fibres grow, whatever their length; default the
-        normals, also where a vector is zero.
-    inward : {"flip", "keep", "drop"}
-        What becomes of fibres whose vector points into the surface; a warning counts them.
-    toward : str or vector of 3 components, optional
-        What fibres bend to: a point array or one direction.
-    bend : float, default: 0.0
-        How much: the share of ``toward`` in the direction at the tip.
-    curl, turns : float
-        Sideways share of the direction, and its turns from root to tip.
-    seed : int, default: 0
-    conditioned : bool, default: True
-        Inherit the surface's self-shadow (Banks 6).
-    attenuated : bool, default: True
-        Attenuate by the fur above a point on the light's way in and out (Banks 7, 8): most at
-        the base, not at all at the tip.
-    compensate, model, threads, name, progress_bar
-        As for :func:`vizlight.illuminate`; with ``model="cylinder"`` the skin's law is Blinn's.
+        Scene with a view, if the light is attenuated.
+    **options
+        Fields of FurOptions.
+    threads, progress_bar
+        As for :func:`vizlight.illuminate`.
 
     Returns
     -------
     pyvista.MultiBlock
-        ``fibres``: lines from root to tip, points in the surface's precision, in float64 where it
-        is far from the origin. ``skin``: the surface, lit by its
-        normals and attenuated by the fur that stands on it. Both with the point array
-        ``luminance``, and ``rgb`` where the scene has a colour.
+        ``fibres``: lines from root to tip, points in the precision of the surface, in float64
+        where it is far from the origin. ``skin``: the surface, lit by its normals and attenuated
+        by the fur that stands on it. Both with the point array ``luminance``, and ``rgb`` where
+        the scene has a colour.
 
     Raises
     ------
@@ -109,84 +192,62 @@ def fur(
 
     Notes
     -----
-    The height of fur above a point is how far, across the surface at the root, the fibre's
-    highest point stands above it. Sources: Banks 4.2, 5, (7), (8).
+    The height of fur above a point is the distance, across the surface at the root, from the point
+    to the highest point of its fibre. Sources: Banks 4.2, 5, (7), (8).
     """
-    density = _check.number("density", density, low=0.0, high=1.0)
-    fibres = _check.integer("fibres", fibres, low=0)
-    segments = _check.integer("segments", segments, low=1)
-    seed = _check.integer("seed", seed, low=0)
-    if inward not in get_args(Inward):
-        raise ValueError(_check.message("inward", "'keep', 'flip' or 'drop'", repr(inward)))
-    for option, value in (("bend", bend), ("curl", curl), ("turns", turns)):
-        _check.number(option, value, low=-_check.LARGEST, high=_check.LARGEST)
-    point_arrays.refuse_unnamed("vectors", vectors)
-    if bend and toward is None:
-        raise ValueError(_check.message("toward", "what fibres bend to, with bend=", None))
+    return _grow(surface, scene, FurOptions(**options), threads, progress_bar=progress_bar)
+
+
+def _grow(
+    surface: pv.PolyData,
+    scene: Scene,
+    options: FurOptions,
+    threads: int | None,
+    *,
+    progress_bar: bool,
+) -> pv.MultiBlock:
+    """Return fibres and skin, lit."""
     _check.instance("scene", scene, Scene)
     if scene.n not in (None, 3):
         raise ValueError(_check.message("scene", "vectors of 3 components", scene.n))
-    skin = surfaces.with_normals(surface, point_arrays.onlooker(scene))
+    skin = surfaces.with_normals(surface, onlooker(scene))
+    name = options.name
     lighting.refuse_overwriting([(surface, "")], name, components=False, colored=scene.colored)
-    told = {
-        "density": density, "fibres": fibres, "length": length, "segments": segments,
-        "vectors": vectors, "inward": inward, "toward": toward, "bend": bend, "curl": curl,
-        "turns": turns, "seed": seed, "conditioned": conditioned, "attenuated": attenuated,
-        "compensate": compensate, "model": model, "name": name,
-    }  # fmt: skip
-    coat = _Coat(surface, skin, length, vectors, toward, inward)
-    if fibres and not (len(coat.total) and coat.total[-1] > 0):
+    coat = _Coat(surface, skin, options)
+    if options.fibres and not (len(coat.total) and coat.total[-1] > 0):
         raise ValueError(_check.message("surface", "faces of some area", "none"))
-    shape = {"segments": segments, "bend": bend, "curl": curl, "turns": turns}
+    far = any(coat.origin)
     strands = Strands(
-        lambda block: coat.grow(block, fibres, seed, **shape),
-        fibres,
-        segments + 1,
-        np.float64 if any(coat.origin) else np.result_type(skin.points.dtype, np.float32),
-        straight=not (bend or curl),
+        coat.grow,
+        options.fibres,
+        options.segments + 1,
+        np.dtype(np.float64) if far else np.result_type(skin.points.dtype, np.float32),
+        straight=options.straight,
         threads=threads,
     )
-    rows, through = strands.rows(), bool(attenuated and density)
-    across = conditioned or through
-    jobs = [
-        Job(
-            rows["points"],
-            rows["tangents"],
-            rows["normals"] if across else None,
-            depth=rows["depth"] if through else None,
-            repeat=strands.m,
-            block=strands.block,
-            origin=coat.origin,
-            made_on_the_fly=True,
-        ),
-        Job(
-            np.asarray(skin.points),
-            None,
-            np.asarray(skin.point_data[surfaces.NORMALS]),
-            depth=coat.skin_depth(**shape) if through else None,
-            own={"model": surface_model(model)},
-        ),
-    ]
-    results, scene = lighting.light(
-        jobs,
-        scene,
-        threads=threads,
-        progress_bar=progress_bar,
-        compensate=compensate,
-        model=model,
-        conditioned=conditioned,
-        fur=density if through else 0.0,
+    through = options.absorption
+    fibres = strands.inputs(
+        normals=bool(options.conditioned or through), fur=through, origin=coat.origin
     )
-    if any(coat.origin):
+    below = ShadingInputs(
+        points=np.asarray(skin.points),
+        normals=np.asarray(skin.point_data[surfaces.NORMALS]),
+        fur_height=coat.skin_heights() if through else None,
+        fur=through,
+    )
+    parts = [(fibres, options.shading), (below, options.shading.for_surface())]
+    results, scene = lighting.light(parts, scene, threads=threads, progress_bar=progress_bar)
+    if far:
         strands.points += np.array(coat.origin, strands.points.dtype)
     inside = int(np.count_nonzero(strands.inside))
     if inside:
-        what = {"flip": "were turned over", "keep": "were kept", "drop": "were left out"}[inward]
-        _check.warn(f"{inside} of {fibres} fibres point into the surface and {what}")
-        if inward == "drop":
+        verbs = {"flip": "were reversed", "keep": "were kept", "drop": "were dropped"}
+        verb = verbs[options.inward]
+        _check.warn(f"{inside} of {options.fibres} fibres point into the surface and {verb}")
+        if options.inward == "drop":
             results[0] = strands.drop(results[0])
     meshes = [strands.mesh(), surface.copy(deep=False)]
-    lighting.finish(meshes, results, "fur", scene, told, name)
+    lighting.finish(meshes, results, "fur", scene, options, name)
     return pv.MultiBlock(dict(zip(("fibres", "skin"), meshes, strict=True)))
 
 
@@ -196,42 +257,25 @@ class _Coat:
     Points are less ``origin``, which is not 0 where the surface is far from there.
     """
 
-    def __init__(
-        self,
-        surface: pv.PolyData,
-        skin: pv.PolyData,
-        length: Any,
-        vectors: str | None,
-        toward: Any,
-        inward: Inward,
-    ) -> None:
-        self.origin = point_arrays.near_origin(skin)
+    def __init__(self, surface: pv.PolyData, skin: pv.PolyData, options: FurOptions) -> None:
+        self.options = options
+        self.origin = blocks.near_origin(skin)
         size = float(skin.length)
         if not 1e-30 <= size <= 1e30 and skin.n_points:
             remedy = "scale the mesh"
             raise ValueError(_check.message("surface", "a size from 1e-30 to 1e30", size, remedy))
         self.faces: Indices = np.asarray(skin.regular_faces, dtype=np.intp)
         self.normals = np.asarray(skin.point_data[surfaces.NORMALS], dtype=np.float32)
-        self.inward = inward
         self.vectors: Array | None = None
-        if vectors is not None:
-            given = point_arrays.vectors_of(surface, "vectors", vectors, 3)
+        if options.vectors is not None:
+            given = point_arrays.vectors_of(surface, "vectors", options.vectors, 3)
             lost = len(given) - int(np.count_nonzero(np.all(np.isfinite(given), axis=1)))
             if lost:
                 what = "the vectors are not finite: fibres there follow the normals"
                 _check.warn(f"{lost} of {len(given)} of {what}")
             self.vectors = unit_rows(given).astype(np.float32)
-        self.toward: Array | None = None
-        if isinstance(toward, str):
-            self.toward = unit_rows(point_arrays.vectors_of(surface, "toward", toward, 3)).astype(
-                np.float32
-            )
-        elif toward is not None:
-            direction = _check.vector("toward", toward, direction=True)
-            if len(direction) != 3:
-                raise ValueError(_check.message("toward", "3 components", len(direction)))
-            self.toward = unit_rows(np.array([direction])).astype(np.float32)
-        self.length: Array | float = _lengths(surface, length)
+        self.toward = _toward(surface, options.toward)
+        self.length: Array | float = _lengths(surface, options.length)
         self.total = geometry.areas(np.asarray(skin.points), self.faces)
         # All that is interpolated stands in one table, so that it is looked up once.
         with np.errstate(invalid="ignore"):
@@ -246,11 +290,13 @@ class _Coat:
         self._table = np.concatenate(parts, axis=1)
         self._cuts = np.cumsum([part.shape[1] for part in parts])[:-1]
 
-    def grow(self, block: slice, count: int, seed: int, **shape: Any) -> Grown:
+    def grow(self, block: slice) -> Grown:
         """Return some of the fibres."""
         start = block.start // geometry.SEED_BLOCK * geometry.SEED_BLOCK
         part = slice(block.start - start, block.stop - start)
-        face, weights = geometry.seed_block(self.total, start, count, seed)
+        face, weights = geometry.seed_block(
+            self.total, start, self.options.fibres, self.options.seed
+        )
         face, weights = face[part], weights[part]
         corners = self.faces.take(face, axis=0)
         found: Array = self._table.take(corners[:, 0], axis=0)
@@ -267,10 +313,10 @@ class _Coat:
             toward = kernels.unit(next(columns))[0]
         length = next(columns)[0] if isinstance(self.length, np.ndarray) else self.length
         phase = None
-        if shape["curl"]:
-            random = np.random.default_rng([seed, start, 1])
+        if self.options.curl:
+            random = np.random.default_rng([self.options.seed, start, 1])
             phase = random.random(part.stop)[part] * 2 * np.pi
-        offsets = geometry.strands(way, length, toward=toward, phase=phase, **shape)
+        offsets = self._strands(way, length, toward, phase)
         return Grown(root, offsets, way, normal, inside)
 
     def _ways(self, normal: Array, vector: Array | None) -> tuple[Array, Bools | None]:
@@ -280,23 +326,52 @@ class _Coat:
         way, size = kernels.unit(vector)
         way = np.where(size > 0, way, normal)
         inside = kernels.dot(way, normal) < 0
-        if self.inward == "flip":
+        if self.options.inward == "flip":
             way[:, inside] *= -1
         return way, inside
 
-    def skin_depth(self, **shape: Any) -> Array:
+    def _strands(
+        self, way: Array, length: Array | float, toward: Array | None, phase: Array | None
+    ) -> Array:
+        """Return the points of fibres less their roots."""
+        return geometry.strands(
+            way,
+            length,
+            toward=toward,
+            phase=phase,
+            segments=self.options.segments,
+            bend=self.options.bend,
+            curl=self.options.curl,
+            turns=self.options.turns,
+        )
+
+    def skin_heights(self) -> Array:
         """Return the height of a fibre that stood on each point of the skin."""
         normal = kernels.unit(np.ascontiguousarray(self.normals.T))[0]
         way, inside = self._ways(normal, None if self.vectors is None else self.vectors.T)
         toward = None if self.toward is None else self.toward.T
-        offsets = geometry.strands(way, self.length, toward=toward, **shape)
+        offsets = self._strands(way, self.length, toward, None)
         height: Array = np.einsum("jib,ib->jb", offsets, normal).max(axis=0)
-        if self.inward == "drop" and inside is not None:
+        if self.options.inward == "drop" and inside is not None:
             height[inside] = 0
         return height
 
 
-def _lengths(mesh: pv.PolyData, length: Any) -> Array | float:
+def _toward(surface: pv.PolyData, toward: str | VectorLike | None) -> Array | None:
+    """Return the unit direction to which fibres bend, one or one per point."""
+    if toward is None:
+        return None
+    if isinstance(toward, str):
+        rows = point_arrays.vectors_of(surface, "toward", toward, 3)
+    else:
+        direction = _check.vector("toward", toward, direction=True)
+        if len(direction) != 3:
+            raise ValueError(_check.message("toward", "3 components", len(direction)))
+        rows = np.array([direction])
+    return unit_rows(rows).astype(np.float32)
+
+
+def _lengths(mesh: pv.PolyData, length: object) -> Array | float:
     if isinstance(length, str):
         if length not in mesh.point_data or mesh.point_data[length].ndim != 1:
             there = [key for key in mesh.point_data if mesh.point_data[key].ndim == 1]

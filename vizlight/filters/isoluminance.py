@@ -1,4 +1,4 @@
-"""Bands and contours of equal luminance on a mesh, or on a solid made of primitives."""
+"""Bands and contours of equal luminance on a mesh or a solid."""
 
 from __future__ import annotations
 
@@ -13,22 +13,25 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.filters import lighting
-from vizlight.filters.illuminate import prepare
 from vizlight.geometry.contours import banding, facets, refinement, spacing
 from vizlight.geometry.contours import isoluminance as closed
 from vizlight.geometry.solids import tessellation
-from vizlight.geometry.solids.primitives import Solid, Sphere, Truncus
-from vizlight.mesh import point_arrays, records
+from vizlight.geometry.solids.primitives import Frustum, Solid, Sphere
+from vizlight.mesh import hull, normals, point_arrays, records
+from vizlight.mesh.inputs import inputs_of
 from vizlight.mesh.point_arrays import unit_rows
 from vizlight.scene import Scene
 from vizlight.shading import engine
+from vizlight.shading.options import LightOptions
 from vizlight.verify import report
 
 if TYPE_CHECKING:
-    from vizlight._types import Array, Indices
-    from vizlight.geometry.contours.banding import Bands
+    from vizlight._types import Array, Bools, Indices
+    from vizlight.geometry.contours.banding import Bands, Laminae
     from vizlight.geometry.contours.spacing import Levels
+    from vizlight.geometry.solids.triangle_mesh import Mesh
     from vizlight.model.reflection import SpecularModel
+    from vizlight.shading.engine import Shading
 
 
 def isoluminance(
@@ -48,60 +51,64 @@ def isoluminance(
     threads: int | None = None,
     name: str = "luminance",
 ) -> Any:
-    """Draw the contours of equal luminance, and the bands between them with one value each.
+    """Return contours of equal luminance, and the bands between them with one value per band.
 
     Parameters
     ----------
     mesh : pyvista.DataSet, pyvista.MultiBlock or a solid
-        A lit surface (of another mesh its outer surface; blocks are joined), not changed. Or a
-        :class:`vizlight.Sphere`, :class:`~vizlight.Truncus`, :class:`~vizlight.Block`, or what
-        ``|``, ``&`` and ``-`` made of them.
+        Surface to light, which is not modified. Of a mesh that is not a surface the outer surface
+        is lit; blocks are joined. A solid is a :class:`vizlight.Sphere`,
+        :class:`~vizlight.Frustum` or :class:`~vizlight.Block`, or a combination of them by ``|``,
+        ``&`` and ``-``.
     scene : Scene
-        One light or several; a highlight needs a view.
+        Scene with one light or several. A highlight needs a view.
     levels : int, float or sequence of float, default: 16
-        A count of equal steps, an allowed luminance error, or the luminance of the contours.
+        Number of equal steps (int), allowed luminance error (float), or luminance of the contours
+        (sequence).
     tolerance : float, default: 3e-3
-        Of a combined solid: how far triangles may be from its curves and surfaces, as a share of
-        its size.
+        Largest distance of triangles from the curves and surfaces of a combined solid, as a share
+        of its size.
     model : {"phong", "blinn"}
-        The law of the highlight: ``R . E`` or ``N . H``. Both are drawn exactly.
+        Reflection model of the highlight: ``R . E`` or ``N . H``. Both are drawn exactly.
     two_sided, flip_normals : bool, default: False
-        As for :func:`vizlight.illuminate`.
+        Treatment of back sides and normals, as for :func:`vizlight.illuminate`.
     normals, tangents, conditioned, compensate
-        As for :func:`vizlight.illuminate`; of a mesh only.
+        Arrays and options as for :func:`vizlight.illuminate`, for a mesh only.
     threads : int, optional
+        Number of threads.
     name : str, default: "luminance"
-        Of the resulting cell arrays.
+        Name of the resulting cell arrays.
 
     Returns
     -------
     pyvista.MultiBlock
-        ``bands``: polygons with the cell arrays ``luminance`` and ``band``, closed if the
-        surface is, and for a solid ``patch``. ``contours``: lines with the cell array
-        ``luminance``. ``rgb`` on the bands where the scene has a colour: that of each polygon's
-        middle, as bright as its band; with tangents interpolated as the luminance is. Field data
-        of the bands: ``luminance_error``, the bound of a closed form, else what was measured at
-        the middle and along the edges of each polygon; ``luminance_provenance``.
+        Block ``bands`` holds polygons with the cell arrays ``luminance`` and ``band``, for a solid
+        also ``patch``; it is closed if the surface is. Block ``contours`` holds lines with the
+        cell array ``luminance``. If the scene has a colour, the bands have ``rgb``: the colour at
+        the centre of each polygon with the brightness of its band; with tangents the colour is
+        interpolated like the luminance. Field data of the bands are ``luminance_error``, which is
+        the bound of a closed form or else the error measured at the centre and along the edges of
+        each polygon, and ``luminance_provenance``.
 
     Raises
     ------
     TypeError, ValueError
-        If an argument does not fit, or as :func:`vizlight.illuminate`.
+        If an argument is not valid, or as for :func:`vizlight.illuminate`.
 
     Warns
     -----
     UserWarning
-        If points of faces could not be lit; triangles at such points have the band of the ambient
+        If points of faces could not be lit; triangles at such points get the band of the ambient
         light.
-        If an allowed error is not kept, as where a highlight ends at the terminator.
+        If an allowed error is not kept, for instance where a highlight ends at the terminator.
 
     Notes
     -----
     A solid is lit at its exact points and normals. A mesh is lit with its normals, interpolated
-    over each triangle and made unit: contour points are found by halving edges, so the
-    terminator does not jump from corner to corner, and triangles over which the luminance bends
-    are split. An empty mesh has no bands. With tangents the luminance itself is
-    interpolated. A sphere, or a truncus, under one light without a highlight has closed forms.
+    over each triangle and normalised. Contour points are found by halving edges, so that the
+    terminator is not restricted to corners, and triangles are split where the luminance is not
+    linear. With tangents the luminance itself is interpolated. An empty mesh has no bands. A
+    sphere or a frustum under one light without a highlight has closed forms.
     Source: Isoluminance.
     """
     options = {
@@ -118,7 +125,7 @@ def isoluminance(
 def _make(
     mesh: Any, scene: Scene, options: dict[str, Any], threads: int | None
 ) -> tuple[pv.MultiBlock, Bands, _Light]:
-    """Return bands and contours as meshes, the bands as arrays, and what lit them."""
+    """Return bands and contours as meshes, the bands as arrays, and their luminance."""
     levels, tolerance, name = options["levels"], options["tolerance"], options["name"]
     model = options["model"]
     two_sided, flip_normals = options["two_sided"], options["flip_normals"]
@@ -126,20 +133,22 @@ def _make(
     spacing.check(levels)
     _check.number("tolerance", tolerance, low=1e-6, high=0.1)
     if not isinstance(name, str) or not name:
-        raise ValueError(_check.message("name", "a name for the cell array", repr(name)))
+        raise ValueError(_check.message("name", "a non-empty name of the cell array", repr(name)))
     if isinstance(mesh, Solid):
         for option in ("normals", "tangents"):
             if options[option] is not None:
                 raise ValueError(
-                    _check.message(option, "None for a solid, which has its own", "an array")
+                    _check.message(
+                        option, "None for a solid, which has its own", "an array", "leave it out"
+                    )
                 )
         light = _Light(scene, model, two_sided, flip_normals, threads)
         found = _of_solid(mesh, light, levels, tolerance)
-        told = light.record(options)
+        record = light.record(options)
         rgb = _rgb(found, light) if scene.colored else None
-        return _blocks(found, name, told, rgb, patches=True), found, light
+        return _blocks(found, name, record, rgb, patches=True), found, light
     if not isinstance(mesh, pv.DataSet | pv.MultiBlock):
-        remedy = "make solids of vizlight.Sphere, Truncus and Block"
+        remedy = "combine solids from vizlight.Sphere, Frustum and Block"
         raise TypeError(
             _check.message("mesh", "a PyVista mesh or a solid", type(mesh).__name__, remedy)
         )
@@ -150,7 +159,7 @@ def _make(
 
 
 class _Light:
-    """The luminance of points with normals, and what is told of it."""
+    """The luminance of points with normals, and its record."""
 
     def __init__(
         self, scene: Scene, model: SpecularModel, two_sided: bool, flip: bool, threads: int | None
@@ -159,29 +168,32 @@ class _Light:
         self.shade = functools.partial(
             engine.shade, precision="float64", threads=threads, model=model, two_sided=two_sided
         )
-        self.last: Any = None
-        #: Triangles on the exact surfaces of a solid that is lit.
-        self.shape: Any = None
+        self.last: Shading | None = None
+        #: Mesh on the exact surfaces of a solid.
+        self.shape: Mesh | None = None
 
     def __call__(self, points: Array, normals: Array) -> Array:
+        return np.asarray(self.lit(points, normals).luminance)
+
+    def lit(self, points: Array, normals: Array) -> Shading:
+        """Return the light of points with normals."""
         self.last = self.shade(points, None, self.scene, normals=-normals if self.flip else normals)
-        return np.asarray(self.last.luminance)
+        return self.last
 
     def record(self, options: dict[str, Any]) -> dict[str, Any]:
-        """Return what made the bands."""
-        if self.last is None:
-            self(np.zeros((1, 3)), np.array([[0.0, 0, 1]]))
-        return records.record(self.last, "isoluminance", self.scene, options)
+        """Return the provenance of the bands."""
+        last = self.last or self.lit(np.zeros((1, 3)), np.array([[0.0, 0, 1]]))
+        return records.of_light(last, "isoluminance", self.scene, options)
 
 
 def _of_solid(solid: Solid, light: _Light, levels: Levels, tolerance: float) -> Bands:
-    """Return the bands of a solid, in closed form where there is one."""
+    """Return the bands of a solid, in closed form if there is one."""
     scene = light.scene
     low = scene.material.ambient * scene.ambient_intensity
     dull = scene.material.specular == 0 and scene.depth_cue is None
-    found: Bands | None = None
+    found: Bands | Laminae | None = None
     plain = dull and len(scene.lights) == 1 and not (light.two_sided or light.flip)
-    if plain and isinstance(solid, Sphere | Truncus):
+    if plain and isinstance(solid, Sphere | Frustum):
         (lamp,) = scene.lights
         source: dict[str, Any] = {
             "direction": lamp.direction, "position": lamp.position, "ambient": low,
@@ -190,11 +202,11 @@ def _of_solid(solid: Solid, light: _Light, levels: Levels, tolerance: float) -> 
         }  # fmt: skip
         if isinstance(solid, Sphere) and not lamp.follows_view:
             found = closed.sphere(solid.center, solid.radius, **source)
-        if isinstance(solid, Truncus) and lamp.direction is not None:
+        if isinstance(solid, Frustum) and lamp.direction is not None:
             found = closed.truncus(
                 solid.center, solid.axis, solid.radii, height=solid.height, **source
             )
-    if found is not None:
+    if isinstance(found, banding.Bands):
         return found
     light.shape = tessellation.tessellate(solid, tolerance=tolerance)
     return refinement.draw(light.shape, light, levels, low=low if dull else None)
@@ -205,16 +217,19 @@ def _of_mesh(
 ) -> tuple[pv.MultiBlock, Bands, _Light]:
     """Return bands and contours of a mesh."""
     surface, triangles, used, ids = _surface(mesh)
-    given = {**options, "positions": None, "average_cells": False}
+    given = dict(options)
     if ids is not None:
         for key in ("normals", "tangents"):
             if given[key] is not None and not isinstance(given[key], str):
                 rows = point_arrays.array_of(mesh, key, given[key], average_cells=False)
                 given[key] = np.where(ids[:, np.newaxis] < 0, 0, rows[ids])
+    names = {field.name for field in dataclasses.fields(LightOptions)} - {"tolerance"}
+    asked = LightOptions(
+        precision="float64", **{key: value for key, value in given.items() if key in names}
+    )
     (lit,), fitted = lighting.light(
-        [prepare(surface, "", scene, given)], scene, threads=threads, progress_bar=False,
-        precision="float64", **{key: options[key] for key in ("model", "compensate", "two_sided")},
-    )  # fmt: skip
+        [(inputs_of(surface, "", scene, asked), asked)], scene, threads=threads, progress_bar=False
+    )
     unlit = int(np.count_nonzero(~lit.valid[used]))
     if unlit:
         _check.warn(lighting.unlit(unlit, len(used)))
@@ -226,7 +241,7 @@ def _of_mesh(
         bands, _ = banding.cut(np.empty((0, 3)), triangles, np.empty((0, 3)), steps)
         bands = dataclasses.replace(bands, error=0.0)
     elif options["tangents"] is None:
-        found = point_arrays.normals_of(surface, given["normals"], 3, point_arrays.onlooker(scene))
+        found = normals.normals_of(surface, given["normals"], 3, normals.onlooker(scene))
         unit = unit_rows(np.asarray(found, dtype=np.float64))
         rows = np.concatenate([points, unit], axis=1)
 
@@ -237,29 +252,28 @@ def _of_mesh(
     else:
         values = np.asarray(lit.luminance[triangles], dtype=np.float64)
         steps = spacing.steps(levels, float(values.min()), float(values.max()), exact=True)
-        # What comes with the luminance is interpolated as it is.
+        # Colours are interpolated like the luminance.
         columns = [points, lit.luminance[:, np.newaxis], *([] if lit.rgb is None else [lit.rgb])]
         cut, _ = banding.cut(np.concatenate(columns, axis=1), triangles, values, steps)
         bands = dataclasses.replace(cut, points=cut.points[:, :3], error=steps.error)
         if lit.rgb is not None:
             middles = cut.middles()
             rgb = _as_bright(middles[:, 4:], middles[:, 3], bands)
-    told = records.record(lit, "isoluminance", fitted, options)
+    record = records.of_light(lit, "isoluminance", fitted, options)
     if scene.colored and options["tangents"] is None:
         rgb = _rgb(bands, light)
-    return _blocks(bands, options["name"], told, rgb, patches=False), bands, light
+    return _blocks(bands, options["name"], record, rgb, patches=False), bands, light
 
 
-def _surface(mesh: Any) -> tuple[pv.PolyData, Indices, Indices, Any]:
-    """Return the surface of a mesh, its triangles with finite corners, and points.
+def _surface(mesh: pv.DataSet) -> tuple[pv.PolyData, Indices, Indices, Indices | None]:
+    """Return the surface of a mesh, its triangles with finite corners, and its points.
 
-    Points are those that faces use, and which of the mesh each one is.
+    The points are given by the indices of those that faces use, and by the index in the mesh of
+    each point of the surface.
     """
-    surface, ids = mesh, None
-    if not isinstance(mesh, pv.PolyData):
-        surface, ids = point_arrays.outer_surface(mesh)
+    surface, ids = (mesh, None) if isinstance(mesh, pv.PolyData) else hull.outer_surface(mesh)
     if surface.n_points and not (surface.GetNumberOfPolys() or surface.GetNumberOfStrips()):
-        remedy = "take a contour or the mesh's extract_surface()"
+        remedy = "pass a contour or the mesh's extract_surface()"
         raise ValueError(
             _check.message(
                 "mesh", "a surface with faces", f"a {type(mesh).__name__} without", remedy
@@ -271,12 +285,12 @@ def _surface(mesh: Any) -> tuple[pv.PolyData, Indices, Indices, Any]:
     bare.SetStrips(surface.GetStrips())
     bare = bare if bare.is_all_triangles else bare.triangulate()
     triangles = np.asarray(bare.regular_faces, dtype=np.intp).reshape(-1, 3)
-    finite: Any = np.isfinite(np.asarray(surface.points)).all(axis=1)
+    finite: Bools = np.isfinite(np.asarray(surface.points)).all(axis=1)
     return surface, triangles[finite[triangles].all(axis=1)], np.unique(triangles), ids
 
 
 def _note(bands: Bands, light: _Light, seconds: float, size: int, *, sampled: bool) -> None:
-    """Tell the report, if one is asked for, how far bands are from the light at their middles."""
+    """Record for the report the difference of bands from the light at their centres."""
     none: Array = np.empty((0, 3))
     places, normals = _middles(bands, light) if sampled and len(bands.values) else (none, none)
     terms = engine.plan(light.scene, normals=True, model=light.model).terms
@@ -287,7 +301,7 @@ def _note(bands: Bands, light: _Light, seconds: float, size: int, *, sampled: bo
 
 
 def _middles(bands: Bands, light: _Light) -> tuple[Array, Array]:
-    """Return the middles of polygons, on the surface where it is known, and unit normals there."""
+    """Return the centres of polygons, on the exact surface if known, and unit normals there."""
     middle, shape = bands.middles(), light.shape
     if shape is not None:
         patches = np.stack([bands.patch, bands.patch], axis=1)
@@ -297,20 +311,20 @@ def _middles(bands: Bands, light: _Light) -> tuple[Array, Array]:
     return middle[:, :3], normals
 
 
-def _rgb(bands: Bands, light: _Light) -> Array:
-    """Return the colour of each polygon: that of the light at its middle, as bright as its band."""
-    value = light(*_middles(bands, light))
-    return _as_bright(light.last.rgb, value, bands)
+def _rgb(bands: Bands, light: _Light) -> Array | None:
+    """Return the colour at the centre of each polygon, with the brightness of its band."""
+    lit = light.lit(*_middles(bands, light))
+    return None if lit.rgb is None else _as_bright(lit.rgb, np.asarray(lit.luminance), bands)
 
 
 def _as_bright(rgb: Array, value: Array, bands: Bands) -> Array:
-    """Return colours of some luminance made as bright as the band of each polygon."""
+    """Return colours scaled from their luminance to that of the band of each polygon."""
     share = np.divide(bands.values, value, out=np.ones_like(value), where=value > 0)
     return np.asarray(rgb * share[:, np.newaxis])
 
 
 def _blocks(
-    bands: Bands, name: str, told: dict[str, Any], rgb: Array | None, *, patches: bool
+    bands: Bands, name: str, record: dict[str, Any], rgb: Array | None, *, patches: bool
 ) -> pv.MultiBlock:
     """Return bands and contours as meshes."""
     points = bands.points[:, :3]
@@ -325,7 +339,7 @@ def _blocks(
     surface.cell_data[name] = bands.values
     surface.cell_data.active_scalars_name = name
     surface.field_data[f"{name}_error"] = [bands.error]
-    surface.field_data[records.key(name)] = [json.dumps(told)]
+    surface.field_data[records.key(name)] = [json.dumps(record)]
     lines = pv.PolyData()
     if len(bands.lines):
         used, ends = np.unique(bands.lines, return_inverse=True)

@@ -2,48 +2,125 @@
 
 from __future__ import annotations
 
-import inspect
-from typing import TYPE_CHECKING, Any, Literal, get_args
+import dataclasses
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, get_args
 
 import pyvista as pv
 
 from vizlight import _check, _progress
-from vizlight.filters.illuminate import illuminate
-from vizlight.filters.lighting import DEFAULT_NAME
+from vizlight.filters.illuminate import light_mesh
 from vizlight.geometry.nspace import projection
-from vizlight.mesh import point_arrays
+from vizlight.mesh import blocks, point_arrays, records
 from vizlight.mesh.nspace import FRAME, POSITION, PROJECTED, Counter, Turning
-from vizlight.mesh.records import provenance, retell
 from vizlight.scene import Scene
+from vizlight.shading.options import LightKeywords, LightOptions, accepts
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from typing_extensions import Unpack
+
+    from vizlight._types import VectorLike
+    from vizlight.mesh.records import Record
+
 LightWhen = Literal["before", "after"]
-#: Options of light that may come along; the others are this filter's own to set.
-LIGHTING = set(inspect.signature(illuminate).parameters) - {
-    "mesh", "scene", "positions", "inplace", "progress_bar",
-}  # fmt: skip
-#: What is no option of the record: the scene is told beside them.
-UNTOLD = ("mesh", "scene", "options", "progress_bar")
+#: Options of the projection alone.
+PROJECTION = ("rotation", "hyperplane", "distance", "frame", "vectors", "cut", "light")
+#: Options of the light alone, which need a scene.
+LIGHT_ALONE = {field.name for field in dataclasses.fields(LightOptions)} - {"positions"}
 
 
+class ProjectKeywords(LightKeywords, total=False):
+    """The fields of :class:`ProjectOptions` as keyword arguments."""
+
+    rotation: object
+    hyperplane: tuple[VectorLike, float] | None
+    distance: float | None
+    frame: str | None
+    vectors: str | Sequence[str] | None
+    cut: bool
+    light: LightWhen
+
+
+@dataclass(frozen=True, kw_only=True)
+class ProjectOptions(LightOptions):
+    """How a mesh is turned, cut, projected and lit.
+
+    Parameters
+    ----------
+    rotation : optional
+        A matrix of SO(n), ``("xw", angle)`` with the angle in radians, or a list of these, the
+        first done first; see :func:`vizlight.geometry.projection.rotation`.
+    hyperplane : (normal, offset), optional
+        Hyperplane ``{x : x . normal / |normal| = offset}`` that cuts the turned mesh: what is left
+        is a (k - 1)-manifold. Point arrays of numbers are interpolated, the frame as the space
+        that it spans, whatever its basis at each point, and cut down to the directions within.
+    distance : float, optional
+        Distance of the eye on the last axis from the origin, in the unit of the mesh: a
+        perspective projection on the hyperplane across it. Default: orthographic, the first three
+        coordinates.
+    positions : str, default: "position"
+        Name of the point array of n components with the places of the points in n-space.
+    frame : str or None, default: "frame"
+        Name of the point array of k n components, the tangents, row after row. None: there is
+        none.
+    vectors : str or sequence of str, optional
+        Names of further point arrays of m n components, vectors in n-space that turn with the
+        mesh.
+    cut : bool, default: False
+        Whether points that cannot be cut or projected, those on or behind the eye's hyperplane
+        or not finite, are dropped with the cells that have one, and a warning gives the count;
+        else they are an error.
+    light : {"before", "after"}
+        Light in n-space, with lights and eye of n components, before the projection; or in
+        3-space, by the projected points and frame, after it.
+    """
+
+    rotation: object = None
+    hyperplane: tuple[VectorLike, float] | None = None
+    distance: float | None = None
+    positions: str | None = POSITION
+    frame: str | None = FRAME
+    vectors: str | Sequence[str] | None = None
+    cut: bool = False
+    light: LightWhen = "before"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.light not in get_args(LightWhen):
+            raise ValueError(_check.message("light", "'before' or 'after'", repr(self.light)))
+        point_arrays.refuse_unnamed("positions", self.positions or 0)
+        vectors: object = () if self.vectors is None else self.vectors
+        vectors = (vectors,) if isinstance(vectors, str) else vectors
+        if not isinstance(vectors, list | tuple):
+            expected = "the name of a point array, or a list of names"
+            raise TypeError(_check.message("vectors", expected, _check.describe(vectors)))
+        distance = self.distance
+        _check.set_fields(
+            self,
+            vectors=tuple(vectors),
+            distance=None if distance is None else projection.check_distance(distance),
+            cut=bool(self.cut),
+        )
+
+    def by(self, tangents: str | None, positions: str | None) -> LightOptions:
+        """Return the options of the light by some tangents, unless others are named."""
+        own = {f.name: getattr(self, f.name) for f in dataclasses.fields(LightOptions)}
+        named = self.tangents if self.tangents is not None else tangents
+        return LightOptions(**own | {"tangents": named, "positions": positions})
+
+
+@accepts(ProjectOptions)
 def project(
-    mesh: Any,
+    mesh: pv.DataSet | pv.MultiBlock,
     /,
     *,
-    rotation: Any = None,
-    hyperplane: Any = None,
-    distance: float | None = None,
-    positions: str = POSITION,
-    frame: str | None = FRAME,
-    vectors: str | Sequence[str] | None = None,
-    cut: bool = False,
     scene: Scene | None = None,
-    light: LightWhen = "before",
+    threads: int | None = None,
     progress_bar: bool = False,
-    **options: Any,
-) -> Any:
+    **options: Unpack[ProjectKeywords],
+) -> pv.DataSet | pv.MultiBlock:
     """Turn a mesh in n-space, cut it by a hyperplane, project it to 3-space; light it on the way.
 
     VTK's own transforms leave arrays of positions and frames alone; here they turn together.
@@ -51,36 +128,15 @@ def project(
     Parameters
     ----------
     mesh : pyvista.DataSet or pyvista.MultiBlock
-        Not changed. An image or a rectilinear grid becomes a structured grid.
-    rotation : optional
-        A matrix of SO(n), ``("xw", angle)`` with the angle in radians, or a list of these, the
-        first done first; see :func:`vizlight.geometry.projection.rotation`.
-    hyperplane : (normal, offset), optional
-        Keep where the turned mesh meets ``{x : x . normal / |normal| = offset}``: a
-        (k - 1)-manifold. Point arrays of numbers are interpolated, the frame as the space that it
-        spans, whatever its basis at each point, and cut down to the directions within.
-    distance : float, optional
-        Of the eye on the last axis from the origin, in the mesh's unit: a perspective projection
-        on the hyperplane across it. Default: orthographic, the first three coordinates.
-    positions : str, default: "position"
-        The point array of n components that says where the points are in n-space.
-    frame : str or None, default: "frame"
-        The point array of k n components, the tangents, row after row. None: there is none.
-    vectors : str or sequence of str, optional
-        Further point arrays of m n components, vectors in n-space that turn with the mesh.
-    cut : bool, default: False
-        Leave out points that cannot be cut or projected, those on or behind the eye's hyperplane
-        or not finite, and the cells that have one, with a warning of the count; else they are an
-        error.
+        Mesh that is turned; not changed. An image or a rectilinear grid becomes a structured grid.
     scene : Scene, optional
-        Light the mesh by it.
-    light : {"before", "after"}
-        Light in n-space, with lights and eye of n components, before the projection; or in
-        3-space, by the projected points and frame, after it.
-    progress_bar : bool, default: False
-        Show progress on standard error.
+        Scene by which the mesh is lit.
     **options
-        Of :func:`illuminate`. ``tangents=`` names other tangents than the frame.
+        Fields of ProjectOptions.
+    threads : int, optional
+        Number of threads of the light. Default: the processors that this process may use.
+    progress_bar : bool, default: False
+        Whether progress is shown on standard error.
 
     Returns
     -------
@@ -88,7 +144,7 @@ def project(
         A mesh with points in 3-space, ``position`` and ``frame`` turned, and for k < 3 the point
         array ``projected_frame``: the derivative of the projection applied to the frame,
         orthonormalised; for each array V of ``vectors`` its image ``projected_V``, of the length
-        it comes to. What was done is kept as field data, ``provenance(mesh, "projection")``;
+        that it comes to. What was done is kept as field data, ``provenance(mesh, "projection")``;
         ``luminance_provenance`` makes the light again from the mesh that was given.
         Arrays that nothing is done to, without a rotation positions and frame too, are shared with
         ``mesh``, as in PyVista's shallow copies: copy one before changing it in place.
@@ -105,7 +161,7 @@ def project(
     Warns
     -----
     UserWarning
-        Once, with the count, if points are left out.
+        Once, with the count, if points are dropped.
 
     Notes
     -----
@@ -118,52 +174,59 @@ def project(
     Error bounds: :func:`vizlight.geometry.projection.turn` and ``perspective``. Work is done in
     float64, block by block; arrays keep their type. Source: Banks, section 3.
     """
-    told = {key: value for key, value in locals().items() if key not in UNTOLD}
-    point_arrays.check(mesh)
-    if light not in get_args(LightWhen):
-        raise ValueError(_check.message("light", "'before' or 'after'", repr(light)))
+    blocks.check(mesh)
     _check.instance("scene", scene, Scene, optional=True)
-    for option in options:
-        if option not in LIGHTING:
-            expected = "an option of project or of illuminate"
-            raise TypeError(_check.message(option, expected, "one that neither has"))
-    if scene is None and options:
-        expected = "an option of project, or scene= beside an option of illuminate"
-        raise TypeError(_check.message(next(iter(options)), expected, "neither"))
-    distance = None if distance is None else projection.check_distance(distance)
-    names = () if vectors is None else (vectors,) if isinstance(vectors, str) else vectors
-    if not isinstance(names, list | tuple):
-        expected = "the name of a point array, or a list of names"
-        raise TypeError(_check.message("vectors", expected, _check.describe(vectors)))
-    job = Turning(rotation, hyperplane, distance, positions, frame, tuple(names), bool(cut))
+    if scene is None:
+        for option in options:
+            if option in LIGHT_ALONE:
+                expected = "an option of project, or scene= beside an option of illuminate"
+                raise TypeError(_check.message(option, expected, "neither"))
+    asked = ProjectOptions(**options)
+    job = Turning(
+        rotation=asked.rotation,
+        hyperplane=asked.hyperplane,
+        distance=asked.distance,
+        positions=asked.positions or POSITION,
+        frame=asked.frame,
+        vectors=tuple(asked.vectors or ()),
+        cut=asked.cut,
+    )
 
-    total = 2 * sum(leaf.n_points for leaf in point_arrays.leaves(mesh))
+    def lit(shown: pv.DataSet | pv.MultiBlock, when: LightWhen) -> pv.DataSet | pv.MultiBlock:
+        if scene is None or asked.light != when:
+            return shown
+        prefix, positions = ("", job.positions) if when == "before" else (PROJECTED, None)
+        _check_tangents(shown, job, asked, prefix)
+        _check_space(shown, scene, when, job.positions)
+        frame = None if asked.frame is None else f"{prefix}{asked.frame}"
+        return light_mesh(shown, scene, asked.by(frame, positions), threads=threads)
+
+    total = 2 * sum(leaf.n_points for leaf in blocks.leaves(mesh))
     with _progress.progress("project", total, show=progress_bar) as report:
         done = Counter(report)
         lost = Counter(lambda _: None)
-        out = _each(mesh, lambda leaf: job.turned(leaf, done, lost))
-        if scene is not None and light == "before":
-            _check_tangents(out, job, options)
-            _check_space(out, scene, light, positions)
-            out = illuminate(out, scene, positions=positions, **_by(frame, options))
-        out = _each(out, lambda leaf: job.projected(leaf, done, lost))
-        if scene is not None and light == "after":
-            _check_tangents(out, job, options, PROJECTED)
-            _check_space(out, scene, light, positions)
-            out = illuminate(out, scene, **_by(f"{PROJECTED}{frame}", options))
+        out = lit(_each(mesh, lambda leaf: job.turned(leaf, done, lost)), "before")
+        out = lit(_each(out, lambda leaf: job.projected(leaf, done, lost)), "after")
         if scene is not None:
-            name = options.get("name", DEFAULT_NAME)
-            for leaf in point_arrays.leaves(out):
-                retell(leaf, name, "project", provenance(leaf, name)["options"] | told)
+            for leaf in blocks.leaves(out):
+                light = records.provenance(leaf, asked.name)["options"]
+                records.amend(leaf, asked.name, "project", light, _own(asked))
     if lost.count:
         _check.warn(
             f"{lost.count} points cannot be projected (on or behind the eye's hyperplane, or not "
-            "finite) and are left out, with the cells that have one"
+            "finite) and are dropped, with the cells that have one"
         )
     return out
 
 
-def _each(mesh: Any, work: Callable[[Any], Any], path: str = "") -> Any:
+def _own(options: ProjectOptions) -> Record:
+    """Return the options of the projection alone."""
+    return {name: getattr(options, name) for name in (*PROJECTION, "positions")}
+
+
+def _each(
+    mesh: pv.DataSet | pv.MultiBlock, work: Callable[[pv.DataSet], pv.DataSet], path: str = ""
+) -> pv.DataSet | pv.MultiBlock:
     """Return a mesh with work done on it, or on each block; an error says which block it is."""
     if not isinstance(mesh, pv.MultiBlock):
         try:
@@ -175,21 +238,18 @@ def _each(mesh: Any, work: Callable[[Any], Any], path: str = "") -> Any:
     out = pv.MultiBlock()
     for i in range(mesh.n_blocks):
         name = mesh.get_block_name(i)
-        done = None if mesh[i] is None else _each(mesh[i], work, f"{path}/{name or i}")
-        out.append(done, name)
+        block = mesh[i]
+        out.append(None if block is None else _each(block, work, f"{path}/{name or i}"), name)
     for key, value in mesh.field_data.items():
         out.field_data[key] = value
     return out
 
 
-def _by(tangents: str | None, options: dict[str, Any]) -> dict[str, Any]:
-    """Return options of light by the frame, unless they name other tangents."""
-    return options if options.get("tangents") is not None else {**options, "tangents": tangents}
-
-
-def _check_space(mesh: Any, scene: Scene, light: LightWhen, positions: str) -> None:
+def _check_space(
+    mesh: pv.DataSet | pv.MultiBlock, scene: Scene, light: LightWhen, positions: str
+) -> None:
     """Check that lights and eye live in the space that is lit: that of positions, or 3-space."""
-    for leaf in point_arrays.leaves(mesh):
+    for leaf in blocks.leaves(mesh):
         n = leaf.point_data[positions].shape[1]
         lit, other, when = (n, 3, "after") if light == "before" else (3, n, "before")
         if scene.n not in (None, lit):
@@ -198,13 +258,15 @@ def _check_space(mesh: Any, scene: Scene, light: LightWhen, positions: str) -> N
             raise ValueError(_check.message("scene", expected, scene.n, remedy))
 
 
-def _check_tangents(mesh: Any, job: Turning, options: dict[str, Any], prefix: str = "") -> None:
+def _check_tangents(
+    mesh: pv.DataSet | pv.MultiBlock, job: Turning, options: ProjectOptions, prefix: str
+) -> None:
     """Check that there are tangents to light by; where there are none, say why."""
-    if options.get("tangents") is not None:
+    if options.tangents is not None:
         return
     if job.frame is None:
         raise ValueError(_check.message("frame", "tangents to light by", None, "or pass tangents="))
-    for leaf in point_arrays.leaves(mesh):
+    for leaf in blocks.leaves(mesh):
         if job.frame not in leaf.point_data:
             got = "the points of a cut curve, which have no tangents"
             raise ValueError(_check.message("scene", "a mesh that can be lit", got))

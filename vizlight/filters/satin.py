@@ -2,103 +2,93 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import dataclasses
+from typing import TYPE_CHECKING
 
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.filters.illuminate import illuminate
-from vizlight.filters.streamlines import streamlines
+from vizlight.filters.illuminate import light_mesh
+from vizlight.filters.streamlines import StreamlineOptions, light_lines
 from vizlight.mesh import point_arrays
-from vizlight.shading.options import surface_model
+from vizlight.shading.options import LightOptions, accepts
 
 if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from vizlight.filters.streamlines import StreamlineKeywords
     from vizlight.scene import Scene
-    from vizlight.shading.options import Model
 
 
-#: Options of the integral curves alone, and of the panels that have sides.
-TRACED = ("step", "max_length", "max_steps")
-SIDES = ("normals", "two_sided", "flip_normals")
-ENDS = ("terminator",)
-
-
+@accepts(
+    StreamlineOptions,
+    without=("conditioned", "vectors", "surface", "confined", "positions", "average_cells"),
+)
 def satin(
-    surface: Any,
+    surface: pv.PolyData,
     /,
     scene: Scene,
     *,
-    tangents: str,
-    seeds: Any = 300,
-    seed: int = 0,
-    compensate: bool = True,
-    model: Model = "phong",
-    **options: Any,
-) -> Any:
+    threads: int | None = None,
+    progress_bar: bool = False,
+    **options: Unpack[StreamlineKeywords],
+) -> pv.MultiBlock:
     """Light a surface with a tangent field in four ways: the panels of Banks' illustration 2.
 
     Parameters
     ----------
     surface : pyvista.PolyData
-        Not changed.
+        Surface that is lit; not changed. ``tangents`` names its point array of 3 components,
+        tangent to it; it must be given.
     scene : Scene
         Banks' material is ``Material(ambient=0.1, diffuse=0.5, specular=1.0,
-        color=(1.0, 0.25, 0.30))``.
-    tangents : str
-        A point array of 3 components, tangent to the surface.
-    seeds, seed
-        Of the integral curves, as in :func:`vizlight.streamlines`.
-    compensate : bool, default: True
-        Diffuse with the exponent p(k, n); Banks' panels are without.
-    model : {"phong", "blinn", "cylinder"}
-        As for :func:`vizlight.illuminate`; with ``"cylinder"`` the surface's law is Blinn's.
+        color=(1.0, 0.25, 0.30))``. His panels have ``compensate=False``.
     **options
-        Of :func:`vizlight.illuminate`, for all panels that they fit; step, max_length and
-        max_steps of :func:`vizlight.streamlines`.
+        Fields of StreamlineOptions.
+    threads, progress_bar
+        As for :func:`vizlight.illuminate`.
 
     Returns
     -------
     pyvista.MultiBlock
         ``curves``: integral curves, lit as lines without self-shadow (A). ``surface``: lit by its
         normals (B). ``field``: the surface lit by the field alone (C). ``conditioned``: by the
-        field, with the surface's self-shadow (D, Banks 6).
+        field, with the self-shadow of the surface (D, Banks 6). Each panel takes the options that
+        apply to it; with ``model="cylinder"`` the highlight of the surface is Blinn's.
 
     Raises
     ------
     TypeError, ValueError
         As :func:`vizlight.illuminate` and :func:`vizlight.streamlines`.
     """
-    for own in ("conditioned", "inplace", "vectors"):
-        if own in options:
-            remedy = "the four panels differ in it" if own == "conditioned" else "leave it out"
-            raise TypeError(_check.message(own, "no such option", repr(options[own]), remedy))
+    asked = StreamlineOptions(**options)
+    if asked.tangents is None:
+        raise ValueError(_check.message("tangents", "the name of a point array", None))
     if isinstance(surface, pv.DataSet):
-        point_arrays.refuse_unnamed("tangents", tangents)
-        point_arrays.vectors_of(surface, "tangents", tangents, 3)
-    traced, sides, ends = (
-        {key: options.pop(key) for key in names if key in options}
-        for names in (TRACED, SIDES, ENDS)
-    )
-    options["compensate"] = compensate
-    own_light: dict[str, Any] = {"tangents": tangents, "model": model, **options}
-    curves = streamlines(
-        surface,
-        scene,
-        vectors=tangents,
+        point_arrays.refuse_unnamed("tangents", asked.tangents)
+        point_arrays.vectors_of(surface, "tangents", asked.tangents, 3)
+    light = {f.name: getattr(asked, f.name) for f in dataclasses.fields(LightOptions)}
+    field = LightOptions(**light | {"conditioned": False, "terminator": 0.0})
+    panels = {
+        "surface": dataclasses.replace(
+            field, tangents=None, model=field.for_surface().model, terminator=asked.terminator
+        ),
+        "field": dataclasses.replace(field, normals=None, two_sided=False, flip_normals=False),
+        "conditioned": dataclasses.replace(field, conditioned=True),
+    }
+    lines = dataclasses.replace(
+        asked,
+        vectors=str(asked.tangents),
+        tangents=None,
         conditioned=False,
-        seeds=seeds,
-        seed=seed,
-        model=model,
-        **traced,
-        **options,
+        terminator=0.0,
+        normals=None,
+        two_sided=False,
+        flip_normals=False,
     )
-    return pv.MultiBlock(
-        {
-            "curves": curves,
-            "surface": illuminate(
-                surface, scene, model=surface_model(model), **sides, **ends, **options
-            ),
-            "field": illuminate(surface, scene, **own_light),
-            "conditioned": illuminate(surface, scene, conditioned=True, **sides, **own_light),
-        }
-    )
+    curves = light_lines(surface, scene, lines, threads=threads, progress_bar=progress_bar)
+    made = {
+        name: light_mesh(surface, scene, panel, threads=threads, progress_bar=progress_bar)
+        for name, panel in panels.items()
+    }
+    return pv.MultiBlock({"curves": curves, **made})

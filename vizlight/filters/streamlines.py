@@ -2,81 +2,123 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import dataclasses
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.filters.illuminate import illuminate
-from vizlight.filters.lighting import DEFAULT_NAME
+from vizlight.filters.illuminate import light_mesh
 from vizlight.geometry.lines import fur
-from vizlight.mesh import point_arrays, polylines, surfaces
-from vizlight.mesh.records import all_made, retell
+from vizlight.mesh import blocks, point_arrays, polylines, records, surfaces
+from vizlight.mesh.normals import onlooker
+from vizlight.mesh.records import all_made
 from vizlight.model import kernels
 from vizlight.scene import Scene
+from vizlight.shading.options import LightKeywords, LightOptions, accepts
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+    from typing_extensions import Unpack
+
     from vizlight._types import Array
 
-
-#: The array that is traced, under a name that no user's array has.
+#: Name of the array that is traced; no array of a user has it.
 TRACED = "vizlight vectors"
 
 
+class StreamlineKeywords(LightKeywords, total=False):
+    """The fields of :class:`StreamlineOptions` as keyword arguments."""
+
+    vectors: str | None
+    surface: pv.PolyData | None
+    confined: bool | None
+    seeds: int | ArrayLike | pv.DataSet
+    seed: int
+    step: float
+    max_length: float | None
+    max_steps: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class StreamlineOptions(LightOptions):
+    """How streamlines are traced and lit.
+
+    Parameters
+    ----------
+    vectors : str, optional
+        Name of a point array of 3 components. Default: the active vectors.
+    surface : pyvista.PolyData, optional
+        Surface whose normals condition the light of the lines near it (Banks 6), and on which
+        confined lines stay. Default for a mesh that is a surface: the mesh itself.
+    confined : bool, optional
+        Whether the lines stay on the surface: the tangential part of the vectors is integrated.
+        Default: whether the mesh itself is a surface and no other is given.
+    seeds : int or array_like, shape (M, 3), or mesh, default: 200
+        Points at which lines start. A number stands for points of the mesh, drawn without
+        repetition, or, for confined lines, for places on the surface, uniform in area.
+    seed : int, default: 0
+        Seed of the random numbers.
+    step : float, default: 0.3
+        Largest step of the integration, in cell lengths.
+    max_length : float, optional
+        Largest length of a line, in the unit of the mesh. Default: four diagonals of the bounding
+        box.
+    max_steps : int, default: 4000
+        Largest number of steps of a line.
+    conditioned : bool or str, optional
+        Whether the lines inherit the self-shadow of the surface, see
+        :func:`vizlight.illuminate`. Default: whether there is a surface.
+    """
+
+    vectors: str | None = None
+    surface: pv.PolyData | None = None
+    confined: bool | None = None
+    seeds: int | ArrayLike | pv.DataSet = 200
+    seed: int = 0
+    step: float = 0.3
+    max_length: float | None = None
+    max_steps: int = 4000
+    conditioned: bool | str | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        _check.set_fields(
+            self,
+            step=_check.number("step", self.step, low=1e-6),
+            max_steps=int(_check.number("max_steps", self.max_steps, low=1, high=1e9)),
+        )
+
+
+@accepts(StreamlineOptions)
 def streamlines(
-    mesh: Any,
+    mesh: pv.DataSet,
     /,
     scene: Scene,
     *,
-    vectors: str | None = None,
-    surface: Any = None,
-    confined: bool | None = None,
-    conditioned: bool | None = None,
-    seeds: Any = 200,
-    seed: int = 0,
-    step: float = 0.3,
-    max_length: float | None = None,
-    max_steps: int = 4000,
-    **options: Any,
-) -> Any:
+    threads: int | None = None,
+    progress_bar: bool = False,
+    **options: Unpack[StreamlineKeywords],
+) -> pv.PolyData:
     """Integrate streamlines by VTK's tracer, light them, condition them by a surface.
 
     Parameters
     ----------
     mesh : pyvista.DataSet
-        Carries the vectors; not changed.
+        Mesh that carries the vectors; not changed.
     scene : Scene
-    vectors : str, optional
-        A point array of 3 components; default the active vectors.
-    surface : pyvista.PolyData, optional
-        Its normals condition the light of lines near it (Banks 6); confined lines stay on it.
-        Default for a mesh that is a surface: the mesh itself.
-    confined : bool, optional
-        Keep the lines on the surface: the tangential part of the vectors is integrated.
-        Default: whether the mesh itself is a surface and no other is given.
-    conditioned : bool, optional
-        Default: whether there is a surface.
-    seeds : int or array_like, shape (M, 3), or mesh, default: 200
-        Where lines start; a number is of points of the mesh, drawn without repetition, or, for
-        confined lines, of places on the surface, uniform in area.
-    seed : int, default: 0
-        Of the drawing.
-    step : float, default: 0.3
-        Largest step of the integration, in cell lengths.
-    max_length : float, optional
-        Of a line, in the unit of the mesh; default four diagonals of the bounding box.
-    max_steps : int, default: 4000
-        Of a line.
     **options
-        Of :func:`vizlight.illuminate`, ``tangents=`` to light by another array than the lines'
-        own tangents.
+        Fields of StreamlineOptions.
+    threads, progress_bar
+        As for :func:`vizlight.illuminate`.
 
     Returns
     -------
     pyvista.PolyData
-        The lines that left their seed, with the point array ``luminance`` and the tracer's own
-        arrays; with a surface ``Normals``; for confined lines the field array ``drift``, the
+        The lines that left their seed, with the point array ``luminance`` and the arrays of the
+        tracer; with a surface ``Normals``; for confined lines the field array ``drift``, the
         largest distance from the surface before they were put back on it.
 
     Raises
@@ -88,7 +130,7 @@ def streamlines(
     -----
     Confined lines are moved to the closest point of the surface after tracing, so that they lie
     on its triangles to rounding: 1e-6 of the surface's size. VTK traces in float32; a mesh far
-    from the origin is therefore traced near it, and its lines come back in float64. Lines end
+    from the origin is therefore traced near it, and its lines are returned in float64. Lines end
     where vectors are less than a millionth of the median, zero or not finite, and where a line
     turns back by more than a right angle from one step to the next, as it does at a wall.
     Sources: Banks 4.1 and (6).
@@ -102,47 +144,83 @@ def streamlines(
     >>> "luminance" in lines.point_data
     True
     """
-    told = {name: value for name, value in locals().items() if name not in ("mesh", "scene")}
+    return light_lines(
+        mesh, scene, StreamlineOptions(**options), threads=threads, progress_bar=progress_bar
+    )
+
+
+def light_lines(
+    mesh: pv.DataSet,
+    scene: Scene,
+    options: StreamlineOptions,
+    *,
+    threads: int | None,
+    progress_bar: bool,
+) -> pv.PolyData:
+    """Trace and light lines by options that are checked; see :func:`streamlines`."""
+    _check_mesh(mesh)
+    _check.instance("scene", scene, Scene)
+    made = _resolved(mesh, options)
+    lines = _traced(mesh, scene, made)
+    conditioned = made.surface is not None if made.conditioned is None else made.conditioned
+    normals = "Normals" if conditioned and made.normals is None else made.normals
+    light = dataclasses.replace(made, conditioned=conditioned, normals=normals)
+    lit = light_mesh(lines, scene, light, threads=threads, inplace=True, progress_bar=progress_bar)
+    recorded = dataclasses.replace(options, vectors=made.vectors)
+    records.amend(lit, options.name, "streamlines", recorded)
+    return lit
+
+
+def _check_mesh(mesh: object) -> None:
+    """Refuse what lines cannot be traced in."""
     if not isinstance(mesh, pv.DataSet):
         remedy = "join its blocks by mesh.combine()" if isinstance(mesh, pv.MultiBlock) else ""
         raise TypeError(_check.message("mesh", "a PyVista dataset", type(mesh).__name__, remedy))
     if isinstance(mesh, pv.PointSet):
         remedy = "interpolate its vectors onto a grid, between points there are none"
         raise TypeError(_check.message("mesh", "a dataset with cells", "PointSet", remedy))
-    _check.instance("scene", scene, Scene)
-    if "inplace" in options:
-        remedy = "the lines are always a new mesh"
-        raise TypeError(_check.message("inplace", "no such option", options["inplace"], remedy))
-    vectors = _vectors_name(mesh, vectors)
+
+
+def _resolved(mesh: pv.DataSet, options: StreamlineOptions) -> StreamlineOptions:
+    """Return the options with vectors, surface and whether lines are confined put in."""
+    vectors = _vectors_name(mesh, options.vectors)
+    surface, confined = options.surface, options.confined
     is_surface = isinstance(mesh, pv.PolyData) and bool(
         mesh.GetNumberOfPolys() or mesh.GetNumberOfStrips()
     )
     if confined is None:
         confined = is_surface and surface is None
-    if surface is None and is_surface:
+    if surface is None and isinstance(mesh, pv.PolyData) and is_surface:
         surface = mesh
-    if surface is None and (confined or conditioned):
+    if surface is None and (confined or options.conditioned):
         what = "confined" if confined else "conditioned"
         raise ValueError(_check.message("surface", f"a surface for {what} lines", None))
-    carrier, own = mesh, all_made(mesh)
-    if surface is not None:
-        own |= all_made(surface)
-        surface = surfaces.with_normals(surface, point_arrays.onlooker(scene))
+    return dataclasses.replace(options, vectors=vectors, surface=surface, confined=confined)
+
+
+def _traced(mesh: pv.DataSet, scene: Scene, options: StreamlineOptions) -> pv.PolyData:
+    """Return the lines, put back on the surface that they are confined to."""
+    vectors, confined = options.vectors or "", bool(options.confined)
+    surface, carrier, own = None, mesh, all_made(mesh)
+    if options.surface is not None:
+        own |= all_made(options.surface)
+        surface = surfaces.with_normals(options.surface, onlooker(scene))
         if confined:
             surface = carrier = _tangential(surface, mesh, vectors)
     # VTK traces in float32 to an absolute error: near the origin, in a box of size 1.
-    origin, size = np.array(point_arrays.near_origin(carrier)), point_arrays.box(carrier)[1]
-    carrier = point_arrays.moved(_traceable(carrier, vectors, own), -origin, 1 / size)
+    origin, size = np.array(blocks.near_origin(carrier)), blocks.box(carrier)[1]
+    carrier = blocks.moved(_traceable(carrier, vectors, own), -origin, 1 / size)
+    seeds = _seeds(carrier, options.seeds, options.seed, origin, size, on_surface=confined)
     lines = carrier.streamlines_from_source(
-        pv.PolyData(_seeds(carrier, seeds, seed, origin, size, on_surface=confined)),
+        pv.PolyData(seeds),
         vectors=TRACED,
         surface_streamlines=confined,
         integration_direction="both",
-        initial_step_length=_check.number("step", step, low=1e-6),
-        max_step_length=step,
-        min_step_length=min(0.01, step),
-        max_steps=int(_check.number("max_steps", max_steps, low=1, high=1e9)),
-        max_length=_max_length(carrier, max_length, size),
+        initial_step_length=options.step,
+        max_step_length=options.step,
+        min_step_length=min(0.01, options.step),
+        max_steps=options.max_steps,
+        max_length=_max_length(carrier, options.max_length, size),
         terminal_speed=1e-6,
         compute_vorticity=False,
     )
@@ -151,14 +229,11 @@ def streamlines(
         if key in lines.point_data:
             del lines.point_data[key]
     if not lines.n_points:
-        raise ValueError(
-            _check.message(
-                "seeds", "points inside the mesh where the vectors are not zero", "no line"
-            )
-        )
+        expected = "points inside the mesh where the vectors are not zero"
+        raise ValueError(_check.message("seeds", expected, "no line"))
     places: Array = np.asarray(lines.points, dtype=np.float64)
     if surface is not None:
-        nearest, normals = surfaces.closest(point_arrays.moved(surface, -origin, 1 / size), places)
+        nearest, normals = surfaces.closest(blocks.moved(surface, -origin, 1 / size), places)
         if confined:
             drift = size * np.linalg.norm(nearest - places, axis=1).max()
             lines.field_data["drift"] = [drift]
@@ -166,14 +241,7 @@ def streamlines(
         lines.point_data["Normals"] = normals.astype(np.float32)
     far = np.any(origin) or not 1e-30 < size < 1e30
     lines.points = (size * places + origin).astype(np.float64 if far else np.float32)
-    if conditioned is None:
-        conditioned = surface is not None
-    if conditioned:
-        options.setdefault("normals", "Normals")
-    lit = illuminate(lines, scene, conditioned=conditioned, inplace=True, **options)
-    told |= {"vectors": vectors, **told.pop("options")}
-    retell(lit, options.get("name", DEFAULT_NAME), "streamlines", told)
-    return lit
+    return lines
 
 
 def _vectors_name(mesh: pv.DataSet, vectors: str | None) -> str:
@@ -225,7 +293,7 @@ def _tangential(surface: pv.PolyData, mesh: pv.DataSet, vectors: str) -> pv.Poly
     return surface
 
 
-def _traceable(mesh: Any, vectors: str, own: set[str]) -> Any:
+def _traceable(mesh: pv.DataSet, vectors: str, own: set[str]) -> pv.DataSet:
     """Return a mesh that the tracer may change, with the vectors as TRACED.
 
     Arrays of words, which end the tracer's process, and vizlight's own are left out. The vectors
@@ -245,7 +313,7 @@ def _traceable(mesh: Any, vectors: str, own: set[str]) -> Any:
 
 
 def _seeds(
-    mesh: pv.DataSet, seeds: Any, seed: int, origin: Array, size: float, *, on_surface: bool
+    mesh: pv.DataSet, seeds: object, seed: int, origin: Array, size: float, *, on_surface: bool
 ) -> Array:
     """Return where lines start in a mesh that was moved to the origin and scaled to size 1."""
     if isinstance(seeds, pv.DataSet):

@@ -1,7 +1,7 @@
-"""Shapes as arrays: NumPy and SciPy only, no mesh, no file.
+"""Shapes as arrays; only NumPy and SciPy are used, no mesh and no file.
 
-The public modules have short names here, such as ``vizlight.geometry.manifolds``; the folders
-``lines``, ``nspace``, ``solids``, ``contours`` and ``relief`` hold them.
+Every public module has a short name here, such as ``vizlight.geometry.manifolds``. The modules
+themselves are in the folders ``lines``, ``nspace``, ``solids``, ``contours`` and ``relief``.
 """
 
 from __future__ import annotations
@@ -19,22 +19,16 @@ if TYPE_CHECKING:
     from vizlight.geometry.contours import isoluminance as isoluminance
     from vizlight.geometry.lines import curves as curves
     from vizlight.geometry.lines import fur as fur
-    from vizlight.geometry.nspace import (
-        manifolds as manifolds,
-    )
-    from vizlight.geometry.nspace import (
-        projection as projection,
-    )
-    from vizlight.geometry.nspace import (
-        slices as slices,
-    )
+    from vizlight.geometry.nspace import manifolds as manifolds
+    from vizlight.geometry.nspace import projection as projection
+    from vizlight.geometry.nspace import slices as slices
     from vizlight.geometry.relief import depth_map as depth_map
     from vizlight.geometry.relief import sun as sun
     from vizlight.geometry.solids import primitives as primitives
 
 
 def __getattr__(name: str) -> ModuleType:
-    """Load a public module when it is first used."""
+    """Import a public module on first use."""
     if name in GEOMETRY or name in ("relief", "solids"):
         return importlib.import_module(f"vizlight.geometry.{name}")
     raise AttributeError(f"module 'vizlight.geometry' has no attribute {name!r}")

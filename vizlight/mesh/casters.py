@@ -1,34 +1,93 @@
-"""What casts shadows on itself: a height field, or a closed surface and others beside it."""
+"""What casts shadows on itself: a height field, or a closed surface with others beside it."""
 
 from __future__ import annotations
 
+import dataclasses
 import math
-from typing import TYPE_CHECKING, Any, Protocol
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol, TypedDict
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
 from vizlight.geometry.relief import height_field, shadowing
-from vizlight.mesh import closed_meshes, point_arrays
+from vizlight.mesh import closed_meshes, normals, point_arrays
 from vizlight.mesh.height_grids import heights_of
 from vizlight.verify import rays
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from typing import TypeAlias
 
     from vizlight._types import Array, Bools
+    from vizlight.geometry.relief.height_field import Border
+    from vizlight.geometry.relief.shadowing import Method
     from vizlight.scene import Light, Scene
 
-#: A depth that is not given, as a share of the diagonal.
+    Grid: TypeAlias = pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid
+
+#: Default depth, as a share of the diagonal.
 DEPTH = 0.01
-#: Beyond this many sizes of a surface a light is as far: squares of its place do not overflow.
+#: Distance, in sizes of a surface, beyond which a light may be put: squares do not overflow.
 FAR = 1e100
-#: Options of a height field alone, and what they are where none is given.
-FIELD_ALONE = {
-    "elevation": None, "factor": 1.0, "base": None, "border": "extend", "method": "fast",
-}  # fmt: skip
-GRIDS = pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid
+#: Options of height fields alone.
+FIELD_ALONE = ("elevation", "factor", "base", "border", "method")
+
+
+class CasterKeywords(TypedDict, total=False):
+    """The fields of :class:`CasterOptions` as keyword arguments."""
+
+    depth: float | None
+    elevation: str | None
+    factor: float
+    base: float | None
+    border: Border
+    method: Method
+    thickness: float | None
+    occluders: pv.PolyData | Sequence[pv.PolyData]
+
+
+@dataclass(frozen=True, kw_only=True)
+class CasterOptions:
+    """What casts shadows, and how.
+
+    Parameters
+    ----------
+    depth : float, optional
+        Depth d of 0 or more below the surface at which light is gathered, in the unit of the
+        mesh: the deeper, the softer. Default: 0.01 of the diagonal of the faces, of a field's in x
+        and y.
+    elevation : str, optional
+        Name of a point array of heights. Default: z of a StructuredGrid, else the active scalars.
+        NaN is a hole.
+    factor : float, default: 1.0
+        Factor of the heights; for height fields alone.
+    base, border, method
+        As for :func:`vizlight.geometry.relief.inside_length`; for height fields alone.
+    thickness : float, optional
+        Thickness of the shell below its normals as which an open surface is lit.
+    occluders : pyvista.PolyData or sequence of them
+        Further closed surfaces between the surface and the light.
+    """
+
+    depth: float | None = None
+    elevation: str | None = None
+    factor: float = 1.0
+    base: float | None = None
+    border: Border = "extend"
+    method: Method = "fast"
+    thickness: float | None = None
+    occluders: pv.PolyData | Sequence[pv.PolyData] = ()
+
+    def __post_init__(self) -> None:
+        given: object = self.occluders
+        if isinstance(given, pv.DataObject):
+            given = [given]
+        if isinstance(given, str) or not isinstance(given, Iterable):
+            expected = "closed surfaces, or one"
+            raise TypeError(_check.message("occluders", expected, _check.describe(given)))
+        _check.set_fields(self, occluders=list(given))
 
 
 class Caster(Protocol):
@@ -51,27 +110,23 @@ class Caster(Protocol):
         """Return t of one point by other means; NaN where they say nothing."""
 
 
-def caster(
-    mesh: Any,
-    scene: Scene,
-    options: dict[str, Any],
-    occluders: Iterable[Any],
-    threads: int | None,
-) -> Caster:
+def caster(mesh: pv.DataSet, scene: Scene, options: CasterOptions, threads: int | None) -> Caster:
     """Return what casts shadows, from a mesh and the options of the filter."""
-    if isinstance(mesh, GRIDS):
+    if isinstance(mesh, pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid):
         for option in ("thickness", "occluders"):
-            if options[option]:
-                got = options[option] if option == "thickness" else len(options[option])
+            value = getattr(options, option)
+            if value:
+                got = value if option == "thickness" else len(value)
                 remedy = "pass the grid's surface, made closed, to have them"
                 raise ValueError(_check.message(option, "none on a height field", got, remedy))
         return _FieldCaster(mesh, options, threads)
     if isinstance(mesh, pv.PolyData):
-        for option, default in FIELD_ALONE.items():
-            given = options[option]
+        defaults = {field.name: field.default for field in dataclasses.fields(options)}
+        for option in FIELD_ALONE:
+            given, default = getattr(options, option), defaults[option]
             if given is not default and (default is None or np.any(given != default)):
                 raise ValueError(_check.message(option, "none on a surface", repr(given)))
-        return _SolidCaster(mesh, scene, options, list(occluders))
+        return _SolidCaster(mesh, scene, options)
     raise TypeError(
         _check.message(
             "mesh",
@@ -85,31 +140,31 @@ def caster(
 class _FieldCaster:
     """The shadows of a height field."""
 
-    def __init__(self, grid: Any, options: dict[str, Any], threads: int | None) -> None:
-        found = heights_of(grid, options["elevation"], options["factor"])
-        border: Any = options["border"]
+    def __init__(self, grid: Grid, options: CasterOptions, threads: int | None) -> None:
+        found = heights_of(grid, options.elevation, options.factor)
         self._field = height_field.make(
-            found.x, found.y, found.z, base=options["base"], border=border
+            found.x, found.y, found.z, base=options.base, border=options.border
         )
         self._normal = height_field.normals(self._field)
         self._holes = np.isnan(found.z)
-        self._to_points, self._method, self._threads = found.to_points, options["method"], threads
+        self._to_points, self._method, self._threads = found.to_points, options.method, threads
         self._turn = found.turn
         side = float(np.hypot(self._field.x[-1], self._field.y[-1]))
-        self.depth = _depth(options["depth"], side)
+        self.depth = _depth(options.depth, side)
         self.points = found.points()
         normals = self._normal if self._turn is None else self._normal @ self._turn
         self.normals = found.to_points(np.where(self._holes[..., np.newaxis], 0, normals))
-        self.valid: Any = found.to_points(~self._holes)
+        self.valid: Bools = found.to_points(~self._holes).astype(np.bool_)
         field = self._field
         size = max(field.x[-1], field.y[-1], field.top)
         self.effort = rays.SAMPLES if self.depth > shadowing.LEAST_DEPTH * size else 0
 
     def of(self, light: Light) -> Array:
-        way: Any = [light.direction, light.position]
-        if self._turn is not None:
-            way = [None if v is None else self._turn @ np.array(v) for v in way]
-        ray = shadowing.toward(self._field, direction=way[0], position=way[1])
+        turn = np.eye(3) if self._turn is None else self._turn
+        way, end = (
+            None if v is None else turn @ np.array(v) for v in (light.direction, light.position)
+        )
+        ray = shadowing.toward(self._field, direction=way, position=end)
         t = shadowing.ratio(
             self._field, self._normal, self.depth, ray, method=self._method, threads=self._threads
         )
@@ -133,13 +188,12 @@ class _FieldCaster:
 class _SolidCaster:
     """The shadows of a closed surface, and of others beside it."""
 
-    def __init__(
-        self, mesh: pv.PolyData, scene: Scene, options: dict[str, Any], others: list[Any]
-    ) -> None:
-        thickness = options["thickness"]
+    def __init__(self, mesh: pv.PolyData, scene: Scene, options: CasterOptions) -> None:
+        others = list(options.occluders)
+        thickness = options.thickness
         if thickness is None:
             body = closed_meshes.closed(mesh)
-        vectors = point_arrays.normals_of(mesh, None, 3, point_arrays.onlooker(scene))
+        vectors = normals.normals_of(mesh, None, 3, normals.onlooker(scene))
         self.normals = point_arrays.unit_rows(np.asarray(vectors, dtype=np.float64))
         if thickness is not None:
             thickness = _check.number("thickness", thickness, low=0.0)
@@ -151,7 +205,7 @@ class _SolidCaster:
         self._origin = body[0].mean(axis=0)
         self._unit = float(np.linalg.norm(np.ptp(body[0], axis=0))) or 1.0
         self._solids = [closed_meshes.solid(*one, self._origin, self._unit) for one in bodies]
-        self.depth = _depth(options["depth"], self._unit)
+        self.depth = _depth(options.depth, self._unit)
         self.points: Array = np.asarray(mesh.points, dtype=np.float64)
         self.valid = np.any(self.normals, axis=1) & np.all(np.isfinite(self.points), axis=1)
         faces = sum(len(body.triangles) for body in self._solids)

@@ -18,15 +18,15 @@ from vizlight.model.frames import default_rtol
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vizlight._types import Array, Bools
+    from vizlight._types import Array, Bools, VectorLike
 
 POSITION, FRAME, PROJECTED, RECORD = "position", "frame", "projected_", "projection"
-#: Rows worked on at once, in float64.
+#: Number of rows worked on at once, in float64.
 BLOCK = 1 << 15
 
 
 class Counter:
-    """A number that grows and is told of."""
+    """A count that is reported when it grows."""
 
     def __init__(self, report: Callable[[int], None]) -> None:
         self.count, self._report = 0, report
@@ -41,20 +41,20 @@ class Counter:
 class Turning:
     """What :func:`project` does to each mesh, with its options."""
 
-    rotation: Any
-    hyperplane: Any
+    rotation: object
+    hyperplane: tuple[VectorLike, float] | None
     distance: float | None
     positions: str
     frame: str | None
     vectors: tuple[str, ...]
     cut: bool
 
-    def turned(self, mesh: Any, done: Counter, lost: Counter) -> Any:
-        """Return a mesh turned and cut; its points are still where they were."""
+    def turned(self, mesh: pv.DataSet, done: Counter, lost: Counter) -> pv.DataSet:
+        """Return a mesh turned and cut; its points stay where they are."""
         if isinstance(mesh, pv.ImageData | pv.RectilinearGrid):
             mesh = mesh.cast_to_structured_grid()
         out = mesh.copy(deep=False)
-        # The mesh that came shows its own points; its normals are not those of the result.
+        # The mesh that is given keeps its points; its normals are not those of the result.
         out.point_data.active_normals_name = None
         arrays = self._arrays(out)
         n = arrays[self.positions].shape[1]
@@ -273,6 +273,6 @@ def _record(job: Turning, mesh: Any, matrix: Array | None) -> str:
             "frame": job.frame,
             "vectors": list(job.vectors),
             "cut": job.cut,
-            "earlier": records.told_of(mesh, RECORD),
+            "earlier": records.read(mesh, RECORD),
         }
     )

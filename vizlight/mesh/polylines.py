@@ -8,7 +8,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight.geometry.lines.curves import polyline_tangents
-from vizlight.mesh import point_arrays
+from vizlight.mesh import hull
 
 if TYPE_CHECKING:
     from vizlight._types import Array, Indices
@@ -38,11 +38,11 @@ def line_tangents(mesh: pv.DataSet) -> Array:
     Segments that follow each other, such as contour lines come in, are joined first.
     """
     if not isinstance(mesh, pv.PolyData):
-        surface, origin = point_arrays.outer_surface(mesh)
+        surface, origin = hull.outer_surface(mesh)
         if mesh.has_nonlinear_cells:
             # Each came as a line of its own.
             surface.SetLines(pv.CellArray.from_regular_cells(segments(surface.GetLines())))
-        return point_arrays.scattered(line_tangents(surface), origin, mesh.n_points)
+        return hull.scattered(line_tangents(surface), origin, mesh.n_points)
     lines = mesh.GetLines()
     ids, offsets = _cells(lines)
     if np.any(np.diff(offsets) == 2) and len(np.unique(ids)) < len(ids):

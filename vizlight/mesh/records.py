@@ -2,34 +2,42 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
+from collections.abc import Mapping
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
 from vizlight._version import __version__
-from vizlight.mesh import point_arrays
+from vizlight.mesh import blocks, point_arrays
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
 
     from vizlight.scene import Scene
     from vizlight.shading.engine import Shading
 
+#: What JSON holds: the scene, the options and facts about the result.
+Record: TypeAlias = dict[str, object]
 
-#: Arrays of no more numbers than this are told in full.
+#: Largest number of values of an array that is written out in full.
 WRITTEN_OUT = 100
 
 
 def key(name: str) -> str:
-    """Return the name of the field array that tells of a point array."""
+    """Return the name of the field array that holds the record of a point array."""
     return f"{name}_provenance"
 
 
-def attach(mesh: pv.DataSet, name: str, arrays: Mapping[str, Any], told: dict[str, Any]) -> None:
+def attach(
+    mesh: pv.DataSet, name: str, arrays: Mapping[str, NDArray[np.generic]], record: Record
+) -> None:
     """Attach point arrays in place of those made under the name before; it becomes active."""
     for stale in made(mesh, name):
         if stale in mesh.point_data:
@@ -37,23 +45,28 @@ def attach(mesh: pv.DataSet, name: str, arrays: Mapping[str, Any], told: dict[st
     for own, array in arrays.items():
         point_arrays.attach_rows(mesh, own, array)
     point_arrays.activate(mesh, name)
-    mesh.field_data[key(name)] = [json.dumps(told | {"arrays": list(arrays)})]
+    write(mesh, name, record | {"arrays": list(arrays)})
 
 
-def told_of(mesh: pv.DataSet, name: str) -> dict[str, Any] | None:
-    """Return what a mesh tells of an array, None where it tells nothing."""
+def write(mesh: pv.DataSet, name: str, record: Record) -> None:
+    """Attach the record of an array."""
+    mesh.field_data[key(name)] = [json.dumps(record)]
+
+
+def read(mesh: pv.DataSet, name: str) -> dict[str, Any] | None:
+    """Return the record of an array, None where the mesh has none."""
     if key(name) not in mesh.field_data:
         return None
-    told: dict[str, Any] = json.loads(str(mesh.field_data[key(name)][0]))
-    return told
+    record: dict[str, Any] = json.loads(str(mesh.field_data[key(name)][0]))
+    return record
 
 
 def made(mesh: pv.DataSet, name: str) -> set[str]:
     """Return the names of the point arrays that were attached under a name."""
-    return set((told_of(mesh, name) or {}).get("arrays", ()))
+    return set((read(mesh, name) or {}).get("arrays", ()))
 
 
-def all_made(mesh: Any) -> set[str]:
+def all_made(mesh: pv.DataSet) -> set[str]:
     """Return the names of all point arrays that vizlight attached to a mesh."""
     names = [name.removesuffix(key("")) for name in getattr(mesh, "field_data", ())]
     return set().union(*(made(mesh, name) for name in names))
@@ -62,7 +75,7 @@ def all_made(mesh: Any) -> set[str]:
 def refuse_overwriting(
     leaves: Iterable[tuple[pv.DataSet, str]], name: str, arrays: Iterable[str]
 ) -> None:
-    """Refuse to lose the user's own arrays; those that vizlight made may be made anew."""
+    """Refuse to replace the user's own arrays; those that vizlight made may be made anew."""
     for leaf, _ in leaves:
         ours = made(leaf, name)
         for array in arrays:
@@ -77,12 +90,10 @@ def refuse_overwriting(
                 )
 
 
-def record(
-    shading: Shading, filter_name: str, scene: Scene, options: dict[str, Any]
-) -> dict[str, Any]:
-    """Return what made the light, as values that JSON can hold."""
+def of_light(shading: Shading, filter_name: str, scene: Scene, options: object) -> Record:
+    """Return the record of light that the engine computed."""
     plan = shading.plan
-    return tell(
+    return of_filter(
         filter_name, scene, options,
         precision=plan.dtype.name,
         terms=list(plan.terms),
@@ -94,8 +105,8 @@ def record(
     )  # fmt: skip
 
 
-def tell(filter_name: str, scene: Scene, options: dict[str, Any], **facts: Any) -> dict[str, Any]:
-    """Return what made an array that is no sum of an engine's terms."""
+def of_filter(filter_name: str, scene: Scene, options: object, **facts: object) -> Record:
+    """Return the record of an array that is no sum of an engine's terms."""
     return {
         "vizlight": __version__,
         "filter": filter_name,
@@ -105,18 +116,21 @@ def tell(filter_name: str, scene: Scene, options: dict[str, Any], **facts: Any) 
     }
 
 
-def retell(mesh: pv.DataSet, name: str, filter_name: str, options: dict[str, Any]) -> None:
-    """Tell of an array that another filter made it, by the help of the one that is told."""
-    told = (told_of(mesh, name) or {}) | {"filter": filter_name, "options": plain(options)}
-    mesh.field_data[key(name)] = [json.dumps(told)]
+def amend(mesh: pv.DataSet, name: str, filter_name: str, *options: object) -> None:
+    """Record that another filter made an array, with the help of the one in the record."""
+    own = {key: value for each in options for key, value in plain(each).items()}
+    write(mesh, name, (read(mesh, name) or {}) | {"filter": filter_name, "options": own})
 
 
-def plain(options: dict[str, Any]) -> dict[str, Any]:
-    """Return options as values that JSON can hold."""
-    return {name: _plain(value) for name, value in options.items()}
+def plain(options: object) -> Record:
+    """Return options, a dataclass or a dict, as values that JSON can hold."""
+    if not isinstance(options, Mapping):
+        names = [field.name for field in dataclasses.fields(options)]  # type: ignore[arg-type]
+        options = {name: getattr(options, name) for name in names}
+    return {str(name): _plain(value) for name, value in options.items()}
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: object) -> object:
     """Return a value that JSON can hold; a mesh or a long array is only described."""
     if value is None or isinstance(value, str | bool | int | float):
         return value
@@ -126,14 +140,14 @@ def _plain(value: Any) -> Any:
         return float(value)
     if isinstance(value, list | tuple) and len(value) <= WRITTEN_OUT:
         return [_plain(part) for part in value]
-    array = np.asarray(value)
+    array: NDArray[np.generic] = np.asarray(value)
     if array.size <= WRITTEN_OUT and array.dtype.kind in "biufU":
         # No JSON has more digits than float64.
         return (array.astype(np.float64) if array.dtype.kind == "f" else array).tolist()
     return _check.describe(array)
 
 
-def provenance(mesh: Any, /, name: str = "luminance") -> dict[str, Any]:
+def provenance(mesh: pv.DataSet | pv.MultiBlock, /, name: str = "luminance") -> dict[str, Any]:
     """Return what made a point array: scene, options, terms, precision, version.
 
     Parameters
@@ -160,14 +174,14 @@ def provenance(mesh: Any, /, name: str = "luminance") -> dict[str, Any]:
     """
     if not isinstance(mesh, pv.DataSet | pv.MultiBlock):
         raise TypeError(_check.message("mesh", "a PyVista mesh", type(mesh).__name__))
-    told = set()
-    for leaf in point_arrays.leaves(mesh):
-        if (found := told_of(leaf, name)) is not None:
+    known = set()
+    for leaf in blocks.leaves(mesh):
+        if (found := read(leaf, name)) is not None:
             return found
-        told |= {k.removesuffix(key("")) for k in leaf.field_data if k.endswith(key(""))}
-    if not told:
+        known |= {k.removesuffix(key("")) for k in leaf.field_data if k.endswith(key(""))}
+    if not known:
         remedy = "light it first, or read it from a file format that keeps field data"
         raise ValueError(_check.message("mesh", "one that vizlight made arrays on", "none", remedy))
     raise ValueError(
-        _check.message("name", f"one of the arrays made by vizlight, {sorted(told)}", repr(name))
+        _check.message("name", f"one of the arrays made by vizlight, {sorted(known)}", repr(name))
     )

@@ -1,25 +1,26 @@
-"""Fibres of one number of points each, grown block by block when the engine first asks for them."""
+"""Fibres with equal numbers of points, grown block by block when the engine asks for them."""
 
 from __future__ import annotations
 
 import dataclasses
 import threading
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _pool
 from vizlight.geometry.lines.fur import SEED_BLOCK
+from vizlight.shading.inputs import ShadingInputs
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vizlight._types import Array, Bools
+    from vizlight._types import Array, Bools, Vector
     from vizlight.shading import engine
 
-#: Points grown at once by all threads: few beside what is kept, many enough that threads seldom
-#: wait for the interpreter.
+#: Number of points that all threads grow at once: few beside the points that are kept, enough that
+#: threads seldom wait for the interpreter.
 POINTS_AT_ONCE = 1 << 18
 
 
@@ -37,9 +38,9 @@ class Grown(NamedTuple):
 
 
 class Strands:
-    """Fibres as rows for the engine, which takes block after block and each block once.
+    """Fibres as rows for the engine, which takes one block after the other and each block once.
 
-    What lights a block is kept for as long as a thread works on it; only points are kept whole.
+    The vectors of a block are kept as long as a thread works on it; only points are kept for all.
     """
 
     def __init__(
@@ -47,7 +48,7 @@ class Strands:
         grow: Callable[[slice], Grown],
         count: int,
         m: int,
-        kind: Any,
+        kind: np.dtype[np.floating],
         *,
         straight: bool,
         threads: int | None,
@@ -59,28 +60,35 @@ class Strands:
 
     @property
     def m(self) -> int:
-        """Points of a fibre."""
+        """Number of points of a fibre."""
         return int(self.points.shape[1])
 
     @property
     def block(self) -> int:
-        """Fibres in a block, a power of two so that no block has seeds of two."""
+        """Number of fibres in a block, a power of two so that no block has seeds of two blocks."""
         share = POINTS_AT_ONCE // (self.m * _pool.workers(self._threads))
         return min(SEED_BLOCK, 1 << max(share, 1).bit_length() - 1)
 
-    def rows(self) -> dict[str, engine.Rows]:
-        """Return points, tangents, normals and depth, as the engine takes them."""
+    def inputs(self, *, normals: bool, fur: float, origin: Vector) -> ShadingInputs:
+        """Return what the engine lights, through fur of a density."""
         count, m = self.points.shape[:2]
         tangents = self._ways if self._straight else self._tangents
-        return {
-            "points": _Rows((count * m, 3), self.points.dtype, self._points),
-            "tangents": _Rows((count if self._straight else count * m, 3), np.float32, tangents),
-            "normals": _Rows((count, 3), np.float32, self._normals),
-            "depth": _Rows((count * m,), np.float32, self._depth),
-        }
+        rows = count if self._straight else count * m
+        single = np.dtype(np.float32)
+        return ShadingInputs(
+            points=_Rows((count * m, 3), self.points.dtype, self._points),
+            tangents=_Rows((rows, 3), single, tangents),
+            normals=_Rows((count, 3), single, self._normals) if normals else None,
+            fur_height=_Rows((count * m,), single, self._heights) if fur else None,
+            fur=fur,
+            repeat=m,
+            block=self.block,
+            origin=origin,
+            generated=True,
+        )
 
     def _at(self, rows: slice) -> tuple[Grown, int]:
-        """Return the block that rows belong to, and which point of each fibre they are."""
+        """Return the block that rows belong to, and the number of their point within each fibre."""
         step = rows.step or 1
         fibres = slice(rows.start // step, rows.start // step + len(range(*rows.indices(1 << 62))))
         if getattr(self._block, "fibres", None) != fibres:
@@ -107,9 +115,9 @@ class Strands:
         return self._at(rows)[0].normals.T
 
     def _tangents(self, rows: slice) -> Array:
-        """Return tangents by the parabola through three points, of no particular length.
+        """Return tangents of any length, by the parabola through three points.
 
-        A fibre of no length has the direction that it would grow in.
+        A fibre of length 0 has the direction in which it would grow.
         """
         block, j = self._at(rows)
         offset, last = block.offsets, self.m - 1
@@ -128,28 +136,35 @@ class Strands:
         result: Array = tangent.T
         return result
 
-    def _depth(self, rows: slice) -> Array:
-        """Return how far the highest point of its fibre stands above each point."""
+    def _heights(self, rows: slice) -> Array:
+        """Return the height of the highest point of its fibre above each point."""
         block, j = self._at(rows)
         last = self.m - 1
         if self._straight:
             tip = np.einsum("ib,ib->b", block.offsets[last], block.normals)
-            depth: Array = np.maximum(tip, 0) - np.float32(j / last) * tip
+            height: Array = np.maximum(tip, 0) - np.float32(j / last) * tip
         else:
             heights = np.einsum("jib,ib->jb", block.offsets, block.normals)
-            depth = heights.max(axis=0) - heights[j]
-        return depth
+            height = heights.max(axis=0) - heights[j]
+        return height
 
     def drop(self, shading: engine.Shading) -> engine.Shading:
-        """Leave out the fibres that point inward, and return the light of the others."""
+        """Drop the fibres that point inward, and return the light of the others."""
         kept = ~self.inside
         points = np.repeat(kept, self.m)
         self.points = self.points[kept]
-        light: dict[str, Any] = {
-            name: None if getattr(shading, name) is None else getattr(shading, name)[points]
-            for name in ("luminance", "valid", "diffuse", "specular", "rgb")
-        }
-        return dataclasses.replace(shading, **light)
+
+        def left(array: Array | None) -> Array | None:
+            return None if array is None else array[points]
+
+        return dataclasses.replace(
+            shading,
+            luminance=shading.luminance[points],
+            valid=shading.valid[points],
+            diffuse=left(shading.diffuse),
+            specular=left(shading.specular),
+            rgb=left(shading.rgb),
+        )
 
     def mesh(self) -> pv.PolyData:
         """Return the fibres as lines; their points are not copied."""
@@ -166,8 +181,10 @@ class Strands:
 class _Rows:
     """Rows that are made when the engine asks for them."""
 
-    def __init__(self, shape: tuple[int, ...], kind: Any, make: Callable[[slice], Array]) -> None:
-        self.shape, self.dtype = shape, np.dtype(kind)
+    def __init__(
+        self, shape: tuple[int, ...], kind: np.dtype[np.generic], make: Callable[[slice], Array]
+    ) -> None:
+        self.shape, self.dtype = shape, kind
         self._make = make
 
     def __getitem__(self, rows: slice, /) -> Array:

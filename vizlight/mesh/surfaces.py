@@ -8,7 +8,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.mesh import point_arrays
+from vizlight.mesh import normals
 
 if TYPE_CHECKING:
     from vizlight._types import Array
@@ -50,7 +50,7 @@ def with_normals(surface: Any, view: View | None, name: str = "surface") -> pv.P
     for key, array in surface.point_data.items():
         if np.asarray(array).dtype.kind in "biuf":
             triangles.point_data[key] = np.asarray(array)
-    triangles.point_data[NORMALS] = point_arrays.normals_of(surface, None, 3, view)
+    triangles.point_data[NORMALS] = normals.normals_of(surface, None, 3, view)
     return triangles if triangles.is_all_triangles else triangles.triangulate()
 
 

@@ -1,10 +1,10 @@
-"""How bright a k-manifold in n-space is on average, and the exponent that evens it out."""
+"""Mean brightness of a k-manifold in n-space, and the exponent that makes it equal for all."""
 
 from __future__ import annotations
 
 import functools
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import brentq
@@ -13,27 +13,27 @@ from scipy.special import gammaln
 from vizlight import _check
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Array = NDArray[np.float64]
+    from vizlight._types import Array
 
 __all__ = ["exponent", "mean_intensity"]
 
-#: The mean brightness of a surface in 3-space, the standard that others are brought to.
+#: Mean brightness of a surface in 3-space, which the exponent gives to all other manifolds.
 STANDARD = 0.5
 
-#: B(2j) / (2j (2j - 1)), the coefficients of Stirling's series, highest first.
+#: Coefficients B(2j) / (2j (2j - 1)) of Stirling's series, highest order first.
 _STIRLING = (1 / 156, -691 / 360360, 1 / 1188, -1 / 1680, 1 / 1260, -1 / 360, 1 / 12)
 _SERIES_FROM = 8.0
 
 
-def mean_intensity(k: int, n: int, p: ArrayLike = 1.0) -> Any:
+def mean_intensity(k: int, n: int, p: ArrayLike = 1.0) -> float | Array:
     """Return the mean of sin(a)^p over all directions of light in n-space.
 
     Parameters
     ----------
     k, n : int
-        Dimension of the manifold and of the space, 0 < k < n (up to 1e6 tested).
+        Dimensions of the manifold and of the space, 0 < k < n (tested up to 1e6).
     p : array_like, default: 1.0
         Exponents of 0 or more, unitless.
 
@@ -51,13 +51,13 @@ def mean_intensity(k: int, n: int, p: ArrayLike = 1.0) -> Any:
 
     Notes
     -----
-    ``I = G(n/2) G((c+p)/2) / (G(c/2) G((n+p)/2))``, G the gamma function, c = n - k: the
-    closed form of the integrals in Banks' appendix. The four log-gammas would cancel for large
-    n; their leading parts are combined by hand into three log1p terms, so the relative error
-    is at most ``32 eps (1 + |ln I|)`` up to n = 1e6 and p = 4e6, where I is a normal number.
-    Banks 3.3 prints I(1, 2) = 2/pi as 0.673; it is 0.6366.
+    ``I = G(n/2) G((c+p)/2) / (G(c/2) G((n+p)/2))``, where G is the gamma function and c = n - k.
+    This is the closed form of the integrals in Banks' appendix. The four log-gammas would cancel
+    for large n, so their leading parts are combined analytically into three log1p terms. The
+    relative error is at most ``32 eps (1 + |ln I|)`` up to n = 1e6 and p = 4e6, where I is a normal
+    number. Banks 3.3 prints I(1, 2) = 2/pi as 0.673; the correct value is 0.6366.
     """
-    k, n = _dimensions(k, n)
+    k, n = dimensions(k, n)
     powers = _check.floats("p", p).astype(np.float64)
     if not np.all(np.isfinite(powers) & (powers >= 0)):
         raise ValueError(_check.message("p", "finite exponents of 0 or more", _check.describe(p)))
@@ -71,7 +71,7 @@ def exponent(k: int, n: int) -> float:
     Parameters
     ----------
     k, n : int
-        Dimension of the manifold and of the space, 0 < k < n (up to 1e6 tested).
+        Dimensions of the manifold and of the space, 0 < k < n (tested up to 1e6).
 
     Returns
     -------
@@ -87,10 +87,11 @@ def exponent(k: int, n: int) -> float:
 
     Notes
     -----
-    The root of ``I(k, n, p) = 1/2`` (Banks 3.4 and table 1) by Brent's method on ln I, cached;
-    exactly 2 for k = c and c for k = 2. Relative error at most ``2e-14`` up to n = 1e6.
+    The root of ``I(k, n, p) = 1/2`` (Banks 3.4 and table 1), found by Brent's method on ln I and
+    cached. It is exactly 2 for k = c and exactly c for k = 2. The relative error is at most
+    ``2e-14`` up to n = 1e6.
     """
-    return _exponent(*_dimensions(k, n))
+    return _exponent(*dimensions(k, n))
 
 
 @functools.lru_cache(maxsize=4096)
@@ -101,7 +102,7 @@ def _exponent(k: int, n: int) -> float:
         return float(n - k)
 
     def excess(p: float) -> float:
-        return float(_log_mean(k, n, np.float64(p))) - math.log(STANDARD)
+        return float(_log_mean(k, n, np.asarray(p))) - math.log(STANDARD)
 
     high = 1.0
     while excess(high) > 0:
@@ -109,20 +110,21 @@ def _exponent(k: int, n: int) -> float:
     return float(brentq(excess, 0.0, high, xtol=1e-300, rtol=4 * np.finfo(float).eps))
 
 
-def _dimensions(k: int, n: int) -> tuple[int, int]:
+def dimensions(k: int, n: int) -> tuple[int, int]:
+    """Validate the dimension k of a manifold and n of its space, 0 < k < n."""
     k, n = _check.integer("k", k, low=1), _check.integer("n", n, low=2)
     if k >= n:
         raise ValueError(_check.message("k", f"a dimension less than n = {n}", k))
     return k, n
 
 
-def _log_mean(k: int, n: int, p: Any) -> Any:
+def _log_mean(k: int, n: int, p: Array) -> Array:
     """Return ln I as a mixed second difference of log-gamma at a = c/2, d = p/2, h = k/2.
 
-    With lnG(x) = (x - 1/2) ln x - x + ln(2 pi)/2 + R(x), the first part of the difference is
-    three log1p terms of one size and R is small, so nothing large cancels.
+    With lnG(x) = (x - 1/2) ln x - x + ln(2 pi)/2 + R(x), the first part of the difference is the
+    sum of three log1p terms of similar size and R is small, so no large terms cancel.
     """
-    a, d, h = (n - k) / 2, np.asarray(p, dtype=np.float64) / 2, k / 2
+    a, d, h = (n - k) / 2, p / 2, k / 2
     leading = (
         (a - 0.5) * np.log1p(d / a * (h / (a + d + h)))
         - d * np.log1p(h / (a + d))
@@ -131,8 +133,8 @@ def _log_mean(k: int, n: int, p: Any) -> Any:
     return leading + _remainder(a + d) - _remainder(a) - _remainder(a + d + h) + _remainder(a + h)
 
 
-def _remainder(x: Any) -> Any:
-    """Return R(x), what Stirling's formula leaves of ln G(x): by its series from x = 8 on."""
+def _remainder(x: ArrayLike) -> Array:
+    """Return R(x), the remainder of Stirling's formula; from x = 8 on by its series."""
     x = np.asarray(x, dtype=np.float64)
     y = 1 / (x * x)
     series = functools.reduce(lambda total, term: total * y + term, _STIRLING) / x

@@ -1,15 +1,16 @@
-"""The exact line light: a line as a thin cylinder, the mean over its visible half.
+"""The exact line light: the mean over the visible half of a thin cylinder, in closed form.
 
-The yardstick of every cheaper line model. A line of width has a normal all round; what the eye
-sees of it is the mean over the half that is turned to the eye, weighted by projected width.
-Lambert's and Blinn's laws, cut where a normal does not face the light, have that mean in closed
-form. Source: Mallo, Peikert, Sigg and Sadlo, *Illuminated Lines Revisited* (2005), who integrate
-the highlight numerically; here it is finite, by the incomplete beta function. Lines in 3-space.
+It is the reference for every cheaper line model. A thin cylinder has normals all around; the eye
+sees the half that faces it, and the brightness of the line is the mean over that half, weighted
+by projected width. For Lambert's and Blinn's reflection models, set to 0 where a normal faces away
+from the light, this mean has a closed form. Source: Mallo, Peikert, Sigg and Sadlo, *Illuminated
+Lines Revisited* (2005), who integrate the highlight numerically; here it is a finite expression in
+the incomplete beta function. Lines are in 3-space.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -27,92 +28,93 @@ __all__ = ["Gradient", "diffuse", "diffuse_gradient", "specular", "specular_grad
 class Gradient(NamedTuple):
     """Derivatives by the three directions, each of shape (..., 3).
 
-    A direction counts by where it points, not by its length: its derivative is across it, and
-    inversely as its length.
+    The value depends on where a direction points, not on its length. Each derivative is therefore
+    perpendicular to its direction and inversely proportional to the length.
     """
 
-    wi: Any
-    wo: Any
-    tangent: Any
+    wi: Array
+    wo: Array
+    tangent: Array
 
 
-def diffuse(wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike, /) -> Any:
-    """Return the mean of Lambert's law over the visible half of a thin cylinder.
+def diffuse(wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike, /) -> Array:
+    """Return the mean of Lambert's reflection over the visible half of a thin cylinder.
 
     Parameters
     ----------
     wi, wo : array_like, shape (..., 3)
         Directions from the point toward the light and toward the eye; normalised here.
     tangent : array_like, shape (..., 3)
-        Along the line, either way; normalised here.
+        Directions along the line, of either sign; normalised here.
 
     Returns
     -------
     ndarray, shape (...)
-        From 0 to pi / 4; to be multiplied by kd and the light's intensity. 0 where a vector is
-        zero or not finite, and for a light along the line; for an eye along the line (its part
-        across at most 8 eps) the mean over the whole round, ``|wi_N| / pi``.
+        Factor from 0 to pi / 4, to be multiplied by kd and the intensity of the light. It is 0
+        where a vector is zero or not finite and where the light is along the line. For an eye along
+        the line (``|wo_N|`` at most 8 eps) it is the mean over the full circle, ``|wi_N| / pi``.
 
     Raises
     ------
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If a vector is not of 3 components, or shapes do not fit.
+        If a vector does not have 3 components, or the shapes do not broadcast.
 
     Notes
     -----
-    ``|wi_N| (sin alpha + (pi - alpha) cos alpha) / 4``, alpha the angle between wi and wo across
-    the line. ``|wi_N| pi / 4`` for a headlight: Banks' law with p = 1 is exact up to that factor
-    where light, line and eye are in one plane, on one side of the line, and nowhere else.
-    Absolute error at most ``4 eps / |wo_N|``.
+    ``|wi_N| (sin alpha + (pi - alpha) cos alpha) / 4``, alpha the angle between wi_N and wo_N. For
+    a headlight this is ``|wi_N| pi / 4``: Banks' model with p = 1 is exact up to that factor where
+    light, line and eye are in one plane with light and eye on the same side of the line, and
+    nowhere else. The absolute error is at most ``4 eps / |wo_N|``.
     """
-    shape, seen, met, _ = _meeting(wi, wo, tangent)
-    return _finish(cylinder_kernels.diffuse(met), seen, shape)
+    shape, valid, met, _ = _normal_parts(wi, wo, tangent)
+    return _finish(cylinder_kernels.diffuse(met), valid, shape)
 
 
-def specular(wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike, /, *, shininess: float) -> Any:
-    """Return the mean of Blinn's law over the visible half of a thin cylinder.
+def specular(wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike, /, *, shininess: float) -> Array:
+    """Return the mean of Blinn's reflection over the visible half of a thin cylinder.
 
     Parameters
     ----------
     wi, wo : array_like, shape (..., 3)
         Directions from the point toward the light and toward the eye; normalised here.
     tangent : array_like, shape (..., 3)
-        Along the line, either way; normalised here.
+        Directions along the line, of either sign; normalised here.
     shininess : float
-        The power s of N.H, from 0 to 1e9, unitless.
+        Exponent s of N.H, from 0 to 1e9, unitless.
 
     Returns
     -------
     ndarray, shape (...)
-        From 0 to 1; to be multiplied by ks and the light's intensity. 0 where a vector is zero or
-        not finite, where wi = -wo has no half vector, and for a light along the line, which no
-        normal faces; for an eye along the line (its part across at most 8 eps) the mean over the
-        whole round.
+        Factor from 0 to 1, to be multiplied by ks and the intensity of the light. It is 0 where a
+        vector is zero or not finite, where wi = -wo and no half vector exists, and where the light
+        is along the line, so that no normal faces it. For an eye along the line (``|wo_N|`` at most
+        8 eps) it is the mean over the full circle.
 
     Raises
     ------
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If a vector is not of 3 components, shapes do not fit or shininess is out of its range.
+        If a vector does not have 3 components, the shapes do not broadcast, or shininess is out of
+        range.
 
     Notes
     -----
     ``|h_N|^s / 2`` times the integral of ``max(0, cos(x - beta))^s cos(x)`` over
-    ``[alpha - pi/2, pi/2]``, beta the angle from wo to the half vector across the line. The
-    integral is a finite expression in the incomplete beta function; see
-    :func:`vizlight.model.cylinder_kernels.half_integral` for how it is evaluated. Blinn's
-    ``|h_N|^s`` is exact up to a factor for a headlight, as Banks' law is.
+    ``[alpha - pi/2, pi/2]``, beta the angle from wo_N to h_N. The integral is a finite expression
+    in the incomplete beta function; :func:`vizlight.model.cylinder_kernels.half_integral` says how
+    it is evaluated. For a headlight Blinn's ``|h_N|^s`` is exact up to a factor, as Banks' diffuse
+    term is.
 
-    Absolute error at most ``10 eps / d``, whatever s, where d is the smallest of ``|wi_N|``,
-    ``|wo_N|`` and ``|wi + wo|``, for s below 1 ``|(wi + wo)_N|`` in its place: near a light along
-    the line the value depends on which way round the light is.
+    The absolute error is at most ``10 eps / d`` for every s, where d is the smallest of ``|wi_N|``,
+    ``|wo_N|`` and ``|wi + wo|``, with ``|(wi + wo)_N|`` in place of the last for s below 1: near a
+    light along the line the value depends on the azimuth of the light about the line.
     """
     shininess = _check.number("shininess", shininess, low=0.0, high=_check.LARGEST)
-    shape, seen, met, tangential = _meeting(wi, wo, tangent)
-    return _finish(cylinder_kernels.specular(met, tangential, shininess), seen, shape)
+    shape, valid, met, tangential = _normal_parts(wi, wo, tangent)
+    return _finish(cylinder_kernels.specular(met, tangential, shininess), valid, shape)
 
 
 def diffuse_gradient(wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike, /) -> Gradient:
@@ -121,12 +123,13 @@ def diffuse_gradient(wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike, /) -> Gra
     Parameters
     ----------
     wi, wo, tangent : array_like, shape (..., 3)
-        As there; of any length.
+        Vectors as for :func:`diffuse`, of any length.
 
     Returns
     -------
     Gradient
-        0 where the value has no derivative: light or eye along the line, no direction.
+        Derivatives; 0 where the value has none: light or eye along the line, or a vector that is
+        zero or not finite.
 
     Raises
     ------
@@ -135,9 +138,9 @@ def diffuse_gradient(wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike, /) -> Gra
 
     Notes
     -----
-    The value depends on ``wi.t``, ``wo.t`` and ``wi.wo`` alone; the chain rule does the rest.
-    Within 1e-8 of a complex step through quadrature for directions in general; the derivatives
-    themselves, and their errors, grow as 1 over ``|wi_N|`` and ``|wo_N|``.
+    The value depends on ``wi.t``, ``wo.t`` and ``wi.wo`` alone; the chain rule gives the rest. For
+    directions in general position the result is within 1e-8 of a complex step through quadrature.
+    The derivatives and their errors grow as 1 over ``|wi_N|`` and ``|wo_N|``.
     """
     x = _Invariants(wi, wo, tangent)
     by_dot = x.rest / (4 * x.b)
@@ -154,14 +157,14 @@ def specular_gradient(
     Parameters
     ----------
     wi, wo, tangent : array_like, shape (..., 3)
-        As there; of any length.
+        Vectors as for :func:`specular`, of any length.
     shininess : float
-        The power s, from 0 to 1e9.
+        Exponent s of N.H, from 0 to 1e9, unitless.
 
     Returns
     -------
     Gradient
-        0 where the value has no derivative: light or eye along the line, no half vector.
+        Derivatives; 0 where the value has none: light or eye along the line, or no half vector.
 
     Raises
     ------
@@ -170,8 +173,9 @@ def specular_gradient(
 
     Notes
     -----
-    Within 1e-8 of a complex step through quadrature for directions in general; the derivatives
-    themselves, and their errors, grow as 1 over ``|wi_N|``, ``|wo_N|`` and ``|wi + wo|``.
+    For directions in general position the result is within 1e-8 of a complex step through
+    quadrature. The derivatives and their errors grow as 1 over ``|wi_N|``, ``|wo_N|`` and
+    ``|wi + wo|``.
     """
     s = _check.number("shininess", shininess, low=0.0, high=_check.LARGEST)
     x = _Invariants(wi, wo, tangent)
@@ -183,7 +187,7 @@ def specular_gradient(
     both = integral(cos_b) + integral(cos_c)
     power_b, power_c = kernels.power(sin_b, s), kernels.power(sin_c, s)
     mean = cos_b * both + sin_b * (power_b * sin_b - power_c * sin_c) / (s + 1)
-    # Derivatives by beta and gamma over |wi_N x wo_N|: finite where light and eye are in line.
+    # Both are divided by |wi_N x wo_N|, so they stay finite where wi_N and wo_N are parallel.
     by_beta = cos_b * (power_b / to_eye - power_c / to_light) / (s + 1) - both / to_eye
     by_gamma = -power_c / (x.a * x.b)
     share = np.minimum(x.ww / size, 1)
@@ -191,7 +195,7 @@ def specular_gradient(
     slope = peak * mean * s / 2
 
     def angle(ee: Array, ll: Array) -> tuple[Array, Array, Array]:
-        """Return the derivatives, by ee, ll and dot, of the angle from the part of square ee."""
+        """Return derivatives by ee, ll and dot of the angle at the part whose square is ee."""
         near = (ee + x.dot) / (ee * x.ww)
         cut = x.cross * x.cross / (ee * x.ww)
         return near * ll / 2 - cut, near * ee / 2, -near * x.dot - cut
@@ -207,15 +211,14 @@ def specular_gradient(
 
 
 class _Invariants:
-    """The dot products of unit wi, wo and tangent, and derivatives by them turned to vectors.
+    """Dot products of unit wi, wo and tangent, and the chain rule from them to the vectors.
 
     ``aa`` and ``bb`` are |wi_N|^2 and |wo_N|^2, ``ww`` is |(wi + wo)_N|^2. Where a derivative is
-    undefined harmless numbers stand in, and the result is 0.
+    undefined they hold placeholders and the result is 0.
     """
 
     def __init__(self, wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike) -> None:
-        given = _given(wi, wo, tangent)
-        self.shape, rows, directions = given
+        self.shape, rows, directions = _validated(wi, wo, tangent)
         self.vectors, self.sizes = [], []
         for v in (*directions, rows[0]):
             row, size = kernels.unit(v)
@@ -238,7 +241,7 @@ class _Invariants:
         self.rest = np.arctan2(met.cross, -met.dot)
 
     def chain(self, by_aa: Array, by_bb: Array, by_dot: Array, by_m: Array) -> Gradient:
-        """Return the gradient from derivatives by aa, bb, dot and, beside these, m."""
+        """Return the gradient from the partial derivatives by aa, bb, dot and m."""
         light, eye, line = self.vectors
         by_p = -2 * self.p * by_aa - self.q * by_dot
         by_q = -2 * self.q * by_bb - self.p * by_dot
@@ -256,29 +259,29 @@ class _Invariants:
         return Gradient(*found)
 
 
-def _given(
+def _validated(
     wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike
 ) -> tuple[tuple[int, ...], Array, list[Array]]:
-    """Validate the three; return the batch's shape, the tangents as a frame, and wi and wo."""
+    """Return the shape of the batch, the tangents as frames, and wi and wo, all validated."""
     light, eye = _check.vectors("wi", wi, n=3), _check.vectors("wo", wo, n=3)
     line = _check.vectors("tangent", tangent, n=3)
     return layout.batch(line[..., np.newaxis, :], light, eye)
 
 
-def _meeting(
+def _normal_parts(
     wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike
-) -> tuple[tuple[int, ...], Bools, cylinder_kernels.Meeting, Array]:
-    """Return shape, validity, the meeting, and the square of wi + wo along the line."""
-    shape, rows, (light, eye) = _given(wi, wo, tangent)
+) -> tuple[tuple[int, ...], Bools, cylinder_kernels.NormalParts, Array]:
+    """Return the batch's shape, a mask of valid elements, the normal parts, and |(wi + wo)_T|^2."""
+    shape, rows, (light, eye) = _validated(wi, wo, tangent)
     line, line_size = kernels.unit(rows[0])
     light, light_size = kernels.unit(light)
     eye, eye_size = kernels.unit(eye)
     p, rest_i, a = cylinder_kernels.across(light, line)
     q, rest_o, b = cylinder_kernels.across(eye, line)
     met = cylinder_kernels.meet(rest_i, a, rest_o, b, line)
-    seen = (light_size > 0) & (eye_size > 0) & (line_size > 0)
-    return shape, seen, met, np.square(p + q)
+    valid = (light_size > 0) & (eye_size > 0) & (line_size > 0)
+    return shape, valid, met, np.square(p + q)
 
 
-def _finish(value: Array, seen: Bools, shape: tuple[int, ...]) -> Any:
-    return np.where(seen, value, 0).astype(value.dtype, copy=False).reshape(shape)[()]
+def _finish(value: Array, valid: Bools, shape: tuple[int, ...]) -> Array:
+    return layout.result(np.where(valid, value, 0).astype(value.dtype, copy=False).reshape(shape))

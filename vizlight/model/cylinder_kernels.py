@@ -1,20 +1,20 @@
-"""The formulas of the exact line light, on component-first arrays: see :mod:`._kernels`.
+"""The formulas of the exact line light on component-first arrays (see :mod:`.kernels`).
 
-With ``a = |wi_N|``, ``b = |wo_N|``, alpha the angle between the two normal parts, beta and gamma
-those from the half vector's normal part to wo_N and to wi_N (alpha = beta + gamma)::
+With ``a = |wi_N|``, ``b = |wo_N|``, alpha the angle between the two normal parts, and beta and
+gamma the angles from the half vector's normal part to wo_N and to wi_N (alpha = beta + gamma)::
 
     diffuse   a (sin alpha + (pi - alpha) cos alpha) / 4
     specular  |h_N|^s / 2 times the integral of cos(x - beta)^s cos(x) over [alpha - pi/2, pi/2]
               = |h_N|^s / 2 (cos beta (G(cos beta) + G(cos gamma))
                              + sin beta (sin^(s+1) beta - sin^(s+1) gamma) / (s + 1))
 
-with ``G(z)`` the integral of ``(1 - u^2)^(s/2)`` from 0 to z.
+where ``G(z)`` is the integral of ``(1 - u^2)^(s/2)`` from 0 to z.
 """
 
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy import special
@@ -28,27 +28,27 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array
 
-#: A direction whose part across the line is at most this many eps counts as along the line:
-#: which way round the line it points is then rounding alone.
+#: A direction whose part across the line is at most this many eps counts as along the line: its
+#: azimuth about the line is then rounding error alone.
 ALONG = 8.0
-#: From this shininess on G is smooth enough at its end to be tabulated to 16 digits.
+#: From this shininess on G is smooth enough at z = 1 to be tabulated to 16 digits.
 TABLE_FROM = 8.0
-#: Cells of the table for each standard deviation of the highlight, degree in a cell, and how many
-#: deviations it reaches: beyond, the integrand is less than 3e-18.
+#: Cells of the table per standard deviation of the highlight, degree of the polynomial in a cell,
+#: and number of deviations covered: beyond them the integrand is less than 3e-18.
 CELLS, DEGREE, REACH = 64, 5, 9.0
 
 
-class Meeting(NamedTuple):
-    """How light and eye meet across a line: the parts of both in its normal plane.
+class NormalParts(NamedTuple):
+    """Parts of the directions to light and eye in the normal plane of a line.
 
     Attributes
     ----------
     a, b : ndarray, shape (B,)
-        |wi_N| and |wo_N|.
+        Lengths |wi_N| and |wo_N|.
     dot, cross : ndarray, shape (B,)
-        wi_N . wo_N and |wi_N x wo_N|.
+        Products wi_N . wo_N and |wi_N x wo_N|.
     light, eye : ndarray, shape (3, B)
-        wi_N and wo_N.
+        Vectors wi_N and wo_N.
     """
 
     a: Array
@@ -60,45 +60,44 @@ class Meeting(NamedTuple):
 
 
 def across(x: Array, tangent: Array) -> tuple[Array, Array, Array]:
-    """Return a unit direction's coefficient along a unit tangent, and its normal part and length.
+    """Return a unit direction's coefficient along a unit tangent, its normal part and that length.
 
-    Normal parts are kept as vectors: the angle between two that are short would lose digits if
-    it were taken from dot products of the whole directions.
+    The normal parts are kept as vectors: dot products of the whole directions would lose digits of
+    the angle between two short normal parts.
     """
     along = kernels.dot(tangent, x)
     rest = x - along * tangent
     return along, rest, kernels.length(rest)
 
 
-def meet(rest_i: Array, a: Array, rest_o: Array, b: Array, tangent: Array) -> Meeting:
-    """Return the meeting of two normal parts and their lengths."""
-    cross = (
-        (rest_i[1] * rest_o[2] - rest_i[2] * rest_o[1]) * tangent[0]
-        + (rest_i[2] * rest_o[0] - rest_i[0] * rest_o[2]) * tangent[1]
-        + (rest_i[0] * rest_o[1] - rest_i[1] * rest_o[0]) * tangent[2]
-    )
-    return Meeting(a, b, kernels.dot(rest_i, rest_o), np.abs(cross), rest_i, rest_o)
+def meet(rest_i: Array, a: Array, rest_o: Array, b: Array, tangent: Array) -> NormalParts:
+    """Return the :class:`NormalParts` of two normal parts with the given lengths."""
+    cross = np.abs(kernels.triple(rest_i, rest_o, tangent))
+    return NormalParts(a, b, kernels.dot(rest_i, rest_o), cross, rest_i, rest_o)
 
 
-def diffuse(met: Meeting) -> Array:
-    """Return the mean of Lambert's law over the visible half of a thin cylinder."""
+def diffuse(met: NormalParts) -> Array:
+    """Return the mean of Lambert's reflection over the visible half of a thin cylinder."""
     a, b, dot, cross, _, _ = met
     value = np.arctan2(cross, -dot)
     value *= dot
     value += cross
-    lost = b <= _least(b)
-    value /= np.where(lost, 1, 4 * b)
-    if lost.any():
-        # Seen end on, all of the round is seen alike: the mean over it.
-        value = np.where(lost, a / a.dtype.type(np.pi), value)
+    end_on = b <= _least(b)
+    value /= np.where(end_on, 1, 4 * b)
+    if end_on.any():
+        # A cylinder seen end on shows all normals with equal weight.
+        value = np.where(end_on, a / a.dtype.type(np.pi), value)
     return value
 
 
-def specular(met: Meeting, tangential: Array, shininess: float) -> Array:
-    """Return the mean of Blinn's law over the visible half; ``tangential`` is |(wi + wo)_T|^2."""
+def specular(met: NormalParts, tangential: Array, shininess: float) -> Array:
+    """Return the mean of Blinn's reflection over the visible half.
+
+    ``tangential`` is |(wi + wo)_T|^2.
+    """
     a, b, _, cross, light, eye = met
     number = a.dtype.type
-    # Cosines to the half vector from the sum itself, which is exact where wi_N is near -wo_N.
+    # The cosines come from the sum wi_N + wo_N, which is exact where wi_N is near -wo_N.
     whole = light + eye
     normal = kernels.length(whole)
     value = kernels.blinn(tangential, normal * normal, shininess)
@@ -128,17 +127,18 @@ def specular(met: Meeting, tangential: Array, shininess: float) -> Array:
 
 
 def round_mean(shininess: float) -> float:
-    """Return the mean of max(0, cos)^s over the whole round: of a cylinder seen end on."""
+    """Return the mean of max(0, cos)^s over the full circle, for a cylinder that is seen end on."""
     log = special.gammaln(shininess / 2 + 0.5) - special.gammaln(shininess / 2 + 1)
     return float(np.exp(log) / (2 * np.sqrt(np.pi)))
 
 
 def half_integral(shininess: float, dtype: DTypeLike = np.float64) -> Callable[[Array], Array]:
-    """Return G of z in [-1, 1]: exact to 16 eps of float64 of its largest value, 2 of float32.
+    """Return the function G of z in [-1, 1].
 
-    Below a shininess of 8 by the regularised incomplete beta function, some 160 ns a point;
-    above by a table, a tenth of that, which also keeps the digits that the beta function loses
-    to large powers (5e-10 at 1e6).
+    Its error is at most 16 eps of its largest value in float64, 2 eps in float32. For a shininess
+    below 8 it uses the regularised incomplete beta function, at some 160 ns per point; above it
+    uses a table, which takes a tenth of that time and keeps the digits that the beta function
+    loses for large powers (5e-10 at 1e6).
     """
     if shininess < TABLE_FROM:
         order = shininess / 2 + 1
@@ -173,10 +173,10 @@ def half_integral(shininess: float, dtype: DTypeLike = np.float64) -> Callable[[
 
 @lru_cache(maxsize=16)
 def _table(shininess: float) -> tuple[float, Array]:
-    """Return cells a unit of z, and in each cell the coefficients of G, shape (degree + 1, M).
+    """Return the cells per unit of z and the coefficients of G in each cell, shape (degree + 1, M).
 
-    The integrand is interpolated at Chebyshev nodes of a cell and the polynomial integrated; G at
-    the start of a cell is the sum of Gauss-Legendre quadratures of those before.
+    The integrand is interpolated at the Chebyshev nodes of a cell and the polynomial is integrated.
+    G at the start of a cell is the sum of Gauss-Legendre quadratures over the cells before it.
     """
     reach = min(1.0, REACH / np.sqrt(shininess))
     count = int(np.ceil(CELLS * reach * np.sqrt(shininess)))
@@ -198,7 +198,10 @@ def _table(shininess: float) -> tuple[float, Array]:
 
 
 def _gentle_power(x: Array, exponent: float) -> Array:
-    """Return x^e, e of 1 or more, to eps of 1: where digits of the exponent go, x^e is small."""
+    """Return x^e for e of 1 or more, with an absolute error of about eps.
+
+    The relative error grows with e, but x^e is small wherever digits are lost.
+    """
     if exponent == int(exponent) and exponent <= kernels.DEFICIT_FROM:
         return kernels.power(x, exponent)
     with np.errstate(divide="ignore", under="ignore"):
@@ -207,5 +210,6 @@ def _gentle_power(x: Array, exponent: float) -> Array:
         return np.exp(result, out=result)
 
 
-def _least(x: Array) -> Any:
-    return x.dtype.type(ALONG * np.finfo(x.dtype).eps)
+def _least(x: Array) -> np.floating:
+    least: np.floating = x.dtype.type(ALONG * np.finfo(x.dtype).eps)
+    return least

@@ -1,19 +1,19 @@
-"""Where Phong and Blinn differ most, and over the sphere: the numerics of :mod:`.highlights`."""
+"""Numerics of :mod:`.highlights`: extremes and spherical means of Phong minus Blinn."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 if TYPE_CHECKING:
     from vizlight._types import Array
 
-#: The value of a highlight's peak.
+#: Pixel value of the peak of a highlight.
 PEAK = 255.0
-#: Halvings of an interval: enough to reach the last digit of a root near 0.
+#: Bisections of an interval: enough to reach the last digit of a root near 0.
 HALVINGS = 64
-#: Nodes of the quadrature over normals: across a panel of the highlight, and round it.
+#: Nodes of the quadrature over normals: radial per panel of the highlight, and around it.
 NODES = (40, 96)
 
 
@@ -28,7 +28,7 @@ def difference(x: Array, a: Array, r: Array, q: Array) -> Array:
 def extremes(
     beta: Array, r: Array, factor: Array, *, lit: bool
 ) -> tuple[Array, Array, Array, Array]:
-    """Return how far Phong exceeds Blinn, falls short of it, and the x of both."""
+    """Return the most by which Phong exceeds Blinn and falls short of it, and the x of each."""
     wide = 2 * np.square(np.cos(beta))
     more, at_more = _maximum(wide, r, factor * r, np.ones_like(beta), 1.0)
     end = np.minimum(0.5, np.square(np.cos(beta))) if lit else np.full_like(beta, 0.5)
@@ -37,7 +37,7 @@ def extremes(
 
 
 def _maximum(a: Array, r: Array, q: Array, end: Array, sign: float) -> tuple[Array, Array]:
-    """Return the maximum over x from 0 to ``end`` of a signed :func:`_difference`, and its x."""
+    """Return the maximum over x from 0 to ``end`` of a signed :func:`difference`, and its x."""
     m = q / 2
     with np.errstate(divide="ignore", invalid="ignore", over="ignore", under="ignore"):
         end = np.minimum(end, 1 / a)
@@ -66,17 +66,17 @@ def _maximum(a: Array, r: Array, q: Array, end: Array, sign: float) -> tuple[Arr
     return best, where
 
 
-def sphere_errors(beta: float, r: float, factor: float) -> dict[Any, float]:
-    """Return the RMS and the mean size of the error over normals that face light and eye.
+def sphere_errors(beta: float, r: float, factor: float) -> dict[str, float]:
+    """Return the RMS and the mean absolute error over normals that face both light and eye.
 
-    N = cos(nu) H + sin(nu) (cos(psi) P + sin(psi) Q), P across light and eye; by symmetry psi runs
-    over a quarter, and the region ends where N.E or N.L is 0.
+    N = cos(nu) H + sin(nu) (cos(psi) P + sin(psi) Q), where P is perpendicular to light and eye. By
+    symmetry psi covers a quarter of the circle; the region ends where N.E or N.L is 0.
     """
     round_nodes, round_weights = np.polynomial.legendre.leggauss(NODES[1])
     psi = np.pi / 4 * (1 + round_nodes)
     cos_beta, sin_beta = np.cos(beta), np.sin(beta)
     end = np.arctan2(cos_beta, sin_beta * np.sin(psi))
-    # Panels that grow from the highlight's own size: the narrower of both decides the first.
+    # The panels grow geometrically; the first one is as wide as the narrower highlight.
     least = min(end.min(), 0.5 / np.sqrt(r * max(factor, 4.0)))
     panels = max(int(np.ceil(np.log2(max(float(end.max()) / least, 1)))) + 1, 2)
     cuts = np.concatenate([[0.0], 2.0 ** np.arange(1 - panels, 1)])

@@ -1,8 +1,8 @@
-"""How light fades: with distance, with depth from the eye, and in fur."""
+"""Attenuation of light: with distance, with depth from the eye, and in fur."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,16 +16,16 @@ if TYPE_CHECKING:
 __all__ = ["depth_cue", "distance", "fur"]
 
 
-def distance(d: ArrayLike, c1: float, c2: float, c3: float, /) -> Any:
+def distance(d: ArrayLike, c1: float, c2: float, c3: float, /) -> Array:
     """Return the attenuation of a light at distance d.
 
     Parameters
     ----------
     d : array_like, shape (...)
-        Distances of 0 or more from point to light, in the unit of the mesh.
+        Distances from point to light, 0 or more, in the unit of the mesh.
     c1, c2, c3 : float
-        Constant, linear and quadratic coefficient, each 0 or more, not all 0; units 1,
-        1/length, 1/length^2.
+        Constant, linear and quadratic coefficients, each 0 or more and not all 0, in units of 1,
+        1/length and 1/length^2.
 
     Returns
     -------
@@ -37,7 +37,7 @@ def distance(d: ArrayLike, c1: float, c2: float, c3: float, /) -> Any:
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If a distance is negative or NaN, a coefficient negative, or all are 0.
+        If a distance is negative or NaN, a coefficient is negative, or all coefficients are 0.
 
     Notes
     -----
@@ -51,26 +51,21 @@ def distance(d: ArrayLike, c1: float, c2: float, c3: float, /) -> Any:
 
 
 def attenuation(name: str, value: object) -> tuple[float, float, float]:
-    """Validate the three coefficients of :func:`distance`."""
+    """Return the three coefficients of :func:`distance`, validated."""
     array = _check.floats(name, value)
     if array.shape != (3,) or not np.all(np.isfinite(array) & (array >= 0)) or not array.any():
-        raise ValueError(
-            _check.message(
-                name,
-                "three coefficients (constant, linear, quadratic) of 0 or more, not all 0",
-                _check.describe(value),
-                "(1, 0, 0) switches attenuation off",
-            )
-        )
+        expected = "three coefficients (constant, linear, quadratic) of 0 or more, not all 0"
+        remedy = "pass (1, 0, 0) for a light without attenuation"
+        raise ValueError(_check.message(name, expected, _check.describe(value), remedy))
     c1, c2, c3 = (float(c) for c in array)
     return c1, c2, c3
 
 
 def fading(d: Array, coefficients: tuple[float, float, float]) -> Array:
-    """Return :func:`distance` of distances and coefficients that are known to be good."""
+    """Return :func:`distance` for distances and coefficients that are already validated."""
     c1, c2, c3 = coefficients
-    # In float64 whatever d is, for coefficients may be out of range of float32. A zero one is
-    # left out: 0 times an infinite distance is not a number.
+    # In float64 for every type of d, because coefficients may exceed the range of float32. A term
+    # with a zero coefficient is left out: 0 times an infinite distance is NaN.
     wide = d.astype(np.float64, copy=False)
     denominator = np.full_like(wide, c1)
     with np.errstate(over="ignore", under="ignore"):
@@ -92,45 +87,49 @@ def depth_cue(
     back_scale: float = 0.0,
     cue: ArrayLike = 0.0,
     smooth: bool = False,
-) -> Any:
-    """Return an intensity faded toward a cue with depth.
+) -> Array:
+    """Return an intensity blended toward a cue intensity with depth.
 
     Parameters
     ----------
     intensity : array_like, shape (...)
-        I, the light before.
+        Intensity I before the blend.
     z : array_like, shape (...)
-        Depths, in any unit and of either sense: front and back say which end is near.
+        Depths, in any unit, growing either toward or away from the eye: front and back say which
+        end is near.
     front, back : float
-        Zt and Zb, the depths between which the scale changes; not equal.
+        Depths Zt and Zb between which the scale changes; not equal.
     front_scale, back_scale : float
-        St and Sb, the scale at and beyond front and back, in [0, 1].
+        Scales St and Sb at and beyond front and back, in [0, 1].
     cue : array_like, default: 0.0
-        Icue, the intensity (or one channel of the colour) that fades in.
+        Intensity Icue (or one channel of the colour) that replaces I where the scale is 0.
     smooth : bool, default: False
-        Go from Sb to St by a smooth step (zero slope at both ends) in place of a straight line.
+        Whether the scale goes from Sb to St by a smooth step, with zero slope at both ends,
+        instead of linearly.
 
     Returns
     -------
     ndarray, shape (...)
-        ``S I + (1 - S) Icue``, S = Sb + (St - Sb) t, t = (z - Zb) / (Zt - Zb) clamped to
-        [0, 1], or t^2 (3 - 2 t) in its place.
+        ``S I + (1 - S) Icue``, where S = Sb + (St - Sb) t and t = (z - Zb) / (Zt - Zb), clamped to
+        [0, 1]; with ``smooth`` t is replaced by t^2 (3 - 2 t).
 
     Raises
     ------
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If front equals back, a scale is outside [0, 1], a depth is NaN, or light is not finite.
+        If front equals back, a scale is outside [0, 1], a depth is NaN, or an intensity is not
+        finite.
 
     Notes
     -----
-    Absolute error at most ``4 eps max(|I|, |Icue|)``, for depths that are exact.
+    Absolute error at most ``4 eps max(|I|, |Icue|)`` for exact depths.
     Source: Lecture, atmospheric attenuation; the smooth step is its "small sigmoid".
     """
     front, back = _check.number("front", front), _check.number("back", back)
     if front == back:
-        raise ValueError(_check.message("front", "a depth other than back", front))
+        remedy = "pass two different depths"
+        raise ValueError(_check.message("front", "a depth other than back", front, remedy))
     depth, light, fade = (
         _check.floats(name, value)
         for name, value in (("z", z), ("intensity", intensity), ("cue", cue))
@@ -154,43 +153,43 @@ def depth_cue(
 def depth_scale(
     z: Array, *, front: float, back: float, front_scale: float, back_scale: float, smooth: bool
 ) -> Array:
-    """Return the scale S of :func:`depth_cue` for arguments that are known to be good."""
+    """Return the scale S of :func:`depth_cue` for arguments that are already validated."""
     t = np.clip((z.astype(np.float64, copy=False) - back) / (front - back), 0, 1)
     if smooth:
         t = t * t * (3 - 2 * t)
     return (back_scale + (front_scale - back_scale) * t).astype(z.dtype, copy=False)
 
 
-def fur(height: ArrayLike, sin_alpha: ArrayLike, density: float, /) -> Any:
-    """Return what fur lets pass of light, once on its way in or out.
+def fur(height: ArrayLike, sin_alpha: ArrayLike, density: float, /) -> Array:
+    """Return the share of light that passes through fur, once on its way in or out.
 
     Parameters
     ----------
     height : array_like, shape (...)
-        h of 0 or more, the depth of fur above the point, across the surface; in the unit in
-        which the density is meant.
+        Fur height h above the point, 0 or more, perpendicular to the surface, in the unit of
+        length that the density refers to.
     sin_alpha : array_like, shape (...)
-        Sine of the angle between the tangent plane and the light (in) or the eye (out), in
-        [0, 1].
+        Sine of the angle between the tangent plane and the direction to the light (in) or to the
+        eye (out), in [0, 1].
     density : float
-        rho in [0, 1], the share that is absorbed over a unit of length.
+        Share rho of the light that is absorbed per unit of length, in [0, 1].
 
     Returns
     -------
     ndarray, shape (...)
-        ``(1 - rho)^(h / sin a)`` in [0, 1]: 1 at h = 0 whatever the angle and the density; 0 at
-        grazing light under any depth of fur that absorbs.
+        ``(1 - rho)^(h / sin a)``, in [0, 1]: 1 at h = 0 for every angle and density; 0 at grazing
+        light for every h and density above 0.
 
     Raises
     ------
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If a height is negative or NaN, or a sine or the density outside [0, 1].
+        If a height is negative or NaN, or a sine or the density is outside [0, 1].
 
     Notes
     -----
-    Absolute error at most ``3 eps`` for a density of 0 or from 1e-300 on, in float32 from 1e-30.
+    Absolute error at most ``3 eps`` for a density of 0 or at least 1e-300 (1e-30 in float32).
     Source: Banks (7) and (8).
     """
     density = _check.number("density", density, low=0.0, high=1.0)
@@ -204,7 +203,7 @@ def fur(height: ArrayLike, sin_alpha: ArrayLike, density: float, /) -> Any:
 
 
 def fur_path(height: Array, sine: Array) -> Array:
-    """Return d = h / sin(a) of Banks (7), 0 at h = 0 even where sin(a) is 0."""
+    """Return the path d = h / sin(a) of Banks (7); it is 0 at h = 0 even where sin(a) is 0."""
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         path: Array = height / sine
     if not height.all():
@@ -213,13 +212,13 @@ def fur_path(height: Array, sine: Array) -> Array:
 
 
 def fur_passes(path: Array, density: float) -> Array:
-    """Return (1 - rho)^d of Banks (8); log 0 is never taken."""
+    """Return the transmittance (1 - rho)^d of Banks (8), without taking the logarithm of 0."""
     if density == 0:
         return np.ones_like(path)
     if density == 1:
         opaque: Array = (path == 0).astype(path.dtype)
         return opaque
     with np.errstate(under="ignore", over="ignore"):
-        # Below the smallest number of the type it would be 0, and 0 times infinity no number.
+        # A rate that underflows to 0 would give NaN for an infinite path.
         rate = min(path.dtype.type(np.log1p(-density)), -np.finfo(path.dtype).tiny)
         return np.exp(path * rate)

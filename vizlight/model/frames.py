@@ -1,8 +1,8 @@
-"""Tangent spaces in n-space: orthonormalise what spans them, split a direction by them."""
+"""Tangent spaces in n-space: orthonormal frames, and the two parts of a direction."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,30 +12,32 @@ from vizlight.model import kernels, layout
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+    from vizlight._types import Array, Indices
+
 
 __all__ = ["orthonormalize", "split"]
 
 
-def default_rtol(n: int, dtype: np.dtype[Any]) -> float:
-    """Return the relative distance from a span below which a vector counts as within it."""
+def default_rtol(n: int, dtype: np.dtype[np.floating]) -> float:
+    """Return the relative distance from a span below which a vector counts as inside it."""
     return float(8 * np.sqrt(n) * np.finfo(dtype).eps)
 
 
-def orthonormalize(vectors: ArrayLike, /, *, rtol: float | None = None) -> tuple[Any, Any]:
+def orthonormalize(vectors: ArrayLike, /, *, rtol: float | None = None) -> tuple[Array, Indices]:
     """Return an orthonormal frame of the space that k vectors span, and its rank.
 
-    The rows keep their order: row 0 is along the first good vector, and so on. A vector is
-    dropped when it is zero, not finite, or no further from the span of those before it than
-    ``rtol`` times its own length. Rows 0 to rank - 1 of the frame are orthonormal; those from
-    rank on are zero, so that projections on the frame are right whatever the rank.
+    The rows keep their order: row 0 is along the first vector that is not dropped, and so on. A
+    vector is dropped when it is zero, not finite, or no further from the span of the vectors before
+    it than ``rtol`` times its own length. Rows 0 to rank - 1 of the frame are orthonormal and the
+    rows from rank on are zero, so projections on the frame are right for every rank.
 
     Parameters
     ----------
     vectors : array_like, shape (..., k, n)
-        k vectors a point, k < n or k = n, of any scale (lengths from the smallest to the
-        largest number of the type).
+        k vectors per point, k <= n, of any scale (lengths from the smallest to the largest number
+        of the type).
     rtol : float, optional
-        Relative distance, unitless. Default ``8 sqrt(n) eps``.
+        Relative distance from the span, unitless. Default: ``8 sqrt(n) eps``.
 
     Returns
     -------
@@ -51,9 +53,9 @@ def orthonormalize(vectors: ArrayLike, /, *, rtol: float | None = None) -> tuple
 
     Notes
     -----
-    Gram-Schmidt with every projection made twice. ``|F F^T - 1| <= 6 eps`` for n up to 8, also
-    for vectors 1e-8 apart in float64; what they span is then known to eps over the angle
-    between them.
+    Gram-Schmidt in which every projection is made twice. ``|F F^T - 1| <= 6 eps`` for n up to 8,
+    also for float64 vectors that are 1e-8 apart; the space that such vectors span is known to eps
+    divided by the angle between them.
 
     Examples
     --------
@@ -76,36 +78,36 @@ def orthonormalize(vectors: ArrayLike, /, *, rtol: float | None = None) -> tuple
     )
 
 
-def split(direction: ArrayLike, frame: ArrayLike, /) -> tuple[Any, Any]:
-    """Split a direction x into its part in the tangent space and the length of the rest.
+def split(direction: ArrayLike, frame: ArrayLike, /) -> tuple[Array, Array]:
+    """Split a direction x into its part in the tangent space and the length of the normal part.
 
     Parameters
     ----------
     direction : array_like, shape (..., n)
-        Vectors x; they need not be unit.
+        Vectors x, not necessarily of unit length.
     frame : array_like, shape (..., k, n)
-        Orthonormal rows (or zero rows past the rank), k < n.
+        Frames of orthonormal rows (rows past the rank are zero), k < n.
 
     Returns
     -------
     coefficients : ndarray, shape (..., k)
         ``x . t_j`` for every row t_j.
     normal : ndarray, shape (...)
-        ``|x_N|``, the length of ``x - sum_j (x . t_j) t_j``: sin(a) of a unit x. Both are NaN
-        where x is not finite.
+        ``|x_N|``, the length of ``x - sum_j (x . t_j) t_j``, which is sin(a) for a unit x. Both
+        results are NaN where x is not finite.
 
     Raises
     ------
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If shapes do not fit or the rows are not orthonormal.
+        If the shapes do not broadcast or the rows are not orthonormal.
 
     Notes
     -----
-    Absolute error at most ``10 eps |x|`` (k up to 7, n up to 8), what rounded rows miss of being
-    orthonormal included, also where x lies along the tangent: the residual is measured, not
-    ``sqrt(1 - cos^2)``.
+    Absolute error at most ``10 eps |x|`` (k up to 7, n up to 8), which includes the error of rows
+    that are orthonormal up to rounding, and also holds where x lies along the tangent: |x_N| is the
+    length of the residual, not ``sqrt(1 - cos^2)``.
     Source: Banks, section 2 (parts in T and N).
     """
     rows = layout.as_frame(frame)

@@ -1,16 +1,16 @@
-"""From N.H to R.E exactly: the relations between the half vector and the reflection.
+"""Exact relations between N.H and R.E, the cosines of the half vector and of the reflection.
 
 L, E, R and H are ``wi``, ``wo``, the reflection of wi about the normal N, and the half vector.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vizlight import _check
-from vizlight.model import kernels
+from vizlight.model import kernels, layout
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -20,15 +20,15 @@ if TYPE_CHECKING:
 __all__ = ["identity", "reflection", "reflection_cosine", "reflection_from_half"]
 
 
-def reflection_from_half(n_h: ArrayLike, /, *, triple: ArrayLike = 0.0) -> Any:
-    """Return R.E from N.H exactly, without a power.
+def reflection_from_half(n_h: ArrayLike, /, *, triple: ArrayLike = 0.0) -> Array:
+    """Return R.E computed exactly from N.H, without an approximate exponent.
 
     Parameters
     ----------
     n_h : array_like, shape (...)
-        N.H, from -1 to 1.
+        Cosines N.H, from -1 to 1.
     triple : array_like, shape (...), default: 0.0
-        ``L x H . N``, 0 where the three are coplanar, where it leaves (3).
+        Triple products ``L x H . N``; they are 0 where the three are coplanar, which leaves (3).
 
     Returns
     -------
@@ -41,20 +41,20 @@ def reflection_from_half(n_h: ArrayLike, /, *, triple: ArrayLike = 0.0) -> Any:
 
     Notes
     -----
-    ``2 (N.H)^2 - 1 + 2 (L x H . N)^2``. Source: Fisher and Woo (3) and (9). Absolute error at most
-    4 eps.
+    ``2 (N.H)^2 - 1 + 2 (L x H . N)^2``. Absolute error at most 4 eps.
+    Source: Fisher and Woo (3) and (9).
     """
     half, cross = _check.floats("n_h", n_h), _check.floats("triple", triple)
-    return (2 * half * half - 1 + 2 * cross * cross)[()]
+    return layout.result(2 * half * half - 1 + 2 * cross * cross)
 
 
-def reflection_cosine(nu: ArrayLike, /, *, beta: ArrayLike, theta: ArrayLike) -> Any:
+def reflection_cosine(nu: ArrayLike, /, *, beta: ArrayLike, theta: ArrayLike) -> Array:
     """Return cos(rho) by the general relation ``cos 2 nu + 2 sin^2(beta) cos^2(theta)``.
 
     Parameters
     ----------
     nu, beta, theta : array_like, shape (...)
-        Angles from N to H, from L to H, and from N to the line across L and E, in radians.
+        Angles from N to H, from L to H, and from N to the perpendicular of L and E, in radians.
 
     Returns
     -------
@@ -67,16 +67,17 @@ def reflection_cosine(nu: ArrayLike, /, *, beta: ArrayLike, theta: ArrayLike) ->
 
     Notes
     -----
-    Source: Fisher and Woo (7), which is (8), (9) and (12) in angles. Absolute error at most 8 eps.
+    Absolute error at most 8 eps.
+    Source: Fisher and Woo (7), which is (8), (9) and (12) in terms of angles.
     """
     nu, beta, theta = (
         _check.floats(name, value) for name, value in (("nu", nu), ("beta", beta), ("theta", theta))
     )
-    return (np.cos(2 * nu) + 2 * np.square(np.sin(beta) * np.cos(theta)))[()]
+    return layout.result(np.cos(2 * nu) + 2 * np.square(np.sin(beta) * np.cos(theta)))
 
 
-def reflection(wi: ArrayLike, wo: ArrayLike, normal: ArrayLike, /) -> Any:
-    """Return R.E of directions by N.H and the triple product: the half vector's way to Phong.
+def reflection(wi: ArrayLike, wo: ArrayLike, normal: ArrayLike, /) -> Array:
+    """Return R.E of directions from N.H and the triple product: Phong's cosine by the half vector.
 
     Parameters
     ----------
@@ -86,28 +87,29 @@ def reflection(wi: ArrayLike, wo: ArrayLike, normal: ArrayLike, /) -> Any:
     Returns
     -------
     ndarray, shape (...)
-        ``2 (N.H)^2 - 1 + (L x E . N)^2 / (1 + L.E)``; for wi = -wo, where there is no half
-        vector, ``2 (N.L)(N.E) - L.E``, its limit. NaN where a vector is zero or not finite.
+        ``2 (N.H)^2 - 1 + (L x E . N)^2 / (1 + L.E)``. For wi = -wo, where no half vector exists,
+        the limit ``2 (N.L)(N.E) - L.E``. NaN where a vector is zero or not finite.
 
     Raises
     ------
     TypeError, ValueError
-        If a value is not of 3 real components.
+        If a vector does not have 3 real components.
 
     Notes
     -----
-    Source: Fisher and Woo (8) and (12). Absolute error at most ``16 eps / |wi + wo|``.
+    Absolute error at most ``16 eps / |wi + wo|``. Source: Fisher and Woo (8) and (12).
     """
     light, eye, up, shape = _three(wi, wo, normal)
     half, size = kernels.unit(light + eye)
     with np.errstate(invalid="ignore"):
-        value = 2 * np.square(kernels.dot(up, half)) - 1 + 2 * np.square(_triple(light, half, up))
+        triple = kernels.triple(light, half, up)
+        value = 2 * np.square(kernels.dot(up, half)) - 1 + 2 * np.square(triple)
         straight = 2 * kernels.dot(up, light) * kernels.dot(up, eye) - kernels.dot(light, eye)
-    return np.where(size > 0, value, straight).reshape(shape)[()]
+    return layout.result(np.where(size > 0, value, straight).reshape(shape))
 
 
-def identity(wi: ArrayLike, wo: ArrayLike, normal: ArrayLike, /) -> Any:
-    """Return the left side of the identity of three unit vectors, which is 0.
+def identity(wi: ArrayLike, wo: ArrayLike, normal: ArrayLike, /) -> Array:
+    """Return the left side of an identity of three unit vectors, which is 0 up to rounding.
 
     Parameters
     ----------
@@ -117,44 +119,35 @@ def identity(wi: ArrayLike, wo: ArrayLike, normal: ArrayLike, /) -> Any:
     Returns
     -------
     ndarray, shape (...)
-        ``(L.E)^2 + (E.N)^2 + (N.L)^2 - 2 (L.E)(E.N)(N.L) - 1 + (L x E . N)^2``: at most 16 eps.
+        ``(L.E)^2 + (E.N)^2 + (N.L)^2 - 2 (L.E)(E.N)(N.L) - 1 + (L x E . N)^2``, at most 16 eps.
         NaN where a vector is zero or not finite.
 
     Raises
     ------
     TypeError, ValueError
-        If a value is not of 3 real components.
+        If a vector does not have 3 real components.
 
     Notes
     -----
-    Source: Fisher and Woo (10) and (13): the determinant of the Gram matrix is the square of the
-    triple product.
+    The determinant of the Gram matrix is the square of the triple product.
+    Source: Fisher and Woo (10) and (13).
     """
     light, eye, up, shape = _three(wi, wo, normal)
     le, en, nl = (kernels.dot(a, b) for a, b in ((light, eye), (eye, up), (up, light)))
     value = le * le + en * en + nl * nl - 2 * le * en * nl - 1
-    return (value + np.square(_triple(light, eye, up))).reshape(shape)[()]
+    value += np.square(kernels.triple(light, eye, up))
+    return layout.result(value.reshape(shape))
 
 
 def _three(*vectors: ArrayLike) -> tuple[Array, Array, Array, tuple[int, ...]]:
-    """Return three batches of unit vectors, component first, and their common shape."""
-    given = [
+    """Return three component-first batches of unit vectors and the shape of their batch."""
+    arrays = [
         _check.vectors(name, v, n=3)
         for name, v in zip(("wi", "wo", "normal"), vectors, strict=True)
     ]
-    shape = np.broadcast_shapes(*(v.shape for v in given))
+    shape = np.broadcast_shapes(*(v.shape for v in arrays))
     found = []
-    for v in given:
+    for v in arrays:
         row, size = kernels.unit(np.ascontiguousarray(np.broadcast_to(v, shape).reshape(-1, 3).T))
         found.append(np.where(size > 0, row, np.nan))
     return found[0], found[1], found[2], shape[:-1]
-
-
-def _triple(a: Array, b: Array, c: Array) -> Array:
-    """Return a x b . c."""
-    value: Array = (
-        (a[1] * b[2] - a[2] * b[1]) * c[0]
-        + (a[2] * b[0] - a[0] * b[2]) * c[1]
-        + (a[0] * b[1] - a[1] * b[0]) * c[2]
-    )
-    return value

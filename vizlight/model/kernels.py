@@ -1,9 +1,10 @@
-"""The formulas of light, once, on component-first arrays.
+"""The shading formulas, each written once, on component-first arrays.
 
-A vector batch is ``(n, B)``, a frame batch ``(k, n, B)``, a number batch ``(B,)``; a batch of
-one broadcasts. The public functions of this package document and validate, turn the last axis
-to the front and call these; the engine calls these on blocks that fit the cache. Working
-component by component is what makes NumPy fast here: every operation runs along memory.
+A batch of vectors has shape ``(n, B)``, of frames ``(k, n, B)``, of numbers ``(B,)``; a batch of
+one element broadcasts. The public functions of this package document and validate their arguments,
+move the last axis to the front and call these functions; the engine calls them on blocks that fit
+the cache. The component-first layout is fast in NumPy because every operation runs over contiguous
+memory.
 """
 
 from __future__ import annotations
@@ -17,27 +18,37 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Bools, Indices
 
-#: Above this exponent a power is taken through log1p of the deficit 1 - x, whose rounding
-#: error does not grow in step with the exponent; below it multiplication is as good and faster.
+#: Above this exponent a power is computed from log1p of the deficit 1 - x, whose rounding error
+#: grows more slowly than the exponent; below it multiplication is as accurate and faster.
 DEFICIT_FROM = 64.0
 
 
 def dot(a: Array, b: Array) -> Array:
-    """Return the dot products of two vector batches."""
+    """Return the dot products of two batches of vectors."""
     result: Array = np.einsum("ib,ib->b", a, b)
     return result
 
 
+def triple(a: Array, b: Array, c: Array) -> Array:
+    """Return the triple products a x b . c of three batches of 3-vectors."""
+    result: Array = (
+        (a[1] * b[2] - a[2] * b[1]) * c[0]
+        + (a[2] * b[0] - a[0] * b[2]) * c[1]
+        + (a[0] * b[1] - a[1] * b[0]) * c[2]
+    )
+    return result
+
+
 def length(v: Array) -> Array:
-    """Return lengths, right for any scale: NaN where a component is not finite."""
+    """Return the lengths of vectors of any scale; NaN where a component is not finite."""
     return _length(v)[0]
 
 
 def unit(v: Array) -> tuple[Array, Array]:
-    """Return unit vectors and the lengths they had.
+    """Return unit vectors and the lengths that the vectors had.
 
-    A vector that is zero or not finite becomes the zero vector; its length is 0 or NaN, so
-    ``length > 0`` is the mask of good ones.
+    A vector that is zero or not finite becomes the zero vector and its length is 0 or NaN, so
+    ``length > 0`` is the mask of valid vectors.
     """
     size, extreme = _length(v)
     if extreme is None:
@@ -51,7 +62,7 @@ def unit(v: Array) -> tuple[Array, Array]:
 
 
 def _length(v: Array) -> tuple[Array, Bools | None]:
-    """Return lengths, and a mask of vectors whose squares leave the range of the type."""
+    """Return lengths, and a mask of the vectors whose squares are out of the range of the type."""
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
         square = dot(v, v)
     info = np.finfo(v.dtype)
@@ -68,7 +79,7 @@ def _length(v: Array) -> tuple[Array, Bools | None]:
 
 
 def _rescale(v: Array) -> tuple[Array, NDArray[np.intc], Bools]:
-    """Scale each vector by an exact power of two to a largest component in [1/2, 1)."""
+    """Scale each vector by an exact power of two so that its largest component is in [1/2, 1)."""
     largest = np.abs(v).max(axis=0)
     finite = np.isfinite(largest)
     _, exponent = np.frexp(np.where(finite, largest, 1))
@@ -78,10 +89,10 @@ def _rescale(v: Array) -> tuple[Array, NDArray[np.intc], Bools]:
 
 
 def orthonormalize(v: Array, rtol: float) -> tuple[Array, Indices]:
-    """Return orthonormal rows spanning the input and their count.
+    """Return orthonormal rows that span the input, and their number.
 
-    Gram-Schmidt on unit vectors, each projected twice; a vector whose distance from the span
-    of those before it is at most ``rtol`` of its length is dropped. Rows past the rank are 0.
+    Gram-Schmidt on unit vectors, each projected twice. A vector whose distance from the span of the
+    vectors before it is at most ``rtol`` of its length is dropped. Rows past the rank are 0.
     """
     k = v.shape[0]
     if k == 1:
@@ -107,7 +118,7 @@ def orthonormalize(v: Array, rtol: float) -> tuple[Array, Indices]:
 
 
 def _reject(x: Array, frame: Array) -> Array:
-    """Return the part of x orthogonal to the frame, one row after the other."""
+    """Return the part of x that is orthogonal to the frame, removing one row after the other."""
     for row in frame:
         x = x - dot(row, x) * row
     return x
@@ -121,9 +132,9 @@ def coefficients(x: Array, frame: Array) -> Array:
 
 
 def split(x: Array, frame: Array) -> tuple[Array, Array]:
-    """Return tangential coefficients ``(k, B)`` and the length of the normal part.
+    """Return the tangential coefficients ``(k, B)`` and the length of the normal part.
 
-    The length is that of the residual: sqrt(1 - cos^2) would lose half the digits.
+    The length is that of the residual, because sqrt(1 - cos^2) would lose half the digits.
     """
     along = coefficients(x, frame)
     residual = x - along[0] * frame[0]
@@ -133,9 +144,9 @@ def split(x: Array, frame: Array) -> tuple[Array, Array]:
 
 
 def power(x: Array, exponent: float, deficit: Array | None = None) -> Array:
-    """Return x to a power, 0^0 = 1, for x in [0, 1] and, where known, its deficit 1 - x.
+    """Return x to a power for x in [0, 1], with 0^0 = 1; ``deficit`` is 1 - x where it is known.
 
-    Integer powers up to 64 by multiplication. Above 64 a given deficit is used.
+    Integer powers up to 64 use multiplication; exponents above 64 use the deficit if it is given.
     """
     if exponent > DEFICIT_FROM and deficit is not None:
         with np.errstate(divide="ignore", under="ignore", over="ignore"):
@@ -161,7 +172,7 @@ def _integer_power(x: Array, exponent: int) -> Array:
 
 
 def power_error(p: float, q: float) -> float:
-    """Return the largest |x^p - x^q| for x in [0, 1], exactly: where the derivatives agree."""
+    """Return the exact maximum of |x^p - x^q| over [0, 1], attained where the derivatives agree."""
     low, high = sorted((p, q))
     if low == high:
         return 0.0
@@ -172,7 +183,7 @@ def power_error(p: float, q: float) -> float:
 
 
 def diffuse(sine: Array, exponent: float, along: Array | None = None) -> Array:
-    """Return sin(a)^p; ``along``, the tangential coefficients, sharpens large p by cos^2."""
+    """Return sin(a)^p; the tangential coefficients ``along`` keep the digits of large powers."""
     if exponent > DEFICIT_FROM and along is not None:
         return power(sine * sine, exponent / 2, dot(along, along))
     return power(sine, exponent)
@@ -181,8 +192,8 @@ def diffuse(sine: Array, exponent: float, along: Array | None = None) -> Array:
 def phong(tangential: Array, sine_i: Array, sine_o: Array, shininess: float) -> Array:
     """Return max(0, V.R)^s from 1 - V.R = (|wi_T + wo_T|^2 + (|wi_N| - |wo_N|)^2) / 2.
 
-    ``tangential`` is |wi_T + wo_T|^2. This difference is exact where V.R is near 1, so the
-    error of the power grows as sqrt(s), not as s.
+    ``tangential`` is |wi_T + wo_T|^2. The difference 1 - V.R keeps its digits where V.R is near 1,
+    so the error of the power grows as sqrt(s) instead of s.
     """
     deficit = sine_i - sine_o
     deficit *= deficit
@@ -192,7 +203,7 @@ def phong(tangential: Array, sine_i: Array, sine_o: Array, shininess: float) -> 
 
 
 def blinn(tangential: Array, normal: Array, shininess: float) -> Array:
-    """Return |h_N|^q from the squared parts of wi + wo; 0 where there is no half vector."""
+    """Return |h_N|^q from the squared parts of wi + wo; 0 where no half vector exists."""
     whole = tangential + normal
     nothing = whole == 0
     whole = np.where(nothing, 1, whole)
@@ -201,12 +212,12 @@ def blinn(tangential: Array, normal: Array, shininess: float) -> Array:
 
 
 def blinn_of_unit(tangential: Array, shininess: float) -> Array:
-    """Return |h_N|^q, q of 2 or more, from |h_T|^2 of a unit half vector."""
+    """Return |h_N|^q for q of 2 or more from |h_T|^2 of a unit half vector."""
     return power(np.maximum(1 - tangential, 0), shininess / 2, tangential)
 
 
 def smooth_step(t: Array) -> Array:
-    """Return t^2 (3 - 2 t) of t clamped to [0, 1]."""
+    """Return t^2 (3 - 2 t), where t is clamped to [0, 1]."""
     t = np.clip(t, 0, 1)
     result: Array = t * t * (3 - 2 * t)
     return result

@@ -1,4 +1,4 @@
-"""Turn ``(..., n)`` arrays to component-first batches and back."""
+"""Conversion of ``(..., n)`` arrays to component-first batches and back."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array
 
-#: Frames whose rows miss orthonormality by more than this many sqrt(eps) are refused.
+#: Frames whose rows deviate from orthonormality by more than this many sqrt(eps) are rejected.
 SLACK = 16.0
 
 
 def batch(frame: Array, *directions: Array) -> tuple[tuple[int, ...], Array, list[Array]]:
-    """Broadcast a frame and directions; return batch shape and component-first arrays."""
+    """Return the broadcast shape, and a frame and directions as component-first arrays."""
     k, n = frame.shape[-2:]
     kind = np.result_type(frame, *directions)
     shapes = [frame.shape[:-2], *(d.shape[:-1] for d in directions)]
@@ -26,7 +26,7 @@ def batch(frame: Array, *directions: Array) -> tuple[tuple[int, ...], Array, lis
         shape = np.broadcast_shapes(*shapes)
     except ValueError as error:
         got = ", ".join(str(one) for one in shapes)
-        expected = "batches of directions and tangents that broadcast"
+        expected = "directions and tangents whose batch shapes broadcast"
         raise ValueError(_check.message("shapes", expected, got)) from error
     rows = np.broadcast_to(frame, (*shape, k, n)).reshape(-1, k, n).transpose(1, 2, 0)
     columns = [np.broadcast_to(d, (*shape, n)).reshape(-1, n).T for d in directions]
@@ -38,24 +38,18 @@ def batch(frame: Array, *directions: Array) -> tuple[tuple[int, ...], Array, lis
 
 
 def as_rows(name: str, value: ArrayLike, *, full: bool) -> Array:
-    """Validate k rows of n components, shape (..., k, n): k < n, or with ``full`` k <= n."""
+    """Validate k rows of n components, shape (..., k, n), where k < n, or k <= n if ``full``."""
     array = _check.vectors(name, value)
-    limit = "0 < k <= n" if full else "0 < k < n"
     k, n = array.shape[-2:] if array.ndim > 1 else (0, array.shape[-1])
     if not 0 < k < n + full:
-        raise ValueError(
-            _check.message(
-                name,
-                f"{limit} rows of n components, shape (..., k, n)",
-                f"shape {array.shape}",
-                "for one vector a point pass v[..., None, :]",
-            )
-        )
+        expected = f"0 < k {'<=' if full else '<'} n rows of n components, shape (..., k, n)"
+        remedy = "for one vector per point pass v[..., None, :]"
+        raise ValueError(_check.message(name, expected, f"shape {array.shape}", remedy))
     return array
 
 
 def as_frame(frame: ArrayLike) -> Array:
-    """Validate a tangent frame ``(..., k, n)``: k < n, rows orthonormal or zero."""
+    """Validate a tangent frame of shape (..., k, n): k < n, and each row orthonormal or zero."""
     array = as_rows("frame", frame, full=False)
     k = array.shape[-2]
     gram = array @ np.swapaxes(array, -1, -2)
@@ -63,12 +57,13 @@ def as_frame(frame: ArrayLike) -> Array:
     off = np.abs(gram - np.eye(k) * np.where(diagonal == 0, 0, 1)[..., np.newaxis])
     worst = float(off.max()) if off.size else 0.0
     if not worst <= SLACK * float(np.sqrt(np.finfo(array.dtype).eps)):
-        raise ValueError(
-            _check.message(
-                "frame",
-                "orthonormal rows",
-                f"rows off by {worst:.2g}",
-                "call vizlight.model.frames.orthonormalize first",
-            )
-        )
+        remedy = "call vizlight.model.frames.orthonormalize first"
+        got = f"rows off by {worst:.2g}"
+        raise ValueError(_check.message("frame", "orthonormal rows", got, remedy))
     return array
+
+
+def result(value: Array) -> Array:
+    """Return an array unchanged, and a 0-dimensional array as a NumPy scalar."""
+    found: Array = value[()]
+    return found

@@ -1,8 +1,8 @@
-"""Diffuse and specular light of a k-manifold in n-space."""
+"""Diffuse and specular reflection of a k-manifold in n-space."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
@@ -12,42 +12,45 @@ from vizlight.model import kernels, layout
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+    from vizlight._types import Array
+
 __all__ = ["diffuse", "specular"]
 
 SpecularModel = Literal["phong", "blinn"]
 
 
-def diffuse(wi: ArrayLike, frame: ArrayLike, /, *, exponent: float = 1.0) -> Any:
-    """Return the diffuse factor sin(a)^p of a k-manifold, a the angle of wi to its tangent space.
+def diffuse(wi: ArrayLike, frame: ArrayLike, /, *, exponent: float = 1.0) -> Array:
+    """Return the diffuse factor sin(a)^p, where a is the angle between wi and the tangent space.
 
     Parameters
     ----------
     wi : array_like, shape (..., n)
-        Directions from the point toward the light; normalised here, 0 where zero.
+        Directions from the point toward the light; normalised here. The factor is 0 where one is
+        zero.
     frame : array_like, shape (..., k, n)
-        Orthonormal tangent rows, k < n.
+        Frames of orthonormal tangents, k < n.
     exponent : float, default: 1.0
-        p from 0 to 1e9, unitless: 1 is the plain law,
-        :func:`vizlight.model.brightness.exponent` gives the compensated one.
+        Exponent p from 0 to 1e9, unitless: 1 is the plain reflection model,
+        :func:`vizlight.model.brightness.exponent` returns the compensated one.
 
     Returns
     -------
     ndarray, shape (...)
-        In [0, 1] up to rounding; to be multiplied by kd and the light's intensity.
+        Factor in [0, 1] up to rounding, to be multiplied by kd and the intensity of the light.
 
     Raises
     ------
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If shapes do not fit, the rows are not orthonormal or the exponent is negative.
+        If the shapes do not broadcast, the rows are not orthonormal or the exponent is negative.
 
     Notes
     -----
-    ``sin(a)^p`` with ``sin(a) = |wi_N|``; in codimension 1 with p = 1 two-sided Lambert.
-    Source: Banks (1) and (5). Absolute error for n up to 8 at most ``(4 + 2 p) eps`` for p from
-    1 to 128 and ``(8 + sqrt(p)) eps`` above; for p < 1, infinitely steep at sin(a) = 0,
-    ``(8 eps)^p``. What the rows miss of being orthonormal comes on top.
+    ``sin(a)^p`` with ``sin(a) = |wi_N|``; in codimension 1 with p = 1 this is two-sided Lambert.
+    Source: Banks (1) and (5). For n up to 8 the absolute error is at most ``(4 + 2 p) eps`` for p
+    from 1 to 128 and ``(8 + sqrt(p)) eps`` above; for p < 1, where the slope at sin(a) = 0 is
+    infinite, ``(8 eps)^p``. The deviation of the rows from orthonormality adds to it.
     """
     exponent = _check.number("exponent", exponent, low=0.0, high=_check.LARGEST)
     rows = layout.as_frame(frame)
@@ -67,8 +70,8 @@ def specular(
     *,
     shininess: float,
     model: SpecularModel = "phong",
-) -> Any:
-    """Return the specular factor of a k-manifold: Phong or Blinn in any codimension.
+) -> Array:
+    """Return the specular factor of a k-manifold by Phong or Blinn, in any codimension.
 
     Parameters
     ----------
@@ -76,41 +79,41 @@ def specular(
         Directions from the point toward the light and toward the eye; normalised here. The
         factor is 0 where one of them is zero.
     frame : array_like, shape (..., k, n)
-        Orthonormal tangent rows, k < n.
+        Frames of orthonormal tangents, k < n.
     shininess : float
-        The power s (Phong) or q (Blinn), from 0 to 1e9, unitless. ``0^0`` is 1.
+        Exponent s (Phong) or q (Blinn), from 0 to 1e9, unitless. ``0^0`` is 1.
     model : {"phong", "blinn"}
-        ``max(0, V.R)^s`` or ``|h_N|^q``.
+        Reflection model: ``max(0, V.R)^s`` or ``|h_N|^q``.
 
     Returns
     -------
     ndarray, shape (...)
-        In [0, 1] up to rounding; to be multiplied by ks and the light's intensity.
+        Factor in [0, 1] up to rounding, to be multiplied by ks and the intensity of the light.
 
     Raises
     ------
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If shapes do not fit, the rows are not orthonormal, shininess is negative or the model
-        is unknown.
+        If the shapes do not broadcast, the rows are not orthonormal, shininess is negative or the
+        model is unknown.
 
     Notes
     -----
-    Phong: ``V.R = |wi_N| |wo_N| - wi_T . wo_T``, R the reflection nearest to the eye. Banks (2)
-    prints ``V_T . L_T - |V_N| |L_N|`` with L = -wi, the way the light travels: its first term is
-    the second here, and the sign of ``|V_N| |L_N|`` is wrong for a V toward the eye. It is
-    evaluated as ``1 - (|wi_T + wo_T|^2 + (|wi_N| - |wo_N|)^2) / 2``, which is the same for unit
-    vectors and exact near the highlight.
-    Blinn: h = wi + wo normalised, ``|h_N|``; 0 where wi = -wo, which has no half vector.
+    Phong: ``V.R = |wi_N| |wo_N| - wi_T . wo_T``, where R is the reflection nearest to the eye.
+    Banks (2) prints ``V_T . L_T - |V_N| |L_N|`` with L = -wi, the direction in which the light
+    travels: its first term is the second term here, and the sign of ``|V_N| |L_N|`` is wrong for
+    a V that points toward the eye. The value is computed as
+    ``1 - (|wi_T + wo_T|^2 + (|wi_N| - |wo_N|)^2) / 2``, which is equal for unit vectors and keeps
+    its digits near the highlight.
+    Blinn: ``|h_N|`` of the normalised h = wi + wo; 0 where wi = -wo and no half vector exists.
 
-    Absolute error for n up to 8 at most ``(4 + s) eps`` for s from 1 to 128 and
-    ``(8 + 3 sqrt(s)) eps`` above; for s < 1, infinitely steep at V.R = 0, ``(8 eps)^s``. For
-    Blinn eps is to be divided by ``|wi + wo|`` where that is less than 1.
+    For n up to 8 the absolute error is at most ``(4 + s) eps`` for s from 1 to 128 and
+    ``(8 + 3 sqrt(s)) eps`` above; for s < 1, where the slope at V.R = 0 is infinite, ``(8 eps)^s``.
+    For Blinn, eps is divided by ``|wi + wo|`` where that is less than 1.
     Source: Banks (2) and (3); Fisher and Woo's N.H, generalised.
     """
-    if model not in get_args(SpecularModel):
-        raise ValueError(_check.message("model", "'phong' or 'blinn'", repr(model)))
+    _check.choice("model", model, get_args(SpecularModel))
     shininess = _check.number("shininess", shininess, low=0.0, high=_check.LARGEST)
     rows = layout.as_frame(frame)
     n = rows.shape[-1]
@@ -126,5 +129,5 @@ def specular(
     else:
         along, normal = kernels.split(light + eye, rows)
         value = kernels.blinn(kernels.dot(along, along), normal * normal, shininess)
-    seen = (light_size > 0) & (eye_size > 0)
-    return np.where(seen, value, 0).astype(value.dtype, copy=False).reshape(shape)
+    valid = (light_size > 0) & (eye_size > 0)
+    return np.where(valid, value, 0).astype(value.dtype, copy=False).reshape(shape)

@@ -1,16 +1,16 @@
-"""Snapshot tests of lit scenes: compare a picture with one that was looked at and kept.
+"""Snapshot tests of lit scenes: compare a picture with an inspected, stored one.
 
-Drivers draw the edge of a line or a surface differently, so pixels cannot be compared one by one;
-a mean over the picture lets a moved highlight pass, and one over all errors lets thin lines pass
-that are 5 % too bright. So three errors are looked at, each of which is blind to edges or small for
-them, and together they see what a wrong law of light does.
+Graphics drivers draw the edges of lines and surfaces differently, so pixels cannot be compared one
+by one. The mean brightness of a picture does not reveal a displaced highlight, and the mean of all
+errors does not reveal thin lines that are 5 % too bright. The comparison therefore uses three
+errors, each of which is insensitive to edges; together they reveal wrong light.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 import pyvista as pv
@@ -22,28 +22,33 @@ from vizlight.files import check_output, replace_file
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vizlight._types import Array
+    from vizlight._types import Array, ColorLike
+
+    Pixels: TypeAlias = NDArray[np.uint8]
+    Picture: TypeAlias = pv.BasePlotter | str | Path | Pixels
 
 __all__ = ["Difference", "assert_same_picture", "difference"]
 
-#: Pixels on a side of the blocks whose means are compared: edges are off by one pixel or less.
+#: Side in pixels of the blocks whose means are compared; edges are displaced by at most one pixel.
 BLOCK = 12
 
 
 @dataclass(frozen=True)
 class Difference:
-    """How much two pictures differ.
+    """Difference between two pictures.
 
     Attributes
     ----------
     brightness : float
-        Of what is drawn: the summed distance from the background, or within outlines the summed
-        light itself, is so many times too large or too small, in the worst channel; 0.05 for
-        light 5 % too bright on a dark background, and on any background where surfaces are drawn.
+        Relative error of the summed distance from the background, or of the summed light within
+        the outlines of surfaces, whichever is larger, in the worst channel. It is 0.05 for light
+        that is 5 % too bright on a dark background, and on any background if surfaces are drawn.
     block : float
-        The largest difference of the means of blocks of 12 x 12 pixels, of 255.
+        Largest difference between the means of corresponding blocks of 12 x 12 pixels, in pixel
+        values from 0 to 255.
     pixels : float
-        The share of pixels that differ by more than 32 of 255 from all expected pixels beside them.
+        Fraction of the pixels that lie outside the range of the expected 3 x 3 neighbourhood by
+        more than 32 of 255.
     """
 
     brightness: float
@@ -51,15 +56,17 @@ class Difference:
     pixels: float
 
 
-def difference(got: Any, expected: Any, /, *, background: Any = None) -> Difference:
-    """Measure how much a picture of a lit scene differs from another.
+def difference(
+    got: Picture, expected: Picture, /, *, background: ColorLike | None = None
+) -> Difference:
+    """Measure the difference between two pictures of a lit scene.
 
     Parameters
     ----------
     got, expected : pyvista.Plotter, path of a picture, or ndarray of uint8, shape (h, w, 3)
-        A plotter must not be closed.
+        Pictures to compare. A plotter must not be closed.
     background : colour, optional
-        Default: the colour that is seen most often in ``expected``.
+        Background colour. Default: the most frequent colour of ``expected``.
 
     Returns
     -------
@@ -68,39 +75,40 @@ def difference(got: Any, expected: Any, /, *, background: Any = None) -> Differe
     Raises
     ------
     TypeError, ValueError
-        If something is not a picture, or their sizes differ.
+        If an argument is not a picture, or the sizes differ.
     """
     return _measure(_pixels("got", got), _pixels("expected", expected), background)
 
 
 def assert_same_picture(
-    got: Any,
-    expected: Any,
+    got: Picture,
+    expected: Picture,
     /,
     *,
     brightness: float = 0.02,
     block: float = 12.0,
     pixels: float = 0.01,
-    background: Any = None,
+    background: ColorLike | None = None,
     failed: str | Path | None = None,
     add_missing: bool = False,
 ) -> Difference:
-    """Fail unless a picture of a lit scene is the expected one but for how edges are drawn.
+    """Assert that a picture of a lit scene equals the expected one, except in how edges are drawn.
 
     Parameters
     ----------
     got, expected : pyvista.Plotter, path of a picture, or ndarray of uint8, shape (h, w, 3)
-        What was drawn, and what was looked at and kept. A plotter must not be closed: compare
+        Picture just drawn, and the inspected, stored one. A plotter must not be closed: compare
         before ``show()``, or after ``show(auto_close=False)``.
-    brightness, block, pixels : float
-        The largest errors that pass, as :class:`Difference` has them. The defaults let other
-        anti-aliasing of solids and lines pass, but not light 5 % too bright.
+    brightness, block, pixels : float, default: 0.02, 12.0, 0.01
+        Largest errors that pass, as in :class:`Difference`. With the defaults a different
+        anti-aliasing of solids and lines passes; light that is 5 % too bright fails.
     background : colour, optional
-        Default: the colour that is seen most often in ``expected``.
+        Background colour. Default: the most frequent colour of ``expected``.
     failed : path, optional
-        A folder, made if need be, for got, expected and difference of a picture that fails.
+        Folder for the pictures of a failure: got, expected and their difference. It is created
+        if necessary.
     add_missing : bool, default: False
-        Keep ``got`` as ``expected`` where that file is not there yet; look at it.
+        Whether to store ``got`` as ``expected`` if that file does not exist yet. Inspect it then.
 
     Returns
     -------
@@ -109,9 +117,9 @@ def assert_same_picture(
     Raises
     ------
     AssertionError
-        If an error is beyond its limit, the sizes differ, or the expected picture is not there.
+        If an error exceeds its limit, the sizes differ, or the expected picture does not exist.
     TypeError, ValueError
-        If something is not a picture.
+        If an argument is not a picture.
 
     Examples
     --------
@@ -136,8 +144,8 @@ def assert_same_picture(
         if not path.exists():
             places = _keep(failed, name, {"got": seen})
             raise AssertionError(
-                f"{name}: no expected picture {str(path)!r}; make it with add_missing=True and "
-                f"look at it{places}"
+                f"{name}: the expected picture {str(path)!r} does not exist; store it with "
+                f"add_missing=True and inspect it{places}"
             )
     wanted = _pixels("expected", expected)
     if seen.shape != wanted.shape:
@@ -150,55 +158,57 @@ def assert_same_picture(
         if not getattr(found, error) <= getattr(limits, error)
     ]
     if wrong:
-        apart = np.abs(seen.astype(np.int16) - wanted).astype(np.uint8)
-        pictures = {"got": seen, "expected": wanted, "difference": apart}
+        error_picture = np.abs(seen.astype(np.int16) - wanted).astype(np.uint8)
+        pictures = {"got": seen, "expected": wanted, "difference": error_picture}
         raise AssertionError(f"{name}: {'; '.join(wrong)}{_keep(failed, name, pictures)}")
     return found
 
 
-def _measure(got: NDArray[np.uint8], expected: NDArray[np.uint8], background: Any) -> Difference:
+def _measure(got: Pixels, expected: Pixels, background: ColorLike | None) -> Difference:
     if got.shape != expected.shape:
         raise ValueError(_check.message("got", f"{_size(expected)} pixels", _size(got)))
-    if background is None:
+    if (channels := _check.color("background", background)) is not None:
+        back = 255.0 * np.array(pv.Color(channels).float_rgb)
+    else:
         colours, counts = np.unique(expected.reshape(-1, 3), axis=0, return_counts=True)
         back = colours[np.argmax(counts)].astype(np.float64)
-    else:
-        _check.color("background", background)
-        back = 255.0 * np.array(pv.Color(background).float_rgb)
-    # In floats: unsigned bytes wrap around below 0.
+    # Differences of unsigned bytes would wrap around below 0.
     a, b = got.astype(np.float64), expected.astype(np.float64)
-    drawn, ought = (np.abs(x - back).sum(axis=(0, 1)) for x in (a, b))
-    # One grey level over a thousandth of the picture is as good as nothing drawn.
-    least = max(1e-3 * a.shape[0] * a.shape[1], 0.02 * float(ought.max()))
-    brightness = float(np.max(np.abs(drawn - ought) / np.maximum(ought, least)))
+    drawn, wanted = (np.abs(x - back).sum(axis=(0, 1)) for x in (a, b))
+    # One grey level in a thousandth of the picture counts as nothing drawn.
+    least = max(1e-3 * a.shape[0] * a.shape[1], 0.02 * float(wanted.max()))
+    brightness = float(np.max(np.abs(drawn - wanted) / np.maximum(wanted, least)))
     brightness = max(brightness, _within_outlines(a, b, back))
     return Difference(brightness, _block_error(a - b), _far_off(a, b))
 
 
 def _within_outlines(got: Array, expected: Array, back: Array) -> float:
-    """Return the relative error of light where both pictures and all pixels beside are drawn on."""
+    """Return the relative error of the light where both pictures differ from the background.
+
+    Pixels next to the background are left out, because drivers draw edges differently.
+    """
     from scipy.ndimage import binary_erosion
 
     drawn = [np.any(np.abs(x - back) > 8, axis=-1) for x in (got, expected)]
     inside = binary_erosion(drawn[0] & drawn[1], np.ones((3, 3), np.bool_))
     if np.mean(inside) < 1e-2:
         return 0.0
-    light, ought = got[inside].sum(axis=0), expected[inside].sum(axis=0)
-    return float(np.max(np.abs(light - ought) / np.maximum(ought, 0.02 * ought.max() + 1)))
+    light, wanted = got[inside].sum(axis=0), expected[inside].sum(axis=0)
+    return float(np.max(np.abs(light - wanted) / np.maximum(wanted, 0.02 * wanted.max() + 1)))
 
 
-def _block_error(apart: Array) -> float:
-    """Return the largest mean over a block, wherever it begins: no border hides an error."""
-    rows, columns = (min(BLOCK, n) for n in apart.shape[:2])
-    total = np.zeros((apart.shape[0] + 1, apart.shape[1] + 1, 3))
-    total[1:, 1:] = apart.cumsum(axis=0).cumsum(axis=1)
+def _block_error(errors: Array) -> float:
+    """Return the largest mean error over a block, for blocks that start at any pixel."""
+    rows, columns = (min(BLOCK, n) for n in errors.shape[:2])
+    total = np.zeros((errors.shape[0] + 1, errors.shape[1] + 1, 3))
+    total[1:, 1:] = errors.cumsum(axis=0).cumsum(axis=1)
     sums = total[rows:, columns:] - total[:-rows, columns:]
     sums = sums - (total[rows:, :-columns] - total[:-rows, :-columns])
     return float(np.abs(sums).max() / (rows * columns))
 
 
 def _far_off(got: Array, expected: Array) -> float:
-    """Return the share of pixels outside the range of the 3 x 3 expected pixels, by over 32."""
+    """Return the fraction of pixels outside the expected 3 x 3 range by more than 32."""
     from scipy.ndimage import maximum_filter, minimum_filter
 
     high, low = (f(expected, size=(3, 3, 1)) for f in (maximum_filter, minimum_filter))
@@ -206,10 +216,10 @@ def _far_off(got: Array, expected: Array) -> float:
     return float(np.mean(far))
 
 
-def _pixels(name: str, picture: Any) -> NDArray[np.uint8]:
+def _pixels(name: str, picture: Picture) -> Pixels:
     if isinstance(picture, pv.BasePlotter):
         if getattr(picture, "render_window", None) is None:
-            raise ValueError(_check.message(name, "an open plotter", "one that was closed"))
+            raise ValueError(_check.message(name, "an open plotter", "a closed one"))
         shot = picture.screenshot(return_img=True)
         return np.array(shot, dtype=np.uint8)[..., :3]
     if isinstance(picture, str | Path):
@@ -225,12 +235,12 @@ def _pixels(name: str, picture: Any) -> NDArray[np.uint8]:
     return array[..., :3]
 
 
-def _size(picture: NDArray[np.uint8]) -> str:
+def _size(picture: Pixels) -> str:
     return f"{picture.shape[1]} x {picture.shape[0]}"
 
 
-def _keep(folder: str | Path | None, name: str, pictures: dict[str, NDArray[np.uint8]]) -> str:
-    """Write the pictures of a failure and say where."""
+def _keep(folder: str | Path | None, name: str, pictures: dict[str, Pixels]) -> str:
+    """Write the pictures of a failure and return the part of the message that names the folder."""
     if folder is None:
         return ""
     place = Path(folder)

@@ -1,4 +1,4 @@
-"""What a picture is lit by: lights, material, view, depth cue. Plain values, no VTK.
+"""Scenes: the lights, the material, the view and the depth cue of a picture, as plain values.
 
 Directions point away from the lit point: toward the light, toward the eye.
 """

@@ -1,11 +1,11 @@
-"""A point light, far away or near, given by plain values or read from a VTK light."""
+"""Point lights at a position or at infinity."""
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from vizlight import _check
 from vizlight.model import falloff
@@ -22,30 +22,34 @@ NO_ATTENUATION = (1.0, 0.0, 0.0)
 
 @dataclass(frozen=True, init=False, repr=False)
 class Light:
-    """A point light, far away or near.
+    """A point light at a position or at infinity.
 
     Parameters
     ----------
     direction : vector of n components, optional
-        Toward the light, for a light at infinity; any length but 0.
+        Direction toward a light at infinity, of any length except 0.
     position : vector of n components, optional
-        Where the light stands, in the unit of the mesh.
+        Position of the light, in the unit of the mesh.
     intensity : float, default: 1.0
-        Unitless, from 0 to 1e9.
+        Intensity, unitless, from 0 to 1e9.
     attenuation : (c1, c2, c3), default: (1, 0, 0)
-        Coefficients of ``min(1, 1/(c1 + c2 d + c3 d^2))``; only a positional light has a
-        distance d. (Lecture, effect of distance.)
+        Coefficients of ``min(1, 1/(c1 + c2 d + c3 d^2))``, where d is the distance from the
+        point to a light with a position. (Lecture, effect of distance.)
     color : (r, g, b) or str, optional
-        Channels that scale the intensity in the array ``rgb``; luminance has no colour.
+        Channels that scale the intensity in the array ``rgb``. They do not affect luminance.
+    follows_view : bool, default: False
+        Whether the light is a headlight, which takes its direction or position from the view;
+        see :meth:`headlight`.
 
     Raises
     ------
     TypeError, ValueError
-        If a value does not fit, or not exactly one of direction and position is given.
+        If a value does not fit, or not exactly one of direction and position is given. A
+        headlight has neither.
 
     See Also
     --------
-    Light.headlight : a light that follows the view.
+    Light.headlight : Light that follows the view.
     """
 
     direction: Vector | None
@@ -56,7 +60,7 @@ class Light:
     follows_view: bool
 
     def __repr__(self) -> str:
-        """Say what differs from the defaults."""
+        """Return the call that creates the light, without default values."""
         shown = {"direction": self.direction, "position": self.position, "color": self.color}
         parts = [f"{name}={value}" for name, value in shown.items() if value is not None]
         if self.intensity != 1:
@@ -91,7 +95,7 @@ class Light:
                     "Light",
                     "either direction= (toward the light) or position=",
                     "both" if given == 2 else "neither",
-                    "Light.headlight() follows the view",
+                    "Light.headlight() makes a light that follows the view",
                 )
             )
         if self.direction is not None and self.attenuation != NO_ATTENUATION:
@@ -108,37 +112,64 @@ class Light:
     def headlight(cls, *, intensity: float = 1.0, color: ColorLike | None = None) -> Light:
         """Return a light that follows the view.
 
-        Under a parallel view, or a perspective one with a known axis, it shines along that axis
-        from infinity, as VTK's does; under any other perspective view it sits in the eye.
+        In a view with a direction it is at infinity in that direction, as in VTK. In a
+        perspective view without a direction it is at the position of the eye.
+
+        Parameters
+        ----------
+        intensity : float, default: 1.0
+            Intensity, unitless, from 0 to 1e9.
+        color : (r, g, b) or str, optional
+            Channels that scale the intensity in the array ``rgb``.
+
+        Returns
+        -------
+        Light
         """
         return cls(intensity=intensity, color=color, follows_view=True)
 
     def seen_from(self, view: View | None) -> Light:
-        """Return the light with its place fixed: a headlight's is taken from the view."""
+        """Return the light with a fixed direction or position, which a headlight has from a view.
+
+        Parameters
+        ----------
+        view : View or None
+            View that a headlight follows. A light that is not a headlight does not need it.
+
+        Returns
+        -------
+        Light
+
+        Raises
+        ------
+        ValueError
+            If the light is a headlight and there is no view.
+        """
         if not self.follows_view:
             return self
         if view is None:
             raise ValueError(
                 _check.message("view", "a View, which the headlight follows", None, "pass view=")
             )
-        if view.direction is not None:
-            place: dict[str, Any] = {"direction": view.direction}
-        else:
-            place = {"position": view.position}
-        return dataclasses.replace(self, follows_view=False, **place)
+        position = view.position if view.direction is None else None
+        return dataclasses.replace(
+            self, follows_view=False, direction=view.direction, position=position
+        )
 
 
-def as_lights(lights: Any) -> tuple[Light, ...]:
-    """Return one light or several as a tuple.
+def as_lights(lights: Light | Iterable[Light]) -> tuple[Light, ...]:
+    """Return one light or several lights as a tuple.
 
     Raises
     ------
     TypeError
-        If something else is given.
+        If the argument is neither a light nor a sequence of lights.
     """
     if isinstance(lights, str) or not isinstance(lights, Light | Iterable):
         raise TypeError(
-            _check.message("lights", "vizlight.Light or several", _check.describe(lights))
+            _check.message(
+                "lights", "a vizlight.Light or a sequence of them", _check.describe(lights)
+            )
         )
     several = (lights,) if isinstance(lights, Light) else tuple(lights)
     for light in several:

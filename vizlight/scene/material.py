@@ -1,15 +1,18 @@
-"""How much light a manifold gives back."""
+"""Materials: the coefficients and colours of reflected light."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from vizlight import _check
 from vizlight.scene import vtk
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+
+    import pyvista as pv
+    from vtkmodules.vtkRenderingCore import vtkProperty
 
     from vizlight._types import Color, ColorLike
     from vizlight.scene.light import Light
@@ -20,19 +23,19 @@ __all__ = ["Material"]
 
 @dataclass(frozen=True, init=False)
 class Material:
-    """How much light a manifold gives back.
+    """Coefficients and colours of the light that a manifold reflects.
 
     Parameters
     ----------
-    ambient, diffuse, specular : float
-        ka, kd and ks, unitless, from 0 to 1e9.
+    ambient, diffuse, specular : float, default: 0.1, 0.5, 0.4
+        Coefficients ka, kd and ks, unitless, from 0 to 1e9.
     shininess : float, default: 20.0
-        The power of the specular term, from 0 to 1e9.
+        Power of the specular term, from 0 to 1e9.
     color : (r, g, b) or str, optional
-        Channels of the ambient and the diffuse light, one for each wavelength; with it the
-        array ``rgb`` is made.
+        Channels of the ambient and diffuse light. A material with a colour adds the array
+        ``rgb`` to the result.
     specular_color : (r, g, b) or str, optional
-        Channels of the highlight; white when not given.
+        Channels of the highlight. Default: white.
 
     Raises
     ------
@@ -73,73 +76,72 @@ class Material:
         lights: Light | Iterable[Light] | None = None,
         view: View | None = None,
         model: str = "phong",
-    ) -> Any:
-        """Return the ``pyvista.Property`` with which VTK shows this material's highlight.
+    ) -> pv.Property:
+        """Return the ``pyvista.Property`` with which VTK shows the highlight of this material.
 
         Parameters
         ----------
         lights : Light or sequence of Light, optional
-            Of the scene that VTK will light, all of them: they decide its law. Default: one
-            headlight, as in :class:`Scene`.
+            All lights of the scene that VTK will render; they determine the reflection model of
+            VTK. Default: one headlight, as in :class:`Scene`.
         view : View, optional
-            With a direction it tells the angle between light and eye, which an exchange between
-            the laws depends on.
-        model : {"phong", "blinn"}
-            The law that ``shininess`` belongs to in vizlight.
+            View of the scene. Its direction determines the angle between light and eye, on which
+            the conversion between the reflection models depends.
+        model : {"phong", "blinn"}, default: "phong"
+            Reflection model of vizlight to which ``shininess`` belongs.
 
         Returns
         -------
         pyvista.Property
-            For surfaces; its power is exchanged where VTK's law is not the model's.
+            Property of a surface. Its power is converted if VTK uses the other reflection model.
 
         Raises
         ------
         TypeError, ValueError
-            If an argument does not fit, or a coefficient is above 1, which VTK clamps.
+            If an argument does not fit, or a coefficient exceeds 1, the upper limit of VTK.
 
         Warns
         -----
         UserWarning
-            If VTK's highlight can differ by more than 2 of 255: it has no law between, and
-            clamps the power to 128.
+            If VTK's highlight can differ by more than 2 of 255, because the conversion is
+            approximate or because VTK limits the power to 128.
 
         Notes
         -----
-        What VTK 9 does: with exactly one light, a headlight at infinity, its specular term is
-        ``(N . view axis)^power``, Blinn's; with any other lights, several headlights or a second
-        light of intensity 0 among them, Phong's, and the eye is at the camera's position **also
-        under a parallel projection**.
-        The same scene here thus has a perspective view, or the camera is far away.
+        With exactly one light that is a headlight at infinity, VTK 9 uses the Blinn model: its
+        specular term is ``(N . view axis)^power``. With any other lights, such as several
+        headlights, or a headlight and a light of intensity 0, it uses the Phong model, and takes
+        the eye to be at the position of the camera **even in parallel projection**. The
+        equivalent scene in vizlight then has a perspective view, or the camera is far away.
         """
-        return vtk.to_property(
+        values = vtk.MaterialValues(
             ambient=self.ambient,
             diffuse=self.diffuse,
             specular=self.specular,
             shininess=self.shininess,
             color=self.color,
             specular_color=self.specular_color,
-            lights=lights,
-            view=view,
-            model=model,
         )
+        return vtk.to_property(values, lights=lights, view=view, model=model)
 
     @classmethod
     def from_property(
         cls,
-        source: Any,
+        source: vtkProperty,
         /,
         *,
         lights: Light | Iterable[Light] | None = None,
         view: View | None = None,
         model: str = "phong",
     ) -> Material:
-        """Return the material of a ``pyvista.Property`` or ``vtkProperty``.
+        """Return the material of a VTK property; the inverse of :meth:`to_property`.
 
         Parameters
         ----------
         source : pyvista.Property or vtkProperty
+            Property to read.
         lights, view, model
-            As for :meth:`to_property`, of which this is the inverse.
+            Lights, view and reflection model, as for :meth:`to_property`.
 
         Returns
         -------
@@ -153,6 +155,6 @@ class Material:
         Warns
         -----
         UserWarning
-            If the ambient colour is not the diffuse one, which stands for both here.
+            If the ambient and diffuse colours differ; the diffuse colour is used for both.
         """
         return cls(**vtk.property_values(source, lights=lights, view=view, model=model))

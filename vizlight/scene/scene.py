@@ -1,14 +1,11 @@
-"""What a picture is lit by: lights, material, view. Plain values, no VTK.
-
-Directions point away from the lit point: toward the light, toward the eye.
-"""
+"""The scene of one picture."""
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 
@@ -19,29 +16,43 @@ from vizlight.scene.material import Material
 from vizlight.scene.view import DepthCue, View, is_camera
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    import pyvista as pv
+    from typing_extensions import Unpack
 
-    from vizlight._types import Color, ColorLike
+    from vizlight._types import Color, ColorLike, VectorLike
 
 __all__ = ["Scene"]
 
 
+class SceneKeywords(TypedDict, total=False):
+    """The fields of a scene, as its keyword arguments."""
+
+    lights: Light | Iterable[Light] | None
+    material: Material | None
+    view: View | None
+    ambient_intensity: float
+    ambient_color: ColorLike | None
+    depth_cue: DepthCue | None
+
+
 @dataclass(frozen=True, init=False)
 class Scene:
-    """Lights, material and view of one picture.
+    """Lights, material, view and depth cue of one picture.
 
     Parameters
     ----------
     lights : Light or sequence of Light, optional
-        Default: one headlight.
+        Lights of the scene. Default: one headlight.
     material : Material, optional
+        Material of the lit manifold. Default: ``Material()``.
     view : View, optional
-        Needed for the specular term, a headlight and a depth cue.
+        View of the scene, required for the specular term, a headlight and a depth cue.
     ambient_intensity : float, default: 1.0
-        Ia of the Lecture, unitless, from 0 to 1e9.
+        Intensity Ia of the ambient light (Lecture), unitless, from 0 to 1e9.
     ambient_color : (r, g, b) or str, optional
-        Channels of the ambient light in ``rgb``.
+        Channels of the ambient light in the array ``rgb``. Default: white.
     depth_cue : DepthCue, optional
+        Fading of the light with depth. Default: none.
 
     Raises
     ------
@@ -68,7 +79,7 @@ class Scene:
     ) -> None:
         lights = as_lights(Light.headlight() if lights is None else lights)
         _check.instance("material", material, Material, optional=True)
-        remedy = "View.from_camera(camera) makes one of it" if is_camera(view) else ""
+        remedy = "View.from_camera(camera) makes one from a camera" if is_camera(view) else ""
         _check.instance("view", view, View, optional=True, remedy=remedy)
         _check.instance("depth_cue", depth_cue, DepthCue, optional=True)
         _check.set_fields(
@@ -96,7 +107,7 @@ class Scene:
 
     @property
     def n(self) -> int | None:
-        """The dimension of the space that lights and view live in, None where nothing says."""
+        """Dimension of the space of lights and view, or None if no vector determines it."""
         for owner in (*self.lights, self.view):
             for v in (owner.position, owner.direction) if owner is not None else ():
                 if v is not None:
@@ -105,7 +116,7 @@ class Scene:
 
     @property
     def colored(self) -> bool:
-        """Whether anything in the scene has a colour."""
+        """Whether any part of the scene has a colour."""
         owners = (self.material, *self.lights, self.depth_cue)
         return (
             self.ambient_color is not None
@@ -113,12 +124,12 @@ class Scene:
             or any(getattr(owner, "color", None) is not None for owner in owners)
         )
 
-    def replace(self, **changes: Any) -> Scene:
-        """Return a scene with some fields changed."""
-        return dataclasses.replace(self, **changes)
+    def replace(self, **changes: Unpack[SceneKeywords]) -> Scene:
+        """Return a copy of the scene with some fields changed."""
+        return Scene(**{**vars(self), **changes})
 
-    def moved(self, offset: Sequence[float], /) -> Scene:
-        """Return the scene with lights and eye moved by an offset; depths stay as they are."""
+    def moved(self, offset: VectorLike, /) -> Scene:
+        """Return the scene translated by an offset; depths from the eye do not change."""
         lights = tuple(
             dataclasses.replace(light, position=tuple(np.add(light.position, offset)))
             if light.position is not None
@@ -131,18 +142,27 @@ class Scene:
             view = View(position=position, direction=view.direction, parallel=view.parallel)
         return self.replace(lights=lights, view=view)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return the scene as plain values that JSON can hold."""
+    def to_dict(self) -> dict[str, object]:
+        """Return the scene as nested dicts and tuples of plain values, for JSON."""
         return dataclasses.asdict(self)
 
     @classmethod
-    def from_dict(cls, values: Mapping[str, Any]) -> Scene:
-        """Return the scene that :meth:`to_dict` wrote.
+    def from_dict(cls, values: Mapping[str, object]) -> Scene:
+        """Return the scene that :meth:`to_dict` returned as a dict.
+
+        Parameters
+        ----------
+        values : dict
+            Fields of the scene, as returned by :meth:`to_dict`. Lists may replace tuples.
+
+        Returns
+        -------
+        Scene
 
         Raises
         ------
         TypeError, ValueError
-            If it is another dict, or the values are not those of a scene.
+            If a key is unknown, or a value does not fit.
         """
         parts = _fields("values", values, cls)
         if parts.get("lights") is not None:
@@ -152,30 +172,38 @@ class Scene:
                     _check.message("lights", "a list of dicts", _check.describe(lights))
                 )
             parts["lights"] = [Light(**_fields("lights", light, Light)) for light in lights]
-        for name, kind in (("material", Material), ("view", View), ("depth_cue", DepthCue)):
+        kinds: dict[str, type[Material] | type[View] | type[DepthCue]] = {
+            "material": Material, "view": View, "depth_cue": DepthCue,
+        }  # fmt: skip
+        for name, kind in kinds.items():
             if parts.get(name) is not None:
                 parts[name] = kind(**_fields(name, parts[name], kind))
         return cls(**parts)
 
     @classmethod
-    def from_plotter(cls, plotter: Any, **fields: Any) -> Scene:
-        """Return the scene of a PyVista plotter: its camera and its lights that are on.
+    def from_plotter(cls, plotter: pv.Plotter, **fields: Unpack[SceneKeywords]) -> Scene:
+        """Return the scene of a PyVista plotter: its camera and the lights that are switched on.
 
-        Camera lights and headlights with a position are fixed where they stand now; headlights
-        at infinity go on following the view. A spotlight lights in all directions here, which a
-        warning says.
+        A headlight at infinity continues to follow the view. Other lights that move with the
+        camera are fixed at their current position. A spotlight becomes a light that shines in
+        all directions, with a warning.
 
         Parameters
         ----------
         plotter : pyvista.Plotter
-            Its active renderer is read. A camera that was not set yet is set as ``show`` would.
+            Plotter, whose active renderer is read. If its camera is not set yet, it is set as
+            ``show`` would set it.
         **fields
-            Further fields of the scene, ``material=`` among them.
+            Further fields of the scene, such as ``material=``.
+
+        Returns
+        -------
+        Scene
 
         Raises
         ------
         TypeError
-            If it is not a plotter.
+            If the argument is not a plotter.
         """
         renderer = getattr(plotter, "renderer", None)
         if renderer is None or not hasattr(renderer, "GetLights"):
@@ -188,8 +216,12 @@ class Scene:
         return cls(**fields)
 
 
-def _fields(name: str, values: Any, kind: Any) -> dict[str, Any]:
-    """Return the fields of a class that :meth:`Scene.to_dict` wrote, by name."""
+def _fields(
+    name: str,
+    values: object,
+    kind: type[Scene] | type[Light] | type[Material] | type[View] | type[DepthCue],
+) -> dict[str, Any]:
+    """Return the keyword arguments of a class, which validates their values, from a dict."""
     known = [field.name for field in dataclasses.fields(kind)]
     expected = f"a dict of {', '.join(known)}"
     if not isinstance(values, Mapping):

@@ -1,13 +1,15 @@
-"""Where the eye is, and how light fades with depth from there."""
+"""The view of a scene, and the fading of light with depth."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from vizlight import _check
 
 if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkCamera
+
     from vizlight._types import Color, ColorLike, Vector, VectorLike
 
 __all__ = ["DepthCue", "View"]
@@ -15,23 +17,25 @@ __all__ = ["DepthCue", "View"]
 
 @dataclass(frozen=True, init=False)
 class View:
-    """Where the eye is.
+    """Position and direction of the eye.
 
     Parameters
     ----------
     position : vector of n components, optional
-        The eye, in the unit of the mesh. Alone, or with a direction: a perspective view.
+        Position of the eye, in the unit of the mesh. A view with a position is a perspective
+        view unless ``parallel=True``.
     direction : vector of n components, optional
-        Toward the eye; any length but 0. Alone: a parallel view, depth measured from the origin.
-        With a position: the axis along which depth is measured.
+        Direction toward the eye, of any length except 0. Without a position the view is parallel
+        and depth is measured from the origin; with a position, depth is measured from there
+        along this axis.
     parallel : bool, optional
-        Default: whether no position is given. ``True`` with a position and a direction is a
-        parallel view whose depth is measured from the position.
+        Whether the view is parallel. Default: True if no position is given, otherwise False.
 
     Raises
     ------
     TypeError, ValueError
-        If a value does not fit, or what the view needs is not given.
+        If a value does not fit, a parallel view has no direction, or a perspective view has no
+        position.
     """
 
     position: Vector | None
@@ -65,19 +69,28 @@ class View:
         if position is not None and direction is not None and len(position) != len(direction):
             raise ValueError(
                 _check.message(
-                    "direction", f"{len(position)} components, as position has", len(direction)
+                    "direction", f"{len(position)} components like position", len(direction)
                 )
             )
         _check.set_fields(self, position=position, direction=direction, parallel=parallel)
 
     @classmethod
-    def from_camera(cls, camera: Any) -> View:
-        """Return the view of a ``pyvista.Camera`` or ``vtkCamera``.
+    def from_camera(cls, camera: vtkCamera) -> View:
+        """Return the view of a camera.
+
+        Parameters
+        ----------
+        camera : pyvista.Camera or vtkCamera
+            Camera, whose current position and direction are read.
+
+        Returns
+        -------
+        View
 
         Raises
         ------
         TypeError
-            If it is not a camera.
+            If the argument is not a camera.
         """
         if not is_camera(camera):
             remedy = "pass its .camera" if is_camera(getattr(camera, "camera", None)) else ""
@@ -92,22 +105,22 @@ class View:
 
 @dataclass(frozen=True, init=False)
 class DepthCue:
-    """Fade with depth: ``S I + (1 - S) Icue`` (Lecture, atmospheric attenuation).
+    """Fading of light with depth: ``S I + (1 - S) Icue`` (Lecture, atmospheric attenuation).
 
     Parameters
     ----------
     front, back : float, optional
-        Depths (distance from the eye, along the view's axis where it has one) between which
-        the scale goes from ``front_scale`` to ``back_scale``. On a mesh they default to the
-        nearest and farthest depth of its points.
-    front_scale, back_scale : float
-        The scale S at and beyond front and back, in [0, 1].
+        Depths between which the scale S goes from ``front_scale`` to ``back_scale``. Depth is
+        the distance from the eye, along the direction of the view if it has one. Default: the
+        smallest and largest depth of the points of the mesh.
+    front_scale, back_scale : float, default: 1.0, 0.0
+        Scale S at front and back, and beyond them, in [0, 1].
     cue : float, default: 0.0
-        The intensity that fades in.
+        Intensity Icue that replaces the light as S decreases, from 0 to 1e9.
     color : (r, g, b) or str, optional
-        Channels of the cue in ``rgb``; white when not given.
+        Channels of the cue in the array ``rgb``. Default: white.
     smooth : bool, default: False
-        A smooth step in place of a straight line.
+        Whether S follows a smooth step instead of a straight line.
 
     Raises
     ------
@@ -148,7 +161,7 @@ class DepthCue:
             raise ValueError(_check.message("front", "a depth other than back", self.front))
 
 
-def is_camera(value: Any) -> bool:
-    """Tell whether a value has what a view is made of."""
+def is_camera(value: object) -> bool:
+    """Return whether a value has the methods of a VTK camera that a view needs."""
     names = ("GetPosition", "GetDirectionOfProjection", "GetParallelProjection")
     return all(hasattr(value, name) for name in names)

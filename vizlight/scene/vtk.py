@@ -1,8 +1,8 @@
-"""A material as a VTK property and back: the same highlight where VTK's law allows it."""
+"""Conversion of materials to and from VTK properties, and of VTK lights to lights."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal, TypedDict
 
 import numpy as np
 
@@ -12,131 +12,145 @@ from vizlight.scene.light import WHITE, Light, as_lights
 from vizlight.scene.view import View
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
+
+    import pyvista as pv
+    from vtkmodules.vtkCommonMath import vtkMatrix4x4
+    from vtkmodules.vtkRenderingCore import vtkCamera, vtkLight, vtkProperty
 
     from vizlight._types import Color, Vector
 
-Law = Literal["phong", "blinn"]
-#: VTK clamps the power to this.
+    Lights = Light | Iterable[Light] | None
+
+ReflectionModel = Literal["phong", "blinn"]
+#: Upper limit of the specular power in VTK.
 LARGEST_POWER = 128.0
-#: Of half the angle between light and eye: beyond, there is hardly a half vector.
+#: Lower limit for the cosine of half the angle between light and eye, where the half vector
+#: vanishes.
 LEAST_COSINE = 2.5e-4
-#: A highlight that may be off by more than this many pixel values of 255 is worth a warning.
-TELLING = 2.0
+#: Error of a highlight, in pixel values from 0 to 255, above which a warning is given.
+VISIBLE_ERROR = 2.0
 
 
-def vtk_law(lights: Sequence[Light]) -> Law:
-    """Return the law of VTK's specular term: Blinn for one headlight alone, Phong otherwise.
+class MaterialValues(TypedDict):
+    """The fields of a material."""
 
-    A light of intensity 0 counts: VTK asks only which lights are switched on.
+    ambient: float
+    diffuse: float
+    specular: float
+    shininess: float
+    color: Color | None
+    specular_color: Color | None
+
+
+def vtk_model(lights: Sequence[Light]) -> ReflectionModel:
+    """Return the reflection model of VTK: Blinn for a single headlight, Phong otherwise.
+
+    A light of intensity 0 counts as a light, because VTK considers only the switch of a light.
     """
     return "blinn" if len(lights) == 1 and lights[0].follows_view else "phong"
 
 
 def to_property(
-    *,
-    ambient: float,
-    diffuse: float,
-    specular: float,
-    shininess: float,
-    color: Color | None,
-    specular_color: Color | None,
-    lights: Any,
-    view: View | None,
-    model: str,
-) -> Any:
+    values: MaterialValues, *, lights: Lights, view: View | None, model: str
+) -> pv.Property:
     """Return the ``pyvista.Property`` of a material; see :meth:`vizlight.Material.to_property`."""
     import pyvista as pv
 
-    given = _lights(lights)
-    _check_view(view)
-    coefficients = {"ambient": ambient, "diffuse": diffuse, "specular": specular}
+    given = _check_lights(lights)
+    _check.instance("view", view, View, optional=True)
+    coefficients = {
+        "ambient": values["ambient"], "diffuse": values["diffuse"], "specular": values["specular"],
+    }  # fmt: skip
     for name, value in coefficients.items():
         if value > 1:
             remedy = "make the lights brighter instead"
-            raise ValueError(_check.message(name, "at most 1, as VTK has it", value, remedy))
-    law, power = vtk_law(given), shininess
-    if _law(model) != law:
-        angle = _angle(given, view)
-        power = _exchanged(power, angle, model)
+            raise ValueError(_check.message(name, "at most 1, the limit of VTK", value, remedy))
+    power = values["shininess"]
+    if _check_model(model) != vtk_model(given):
+        power = _converted(power, _angle(given, view), model)
     shown = min(power, LARGEST_POWER)
-    _warn_of_error(specular, shininess, given, view, model, shown)
+    _warn_of_error(values["specular"], values["shininess"], given, view, model, shown)
     made = pv.Property(
         **coefficients,
         specular_power=shown,
         interpolation="phong",
         lighting=True,
     )
-    # VTK's own setters: PyVista's round colours to 8 bits.
-    for paint in (made.SetAmbientColor, made.SetDiffuseColor):
-        paint(*(color or WHITE))
-    made.SetSpecularColor(*(specular_color or WHITE))
+    # VTK's own setters, because PyVista's round colours to 8 bits.
+    for set_color in (made.SetAmbientColor, made.SetDiffuseColor):
+        set_color(*(values["color"] or WHITE))
+    made.SetSpecularColor(*(values["specular_color"] or WHITE))
     return made
 
 
-def property_values(source: Any, *, lights: Any, view: View | None, model: str) -> dict[str, Any]:
-    """Return the material of a property, by name; see :meth:`vizlight.Material.from_property`."""
+def property_values(
+    source: vtkProperty, *, lights: Lights, view: View | None, model: str
+) -> MaterialValues:
+    """Return the fields of a property's material; see :meth:`vizlight.Material.from_property`."""
     if not hasattr(source, "GetSpecularPower"):
         raise TypeError(
             _check.message("source", "a pyvista.Property or vtkProperty", _check.describe(source))
         )
-    given = _lights(lights)
-    _check_view(view)
+    given = _check_lights(lights)
+    _check.instance("view", view, View, optional=True)
     power = float(source.GetSpecularPower())
-    if _law(model) != vtk_law(given):
-        power = _exchanged(power, _angle(given, view), "phong" if model == "blinn" else "blinn")
-    own = (source.GetDiffuseColor, source.GetSpecularColor)
-    colors = [tuple(float(channel) for channel in get()) for get in own]
-    if tuple(source.GetAmbientColor()) != colors[0]:
-        _check.warn("the property's ambient colour is not its diffuse one, which is kept for both")
+    if _check_model(model) != vtk_model(given):
+        power = _converted(power, _angle(given, view), "phong" if model == "blinn" else "blinn")
+    if tuple(source.GetAmbientColor()) != tuple(source.GetDiffuseColor()):
+        _check.warn(
+            "the ambient colour of the property differs from its diffuse colour, which is used "
+            "for both"
+        )
     return {
         "ambient": source.GetAmbient(),
         "diffuse": source.GetDiffuse(),
         "specular": source.GetSpecular(),
         "shininess": power,
-        "color": None if colors[0] == WHITE else colors[0],
-        "specular_color": None if colors[1] == WHITE else colors[1],
+        "color": _color(source.GetDiffuseColor()),
+        "specular_color": _color(source.GetSpecularColor()),
     }
 
 
-def _lights(lights: Any) -> tuple[Light, ...]:
-    """Return the lights that are given, one headlight by default."""
+def _color(channels: Sequence[float]) -> Color | None:
+    """Return the colour with given channels, or None for white, which is the default."""
+    r, g, b = (float(channel) for channel in channels)
+    return None if (r, g, b) == WHITE else (r, g, b)
+
+
+def _check_lights(lights: Lights) -> tuple[Light, ...]:
+    """Return the lights, by default one headlight, after checking that they are in 3-space."""
     given = as_lights(Light.headlight() if lights is None else lights)
     for light in given:
         n = len(light.direction or light.position or ()) or 3
         if n != 3:
-            raise ValueError(_check.message("lights", "vectors of 3 components, VTK's", n))
+            raise ValueError(_check.message("lights", "vectors of 3 components, as in VTK", n))
     return given
 
 
-def _check_view(view: Any) -> None:
-    _check.instance("view", view, View, optional=True)
-
-
-def _law(model: str) -> str:
+def _check_model(model: str) -> str:
     if model not in ("phong", "blinn"):
-        raise ValueError(
-            _check.message("model", "'phong' or 'blinn', which VTK can come near", repr(model))
-        )
+        expected = "'phong' or 'blinn', which VTK can approximate"
+        raise ValueError(_check.message("model", expected, repr(model)))
     return model
 
 
 def _angle(lights: Sequence[Light], view: View | None) -> float:
-    """Return the angle from the eye to the brightest light, 0 where it is not known."""
-    far = [light for light in lights if light.direction is not None]
-    if not far or view is None or view.direction is None:
+    """Return the angle between the eye and the brightest light at infinity, or 0 if unknown."""
+    distant = [light for light in lights if light.direction is not None]
+    if not distant or view is None or view.direction is None:
         return 0.0
-    brightest = max(far, key=lambda light: light.intensity)
+    brightest = max(distant, key=lambda light: light.intensity)
     a, b = (np.asarray(v, dtype=np.float64) for v in (brightest.direction, view.direction))
     a, b = a / np.linalg.norm(a), b / np.linalg.norm(b)
     return 2 * float(np.arctan2(np.linalg.norm(a - b), np.linalg.norm(a + b)))
 
 
-def _exchanged(power: float, angle: float, model: str) -> float:
-    """Return the power of the other law for one of a model, rising with it and inverted by it.
+def _converted(power: float, angle: float, model: str) -> float:
+    """Convert a power of one reflection model to the other; increasing, and exactly invertible.
 
-    By :func:`highlights.simple_factor` corrected for Phong's power r, ``q = c (r + e)``, and
-    below its range, r = 1/2, in proportion.
+    :func:`highlights.simple_factor`, corrected for Phong's power r, gives ``q = c (r + e)``.
+    Below the validity of the correction, r = 1/2, the conversion is proportional.
     """
     cosine = max(float(np.cos(angle / 2)), LEAST_COSINE)
     least, factor = 0.5, float(highlights.simple_factor(2 * np.arccos(cosine)))
@@ -154,77 +168,87 @@ def _warn_of_error(
     model: str,
     shown: float,
 ) -> None:
-    """Warn by how much VTK's highlight can be off, where that can be seen."""
-    law = vtk_law(lights)
-    if not lights or not specular or (law == model and shown == wanted):
+    """Warn if the highlight of VTK can differ visibly, and say by how much."""
+    used = vtk_model(lights)
+    if not lights or not specular or (used == model and shown == wanted):
         return
-    remedy = ""
-    if law != model:
+    if used == model:
+        # Only the power differs, and x^a - x^b is largest where both slopes are equal.
+        x = (shown / wanted) ** (1 / (wanted - shown))
+        error = 255 * abs(x**wanted - x**shown)
+    else:
         phong, blinn = (wanted, shown) if model == "phong" else (shown, wanted)
         if phong == 0:
             return
-        angle = _angle(lights, view)
-        error = abs(float(highlights.max_pixel_error(angle, phong, factor=blinn / phong).error))
-        if law == "blinn":
-            remedy = (
-                "; VTK takes Blinn's law with exactly one light switched on, a headlight, and "
-                "Phong's otherwise: a second light of intensity 0 is enough"
-            )
-    else:
-        # The same law with a clamped power: x^a - x^b is largest where both slopes are equal.
-        x = (shown / wanted) ** (1 / (wanted - shown))
-        error = 255 * abs(x**wanted - x**shown)
+        bound = highlights.max_pixel_error(_angle(lights, view), phong, factor=blinn / phong)
+        error = abs(float(bound.error))
     error *= specular * max(light.intensity for light in lights)
-    if error > TELLING:
-        _check.warn(
-            f"VTK lights this scene by {law}'s law of power {shown:.4g}: its highlight can differ "
-            f"by {error:.1f} of 255 from {model}'s of {wanted:g}{remedy}"
+    if error <= VISIBLE_ERROR:
+        return
+    remedy = ""
+    if used != model and used == "blinn":
+        remedy = (
+            "; VTK uses the Blinn model if exactly one light is switched on and it is a "
+            "headlight, otherwise the Phong model; add a second light of intensity 0"
         )
+    _check.warn(
+        f"VTK lights this scene with the {used.capitalize()} model and power {shown:.4g}; its "
+        f"highlight can differ by {error:.1f} of 255 from that of the {model.capitalize()} model "
+        f"with power {wanted:g}{remedy}"
+    )
 
 
-def lights_of(lights: Iterable[Any], camera: Any) -> Iterable[Light]:
-    """Yield the VTK lights that are on; what moves with the camera stays where it is now.
+def lights_of(lights: Iterable[vtkLight], camera: vtkCamera) -> Iterator[Light]:
+    """Yield the VTK lights that are switched on.
 
-    Only headlights at infinity go on following the view.
+    A headlight at infinity continues to follow the view. Other lights that move with the camera
+    are fixed at their current position.
     """
     for light in lights:
         if not light.GetSwitch():
             continue
-        channels = tuple(light.GetDiffuseColor())
-        common: dict[str, Any] = {
-            "intensity": light.GetIntensity(),
-            "color": None if channels == WHITE else channels,
-        }
+        intensity, color = light.GetIntensity(), _color(light.GetDiffuseColor())
         if light.LightTypeIsHeadlight() and not light.GetPositional():
-            yield Light.headlight(**common)
+            yield Light.headlight(intensity=intensity, color=color)
             continue
-        if light.LightTypeIsHeadlight():
-            position, target = tuple(camera.GetPosition()), tuple(camera.GetFocalPoint())
-        elif light.LightTypeIsCameraLight():
-            matrix = camera.GetCameraLightTransformMatrix()
-            position = _transform(matrix, light.GetPosition())
-            target = _transform(matrix, light.GetFocalPoint())
-        else:
-            position = tuple(light.GetTransformedPosition())
-            target = tuple(light.GetTransformedFocalPoint())
+        position, target = _position_and_target(light, camera)
+        toward = tuple(p - t for p, t in zip(position, target, strict=True))
         if light.GetPositional():
             if light.GetConeAngle() < 90:
                 _check.warn(
-                    f"a spotlight of cone angle {light.GetConeAngle():g} degrees lights in all "
-                    "directions in vizlight"
+                    f"vizlight takes a spotlight of cone angle {light.GetConeAngle():g} degrees as "
+                    "a light that shines in all directions"
                 )
-            yield Light(position=position, attenuation=light.GetAttenuationValues(), **common)
+            yield Light(
+                position=position,
+                attenuation=light.GetAttenuationValues(),
+                intensity=intensity,
+                color=color,
+            )
+        elif any(toward):
+            yield Light(direction=toward, intensity=intensity, color=color)
         else:
-            toward = tuple(p - t for p, t in zip(position, target, strict=True))
-            if any(toward):
-                yield Light(direction=toward, **common)
-            else:
-                _check.warn(
-                    f"a light at {position} whose focal point is its position shines nowhere"
-                )
+            _check.warn(
+                f"a light at {position} is left out, because its focal point is its position and "
+                "so it has no direction"
+            )
 
 
-def _transform(matrix: Any, point: Vector) -> Vector:
+def _position_and_target(light: vtkLight, camera: vtkCamera) -> tuple[Vector, Vector]:
+    """Return the position and the focal point of a light in the coordinates of the scene."""
+    if light.LightTypeIsHeadlight():
+        return tuple(camera.GetPosition()), tuple(camera.GetFocalPoint())
+    if light.LightTypeIsCameraLight():
+        matrix = camera.GetCameraLightTransformMatrix()
+        return (
+            _transform(matrix, light.GetPosition()),
+            _transform(matrix, light.GetFocalPoint()),
+        )
+    return tuple(light.GetTransformedPosition()), tuple(light.GetTransformedFocalPoint())
+
+
+def _transform(matrix: vtkMatrix4x4, point: Vector) -> Vector:
+    """Return a point transformed by a homogeneous matrix."""
     x = (*point, 1.0)
     rows = [sum(matrix.GetElement(i, j) * x[j] for j in range(4)) for i in range(4)]
     return tuple(row / rows[3] for row in rows[:3])

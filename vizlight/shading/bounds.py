@@ -20,19 +20,19 @@ def weight(plan: Plan, coefficient: float) -> float:
 
 
 def rounding(plan: Plan) -> float:
-    """Return the most that rounding changes the luminance; infinity where no bound holds.
+    """Return a bound of the effect of rounding on the luminance; infinity where none holds.
 
     Notes
     -----
-    By the bounds of :mod:`vizlight.model.reflection`, with 8 eps more for each factor that a scene
-    puts to them. None holds for k tangents near each other, near opposite directions under Blinn's
-    law, near the line under a cylinder's, and for t and fur, whose own rounding is the data's.
+    It uses the bounds of :mod:`vizlight.model.reflection`, with 8 eps more for each factor of the
+    scene. No bound holds for k tangents near each other, near opposite directions under Blinn's
+    model, near the line of a cylinder, and for t and fur, whose rounding is that of the data.
     """
     eps = float(np.finfo(plan.dtype).eps)
     scene, material = plan.scene, plan.scene.material
     if not (plan.diffuse or plan.specular):
         return 4 * eps * plan.ambient
-    if plan.model == "cylinder" or plan.shadowed or plan.fur or plan.carrier:
+    if plan.model == "cylinder" or plan.shadowed or plan.fur or plan.base:
         return math.inf
     if not plan.surface and plan.k > 1:
         return math.inf
@@ -41,14 +41,14 @@ def rounding(plan: Plan) -> float:
     )
     total = 4 * eps * (plan.ambient + weight(plan, material.diffuse + material.specular))
     if plan.factors != (1.0, 1.0):
-        # Of a line's mean brightness I, 9 (1 + |ln I|) eps of it, which is most at I = 1.
+        # The mean brightness I of a line has an error of 9 (1 + |ln I|) eps, largest at I = 1.
         total += 10 * eps * weight(plan, material.diffuse + material.specular)
     if plan.diffuse:
         term = diffuse_bound(plan.exponent, eps) + factors * eps
         total += plan.factors[0] * term * weight(plan, material.diffuse)
     if plan.specular:
-        if plan.terminator:
-            factors += 6 / plan.terminator
+        if plan.options.terminator:
+            factors += 6 / plan.options.terminator
         for light, highlight in zip(scene.lights, plan.highlights, strict=True):
             share = 1.0
             if highlight.model == "blinn" and highlight.half is None:
@@ -76,7 +76,7 @@ def specular_bound(s: float, eps: float) -> float:
 
 
 def angle(light: Light, view: View | None) -> float | None:
-    """Return the angle from light to eye where it is one for all points; 0 for a headlight."""
+    """Return the angle from light to eye if all points share it, else None; 0 for a headlight."""
     if view is None:
         return None
     if light.position is not None:

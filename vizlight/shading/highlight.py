@@ -1,7 +1,7 @@
-"""How each light's highlight is computed: by the law asked for, or a cheaper one near it.
+"""How the highlight of each light is computed: by the model asked for, or a cheaper one near it.
 
-A half vector is the same at all points where light and eye both are at infinity. Blinn's law then
-needs nothing of a point but its tangents: no split of the eye, no reflection.
+The half vector is the same at all points where light and eye are at infinity. Blinn's model then
+needs only the tangents of a point: no split of the eye, no reflection.
 """
 
 from __future__ import annotations
@@ -23,9 +23,10 @@ if TYPE_CHECKING:
     from vizlight.scene import Scene
     from vizlight.shading.options import Model
 
-#: Below this power |h_N|^q is too steep at 0 to be taken from the tangential part alone.
+#: Least power at which |h_N|^q may be computed from the tangential part alone: a lower one is too
+#: steep at 0.
 LEAST_POWER = 2.0
-#: Below this one of Phong's no factor is sought.
+#: Least power of Phong's model for which a factor is searched.
 LEAST_SHININESS = 0.5
 
 
@@ -35,16 +36,16 @@ def choose(
     allowed: float,
     rounding: Callable[[float], float] = lambda _: 0.0,
 ) -> tuple[Highlight, ...]:
-    """Return a highlight for each light; Blinn for Phong while the errors add up to ``allowed``.
+    """Return a highlight for each light; Blinn's for Phong's while errors add up to ``allowed``.
 
-    ``rounding`` gives the error of a computed highlight by its power; default: none, where the
-    caller counts it.
+    ``rounding`` gives the error of a computed highlight by its power. Default: none, for a caller
+    that counts it.
 
     Notes
     -----
-    The power is the best of some near :func:`vizlight.model.highlights.simple_factor`; the bound
-    is :func:`~vizlight.model.highlights.max_pixel_error`, which holds in every codimension. The
-    lights with the smallest errors come first.
+    The power is the best of several near :func:`vizlight.model.highlights.simple_factor`. The
+    bound is :func:`~vizlight.model.highlights.max_pixel_error`, which holds in every codimension.
+    Lights with small errors come first.
     """
     material = scene.material
     asked = Highlight(model, material.shininess)
@@ -60,7 +61,7 @@ def choose(
             continue
         vector, angle = half
         power, worst = _nearest(angle, material.shininess)
-        # The highlight asked for would have been rounded too.
+        # The highlight that was asked for is rounded as well.
         worst += PEAK * (rounding(material.shininess) + rounding(power))
         error = worst * material.specular * scene.lights[i].intensity
         if power >= LEAST_POWER:
@@ -71,19 +72,19 @@ def choose(
             left -= error
             chosen[i] = offer
         else:
-            chosen[i] = asked._replace(refused=error)
+            chosen[i] = asked._replace(rejected=error)
     return tuple(chosen)
 
 
 @lru_cache(maxsize=64)
 def _nearest(angle: float, shininess: float) -> tuple[float, float]:
-    """Return Blinn's power for Phong's shininess, and the worst error, of 255.
+    """Return Blinn's power for Phong's shininess, and the largest error, of 255.
 
-    Even powers up to 128 are taken by multiplication, so only these are tried there; that makes
-    little difference to the error, which is exact for the power chosen.
+    Up to 128 only even powers are tried, which are computed by multiplication. This hardly changes
+    the error, which is exact for the chosen power.
     """
     power = float(highlights.simple_factor(angle)) * shininess
-    # What the best factor is above the simple one is nearly inverse to the shininess.
+    # The excess of the best factor over the simple one is nearly inverse to the shininess.
     tried = power * (1 + np.linspace(0, 0.4, 9) / shininess)
     if power <= 2 * DEFICIT_FROM:
         tried = 2 * np.round(tried / 2)
@@ -97,7 +98,7 @@ def _nearest(angle: float, shininess: float) -> tuple[float, float]:
 
 
 def _half(scene: Scene, index: int) -> tuple[Vector, float] | None:
-    """Return the half vector that all points share and the angle from light to eye, or None."""
+    """Return the half vector that all points share, and the angle from light to eye; or None."""
     light, view = scene.lights[index], scene.view
     if view is None or not view.parallel or light.direction is None or view.direction is None:
         return None
@@ -105,7 +106,7 @@ def _half(scene: Scene, index: int) -> tuple[Vector, float] | None:
     unit, _ = kernels.unit(columns)
     both, apart = unit[:, 0] + unit[:, 1], unit[:, 0] - unit[:, 1]
     size = float(np.linalg.norm(both))
-    # Nearly opposite directions leave the half vector to rounding.
+    # Of nearly opposite directions the half vector is mere rounding.
     if size < 1e-6:
         return None
     return tuple((both / size).tolist()), 2 * float(np.arctan2(np.linalg.norm(apart), size))

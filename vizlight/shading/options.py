@@ -1,13 +1,271 @@
-"""The options of light: one list for filters, command line and plan."""
+"""The options of light: the one list that filters, command line and plan take theirs from."""
 
 from __future__ import annotations
 
-from typing import Literal
+import dataclasses
+import difflib
+import functools
+import inspect
+import re
+import warnings
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, TypedDict, get_args
+
+import numpy as np
+
+from vizlight import _check
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+    from typing import ParamSpec, TypeVar
+
+    from numpy.typing import ArrayLike
+
+    P = ParamSpec("P")
+    R = TypeVar("R")
 
 Model = Literal["phong", "blinn", "cylinder"]
 Precision = Literal["float32", "float64"]
 
 
-def surface_model(model: Model) -> Model:
-    """Return the model of a surface's highlight beside lines of a model: Blinn's for a cylinder."""
-    return "blinn" if model == "cylinder" else model
+class ShadingKeywords(TypedDict, total=False):
+    """The fields of :class:`ShadingOptions` as keyword arguments."""
+
+    model: Model
+    highlight_error: float
+    tolerance: float
+    compensate: bool
+    conditioned: bool | str | None
+    two_sided: bool
+    terminator: float
+    components: bool
+    precision: Precision | None
+
+
+class LightKeywords(ShadingKeywords, total=False):
+    """The fields of :class:`LightOptions` as keyword arguments."""
+
+    tangents: str | ArrayLike | None
+    positions: str | None
+    normals: str | ArrayLike | None
+    flip_normals: bool
+    average_cells: bool
+    name: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShadingOptions:
+    """How light is computed at the points, whatever arrays describe them.
+
+    Parameters
+    ----------
+    compensate : bool, default: True
+        Whether the diffuse term has the exponent p(k, n), which gives lines the contrast of a
+        surface (Banks 5), in place of 1. It has no effect on a cylinder.
+    model : {"phong", "blinn", "cylinder"}
+        Reflection model of the highlight. ``"cylinder"``, for lines in 3-space, is the exact light
+        of a thin cylinder, diffuse and specular (Blinn's), by which the others are measured. As a
+        mean over the width it is dimmer than the brightest normal of a line: raise the
+        coefficients.
+    highlight_error : float, default: 0.0
+        Largest error of Phong's highlight, in pixel values of 255, that is accepted for speed.
+        Under a parallel view and lights at infinity Blinn's model with the best power then takes
+        its place, light by light, while the error bounds, rounding included, add up to no more.
+        :meth:`vizlight.engine.Plan.explain` names the choice and its bound.
+    tolerance : float, default: 0.0
+        Largest error of ``luminance`` that is accepted for speed, such as 1/255. The cheapest
+        evaluation whose stated bound is within it is chosen: float32, Blinn's model for Phong's,
+        whole powers, and under headlights the models that the light of a cylinder is a multiple
+        of. Where rounding in float32 has no bound that holds for all data (several tangents per
+        point, a cylinder, Blinn's model with eye or light nearby) the choice is float64, which
+        takes longer for float32 data. 0: the exact forms.
+    terminator : float, default: 0.0
+        Value of ``N . wi``, up to 1, below which the highlight of a one-sided surface fades
+        smoothly to the terminator. 0: it ends sharply where the light does. The largest change is
+        :func:`vizlight.model.highlights.terminator_error`.
+    two_sided : bool, default: False
+        Whether the far side of a surface is lit like the near one, by ``|N . wi|``.
+    conditioned : bool or str
+        Whether tangents inherit the self-shadow of the surface that the normals belong to
+        (Banks 6).
+    components : bool, default: False
+        Whether the terms ``ambient``, ``diffuse`` and ``specular`` are kept, before any depth cue.
+    precision : {"float32", "float64"}, optional
+        Precision of the work and the result. Default: that of the tangents or normals, or what
+        ``tolerance`` allows.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a value does not fit.
+    """
+
+    model: Model = "phong"
+    highlight_error: float = 0.0
+    tolerance: float = 0.0
+    compensate: bool = True
+    conditioned: bool | str | None = True
+    two_sided: bool = False
+    terminator: float = 0.0
+    components: bool = False
+    precision: Precision | None = None
+
+    def __post_init__(self) -> None:
+        if self.model not in get_args(Model):
+            expected = "'phong', 'blinn' or 'cylinder'"
+            raise ValueError(_check.message("model", expected, _check.describe(self.model)))
+        if self.precision not in (None, *get_args(Precision)):
+            got = _check.describe(self.precision)
+            raise ValueError(_check.message("precision", "'float32' or 'float64'", got))
+        conditioned: object = self.conditioned
+        if conditioned is not None and not isinstance(conditioned, str | bool | np.bool_):
+            expected = "True, False or the name of a point array"
+            got = _check.describe(conditioned)
+            raise TypeError(_check.message("conditioned", expected, got))
+        _check.set_fields(
+            self,
+            conditioned=bool(conditioned) if isinstance(conditioned, np.bool_) else conditioned,
+            highlight_error=_check.number("highlight_error", self.highlight_error, low=0.0),
+            tolerance=_check.number("tolerance", self.tolerance, low=0.0),
+            terminator=_check.number("terminator", self.terminator, low=0.0, high=1.0),
+            compensate=bool(self.compensate),
+            two_sided=bool(self.two_sided),
+            components=bool(self.components),
+        )
+        if self.tolerance and self.highlight_error:
+            remedy = "the tolerance includes the error of the highlights"
+            raise ValueError(
+                _check.message("tolerance", "no highlight_error beside it", "both", remedy)
+            )
+
+    def for_surface(self) -> ShadingOptions:
+        """Return the options for a surface beside lines: a cylinder's highlight is Blinn's."""
+        return dataclasses.replace(self, model="blinn") if self.model == "cylinder" else self
+
+
+@dataclass(frozen=True, kw_only=True)
+class LightOptions(ShadingOptions):
+    """What a filter lights on a mesh, and how.
+
+    Parameters
+    ----------
+    tangents : str or array_like, optional
+        Name of a point array of ``k n`` components (k vectors of n, row after row), or its values.
+        The vectors may have any length: they are orthonormalised.
+    positions : str, optional
+        Name of a point array of n components with the places of the points in n-space. Default:
+        the points of the mesh.
+    normals : str or array_like, optional
+        Name of a point array of n components with outward normals, or its values. Default: the
+        active normals of the mesh as they are (clear them after moving points), else those of its
+        surface. A closed surface faces outward. Each piece of an open one is oriented as a whole,
+        toward the eye and away from its own centroid.
+    conditioned : bool or str, default: False
+        Whether tangents inherit the self-shadow of the surface: diffuse and specular term of each
+        light times ``max(0, N . wi)`` (Banks 6). A surface of codimension 2 or more has no sides
+        and no such shadow: name the point array of its j tangents, such as ``"frame"``, and its
+        own brightness ``sin(a)^p(j, n)`` is the factor. In codimension 1 that is ``|N . wi|``.
+    flip_normals : bool, default: False
+        Whether the normals are reversed.
+    average_cells : bool, default: False
+        Whether cell data may serve as tangents, averaged to the points.
+    name : str, default: "luminance"
+        Name of the result. Under another name the further arrays are ``<name>_diffuse`` and so on.
+    """
+
+    tangents: str | ArrayLike | None = None
+    positions: str | None = None
+    normals: str | ArrayLike | None = None
+    conditioned: bool | str | None = False
+    flip_normals: bool = False
+    average_cells: bool = False
+    name: str = "luminance"
+
+
+def documented(kind: type) -> dict[str, str]:
+    """Return the description of each field of an options class, those of its own first."""
+    found: dict[str, str] = {}
+    for owner in kind.__mro__:
+        text = inspect.cleandoc(owner.__dict__.get("__doc__") or "")
+        section = re.search(r"^Parameters\n-+\n(.*?)(?:\n\n[A-Z]|\Z)", text, re.S | re.M)
+        for entry in re.split(r"\n(?=\w)", section[1]) if section else ():
+            # An entry of several fields stands at the first of them.
+            first, *others = entry.partition("\n")[0].partition(" :")[0].split(", ")
+            found.setdefault(first, entry.rstrip())
+            found.update(dict.fromkeys(others, ""))
+    return found
+
+
+def accepts(
+    kind: type,
+    *,
+    without: tuple[str, ...] = (),
+    renamed: Mapping[str, str] | None = None,
+) -> Callable[[Callable[P, R]], Callable[P, R]]:
+    """Let a function take the fields of an options class as keywords.
+
+    The function has ``**options``. They appear one by one in its signature and, in place of the
+    entry ``**options``, in its documentation; a keyword that is not among them is an error.
+
+    Parameters
+    ----------
+    kind : type
+        The options class, a dataclass.
+    without : tuple of str
+        Fields that the function does not take.
+    renamed : dict of str to str, optional
+        Old names of keywords, which still work with a ``DeprecationWarning``, and their new names.
+    """
+
+    def decorate(function: Callable[P, R]) -> Callable[P, R]:
+        signature = inspect.signature(function)
+        own = [p for p in signature.parameters.values() if p.kind is not p.VAR_KEYWORD]
+        left_out = {*without, *(p.name for p in own)}
+        fields = {f.name: f for f in dataclasses.fields(kind) if f.name not in left_out}
+        texts = {name: text for name, text in documented(kind).items() if name in fields}
+        known = [*(p.name for p in own), *texts]
+        aliases = renamed or {}
+
+        required = {name for name in texts if fields[name].default is dataclasses.MISSING}
+
+        @functools.wraps(function)
+        def method(*arguments: P.args, **keywords: P.kwargs) -> R:
+            for old in [name for name in keywords if name in aliases]:
+                new = aliases[old]
+                warnings.warn(f"{old}= is now called {new}=", DeprecationWarning, stacklevel=2)
+                keywords[new] = keywords.pop(old)
+            for name in keywords:
+                if name not in known:
+                    raise TypeError(_unknown(function.__name__, name, known))
+            for name in required - keywords.keys():
+                raise TypeError(_check.message(name, f"a value for {function.__name__}", "none"))
+            return function(*arguments, **keywords)
+
+        added = [
+            inspect.Parameter(
+                name,
+                inspect.Parameter.KEYWORD_ONLY,
+                default=inspect.Parameter.empty if name in required else fields[name].default,
+                annotation=fields[name].type,
+            )
+            for name in texts
+        ]
+        listed = signature.replace(parameters=[*own, *added])
+        entries = "\n".join(filter(None, texts.values()))
+        text = re.sub(r"^\*\*options.*(\n    .*)*", lambda _: entries, _doc(function), flags=re.M)
+        method.__signature__ = listed  # type: ignore[attr-defined]
+        method.__doc__ = text
+        return method
+
+    return decorate
+
+
+def _doc(function: Callable[..., object]) -> str:
+    return inspect.cleandoc(function.__doc__ or "")
+
+
+def _unknown(function: str, name: str, known: list[str]) -> str:
+    """Return the message for a keyword that a function does not have."""
+    near = difflib.get_close_matches(name, known, n=1)
+    remedy = f"did you mean {near[0]}=?" if near else f"it has {', '.join(known[1:])}"
+    return _check.message(name, f"an option of {function}", "a name that it does not have", remedy)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from vizlight.model.kernels import DEFICIT_FROM
 from vizlight.scene.light import NO_ATTENUATION
@@ -14,10 +14,10 @@ if TYPE_CHECKING:
 
     from vizlight._types import Vector
     from vizlight.scene import Scene
-    from vizlight.shading.options import Model
+    from vizlight.shading.options import Model, ShadingOptions
 
-#: Bytes of a block's tangents. Some ten times as much is alive at once: small enough for the last
-#: cache, large enough that threads seldom wait for the interpreter.
+#: Bytes of a block's tangents. About ten times as much memory is in use at once: little enough for
+#: the last cache, enough that threads seldom wait for the interpreter.
 BLOCK_BYTES = 3 << 19
 
 
@@ -27,44 +27,44 @@ class Highlight(NamedTuple):
     Attributes
     ----------
     model : {"phong", "blinn", "cylinder"}
-        The law that is computed.
+        Reflection model that is computed.
     shininess : float
-        Its power.
+        Power of the model.
     half : vector or None
-        The unit half vector, where it is the same at all points and used as such.
+        Unit half vector, where it is the same at all points and used as such.
     error : float
-        The most that this law differs from the one asked for, in pixel values of 255 and with
-        coefficient and intensity, the rounding of both included; 0 where it is the one asked for.
-    refused : float
-        The error of Blinn's law, where it was not used because that is too much.
+        Bound of the difference from the model that was asked for, in pixel values of 255, with
+        coefficient, intensity and the rounding of both; 0 where it is that model.
+    rejected : float
+        Error of Blinn's model where it was too large.
     """
 
     model: Model
     shininess: float
     half: Vector | None = None
     error: float = 0.0
-    refused: float = 0.0
+    rejected: float = 0.0
 
 
 @dataclass(frozen=True)
 class Choice:
-    """What was chosen within a tolerance, in words, and the bound of all of it together.
+    """What was chosen within a tolerance, and the bound of all choices together.
 
     Attributes
     ----------
     tolerance : float
-        That was asked for, 0 for the exact forms.
+        Tolerance that was asked for, 0 for the exact forms.
     bound : float
-        The most that the luminance of a valid point differs from the exact forms; infinity where
+        Largest difference of the luminance of a valid point from the exact forms; infinity where
         rounding has no bound within the tolerance that holds for all data.
-    said, unsaid : tuple of str
-        What was taken and what was not.
+    notes, rejected : tuple of str
+        What was chosen and what was not, in words.
     """
 
     tolerance: float = 0.0
     bound: float = math.inf
-    said: tuple[str, ...] = ()
-    unsaid: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+    rejected: tuple[str, ...] = ()
 
 
 EXACT = Choice()
@@ -81,71 +81,65 @@ class Plan:
     dtype : numpy.dtype
         Precision of the work and of the result.
     scene : Scene
-        With headlights fixed and lights that give nothing left out.
+        Scene with headlights fixed, without the lights that have no effect.
+    options : ShadingOptions
+        Options that were asked for.
     exponent : float
-        Of the diffuse term.
+        Exponent of the diffuse term.
     model : {"phong", "blinn", "cylinder"}
-        That was asked for: of the specular term, for a cylinder also of the diffuse one.
+        Reflection model of the specular term, for a cylinder also of the diffuse one.
     highlights : tuple of Highlight
-        How each light's specular term is computed, and what that costs in error.
+        Way in which the specular term of each light is computed, and its error.
     surface : bool
         Whether the manifold is given by its normals (k = n - 1), not by tangents.
     conditioned : bool
         Whether tangents inherit the self-shadow of the surface that the normals belong to.
-    two_sided : bool
-        Whether the far side of normals is lit as the near one.
-    carrier : int
-        Dimension of the manifold that the tangents lie in and whose own brightness is a factor,
-        0 for none.
-    carrier_exponent : float
-        Of that factor.
-    terminator : float
-        N.wi below which a surface's highlight fades, 0 for a sharp end.
+    base : int
+        Dimension of the manifold in which the tangents lie and whose brightness is a factor, 0 for
+        none.
+    base_exponent : float
+        Exponent of that factor.
     shadowed : bool
         Whether t of the cos-theta shadow takes the place of the cosine of normals.
     fur : float
         Density of the fur that light passes on its way in and out, 0 for none.
     diffuse, specular : bool
         Whether the term is computed.
-    colored, components : bool
-        Which results are kept.
     factors : tuple of float
-        Of the diffuse and the specular coefficient; not 1 where a law stands for its multiple.
+        Factors of the diffuse and the specular coefficient; not 1 where another model stands for a
+        multiple of its own.
     choice : Choice
         What was chosen within ``tolerance=``, and its bound.
     """
 
     n: int
     k: int
-    dtype: np.dtype[Any]
+    dtype: np.dtype[np.floating]
     scene: Scene
+    options: ShadingOptions
     exponent: float
     model: Model
     highlights: tuple[Highlight, ...]
     surface: bool
     conditioned: bool
-    two_sided: bool
-    carrier: int
-    carrier_exponent: float
-    terminator: float
+    base: int
+    base_exponent: float
     shadowed: bool
     fur: float
     diffuse: bool
     specular: bool
-    colored: bool
-    components: bool
     factors: tuple[float, float] = (1.0, 1.0)
     choice: Choice = EXACT
 
     @property
     def terms(self) -> tuple[str, ...]:
-        """The names of the terms that are added up."""
+        """Names of the terms that are added up."""
         names = {"ambient": True, "diffuse": self.diffuse, "specular": self.specular}
         return tuple(name for name, there in names.items() if there)
 
     @property
     def ambient(self) -> float:
-        """The ambient term, one number for all points."""
+        """Ambient term, one number for all points."""
         return self.scene.material.ambient * self.scene.ambient_intensity
 
     @property
@@ -165,118 +159,103 @@ class Plan:
 
     @property
     def splits_eye(self) -> bool:
-        """Whether a term depends on how the eye stands to the manifold, at each point."""
+        """Whether a term depends on how the eye stands to the manifold at each point."""
         if self.model == "cylinder":
             return self.specular or self.diffuse
         return self.specular and any(h.half is None for h in self.highlights)
 
     @property
     def highlight_error(self) -> float:
-        """The most that the specular term differs from the model asked for, of 255, rounded."""
+        """Bound of the specular term's difference from the model asked for, of 255, rounded."""
         return sum(h.error for h in self.highlights)
 
     @property
     def block(self) -> int:
-        """Points in a block, unless the caller says."""
+        """Number of points in a block, unless the caller gives one."""
         return max(BLOCK_BYTES // (self.n * self.k * self.dtype.itemsize), 1)
 
-    def why_not(self, term: str) -> str:
-        """Say why the diffuse or the specular term is left out."""
-        if getattr(self.scene.material, term) == 0:
-            return f"material.{term} is 0"
-        return "no light has an intensity above 0"
-
     def explain(self) -> str:
-        """Say what is computed, what is skipped and why, a line each."""
-        computed, skipped = _words(self)
+        """Return what is computed, what is skipped and why, one line each."""
+        words = _Words()
+        for part in (_manifold, _diffuse, _specular, _lights, _factors, _results, _choice):
+            part(self, words)
         return "\n".join(
-            [f"compute  {line}" for line in computed] + [f"skip     {line}" for line in skipped]
+            [f"compute  {line}" for line in words.computed]
+            + [f"skip     {line}" for line in words.skipped]
         )
 
 
-def _words(plan: Plan) -> tuple[list[str], list[str]]:
-    """Return what is computed and what is skipped, in words."""
-    scene = plan.scene
-    view, lights = scene.view, scene.lights
-    yes, no = [f"ambient: the constant {plan.ambient:g}"], []
+class _Words:
+    """Lines about what is computed and what is skipped."""
+
+    def __init__(self) -> None:
+        self.computed: list[str] = []
+        self.skipped: list[str] = []
+
+    def add(self, computed: str | None, skipped: str | None = None) -> None:
+        if computed is not None:
+            self.computed.append(computed)
+        if skipped is not None:
+            self.skipped.append(skipped)
+
+
+def _why_not(plan: Plan, term: str) -> str:
+    """Return why the diffuse or the specular term is skipped."""
+    if getattr(plan.scene.material, term) == 0:
+        return f"material.{term} is 0"
+    return "no light has an intensity above 0"
+
+
+def _manifold(plan: Plan, words: _Words) -> None:
+    words.add(f"ambient: the constant {plan.ambient:g}")
     if plan.surface:
-        sides = "both sides alike" if plan.two_sided else "the outer side only"
-        yes.append(f"surface: one unit normal a point, lit on {sides}")
-        no.append("frame: a surface is lit by its normals, no tangents are needed")
-        law = "|N.wi|" if plan.two_sided else "max(0, N.wi)"
+        sides = "both sides alike" if plan.options.two_sided else "the outer side only"
+        words.add(
+            f"surface: one unit normal per point, lit on {sides}",
+            "frame: a surface is lit by its normals, no tangents are needed",
+        )
     else:
-        yes.append(
-            f"frame: {plan.k} orthonormal tangent(s) a point in {plan.n}-space, "
+        words.add(
+            f"frame: {plan.k} orthonormal tangent(s) per point in {plan.n}-space, "
             f"codimension {plan.n - plan.k}"
         )
-        law = "|wi_N|"
-    if plan.diffuse and plan.shadowed and plan.surface:
-        yes.append("diffuse: t = d/r of the cos-theta shadow in place of the cosine")
-    elif plan.diffuse and plan.model == "cylinder":
-        yes.append("diffuse: Lambert's law averaged over the visible half of a thin cylinder")
-        no.append("compensation: the round of a cylinder has it in the mean")
-    elif plan.diffuse:
-        yes.append(f"diffuse: {law} to the power {plan.exponent:.6g}")
-    else:
-        no.append(f"diffuse: {plan.why_not('diffuse')}")
-    if plan.specular and view is not None:
-        said, unsaid = _highlight_words(plan)
-        yes += said
-        no += unsaid
-        if view.parallel:
-            no.append("eye: no direction a point, the parallel view has one for all")
-        else:
-            yes.append("eye: its direction and split once a point, shared by all lights")
-    else:
-        no.append(f"specular: {plan.why_not('specular')}")
-        if not plan.needs_eye:
-            no.append("eye: no term of the light depends on the view")
-    for i, light in enumerate(lights):
-        near = light.position is not None
-        kind = "a direction a point" if near else "one direction for all points"
-        yes.append(f"light {i}: {kind}, intensity {light.intensity:g}")
-        if light.attenuation != NO_ATTENUATION:
-            yes.append(f"light {i}: attenuation {light.attenuation} of the distance")
-        elif near:
-            no.append(f"light {i}: attenuation, its coefficients are {NO_ATTENUATION}")
-    if plan.conditioned:
-        side = "|N.wi|" if plan.two_sided else "max(0, N.wi)"
-        side = "t = d/r in place" if plan.shadowed else side
-        yes.append(f"self-shadow: {side} of the surface's normals, a factor for each light")
-    elif plan.carrier:
-        yes.append(
-            f"carrier: brightness |wi_N| to the power {plan.carrier_exponent:.6g} of the "
-            f"{plan.carrier}-manifold that the tangents lie in, a factor for each light"
-        )
-    elif not plan.surface:
-        no.append("self-shadow: no surface conditions the tangents")
-    if plan.terminator:
-        yes.append(f"terminator: highlights fade smoothly below N.wi = {plan.terminator:g}")
-    if plan.fur:
-        yes.append(f"fur: density {plan.fur:g}, on the way in for each light and out once")
-    if scene.depth_cue is not None:
-        yes.append(f"depth cue: {'smooth' if scene.depth_cue.smooth else 'linear'}")
-    else:
-        no.append("depth cue: none asked for")
-    if plan.colored:
-        yes.append("rgb: three channels")
-    else:
-        no.append("rgb: nothing in the scene has a colour")
-    if plan.choice.tolerance:
-        yes += plan.choice.said
-        no += plan.choice.unsaid
-        asked = f"tolerance: {plan.choice.tolerance:.3g} of luminance"
-        met = math.isfinite(plan.choice.bound)
-        none = "rounding has no bound within it here"
-        yes.append(
-            f"{asked}, the bound of all is {plan.choice.bound:.3g}" if met else f"{asked}: {none}"
-        )
-    return yes, no
 
 
-def _highlight_words(plan: Plan) -> tuple[list[str], list[str]]:
-    """Return in words how highlights are computed, and what was not taken for them."""
-    yes, no = [], []
+def _cosine(plan: Plan) -> str:
+    return "|N.wi|" if plan.options.two_sided else "max(0, N.wi)"
+
+
+def _diffuse(plan: Plan, words: _Words) -> None:
+    if not plan.diffuse:
+        words.add(None, f"diffuse: {_why_not(plan, 'diffuse')}")
+    elif plan.shadowed and plan.surface:
+        words.add("diffuse: t = d/r of the cos-theta shadow in place of the cosine")
+    elif plan.model == "cylinder":
+        words.add(
+            "diffuse: Lambert's law averaged over the visible half of a thin cylinder",
+            "compensation: the mean over the cylinder includes it",
+        )
+    else:
+        base = _cosine(plan) if plan.surface else "|wi_N|"
+        words.add(f"diffuse: {base} to the power {plan.exponent:.6g}")
+
+
+def _specular(plan: Plan, words: _Words) -> None:
+    view = plan.scene.view
+    if not plan.specular or view is None:
+        unseen = None if plan.needs_eye else "eye: no term of the light depends on the view"
+        words.add(None, f"specular: {_why_not(plan, 'specular')}")
+        words.add(None, unseen)
+        return
+    _highlights(plan, words)
+    if view.parallel:
+        words.add(None, "eye: the parallel view has one direction for all points")
+    else:
+        words.add("eye: its direction and split once per point, shared by all lights")
+
+
+def _highlights(plan: Plan, words: _Words) -> None:
+    """Add how highlights are computed, and what was rejected in their place."""
     shininess = plan.scene.material.shininess
     own = [h for h in plan.highlights if h.model == plan.model]
     if own:
@@ -287,24 +266,81 @@ def _highlight_words(plan: Plan) -> tuple[list[str], list[str]]:
             power = shininess / 2 if plan.model == "blinn" else shininess
             multiplies = power == int(power) and power <= DEFICIT_FROM
             how = "by multiplication" if multiplies else "by a power"
-        yes.append(f"specular: {plan.model}, shininess {shininess:g} {how}")
+        words.add(f"specular: {plan.model}, shininess {shininess:g} {how}")
     fixed = sum(h.half is not None for h in own)
     if fixed:
-        yes.append(f"half vector: one for all points for {fixed} light(s)")
+        words.add(f"half vector: one for all points for {fixed} light(s)")
     for i, h in enumerate(plan.highlights):
         if h.model != plan.model:
-            yes.append(
-                f"light {i}: Blinn's law of power {h.shininess:.6g} for {plan.model}'s of "
+            words.add(
+                f"light {i}: Blinn's model of power {h.shininess:.6g} for {plan.model}'s of "
                 f"{shininess:g}, one half vector for all points, "
                 f"within {h.error:.3g} of 255"
             )
-        elif h.refused:
-            no.append(
-                f"light {i}: Blinn's law in place of {plan.model}'s, "
-                f"it would differ by up to {h.refused:.3g} of 255"
+        elif h.rejected:
+            words.add(
+                None,
+                f"light {i}: Blinn's model in place of {plan.model}'s, "
+                f"it would differ by up to {h.rejected:.3g} of 255",
             )
     if plan.highlight_error:
-        yes.append(f"specular: in all within {plan.highlight_error:.3g} of 255 of {plan.model}'s")
-        if not plan.splits_eye:
-            no.append("eye: no split a point, all half vectors are fixed")
-    return yes, no
+        words.add(
+            f"specular: in all within {plan.highlight_error:.3g} of 255 of {plan.model}'s",
+            None if plan.splits_eye else "eye: no split per point, all half vectors are fixed",
+        )
+
+
+def _lights(plan: Plan, words: _Words) -> None:
+    for i, light in enumerate(plan.scene.lights):
+        near = light.position is not None
+        kind = "one direction per point" if near else "one direction for all points"
+        words.add(f"light {i}: {kind}, intensity {light.intensity:g}")
+        if light.attenuation != NO_ATTENUATION:
+            words.add(f"light {i}: attenuation {light.attenuation} of the distance")
+        elif near:
+            words.add(None, f"light {i}: attenuation, its coefficients are {NO_ATTENUATION}")
+
+
+def _factors(plan: Plan, words: _Words) -> None:
+    """Add what multiplies the light of each light."""
+    if plan.conditioned:
+        side = "t = d/r in place" if plan.shadowed else _cosine(plan)
+        words.add(f"self-shadow: {side} of the surface's normals, a factor for each light")
+    elif plan.base:
+        words.add(
+            f"base tangents: brightness |wi_N| to the power {plan.base_exponent:.6g} of the "
+            f"{plan.base}-manifold in which the tangents lie, a factor for each light"
+        )
+    elif not plan.surface:
+        words.add(None, "self-shadow: no surface conditions the tangents")
+    if plan.options.terminator:
+        end = f"N.wi = {plan.options.terminator:g}"
+        words.add(f"terminator: highlights fade smoothly below {end}")
+    if plan.fur:
+        words.add(f"fur: density {plan.fur:g}, on the way in for each light and out once")
+
+
+def _results(plan: Plan, words: _Words) -> None:
+    cue = plan.scene.depth_cue
+    if cue is not None:
+        words.add(f"depth cue: {'smooth' if cue.smooth else 'linear'}")
+    else:
+        words.add(None, "depth cue: the scene has none")
+    if plan.scene.colored:
+        words.add("rgb: three channels")
+    else:
+        words.add(None, "rgb: nothing in the scene has a colour")
+
+
+def _choice(plan: Plan, words: _Words) -> None:
+    choice = plan.choice
+    if not choice.tolerance:
+        return
+    words.computed += choice.notes
+    words.skipped += choice.rejected
+    bound = (
+        f"the bound of all is {choice.bound:.3g}"
+        if math.isfinite(choice.bound)
+        else "rounding has no bound within it here"
+    )
+    words.add(f"tolerance: {choice.tolerance:.3g} of luminance, {bound}")

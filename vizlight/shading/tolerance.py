@@ -1,14 +1,15 @@
 """The cheapest evaluation of a plan whose stated bound is within a tolerance.
 
-In the order of what they save: the line light of headlights by the laws that it then is a multiple
-of, float32 for float64, Blinn's law for Phong's under one half vector, whole powers for others.
+Tried in the order of what they save: under headlights, the models of which a cylinder's light is a
+multiple; float32 for float64; Blinn's model for Phong's where there is one half vector; whole
+powers.
 """
 
 from __future__ import annotations
 
 import dataclasses
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,41 +20,45 @@ from vizlight.shading.highlight import choose
 from vizlight.shading.plan import Choice
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from vizlight.shading.plan import Plan
 
 
 def relax(plan: Plan, tolerance: float, *, any_precision: bool) -> Plan:
-    """Return the plan with what is cheaper and within the tolerance in all.
+    """Return the plan with cheaper evaluations that are together within the tolerance.
 
     Parameters
     ----------
     plan : Plan
-        Of the exact forms.
+        Plan of the exact forms.
     tolerance : float
-        Of the luminance, above 0.
+        Tolerance of the luminance, above 0.
     any_precision : bool
-        Whether float32 may take the place of the plan's precision.
+        Whether float32 may replace the precision of the plan.
 
     Raises
     ------
     ValueError
-        If float32 is asked for whose rounding is not within the tolerance.
+        If float32 is asked for and its rounding is not within the tolerance.
     """
-    said, unsaid, spent = [], [], 0.0
+    notes: list[str] = []
+    rejected: list[str] = []
+    spent = 0.0
 
     def offer(error: float, made: Plan, words: str, *, low: bool = False) -> None:
         nonlocal plan, spent
         rounds = bounds.rounding(made)
         if spent + error + (rounds if low else _finite(rounds)) <= tolerance:
             plan, spent = made, spent + error
-            said.append(f"{words}, within {rounds if low else error:.3g}")
+            notes.append(f"{words}, within {rounds if low else error:.3g}")
         else:
             most = rounds if low else error
             finite = math.isfinite(most)
             why = (
                 f"it would differ by up to {most:.3g}" if finite else "no bound holds for all data"
             )
-            unsaid.append(f"{words}: {why}")
+            rejected.append(f"{words}: {why}")
 
     if plan.model == "cylinder" and (plan.diffuse or plan.specular):
         offer(*_flat_line(plan))
@@ -61,7 +66,7 @@ def relax(plan: Plan, tolerance: float, *, any_precision: bool) -> Plan:
         single = dataclasses.replace(plan, dtype=np.dtype(np.float32))
         offer(0.0, single, "precision: float32", low=True)
     if plan.model == "phong" and plan.specular:
-        # Those that are too far off are told beside the others, light by light.
+        # Highlights that differ too much are named in the plan, light by light.
         left = 255 * max(tolerance - spent - _finite(bounds.rounding(plan)), 0)
         made = dataclasses.replace(plan, highlights=choose(plan.scene, "phong", left))
         if spent + made.highlight_error / 255 + _finite(bounds.rounding(made)) <= tolerance:
@@ -79,10 +84,10 @@ def relax(plan: Plan, tolerance: float, *, any_precision: bool) -> Plan:
         if not any_precision and plan.dtype == np.float32:
             got = f"{tolerance:.3g} with precision='float32', whose rounding "
             got += f"may be {bound:.3g}" if math.isfinite(bound) else "has no bound here"
-            remedy = "leave precision away, or pass 'float64'"
+            remedy = "omit precision=, or pass 'float64'"
             raise ValueError(_check.message("tolerance", "more than rounding", got, remedy))
         bound = math.inf
-    choice = Choice(tolerance, bound, tuple(said), tuple(unsaid))
+    choice = Choice(tolerance, bound, tuple(notes), tuple(rejected))
     return dataclasses.replace(plan, choice=choice)
 
 
@@ -90,8 +95,8 @@ def _finite(bound: float) -> float:
     return bound if math.isfinite(bound) else 0.0
 
 
-def _offer_whole_shininess(plan: Plan, offer: Any) -> None:
-    """Offer whole powers for the highlights of the law asked for."""
+def _offer_whole_shininess(plan: Plan, offer: Callable[[float, Plan, str], None]) -> None:
+    """Offer whole powers for the highlights of the model that was asked for."""
     half = 2.0 if plan.model == "blinn" else 1.0
     shininess = plan.scene.material.shininess
     own = [h for h in plan.highlights if h.model == plan.model and not h.error]
@@ -107,17 +112,18 @@ def _offer_whole_shininess(plan: Plan, offer: Any) -> None:
 
 
 def _slow(power: float) -> bool:
-    """Tell whether a power is not taken by multiplication, but near one that would be."""
+    """Return whether a power is not computed by multiplication, but is near one that would be."""
     return power != int(power) and power <= kernels.DEFICIT_FROM
 
 
 def _flat_line(plan: Plan) -> tuple[float, Plan, str]:
-    """Return Banks' and Blinn's laws, times a factor each, for the exact line light, and the error.
+    """Return the error, the plan and the words of Banks' and Blinn's models for the line light.
 
-    They are its multiples for a headlight. For light and eye theta apart Lambert's mean differs by
-    at most ``pi/2 sin(theta/2)``, as the normal parts are within ``2 sin(theta/2)``; and Blinn's,
-    of power 1 or more, by ``3 pi/2 sin(theta/4)``, as those of half vector and eye are within
-    ``2 sin(theta/4)`` and the mean changes by no more than the angles between them.
+    For a headlight the exact line light is a multiple of them. For an angle theta between light and
+    eye Lambert's mean differs by at most ``pi/2 sin(theta/2)``, since the normal parts are within
+    ``2 sin(theta/2)``; Blinn's, of power 1 or more, by ``3 pi/2 sin(theta/4)``, since the normal
+    parts of half vector and eye are within ``2 sin(theta/4)`` and the mean changes by no more than
+    the angles between them.
     """
     scene, material = plan.scene, plan.scene.material
     error, s = 0.0, material.shininess
@@ -129,7 +135,7 @@ def _flat_line(plan: Plan) -> tuple[float, Plan, str]:
         each = material.diffuse * math.pi / 2 * math.sin(theta / 2)
         each += material.specular * 1.5 * math.pi * math.sin(theta / 4)
         error += each * light.intensity
-    # B(s/2 + 1, 1/2) / 2, by the closed form that keeps its digits for large s.
+    # B(s/2 + 1, 1/2) / 2, in the closed form that keeps its digits for large s.
     factors = math.pi / 4, float(brightness.mean_intensity(1, 3, s))
     made = dataclasses.replace(
         plan,
@@ -138,5 +144,5 @@ def _flat_line(plan: Plan) -> tuple[float, Plan, str]:
         factors=factors,
         highlights=choose(scene, "blinn", 0.0),
     )
-    words = f"cylinder: Banks' law times {factors[0]:.4g} and Blinn's times {factors[1]:.4g}"
+    words = f"cylinder: Banks' model times {factors[0]:.4g} and Blinn's times {factors[1]:.4g}"
     return error, made, words

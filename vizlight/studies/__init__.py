@@ -1,6 +1,6 @@
-"""Speed against error: each study measures both in one run; ``vizlight study`` runs them.
+"""Studies of speed against error, which ``vizlight study`` runs; each measures both in one run.
 
-A study is a file of this folder with a ``STUDY``: see :class:`vizlight.studies.Study`.
+A study is a module of this package with a ``STUDY``, a :class:`vizlight.studies.Study`.
 """
 
 from __future__ import annotations
@@ -13,16 +13,13 @@ from vizlight.studies._framework import (
     Curve,
     LackingError,
     Panel,
-    Result,
     Row,
     Study,
     cheapest,
     holding,
     order,
-    print_list,
-    print_result,
-    run,
 )
+from vizlight.studies._results import Result, print_list, print_result, run
 
 __all__ = [
     "Curve",
@@ -41,7 +38,7 @@ __all__ = [
     "run",
 ]
 
-#: What other studies and the reports lean on, not studies themselves.
+#: Modules that serve the studies and are not studies themselves.
 _NO_STUDIES = {"reference"}
 
 
@@ -57,12 +54,16 @@ def load(name: str, /) -> Study:
     Parameters
     ----------
     name : str
-        One of :func:`names`.
+        Name of the study, one of :func:`names`.
+
+    Returns
+    -------
+    Study
 
     Raises
     ------
     ValueError
-        If there is no such study.
+        If there is no study of that name.
     """
     if name not in names():
         raise ValueError(_check.message("study", f"one of {', '.join(names())}", repr(name)))

@@ -1,22 +1,23 @@
-"""What studies share: taking turns and counting memory."""
+"""Measurement of time and memory."""
 
 from __future__ import annotations
 
 import math
 import time
 import tracemalloc
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-Way = TypeVar("Way")
+Key = TypeVar("Key")
 
 
-def take_turns(ways: Mapping[Way, Callable[[], Any]], repeats: int) -> dict[Way, float]:
-    """Return the best seconds of each way; they take turns, so a busy machine slows all.
+def take_turns(ways: Mapping[Key, Callable[[], object]], repeats: int) -> dict[Key, float]:
+    """Return the shortest time in seconds of each function.
 
-    The best of three or more leaves out what a first time costs more.
+    The functions are called in turn, so a busy machine slows all of them. The minimum of three
+    or more repeats excludes the extra cost of a first call.
     """
     best = dict.fromkeys(ways, math.inf)
     for _ in range(repeats):
@@ -27,8 +28,8 @@ def take_turns(ways: Mapping[Way, Callable[[], Any]], repeats: int) -> dict[Way,
     return best
 
 
-def peak_memory(work: Callable[[], Any]) -> int:
-    """Return the bytes that Python and NumPy hold at the peak of work, beyond those before."""
+def peak_memory(work: Callable[[], object]) -> int:
+    """Return the peak of the bytes that Python and NumPy allocate during a call."""
     tracemalloc.start()
     try:
         work()

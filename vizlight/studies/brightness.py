@@ -1,14 +1,14 @@
-"""The compensating exponent and its powers: cheap ones near p(k, n) against the exact one.
+"""Cheap exponents near the compensating exponent p(k, n), compared with the exact one.
 
-The mean brightness p(k, n) is made for is a closed form; its root is checked here by quadrature of
-the mean itself. The error of a cheaper exponent is the largest that a pixel can show,
-``max |x^p - x^q|``, which has a closed form too.
+The exponent p(k, n) is the root of a closed form of the mean brightness; here the mean is computed
+by quadrature as a check. The error of a cheaper exponent q is the largest error of a pixel,
+``max |x^p - x^q|``, which also has a closed form.
 """
 
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import integrate
@@ -26,7 +26,7 @@ SPACES = ((1, 3), (1, 4), (2, 4), (1, 5), (2, 5), (3, 5), (1, 8), (3, 8), (5, 8)
 
 
 def mean_by_quadrature(k: int, n: int, p: float) -> float:
-    """Return the mean of sin(a)^p over directions in n-space, by quadrature over the angle."""
+    """Return the mean of sin(a)^p over all directions in n-space, by quadrature over the angle."""
     c = n - k
 
     def density(a: float) -> float:
@@ -38,7 +38,7 @@ def mean_by_quadrature(k: int, n: int, p: float) -> float:
 
 
 def by_roots(x: Array, quarters: int) -> Array:
-    """Return x to a number of quarters, by multiplication and square roots."""
+    """Return ``x^(quarters / 4)`` by multiplications and square roots."""
     result = kernels.power(x, quarters // 4)
     root = np.sqrt(x)
     if quarters & 2:
@@ -49,11 +49,11 @@ def by_roots(x: Array, quarters: int) -> Array:
 
 
 def measure(k: int, n: int, count: int = 100_000, repeats: int = 5) -> list[Row]:
-    """Return the ways to a power for one k and n."""
+    """Return one row for each method of computing the power, for one k and n."""
     p = brightness.exponent(k, n)
     x = np.random.default_rng(4).random(count, dtype=np.float32)
     quarters, whole = round(4 * p), max(round(p), 1)
-    ways: dict[str, tuple[float, Callable[[], Any]]] = {
+    ways: dict[str, tuple[float, Callable[[], Array]]] = {
         "exact p": (p, lambda: np.power(x, np.float32(p))),
         "nearest quarter, by square roots": (quarters / 4, lambda: by_roots(x, quarters)),
         "nearest integer, by multiplication": (whole, lambda: kernels.power(x, whole)),
@@ -70,28 +70,32 @@ def measure(k: int, n: int, count: int = 100_000, repeats: int = 5) -> list[Row]
 
 
 def verdict(rows: Sequence[Row]) -> str:
-    """Return which power to take."""
+    """Return which power to use."""
     exact = [row for row in rows if row.way == "exact p"]
-    said = []
+    others = []
     for way in dict.fromkeys(row.way for row in rows if row.way != "exact p"):
         own = [row for row in rows if row.way == way]
-        cost = np.mean([row.cost for row in own]) / np.mean([row.cost for row in exact])
+        cost = float(np.mean([row.cost for row in own]) / np.mean([row.cost for row in exact]))
         good = sum(cheapest([row]) is not None for row in own)
         worst = max(row.error for row in own)
-        said.append(
-            f"{way}: {good} of {len(own)} cases, {words(cost)} times the time, worst {worst:.2g}"
+        others.append(
+            f"{way}: in {good} of {len(own)} cases, {words(cost)} times the time, largest error "
+            f"{worst:.2g}"
         )
     off = max(abs(float(row.more["mean - 1/2"])) for row in exact)
     keep = "keep it unless tolerance= allows another" if off <= PIXEL else "do not rely on it"
-    return f"p(k, n) gives a mean of 1/2 to {off:.1g}; {keep}: within 1/255 are {'; '.join(said)}"
+    return (
+        f"p(k, n) gives a mean of 1/2 with an error of {off:.1g}; {keep}; within 1/255 of it: "
+        f"{'; '.join(others)}"
+    )
 
 
 STUDY = Study(
-    approximates="sin(a)^p(k, n), the compensated diffuse term, by cheaper powers",
-    reference="p(k, n) itself; its mean brightness by quadrature",
+    approximates="compensated diffuse term sin(a)^p(k, n) by cheaper powers",
+    reference="the exact p(k, n); for its mean brightness, quadrature",
     parameter="codimension",
     error="largest error of the term",
-    cost="ns a point",
+    cost="ns per point",
     steps=lambda quick: [partial(measure, k, n, repeats=5 if quick else 25) for k, n in SPACES],
     verdict=verdict,
     joined=False,

@@ -1,8 +1,8 @@
-"""Brightness and contrast of curves and surfaces in 3- and 4-space: Banks' illustration 1.
+"""Brightness and contrast of curves and surfaces in 3-space and 4-space: Banks' illustration 1.
 
-The torus of Banks' section 3 and a curve wound on it in eight ways: k = 1 and 2, n = 3 and 4, plain
-and compensated; and a uniform sample of directions for each (k, n), for which the mean of
-compensated light is 1/2.
+Eight panels show the torus of Banks' section 3 and a curve on it: k = 1 and 2, n = 3 and 4, plain
+and compensated. In addition, the light is averaged over uniform directions for several (k, n),
+where the mean of compensated light is 1/2.
 """
 
 from __future__ import annotations
@@ -11,9 +11,10 @@ import math
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
+import pyvista as pv
 
 from vizlight.filters import manifold
 from vizlight.geometry.nspace import manifolds
@@ -27,47 +28,48 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Indices
 
-#: The light of illustration 1; it names no coefficients or colours, so they are those of Banks'
-#: section 3: kd = Isource = 1, no other term, no colour.
+#: Light of illustration 1. Its coefficients are not given; these are those of Banks' section 3:
+#: kd = Isource = 1, no other term, no colour.
 LIGHT = (0.7, 0.6, 0.38)
 MATTE = Material(ambient=0.0, diffuse=1.0, specular=0.0)
-#: The radii are not given either: those of illustration 3. The curve runs as fast around one
-#: circle as around the other, so that its tangents have many directions.
+#: The radii are not given either; these are those of illustration 3. The curve advances as fast
+#: along one circle as along the other, so its tangents have many directions.
 R1, R2 = 1.5, 0.75
 WINDING = Fraction(161, 80)
-#: From here a torus with circles for sections is seen: the projection is stereographic.
+#: At this distance of the eye the projection is stereographic, and the torus has circular sections.
 DISTANCE = math.hypot(R1, R2)
 
 
 @dataclass(frozen=True)
 class Panel:
-    """One panel: a lit mesh, its mean luminance and its contrast, std over mean."""
+    """One panel: a lit mesh, its mean luminance, and its contrast, standard deviation over mean."""
 
     k: int
     n: int
     compensated: bool
-    mesh: Any
+    mesh: pv.PolyData
     mean: float
     contrast: float
 
     @property
     def title(self) -> str:
-        """What the panel shows."""
+        """Title of the panel: k, n and the exponent p."""
         p = brightness.exponent(self.k, self.n) if self.compensated else 1.0
         return f"k = {self.k}, n = {self.n}, p = {p:.5g}"
 
 
 def panels(resolution: int = 192) -> list[Panel]:
-    """Return the eight panels: plain above, compensated below.
+    """Return the eight panels, first the plain ones, then the compensated ones.
 
     Parameters
     ----------
     resolution : int, default: 192
-        Of the torus on each circle; the curve has 64 times as many points in all.
+        Number of points on each circle of the torus. The curve has 64 times as many points.
 
     Notes
     -----
-    n = 4: light before the projection, by the light (0.7, 0.6, 0.38, 0); n = 3: after it.
+    For n = 4 the light is computed before the projection, with the direction
+    (0.7, 0.6, 0.38, 0); for n = 3 after it.
     """
     shapes = {
         1: manifolds.torus_curve(WINDING, r1=R1, r2=R2, resolution=64 * resolution),
@@ -84,6 +86,7 @@ def panels(resolution: int = 192) -> list[Panel]:
                 light="after" if n == 3 else "before",
                 compensate=compensated,
             )
+            assert isinstance(mesh, pv.PolyData)
             places = np.asarray(mesh.points) if n == 3 else shapes[k].points
             size = measures(places, shapes[k].cells)
             mean, contrast = statistics(np.asarray(mesh["luminance"]), size)
@@ -92,19 +95,21 @@ def panels(resolution: int = 192) -> list[Panel]:
 
 
 def statistics(values: Array, weights: Array) -> tuple[float, float]:
-    """Return the weighted mean of values, and their contrast: standard deviation over mean."""
+    """Return the weighted mean of values, and their contrast (standard deviation over mean)."""
     mean = float(np.average(values, weights=weights))
     return mean, math.sqrt(np.average((values - mean) ** 2, weights=weights)) / mean
 
 
 def measures(points: Array, cells: Indices) -> Array:
-    """Return the length or area at each point: an even share of each cell that it is a corner of.
+    """Return the length or area at each point; each cell is shared equally by its corners.
 
     Parameters
     ----------
     points : ndarray, shape (N, n)
+        Positions of the points.
     cells : ndarray of int, shape (M, 2) or (M, 4)
-        Segments or quadrilaterals, the latter as two triangles.
+        Indices of the points of segments or quadrilaterals. A quadrilateral is measured as two
+        triangles.
     """
     corners = points[cells]
     if cells.shape[1] == 2:
@@ -116,12 +121,11 @@ def measures(points: Array, cells: Indices) -> Array:
             uu, vv, uv = (np.einsum("ij,ij->i", *pair) for pair in ((u, u), (v, v), (u, v)))
             size += 0.5 * np.sqrt(np.maximum(uu * vv - uv**2, 0))
     share = np.repeat(size / cells.shape[1], cells.shape[1])
-    shares: Any = np.bincount(cells.ravel(), share, minlength=len(points))
-    return np.asarray(shares, dtype=np.float64)
+    return np.asarray(np.bincount(cells.ravel(), share, minlength=len(points)), dtype=np.float64)
 
 
 def uniform(k: int, n: int, count: int = 200_000, *, seed: int = 0) -> tuple[float, float, float]:
-    """Return mean, its standard error and contrast of compensated light from all directions."""
+    """Return mean, standard error of the mean, and contrast over uniform light directions."""
     toward = np.random.default_rng(seed).standard_normal((count, n))
     light = reflection.diffuse(toward, np.eye(n)[:k], exponent=brightness.exponent(k, n))
     mean, contrast = statistics(light, np.ones(count))
@@ -129,7 +133,7 @@ def uniform(k: int, n: int, count: int = 200_000, *, seed: int = 0) -> tuple[flo
 
 
 def rows_of_panels(resolution: int) -> list[Row]:
-    """Return the panels as rows."""
+    """Return one row for each panel."""
     found: list[Panel] = []
     seconds = take_turns({"panels": lambda: found.extend(panels(resolution))}, 1)["panels"]
     points = sum(panel.mesh.n_points for panel in found)
@@ -146,7 +150,7 @@ def rows_of_panels(resolution: int) -> list[Row]:
 
 
 def rows_of_directions(k: int, n: int, count: int) -> list[Row]:
-    """Return a uniform sample of directions as a row; what is left is the sample's own error."""
+    """Return the row of uniform directions, whose error is the sampling error."""
     start: list[tuple[float, float, float]] = []
     seconds = take_turns({"": lambda: start.append(uniform(k, n, count))}, 1)[""]
     mean, _, contrast = start[0]
@@ -156,7 +160,7 @@ def rows_of_directions(k: int, n: int, count: int) -> list[Row]:
 
 
 def steps(quick: bool) -> list[Callable[[], Iterable[Row]]]:
-    """Return the steps: the panels, then uniform directions in some spaces."""
+    """Return the steps: the panels, then uniform directions in several spaces."""
     found: list[Callable[[], Iterable[Row]]] = [partial(rows_of_panels, 48 if quick else 192)]
     for k, n in ((1, 2), (1, 3), (1, 4), (2, 3), (2, 4), (2, 5), (3, 4), (1, 12)):
         found.append(partial(rows_of_directions, k, n, 50_000 if quick else 200_000))
@@ -164,33 +168,35 @@ def steps(quick: bool) -> list[Callable[[], Iterable[Row]]]:
 
 
 def verdict(rows: Sequence[Row]) -> str:
-    """Return whether compensation brings brightness and contrast together."""
-    plain, made = (
+    """Return whether compensation equalises brightness and contrast."""
+    plain, compensated = (
         [row for row in rows if row.way == f"torus and curve, {how}"]
         for how in ("plain", "compensated")
     )
-    before, after = (max(row.error for row in of) for of in (plain, made))
-    keep = "keep compensate=True" if after < before else "take compensate=False"
-    said = (
-        f"{keep} where manifolds of several codimensions share a picture: compensated, means are "
-        f"at most {words(after)} off 1/2, plain {words(before)}"
+    before, after = (max(row.error for row in of) for of in (plain, compensated))
+    near, far = (
+        [float(row.more["contrast (std / mean)"]) for row in of] for of in (compensated, plain)
     )
-    near, far = ([float(row.more["contrast (std / mean)"]) for row in of] for of in (made, plain))
-    even = "evens out" if np.ptp(near) < np.ptp(far) else "does not even out"
-    return f"{said}; it {even} contrast: {span(near)}, plain {span(far)}"
+    keep = "keep compensate=True" if after < before else "use compensate=False"
+    equal = "equalises" if np.ptp(near) < np.ptp(far) else "does not equalise"
+    return (
+        f"{keep} if manifolds of several codimensions share a picture: means differ from 1/2 by at "
+        f"most {words(after)} with compensation and {words(before)} without; compensation {equal} "
+        f"contrast: {span(near)} with, {span(far)} without"
+    )
 
 
 def curve_of(row: Row) -> Curve | None:
-    """Return the curve of a row, one for each k; where nothing but rounding is left, none."""
+    """Return the curve of a row, one for each k, or None if its error is only rounding."""
     return Curve(row.way, f"k = {row.more['k']:g}") if row.error > 1e-12 else None
 
 
 STUDY = Study(
-    approximates="the brightness of a surface in 3-space, 1/2, by manifolds of any codimension",
+    approximates="brightness 1/2 of a surface in 3-space by manifolds of any codimension",
     reference="1/2, the mean over all directions of light",
     parameter="codimension",
-    error="distance of the mean from 1/2",
-    cost="ns a point",
+    error="difference of the mean from 1/2",
+    cost="ns per point",
     steps=steps,
     verdict=verdict,
     axes=("parameter", "error"),

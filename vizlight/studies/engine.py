@@ -1,8 +1,9 @@
-"""The engine against a plain NumPy script: time, error and memory, measured in one run.
+"""Time, error and memory of the engine compared with a plain NumPy script.
 
-The scene is the costly one of everyday work: lines lit by a positional light under a perspective
-view, compensated diffuse and Phong's term. The script (:mod:`vizlight.studies.reference`) works on
-whole arrays; script and engine take turns, so that a busy machine slows both.
+The scene is the most expensive of the common ones: lines, a light with a position, a perspective
+view, the compensated diffuse term and the Phong term. The script
+(:mod:`vizlight.studies.reference`) works on whole arrays. Script and engine are timed in turn, so a
+busy machine slows both.
 """
 
 from __future__ import annotations
@@ -26,14 +27,15 @@ if TYPE_CHECKING:
 SCENE = Scene(lights=Light(position=(4.0, 5.0, 6.0)), view=View(position=(0.0, 1.0, 9.0)))
 
 
-def lines(count: int, dtype: Any = np.float32) -> tuple[Array, Array]:
-    """Return points around the origin and tangents of any length, seeded."""
+def lines(count: int) -> tuple[Array, Array]:
+    """Return reproducible random points and tangents of any length, in float32."""
     random = np.random.default_rng(20)
-    return tuple(random.standard_normal((count, 3)).astype(dtype) for _ in range(2))  # type: ignore[return-value]
+    points, tangents = (random.standard_normal((count, 3)).astype(np.float32) for _ in range(2))
+    return points, tangents
 
 
 def measure(count: int, repeats: int = 5) -> list[Row]:
-    """Return the rows of the study: the script first, then the engine's settings."""
+    """Return the rows of the study: the script, then the engine with several settings."""
     points, tangents = lines(count)
     exponent = brightness.exponent(1, 3)
     exact = np.concatenate(
@@ -74,32 +76,33 @@ def measure(count: int, repeats: int = 5) -> list[Row]:
 
 
 def verdict(rows: Sequence[Row]) -> str:
-    """Return which precision and which block to take: the engine's own unless clearly slower."""
+    """Return which precision and block size to use: the defaults unless they are clearly slower."""
     own = next(row for row in rows if row.way == "engine, float32")
     high = next(row for row in rows if row.way == "engine, float64")
     best = cheapest(rows, usual=own)
     if best is None:
-        return f"no way is within 1/255; float64 is within {high.error:.1g}"
-    kept = "the engine as it is, " if best is own else ""
+        return f"no method is within 1/255; the error of float64 is {high.error:.1g}"
+    kept = "the engine's defaults, " if best is own else ""
     other = min(
         (row for row in rows if row.way.startswith("engine, float32") and row is not best),
         key=lambda row: row.cost,
     )
     return (
-        f"at 1/255 of error use {kept}'{best.way}' in blocks of {best.parameter}: "
-        f"{words(best.cost)} ns a point, wrong by {best.error:.1g}, {PIXEL / best.error:.0f} times "
-        f"less than allowed; float64 costs {words(high.cost / best.cost)} times as much as that "
-        f"for an error of {high.error:.1g}; the next in float32, '{other.way}' in blocks of "
-        f"{other.parameter}, {words(other.cost / best.cost)} times as much"
+        f"for an error of 1/255 use {kept}'{best.way}' with blocks of {best.parameter} points: "
+        f"{words(best.cost)} ns per point and an error of {best.error:.1g}, "
+        f"{PIXEL / best.error:.0f} times smaller than allowed; float64 costs "
+        f"{words(high.cost / best.cost)} times as much, with an error of {high.error:.1g}; the "
+        f"next method in float32, '{other.way}' with blocks of {other.parameter} points, costs "
+        f"{words(other.cost / best.cost)} times as much"
     )
 
 
 STUDY = Study(
-    approximates="the light of lines: positional light, perspective, compensated diffuse, Phong",
+    approximates="light of lines: light with a position, perspective, compensated diffuse, Phong",
     reference="the formulas as a plain NumPy script in float64",
-    parameter="points in a block",
+    parameter="points per block",
     error="largest error of luminance",
-    cost="ns a point",
+    cost="ns per point",
     steps=lambda quick: [lambda: measure(500_000 if quick else 4_000_000, 9)],
     verdict=verdict,
 )

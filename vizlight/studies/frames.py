@@ -1,16 +1,18 @@
-"""Frames of a function by differences and by a complex step, against exact ones.
+"""Frames of a function from differences and from a complex step, compared with exact frames.
 
-A torus in 4-space with waves on it, whose differences are not exact. Central differences fall with
-the square of the step until rounding takes over; the complex step has no such end.
+The function is a torus in 4-space with waves, for which differences are not exact. The error of
+central differences falls with the square of the step until rounding dominates; the complex step
+has no such limit.
 """
 
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from vizlight._types import Array, Numbers
 from vizlight.geometry.nspace import manifolds
 from vizlight.geometry.nspace.parametric import CENTRAL_STEP
 from vizlight.scene import Light, Scene, View
@@ -28,20 +30,22 @@ DOMAIN = [(0.0, 2 * np.pi)] * 2
 SCENE = Scene(
     lights=Light(direction=(0.7, 0.6, 0.38, 0.2)), view=View(direction=(0.1, 0.3, 0.9, -0.2))
 )
-#: The default of differences, and steps tried, of the domain.
+#: Default step of the differences, and steps that are measured, as fractions of the domain.
 DEFAULT = float(f"{CENTRAL_STEP:.2g}")
 CENTRAL = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, DEFAULT, 1e-8, 1e-10, 1e-12)
 COMPLEX = (1e-4, 1e-8, 1e-30)
 
+Components: TypeAlias = tuple[Numbers | float, ...]
 
-def wavy(t: Any, f: Any) -> tuple[Any, ...]:
-    """Return a torus in 4-space with waves on it, whose differences are not exact."""
+
+def wavy(t: Numbers, f: Numbers) -> Components:
+    """Return the points of a torus in 4-space with waves."""
     r = R2 * (1 + 0.2 * np.cos(3 * t))
     return R1 * np.cos(t), R1 * np.sin(t), r * np.cos(f), r * np.sin(f)
 
 
-def wavy_tangents(t: Any, f: Any) -> tuple[tuple[Any, ...], ...]:
-    """Return the tangents of :func:`wavy`."""
+def wavy_tangents(t: Numbers, f: Numbers) -> tuple[Components, ...]:
+    """Return the exact tangents of :func:`wavy`."""
     r, slope = R2 * (1 + 0.2 * np.cos(3 * t)), -0.6 * R2 * np.sin(3 * t)
     return (
         (-R1 * np.sin(t), R1 * np.cos(t), slope * np.cos(f), slope * np.sin(f)),
@@ -50,20 +54,19 @@ def wavy_tangents(t: Any, f: Any) -> tuple[tuple[Any, ...], ...]:
 
 
 def frame_errors(resolution: int = 128, repeats: int = 3) -> list[Row]:
-    """Return the error of frames by the way they are made."""
-
-    def sample(**options: Any) -> Manifold:
-        return manifolds.parametric(wavy, DOMAIN, 4, resolution=resolution, closed=True, **options)
-
-    exact = sample(tangents=wavy_tangents)
-    ways: dict[tuple[str, float], dict[str, Any]] = {("exact", 0.0): {"tangents": wavy_tangents}}
-    ways |= {("central differences", step): {"step": step} for step in CENTRAL}
-    ways |= {("complex step", step): {"tangents": "complex", "step": step} for step in COMPLEX}
-    seconds = take_turns({w: partial(sample, **o) for w, o in ways.items()}, repeats)
+    """Return the errors of frames, one row for each method and step."""
+    sample = partial(manifolds.parametric, wavy, DOMAIN, 4, resolution=resolution, closed=True)
+    ways = {("exact", 0.0): partial(sample, tangents=wavy_tangents)}
+    ways |= {("central differences", step): partial(sample, step=step) for step in CENTRAL}
+    ways |= {
+        ("complex step", step): partial(sample, tangents="complex", step=step) for step in COMPLEX
+    }
+    seconds = take_turns(ways, repeats)
+    exact = ways["exact", 0.0]()
     truth = engine.shade(exact.points, exact.frame, SCENE).luminance
     found = []
-    for (way, step), options in ways.items():
-        shape = sample(**options)
+    for (way, step), work in ways.items():
+        shape = work()
         space = np.abs(_projector(shape) - _projector(exact)).max()
         light = np.abs(engine.shade(shape.points, shape.frame, SCENE).luminance - truth).max()
         cost = 1e9 * seconds[way, step] / len(shape.points)
@@ -71,48 +74,54 @@ def frame_errors(resolution: int = 128, repeats: int = 3) -> list[Row]:
     return found
 
 
-def _projector(shape: Manifold) -> Any:
-    return np.einsum("bki,bkj->bij", shape.frame, shape.frame)
+def _projector(shape: Manifold) -> Array:
+    """Return the projection matrices on the tangent spaces, which do not depend on the basis."""
+    return np.asarray(np.einsum("bki,bkj->bij", shape.frame, shape.frame))
 
 
 def verdict(rows: Sequence[Row]) -> str:
-    """Return which way to take, its step, and the order of differences."""
+    """Return which method and step to use, and the order of the differences."""
     central = [row for row in rows if row.way.startswith("central")]
     best = min(central, key=lambda row: row.error)
     above = [row for row in central if float(row.parameter) >= float(best.parameter)]
     coarse = holding(above)
-    said = (
-        f"at 1/255 of error any step from {best.parameter:g} to {coarse.parameter:g} of the domain "
-        "will do" if coarse
-        else f"no step of central differences is within 1/255, the best leaves "
+    steps = (
+        f"for an error of 1/255 any step from {best.parameter:g} to {coarse.parameter:g} of the "
+        "domain is suitable" if coarse
+        else f"no step of central differences is within 1/255, and the error of the best one is "
         f"{words(best.error / PIXEL)} of 255"
     )  # fmt: skip
     own = next((row for row in central if row.parameter == DEFAULT), best)
-    # Between two steps that were tried the best one is not known.
-    said += (
-        f"; leave the step at its default, {own.parameter:g} (error {own.error:.1g}"
+    # The best step may lie between two measured ones, so the default need not be the best row.
+    choice = (
+        f"keep the default step {own.parameter:g} (error {own.error:.1g}"
         if own.error <= 10 * best.error
-        else f"; set the step to {best.parameter:g} (error {best.error:.1g}, that of the default "
+        else f"set the step to {best.parameter:g} (error {best.error:.1g}, with the default "
         f"{own.error:.1g}"
     )
     smooth = [row for row in above if float(row.parameter) > 10 * float(best.parameter)]
     if len(smooth) > 1:
-        said += f"; of order {order(smooth):.2f} above it, in theory 2"
+        choice += f"; larger steps have order {order(smooth):.2f}, in theory 2"
+    return f"{steps}; {choice}){_complex_step(rows, own)}"
+
+
+def _complex_step(rows: Sequence[Row], own: Row) -> str:
+    """Return what the complex step gains over the default step of central differences."""
     step = min((row for row in rows if row.way.startswith("complex")), key=lambda row: row.error)
     if step.error >= own.error:
-        return f"{said}); tangents='complex' is no nearer: error {step.error:.1g}"
+        return f"; tangents='complex' is not more accurate: error {step.error:.1g}"
     return (
-        f"{said}), and use tangents='complex' where the function takes complex numbers: error "
-        f"{step.error:.1g} at {words(step.cost / own.cost)} times the time"
+        f", or use tangents='complex' if the function accepts complex numbers: error "
+        f"{step.error:.1g} in {words(step.cost / own.cost)} times the time"
     )
 
 
 STUDY = Study(
-    approximates="tangents of a torus in 4-space with waves on it, and its light",
+    approximates="tangents of a torus in 4-space with waves, and its light",
     reference="exact tangents",
     parameter="step / domain",
     error="largest error of luminance",
-    cost="ns a point",
+    cost="ns per point",
     steps=lambda quick: [partial(frame_errors, 64 if quick else 128, 3 if quick else 5)],
     verdict=verdict,
     axes=("parameter", "error"),

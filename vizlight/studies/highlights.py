@@ -1,15 +1,16 @@
-"""Blinn's law in place of Phong's: by which power, in which codimension, and what it saves.
+"""The Blinn model as a substitute for the Phong model: its power, its error and its cost.
 
-Rules for the power over lit and visible normals of a sphere; the same over random tangent spaces;
-the exchange that the engine makes within ``highlight_error=``; a smooth terminator. Errors are
-pixel values of 255.
+Rules for the Blinn power are compared over the lit and visible normals of a sphere, and over random
+tangent spaces of several codimensions. Further rows measure the substitution that the engine makes
+within ``highlight_error=``, and the error of a smooth terminator. Errors are pixel values from 0 to
+255.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,18 +23,20 @@ from vizlight.studies._measuring import take_turns
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
+    from vizlight.shading.engine import Shading
+
 DEGREES = (10.0, 30.0, 60.0, 90.0, 120.0, 150.0)
 POWERS = (10.0, 40.0, 200.0)
-#: Rules for the factor that are formulas, the usual one first, and the one found by search.
+#: Rules for the factor: formulas, with the common one first, and the result of a search.
 CORRECTED = "4 cos(beta) corrected for r"
 FORMULAS, SEARCHED = ("4", "4 cos(beta)", CORRECTED), "best by worst"
-#: The power whose rules are drawn, and the error, of 255, below which there is nothing to see.
+#: Power whose rules are drawn, and error of 255 below which a point is not drawn.
 DRAWN, SEEN = 40.0, 1e-4
 
 
 @dataclass(frozen=True)
 class Rule:
-    """One rule for Blinn's power over Phong's, at one angle and shininess."""
+    """Errors of one rule for the ratio of the Blinn power to the Phong power r, at one angle."""
 
     degrees: float
     r: float
@@ -46,7 +49,7 @@ class Rule:
 
 @dataclass(frozen=True)
 class Codimension:
-    """Errors over random tangent spaces, light and eye at one angle."""
+    """Errors of one rule over random tangent spaces, for one angle between light and eye."""
 
     k: int
     c: int
@@ -57,7 +60,7 @@ class Codimension:
 
 
 def rules(degrees: float, r: float) -> list[Rule]:
-    """Return the errors of each rule at one angle between light and eye."""
+    """Return the errors of each rule for one angle between light and eye."""
     angle = float(np.deg2rad(degrees))
     factors = {
         "4": 4.0,
@@ -85,7 +88,10 @@ def rules(degrees: float, r: float) -> list[Rule]:
 def codimension(
     k: int, c: int, degrees: float = 60.0, r: float = 10.0, count: int = 200_000
 ) -> list[Codimension]:
-    """Return the errors of three rules over uniformly random k-spaces in k + c dimensions."""
+    """Return the errors of three rules over uniformly random k-spaces in k + c dimensions.
+
+    The angle between light and eye is given in degrees; ``r`` is the Phong power.
+    """
     random, n = np.random.default_rng(1994), k + c
     beta = np.deg2rad(degrees) / 2
     wi, wo = np.zeros((2, n))
@@ -99,7 +105,7 @@ def codimension(
         ("equal volume", float(highlights.exchange_rate(2 * beta, k=k, n=n))),
     ):
         blinn = reflection.specular(wi, wo, frame, shininess=factor * r, model="blinn")
-        error: Any = 255 * (phong - blinn)
+        error = 255 * np.asarray(phong - blinn)
         rms = float(np.sqrt(np.mean(error * error)))
         found.append(Codimension(k, c, rule, factor, float(np.abs(error).max()), rms))
     return found
@@ -107,7 +113,7 @@ def codimension(
 
 @dataclass(frozen=True)
 class Exchange:
-    """Phong's highlight of lines, as asked for and by Blinn's within an error."""
+    """Cost of the Phong highlight of lines and of its Blinn substitute, and the error."""
 
     degrees: float
     shininess: float
@@ -120,7 +126,7 @@ class Exchange:
 def exchange(
     degrees: float, shininess: float, count: int = 1_000_000, repeats: int = 5
 ) -> Exchange:
-    """Return ns a point of both, one thread, float32, and the bound and the error seen."""
+    """Return the costs in ns per point (one thread, float32), the error bound and the error."""
     random = np.random.default_rng(20)
     points, tangents = (random.standard_normal((count, 3)).astype(np.float32) for _ in range(2))
     angle = np.deg2rad(degrees)
@@ -130,24 +136,24 @@ def exchange(
         material=Material(ambient=0, diffuse=0, specular=1, shininess=shininess),
     )
 
-    def light(allowed: float) -> Any:
+    def light(allowed: float) -> Shading:
         return engine.shade(points, tangents, scene, threads=1, highlight_error=allowed)
 
     ways = {"phong": lambda: light(0.0), "blinn": lambda: light(255.0)}
     seconds = take_turns(ways, repeats)
-    asked, made = light(0.0), light(255.0)
+    exact, made = light(0.0), light(255.0)
     return Exchange(
         degrees,
         shininess,
         phong=1e9 * seconds["phong"] / count,
         blinn=1e9 * seconds["blinn"] / count,
         bound=made.plan.highlight_error,
-        error=255 * float(np.abs(asked.luminance - made.luminance).max()),
+        error=255 * float(np.abs(exact.luminance - made.luminance).max()),
     )
 
 
 def rows_of_rules(degrees: float, r: float) -> list[Row]:
-    """Return the rules at one angle as rows."""
+    """Return one row for each rule at one angle."""
     return [
         Row(
             f"rule {row.rule}", degrees, row.worst, np.nan,
@@ -158,7 +164,7 @@ def rows_of_rules(degrees: float, r: float) -> list[Row]:
 
 
 def rows_of_codimension(k: int, c: int, count: int) -> list[Row]:
-    """Return the rules over tangent spaces as rows."""
+    """Return one row for each rule over random tangent spaces."""
     return [
         Row(
             f"rule {row.rule}, k = {k}, codimension {c}", 60.0, row.worst, np.nan,
@@ -169,7 +175,7 @@ def rows_of_codimension(k: int, c: int, count: int) -> list[Row]:
 
 
 def rows_of_exchange(degrees: float, shininess: float, count: int) -> list[Row]:
-    """Return Phong's highlight and the engine's exchange for it as rows."""
+    """Return the rows of the Phong highlight and of the engine's substitute."""
     made = exchange(degrees, shininess, count)
     return [
         Row(f"engine, Phong of power {shininess:g}", degrees, 0.0, made.phong),
@@ -181,7 +187,7 @@ def rows_of_exchange(degrees: float, shininess: float, count: int) -> list[Row]:
 
 
 def rows_of_terminators(degrees: float) -> list[Row]:
-    """Return what a smooth terminator takes from a highlight as rows."""
+    """Return one row for each width of a smooth terminator, with the error of a highlight."""
     angle = np.deg2rad(degrees)
     return [
         Row(
@@ -193,7 +199,7 @@ def rows_of_terminators(degrees: float) -> list[Row]:
 
 
 def steps(quick: bool) -> list[Callable[[], Iterable[Row]]]:
-    """Return the steps: rules, codimensions, exchange, terminators."""
+    """Return the steps: rules, codimensions, substitution, terminators."""
     powers = POWERS[1:2] if quick else POWERS
     sizes = (1, 2) if quick else (1, 2, 3)
     count, many = (20_000, 200_000) if quick else (200_000, 1_000_000)
@@ -209,7 +215,7 @@ def steps(quick: bool) -> list[Callable[[], Iterable[Row]]]:
 
 
 def verdict(rows: Sequence[Row]) -> str:
-    """Return the rule to take, and what the engine's exchange keeps and saves at each power."""
+    """Return the rule to use, and what the substitution of the engine saves at each power."""
     worst = {
         rule: max(row.error for row in rows if row.way == f"rule {rule}")
         for rule in (*FORMULAS, SEARCHED)
@@ -217,63 +223,58 @@ def verdict(rows: Sequence[Row]) -> str:
     best = min(FORMULAS, key=lambda rule: worst[rule])
     rest = ", ".join(f"{rule}: {worst[rule]:.4g}" for rule in FORMULAS if rule != best)
     return (
-        f"take {best} times Phong's power, whose worst error is {worst[best]:.4g} of 255 ({rest}, "
-        f"the best that a search finds: {worst[SEARCHED]:.4g}); {_exchanged(rows)}"
+        f"use {best} times the Phong power, with a largest error of {worst[best]:.4g} of 255 "
+        f"({rest}, the best factor by search: {worst[SEARCHED]:.4g}); {_substitution(rows)}"
     )
 
 
-def _exchanged(rows: Sequence[Row]) -> str:
-    """Return up to which angle each power is exchanged within 1 of 255, and what that takes."""
-    made = [row for row in rows if row.way.startswith("engine, Blinn")]
-    phong = {
-        (row.way.rsplit(" ", 1)[1], row.parameter): row.cost
-        for row in rows if row.way.startswith("engine, Phong")
-    }  # fmt: skip
-    said, held = [], []
-    for power in sorted({float(row.more["power"]) for row in made}):
-        own = [
-            row._replace(error=float(row.more["bound"]))
-            for row in made if row.more["power"] == power
-        ]  # fmt: skip
+def _substitution(rows: Sequence[Row]) -> str:
+    """Return up to which angles the engine substitutes Blinn within 1 of 255, and the time."""
+    blinn: dict[float, list[Row]] = {}
+    for row in rows:
+        if row.way.startswith("engine, Blinn"):
+            bound = row._replace(error=float(row.more["bound"]))
+            blinn.setdefault(float(row.more["power"]), []).append(bound)
+    ranges, allowed = [], []
+    for power, own in sorted(blinn.items()):
         last, first = holding(own, 1.0), min(own, key=lambda row: float(row.parameter))
         if last is None:
-            said.append(
+            ranges.append(
                 f"at no angle for power {power:g} (its bound is {words(first.error)} of 255 at "
                 f"{first.parameter:g} degrees)"
             )
             continue
-        held += [row for row in own if float(row.parameter) <= float(last.parameter)]
-        said.append(f"up to {last.parameter:g} degrees between light and eye for power {power:g}")
-    where = f"highlight_error=1 allows the engine Blinn's law {', '.join(said)}"
-    if not held:
-        return f"{where}, so leave it out"
-    ratio = sum(row.cost for row in held) / sum(
-        phong[f"{float(row.more['power']):g}", row.parameter] for row in held
-    )
-    if ratio >= 1:
-        return f"{where}, but leave it out: there it takes {words(ratio)} times Phong's time"
-    return f"{where}: there it takes {words(ratio)} times Phong's time"
+        allowed += [row for row in own if float(row.parameter) <= float(last.parameter)]
+        ranges.append(f"up to {last.parameter:g} degrees between light and eye for power {power:g}")
+    where = f"with highlight_error=1 the engine uses the Blinn model {', '.join(ranges)}"
+    if not allowed:
+        return f"{where}, so do not set it"
+    exact = [(f"engine, Phong of power {row.more['power']:g}", row.parameter) for row in allowed]
+    phong = sum(row.cost for row in rows if (row.way, row.parameter) in exact)
+    ratio = sum(row.cost for row in allowed) / phong
+    but = ", but do not set it: " if ratio >= 1 else ": "
+    return f"{where}{but}the time is {words(ratio)} times that of the Phong model"
 
 
 def curve_of_rules(row: Row) -> Curve | None:
-    """Return the curve of a rule on a sphere, for one power."""
+    """Return the curve of a rule on a sphere for one power."""
     rule = row.way.startswith("rule ") and ", k = " not in row.way
     return Curve(row.way) if rule and row.more["power"] == DRAWN else None
 
 
 def curve_of_exchange(row: Row) -> Curve | None:
-    """Return the curve of an exchange or a terminator, where there is something to see."""
+    """Return the curve of a substitution or a terminator, except for negligible errors."""
     name, _, kind = row.way.partition("=" if row.way.startswith("term") else " for ")
     shown = name in ("engine, Blinn", "terminator") and row.error >= SEEN
     return Curve(name, kind) if shown else None
 
 
 STUDY = Study(
-    approximates="Phong's highlight by Blinn's",
-    reference="Phong's law with the same light",
-    parameter="angle from light to eye, degrees",
-    error="worst error, of 255",
-    cost="ns a point",
+    approximates="highlight of the Phong model by the Blinn model",
+    reference="the Phong model with the same light",
+    parameter="angle between light and eye, degrees",
+    error="largest error, of 255",
+    cost="ns per point",
     steps=steps,
     verdict=verdict,
     axes=("parameter", "error"),

@@ -1,8 +1,8 @@
-"""Isoluminance contours against Gouraud-shaded facets and a ray cast: seconds, vertices, error.
+"""Isoluminance contours compared with Gouraud-shaded facets and ray casting.
 
-The study draws a sphere and a cone in the sizes of the source's
-tables and compares each pixel with the exact luminance there, and says how far the approximate
-highlights are from the exact ones.
+The study draws a sphere and a cone in the sizes of the source's tables, and measures the time, the
+number of vertices, and the error of each pixel. It also measures the error of highlights that are
+drawn by a virtual light.
 """
 
 from __future__ import annotations
@@ -11,30 +11,29 @@ import functools
 import math
 import time
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
 from scipy import ndimage
 
 from vizlight.filters.isoluminance import isoluminance
-from vizlight.geometry.contours.isoluminance import virtual_light
-from vizlight.geometry.solids.exact_surfaces import fibonacci
-from vizlight.geometry.solids.primitives import Sphere, Truncus
+from vizlight.geometry.solids.primitives import Frustum, Sphere
 from vizlight.pictures import render
 from vizlight.scene import Light, Material, Scene
 from vizlight.studies._framework import CLEAR, Curve, Panel, Row, Study, cheapest, words
 from vizlight.studies._measuring import take_turns
+from vizlight.studies._virtual_light import highlight
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from vizlight._types import Array
 
-#: Pixels that the shape covers, as in the source's tables, and the facets of its comparison.
+#: Numbers of pixels that the shape covers, and numbers of facets, as in the source's tables.
 SIZES = (550, 4500, 9000, 55_000, 250_000)
 FACETS = {"sphere": 70, "cone": 15}
-#: A pixel has 256 steps: less cannot be told apart.
+#: Error below which pictures of 256 grey levels are taken as equal.
 FAINT = 1.5 / 255
 TOWARD = np.array([1.0, -0.8, 0.9]) / math.sqrt(2.45)
 EYE = np.array([0.3, -1.0, 0.4]) / math.sqrt(1.25)
@@ -42,12 +41,12 @@ LOW, SCALE = 0.1, 0.9
 SCENE = Scene(
     lights=Light(direction=TOWARD), material=Material(ambient=LOW, diffuse=SCALE, specular=0)
 )
-SHAPES = {"sphere": Sphere(), "cone": Truncus((0, 0, 0), (0, 0, 1.6), (0.0, 0.8))}
+SHAPES = {"sphere": Sphere(), "cone": Frustum((0, 0, 0), (0, 0, 1.6), (0.0, 0.8))}
 
 
 @dataclass(frozen=True)
 class Picture:
-    """One way to make one picture: what it costs, and how far it is from the exact one."""
+    """Cost and error of one picture drawn by one method; times are in seconds."""
 
     shape: str
     way: str
@@ -60,12 +59,12 @@ class Picture:
 
 
 def lambert(normals: Array) -> Array:
-    """Return the exact luminance."""
+    """Return the exact luminance for unit normals."""
     return LOW + SCALE * np.maximum(normals @ TOWARD, 0)
 
 
-def cast(shape: str, camera: Any, side: int) -> Array:
-    """Return the exact luminance at the middle of each pixel, NaN beside the shape."""
+def cast(shape: str, camera: pv.Camera, side: int) -> Array:
+    """Return the exact luminance at the centre of each pixel, NaN outside the shape."""
     up = np.array(camera.up) - np.dot(camera.up, EYE) * EYE
     up /= np.linalg.norm(up)
     step = (np.arange(side) + 0.5) / side * 2 - 1
@@ -76,7 +75,7 @@ def cast(shape: str, camera: Any, side: int) -> Array:
         rest = 1 - np.einsum("ijk,ijk->ij", foot, foot) + along**2
         lift = np.sqrt(np.where(rest >= 0, rest, np.nan)) - along
         return lambert(foot + lift[..., None] * EYE)
-    # The cone: |across| = radius at its height, or the plane of its foot.
+    # A ray meets the cone where the distance from the axis is the radius at that height.
     k, top = 0.5, 0.8
     d = top - foot[..., 2]
     a = EYE[0] ** 2 + EYE[1] ** 2 - (k * EYE[2]) ** 2
@@ -92,11 +91,16 @@ def cast(shape: str, camera: Any, side: int) -> Array:
     return np.where(on, lambert(normal), np.nan)
 
 
-def facets(shape: str, count: int) -> Any:
-    """Return a mesh of about so many facets (of the cone's side) with the exact luminance."""
+def facets(shape: str, count: int) -> pv.PolyData:
+    """Return a mesh of about ``count`` facets with the exact luminance at its vertices.
+
+    The facets of a cone are those of its side.
+    """
     if shape == "sphere":
         rings = max(round(math.sqrt(count / 2)), 3)
-        mesh: Any = pv.Sphere(radius=1, theta_resolution=2 * rings, phi_resolution=rings + 1)
+        mesh: pv.PolyData = pv.Sphere(
+            radius=1, theta_resolution=2 * rings, phi_resolution=rings + 1
+        )
         mesh["luminance"] = lambert(np.asarray(mesh.points, dtype=np.float64))
         return mesh
     angle = 2 * np.pi * np.arange(count) / count
@@ -110,14 +114,15 @@ def facets(shape: str, count: int) -> Any:
     return mesh
 
 
-def contours(shape: str, levels: Any) -> pv.PolyData:
-    """Return the bands, one value a polygon."""
-    bands: pv.PolyData = isoluminance(SHAPES[shape], SCENE, levels=levels)["bands"]
+def contours(shape: str, levels: float) -> pv.PolyData:
+    """Return the bands between contours, for a number of levels or a largest error."""
+    bands = isoluminance(SHAPES[shape], SCENE, levels=levels)["bands"]
+    assert isinstance(bands, pv.PolyData)
     return bands
 
 
-def picture(mesh: Any, camera: Any, side: int, repeats: int) -> tuple[float, Array]:
-    """Return the seconds of a frame after the first, and the luminance of its pixels."""
+def picture(mesh: pv.PolyData, camera: pv.Camera, side: int, repeats: int) -> tuple[float, Array]:
+    """Return the seconds per frame after the first, and the luminance of the pixels."""
     plotter = render.make_plotter(
         mesh, camera=camera, size=(side, side), anti_aliasing=None, background="black"
     )
@@ -135,23 +140,23 @@ def picture(mesh: Any, camera: Any, side: int, repeats: int) -> tuple[float, Arr
 
 
 def error(pixels: Array, exact: Array) -> tuple[float, float]:
-    """Return the largest and the mean error, two pixels within the outline and beyond."""
+    """Return the largest and the mean error of pixels at least two pixels inside the outline."""
     inside = ndimage.binary_erosion(np.isfinite(exact), iterations=2)
-    miss = np.abs(pixels - exact)[inside]
-    return float(miss.max()), float(miss.mean())
+    errors = np.abs(pixels - exact)[inside]
+    return float(errors.max()), float(errors.mean())
 
 
 def measure(shape: str, area: int, levels: int = 200, repeats: int = 3) -> list[Picture]:
-    """Return the rows of one picture: contours, facets, facets of equal error, ray cast."""
+    """Return the pictures of one size: contours, facets, facets of equal error, ray casting."""
     camera = render.camera_on(
         (-1, 1, -1, 1, -1, 1), EYE.tolist(), parallel=True, zoom=math.sqrt(3) / 1.02
     )
-    # A first picture says which share of the pixels the shape covers.
+    # A small picture shows which fraction of the pixels the shape covers.
     share = np.isfinite(cast(shape, camera, 64)).mean()
     side = max(round(math.sqrt(area / share)), 16)
     exact = cast(shape, camera, side)
 
-    def row(way: str, make: Callable[[], Any]) -> Picture:
+    def row(way: str, make: Callable[[], pv.PolyData]) -> Picture:
         mesh = make()
         model = take_turns({"model": make}, repeats)["model"]
         draw, pixels = picture(mesh, camera, side, repeats)
@@ -173,7 +178,7 @@ def measure(shape: str, area: int, levels: int = 200, repeats: int = 3) -> list[
 
 @dataclass(frozen=True)
 class Count:
-    """The vertices that contours and Gouraud-shaded facets need for one worst error."""
+    """Numbers of vertices that contours and Gouraud-shaded facets need for one largest error."""
 
     shape: str
     error: float
@@ -182,7 +187,7 @@ class Count:
 
 
 def count(shape: str, worst: float) -> Count:
-    """Return the vertices needed, facets by growing them until no place misses by more."""
+    """Return the numbers of vertices for one largest error; facets are added until it is met."""
     weights = np.random.default_rng(1990).dirichlet([1, 1, 1], 24)
     number = FACETS[shape]
     while True:
@@ -200,71 +205,8 @@ def count(shape: str, worst: float) -> Count:
         number = math.ceil(number * 1.25)
 
 
-@dataclass(frozen=True)
-class Highlight:
-    """How far the virtual light's highlight is from the exact one, on a sphere of radius 1."""
-
-    distance: float
-    angle: float
-    half: float
-    mirror: float
-    shift: float
-
-
-def highlight(distance: float, angle: float, power: float = 20.0) -> Highlight:
-    """Return the errors of the virtual light.
-
-    Parameters
-    ----------
-    distance : float
-        Of the light from the centre, in radii; infinite for one far away.
-    angle : float
-        Between light and eye, in degrees, seen from the centre; the eye is far away.
-    power : float
-        Shininess of ``R . E``; ``N . H`` has 4 times as much (Fisher-Woo).
-
-    Returns
-    -------
-    Highlight
-        ``half`` and ``mirror``: the largest difference to ``(N . H)^(4 s)`` and ``(R . E)^s``
-        with the light where it stands. ``shift``: by how many degrees the true peak lies nearer
-        to the light than the virtual light's. The source has it nearer to the eye; that is so
-        for a near eye, not for a near light.
-    """
-    eye = np.array([0.0, 0.0, 1.0])
-    light = np.array([math.sin(math.radians(angle)), 0.0, math.cos(math.radians(angle))])
-    toward = virtual_light((0, 0, 0), light=light, eye=eye)
-    normal = fibonacci(200_000)
-    wi = np.broadcast_to(light, normal.shape)
-    if math.isfinite(distance):
-        wi = distance * light - normal
-        wi = wi / np.linalg.norm(wi, axis=1, keepdims=True)
-    cosine = np.einsum("ij,ij->i", normal, wi)
-    seen = (cosine > 0) & (normal[:, 2] > 0)
-    half = wi + eye
-    half = half / np.linalg.norm(half, axis=1, keepdims=True)
-    blinn = np.maximum(np.einsum("ij,ij->i", normal, half), 0)
-    phong = np.maximum(2 * cosine * normal[:, 2] - wi[:, 2], 0)
-    drawn = np.maximum(normal @ toward, 0) ** (4 * power)
-    # The peak: a bisection in the plane of light and eye, where N is half way.
-    low, high = 0.0, math.radians(angle)
-    for _ in range(60):
-        middle = (low + high) / 2
-        n = np.array([math.sin(middle), 0.0, math.cos(middle)])
-        ray = light if math.isinf(distance) else distance * light - n
-        to_light = math.atan2(ray[0], ray[2]) - middle
-        low, high = (middle, high) if to_light > middle else (low, middle)
-    return Highlight(
-        distance,
-        angle,
-        float(np.abs(drawn - blinn ** (4 * power))[seen].max()),
-        float(np.abs(drawn - phong**power)[seen].max()),
-        math.degrees(low) - angle / 2,
-    )
-
-
 def vertices(shape: str, worst: float) -> list[Row]:
-    """Return how many vertices both ways need for one worst error."""
+    """Return the rows of the numbers of vertices for one largest error."""
     found = count(shape, worst)
     return [
         Row(f"{shape}, contours", worst, worst, found.contours),
@@ -273,12 +215,12 @@ def vertices(shape: str, worst: float) -> list[Row]:
 
 
 def pictures(shape: str, area: int, levels: int, repeats: int) -> list[Row]:
-    """Return the ways to make one picture, with their times."""
+    """Return one row for each method of drawing one picture."""
     rows = []
     for made in measure(shape, area, levels, repeats):
-        more: dict[str, float | str] = {
+        more = {
             "ms to model": 1e3 * made.model,
-            "ms a frame": 1e3 * made.draw,
+            "ms per frame": 1e3 * made.draw,
             "mean error": made.mean,
         }
         way = f"picture of a {shape}, {made.way}"
@@ -287,11 +229,11 @@ def pictures(shape: str, area: int, levels: int, repeats: int) -> list[Row]:
 
 
 def virtual(angle: float) -> list[Row]:
-    """Return how far the virtual light's highlight is off, by the distance of the light."""
+    """Return the errors of the highlight of a virtual light, one row for each distance."""
     rows = []
     for distance in (1.5, 2, 4, 8, 16, 64, math.inf):
         h = highlight(distance, angle)
-        more: dict[str, float | str] = {"error of N.H": h.half, "degrees off the peak": h.shift}
+        more = {"error of N.H": h.half, "displacement of the peak, degrees": h.shift}
         rows.append(Row(f"virtual light, {angle:g} degrees", distance, h.mirror, math.nan, more))
     return rows
 
@@ -309,9 +251,15 @@ def steps(quick: bool) -> list[Callable[[], list[Row]]]:
 
 
 def verdict(rows: Sequence[Row]) -> str:
-    """Return what needs the fewest vertices for an error, and what makes a picture fastest."""
+    """Return which method needs the fewest vertices, and which draws a picture fastest."""
+    fastest = list(filter(None, (_fastest(rows, shape) for shape in SHAPES)))
+    time = f"; for the fastest picture of that quality use {', '.join(fastest)}" if fastest else ""
+    return f"for few vertices use {_fewest(rows)}{time}"
+
+
+def _fewest(rows: Sequence[Row]) -> str:
+    """Return which method needs the fewest vertices for each shape and error."""
     fewest: dict[str, list[str]] = {}
-    by_time = []
     for shape in SHAPES:
         drawn, flat = (
             {row.parameter: row.cost for row in rows if row.way == f"{shape}, {way}"}
@@ -319,48 +267,46 @@ def verdict(rows: Sequence[Row]) -> str:
         )
         for worst, few in drawn.items():
             many = flat[worst]
-            way = "contours" if few <= CLEAR * many else "either way"
+            way = "contours" if few <= CLEAR * many else "either method"
             way = "facets" if many <= CLEAR * few else way
             fewest.setdefault(way, []).append(
-                f"a {shape} at an error of {worst:g} ({words(few)}, facets {words(many)})"
+                f"a {shape} at an error of {worst:g} (contours {words(few)}, facets {words(many)})"
             )
-        start = f"picture of a {shape}, "
-        made = [
-            row._replace(way=row.way.removeprefix(start).replace(", equal", " of equal error"))
-            for row in rows
-            if row.way.startswith(start)
-        ]
-        made = [row for row in made if row.parameter == max(float(r.parameter) for r in made)]
-        if not made:
-            continue
-        bands = next(row for row in made if row.way.endswith("levels"))
-        # What cannot be told apart in a picture counts as equal.
-        good = [row._replace(cost=_milliseconds(row)) for row in made]
-        best = cheapest(good, max(bands.error, FAINT))
-        assert best is not None
-        by_time.append(
-            f"{best.way} for a {shape} of {words(float(best.parameter))} "
-            f"pixels ({words(best.cost)} ms, "
-            + ", ".join(f"{row.way} {words(row.cost)}" for row in good if row is not best)
-            + ")"
+    return "; ".join(f"{way} for {', '.join(where)}" for way, where in fewest.items())
+
+
+def _fastest(rows: Sequence[Row], shape: str) -> str:
+    """Return which method draws the largest picture of a shape fastest, or an empty string."""
+    start = f"picture of a {shape}, "
+    made = [
+        row._replace(
+            way=row.way.removeprefix(start).replace(", equal", " of equal error"),
+            cost=float(row.more["ms to model"]) + float(row.more["ms per frame"]),
         )
-    said = "; ".join(f"{way} for {', '.join(where)}" for way, where in fewest.items())
-    said = f"for few vertices take {said}"
-    return f"{said}; for the time of a picture as good {', '.join(by_time)}" if by_time else said
-
-
-def _milliseconds(row: Row) -> float:
-    return float(row.more["ms to model"]) + float(row.more["ms a frame"])
+        for row in rows
+        if row.way.startswith(start)
+    ]
+    made = [row for row in made if row.parameter == max(float(r.parameter) for r in made)]
+    if not made:
+        return ""
+    bands = next(row for row in made if row.way.endswith("levels"))
+    best = cheapest(made, max(bands.error, FAINT))
+    assert best is not None
+    others = ", ".join(f"{row.way} {words(row.cost)}" for row in made if row is not best)
+    return (
+        f"{best.way} for a {shape} of {words(float(best.parameter))} pixels "
+        f"({words(best.cost)} ms, {others})"
+    )
 
 
 def curve_of_vertices(row: Row) -> Curve | None:
-    """Return the curve of vertices for an error: a colour a shape."""
+    """Return the curve of the vertices for an error, one colour for each shape."""
     shape, _, way = row.way.partition(", ")
     return Curve(shape, way) if shape in SHAPES else None
 
 
 def curve_of_pictures(row: Row) -> Curve | None:
-    """Return the curve of pictures, whatever the number of facets of equal ones."""
+    """Return the curve of a picture; facets of equal error share one, whatever their number."""
     if not row.way.startswith("picture of a "):
         return None
     shape, way = row.way.removeprefix("picture of a ").split(", ", 1)
@@ -373,8 +319,8 @@ def curve_of_highlights(row: Row) -> Curve | None:
 
 
 STUDY = Study(
-    approximates="a lit sphere and cone by contours of equal luminance",
-    reference="the exact luminance, by a ray cast; Gouraud-shaded facets beside it",
+    approximates="lit sphere and cone by contours of equal luminance",
+    reference="the exact luminance by ray casting; for comparison, Gouraud-shaded facets",
     parameter="allowed error, pixels, or distance of the light in radii",
     error="largest error of luminance",
     cost="vertices",

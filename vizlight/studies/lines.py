@@ -1,21 +1,23 @@
-"""The error meter of line models: every cheap one against the exact line light.
+"""Errors of the cheap models of light on lines, compared with the exact line light.
 
-Lines, lights and eyes point anywhere, or the light is the eye's own; the exact light is that of
-:mod:`vizlight.model.cylinder`, specular with N.H to the power 20. Tubes of N sides are shaded as
-VTK shades them: normals of the corners, interpolated along a face and made unit at each pixel; what
-a pixel that holds the whole tube shows is the mean over its width, and each tube is turned at
-random about its line. A factor for all points, which a coefficient of the material can hold, is
-taken out of the scaled errors.
+Lines, lights and eyes have random directions, or the light is a headlight. The exact light is that
+of :mod:`vizlight.model.cylinder`, with N.H to the power 20. Tubes of N sides are shaded as in VTK:
+the normals of the corners are interpolated along a face and normalised at each pixel. The light of
+a tube is its mean over the width of the tube, as in a pixel that contains the whole tube, and each
+tube is rotated about its line by a random angle. The scaled errors are those after multiplication
+of all points by the best common factor, which a coefficient of the material can absorb.
 
-Where they are exact: for a headlight, and wherever light, line and eye lie in one plane on one
-side of the line, Banks' diffuse term with p = 1 and Blinn's highlight are the exact light up to a
-factor, pi / 4 and ``B(s/2 + 1, 1/2) / 2``. Nowhere else, and the compensated exponent nowhere.
+For a headlight, and wherever light, line and eye lie in one plane with light and eye on the same
+side of the line, Banks' diffuse term with p = 1 and the Blinn highlight equal the exact light up to
+the factors pi / 4 and ``B(s/2 + 1, 1/2) / 2``. They are not exact anywhere else, and the
+compensated exponent is not exact anywhere.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -39,7 +41,7 @@ NODES = 16
 
 @dataclass(frozen=True)
 class Model:
-    """One model of one term: errors in the term's own unit, cost for a point of the line."""
+    """Errors of one model of one term, and its cost per point of the line in ns and bytes."""
 
     setting: str
     term: str
@@ -53,7 +55,7 @@ class Model:
 
 
 def directions(count: int, *, headlight: bool) -> tuple[Array, Array, Array]:
-    """Return unit directions toward light and eye and tangents, seeded."""
+    """Return reproducible random unit vectors: toward light, toward eye, tangents."""
     random = np.random.default_rng(2005)
     v: Array = random.standard_normal((3, count, 3))
     v /= np.linalg.norm(v, axis=-1, keepdims=True)
@@ -63,7 +65,7 @@ def directions(count: int, *, headlight: bool) -> tuple[Array, Array, Array]:
 def tube(
     wi: Array, wo: Array, tangent: Array, sides: int, *, shininess: float = SHININESS
 ) -> tuple[Array, Array]:
-    """Return the mean diffuse and specular light over the width of tubes of N sides."""
+    """Return the mean diffuse and specular light over the width of tubes."""
     random = np.random.default_rng(sides)
 
     def across(v: Array) -> Array:
@@ -96,7 +98,7 @@ def tube(
 
 
 def measure(count: int = 20_000, repeats: int = 3) -> list[Model]:
-    """Return the rows of the study."""
+    """Return the errors and costs of each model, for random lights and for a headlight."""
     rows = []
     costs = _costs(repeats)
     for setting in ("random", "headlight"):
@@ -146,6 +148,7 @@ def measure(count: int = 20_000, repeats: int = 3) -> list[Model]:
 def _row(
     setting: str, term: str, model: str, value: Array, exact: Array, cost: tuple[float, float]
 ) -> Model:
+    """Return the errors of one model, without and with the best common factor."""
     factor = float(np.sum(value * exact) / np.sum(value * value))
     plain, scaled = value - exact, factor * value - exact
     return Model(
@@ -161,7 +164,11 @@ def _row(
 
 
 def _costs(repeats: int, count: int = 200_000) -> dict[str, tuple[float, float]]:
-    """Return ns (both terms, one thread, float32, a light and an eye nearby) and bytes a point."""
+    """Return ns and bytes per point of each model.
+
+    The time is that of both terms in one thread and float32, for a light and an eye with
+    positions.
+    """
     random = np.random.default_rng(20)
     points, tangents = (random.standard_normal((count, 3)).astype(np.float32) for _ in range(2))
     scene = Scene(
@@ -170,15 +177,13 @@ def _costs(repeats: int, count: int = 200_000) -> dict[str, tuple[float, float]]
         material=Material(shininess=SHININESS),
     )
 
-    def light(**options: Any) -> Callable[[], Any]:
-        return lambda: engine.shade(points, tangents, scene, threads=1, **options)
-
-    ways: dict[str, Callable[[], Any]] = {
-        "line": light(),
-        "line, Blinn": light(model="blinn"),
-        "cylinder": light(model="cylinder"),
-        "surface": lambda: engine.shade(
-            points, None, scene, normals=tangents, threads=1, model="blinn"
+    light = partial(engine.shade, points, tangents, scene, threads=1)
+    ways = {
+        "line": light,
+        "line, Blinn": partial(light, model="blinn"),
+        "cylinder": partial(light, model="cylinder"),
+        "surface": partial(
+            engine.shade, points, None, scene, normals=tangents, threads=1, model="blinn"
         ),
     }
     seconds = take_turns(ways, repeats)
@@ -186,8 +191,8 @@ def _costs(repeats: int, count: int = 200_000) -> dict[str, tuple[float, float]]
     line = pv.Spline(np.cumsum(random.standard_normal((20, 3)), axis=0), 2000)
     line.clear_data()
 
-    def size(mesh: Any) -> float:
-        """Bytes for a point of the line, with the float32 light of each point of the mesh."""
+    def size(mesh: pv.PolyData) -> float:
+        """Return the bytes per point of the line, including the light of the mesh in float32."""
         whole = 1024 * mesh.actual_memory_size + 4 * mesh.n_points
         return float(whole / line.n_points)
 
@@ -198,16 +203,16 @@ def _costs(repeats: int, count: int = 200_000) -> dict[str, tuple[float, float]]
 
 
 def rows(count: int = 20_000, repeats: int = 3) -> list[Row]:
-    """Return the models as rows: a tube by its sides, the other models by none."""
+    """Return one row for each model; the parameter is the number of sides of a tube, or 0."""
     found = []
     for m in measure(count, repeats):
         tube_of = m.model.split()[2] if m.model.startswith("tube") else "0"
         more: dict[str, float | str] = {
             "term": m.term,
-            "worst, by the best factor": m.scaled_worst,
-            "RMS without it": m.rms,
-            "worst without it": m.worst,
-            "bytes a point": m.bytes,
+            "largest error with the best factor": m.scaled_worst,
+            "RMS error without factor": m.rms,
+            "largest error without factor": m.worst,
+            "bytes per point": m.bytes,
         }
         name = "tube" if int(tube_of) else m.model
         way = f"{name}, {m.term}, {m.setting}"
@@ -216,34 +221,39 @@ def rows(count: int = 20_000, repeats: int = 3) -> list[Row]:
 
 
 def verdict(rows: Sequence[Row]) -> str:
-    """Return which model to take for lights anywhere, and for a headlight."""
-    said = []
+    """Return which model to use for random lights and for a headlight."""
+    choices = []
     for term in ("diffuse", "specular"):
         for setting in ("random", "headlight"):
             own = [r for r in rows if r.way.endswith(f", {term}, {setting}")]
-            where = f"{term} by a headlight" if setting == "headlight" else term
+            where = f"{term} with a headlight" if setting == "headlight" else term
             best = cheapest(own)
             least = min(own, key=lambda row: row.error)
             if best is None:
-                said.append(f"{where}: none, '{_model(least)}' is off by {least.error:.2g}")
+                choices.append(
+                    f"{where}: none, '{_model(least)}' has an error of {least.error:.2g}"
+                )
                 continue
-            said.append(f"{where}: '{_model(best)}' at {words(best.cost)} ns a point")
+            choices.append(f"{where}: '{_model(best)}' at {words(best.cost)} ns per point")
             cheaper = [r for r in own if r.cost < best.cost and not r.parameter]
             if cheaper:
                 near = min(cheaper, key=lambda row: row.error)
-                said[-1] += (
-                    f" ('{_model(near)}' at {words(near.cost)} ns is off by {near.error:.2g})"
+                choices[-1] += (
+                    f" ('{_model(near)}' at {words(near.cost)} ns has an error of {near.error:.2g})"
                 )
-    return f"at an RMS error of 1/255, each model by its best factor, use, {'; '.join(said)}"
+    return (
+        f"models to use for an RMS error of 1/255, each with its best factor: {'; '.join(choices)}"
+    )
 
 
 def _model(row: Row) -> str:
+    """Return the name of a row's model for a sentence."""
     name = row.way.split(f", {row.more['term']}")[0]
     return f"{name} of {row.parameter} sides" if row.parameter else name
 
 
 def curve_of(term: str) -> Callable[[Row], Curve | None]:
-    """Return what shows one term with lights anywhere."""
+    """Return the function from a row to its curve, for one term with random lights."""
     return lambda row: (
         Curve(row.way.removesuffix(f", {term}, random"), term)
         if row.way.endswith(f"{term}, random")
@@ -255,8 +265,8 @@ STUDY = Study(
     approximates=f"diffuse and specular light of thin lines, N.H to the power {SHININESS:g}",
     reference="the exact light of a thin cylinder",
     parameter="sides of a tube, 0 for a line",
-    error="RMS error of the term by its best factor",
-    cost="ns a point",
+    error="RMS error of the term with its best factor",
+    cost="ns per point",
     steps=lambda quick: [lambda: rows(4000 if quick else 20_000, 3)],
     verdict=verdict,
     curve=curve_of("diffuse"),

@@ -1,15 +1,15 @@
-"""Cos-theta shadows on height fields: the fast method against the exact one and a closed form.
+"""Cos-theta shadows on height fields: the fast method, the exact method and a closed form.
 
-Fields of random hills, whose power falls with the frequency as that of terrain does, and a
-hemisphere on a plane, whose shadow is known in closed form: there the error of both methods is that
-of the field, and falls with its spacing. Both take turns in one run.
+The fields are random hills with a power spectrum like that of terrain, and a hemisphere on a plane.
+The shadow of the hemisphere is known in closed form; the error of both methods is there the
+discretisation error of the field, which falls with its spacing. Both methods are timed in turn.
 """
 
 from __future__ import annotations
 
 import math
 from functools import partial
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 from scipy import ndimage
@@ -21,43 +21,49 @@ from vizlight.studies._measuring import peak_memory, take_turns
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-#: Of random hills: how fast the amplitude falls with the frequency, and the highest, both as of
-#: rough mountains of 15 km.
+    from vizlight._types import Array
+
+    Errors = tuple[float, float, float]
+
+#: Exponent by which the amplitude of the hills falls with the frequency, and their height. Both
+#: are those of rough mountains 15 km wide.
 FALL, HIGH = 1.8, 0.15
 DEPTH = 0.005
-#: The error in the mean that is allowed, and how far from its edges a hemisphere is smooth.
+#: Largest mean error allowed, and distance from the edges at which the hemisphere is smooth.
 ALLOWED, MARGIN = 0.01, 0.2
 
 
-def hills(side: int, seed: int = 0) -> Any:
-    """Return heights over a unit square; more points show finer hills."""
+def hills(side: int, seed: int = 0) -> Array:
+    """Return heights over a unit square on side x side points; more points add finer hills."""
     random = np.random.default_rng(seed)
     k = np.fft.fftfreq(side)
     frequency = np.hypot(*np.meshgrid(k, k))
     frequency[0, 0] = 1
     phase = 2j * np.pi * random.random((side, side))
     z = np.fft.ifft2(frequency**-FALL * np.exp(phase)).real
-    return (z - z.min()) * (HIGH / np.ptp(z))
+    return np.asarray((z - z.min()) * (HIGH / np.ptp(z)))
 
 
-def sun(height: float, azimuth: float = 40.0) -> Any:
-    """Return a direction from angles in degrees."""
+def sun(height: float, azimuth: float = 40.0) -> Array:
+    """Return the direction toward the sun from its elevation and azimuth in degrees."""
     e, a = np.radians([height, azimuth])
-    return np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
+    toward: Array = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
+    return toward
 
 
 def measure(side: int, height: float = 20.0, repeats: int = 3) -> list[Row]:
-    """Return the rows of one field of hills: the fast method against the exact one."""
+    """Return the rows of one field of hills, with the exact method as the reference."""
     x, z = np.linspace(0, 1, side), hills(side)
 
-    def light(method: shadowing.Method) -> Any:
-        return shadowing.shadow(x, x, z, depth=DEPTH, direction=sun(height), method=method)
+    def light(method: shadowing.Method) -> Array:
+        t: Array = shadowing.shadow(x, x, z, depth=DEPTH, direction=sun(height), method=method)
+        return t
 
     seconds = take_turns({"fast": lambda: light("fast"), "exact": lambda: light("exact")}, repeats)
     error = np.abs(light("fast") - light("exact"))
     more = {
         "largest error": float(error.max()),
-        "bytes a point": peak_memory(lambda: light("fast")) / side**2,
+        "bytes per point": peak_memory(lambda: light("fast")) / side**2,
     }
     fast, exact = (1e9 * taken / side**2 for taken in seconds.values())
     return [
@@ -66,12 +72,11 @@ def measure(side: int, height: float = 20.0, repeats: int = 3) -> list[Row]:
     ]
 
 
-def hemisphere(
-    side: int, method: shadowing.Method, depth: float = 0.1
-) -> tuple[float, float, float]:
-    """Return errors in t of a unit hemisphere on a plane of 6 x 6.
+def hemisphere(side: int, method: shadowing.Method, depth: float = 0.1) -> Errors:
+    """Return errors of t for a unit hemisphere on a plane of 6 x 6.
 
-    The mean, the largest, and the mean further than MARGIN from the edges of dome and shadow.
+    The errors are the mean error, the largest error, and the mean error at distances greater than
+    MARGIN from the edges of the hemisphere and of its shadow.
     """
     x = np.linspace(-3, 3, side)
     z = np.sqrt(np.maximum(1 - x**2 - x[:, None] ** 2, 0))
@@ -93,12 +98,15 @@ def hemisphere(
 
 
 def of_hemisphere(side: int, repeats: int = 1) -> list[Row]:
-    """Return the rows of one hemisphere: both methods against the closed form."""
+    """Return the rows of one hemisphere, with the closed form as the reference."""
     rows = []
     for method in get_args(shadowing.Method):
-        found: list[tuple[float, float, float]] = []
-        work = partial(hemisphere, side, method)
-        taken = take_turns({"": lambda work=work, found=found: found.append(work())}, repeats)[""]  # type: ignore[misc]
+        found: list[Errors] = []
+
+        def work(method: shadowing.Method = method, found: list[Errors] = found) -> None:
+            found.append(hemisphere(side, method))
+
+        taken = take_turns({"": work}, repeats)[""]
         mean, worst, smooth = found[-1]
         more = {"largest error": worst, "mean off the edges": smooth}
         rows.append(Row(f"hemisphere, {method}", side, mean, 1e9 * taken / side**2, more))
@@ -117,7 +125,7 @@ def steps(quick: bool) -> list[Callable[[], Iterable[Row]]]:
 
 
 def verdict(rows: Sequence[Row]) -> str:
-    """Return which method to take, and how its error falls with the spacing."""
+    """Return which method to use, and the order of convergence of both."""
     ways = {
         way: [row for row in rows if row.way == way] for way in dict.fromkeys(r.way for r in rows)
     }
@@ -132,20 +140,20 @@ def verdict(rows: Sequence[Row]) -> str:
         for way, found in dome.items()
     )
     return (
-        f"for a mean error of {ALLOWED:g} use method='{method}' for pictures of {fast.parameter} x "
-        f"{fast.parameter} points: the fast one's is {fast.error:.2g}, in "
-        f"{words(fast.cost / exact.cost)} times the exact one's time; with finer fields the error "
-        f"against the closed form falls with the spacing to the power {smooth} off the edges of "
-        f"shadows, in theory 2, and {everywhere} with them"
+        f"for a mean error of {ALLOWED:g} use method='{method}' on fields of {fast.parameter} x "
+        f"{fast.parameter} points: the fast method has an error of {fast.error:.2g} in "
+        f"{words(fast.cost / exact.cost)} times the time of the exact one; relative to the closed "
+        f"form the order of convergence is {smooth} off the edges of shadows, in theory 2, and "
+        f"{everywhere} with the edges"
     )
 
 
 STUDY = Study(
     approximates="t of the cos-theta shadow of height fields, sun at 20 degrees",
-    reference="hills: the exact method; a hemisphere on a plane: its closed form",
-    parameter="points on a side",
+    reference="for hills, the exact method; for a hemisphere on a plane, the closed form",
+    parameter="points per side",
     error="mean error of t",
-    cost="ns a point",
+    cost="ns per point",
     steps=steps,
     verdict=verdict,
     axes=("parameter", "error"),

@@ -1,7 +1,8 @@
-"""How time and memory grow with the number of points, up to 1e8 from a file on disk.
+"""Growth of time and memory with the number of points, up to 1e8 points from files on disk.
 
-Lines, a light and an eye nearby, float32. The largest run reads points and tangents block by block
-from memory-mapped files and is left out where disk or memory do not hold it.
+The scene has lines, a light and an eye with positions, and float32 arrays. The largest run reads
+points and tangents block by block from memory-mapped files. It is skipped if the disk or the memory
+is too small.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ import numpy as np
 
 from vizlight.shading import engine
 from vizlight.studies import reference
-from vizlight.studies._framework import PIXEL, Row, Study, words
+from vizlight.studies._framework import PIXEL, Row, Study, slope, words
 from vizlight.studies._measuring import peak_memory
 from vizlight.studies.engine import SCENE
 
@@ -27,34 +28,34 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array
 
-#: Points written to the files at a time, and checked against the script.
+#: Points written to the files at a time, and points compared with the script.
 CHUNK, CHECKED = 1_000_000, 10_000
-#: Times that the smallest numbers of points are lit while the largest is once.
+#: Largest number of calls with few points per call with the largest number of points.
 MOST = 5
-#: Bytes a point: points and tangents on disk, light and validity in memory.
+#: Bytes per point: points and tangents on disk, light and validity in memory.
 ON_DISK, IN_MEMORY = 24, 5
 
 
-def made(count: int, seed: int = 7) -> Array:
-    """Return vectors in float32, seeded."""
+def random_vectors(count: int, seed: int = 7) -> Array:
+    """Return reproducible random vectors in float32."""
     return np.random.default_rng(seed).standard_normal((count, 3), dtype=np.float32)
 
 
 def measure(
     points: Array, tangents: Array, counts: Sequence[int], way: str, seconds: float
 ) -> list[Row]:
-    """Return a row for the first so many points: best times, peak beyond the output, error.
+    """Return one row for each number of points, with the shortest times, memory and error.
 
-    The counts take turns until so many seconds are over, so that a busy machine slows all, and in
-    a turn each takes the same time, so that each is as likely to be left alone. Processor time
-    leaves out what other programs take.
+    The numbers of points are timed in turn until the given seconds have passed, so a busy machine
+    slows all of them. Small numbers are lit several times per turn, so each takes a similar part
+    of the time. The processor time excludes other programs.
     """
     best = {count: np.full(2, np.inf) for count in counts}
     end = time.perf_counter() + seconds
     while np.inf in best[counts[-1]] or time.perf_counter() < end:
         for count in counts:
             work = partial(engine.shade, points[:count], tangents[:count], SCENE)
-            for _again in range(min(max(counts) // count, MOST)):
+            for _ in range(min(max(counts) // count, MOST)):
                 start = _clocks()
                 work()
                 best[count] = np.minimum(best[count], _clocks() - start)
@@ -75,18 +76,19 @@ def measure(
 
 
 def _clocks() -> Array:
-    """Return the seconds now, and those that the processors have worked."""
+    """Return the wall clock and the processor time of this process, in seconds."""
     return np.array([time.perf_counter(), time.process_time()])
 
 
 def in_memory(counts: Sequence[int], seconds: float) -> list[Row]:
-    """Return the rows of points in memory, for which so many seconds are taken."""
+    """Return the rows of points in memory, measured for the given number of seconds."""
     largest = max(counts)
-    return measure(made(largest), made(largest, 8), counts, "in memory", seconds)
+    points, tangents = random_vectors(largest), random_vectors(largest, 8)
+    return measure(points, tangents, counts, "in memory", seconds)
 
 
 def from_disk(count: int) -> list[Row]:
-    """Return the row of points in files, or none where disk or memory do not hold them."""
+    """Return the row of points in files, or no row if the disk or the memory is too small."""
     folder = Path(tempfile.gettempdir())
     free = 0
     if hasattr(os, "sysconf"):
@@ -99,7 +101,7 @@ def from_disk(count: int) -> list[Row]:
             file = np.memmap(Path(place) / name, np.float32, "w+", shape=(count, 3))
             for i in range(0, count, CHUNK):
                 size = min(CHUNK, count - i)
-                file[i : i + size] = made(size, seed + 2 * i)
+                file[i : i + size] = random_vectors(size, seed + 2 * i)
             file.flush()
             files.append(file)
         rows = measure(files[0], files[1], [count], "in blocks from disk", 0.0)
@@ -108,7 +110,7 @@ def from_disk(count: int) -> list[Row]:
 
 
 def steps(quick: bool) -> list[Callable[[], list[Row]]]:
-    """Return a step for each number of points."""
+    """Return the steps: points in memory, then points on disk."""
     counts = [10_000, 100_000, 1_000_000, 2_000_000, 5_000_000, 10_000_000]
     if not quick:
         counts.append(20_000_000)
@@ -119,33 +121,36 @@ def steps(quick: bool) -> list[Callable[[], list[Row]]]:
 
 
 def exponent(rows: Sequence[Row], least: float = 1e6) -> float:
-    """Return the power of the number of points with which work grows, above so many."""
+    """Return the exponent of the growth of processor time with the number of points.
+
+    Only rows in memory with more than ``least`` points are taken.
+    """
     large = [row for row in rows if float(row.parameter) > least and row.way == "in memory"]
-    x, y = np.log([(float(row.parameter), float(row.more["processor s"])) for row in large]).T
-    return float((x - x.mean()) @ (y - y.mean()) / ((x - x.mean()) @ (x - x.mean())))
+    times = [float(row.more["processor s"]) for row in large]
+    return slope([float(row.parameter) for row in large], times)
 
 
 def verdict(rows: Sequence[Row]) -> str:
-    """Return the exponent, and how large a mesh may be."""
+    """Return the exponent of the time, and the cost of the largest mesh."""
     largest = rows[-1]
     extra = max(float(row.more["MB beyond the output"]) for row in rows)
     grows = exponent(rows)
-    plan = "count on" if abs(grows - 1) <= 0.05 else "do not count on"
+    expect = "expect" if abs(grows - 1) <= 0.05 else "do not expect"
     right = "within" if max(row.error for row in rows) <= PIXEL else "not within"
     return (
-        f"{plan} time in step with the number of points: above 1e6 the processors' time grows "
-        f"with the power {grows:.3f}, in theory 1; {largest.parameter:.1g} points {largest.way} "
-        f"take {words(float(largest.more['s']))} s, {right} 1/255, and {words(extra)} MB beyond "
-        "the output are enough for any mesh"
+        f"{expect} time proportional to the number of points: above 1e6 points the processor time "
+        f"grows with the power {grows:.3f}, in theory 1; {largest.parameter:.1g} points "
+        f"{largest.way} take {words(float(largest.more['s']))} s with an error {right} 1/255; "
+        f"memory beyond the output is at most {words(extra)} MB for any number of points"
     )
 
 
 STUDY = Study(
-    approximates="the light of many lines, in float32 and in blocks",
-    reference="the formulas as a plain NumPy script in float64, of the first points",
+    approximates="light of many lines in float32 and in blocks",
+    reference="the formulas as a plain NumPy script in float64, for the first points",
     parameter="points",
     error="largest error of luminance",
-    cost="ns a point",
+    cost="ns per point",
     steps=steps,
     verdict=verdict,
     axes=("parameter", "cost"),

@@ -1,14 +1,15 @@
-"""How far streamlines drift: by the tracer's step, by the cells of the flow, on a surface.
+"""Drift of streamlines due to the step of the tracer, the cell size, and a triangulated surface.
 
-A flow that turns as a solid does is linear, so that interpolation in cells is exact and all of the
-drift from its circles is the tracer's. One whose speed grows with the radius, and one on a sphere
-of triangles, drift with the square of the cells. Lines go round once and more.
+The velocity of a rigid rotation is linear, so interpolation in cells is exact and the drift from
+the circles is due to the tracer alone. In a flow whose speed grows with the radius, and in a flow
+on a triangulated sphere, the drift falls with the square of the cell size. The lines make more than
+one turn.
 """
 
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -21,16 +22,16 @@ from vizlight.studies._measuring import take_turns
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-#: The drift that is allowed, of the radius, and the step for flows in ever smaller cells.
+#: Largest drift allowed, relative to the radius, and step of the tracer for varied cell sizes.
 ALLOWED, FINE = 1e-3, 0.1
 SCENE = Scene(lights=Light(direction=(1, 1, 1)), view=View(direction=(0, 0, 1)))
-#: Radii at which lines start: some cells from the centre, within the grid.
+#: Radii at which lines start, some cells from the centre and within the grid.
 RADII, HEIGHT = (0.3, 0.5, 0.7), 0.4
-STEP, CELL, SPHERE = "solid turn, by step", "swirl, by cell", "on a sphere, by cell"
+STEP, CELL, SPHERE = "rigid rotation, step", "swirl, cell size", "sphere, cell size"
 
 
-def turning(size: int = 11) -> Any:
-    """Return a flow that turns about the z-axis as a solid does."""
+def turning(size: int = 11) -> pv.ImageData:
+    """Return the flow of a rigid rotation about the z-axis."""
     grid = pv.ImageData(
         dimensions=(size, size, 5),
         spacing=(2 / (size - 1),) * 3,
@@ -41,20 +42,20 @@ def turning(size: int = 11) -> Any:
     return grid
 
 
-def swirling(cells: int) -> Any:
-    """Return a flow in so many cells across that turns faster away from the z-axis."""
+def swirling(cells: int) -> pv.ImageData:
+    """Return a rotating flow whose angular speed grows with the distance from the z-axis."""
     grid = turning(cells + 1)
     x, y, _ = grid.points.T
     grid["V"] = np.asarray(grid["V"]) * np.exp(4 * (x * x + x * y + y * y) / 2)[:, np.newaxis]
     return grid
 
 
-def sphere(cells: int) -> Any:
-    """Return a sphere of so many triangles round it with a flow round the z-axis.
+def sphere(cells: int) -> pv.PolyData:
+    """Return a triangulated sphere with a flow about the z-axis, ``cells`` triangles around.
 
-    The poles of its triangles lie elsewhere, so that they do not repeat along the flow.
+    The axis of the triangulation differs from z, so the triangles do not repeat along the flow.
     """
-    mesh = pv.Sphere(
+    mesh: pv.PolyData = pv.Sphere(
         radius=1.0, theta_resolution=cells, phi_resolution=cells // 2 + 1, direction=(1.0, 0.3, 0.2)
     )
     x, y, _ = mesh.points.T
@@ -62,8 +63,8 @@ def sphere(cells: int) -> Any:
     return mesh
 
 
-def measure(way: str, parameter: float, flow: Any, step: float, repeats: int) -> list[Row]:
-    """Return the drift from the circles, of the radius."""
+def measure(way: str, parameter: float, flow: pv.DataSet, step: float, repeats: int) -> list[Row]:
+    """Return the row of one flow and step, with the drift from circles relative to the radius."""
     seeds = np.array([[r, 0.0, (1 - r * r) ** 0.5 if way == SPHERE else HEIGHT] for r in RADII])
     trace = partial(
         streamlines, flow, SCENE, vectors="V", seeds=seeds, step=step, max_length=8.0,
@@ -74,7 +75,7 @@ def measure(way: str, parameter: float, flow: Any, step: float, repeats: int) ->
     for i in range(lines.n_cells):
         at = np.asarray(lines.get_cell(i).points, dtype=np.float64)
         if way == SPHERE:
-            # The latitude, whatever the chord that the line is on.
+            # The latitude does not depend on the distance of a chord from the centre.
             height = at[:, 2] / np.linalg.norm(at, axis=1)
             drift = max(drift, float(np.ptp(height)))
         else:
@@ -84,7 +85,7 @@ def measure(way: str, parameter: float, flow: Any, step: float, repeats: int) ->
 
 
 def steps(quick: bool) -> list[Callable[[], list[Row]]]:
-    """Return a step for each step of the tracer and each size of cells."""
+    """Return one step of the study for each step of the tracer and each cell size."""
     sizes = (2.0, 1.0, 0.5, 0.3) if quick else (2.0, 1.4, 1.0, 0.7, 0.5, 0.3, 0.2, 0.1)
     cells, round_it = (8, 16, 32, 64), (24, 48, 96, 192)
     repeats = 3 if quick else 5
@@ -96,40 +97,43 @@ def steps(quick: bool) -> list[Callable[[], list[Row]]]:
 
 
 def verdict(rows: Sequence[Row]) -> str:
-    """Return the largest step that holds, whether step or cells matter more, and the orders."""
+    """Return the largest suitable step, whether step or cells matter more, and the orders."""
     ways = {way: [row for row in rows if row.way == way] for way in (STEP, CELL, SPHERE)}
     steps = sorted(ways[STEP], key=lambda row: float(row.parameter))
     best = holding(steps, ALLOWED)
     if best is None:
-        said = (
-            f"take a step below {steps[0].parameter:g} cell lengths, which drifts by "
+        step = (
+            f"use a step below {steps[0].parameter:g} cell lengths, whose drift is "
             f"{words(steps[0].error)} of the radius"
         )
     else:
         largest = ", the largest measured" if best is steps[-1] else ""
-        said = (
+        step = (
             f"for a drift of 1/1000 of the radius use step={best.parameter:g} cell "
-            f"lengths{largest}, which drifts by {words(best.error)}"
+            f"lengths{largest}, with a drift of {words(best.error)}"
         )
     tracer = (best or steps[0]).error
     finest = max(min(row.error for row in ways[way]) for way in (CELL, SPHERE))
-    next_ = (
-        f"refine the cells rather than the step: the finest of them still leave {words(finest)}"
+    refine = (
+        f"refine the cells rather than the step, because the drift of the smallest cells is "
+        f"{words(finest)}"
         if finest > tracer
-        else f"refine the step before the cells, the finest of which leave {words(finest)}"
+        else f"refine the step before the cells, because the drift of the smallest cells is only "
+        f"{words(finest)}"
     )
     return (
-        f"{said}; {next_}, and drift falls with their size to the power {order(ways[CELL]):.2f} in "
-        f"a volume and {order(ways[SPHERE]):.2f} on a surface, in theory 2"
+        f"{step}; {refine}; the drift falls with the cell size to the power "
+        f"{order(ways[CELL]):.2f} in a volume and {order(ways[SPHERE]):.2f} on a surface, in "
+        "theory 2"
     )
 
 
 STUDY = Study(
-    approximates="streamlines of turning flows",
+    approximates="streamlines of rotating flows",
     reference="circles",
-    parameter="step in cells, or cell / size",
+    parameter="step / cell size, or cell size / domain",
     error="drift / radius",
-    cost="ns a point",
+    cost="ns per point",
     steps=steps,
     verdict=verdict,
     axes=("parameter", "error"),

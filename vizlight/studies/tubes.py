@@ -1,14 +1,14 @@
-"""The same streamlines as lit lines and as tubes: points, bytes, time to build, time to draw.
+"""Streamlines as lit lines and as tubes: points, memory, time to build, and time to draw.
 
-The lines are lit by vizlight, the tubes by the same light, also as scalars. The error is that of
-the shape: what a tube of so many sides shows, averaged over its width, against the exact light of
-a cylinder (:mod:`vizlight.studies.lines`), for the power of a default material.
+Lines and tubes are lit by the same scene, as point scalars. The error is that of the shape: the
+mean light of a tube over its width, compared with the exact light of a cylinder
+(:mod:`vizlight.studies.lines`), for the default material.
 """
 
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -24,12 +24,14 @@ from vizlight.studies._measuring import take_turns
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    import pyvista as pv
+
 SIDES = (4, 6, 8, 10, 12, 14, 16, 18, 20)
 MATERIAL = Material()
 
 
 def shape_error(sides: int, count: int = 5000) -> float:
-    """Return the RMS error of the light of a tube of so many sides, its material included."""
+    """Return the RMS error of the luminance of a tube with the default material."""
     wi, wo, t = lines.directions(count, headlight=False)
     diffuse, specular = lines.tube(wi, wo, t, sides, shininess=MATERIAL.shininess)
     error = MATERIAL.diffuse * (diffuse - cylinder.diffuse(wi, wo, t)) + MATERIAL.specular * (
@@ -38,7 +40,7 @@ def shape_error(sides: int, count: int = 5000) -> float:
     return float(np.sqrt(np.mean(error * error)))
 
 
-def measure(seeds: int = 300, repeats: int = 5) -> tuple[list[Row], list[Any], Any]:
+def measure(seeds: int = 300, repeats: int = 5) -> tuple[list[Row], list[pv.PolyData], pv.Camera]:
     """Return the rows of the study, the meshes and the camera."""
     flow = load_example()
     camera = render.camera_on(flow.bounds, (1, 0.5, 0.3))
@@ -46,11 +48,15 @@ def measure(seeds: int = 300, repeats: int = 5) -> tuple[list[Row], list[Any], A
     bare = streamlines(flow, scene, vectors="V", seeds=seeds)
     bare.clear_data()
     radius = float(flow.length) / 800
-    ways: dict[int, Callable[[], Any]] = {0: lambda: illuminate(bare, scene, model="cylinder")}
-    for sides in SIDES:
-        ways[sides] = partial(
-            lambda n: illuminate(bare.tube(radius=radius, n_sides=n), scene), sides
-        )
+
+    def build_tubes(sides: int) -> pv.PolyData:
+        lit: pv.PolyData = illuminate(bare.tube(radius=radius, n_sides=sides), scene)
+        return lit
+
+    ways: dict[int, Callable[[], pv.PolyData]] = {
+        0: partial(illuminate, bare, scene, model="cylinder"),
+        **{sides: partial(build_tubes, sides) for sides in SIDES},
+    }
     seconds = take_turns(ways, repeats)
     rows, meshes = [], []
     for sides, build in ways.items():
@@ -67,11 +73,9 @@ def measure(seeds: int = 300, repeats: int = 5) -> tuple[list[Row], list[Any], A
     return rows, meshes, camera
 
 
-def time_to_draw(mesh: Any, camera: Any, repeats: int = 5, **options: Any) -> float:
-    """Return the best seconds of a frame of 800 x 800 after the first, without anti-aliasing."""
-    plotter = render.make_plotter(
-        mesh, camera=camera, size=(800, 800), anti_aliasing=None, **options
-    )
+def time_to_draw(mesh: pv.PolyData, camera: pv.Camera, repeats: int = 5) -> float:
+    """Return the shortest time in seconds of a frame of 800 x 800 pixels after the first one."""
+    plotter = render.make_plotter(mesh, camera=camera, size=(800, 800), anti_aliasing=None)
     try:
         plotter.show(auto_close=False)
 
@@ -85,7 +89,7 @@ def time_to_draw(mesh: Any, camera: Any, repeats: int = 5, **options: Any) -> fl
 
 
 def verdict(rows: Sequence[Row]) -> str:
-    """Return whether lines or tubes are drawn faster, and how many sides a tube needs."""
+    """Return whether lines or tubes are drawn faster, and the number of sides a tube needs."""
     (line,), tubes = ([row for row in rows if row.way == way] for way in ("lit lines", "tubes"))
     enough = holding(tubes, coarse=False)
     tube = enough or max(tubes, key=lambda row: int(row.parameter))
@@ -97,15 +101,15 @@ def verdict(rows: Sequence[Row]) -> str:
         f"a tube needs {tube.parameter} sides for an RMS error of 1/255"
         + (f" ({fewer} are too few)" if fewer else "")
         if enough
-        else f"tubes of {tube.parameter} sides miss by {tube.error / PIXEL:.2g} of 255"
+        else f"tubes of {tube.parameter} sides have an error of {tube.error / PIXEL:.2g} of 255"
     )
     size, build = (
         float(tube.more[key]) / float(line.more[key]) for key in ("MB", "build and light, ms")
     )
     use = "lit lines (model='cylinder')" if best is line else f"tubes of {tube.parameter} sides"
-    why = "the cheaper to draw" if enough else "the only ones within 1/255"
+    why = "which are faster to draw" if enough else "which alone are within 1/255"
     return (
-        f"for lines thinner than a pixel use {use}, {why}: {needed}, and such a tube takes "
+        f"for lines thinner than a pixel use {use}, {why}: {needed}; such a tube needs "
         f"{words(size)} times the memory of a lit line, {words(build)} times the time to build "
         f"and {words(tube.cost / line.cost)} times the time to draw"
     )
@@ -116,7 +120,7 @@ STUDY = Study(
     reference="the exact light of a thin cylinder",
     parameter="sides, 0 for a line",
     error="RMS error of luminance",
-    cost="ms to draw a frame",
+    cost="ms per frame",
     steps=lambda quick: [lambda: measure(100 if quick else 300, 3 if quick else 5)[0]],
     verdict=verdict,
 )

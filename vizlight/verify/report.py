@@ -7,7 +7,7 @@ import contextvars
 import math
 import time
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,8 +21,9 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Bools
     from vizlight.scene import Scene
-    from vizlight.shading.block import Given
     from vizlight.shading.engine import Shading
+    from vizlight.shading.inputs import ArraySource, ShadingInputs
+    from vizlight.shading.options import ShadingOptions
 
 
 #: Largest number of rays through a solid that are computed again.
@@ -30,8 +31,6 @@ RAYS = 64
 #: Largest number of places or triangles that all these rays are tested against.
 TRIALS = 20_000_000
 SHADOW = ("t",)
-#: Options of the engine that the light of a point depends on.
-OPTIONS = ("model", "compensate", "conditioned", "two_sided", "terminator", "fur")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -201,7 +200,7 @@ def report(*, sample: int = 256, seed: int = 0) -> Iterator[Report]:
         _ACTIVE.reset(token)
 
 
-def note(given: Given, scene: Scene, shading: Shading, options: dict[str, Any]) -> None:
+def note(given: ShadingInputs, scene: Scene, shading: Shading, options: ShadingOptions) -> None:
     """Add a run of the engine to the open report, if there is one."""
     active = _ACTIVE.get()
     if active is None:
@@ -212,8 +211,7 @@ def note(given: Given, scene: Scene, shading: Shading, options: dict[str, Any]) 
     drawn = np.sort(random.choice(count, min(active.sample, count), replace=False))
     apart = frames.default_rtol(shading.plan.n, shading.plan.dtype)
     width = 1 if shading.rgb is None else 4
-    settings = {name: options[name] for name in OPTIONS if name in options}
-    reference = [_reference(given, int(i), scene, apart=apart, **settings) for i in drawn]
+    reference = [_reference(given, int(i), scene, options, apart) for i in drawn]
     true = np.array([[lit.luminance, *lit.rgb] for lit in reference]).reshape(-1, width)
     got = shading.luminance[drawn, np.newaxis]
     got = got if shading.rgb is None else np.hstack([got, shading.rgb[drawn]])
@@ -334,16 +332,18 @@ def paused() -> Iterator[None]:
         _ACTIVE.reset(token)
 
 
-def _reference(given: Given, i: int, scene: Scene, *, apart: float, **settings: Any) -> oracle.Lit:
+def _reference(
+    given: ShadingInputs, i: int, scene: Scene, options: ShadingOptions, apart: float
+) -> oracle.Lit:
     """Return the light of one point by the oracle."""
     n, row = given.points.shape[1], i // given.repeat
     own, shared = slice(i, (row + 1) * given.repeat, given.repeat), slice(row, row + 1)
 
-    def numbers(rows: Any, at: slice) -> list[float]:
+    def numbers(rows: ArraySource, at: slice) -> list[float]:
         values: list[float] = np.asarray(rows[at], dtype=np.float64).ravel().tolist()
         return values
 
-    def vectors(rows: Any) -> list[list[float]] | None:
+    def vectors(rows: ArraySource | None) -> list[list[float]] | None:
         if rows is None:
             return None
         flat = numbers(rows, own if rows.shape[0] == given.points.shape[0] else shared)
@@ -354,9 +354,14 @@ def _reference(given: Given, i: int, scene: Scene, *, apart: float, **settings: 
         vectors(given.tangents),
         None if given.normals is None else numbers(given.normals, shared),
         scene,
-        base_tangents=vectors(given.carrier),
-        fur_height=0.0 if given.depth is None else numbers(given.depth, own)[0],
+        base_tangents=vectors(given.base_tangents),
+        fur_height=0.0 if given.fur_height is None else numbers(given.fur_height, own)[0],
         shadow=None if given.shadow is None else numbers(given.shadow, own),
+        model=options.model,
+        compensate=options.compensate,
+        conditioned=bool(options.conditioned),
+        two_sided=options.two_sided,
+        terminator=options.terminator,
+        fur=given.fur,
         apart=apart,
-        **settings,
     )

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from vizlight.geometry.primitives import Block, Sphere, Truncus
+from vizlight.geometry.primitives import Block, Frustum, Sphere
 
 from vizlight.geometry.contours import banding, refinement, spacing
 from vizlight.geometry.solids import triangle_mesh
@@ -146,7 +146,7 @@ def test_diffuse_and_specular_together(levels_, random):
     assert np.quantile(gap, 0.9) < 1e-12
 
 
-@pytest.mark.parametrize("solid", [Sphere(), Block(), Truncus(radii=(0.2, 0.7))])
+@pytest.mark.parametrize("solid", [Sphere(), Block(), Frustum(radii=(0.2, 0.7))])
 def test_several_lights(solid, random):
     """The composite contours of the source's footnote, terminators of both lights included."""
     lights = np.array([[1.0, 0, 0.3], [-0.5, 0.8, 0.2]])
@@ -161,7 +161,7 @@ def test_several_lights(solid, random):
 
 
 def test_empty_shapes():
-    for solid in (Sphere(radius=0), Truncus(radii=(0, 0)), Block(size=(0, 0, 1))):
+    for solid in (Sphere(radius=0), Frustum(radii=(0, 0)), Block(size=(0, 0, 1))):
         made = refinement.draw(triangle_mesh.mesh(solid, 24), spot, 5, low=0.1)
         assert len(made.values) == 0
         assert made.error == 0

@@ -83,7 +83,7 @@ def test_rulings_against_50_digits(shape, power, figure):
         normal = source_normal(middle, AXIS, *SHAPES[shape])
         cosine = max(oracles.dot(normal, light), 0)
         error = abs(mp.mpf(0.1) + mp.mpf(0.8) * cosine**power - mp.mpf(float(level)))
-        # Where the level is the least, the terminator, only the cosine is at hand.
+        # At the lowest level, the terminator, only the cosine can be compared.
         height, radii = SHAPES[shape]
         bound = 8 + 4 * power + height / max(radii)
         figure(
@@ -122,7 +122,7 @@ def test_curves_of_a_near_light(shape, light, random):
     place, polygon = banded.places(bands, random)
     on, normal = onto(place, bands.patch[polygon], shape)
     error = np.abs(law(on, normal, **light) - bands.values[polygon])
-    # Chords between exact contour points add a tenth of half a step to nearly all places.
+    # Chords between exact contour points add at most a tenth of half a step almost everywhere.
     assert np.quantile(error, 0.999) <= 1.15 * bands.steps.error
     assert error.max() <= 1.5 * bands.steps.error
 
@@ -236,7 +236,7 @@ def test_laminae_hold_no_empty_one_and_close_the_far_side():
     ]
     for quad in quads:
         assert np.linalg.norm(np.cross(quad[1] - quad[0], quad[2] - quad[0])) > 1e-6
-        # Plane, as the source says.
+        # Each lamina is plane, as the source states.
         rel = quad - quad[0]
         assert np.linalg.svd(rel)[1][2] < 1e-12
     side = np.array([q.mean(axis=0) for q in quads[:-2]])

@@ -122,7 +122,7 @@ def test_an_allowed_error_is_kept_by_few_steps(light, error, random):
     assert bands.error <= error
     n = len(bands.steps.edges) - 1
     span = bands.steps.edges[-1] - 0.1
-    # One step less could not keep 95 % of it; the rest is for chords.
+    # With one step less the error exceeds 95 % of it; the rest is reserved for chords.
     assert n == 1 or span / (n - 1) / 2 > 0.95 * error
 
 
@@ -182,7 +182,7 @@ def test_laminae_from_the_light_from_behind_and_across(random):
             shown[np.hypot(*pixel.T) < r[i]] = laminae.values[i]
         assert np.nanmax(np.abs(shown - exact)) <= 0.05 + 1e-3
         assert np.isnan(shown).sum() <= len(pixel) * 0.01
-    # Across the axis each is seen as a line: the whole picture is missing.
+    # From a direction normal to the axis each lamina is seen as a line: nothing is drawn.
     assert np.ptp(circles[:, :, 2], axis=1).max() < 1e-12
 
 

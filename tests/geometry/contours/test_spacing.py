@@ -17,7 +17,7 @@ def test_worst_error_is_half_a_step(count, low, span, seed):
     error = np.abs(steps.values[steps.band(value)] - value)
     assert steps.error == pytest.approx(span / count / 2, rel=1e-9)
     assert error.max() <= steps.error * (1 + 1e-9)
-    # It is reached at every contour, from below and from above.
+    # The error is largest at every contour, from below and from above.
     k = np.arange(1, count + 1)
     np.testing.assert_allclose(np.abs(steps.values[k] - steps.edges[k]), steps.error, rtol=1e-6)
 

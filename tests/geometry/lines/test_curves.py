@@ -118,7 +118,7 @@ def test_nothing():
         (np.ones(3), {}, ValueError, r"points: expected shape \(N, n\)"),
         (np.ones((3, 3)), {"connectivity": [0, 3]}, ValueError, "connectivity: .* from 0 to 2"),
         (np.ones((3, 3)), {"connectivity": [0.5]}, TypeError, "connectivity: expected integers"),
-        (np.ones((3, 3)), {"offsets": [0, 2]}, ValueError, "offsets: expected rising numbers"),
+        (np.ones((3, 3)), {"offsets": [0, 2]}, ValueError, "offsets: expected rising indices"),
         (np.ones((3, 3)), {"offsets": [0, 2, 1, 3]}, ValueError, "offsets: expected rising"),
         (np.ones((3, 3)), {"offsets": [0, 4]}, ValueError, "offsets: .* from 0 to 3"),
     ],

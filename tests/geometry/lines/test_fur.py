@@ -101,10 +101,10 @@ def test_triangles_without_area_have_no_seeds():
 @pytest.mark.parametrize(
     ("points", "faces", "count", "words"),
     [
-        (np.eye(3), [[0, 1]], 5, r"faces: expected integers of shape \(T, 3\)"),
+        (np.eye(3), [[0, 1]], 5, r"faces: expected integers of shape \(M, 3\)"),
         (np.eye(3), [[0.0, 1, 2]], 5, "faces: expected integers"),
-        (np.eye(3), [[0, 1, 1]], 5, "faces: expected a surface of some area"),
-        (np.eye(3), np.empty((0, 3), int), 5, "faces: expected a surface of some area"),
+        (np.eye(3), [[0, 1, 1]], 5, "faces: expected triangles with an area above 0"),
+        (np.eye(3), np.empty((0, 3), int), 5, "faces: expected triangles with an area above 0"),
         (np.eye(3), [[0, 1, 2]], -1, "count: expected an integer of at least 0"),
     ],
 )

@@ -362,7 +362,7 @@ def test_winding_numbers():
         (
             lambda: manifolds.complex_curve(lambda z: z[:3]),
             ValueError,
-            "function: expected one that returns numbers of the shape",
+            "function: expected one that returns numbers in the shape",
         ),
         (
             lambda: manifolds.complex_curve(np.exp, derivative=lambda z: None),
@@ -372,7 +372,7 @@ def test_winding_numbers():
         (
             lambda: manifolds.complex_curve(lambda z: np.where(z.real > 1, np.nan, z)),
             ValueError,
-            "function: expected finite numbers on its domain and .* around it.*pass derivative=",
+            "function: expected finite values on its domain .* outside it.*pass derivative=",
         ),
         (lambda: manifolds.torus_curve(2, turns=0), ValueError, "turns: expected an integer"),
         (lambda: manifolds.klein_bottle(minor=3.0), ValueError, "minor: expected less than major"),

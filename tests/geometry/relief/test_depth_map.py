@@ -47,7 +47,7 @@ def test_a_node_on_an_edge_is_covered():
 
 
 def test_bad_input():
-    with pytest.raises(ValueError, match="x: expected rising nodes of one step"):
+    with pytest.raises(ValueError, match="x: expected rising nodes of equal spacing"):
         depth_map([0, 1, 3], [0, 1], np.eye(3), [[0, 1, 2]])
     with pytest.raises(ValueError, match="triangles: expected integers"):
         depth_map([0, 1], [0, 1], np.eye(3), [[0.0, 1, 2]])

@@ -1,1 +1,1 @@
-"""Contours of equal luminance: in closed form, on solids and on triangles."""
+"""Contours of equal luminance: in closed form, on solids and on triangle meshes."""

@@ -1,10 +1,10 @@
-"""What shapes of revolution share: frames, checked sources of light, the law of a term."""
+"""Common parts of shapes of revolution: frames, validated lights and their reflection."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,19 +12,27 @@ from vizlight import _check
 from vizlight.model import falloff
 
 if TYPE_CHECKING:
-    from vizlight._types import Array
+    from vizlight._types import Array, VectorLike
 
 
-#: Segments of a circle: as few as look round, and the most that are tried.
+#: Segments of a circle: the fewest that look round, and the most that are tried.
 FEWEST, MOST = 36, 1 << 13
 
 
 @dataclass(frozen=True)
 class Source:
-    """One light and the law by which a surface gives it back: ``low + scale c^power fading``.
+    """One light and its reflection, of luminance ``low + scale cosine^power fading``.
 
-    ``toward`` is a unit vector to a light at infinity, or to a near one from the shape's
-    centre; ``distance`` is infinite, or that of the near light from the centre.
+    Attributes
+    ----------
+    toward : ndarray, shape (3,)
+        Unit vector from the shape's centre toward the light.
+    distance : float
+        Distance of the light from the centre; infinite for a light at infinity.
+    low, scale, power : float
+        Luminance without light, factor of the lit part, and exponent of the cosine.
+    attenuation : (c1, c2, c3)
+        Coefficients of the fading with distance.
     """
 
     toward: Array
@@ -34,7 +42,7 @@ class Source:
     power: float
     attenuation: tuple[float, float, float]
 
-    def luminance(self, cosine: Array, distance: Any = math.inf) -> Array:
+    def luminance(self, cosine: Array, distance: Array | float = math.inf) -> Array:
         """Return the luminance for the cosine of incidence and the distance to the light."""
         lit = np.maximum(cosine, 0)
         with np.errstate(under="ignore"):
@@ -45,15 +53,15 @@ class Source:
 
 
 def source(
-    center: Array, *, direction: Any, position: Any, ambient: float, diffuse: float,
-    power: float, attenuation: Any,
+    center: Array, *, direction: VectorLike | None, position: VectorLike | None, ambient: float,
+    diffuse: float, power: float, attenuation: VectorLike,
 ) -> Source:  # fmt: skip
-    """Check what lights a shape and return it as seen from the shape's centre."""
+    """Validate the light of a shape and return it relative to the shape's centre."""
     if (direction is None) == (position is None):
         raise ValueError(
             _check.message(
                 "direction", "either direction= (toward the light) or position=",
-                "neither" if direction is None else "both",
+                "neither" if direction is None else "both", "pass one of them",
             )
         )  # fmt: skip
     low = _check.number("ambient", ambient, low=0.0, high=_check.LARGEST)
@@ -63,7 +71,7 @@ def source(
     if direction is not None:
         if fading != (1.0, 0.0, 0.0):
             raise ValueError(
-                _check.message("attenuation", "a position= beside it", "a light at infinity")
+                _check.message("attenuation", "a light with position=", "a light at infinity")
             )
         return Source(unit("direction", direction), math.inf, low, scale, power, fading)
     offset = triple("position", position) - center
@@ -72,12 +80,12 @@ def source(
     return Source(toward, size, low, scale, power, fading)
 
 
-def length(vector: Any) -> float:
+def length(vector: VectorLike) -> float:
     """Return the length of a vector, without overflow or underflow."""
     return math.hypot(*(float(x) for x in vector))
 
 
-def triple(name: str, value: Any) -> Array:
+def triple(name: str, value: object) -> Array:
     """Return a finite vector of 3 components."""
     found = _check.vector(name, value)
     if len(found) != 3:
@@ -85,7 +93,7 @@ def triple(name: str, value: Any) -> Array:
     return np.array(found)
 
 
-def unit(name: str, value: Any) -> Array:
+def unit(name: str, value: object) -> Array:
     """Return a unit vector of 3 components."""
     found = triple(name, value)
     top = np.abs(found).max()
@@ -98,9 +106,10 @@ def unit(name: str, value: Any) -> Array:
 
 
 def frame(axis: Array, toward: Array | None = None) -> tuple[Array, Array]:
-    """Return two unit vectors across a unit axis and each other, the first rather ``toward``.
+    """Return two unit vectors normal to a unit axis and to each other.
 
-    Where ``toward`` runs along the axis to rounding, the first is arbitrary.
+    The first is along the part of ``toward`` that is normal to the axis. It is arbitrary without
+    ``toward``, and where ``toward`` is parallel to the axis to rounding.
     """
     first = None
     if toward is not None:
@@ -116,8 +125,8 @@ def frame(axis: Array, toward: Array | None = None) -> tuple[Array, Array]:
     return first, np.cross(axis, first)
 
 
-def options(segments: Any, form: Any, forms: tuple[str, ...]) -> int | None:
-    """Check how finely a circle is drawn, and the form of the result."""
+def options(segments: int | None, form: str, forms: tuple[str, ...]) -> int | None:
+    """Validate the number of segments of a circle and the form of the result."""
     if form not in forms:
         raise ValueError(_check.message("form", " or ".join(map(repr, forms)), repr(form)))
     return None if segments is None else _check.integer("segments", segments, low=3)

@@ -1,51 +1,57 @@
-"""Bands of luminance: what contours cut a surface into."""
+"""Bands of luminance, the parts of a surface between contours."""
 
 from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from numpy.typing import ArrayLike
+
     from vizlight._types import Array, Indices
     from vizlight.geometry.contours.spacing import Steps
 
-#: Halvings of an edge in search of a contour: what is left is below rounding.
+    Luminance = Callable[[Indices, Indices, Array, Indices], Array]
+
+#: Halvings of an edge in search of a contour; the remaining interval is below rounding.
 HALVINGS = 48
-#: Contour points closer to a corner than this share of the edge are that corner.
+#: Share of the edge below which a contour point is merged with the corner.
 SNAP = 1e-11
 
 
 @dataclass(frozen=True)
 class Bands:
-    """The surface between neighbouring contours, as polygons with one value each.
+    """The surface between neighbouring contours, as polygons with one value per polygon.
 
     Attributes
     ----------
     points : ndarray of float64, shape (P, 3)
-        Shared by neighbouring polygons: a closed surface stays closed.
+        Positions. Neighbouring polygons share points, so that a closed surface stays closed.
     offsets : ndarray of int, shape (C + 1,)
+        Start of each polygon in ``corners``.
     corners : ndarray of int
-        Polygon i has the points ``corners[offsets[i]:offsets[i + 1]]``, counter-clockwise seen
-        from outside.
+        Indices of points: polygon i has the points ``corners[offsets[i]:offsets[i + 1]]``,
+        counter-clockwise seen from outside.
     band : ndarray of int, shape (C,)
-        0 is what is not brighter than the lowest luminance.
+        Band of each polygon; band 0 holds the lowest luminance.
     values : ndarray of float64, shape (C,)
-        The luminance of each polygon.
+        Luminance of each polygon.
     patch : ndarray of int, shape (C,)
-        Which smooth part of the surface a polygon is of.
+        Index of the smooth part of the surface that each polygon belongs to.
     lines : ndarray of int, shape (S, 2)
-        Pieces of the contour lines.
+        Indices of the end points of contour segments.
     line_levels : ndarray of float64, shape (S,)
-        The luminance of each piece.
+        Luminance of each contour segment.
     steps : Steps
+        Luminance of contours and bands.
     error : float
-        The largest luminance error: for closed forms the bound, else measured at the
-        middle of each polygon and along its edges.
+        Largest luminance error: the bound of a closed form, else the error measured at the centre
+        and along the edges of each polygon.
     """
 
     points: Array
@@ -61,7 +67,7 @@ class Bands:
 
     @property
     def levels(self) -> Array:
-        """The luminance of the contours between the lowest and the highest."""
+        """Luminance of the contours between the lowest and the highest luminance."""
         return self.steps.edges[1:-1]
 
     def middles(self) -> Array:
@@ -75,7 +81,7 @@ class Bands:
         """Return the mean unit normal of each polygon, zero where it has no area."""
         corners, owner = self.triangles()
         a, b, c = (self.points[corners[:, i], :3] for i in range(3))
-        # Over its size, as squares of tiny lengths vanish and those of huge ones overflow.
+        # Relative to the extent: squares of tiny lengths underflow and those of huge ones overflow.
         unit = float(np.ptp(self.points[:, :3], axis=0).max(initial=0)) or 1.0
         across = np.cross((b - a) / unit, (c - a) / unit)
         total = np.stack([np.bincount(owner, x, len(self.values)) for x in across.T], axis=1)
@@ -83,7 +89,7 @@ class Bands:
         return np.asarray(total / np.where(size > 0, size, 1))
 
     def triangles(self) -> tuple[Indices, Indices]:
-        """Return the polygons as fans of triangles, and the polygon of each."""
+        """Return the polygons as fans of triangles, and the polygon of each triangle."""
         size = np.diff(self.offsets)
         owner = np.repeat(np.arange(len(size)), size - 2)
         start = np.concatenate([[0], np.cumsum(size - 2)])[:-1]
@@ -95,33 +101,36 @@ class Bands:
 
 @dataclass(frozen=True)
 class Laminae:
-    """Plane polygons that are filled one over the other, the farthest first.
+    """Plane polygons that are painted over one another, the farthest first.
 
     Attributes
     ----------
     points : ndarray of float64, shape (P, 3)
+        Positions.
     offsets : ndarray of int, shape (C + 1,)
-        Lamina i has the points from ``offsets[i]`` to ``offsets[i + 1]``, in cyclic order.
+        Start of each lamina in ``points``: lamina i has the points ``offsets[i]`` to
+        ``offsets[i + 1]``, in cyclic order.
     values : ndarray of float64, shape (C,)
+        Luminance of each lamina.
     """
 
     points: Array
     offsets: Indices
     values: Array
 
-    def order(self, toward: Any) -> Indices:
+    def order(self, toward: ArrayLike) -> Indices:
         """Return the painter's order for a view: the farthest lamina first.
 
         Parameters
         ----------
         toward : array_like, shape (3,)
-            Toward the eye of a parallel view.
+            Direction toward the eye of a parallel view.
 
         Returns
         -------
         ndarray of int, shape (C,)
-            By the depth of each lamina's centre. Where the view runs in the planes of the
-            laminae each is seen as a line and no order helps: draw bands there.
+            Indices of laminae, sorted by the depth of their centres. If the view direction lies
+            in the planes of the laminae, each is seen as a line and no order is right: use bands.
         """
         size = np.diff(self.offsets)
         lamina = np.repeat(np.arange(len(size)), size)
@@ -138,7 +147,7 @@ def cut(
     *,
     patch: Indices | None = None,
     place: Callable[[Indices, Indices, Array], Array] | None = None,
-    luminance: Callable[[Indices, Indices, Array, Indices], Array] | None = None,
+    luminance: Luminance | None = None,
     halvings: int = HALVINGS,
 ) -> tuple[Bands, Indices]:
     """Cut triangles along contours.
@@ -146,35 +155,38 @@ def cut(
     Parameters
     ----------
     points : ndarray, shape (P, 3)
+        Positions.
     triangles : ndarray of int, shape (T, 3)
+        Indices of corners.
     values : ndarray, shape (T, 3)
-        Luminance at the corners; both sides of a crease may differ.
+        Luminance at the corners; it may differ between both sides of a crease.
     steps : Steps
+        Luminance of contours and bands.
     patch : ndarray of int, shape (T,), optional
-        The smooth part that a triangle is of: sides of one edge in one patch share their
-        contour points.
+        Index of the smooth part that each triangle belongs to. The triangles at an edge that
+        belong to one patch share their contour points. Default: one patch.
     place : callable, optional
-        ``place(a, b, t)``: points on the surface at the share t of the edges from a to b.
-        Default: on the chord.
+        Function ``place(a, b, t)`` that returns the points on the surface at the fraction t of the
+        edges from a to b. Default: points on the chord.
     luminance : callable, optional
-        ``luminance(a, b, t, patch)`` there. With it contour points are found by halving the
-        edge, else by linear interpolation.
-    halvings : int
-        How often.
+        Function ``luminance(a, b, t, patch)`` that returns the luminance at these points. With it,
+        contour points are found by halving the edge, else by linear interpolation.
+    halvings : int, default: 48
+        Number of halvings.
 
     Returns
     -------
-    Bands
-        Without an error (NaN).
+    bands : Bands
+        Bands, with NaN as the error.
     triangle : ndarray of int, shape (C,)
-        What each polygon was cut from.
+        Index of the triangle that each polygon was cut from.
 
     Notes
     -----
-    A value belongs to the band k that has it in (edges[k-1], edges[k]]. Halving keeps the order
-    of the levels along an edge even where the luminance is not monotone there, so that each
-    triangle is cut into one polygon a band. All triangles at an edge have all its contour
-    points as corners, whichever side they come from: a closed surface stays closed.
+    A value in (edges[k-1], edges[k]] belongs to band k. Halving keeps the order of the levels
+    along an edge even where the luminance is not monotone there, so that each triangle is cut
+    into one polygon per band. All triangles at an edge have all its contour points as corners,
+    whichever side they come from: a closed surface stays closed.
     """
     count = len(triangles)
     patch = np.zeros(count, np.intp) if patch is None else np.asarray(patch, np.intp)
@@ -188,7 +200,7 @@ def cut(
     share[share < SNAP] = 0
     share[share > 1 - SNAP] = 1
 
-    # Along each edge: by share, and where shares agree as the levels of a side run.
+    # Along each edge: by fraction, and for equal fractions in the order of a side's levels.
     rising = np.where(at[of_side, 0] <= at[of_side, 1], level, -level)
     order = np.lexsort((rising, share, edge[of_side]))
     of_side, level, share = of_side[order], level[order], share[order]
@@ -240,13 +252,19 @@ def cut(
 
 
 def weld(bands: Bands, clusters: Indices) -> Bands:
-    """Return bands of which the points of each cluster are one.
+    """Return bands with the points of each cluster merged.
 
     Parameters
     ----------
     bands : Bands
+        Bands to change; they are not modified.
     clusters : ndarray of int, shape (P,)
-        The point that takes the place of each.
+        Index of the point that replaces each point.
+
+    Returns
+    -------
+    Bands
+        Bands without the polygons that lose their area.
     """
     size = np.diff(bands.offsets)
     owner = np.repeat(np.arange(len(size)), size)
@@ -270,10 +288,13 @@ def weld(bands: Bands, clusters: Indices) -> Bands:
     )
 
 
-def _sides(triangles: Indices, values: Array, patch: Indices) -> tuple[Any, ...]:
-    """Return the side of each triangle's edges, and of the sides: edge, ends, patch, values.
+def _sides(
+    triangles: Indices, values: Array, patch: Indices
+) -> tuple[Indices, Indices, Indices, Indices, Array]:
+    """Return the sides of each triangle, the edge of each side, and ends, patches and values.
 
-    A side is an edge as one patch has it; corner i of a triangle starts its edge i.
+    A side is an edge as part of one patch; edge i of a triangle begins at corner i. The ends are
+    those of edges, patches and values those of sides.
     """
     start, stop = triangles, np.roll(triangles, -1, axis=1)
     low, high = np.minimum(start, stop), np.maximum(start, stop)
@@ -294,7 +315,7 @@ def _sides(triangles: Indices, values: Array, patch: Indices) -> tuple[Any, ...]
 
 
 def _ranges(first: Indices, last: Indices) -> tuple[Indices, Indices]:
-    """Return the owner and the number of each whole number in some half-open ranges."""
+    """Return the integers of half-open ranges, and before them the range of each."""
     size = last - first
     owner = np.repeat(np.arange(len(size)), size)
     start = np.cumsum(size) - size
@@ -307,10 +328,10 @@ def _shares(
     patch: Indices,
     values: Array,
     level: Array,
-    luminance: Any,
+    luminance: Luminance | None,
     halvings: int,
 ) -> Array:
-    """Return where along its edge each level is crossed."""
+    """Return the fraction of its edge at which each level is crossed."""
     if luminance is None:
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             linear = (level - values[:, 0]) / (values[:, 1] - values[:, 0])
@@ -331,8 +352,8 @@ def _walk(
 ) -> tuple[Indices, Indices, Indices, Indices, Indices]:  # fmt: skip
     """Walk around each triangle, up from its darkest corner and down again.
 
-    Returns rows of triangle, band, position, point and the level crossed there, -1 where none
-    is; a point on a contour has two rows, one for each of its bands.
+    Returns columns of triangle, band, position, point and the level crossed there, or -1 without
+    a crossing. A point on a contour has two rows, one for each of its bands.
     """
     count = len(corner)
     rows: list[list[Indices]] = []
@@ -369,7 +390,7 @@ def _walk(
 def _polygons(
     triangle: Indices, band: Indices, corner: Indices
 ) -> tuple[Indices, Indices, Indices]:
-    """Return offsets, corners and the first row of the polygons with three corners or more."""
+    """Return offsets, corners and the first row of polygons with at least three corners."""
     if not len(triangle):
         return np.zeros(1, np.intp), corner, triangle
     new = np.ones(len(triangle), np.bool_)
@@ -380,7 +401,7 @@ def _polygons(
     previous = np.empty_like(corner)
     previous[1:] = corner[:-1]
     previous[first] = corner[last]
-    # A point that repeats the one before it, around the polygon, is left out.
+    # A point equal to its predecessor around the polygon is left out.
     kept = corner != previous
     size = np.bincount(group[kept], minlength=len(first))
     good = size >= 3
@@ -390,7 +411,7 @@ def _polygons(
 
 
 def _lines(triangle: Indices, crossed: Indices, corner: Indices) -> tuple[Indices, Indices]:
-    """Return pieces of contours, one a triangle and level, and the level of each."""
+    """Return contour segments, one per triangle and level, and the level of each."""
     on = np.flatnonzero(crossed >= 0)
     order = on[np.lexsort((crossed[on], triangle[on]))]
     pairs = corner[order].reshape(-1, 2)

@@ -1,4 +1,4 @@
-"""A triangle mesh lit with the normals of its points, interpolated over each triangle."""
+"""Triangle meshes lit with point normals that are interpolated over each triangle."""
 
 from __future__ import annotations
 
@@ -19,17 +19,19 @@ if TYPE_CHECKING:
 
 
 class Facets:
-    """Triangles for :func:`vizlight.geometry.contours.refinement.refine`.
+    """Lit triangles for :func:`vizlight.geometry.contours.refinement.refine`.
 
     Parameters
     ----------
     points : ndarray, shape (P, 6)
-        Positions, and unit normals beside them: what is linear along an edge.
+        Positions and unit normals, both of which are interpolated linearly along edges.
     triangles : ndarray of int, shape (T, 3)
+        Indices of corners.
     luminance : callable
-        ``luminance(points, normals)``; the normals need not be unit vectors.
+        Function ``luminance(points, normals)``, which accepts normals of any length.
     lit : ndarray of bool, shape (P,)
-        Points that could be lit: the light of others jumps, and is not refined.
+        Mask of the points that could be lit. The luminance of other points is discontinuous, and
+        their triangles are not refined.
     """
 
     def __init__(self, points: Array, triangles: Indices, luminance: Luminance, lit: Bools) -> None:
@@ -37,7 +39,7 @@ class Facets:
         self._light = luminance
 
     def light(self, points: Array) -> Array:
-        """Return the luminance of some of its points."""
+        """Return the luminance of rows of positions and normals."""
         return np.asarray(self._light(points[:, :3], points[:, 3:]), dtype=np.float64)
 
     def corners(self) -> Array:
@@ -57,7 +59,7 @@ class Facets:
         )
 
     def measure(self, bands: Bands, triangle: Indices) -> Array:
-        """Return the largest error of each polygon at its middle and along its edges."""
+        """Return the largest error of each polygon at its centre and along its edges."""
         worst = np.zeros(len(bands.values))
         for places, of in refinement.within(bands):
             miss = np.abs(self.light(places) - bands.values[of])
@@ -67,7 +69,7 @@ class Facets:
         return worst
 
     def peaks(self, values: Array, bound: float) -> Indices:
-        """Return triangles in which the luminance rises above that of all corners by more."""
+        """Return the triangles whose luminance exceeds that of their corners by over ``bound``."""
         if len(self.triangles) > refinement.ASKED:
             return np.empty(0, np.intp)
         top = values.max(axis=1) + bound
@@ -77,7 +79,7 @@ class Facets:
         return np.flatnonzero(found & np.all(self.lit[self.triangles], axis=1))
 
     def split(self, chosen: Indices) -> None:
-        """Halve the edges of some triangles; their neighbours are cut to fit."""
+        """Halve the edges of chosen triangles, and split their neighbours to match."""
         start, stop = self.triangles, np.roll(self.triangles, -1, axis=1)
         count = len(self.points)
         codes = np.minimum(start, stop) * count + np.maximum(start, stop)

@@ -1,4 +1,7 @@
-"""Isoluminance contours of a generalised truncus: cone, frustum, cylinder, disc or rod."""
+"""Isoluminance contours of a generalised truncus: cone, frustum, cylinder, disc or rod.
+
+The source calls a conical frustum and its limits a truncus.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,10 @@ from vizlight.geometry.solids import primitives, triangle_mesh
 from vizlight.model import kernels
 
 if TYPE_CHECKING:
-    from vizlight._types import Array
+    from numpy.typing import ArrayLike
+
+    from vizlight._types import Array, Indices, VectorLike
+    from vizlight.geometry.contours.refinement import Luminance
     from vizlight.geometry.contours.spacing import Levels, Steps
 
 Form = Literal["bands", "laminae"]
@@ -23,76 +29,82 @@ Method = Literal["rulings", "curves"]
 
 
 def truncus(
-    center: Any,
-    axis: Any,
-    radii: tuple[float, float],
+    center: VectorLike,
+    axis: VectorLike,
+    radii: VectorLike,
     /,
     *,
     height: float | None = None,
-    direction: Any = None,
-    position: Any = None,
+    direction: VectorLike | None = None,
+    position: VectorLike | None = None,
     ambient: float = 0.0,
     diffuse: float = 1.0,
     power: float = 1.0,
-    attenuation: Any = (1.0, 0.0, 0.0),
+    attenuation: VectorLike = (1.0, 0.0, 0.0),
     levels: Levels = 16,
     segments: int | None = None,
     form: Form = "bands",
     method: Method | None = None,
 ) -> Any:
-    """Return the isoluminance contours of a truncus: its rulings, and its two ends.
+    """Return the isoluminance contours of a frustum: rulings of its side, and its two ends.
 
     Parameters
     ----------
     center : vector of 3 components
-        The middle of the axis.
+        Midpoint of the axis.
     axis : vector of 3 components
-        From the second end to the first; its length is the height unless that is given.
+        Direction from the second end to the first. Its length is the height unless ``height``
+        is given.
     radii : (float, float)
-        R1 at the end ``center + axis / 2`` and R2 at the other, 0 or more: one of them 0 is a
-        cone, equal ones a cylinder, disc or rod.
+        Radii R1 at ``center + axis / 2`` and R2 at ``center - axis / 2``, 0 or more. With one
+        radius of 0 the shape is a cone, with equal radii a cylinder, disc or rod.
     height : float, optional
-        0 or more. At height 0 the side is a flat ring, of no area where the radii are equal.
+        Height, 0 or more. At height 0 the side is a flat ring, without area if the radii are
+        equal.
     direction, position, ambient, diffuse, power, attenuation
-        Of the light, as for :func:`sphere`.
+        Light and reflection, as for :func:`vizlight.geometry.isoluminance.sphere`.
     levels : int, float or sequence of float, default: 16
-        As for :func:`sphere`; the steps are those of the side. Each end has the one value that
-        it has under a light at infinity, exactly.
+        Steps of luminance of the side, as for :func:`vizlight.geometry.isoluminance.sphere`. Under
+        a light at infinity each end has one exact value.
     segments : int, optional
-        Fewest points of an end's circle, 3 or more; default 36.
+        Smallest number of points on the circle of an end, 3 or more. Default: 36.
     form : {"bands", "laminae"}
-        Bands are a closed surface; laminae are quadrilaterals and the two ends, for
-        :meth:`Laminae.order`.
+        Form of the result. Bands are a closed surface; laminae are quadrilaterals and the two
+        ends, to be painted by :meth:`Laminae.order`.
     method : {"rulings", "curves"}, optional
-        Of a near light. Rulings take it as a light at infinity seen from the centre, the
-        source's approximation. Curves (the default; for bands) are found by halving edges and
-        are right for the light where it stands, on the ends too.
+        Treatment of a near light. Rulings replace it by a light at infinity in its direction from
+        the centre, which is the source's approximation. Curves are found by halving edges and are
+        right for the position of the light, also on the ends. Default: curves for bands, rulings
+        for laminae.
 
     Returns
     -------
     Bands or Laminae
-        Patches 0, 1 and 2 are the side, the first and the second end.
+        Contours; patches 0, 1 and 2 are the side, the first end and the second end.
 
     Raises
     ------
     TypeError, ValueError
-        If an argument does not fit.
+        If an argument is not valid.
 
     Notes
     -----
-    ``N`` along ``H rho + (R2 - R1) a``, rho the unit vector across the unit axis a and H the
-    height: the source's ``p14 - (c - h a)`` with ``h = (R2^2 - R1^2) / (2 H)`` divided by
-    ``(R1 + R2) / (2 H)``, so that neither height 0 nor two radii of 0 divide by zero. With phi
-    the angle from the light around the axis ``N . L = A cos(phi) + B``: each level has two
-    rulings, exact for a light at infinity.
-    The source's laminae for ``0 <= i < N`` begin with one of no area and never close the far
-    side; here they are the chords through both rulings of each contour, on both sides.
-    The luminance at a ruling misses its level by at most ``(8 + 4 power) eps`` of ``diffuse``,
-    and by what rounding of long thin shapes turns the rulings: ``H / max(R1, R2) eps``. For
-    powers below 1, infinitely steep at the terminator, ``((8 + H / max(R1, R2)) eps)^power``.
+    The normal ``N`` is parallel to ``H rho + (R2 - R1) a``, with rho the unit vector normal to the
+    unit axis a, and H the height. This is the source's ``p14 - (c - h a)`` with
+    ``h = (R2^2 - R1^2) / (2 H)``, divided by ``(R1 + R2) / (2 H)``, so that neither height 0 nor
+    two radii of 0 lead to a division by zero. With phi the angle around the axis from the light,
+    ``N . L = A cos(phi) + B``: each level has two rulings, which are exact for a light at infinity.
+
+    The source's laminae for ``0 <= i < N`` begin with a lamina without area and never close the
+    far side; here they are the chords through both rulings of each contour, on both sides.
+
+    The luminance at a ruling differs from its level by at most ``(8 + 4 power) eps`` of
+    ``diffuse``, plus ``H / max(R1, R2) eps`` from the rotation of rulings by rounding of long thin
+    shapes. For powers below 1, infinitely steep at the terminator, the bound is
+    ``((8 + H / max(R1, R2)) eps)^power``.
     Source: Isoluminance, Representing a Generalised Truncus, and appendix.
     """
-    solid = primitives.Truncus(center, axis, radii, height=height)
+    solid = primitives.Frustum(center, axis, radii, height=height)
     light = axial.source(
         solid.center, direction=direction, position=position, ambient=ambient, diffuse=diffuse,
         power=power, attenuation=attenuation,
@@ -103,27 +115,27 @@ def truncus(
     if method not in get_args(Method):
         raise ValueError(_check.message("method", "'rulings' or 'curves'", repr(method)))
     if method == "curves" and form == "laminae":
-        remedy = "take bands, or method='rulings'"
+        remedy = "use form='bands' or method='rulings'"
         raise ValueError(_check.message("method", "'rulings' with laminae", "'curves'", remedy))
     spacing.check(levels)
     if method == "curves":
         return refinement.draw(
             triangle_mesh.mesh(solid, segments), shade(light, solid.center), levels, low=light.low
         )
-    # The distance of a near light is that of the centre.
+    # A near light fades with its distance from the centre.
     near = dataclasses.replace(light, attenuation=(1.0, 0.0, 0.0))
     if math.isfinite(light.distance):
         fading = light.luminance(np.array(1.0), light.distance) - light.low
         near = dataclasses.replace(near, scale=float(fading), distance=math.inf)
-    law = _Rulings(near, solid)
-    steps = law.steps(levels)
+    side = _Rulings(near, solid)
+    steps = side.steps(levels)
     if form == "laminae":
-        return _laminae(law, steps, segments)
-    return _bands(law, steps, segments)
+        return _laminae(side, steps, segments)
+    return _bands(side, steps, segments)
 
 
-def shade(light: axial.Source, center: Array) -> Any:
-    """Return the luminance of points with normals under one light where it stands."""
+def shade(light: axial.Source, center: Array) -> Luminance:
+    """Return the function of points and normals that gives the luminance under one light."""
 
     def luminance(points: Array, normals: Array) -> Array:
         if math.isinf(light.distance):
@@ -137,24 +149,24 @@ def shade(light: axial.Source, center: Array) -> Any:
 
 
 class _Rulings:
-    """The luminance of a truncus' side over the angle from the light around its axis."""
+    """Luminance of the side of a frustum as a function of the angle around its axis."""
 
-    def __init__(self, light: axial.Source, solid: primitives.Truncus) -> None:
+    def __init__(self, light: axial.Source, solid: primitives.Frustum) -> None:
         self.light, self.solid = light, solid
         self.first, self.second = axial.frame(solid.axis, light.toward)
         slope = solid.radii[1] - solid.radii[0]
         size = math.hypot(solid.height, slope) or 1.0
-        # A side without area (equal radii, height 0) faces across its axis.
+        # A side without area (equal radii, height 0) has normals perpendicular to the axis.
         across, along = (solid.height / size, slope / size) if slope or solid.height else (1.0, 0.0)
         self.a = across * max(float(self.first @ light.toward), 0.0)
         self.b = along * float(solid.axis @ light.toward)
 
-    def cosine(self, angle: Any) -> Array:
+    def cosine(self, angle: ArrayLike) -> Array:
         """Return N . L at angles from the light."""
-        # With half angles, so that small ones lose nothing.
+        # Half angles avoid cancellation at small angles.
         return np.asarray((self.a + self.b) - 2 * self.a * np.sin(np.asarray(angle) / 2) ** 2)
 
-    def luminance(self, angle: Any) -> Array:
+    def luminance(self, angle: ArrayLike) -> Array:
         """Return the luminance at angles from the light."""
         return self.light.luminance(self.cosine(angle))
 
@@ -164,7 +176,7 @@ class _Rulings:
         return spacing.steps(wanted, float(ends.min()), float(ends.max()), exact=True)
 
     def contours(self, steps: Steps) -> Array:
-        """Return the angle of each contour, in [0, pi]; the lowest is the terminator."""
+        """Return the angle of each contour, in [0, pi]; the lowest level is the terminator."""
         edges = steps.edges[:-1]
         low, high = np.zeros(len(edges)), np.full(len(edges), np.pi)
         for _ in range(1080 if len(edges) else 0):
@@ -181,7 +193,7 @@ class _Rulings:
         return float(self.light.luminance(np.array(cosine)))
 
     def place(self, angle: Array, first: bool) -> Array:
-        """Return points of an end's circle."""
+        """Return points on the circle of an end."""
         radius = self.solid.radii[0 if first else 1]
         half = (0.5 if first else -0.5) * self.solid.height * self.solid.axis
         ring = (
@@ -190,100 +202,93 @@ class _Rulings:
         return np.asarray(self.solid.center + half + radius * ring)
 
 
-def _bands(law: _Rulings, steps: Steps, segments: int) -> Bands:
-    """Return the closed surface: strips between rulings, and the ends as one polygon each."""
-    places = law.contours(steps) if len(steps.edges) > 1 else np.empty(0)
+def _around(side: _Rulings, steps: Steps, segments: int) -> tuple[Array, Indices]:
+    """Return the angles of all rulings around the axis, and the contour of each, or -1."""
+    places = side.contours(steps) if len(steps.edges) > 1 else np.empty(0)
     inside = (places > 0) & (places < np.pi)
     contour = np.concatenate([np.flatnonzero(inside), [-1, -1]])
     half = np.concatenate([places[inside], [0.0, np.pi]])
     order = np.argsort(half, kind="stable")
     half, contour = half[order], contour[order]
-    # Rulings between contours that are far apart keep the side round; they are no contours.
+    # Additional rulings between distant contours keep the side round.
     pieces = np.maximum(np.ceil(np.diff(half) * segments / (2 * np.pi) - 1e-9), 1).astype(int)
     angle = np.repeat(half[:-1], pieces)
     step = np.arange(len(angle)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
     angle = angle + step * np.repeat(np.diff(half) / pieces, pieces)
     contour = np.where(step == 0, np.repeat(contour[:-1], pieces), -1)
-    # From the light to the far side and back: the mirror image has the same contours.
+    # The angles run from the light to the far side and, mirrored, back.
     full = np.concatenate([angle, [np.pi], 2 * np.pi - angle[:0:-1]])
-    of_ruling = np.concatenate([contour, [-1], contour[:0:-1]])
-    count = len(full)
-    top = np.arange(count) if law.solid.radii[0] > 0 else np.zeros(count, int)
-    shared = top.max() + 1
-    bottom = shared + (np.arange(count) if law.solid.radii[1] > 0 else np.zeros(count, int))
-    upper = law.place(full[:shared], first=True)
-    lower = law.place(full[: bottom.max() + 1 - shared], first=False)
-    points = np.concatenate([upper, lower])
-    # No contour lies within a strip, so its middle tells its band.
-    band = steps.band(law.luminance((full + np.append(full[1:], 2 * np.pi)) / 2))
+    return full, np.concatenate([contour, [-1], contour[:0:-1]])
 
-    quads = np.stack([top, bottom, np.roll(bottom, -1), np.roll(top, -1)], axis=1)
-    has_side = max(law.solid.radii) > 0 and (
-        law.solid.height > 0 or law.solid.radii[0] != law.solid.radii[1]
-    )
-    if not has_side and law.solid.height == 0:
-        # Two discs back to back have one rim.
+
+def _bands(side: _Rulings, steps: Steps, segments: int) -> Bands:
+    """Return the closed surface: strips between rulings, and one polygon per end."""
+    angle, contour = _around(side, steps, segments)
+    (first, second), height, count = side.solid.radii, side.solid.height, len(angle)
+    top = np.arange(count) if first > 0 else np.zeros(count, int)
+    shared = top.max() + 1
+    bottom = shared + (np.arange(count) if second > 0 else np.zeros(count, int))
+    upper = side.place(angle[:shared], first=True)
+    points = np.concatenate([upper, side.place(angle[: bottom.max() + 1 - shared], first=False)])
+    if height == 0 and first == second:
+        # Two discs back to back share one rim.
         points, bottom = upper, top
-    cells: list[Any] = []
+    cells: list[Indices] = []
     parts: list[tuple[int, int, float]] = []
-    if has_side:
-        if law.solid.radii[0] == 0:
-            quads = quads[:, :3]
-        elif law.solid.radii[1] == 0:
-            quads = quads[:, [0, 1, 3]]
-        cells += list(quads)
+    on = np.empty(0, int)
+    if max(first, second) > 0 and (height > 0 or first != second):
+        quads = np.stack([top, bottom, np.roll(bottom, -1), np.roll(top, -1)], axis=1)
+        # At an apex quadrilaterals become triangles.
+        cells += list(quads[:, [0, 1, 2] if first == 0 else [0, 1, 3] if second == 0 else slice(4)])
+        # No contour lies within a strip, so the band at its middle is that of the strip.
+        band = steps.band(side.luminance((angle + np.append(angle[1:], 2 * np.pi)) / 2))
         parts += [(0, int(k), float(steps.values[k])) for k in band]
-    for patch, radius, ring in (
-        (1, law.solid.radii[0], top),
-        (2, law.solid.radii[1], bottom[::-1]),
-    ):
+        on = np.flatnonzero(contour >= 0)
+    for patch, radius, ring in ((1, first, top), (2, second, bottom[::-1])):
         if radius > 0:
-            value = law.end(first=patch == 1)
+            value = side.end(first=patch == 1)
             cells.append(ring)
             parts.append((patch, int(steps.band(np.array(value))), value))
-    if not cells:
-        points = np.empty((0, 3))
-    on = np.flatnonzero(of_ruling >= 0) if has_side else np.empty(0, int)
     return Bands(
-        points=points,
+        points=points if cells else np.empty((0, 3)),
         offsets=np.concatenate([[0], np.cumsum([len(cell) for cell in cells])]).astype(np.intp),
         corners=np.concatenate([*cells, np.empty(0, int)]).astype(np.intp),
         band=np.array([k for _, k, _ in parts], dtype=np.intp),
         values=np.array([value for _, _, value in parts], dtype=np.float64),
         patch=np.array([patch for patch, _, _ in parts], dtype=np.intp),
         lines=np.stack([top[on], bottom[on]], axis=1).astype(np.intp),
-        line_levels=steps.edges[of_ruling[on]],
+        line_levels=steps.edges[contour[on]],
         steps=steps,
         error=steps.error,
     )
 
 
-def _laminae(law: _Rulings, steps: Steps, segments: int) -> Laminae:
+def _laminae(side: _Rulings, steps: Steps, segments: int) -> Laminae:
     """Return the chords through both rulings of each contour, and the two ends."""
-    places = law.contours(steps) if len(steps.edges) > 1 else np.empty(0)
+    places = side.contours(steps) if len(steps.edges) > 1 else np.empty(0)
     inside = (places > 0) & (places < np.pi)
     lit = places[inside]
     values = steps.values[1:][inside] if len(lit) else np.empty(0)
-    # Beyond the last contour the side has one value; it is closed as finely as circles are.
+    # Beyond the last contour the side has one value, with as many segments as on a circle.
     start = lit.max(initial=0.0)
     count = max(math.ceil((np.pi - start) * segments / (2 * np.pi)), 2)
     beyond = np.linspace(start, np.pi, count + 1)[:-1]
     beyond[0] += 1e-9
     angle = np.concatenate([lit, beyond])
-    values = np.concatenate([values, np.full(len(beyond), float(law.luminance(np.pi)))])
+    values = np.concatenate([values, np.full(len(beyond), float(side.luminance(np.pi)))])
     quads = np.stack(
-        [law.place(-angle, first=True), law.place(angle, first=True),
-         law.place(angle, first=False), law.place(-angle, first=False)], axis=1,
+        [side.place(-angle, first=True), side.place(angle, first=True),
+         side.place(angle, first=False), side.place(-angle, first=False)], axis=1,
     )  # fmt: skip
-    if not (law.solid.height > 0 and max(law.solid.radii) > 0):
+    if not (side.solid.height > 0 and max(side.solid.radii) > 0):
         quads, values = quads[:0], values[:0]
     pieces, sizes = [quads.reshape(-1, 3)], [4] * len(quads)
     ring = 2 * np.pi * np.arange(segments) / segments
     for first in (True, False):
-        if law.solid.radii[0 if first else 1] > 0:
-            pieces.append(law.place(ring, first=first))
+        if side.solid.radii[0 if first else 1] > 0:
+            pieces.append(side.place(ring, first=first))
             sizes.append(segments)
-            values = np.append(values, law.end(first=first))
+            values = np.append(values, side.end(first=first))
     return Laminae(
         points=np.concatenate(pieces),
         offsets=np.concatenate([[0], np.cumsum(sizes)]).astype(np.intp),

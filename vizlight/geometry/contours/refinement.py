@@ -1,9 +1,9 @@
-"""Contours of any luminance on solids: refined, cut on the exact surfaces, and measured."""
+"""Contours of any luminance on solids, refined until the measured error is small enough."""
 
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -23,24 +23,24 @@ if TYPE_CHECKING:
 
     Luminance = Callable[[Array, Array], Array]
 
-#: Rounds of refinement, and triangles and polygons beyond which none begins.
+#: Largest number of rounds of refinement, and numbers of triangles and polygons that end it.
 ROUNDS, ENOUGH, MANY = 20, 1_500_000, 300_000
-#: The share of a step that contours drawn as chords may add to the error.
+#: Share of a step that contours drawn as chords may add to the error.
 CURVED = 0.1
-#: Halvings of an edge while triangles are still refined.
+#: Halvings of an edge during refinement.
 ROUGH = 20
-#: Polygons of less than this share of their triangle are not measured: where the luminance
-#: jumps, all its contours run together.
+#: Share of a triangle's area below which a polygon is not measured: where the luminance is
+#: discontinuous, all contours coincide.
 SLIVER = 1e-4
-#: Where along the edges of polygons their error is measured, and how far within.
+#: Fractions of edges at which the error of polygons is measured, and the offset inward.
 ALONG, WITHIN = (0.25, 0.5, 0.75), 1e-3
-#: The share of an allowed error up to which a measured one is taken: between the places where
-#: it is measured it may be a little larger.
+#: Share of an allowed error that a measured one must keep, since the error between the measured
+#: points may be slightly larger.
 KEPT = 0.98
-#: Triangles beyond which none is asked for highlights smaller than itself, and places along its
-#: edge where it is asked.
+#: Number of triangles beyond which they are not searched for smaller highlights, and number of
+#: points per edge of the search grid.
 ASKED, GRID = 3000, 10
-#: How far from its apex a cone is opened, so that each ruling has its own normal there.
+#: Radius of the hole at the apex of a cone, around which each ruling has its own normal.
 APEX = 1e-7
 
 
@@ -50,31 +50,31 @@ def draw(mesh: Mesh, luminance: Luminance, levels: Levels, /, *, low: float | No
     Parameters
     ----------
     mesh : Mesh
-        Of a solid. Its triangles are halved where the luminance is not linear over them.
+        Mesh of a solid. Its triangles are split where the luminance is not linear.
     luminance : callable
-        ``luminance(points, outward normals)``, in the solid's own unit. It is called for points
-        on the exact surfaces, with their exact normals.
+        Function ``luminance(points, normals)`` of points on the exact surfaces, in the unit of the
+        solid, and their exact outward normals.
     levels : int, float or sequence of float
-        As :func:`vizlight.geometry.contours.spacing.steps`.
+        Steps of luminance, as for :func:`vizlight.geometry.contours.spacing.steps`.
     low : float, optional
-        The luminance of what no light reaches; default the lowest found.
+        Luminance of points without light. Default: the lowest luminance found.
 
     Returns
     -------
     Bands
-        Closed if the mesh is. ``error`` is measured at the middle of each polygon and at three
-        places of each of its edges, on the exact surface.
+        Bands, closed if the mesh is. ``error`` is measured on the exact surface, at the centre of
+        each polygon and at three points of each of its edges.
 
     Warns
     -----
     UserWarning
-        If an allowed error is not kept after 20 rounds of halving, 1.5 million triangles or
+        If an allowed error is not kept within 20 rounds of refinement, 1.5 million triangles and
         300 thousand polygons.
 
     Notes
     -----
-    Contour points are found by halving edges and lie on the exact surface (at creases, on both
-    surfaces); only between them are contours drawn as chords.
+    Contour points are found by halving edges and lie on the exact surface, at creases on both
+    surfaces; contours are chords between them.
     """
     spacing.check(levels)
     if not len(mesh.triangles):
@@ -86,21 +86,44 @@ def draw(mesh: Mesh, luminance: Luminance, levels: Levels, /, *, low: float | No
     return dataclasses.replace(made, points=mesh.world(made.points))
 
 
-def refine(surface: Any, levels: Levels, /, *, low: float | None = None) -> Bands:
+class LitTriangles(Protocol):
+    """Triangles with a luminance that can be cut into bands and refined."""
+
+    @property
+    def triangles(self) -> Indices:
+        """Indices of the corners of the current triangles."""
+
+    def corners(self) -> Array:
+        """Return the luminance at the corners of all triangles."""
+
+    def cut(self, values: Array, steps: Steps, halvings: int) -> tuple[Bands, Indices]:
+        """Return the bands, and the triangle that each polygon was cut from."""
+
+    def measure(self, bands: Bands, triangle: Indices) -> Array:
+        """Return the largest error of each polygon."""
+
+    def peaks(self, values: Array, bound: float) -> Indices:
+        """Return the triangles whose luminance exceeds that of their corners by over ``bound``."""
+
+    def split(self, chosen: Indices) -> None:
+        """Halve the edges of chosen triangles, and split their neighbours to match."""
+
+
+def refine(surface: LitTriangles, levels: Levels, /, *, low: float | None = None) -> Bands:
     """Return the bands of a lit surface, refined until they keep the allowed error.
 
     Parameters
     ----------
-    surface : object
-        With ``triangles``, ``corners()``, ``cut()``, ``measure()``, ``peaks()`` and ``split()``
-        as of solids here and of :class:`vizlight.geometry.contours.facets.Facets`.
+    surface : LitTriangles
+        Lit triangles of a solid, or :class:`vizlight.geometry.contours.facets.Facets`. They are
+        split in place.
     levels, low
-        As for :func:`draw`.
+        Steps of luminance and the luminance without light, as for :func:`draw`.
 
     Returns
     -------
     Bands
-        With the error that was measured.
+        Bands with the measured error.
     """
     bound = spacing.allowed(levels)
     worst: float | None = None
@@ -120,7 +143,6 @@ def refine(surface: Any, levels: Levels, /, *, low: float | None = None) -> Band
             worst = float(error.max(initial=0))
             break
         surface.split(bad)
-    made: Bands
     made, triangle = surface.cut(values, steps, banding.HALVINGS)
     if worst is None:
         worst = float(surface.measure(made, triangle).max(initial=0))
@@ -130,7 +152,7 @@ def refine(surface: Any, levels: Levels, /, *, low: float | None = None) -> Band
 
 
 class _Lit:
-    """A mesh on exact surfaces, and the luminance on them."""
+    """A mesh on exact surfaces with a luminance."""
 
     def __init__(self, mesh: Mesh, luminance: Luminance) -> None:
         self.luminance = luminance
@@ -143,7 +165,7 @@ class _Lit:
         code = np.minimum(start, stop) * self.size + np.maximum(start, stop)
         self.codes, edge = np.unique(code, return_inverse=True)
         self.edge = edge.reshape(-1, 3)
-        # The surfaces on both sides of each edge: the same one twice where it is smooth.
+        # The surfaces on both sides of each edge, which are equal at a smooth edge.
         self.both = np.full((len(self.codes), 2), -1)
         owner = np.repeat(mesh.patch, 3)
         self.both[self.edge.ravel(), 0] = owner
@@ -153,7 +175,7 @@ class _Lit:
 
     @property
     def triangles(self) -> Indices:
-        """The triangles as they are now."""
+        """Indices of the corners of the current triangles."""
         return self.mesh.triangles
 
     def light(self, points: Array, patch: Indices) -> Array:
@@ -170,14 +192,14 @@ class _Lit:
         return np.asarray(self.light(self.mesh.points[point], patch)[place.reshape(-1, 3)])
 
     def place(self, a: Indices, b: Indices, share: Array) -> Array:
-        """Return points on edges, on the surfaces of both sides."""
+        """Return points at fractions of edges, on the surfaces of both sides."""
         edge = np.searchsorted(self.codes, np.minimum(a, b) * self.size + np.maximum(a, b))
         points = self.mesh.points
         t = share[:, np.newaxis]
         return onto(self.mesh.surfaces, points[a] * (1 - t) + points[b] * t, self.both[edge])
 
     def at(self, a: Indices, b: Indices, share: Array, patch: Indices) -> Array:
-        """Return the luminance on edges, as seen from one side."""
+        """Return the luminance at fractions of edges, with the normals of one side."""
         return self.light(self.place(a, b, share), patch)
 
     def cut(self, values: Array, steps: Steps, halvings: int) -> tuple[Bands, Indices]:
@@ -188,7 +210,7 @@ class _Lit:
         )  # fmt: skip
 
     def split(self, chosen: Indices) -> None:
-        """Halve the edges of some triangles; their neighbours are cut to fit."""
+        """Halve the edges of chosen triangles, and split their neighbours to match."""
         marked = np.zeros(len(self.codes), np.bool_)
         marked[self.edge[chosen].ravel()] = True
         a, b = np.divmod(self.codes[marked], self.size)
@@ -205,10 +227,10 @@ class _Lit:
         )
 
     def peaks(self, values: Array, bound: float) -> Indices:
-        """Return triangles in which the luminance rises above that of all corners by more.
+        """Return the triangles whose luminance exceeds that of their corners by over ``bound``.
 
-        A highlight may be smaller than a triangle: each is asked at a grid of places. Where there
-        are many triangles they are small, and none is asked.
+        A highlight may be smaller than a triangle, so each is searched at a grid of points. If
+        there are many triangles, these are small and are not searched.
         """
         triangles, patch = self.mesh.triangles, self.mesh.patch
         if len(triangles) > ASKED:
@@ -221,7 +243,7 @@ class _Lit:
         return np.flatnonzero(found)
 
     def measure(self, bands: Bands, triangle: Indices) -> Array:
-        """Return the largest error of each polygon at its middle and along its edges."""
+        """Return the largest error of each polygon at its centre and along its edges."""
         worst = np.zeros(len(bands.values))
         for places, of in within(bands):
             patch = bands.patch[of]
@@ -233,35 +255,35 @@ class _Lit:
 
 
 def grid() -> Array:
-    """Return barycentric weights of places within a triangle, row by row."""
+    """Return barycentric weights of points inside a triangle, one point per row."""
     steps = np.array([(i, j) for i in range(GRID) for j in range(GRID - i)]) + 0.5
     return np.column_stack([steps, GRID + 0.5 - steps.sum(axis=1)]) / (GRID + 0.5)
 
 
 def within(bands: Bands) -> Iterator[tuple[Array, Indices]]:
-    """Yield the places where the error of polygons is measured, and the polygon of each."""
+    """Yield the points at which the error of polygons is measured, and the polygon of each."""
     middle = bands.middles()
     yield middle, np.arange(len(middle))
     size = np.diff(bands.offsets)
     owner = np.repeat(np.arange(len(size)), size)
     corner, after = bands.points[bands.corners], bands.points[bands.corners[_next(bands)]]
     for share in ALONG:
-        # Just within the polygon: on a contour either band is right.
+        # The points are just inside the polygon: on a contour both bands are right.
         places = corner + share * (after - corner)
         yield places + WITHIN * (middle[owner] - places), owner
 
 
 def largest(bands: Bands, miss: Array) -> Array:
-    """Return the largest of each polygon's numbers, one a polygon or one a corner."""
+    """Return the largest value of each polygon, from one value per polygon or per corner."""
     if len(miss) == len(bands.values):
         return miss
     return np.asarray(np.maximum.reduceat(miss, bands.offsets[:-1]))
 
 
 def slivers(bands: Bands, triangle: Indices, count: int) -> Bools:
-    """Return which polygons are next to nothing of the triangle, of so many, they are cut from."""
+    """Return which polygons have a negligible share of the area of their triangle."""
     owner = np.repeat(np.arange(len(bands.values)), np.diff(bands.offsets))
-    # Over their size, as squares of tiny lengths vanish and those of huge ones overflow.
+    # Relative to the extent: squares of tiny lengths underflow and those of huge ones overflow.
     unit = float(np.ptp(bands.points[:, :3], axis=0).max(initial=0)) or 1.0
     middle = bands.middles()[owner, :3] / unit
     corner = bands.points[bands.corners, :3] / unit
@@ -272,16 +294,16 @@ def slivers(bands: Bands, triangle: Indices, count: int) -> Bools:
 
 
 def _next(bands: Bands) -> Indices:
-    """Return for each corner of a polygon the place of the next in ``corners``."""
+    """Return for each corner of a polygon the position of the next one in ``corners``."""
     after = np.arange(1, len(bands.corners) + 1)
     after[bands.offsets[1:] - 1] = bands.offsets[:-1]
     return after
 
 
 def open_apexes(mesh: Mesh) -> Mesh:
-    """Return the mesh with a small hole at the apex of each cone, a point for each ruling.
+    """Return the mesh with a small hole at the apex of each cone, with one point per ruling.
 
-    Where a solid touches itself there, each of its points at the apex has a hole of its own.
+    Where a solid touches itself there, each of its points at the apex gets its own hole.
     """
     for patch, surface in enumerate(mesh.surfaces):
         apex = getattr(surface, "apex", None)
@@ -337,13 +359,13 @@ def _close_apexes(bands: Bands, mesh: Mesh) -> Bands:
 
 
 def split(triangles: Indices, middles: Indices) -> tuple[Indices, Indices]:
-    """Return triangles with some edges halved, and which triangle each comes from.
+    """Return triangles with some edges halved, and the original triangle of each.
 
-    ``middles`` has the point in the middle of the edges that begin at each corner, or -1.
+    ``middles`` holds the index of the midpoint of the edge that begins at each corner, or -1.
     """
     count = np.count_nonzero(middles >= 0, axis=1)
     rows = np.arange(len(triangles))
-    # Turn each triangle so that a single marked edge comes first, a single unmarked one last.
+    # Rotate each triangle so that a single marked edge is first, or a single unmarked one last.
     first = np.where(count == 1, np.argmax(middles >= 0, axis=1), 0)
     first = np.where(count == 2, (np.argmax(middles < 0, axis=1) + 1) % 3, first)
     turn = (first[:, np.newaxis] + np.arange(3)) % 3
@@ -371,35 +393,56 @@ def normals_of(mesh: Mesh, points: Array, patch: Indices) -> Array:
 
 
 def onto(surfaces: tuple[Surface, ...], points: Array, both: Indices, rounds: int = 4) -> Array:
-    """Return the points nearby on two surfaces each, which may be one.
+    """Return nearby points that are on all the surfaces that each row of ``both`` names.
 
-    Newton's method with the least step; each round squares what is missing. Where two surfaces
-    touch the step is bounded, so that no point runs away.
+    The method is Newton's with the shortest step; each round squares the error. Where surfaces
+    touch, the step is bounded so that no point moves far away.
     """
     points = points.copy()
-    columns = [both[:, i] for i in range(both.shape[1])]
+    single = np.all(both == both[:, :1], axis=1)
+    for i in np.unique(both[single, 0]):
+        on = np.flatnonzero(single & (both[:, 0] == i))
+        points[on] = _onto_one(surfaces[i], points[on], rounds)
+    on = np.flatnonzero(~single)
+    if len(on):
+        points[on] = _onto_all(surfaces, points[on], both[on], rounds)
+    return points
+
+
+def _onto_one(surface: Surface, points: Array, rounds: int) -> Array:
     for _ in range(rounds):
-        distance = np.zeros((len(points), len(columns)))
-        normal = np.zeros((len(points), len(columns), 3))
-        for j, column in enumerate(columns):
-            for i in np.unique(column):
-                on = column == i
-                distance[on, j] = surfaces[i].distance(points[on])
-                normal[on, j] = surfaces[i].normal(points[on])
-        for j in range(1, len(columns)):
-            for k in range(j):
-                same = columns[j] == columns[k]
-                distance[same, j] = 0
-                normal[same, j] = 0
+        distance = surface.distance(points)
+        if not np.abs(distance).max(initial=0) > 1e-15:
+            break
+        points = points - distance[:, np.newaxis] * surface.normal(points)
+    return points
+
+
+def _onto_all(surfaces: tuple[Surface, ...], points: Array, which: Indices, rounds: int) -> Array:
+    count = which.shape[1]
+    used = np.unique(which)
+    on = [(j, i, np.flatnonzero(which[:, j] == i)) for j in range(count) for i in used]
+    pairs = [(j, k) for j in range(count) for k in range(j)]
+    same = [(j, which[:, j] == which[:, k]) for j, k in pairs]
+    for _ in range(rounds):
+        distance = np.zeros(which.shape)
+        normal = np.zeros((*which.shape, 3))
+        for j, i, rows in on:
+            if len(rows):
+                distance[rows, j] = surfaces[i].distance(points[rows])
+                normal[rows, j] = surfaces[i].normal(points[rows])
+        for j, rows in same:
+            distance[rows, j] = 0
+            normal[rows, j] = 0
         gram = normal @ normal.transpose(0, 2, 1)
-        gram += 1e-14 * np.eye(len(columns))
-        gram += np.eye(len(columns)) * (np.einsum("nii->ni", gram) < 0.5)[:, :, np.newaxis]
+        gram += 1e-14 * np.eye(count)
+        gram += np.eye(count) * (np.einsum("nii->ni", gram) < 0.5)[:, :, np.newaxis]
         weight = np.linalg.solve(gram, distance[:, :, np.newaxis])
         step = np.einsum("nji,nj->ni", normal, weight[:, :, 0])
         size = np.sqrt(np.einsum("ij,ij->i", step, step))
         limit = 4 * np.abs(distance).sum(axis=1)
         step *= np.minimum(1, limit / np.where(size > 0, size, 1))[:, np.newaxis]
-        points -= step
+        points = points - step
         if not np.abs(distance).max(initial=0) > 1e-15:
             break
     return points

@@ -1,11 +1,11 @@
-"""Steps of luminance: a count, explicit values or the error that is allowed."""
+"""Steps of luminance from a count, from explicit values or from an allowed error."""
 
 from __future__ import annotations
 
 import math
 import numbers
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
     Levels: TypeAlias = int | float | Sequence[float] | Array
 
-#: The largest number of steps: a float32 picture cannot show more.
+#: Largest number of steps; a float32 picture cannot show more.
 MOST = 1 << 20
-#: The share of an allowed error that is left to contours drawn with chords.
+#: Share of an allowed error that is reserved for contours drawn as chords.
 CHORDS = 0.05
 
 
@@ -32,10 +32,10 @@ class Steps:
     Attributes
     ----------
     edges : ndarray, shape (n + 1,)
-        Rising luminance of the contours, the lowest and the highest luminance among them.
+        Luminance of the contours in ascending order, including the lowest and the highest.
     values : ndarray, shape (n + 1,)
-        Of the bands: the lowest luminance itself for what is not brighter than it, then the
-        mid value of each step.
+        Luminance of the bands: the lowest luminance itself for band 0, then the midpoint of each
+        step.
     """
 
     edges: Array
@@ -43,7 +43,7 @@ class Steps:
 
     @property
     def error(self) -> float:
-        """The worst error of a band's value: half the largest step."""
+        """The largest error of a band's value, which is half the largest step."""
         return float(np.diff(self.edges).max(initial=0)) / 2
 
     def band(self, luminance: Array) -> Indices:
@@ -52,15 +52,15 @@ class Steps:
         return np.minimum(found, len(self.edges) - 1)
 
 
-def check(levels: Any) -> None:
-    """Check the three forms of ``levels``.
+def check(levels: object) -> None:
+    """Validate ``levels`` in each of its three forms.
 
     Raises
     ------
     TypeError
-        If it is neither a number nor numbers.
+        If ``levels`` is neither a number nor a sequence of numbers.
     ValueError
-        If a count is less than 1, an error not positive, or values are not finite.
+        If a count is less than 1, an error is not positive, or values are not finite.
     """
     expected = "a count (int), luminance values (a sequence) or an allowed error (float)"
     if isinstance(levels, bool | str) or levels is None:
@@ -85,8 +85,8 @@ def check(levels: Any) -> None:
             )
 
 
-def allowed(levels: Any) -> float | None:
-    """Return the allowed error, None where a count or values are given."""
+def allowed(levels: object) -> float | None:
+    """Return the allowed error, or None if ``levels`` is a count or a sequence of values."""
     if isinstance(levels, numbers.Real) and not isinstance(levels, numbers.Integral):
         return float(levels)
     return None
@@ -98,28 +98,30 @@ def steps(levels: Levels, low: float, high: float, /, *, exact: bool = False) ->
     Parameters
     ----------
     levels : int, float or sequence of float
-        A count n: equal steps. An allowed error e: the smallest count whose half step is at
-        most e (95 % of it, unless ``exact``: the rest is for contours drawn with chords).
-        Values: contours there; those outside the bounds draw nothing.
+        Number n of equal steps (int), allowed error e (float) or luminance of the contours
+        (sequence). For an allowed error the number of steps is the smallest whose half step is at
+        most e, or 95 % of e unless ``exact``; the rest is reserved for contours drawn as chords.
+        Contours outside the bounds are ignored.
     low, high : float
         Bounds of the luminance.
     exact : bool, default: False
-        Whether contours are drawn without any error.
+        Whether contours are drawn without an error of their own.
 
     Returns
     -------
     Steps
+        Luminance of contours and bands.
 
     Raises
     ------
     TypeError, ValueError
-        As :func:`check`, or if an allowed error asks for more than 2^20 steps.
+        As for :func:`check`, or if an allowed error needs more than 2^20 steps.
 
     Notes
     -----
-    A band's value is mid between its two contours, so no luminance in it is farther away than
-    half a step; of all values this is the best. The lowest luminance has a band of its own:
-    what no light reaches is exact. Source: Isoluminance, Representing a Sphere.
+    The value of a band is the midpoint of its two contours, which minimises the largest error: no
+    luminance in the band differs by more than half a step. The lowest luminance has its own band,
+    so that points without light are exact. Source: Isoluminance, Representing a Sphere.
     """
     check(levels)
     span, error = high - low, allowed(levels)
@@ -131,9 +133,9 @@ def steps(levels: Levels, low: float, high: float, /, *, exact: bool = False) ->
         ratio = span / (2 * error * (1 if exact else 1 - CHORDS))
         if ratio > MOST:
             raise ValueError(
-                _check.message("levels", f"an error that {MOST} steps can keep", repr(levels))
+                _check.message("levels", f"an error that at most {MOST} steps keep", repr(levels))
             )
-        # Up to rounding of the ratio itself, a whole ratio needs no further step.
+        # An integer ratio needs no further step; the factor covers rounding of the ratio.
         edges = np.linspace(low, high, max(1, math.ceil(ratio * (1 - 1e-12))) + 1)
     else:
         given = np.unique(np.asarray(levels, dtype=np.float64))

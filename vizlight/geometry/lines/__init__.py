@@ -1,1 +1,1 @@
-"""Lines as arrays: tangents of polylines, fibres on a surface."""
+"""Lines as arrays: tangents of polylines, and fibres that grow on a surface."""

@@ -1,8 +1,8 @@
-"""Tangents of polylines, all lines in one pass."""
+"""Tangents of polylines, computed for all lines at once."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,7 +19,7 @@ __all__ = ["polyline_tangents"]
 
 def polyline_tangents(
     points: ArrayLike, /, *, connectivity: ArrayLike | None = None, offsets: ArrayLike | None = None
-) -> Any:
+) -> Array:
     """Return the unit tangent at every point of polylines.
 
     Parameters
@@ -27,56 +27,52 @@ def polyline_tangents(
     points : array_like, shape (N, n)
         Positions, in any unit.
     connectivity : array_like of int, shape (M,), optional
-        The points of the lines, one line after the other; default all points in order.
+        Indices of the points of each line, one line after the other. Default: all points in order.
     offsets : array_like of int, shape (L + 1,), optional
-        Where each line starts in the connectivity, and its end; default one line.
+        Start of each line in the connectivity, followed by its length. Default: a single line.
 
     Returns
     -------
     ndarray, shape (N, n)
-        Unit tangents in the direction of the line, of the type of the points. Zero at points
-        without a tangent: of no line, of a line whose points all coincide, beside a point
-        that is not finite, or where a line turns back on itself. A point of
-        several lines has the tangent of the last of them.
+        Unit tangents in the direction of the line, of the type of the points. They are zero at
+        points without a tangent: points of no line, of a line whose points all coincide, next to a
+        point that is not finite, or where a line reverses its direction. A point of several lines
+        has the tangent of the last of them.
 
     Raises
     ------
     TypeError
-        If an argument does not hold numbers of its kind.
+        If the points are not real numbers, or an index is not an integer.
     ValueError
-        If the shapes do not fit, or an index or offset is out of range.
+        If a shape is wrong, or an index or offset is out of range.
 
     Notes
     -----
-    The derivative by arc length of the parabola through a point and its two neighbours: with
-    segments of lengths h0, h1 and directions u0, u1 it is ``(h1 u0 + h0 u1) / (h0 + h1)``
-    inside, and ``u0 + (u0 - u1) h0 / (h0 + h1)`` at an end; the error falls with the square of
-    the spacing, also at ends and for unequal spacing. A line that ends where it starts is
-    closed and has neighbours across the seam. Repeated points are passed over and share one
-    tangent. Differences are taken in float64: the tangent of a line of two points errs by at most
-    1 eps of the points' type and 1 of float64, that of others by 1 and 4 over the length of the
-    mean above before it is made unit.
+    The tangent is the derivative by arc length of the parabola through a point and its two
+    neighbours. With segments of lengths h0, h1 and directions u0, u1 it is
+    ``(h1 u0 + h0 u1) / (h0 + h1)`` inside a line and ``u0 + (u0 - u1) h0 / (h0 + h1)`` at an end.
+    Its error decreases with the square of the spacing, also at ends and for unequal spacing. A line
+    that ends where it starts is closed and has neighbours across the seam. Repeated points count as
+    one and share one tangent. Differences are taken in float64. The error for a line of two points
+    is at most 1 eps of the points' type plus 1 of float64; for other lines it is at most 1 and 4,
+    divided by the length of the tangent before it is normalised.
     """
     positions = _check.vectors("points", points)
     if positions.ndim != 2:
-        raise ValueError(_check.message("points", "shape (N, n)", _check.describe(positions)))
+        raise ValueError(_check.message("points", "shape (N, n)", positions))
     count = len(positions)
-    ids = (
-        np.arange(count) if connectivity is None else _indices("connectivity", connectivity, count)
-    )
-    starts = (
-        np.array([0, len(ids)]) if offsets is None else _indices("offsets", offsets, len(ids) + 1)
-    )
+    ids = np.arange(count)
+    if connectivity is not None:
+        ids = _indices("connectivity", connectivity, count)
+    starts = np.array([0, len(ids)])
+    if offsets is not None:
+        starts = _indices("offsets", offsets, len(ids) + 1)
     if len(starts) == 0 or starts[0] != 0 or starts[-1] != len(ids) or np.any(np.diff(starts) < 0):
-        raise ValueError(
-            _check.message(
-                "offsets", f"rising numbers from 0 to {len(ids)}", _check.describe(starts)
-            )
-        )
+        raise ValueError(_check.message("offsets", f"rising indices from 0 to {len(ids)}", starts))
     tangents = np.zeros_like(positions)
     line = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
     place = positions[ids].astype(np.float64, copy=False)
-    # A point is a new vertex of its line unless it repeats the one before.
+    # A point is a new vertex of its line unless it repeats the previous point.
     fresh = np.ones(len(ids), dtype=np.bool_)
     fresh[1:] = (line[1:] != line[:-1]) | np.any(place[1:] != place[:-1], axis=1)
     vertex = np.cumsum(fresh) - 1
@@ -92,18 +88,15 @@ def _indices(name: str, value: ArrayLike, limit: int) -> Indices:
     if array.size == 0:
         array = array.astype(np.intp)
     if array.dtype.kind not in "iu":
-        raise TypeError(_check.message(name, "integers", _check.describe(array)))
+        raise TypeError(_check.message(name, "integers", array))
     if array.ndim != 1 or (array.size and not 0 <= array.min() <= array.max() < limit):
-        raise ValueError(
-            _check.message(
-                name, f"one row of numbers from 0 to {limit - 1}", _check.describe(array)
-            )
-        )
+        expected = f"a 1-D array of indices from 0 to {limit - 1}"
+        raise ValueError(_check.message(name, expected, array))
     return array.astype(np.intp, copy=False)
 
 
 def _vertex_tangents(place: Array, line: Indices) -> Array:
-    """Return tangents of lines without repeated points: vertex positions and their line."""
+    """Return the tangents at vertices of lines without repeated points."""
     count = len(place)
     tangent = np.zeros_like(place)
     if count < 2:
@@ -113,7 +106,7 @@ def _vertex_tangents(place: Array, line: Indices) -> Array:
     direction, size = kernels.unit(np.ascontiguousarray(step.T))
     unit = direction.T
 
-    # Segment i runs from vertex i to i + 1; -1 where a vertex has no segment on a side.
+    # Segment i runs from vertex i to i + 1; -1 means that a vertex has no segment on that side.
     after, before = np.full(count, -1), np.full(count, -1)
     after[:-1][inside] = np.flatnonzero(inside)
     before[1:][inside] = np.flatnonzero(inside)
@@ -132,14 +125,14 @@ def _vertex_tangents(place: Array, line: Indices) -> Array:
 
 
 def _share(h0: Array, h1: Array) -> Array:
-    """Return h0 / (h0 + h1) as a column; the sum may be out of range."""
+    """Return h0 / (h0 + h1) as a column, also where the sum would overflow."""
     larger = np.maximum(h0, h1)
     share: Array = (h0 / larger) / (h0 / larger + h1 / larger)
     return share[:, np.newaxis]
 
 
 def _ends(tangent: Array, unit: Array, size: Array, first: Indices, last: Indices) -> None:
-    """Fill in the ends of open lines; a line of one segment has its direction."""
+    """Fill in the tangents at the ends of open lines; a single segment gives its direction."""
     long = last - first > 1
     for end, near, far in ((first, first, first + 1), (last, last - 1, last - 2)):
         tangent[end] = unit[near]

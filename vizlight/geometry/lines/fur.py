@@ -1,8 +1,8 @@
-"""Fibres on a triangulated surface: where they stand, how they bend."""
+"""Fibres on a triangulated surface: the positions of their roots and the shape of each fibre."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,68 +15,59 @@ if TYPE_CHECKING:
 
 __all__ = ["grow", "seeds"]
 
-#: Seeds drawn at once; each block has random numbers of its own, whatever thread draws it.
+#: Number of seeds per block; each block has its own random generator, independent of threads.
 SEED_BLOCK = 1 << 16
-#: The turn of a Fibonacci lattice, 2 - the golden ratio: multiples of it fill [0, 1) evenly.
+#: Step of a Fibonacci lattice, 2 minus the golden ratio: its multiples fill [0, 1) evenly.
 TURN = (3 - 5**0.5) / 2
 
 
-def seeds(points: ArrayLike, faces: ArrayLike, count: int, /, *, seed: int = 0) -> tuple[Any, Any]:
-    """Return places on triangles, uniform in area and jittered.
+def seeds(
+    points: ArrayLike, faces: ArrayLike, count: int, /, *, seed: int = 0
+) -> tuple[Indices, Array]:
+    """Return random places on triangles, spread evenly over the area.
 
-    The area, laid out triangle after triangle, is cut into ``count`` equal pieces; each piece
-    has one place, at random in it. A triangle thus has its share of them to within one or two,
-    and within it they follow a jittered Fibonacci lattice: they keep apart also where triangles
-    are large.
+    The triangles are laid out one after the other and their total area is cut into ``count`` equal
+    pieces. Each piece has one place at a random position. The number of places on a triangle is
+    therefore proportional to its area to within one or two. The places on a triangle follow a
+    jittered Fibonacci lattice, which keeps them apart on large triangles too.
 
     Parameters
     ----------
     points : array_like, shape (N, 3)
+        Vertices of the surface.
     faces : array_like of int, shape (T, 3)
+        Indices of the vertices of each triangle.
     count : int
-        0 or more.
+        Number of places, 0 or more.
     seed : int, default: 0
-        The same seed gives the same places.
+        Seed of the random generator; the same seed gives the same places.
 
     Returns
     -------
     face : ndarray of int, shape (count,)
-        The triangle of each place, rising.
+        Index of the triangle of each place, in ascending order.
     weights : ndarray of float32, shape (count, 3)
-        Barycentric coordinates in it.
+        Barycentric coordinates in that triangle.
 
     Raises
     ------
     TypeError, ValueError
-        If an argument does not fit, or the surface has no area.
+        If an argument is invalid, or the surface has no area.
 
     Notes
     -----
-    A place has the share f of its triangle's area before it: the weights are
-    ``(1 - sqrt(f), sqrt(f) (1 - r), sqrt(f) r)``, which keeps areas, and r turns by the golden
-    ratio from place to place, from a random start in each triangle, jittered by ``1 / sqrt(m)``
-    where a triangle has m places.
-    Source: Banks, section 5 (jittered interpolated samples).
+    If the share f of its triangle's area lies before a place, the weights are
+    ``(1 - sqrt(f), sqrt(f) (1 - r), sqrt(f) r)``, which preserves areas. From place to place r
+    advances by the golden ratio, from a random start in each triangle; on a triangle with m places
+    it is jittered by ``1 / sqrt(m)``. Source: Banks, section 5 (jittered interpolated samples).
     """
     vertices = _check.vectors("points", points, n=3)
-    triangles = np.asarray(faces)
-    if triangles.ndim != 2 or triangles.shape[1] != 3 or triangles.dtype.kind not in "iu":
-        raise ValueError(
-            _check.message("faces", "integers of shape (T, 3)", _check.describe(triangles))
-        )
-    if triangles.size and not 0 <= triangles.min() <= triangles.max() < len(vertices):
-        raise ValueError(
-            _check.message(
-                "faces",
-                f"numbers of points from 0 to {len(vertices) - 1}",
-                f"{triangles.min()} to {triangles.max()}",
-            )
-        )
+    triangles = _check.cells("faces", faces, len(vertices), (3,))
     count = _check.integer("count", count, low=0)
     seed = _check.integer("seed", seed, low=0)
     total = areas(vertices, triangles)
     if count and not (len(total) and total[-1] > 0):
-        raise ValueError(_check.message("faces", "a surface of some area", "none"))
+        raise ValueError(_check.message("faces", "triangles with an area above 0", "none"))
     face, weights = np.empty(count, np.intp), np.empty((count, 3), np.float32)
     for start in range(0, count, SEED_BLOCK):
         block = slice(start, start + SEED_BLOCK)
@@ -85,7 +76,7 @@ def seeds(points: ArrayLike, faces: ArrayLike, count: int, /, *, seed: int = 0) 
 
 
 def areas(vertices: Array, triangles: Indices) -> Array:
-    """Return the running sum of the areas of triangles, 0 for those that are not finite."""
+    """Return the cumulative sum of the areas of triangles; an area that is not finite is 0."""
     a, b, c = (vertices[triangles[:, i]].astype(np.float64) for i in range(3))
     with np.errstate(all="ignore"):
         area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
@@ -93,13 +84,13 @@ def areas(vertices: Array, triangles: Indices) -> Array:
 
 
 def seed_block(total: Array, start: int, count: int, seed: int) -> tuple[Indices, Array]:
-    """Return the seeds of the block that starts at a multiple of SEED_BLOCK."""
+    """Return the seeds of the block that begins at ``start``, a multiple of SEED_BLOCK."""
     random = np.random.default_rng([seed, start // SEED_BLOCK])
     number = np.arange(start, min(start + SEED_BLOCK, count), dtype=np.float64)
     place = number.copy()
     place += random.random(len(place))
     place *= total[-1] / count
-    # Places rise, so triangles are counted, not looked up place by place.
+    # Places are sorted, so a search per triangle is enough and none per place is needed.
     first, last = np.minimum(np.searchsorted(total, place[[0, -1]], side="right"), len(total) - 1)
     ends = np.searchsorted(place, total[first:last], side="left")
     counts = np.diff(ends, prepend=0, append=len(place))
@@ -108,10 +99,10 @@ def seed_block(total: Array, start: int, count: int, seed: int) -> tuple[Indices
     area = np.diff(edges)
     share = (place - np.repeat(edges[:-1], counts)) / np.repeat(np.where(area > 0, area, 1), counts)
     root = np.sqrt(np.clip(share, 0, 1)).astype(np.float32)
-    # A lattice of its own for each triangle, turned at random, so that no pattern runs over many.
+    # Each triangle has its own lattice with a random start, so that no pattern spans triangles.
     number *= TURN
     number += np.repeat(random.random(len(area)), counts)
-    # The part of a triangle that is in another block has as many places for its area.
+    # The part of a triangle that lies in another block has the same number of places per area.
     spread = np.minimum(total[-1] / (count * np.where(area > 0, area, 1)), 1)
     number += np.repeat(np.sqrt(spread), counts) * random.random(len(place), dtype=np.float32)
     weights = np.empty((len(place), 3), np.float32)
@@ -133,33 +124,36 @@ def grow(
     curl: float = 0.0,
     turns: float = 1.0,
     phase: Array | None = None,
-) -> Any:
+) -> Array:
     """Return the points of fibres that grow from their roots.
 
     Parameters
     ----------
     roots : ndarray, shape (F, 3)
+        Positions of the roots.
     directions : ndarray, shape (F, 3)
-        Unit directions at the root.
+        Unit directions of the fibres at the root.
     lengths : ndarray, shape (F,), or float
-        Along the fibre, in the unit of the roots.
+        Lengths along the fibre, in the unit of the roots.
     segments : int
-        S of 1 or more; all of one length.
+        Number S of segments of equal length per fibre, 1 or more.
     toward : ndarray, shape (F, 3), optional
-        Unit directions that fibres bend to.
+        Unit directions that the fibres bend toward.
     bend : float, default: 0.0
-        How much of ``toward`` is added to the direction at the tip; it grows from 0 at the root.
+        Multiple of ``toward`` that is added to the direction at the tip; it grows from 0 at the
+        root.
     curl : float, default: 0.0
-        How much of a turning sideways direction is added; 1 leans 45 degrees.
+        Multiple of a rotating perpendicular direction that is added; 1 leans the fibre by 45
+        degrees.
     turns : float, default: 1.0
-        Turns of the curl from root to tip.
+        Number of rotations of the curl from root to tip.
     phase : ndarray, shape (F,), optional
-        Where the curl starts, in radians.
+        Angles at which the curl starts, in radians.
 
     Returns
     -------
     ndarray, shape (F, S + 1, 3)
-        From root to tip, of the type of the roots.
+        Points from root to tip, of the type of the roots.
     """
     way = np.ascontiguousarray(directions.T, dtype=roots.dtype)
     target = None if toward is None else np.ascontiguousarray(toward.T, dtype=roots.dtype)
@@ -182,7 +176,7 @@ def strands(
     turns: float = 1.0,
     phase: Array | None = None,
 ) -> Array:
-    """Return the points of :func:`grow` less their roots, (S + 1, 3, F), component by component."""
+    """Return the points of :func:`grow` relative to their roots, shape (S + 1, 3, F)."""
     kind = directions.dtype
     out = np.zeros((segments + 1, *directions.shape), kind)
     step = np.asarray(lengths, kind) / segments
@@ -198,7 +192,7 @@ def strands(
         if bend and toward is not None:
             way = way + kind.type(bend * t) * toward
         if curl:
-            start: Any = 0.0 if phase is None else phase
+            start = 0.0 if phase is None else phase
             angle = np.asarray(start + 2 * np.pi * turns * t, kind)
             way = way + kind.type(curl) * (np.cos(angle) * side + np.sin(angle) * up)
         size = np.sqrt(np.einsum("ib,ib->b", way, way))
@@ -208,7 +202,7 @@ def strands(
 
 
 def _across(directions: Array) -> tuple[Array, Array]:
-    """Return two unit directions across each direction and each other."""
+    """Return two unit directions perpendicular to each direction and to each other."""
     least = np.zeros_like(directions)
     np.put_along_axis(least, np.abs(directions).argmin(axis=0)[np.newaxis], 1, axis=0)
     side: Array = np.cross(directions, least, axis=0)

@@ -1,9 +1,10 @@
-"""Cells on lattices of samples: wrapped where a direction is closed, and the skin of a cube."""
+"""Cells on lattices of samples, also with closed directions, and the surface cells of a cube."""
 
 from __future__ import annotations
 
 import itertools
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
     from vizlight._types import Indices
 
 
-#: The corners of a segment, a quadrilateral and a hexahedron, in the order that VTK wants.
+#: Corners of a segment, a quadrilateral and a hexahedron, in VTK's order.
 _CORNERS: dict[int, tuple[tuple[int, ...], ...]] = {
     1: ((0,), (1,)),
     2: ((0, 0), (1, 0), (1, 1), (0, 1)),
@@ -26,15 +27,16 @@ _CORNERS: dict[int, tuple[tuple[int, ...], ...]] = {
 }  # fmt: skip
 
 
-def resolution(value: Any, k: int, closed: Sequence[bool]) -> tuple[int, ...]:
-    """Return the number of samples in each of k directions: 3 or more if closed, else 2.
+def resolution(value: int | Sequence[int], k: int, closed: Sequence[bool]) -> tuple[int, ...]:
+    """Return the number of samples in each of k directions, validated.
 
     Raises
     ------
     TypeError, ValueError
-        If it is not one integer or k of them, or one is too small.
+        If the value is not one integer or k of them, or one is less than 3 in a closed direction
+        or less than 2 in an open one.
     """
-    sizes = (value,) * k if np.ndim(value) == 0 else tuple(value)
+    sizes = tuple(value) if isinstance(value, Iterable) else (value,) * k
     if len(sizes) != k:
         raise ValueError(_check.message("resolution", f"1 or {k} integers", len(sizes)))
     return tuple(
@@ -44,22 +46,22 @@ def resolution(value: Any, k: int, closed: Sequence[bool]) -> tuple[int, ...]:
 
 
 def cells(shape: Sequence[int], closed: Sequence[bool], *, twisted: bool = False) -> Indices:
-    """Return the cells of a lattice of 1 to 3 directions, its last index running fastest.
+    """Return the cells of a lattice of 1 to 3 directions, whose last index runs fastest.
 
     Parameters
     ----------
     shape : sequence of int
-        Samples in each direction.
+        Number of samples in each direction.
     closed : sequence of bool
         Whether the last sample of a direction is followed by its first.
     twisted : bool, default: False
-        The first direction, which must be closed, comes back with the second one reversed
-        (``-j`` for ``j``), as on a Klein bottle.
+        Whether the second direction is reversed (index ``-j`` for ``j``) where the first one, which
+        must be closed, returns to its start, as on a Klein bottle.
 
     Returns
     -------
     ndarray of int, shape (M, 2^k)
-        Segments, quadrilaterals or hexahedra, corners in VTK's order.
+        Segments, quadrilaterals or hexahedra with corners in VTK's order.
     """
     index = np.arange(int(np.prod(shape)), dtype=np.intp).reshape(tuple(shape))
     if twisted:
@@ -76,16 +78,16 @@ def _shifted(index: Indices, corner: tuple[int, ...]) -> Indices:
 
 
 def cube_skin(dimension: int, size: int, *, opposite: bool = False) -> tuple[Indices, Indices]:
-    """Return the lattice points on the skin of a cube, each once, and the cells between them.
+    """Return the lattice points on the surface of a cube, each once, and the cells between them.
 
     Parameters
     ----------
     dimension : int
-        3 or 4, of the cube; its skin has one less.
+        Dimension of the cube, 3 or 4; its surface has one less.
     size : int
-        Cells along an edge.
+        Number of cells along an edge.
     opposite : bool, default: False
-        Take each point for the same as the one opposite: the skin becomes a projective space.
+        Whether opposite points are identified, which makes the surface a projective space.
 
     Returns
     -------
@@ -104,7 +106,7 @@ def cube_skin(dimension: int, size: int, *, opposite: bool = False) -> tuple[Ind
         places.append(np.insert(within, axis, side * size, axis=1))
     corner = np.concatenate(places)
     if opposite:
-        # The first coordinate that is not zero decides which of the two stands for both.
+        # The sign of the first non-zero coordinate decides which of both points is kept.
         first = np.argmax(corner != 0, axis=1)
         corner = corner * np.sign(corner[np.arange(len(corner)), first])[:, np.newaxis]
     points, number = np.unique(corner, axis=0, return_inverse=True)

@@ -1,12 +1,12 @@
-"""Curves, surfaces and 3-manifolds in 4-space and beyond, with exact tangents.
+"""Curves, surfaces and 3-manifolds in 4 dimensions and more, with exact tangents.
 
-Every shape is a :class:`~vizlight.geometry.nspace.parametric.Manifold`: points, orthonormal tangent
-frames, cells. Closed directions share their points, so nothing has a seam.
+Every shape is a :class:`~vizlight.geometry.nspace.parametric.Manifold` of points, orthonormal
+tangent frames and cells. Closed directions share their points, so no shape has a seam.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -31,7 +31,12 @@ from vizlight.geometry.nspace.tori import (
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from numpy.typing import ArrayLike, NDArray
+
     from vizlight._types import Array, Bools, Indices
+
+    Complex = NDArray[np.complexfloating]
+    Function = Callable[[Complex], Complex]
 
 __all__ = [
     "Manifold",
@@ -46,11 +51,11 @@ __all__ = [
     "veronese",
 ]
 
-#: A step between two samples is halved so often to see whether it is a jump; where the function is
-#: a root, which is as steep as it is continuous, 2^-12 of it is left.
+#: Bisections of a step between two samples, to find out whether it is a jump. Of a step of a square
+#: root at 0, the steepest continuous one, 2^-12 remains.
 HALVINGS = 24
-#: Multiplication of a quaternion (x, y, z, w) of the unit sphere by i, j and k: row by row the
-#: place and the sign of each component.
+#: Multiplication of a unit quaternion (x, y, z, w) by i, j and k: for each of the three the source
+#: index and the sign of every component.
 _UNITS = (
     ((3, 2, 1, 0), (1, -1, 1, -1)),
     ((2, 3, 0, 1), (1, 1, -1, -1)),
@@ -58,35 +63,37 @@ _UNITS = (
 )
 
 
-def klein_bottle(*, major: float = 2.0, minor: float = 1.0, resolution: Any = (96, 48)) -> Manifold:
-    """Return the Klein bottle in 4-space, where it does not meet itself.
+def klein_bottle(
+    *, major: float = 2.0, minor: float = 1.0, resolution: int | Sequence[int] = (96, 48)
+) -> Manifold:
+    """Return the Klein bottle in 4-space, where it does not intersect itself.
 
-    A circle of radius ``minor`` goes around one of radius ``major`` and turns over in the zw
+    A circle of radius ``minor`` moves around a circle of radius ``major`` and is flipped in the zw
     plane on its way: ``((R + r cos v) cos u, (R + r cos v) sin u, r sin v cos(u/2),
     r sin v sin(u/2))``.
 
     Parameters
     ----------
     major, minor : float
-        R > r > 0, in any unit.
+        Radii R > r > 0, in any unit.
     resolution : int or 2 of them, default: (96, 48)
-        Samples around and across.
+        Number of samples along u and along v.
 
     Returns
     -------
     Manifold
-        Quadrilaterals; where u comes back, v comes back reversed, point for point.
+        Quadrilaterals; where u returns to its start, v is reversed, point for point.
 
     Raises
     ------
     TypeError, ValueError
-        If an argument does not fit.
+        If an argument is invalid.
 
     Notes
     -----
-    Error of points, as a part of ``major``: 12 eps a component; of what the frame spans
-    ``12 eps R/(R - r)``: near R = r the angles' own rounding turns the frame where the tube
-    passes the axis.
+    The error of points, relative to ``major``, is 12 eps per component. The error of the space that
+    the frame spans is ``12 eps R/(R - r)``: near R = r the rounding of the angles rotates the frame
+    where the tube passes the axis.
     """
     major, minor = radius_of("major", major), radius_of("minor", minor)
     if minor >= major:
@@ -110,31 +117,31 @@ def klein_bottle(*, major: float = 2.0, minor: float = 1.0, resolution: Any = (9
 
 
 def veronese(*, radius: float = 1.0, resolution: int = 24) -> Manifold:
-    """Return the Veronese surface in 4-space: the projective plane, which does not meet itself.
+    """Return the Veronese surface in 4-space: the projective plane without self-intersection.
 
-    The image of the sphere under ``(x y, x z, y z, (x^2 - y^2)/2)``, which takes opposite points
-    to one.
+    It is the image of the sphere under ``(x y, x z, y z, (x^2 - y^2)/2)``, which maps opposite
+    points to the same point.
 
     Parameters
     ----------
     radius : float, default: 1.0
-        Of the sphere; coordinates are in the square of its unit.
+        Radius of the sphere; the coordinates are in the square of its unit.
     resolution : int, default: 24
-        Cells along an edge of the cube whose half skin, made round, is the sphere.
+        Number of cells along an edge of the cube, half of whose surface is projected to the sphere.
 
     Returns
     -------
     Manifold
-        Quadrilaterals without a boundary; opposite points are one.
+        Quadrilaterals without a boundary; opposite points are identified.
 
     Raises
     ------
     TypeError, ValueError
-        If an argument does not fit.
+        If an argument is invalid.
 
     Notes
     -----
-    Error of points and of what the frame spans: 12 eps a component.
+    The error of points and of the space that the frame spans is 12 eps per component.
     """
     radius = radius_of("radius", radius)
     size = _check.integer("resolution", resolution, low=2)
@@ -142,7 +149,7 @@ def veronese(*, radius: float = 1.0, resolution: int = 24) -> Manifold:
     place = _round(corners, size)
     x, y, z = place.T
     zero = np.zeros_like(x)
-    # The derivative of the map at the place, and two directions across it.
+    # The derivative of the map at the point, and two directions tangent to the sphere.
     rows = np.stack(
         [
             np.stack([y, x, zero], axis=1),
@@ -158,25 +165,26 @@ def veronese(*, radius: float = 1.0, resolution: int = 24) -> Manifold:
 
 
 def complex_curve(
-    function: Callable[[Any], Any],
+    function: Callable[[Complex], ArrayLike],
     /,
     *,
     domain: Sequence[Sequence[float]] = ((-1.0, 1.0), (-1.0, 1.0)),
-    derivative: Callable[[Any], Any] | None = None,
-    resolution: Any = 64,
+    derivative: Callable[[Complex], ArrayLike] | None = None,
+    resolution: int | Sequence[int] = 64,
 ) -> Manifold:
     """Return the graph ``w = f(z)`` of a complex function, a surface (Re z, Im z, Re w, Im w).
 
     Parameters
     ----------
     function : callable
-        Takes and returns a complex array; analytic on the domain, with one value everywhere, and
-        a thousandth of its larger side around it.
+        Function that takes and returns a complex array. It must be analytic and single-valued on
+        the domain and up to a thousandth of its larger side around it.
     domain : ((low, high), (low, high))
-        Of the real and the imaginary part of z.
+        Ranges of the real and the imaginary part of z.
     derivative : callable, optional
-        f'. Taken as it is. Default: Cauchy's integral around z.
+        Derivative f', used without a check. Default: Cauchy's integral around z.
     resolution : int or 2 of them, default: 64
+        Number of samples in each direction.
 
     Returns
     -------
@@ -186,21 +194,21 @@ def complex_curve(
     Raises
     ------
     TypeError
-        If the function does not take or return what is asked for.
+        If the function does not take or return such arrays.
     ValueError
-        If an argument does not fit, the function is not finite on its domain, or not analytic:
-        it depends on the conjugate of z by more than rounding, or has a branch cut between
+        If an argument is invalid, or the function is not finite on its domain or not analytic
+        there: it depends on the conjugate of z by more than rounding, or has a branch cut between
         neighbouring samples (a root or a logarithm around 0).
 
     Notes
     -----
-    Tangents ``(1, 0, Re f', Im f')`` and ``(0, 1, -Im f', Re f')``, orthogonal as they come.
-    Without a derivative the mean of ``f(z + d)/d`` over eight d on a circle of radius h, whose
-    error is ``h^8 |f^(9)|/9! + eps ((|f| + |z f'|)/h + 4 |f'|)``. With
-    h = eps^(1/5) of the domain's larger side, 7.4e-4, that is 1e-12 of the largest of ``|f|`` and
-    ``|f'|`` unless a pole is nearer than 40 h.
-    The mean of ``f(z + d)/d*`` is the slope along the conjugate, 0 if f is analytic.
-    The inverse of f, a root or a logarithm, has the same surface: turn z and w by ``project``.
+    The tangents ``(1, 0, Re f', Im f')`` and ``(0, 1, -Im f', Re f')`` are orthogonal by
+    construction. Without a derivative f' is the mean of ``f(z + d)/d`` over eight d on a circle of
+    radius h, with an error of ``h^8 |f^(9)|/9! + eps ((|f| + |z f'|)/h + 4 |f'|)``. With h =
+    eps^(1/5) of the domain's larger side, 7.4e-4, that is 1e-12 of the largest ``|f|`` and ``|f'|``
+    unless a pole is nearer than 40 h. The mean of ``f(z + d)/d*`` is the derivative by the
+    conjugate, which is 0 if f is analytic. The inverse of f, a root or a logarithm, has the same
+    surface with z and w exchanged, which a rotation in ``project`` does.
     """
     check_callable("function", function)
     if derivative is not None:
@@ -210,19 +218,19 @@ def complex_curve(
         raise ValueError(_check.message("domain", "two pairs (low, high)", f"shape {sides.shape}"))
     side = float(np.ptp(sides, axis=1).max())
 
-    def value(z: Any) -> Any:
+    def value(z: Complex) -> Complex:
         return _complex("function", function, z)
 
-    def slope(z: Any) -> Any:
+    def slope(z: Complex) -> Complex:
         if derivative is not None:
             return _complex("derivative", derivative, z)
         return _slope(value, z, side)
 
-    def place(x: Array, y: Array) -> Any:
+    def place(x: Array, y: Array) -> tuple[Array, ...]:
         w = value(x + 1j * y)
         return x, y, w.real, w.imag
 
-    def tangents(x: Array, y: Array) -> Any:
+    def tangents(x: Array, y: Array) -> tuple[tuple[ArrayLike, ...], ...]:
         d = slope(x + 1j * y)
         return (1.0, 0.0, d.real, d.imag), (0.0, 1.0, -d.imag, d.real)
 
@@ -231,37 +239,36 @@ def complex_curve(
     return shape
 
 
-def _complex(name: str, function: Callable[[Any], Any], z: Any) -> Any:
-    """Return what a user's function makes of an array: numbers of its shape."""
+def _complex(name: str, function: Callable[[Complex], ArrayLike], z: Complex) -> Complex:
+    """Return the values of a user's function at z, real or complex, in the shape of z."""
     with np.errstate(all="ignore"):
-        given = function(z)
-    expected = "one that returns numbers of the shape that it is given"
+        returned = function(z)
+    expected = "one that returns numbers in the shape of its argument"
     try:
-        w = np.broadcast_to(np.asarray(given), z.shape)
+        w = np.broadcast_to(np.asarray(returned), z.shape)
     except ValueError as error:
-        raise ValueError(_check.message(name, expected, _check.describe(given))) from error
+        raise ValueError(_check.message(name, expected, _check.describe(returned))) from error
     if w.dtype.kind not in "iubfc":
-        raise TypeError(_check.message(name, expected, _check.describe(given)))
+        raise TypeError(_check.message(name, expected, _check.describe(returned)))
     return w
 
 
-def _slope(value: Callable[[Any], Any], z: Any, side: float) -> Any:
+def _slope(value: Function, z: Complex, side: float) -> Complex:
     """Return f' by Cauchy's integral over eight points around z, if f is analytic there.
 
-    Part m of eight of f on the circle is the term ``f^(m) d^m / m!`` of Taylor's series; part 7 is
-    also part -1, that of the conjugate of d.
+    Coefficient m of the discrete Fourier transform of f on the circle is the term
+    ``f^(m) d^m / m!`` of the Taylor series. Coefficient 7 is also coefficient -1, the term of the
+    conjugate of d.
     """
     w = value(z)
     eps = float(np.finfo(w.dtype if w.dtype.kind in "fc" else np.float64).eps)
     h = eps**0.2 * side
     turns = np.exp(2j * np.pi / 8 * np.arange(8))
     around = np.stack([value(z + h * turn) for turn in turns], axis=-1)
-    remedy = "choose a domain away from poles and branch cuts"
+    remedy = "choose a domain away from poles and branch cuts, or pass derivative="
     if not np.all(np.isfinite(around)):
-        expected = f"finite numbers on its domain and {h:.2g} around it"
-        raise ValueError(
-            _check.message("function", expected, "others", f"{remedy}, or pass derivative=")
-        )
+        expected = f"finite values on its domain and up to {h:.2g} outside it"
+        raise ValueError(_check.message("function", expected, "NaN or infinity", remedy))
     with np.errstate(all="ignore"):
         part = np.fft.fft(around, axis=-1) / 8
         size = np.abs(part)
@@ -269,16 +276,17 @@ def _slope(value: Callable[[Any], Any], z: Any, side: float) -> Any:
         floor = ROUNDING * (np.median(high) + eps * (np.abs(w) + np.abs(z) * size[..., 1] / h))
         good = (size[..., 7] <= 8 * high + floor) & (high <= size[..., 1:5].sum(-1) / 99 + floor)
     if not np.all(good):
-        got = f"one that at {_first(z, ~good)} depends on the conjugate too, or jumps"
+        got = f"one that depends on the conjugate of z or jumps, at {_first(z, ~good)}"
         raise ValueError(_check.message("function", "an analytic one", got, remedy))
-    return part[..., 1] / h
+    slope: Complex = part[..., 1] / h
+    return slope
 
 
-def _check_sheets(value: Callable[[Any], Any], shape: Manifold) -> None:
-    """Refuse a function with a branch cut between neighbouring samples.
+def _check_sheets(value: Function, shape: Manifold) -> None:
+    """Reject a function that has a branch cut between neighbouring samples.
 
-    A step from one sample to the next that is not what the slopes at both say is halved again
-    and again, on the side where more of it is: what is left is a jump.
+    Where the step from one sample to the next disagrees with the slopes at both, it is bisected
+    repeatedly, always on the side with the larger step; what remains is a jump.
     """
     pairs = [shape.cells[:, [i, (i + 1) % 4]] for i in range(4)]
     ends = np.unique(np.sort(np.concatenate(pairs), axis=1), axis=0)
@@ -307,8 +315,8 @@ def _check_sheets(value: Callable[[Any], Any], shape: Manifold) -> None:
         raise ValueError(_check.message("function", "an analytic one", got, remedy))
 
 
-def _first(z: Any, where: Bools) -> str:
-    """Return the first of some numbers as words."""
+def _first(z: Complex, where: Bools) -> str:
+    """Return the first selected number as text."""
     return f"z = {complex(z[where][0]):.3g}"
 
 
@@ -318,9 +326,9 @@ def sphere3(*, radius: float = 1.0, resolution: int = 8) -> Manifold:
     Parameters
     ----------
     radius : float, default: 1.0
-        In any unit.
+        Radius of the sphere, in any unit.
     resolution : int, default: 8
-        Cells along an edge of each of the 8 cubes that, made round, are the sphere.
+        Number of cells along an edge of each of the 8 cubes that are projected to the sphere.
 
     Returns
     -------
@@ -330,12 +338,12 @@ def sphere3(*, radius: float = 1.0, resolution: int = 8) -> Manifold:
     Raises
     ------
     TypeError, ValueError
-        If an argument does not fit.
+        If an argument is invalid.
 
     Notes
     -----
-    The frame is the point, as a quaternion, times i, j and k: orthonormal and the same function
-    everywhere, which no 2-sphere has. Error 4 eps a component.
+    The frame is the point, as a quaternion, times i, j and k: orthonormal and given by one formula
+    everywhere, which is impossible on a 2-sphere. The error is 4 eps per component.
     """
     radius = radius_of("radius", radius)
     size = _check.integer("resolution", resolution, low=1)
@@ -346,16 +354,17 @@ def sphere3(*, radius: float = 1.0, resolution: int = 8) -> Manifold:
 
 
 def _round(corners: Indices, size: int) -> Array:
-    """Return unit vectors through the lattice points of a cube, spread to equal angles."""
+    """Return unit vectors through the lattice points of a cube, spread at equal angles."""
     place = np.tan(np.pi / 4 * (corners / size))
     unit: Array = place / np.linalg.norm(place, axis=1, keepdims=True)
     return unit
 
 
 def _across(place: Array) -> Array:
-    """Return two directions (N, 2, 3) across each unit vector, without a pole.
+    """Return two directions (N, 2, 3) perpendicular to each unit vector, without a pole.
 
-    The axis farthest from the vector is crossed with it, and the result once more.
+    The first is the cross product with the coordinate axis farthest from the vector, the second the
+    cross product with the first.
     """
     axis = np.eye(3)[np.argmin(np.abs(place), axis=1)]
     first = np.cross(place, axis)

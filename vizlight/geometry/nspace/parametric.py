@@ -1,9 +1,9 @@
-"""A k-manifold in n-space from a function of k parameters, with the tangents it needs for light."""
+"""A k-manifold in n-space, sampled from a function of k parameters, with its tangents."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
@@ -12,34 +12,39 @@ from vizlight.geometry.nspace import lattice
 from vizlight.model.frames import orthonormalize
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
-    from vizlight._types import Array, Indices
+    from numpy.typing import ArrayLike, NDArray
 
-    Function = Callable[..., Any]
+    from vizlight._types import Array, Indices, Numbers
+
+    Function = Callable[..., Iterable[ArrayLike]]
+    TangentFunction = Callable[..., Iterable[Iterable[ArrayLike]]]
+    Samples = Callable[..., tuple[Array, Array]]
 
 Tangents = Literal["complex", "central"]
 
-#: The complex step: so small that its square is nothing beside 1.
+#: Complex step, as a share of the domain: its square vanishes next to 1.
 COMPLEX_STEP = 1e-30
 EPS = float(np.finfo(np.float64).eps)
 
 
 def central_step(eps: float) -> float:
-    """Return the central step, as a part of the domain, for numbers of a precision.
+    """Return the step of central differences, as a share of the domain, for numbers of a given eps.
 
-    The cube root of eps balances both errors.
+    The cube root of eps balances the truncation and the rounding error.
     """
     return float(eps ** (1 / 3)) / 8
 
 
 CENTRAL_STEP = central_step(EPS)
-#: How far apart, as a part of the extent, two ends of a closed direction may be.
+#: Largest distance, as a share of the extent, between the two ends of a closed direction.
 CLOSED = 1e-9
-#: How far the tangent spaces there may differ, and complex step from central differences.
+#: Largest difference of the tangent spaces at both ends of a closed direction.
 SAME_SPACE = 1e-5
+#: Largest relative difference between the complex step and central differences.
 NOT_ANALYTIC = 1e-5
-#: Rounding of a function, in eps of its value and of what rounding its parameters does to it.
+#: Rounding error of a function, in eps of its value and of the effect of rounded parameters.
 ROUNDING = 64
 
 
@@ -50,10 +55,11 @@ class Manifold:
     Attributes
     ----------
     points : ndarray, shape (N, n)
+        Positions.
     frame : ndarray, shape (N, k, n)
         Orthonormal tangents; rows past the rank are zero.
     cells : ndarray of int, shape (M, 2^k)
-        Segments, quadrilaterals or hexahedra between the points, corners in VTK's order. A
+        Segments, quadrilaterals or hexahedra between the points, with corners in VTK's order. A
         closed direction shares its points across the seam.
     """
 
@@ -63,17 +69,17 @@ class Manifold:
 
     @property
     def k(self) -> int:
-        """The dimension of the manifold."""
+        """Dimension of the manifold."""
         return int(self.frame.shape[1])
 
     @property
     def n(self) -> int:
-        """The dimension of the space."""
+        """Dimension of the space."""
         return int(self.points.shape[1])
 
 
 def manifold(points: Array, tangents: Array, cells: Indices) -> Manifold:
-    """Return a :class:`Manifold`; its tangents (N, k, n) of any length are orthonormalised."""
+    """Return a :class:`Manifold` whose tangents (N, k, n) are orthonormalised first."""
     return Manifold(points, orthonormalize(tangents)[0], cells)
 
 
@@ -83,8 +89,8 @@ def parametric(
     n: int,
     /,
     *,
-    resolution: Any = 64,
-    tangents: Tangents | Function = "central",
+    resolution: int | Sequence[int] = 64,
+    tangents: Tangents | TangentFunction = "central",
     closed: Sequence[bool] | bool | None = None,
     step: float | None = None,
 ) -> Manifold:
@@ -93,24 +99,25 @@ def parametric(
     Parameters
     ----------
     function : callable
-        Called with k arrays of one shape, the parameters, all within the domain; returns n
-        coordinates of that shape (or numbers, where one is constant).
+        Function of the k parameters, which are arrays of one shape inside the domain. It returns n
+        coordinates of that shape (or a number for a constant coordinate).
     domain : sequence of (low, high), one for each parameter
+        Range of each parameter.
     n : int
         Dimension of the space, more than k.
     resolution : int or k of them, default: 64
-        Samples in each direction.
+        Number of samples in each direction.
     tangents : {"central", "complex"} or callable, default: "central"
-        Where tangents come from: central differences; the complex step, for a function that is
-        analytic and takes complex parameters (no ``abs``, ``arctan2`` or comparison); or a
-        function like the first that returns k rows of n components, exact tangents.
+        Source of the tangents: central differences; the complex step, for a function that is
+        analytic and accepts complex parameters (no ``abs``, ``arctan2`` or comparison); or a
+        function of the same parameters that returns the exact tangents, k rows of n components.
     closed : bool or k of them, optional
-        Whether a direction comes back to where it began: its last sample is then its first.
-        Default: found out, by points and tangent spaces at both ends.
+        Whether a direction returns to its start, so that its last sample is followed by its first.
+        Default: determined from the points and tangent spaces at both ends.
     step : float, optional
-        Of the differences, as a part of each direction's range. Default: eps^(1/3)/8 for central
-        differences, 7.6e-7, or 6.2e-4 where the function returns float32; 1e-30 for the complex
-        step.
+        Step of the differences, as a share of each direction's range. Default: eps^(1/3)/8 for
+        central differences, which is 7.6e-7, or 6.2e-4 where the function returns float32; 1e-30
+        for the complex step.
 
     Returns
     -------
@@ -119,27 +126,26 @@ def parametric(
     Raises
     ------
     TypeError
-        If the function does not take or return what is asked for.
+        If the function does not take or return such arrays.
     ValueError
-        If an argument does not fit, the function is not finite on its domain, a direction that
-        should be closed is not, the step is lost in the rounding of the parameters, or the
-        function is not analytic where the complex step needs it: a derivative by central
-        differences is off by more than 1e-5 of itself and their own error.
+        If an argument is invalid, the function is not finite on its domain, a direction that should
+        be closed is not, the step is lost in the rounding of the parameters, or the function is not
+        analytic although the complex step requires it: its derivative differs from central
+        differences by more than 1e-5 of itself plus their own error.
 
     Notes
     -----
-    Error of a tangent, in each component, for a step h in the parameter's own unit: central
-    differences ``(h^2/6) |f'''| + eps (|f| + |u f'|) / h`` with eps that of the numbers that
-    the function returns, about 1e-10 of the extent in float64 and 3e-4 in float32 for a function
-    that varies over its domain as a sine does over a period; the complex step
-    ``Im f(u + i h) / h`` (nothing is subtracted, so h may be tiny) only the rounding of the
-    function itself, a few eps. ``vizlight.studies.frames`` measures both. Differences stay
-    within the domain: at its ends they are those of the parabola through the end and two points
-    h and 2 h from it, with ``(h^2/3) |f'''|`` and four times the rounding.
-    Where tangents are dependent, at the pole of a sphere's angles for one, the frame has rows
-    of zero, and light there is the ambient one.
-    A twisted direction (a Moebius band) keeps two points at each place of its seam;
-    :func:`vizlight.geometry.manifolds.klein_bottle` has none.
+    For a step h in the parameter's own unit, the error of each component of a tangent by central
+    differences is ``(h^2/6) |f'''| + eps (|f| + |u f'|) / h``, with eps that of the type which the
+    function returns. For a function that varies over its domain like one period of a sine this is
+    about 1e-10 of the extent in float64 and 3e-4 in float32. The complex step ``Im f(u + i h) / h``
+    subtracts nothing, so h may be tiny, and its error is only the rounding of the function itself,
+    a few eps. ``vizlight.studies.frames`` measures both. Differences stay inside the domain: at its
+    ends they are the slope of the parabola through the end and the points h and 2 h from it, with
+    an error of ``(h^2/3) |f'''|`` and four times the rounding. Where tangents are dependent, for
+    example at the poles of spherical coordinates, the frame has rows of zero and only ambient light
+    remains. A twisted direction (a Moebius band) keeps two points at each place of its seam;
+    :func:`vizlight.geometry.manifolds.klein_bottle` has no such seam.
 
     Examples
     --------
@@ -154,17 +160,17 @@ def parametric(
     k = len(ends)
     n = _check.integer("n", n, low=k + 1)
     eps = _precision(function, ends, n)
-    ways = _ways(function, ends, n, tangents, step, eps)
-    # Differences at both ends look inward, so that their errors, of order 2, need not agree.
+    slopes = _slopes(function, ends, n, tangents, step, eps)
+    # Differences at both ends are one-sided, so their second-order errors need not agree.
     coarse = step if step is not None and tangents == "central" else 0.0
     same = max(SAME_SPACE, ROUNDING * eps ** (2 / 3), (8 * coarse) ** 2)
 
     def sample(*u: Array) -> tuple[Array, Array]:
         points = _values(function, u, n)
-        return points, ways(u, points)
+        return points, slopes(u, points)
 
     if wraps is None:
-        wraps = tuple(_comes_back(sample, ends, axis, eps, same) for axis in range(k))
+        wraps = tuple(_is_closed(sample, ends, axis, eps, same) for axis in range(k))
     shape = lattice.resolution(resolution, k, wraps)
     axes = [
         np.linspace(low, high, count, endpoint=not wrap)
@@ -173,33 +179,30 @@ def parametric(
     u: list[Array] = [axis.ravel() for axis in np.meshgrid(*axes, indexing="ij")]
     points, rows = sample(*u)
     for axis in range(k):
-        if closed is None or not wraps[axis]:
-            continue
-        if not _comes_back(sample, ends, axis, eps):
-            expected = f"a function that comes back in direction {axis}"
-            raise ValueError(_check.message("closed", expected, "one that does not"))
+        if closed is not None and wraps[axis] and not _is_closed(sample, ends, axis, eps):
+            expected = f"a function that returns to its start in direction {axis}"
+            remedy = "pass closed=False for an open direction"
+            raise ValueError(_check.message("closed", expected, "one that does not", remedy))
     return manifold(points, rows, lattice.cells(shape, wraps))
 
 
-def check_callable(name: str, value: Any) -> None:
-    """Check that a value can be called."""
+def check_callable(name: str, value: object) -> None:
+    """Check that a value is callable."""
     if not callable(value):
         raise TypeError(_check.message(name, "a function", _check.describe(value)))
 
 
-def _domain(domain: Any, closed: Any) -> tuple[Array, tuple[bool, ...] | None]:
+def _domain(domain: object, closed: object) -> tuple[Array, tuple[bool, ...] | None]:
     ends = _check.floats("domain", domain).astype(np.float64)
     if ends.ndim != 2 or ends.shape[1] != 2 or not 1 <= len(ends) <= 3:
-        raise ValueError(
-            _check.message("domain", "1 to 3 pairs (low, high)", f"shape {ends.shape}")
-        )
+        raise ValueError(_check.message("domain", "1 to 3 pairs (low, high)", ends))
     sizes = ends[:, 1] - ends[:, 0]
     if not np.all(np.isfinite(ends) & (sizes[:, np.newaxis] > 0)):
         raise ValueError(_check.message("domain", "finite pairs with low < high", ends.tolist()))
     if closed is None:
         return ends, None
     wraps = np.asarray(closed)
-    expected = f"1 or {len(ends)} of True or False"
+    expected = f"a bool or {len(ends)} of them"
     if wraps.dtype.kind not in "biu" or not np.isin(wraps, (0, 1)).all():
         raise TypeError(_check.message("closed", expected, _check.describe(closed)))
     if wraps.shape not in ((), (len(ends),)):
@@ -208,20 +211,25 @@ def _domain(domain: Any, closed: Any) -> tuple[Array, tuple[bool, ...] | None]:
 
 
 def _precision(function: Function, ends: Array, n: int) -> float:
-    """Return eps of the coarsest numbers that a function returns, seen where its domain begins."""
+    """Return eps of the coarsest type that the function returns at the start of its domain."""
     rows = _rows(function, list(ends[:, :1]), n)
     return max([EPS, *(float(np.finfo(row.dtype).eps) for row in rows if row.dtype.kind == "f")])
 
 
-def _ways(
-    function: Function, ends: Array, n: int, tangents: Any, step: float | None, eps: float
+def _slopes(
+    function: Function,
+    ends: Array,
+    n: int,
+    tangents: Tangents | TangentFunction,
+    step: float | None,
+    eps: float,
 ) -> Callable[[Sequence[Array], Array], Array]:
-    """Return what gives tangents (N, k, n) at some parameters and points."""
+    """Return a function of parameters and points that returns tangents (N, k, n)."""
     if step is not None:
         step = _check.number("step", step, low=1e-290, high=0.5)
     if callable(tangents):
-        return lambda u, _: _given(tangents, u, n)
-    if not isinstance(tangents, str) or tangents not in ("complex", "central"):
+        return lambda u, _: _exact(tangents, u, n)
+    if not isinstance(tangents, str) or tangents not in get_args(Tangents):
         got = _check.describe(tangents)
         raise ValueError(_check.message("tangents", "'central', 'complex' or a function", got))
     if tangents == "central":
@@ -233,7 +241,7 @@ def _ways(
         raise ValueError(_lost_step(step, fine, ends))
 
     def checked(u: Sequence[Array], points: Array) -> Array:
-        """Return ``Im f(u + i h) / h``, if it agrees with central differences."""
+        """Return ``Im f(u + i h) / h`` after a comparison with central differences."""
         found = _complex_step(function, u, n, fine)
         near, far = (_central(function, u, n, s * coarse, ends) for s in (1, 2))
         place = np.abs(np.stack(u, axis=1))[..., np.newaxis]
@@ -241,8 +249,8 @@ def _ways(
         allowed = NOT_ANALYTIC * np.abs(near) + np.abs(far - near)
         allowed += ROUNDING * eps * rounding / coarse[:, np.newaxis]
         if not np.all(np.abs(found - near) <= allowed):
-            expected = "one that is analytic, as the complex step needs"
-            got = "one whose complex step and central differences disagree"
+            expected = "one that is analytic, as the complex step requires"
+            got = "one for which the complex step and central differences disagree"
             remedy = "pass tangents='central'"
             raise ValueError(_check.message("function", expected, got, remedy))
         return found
@@ -251,7 +259,7 @@ def _ways(
 
 
 def _central_steps(step: float | None, ends: Array, eps: float) -> Array:
-    """Return the step in each direction, if there are numbers between a parameter and the next."""
+    """Return the step in each direction, if it is large compared to the parameters' rounding."""
     steps: Array = (central_step(eps) if step is None else step) * (ends[:, 1] - ends[:, 0])
     if not np.all(steps >= 8 * np.spacing(np.abs(ends).max(axis=1))):
         raise ValueError(_lost_step(step, steps, ends))
@@ -259,83 +267,86 @@ def _central_steps(step: float | None, ends: Array, eps: float) -> Array:
 
 
 def _lost_step(step: float | None, steps: Array, ends: Array) -> str:
-    """Return what is wrong where parameters are so large, or steps so small, that none is seen."""
+    """Return an error message for a step that the rounding of the parameters hides."""
     got = f"{steps.min():.2g} on {ends.tolist()}"
     if step is not None:
-        return _check.message("step", "one that rounding of the parameters does not hide", got)
-    remedy = "count parameters from its middle and in a unit of its size, or pass exact tangents"
+        expected = "one that rounding of the parameters does not hide"
+        return _check.message("step", expected, got, "pass a larger step")
+    remedy = "measure parameters from its middle, in a unit of its size, or pass exact tangents"
     expected = "one in which rounding does not hide the step of differences"
     return _check.message("domain", expected, got, remedy)
 
 
-def _given(tangents: Function, u: Sequence[Array], n: int) -> Array:
-    """Return tangents by a function of the user's."""
+def _exact(tangents: TangentFunction, u: Sequence[Array], n: int) -> Array:
+    """Return the tangents that a user's function returns, validated."""
     with np.errstate(all="ignore"):
-        given = tangents(*u)
+        returned = tangents(*u)
     expected = f"{len(u)} rows of {n}"
     try:
-        rows = list(given)
+        rows = list(returned)
     except TypeError as error:
-        raise TypeError(_check.message("tangents", expected, _check.describe(given))) from error
+        raise TypeError(_check.message("tangents", expected, _check.describe(returned))) from error
     if len(rows) != len(u):
         raise ValueError(_check.message("tangents", expected, len(rows)))
     return np.stack([_values(lambda *_, row=row: row, u, n, "tangents") for row in rows], axis=1)
 
 
 def _rows(
-    function: Function, u: Sequence[Any], n: int, name: str = "function", allowed: str = "iubf"
-) -> list[Any]:
-    """Return n coordinates, each an array of the parameters' shape and of its own type."""
+    function: Function, u: Sequence[Numbers], n: int, name: str = "function"
+) -> list[NDArray[Any]]:
+    """Return n coordinates in the parameters' shape, each of its own type.
+
+    They may be complex only where a parameter is.
+    """
     with np.errstate(all="ignore"):
-        given = function(*u)
+        returned = function(*u)
     expected = f"one that returns {n} coordinates of the parameters' shape, or numbers"
     try:
-        rows = [np.broadcast_to(np.asarray(row), u[0].shape) for row in given]
+        rows = [np.broadcast_to(np.asarray(row), u[0].shape) for row in returned]
     except (TypeError, ValueError) as error:
-        raise TypeError(_check.message(name, expected, _check.describe(given))) from error
+        raise TypeError(_check.message(name, expected, _check.describe(returned))) from error
     if len(rows) != n:
         raise ValueError(_check.message(name, expected, len(rows)))
-    if any(row.dtype.kind not in allowed for row in rows):
+    if any(row.dtype.kind not in "iubf" + np.result_type(*u).kind for row in rows):
         kinds = ", ".join(sorted({str(row.dtype) for row in rows}))
         raise TypeError(_check.message(name, "one that returns real numbers", kinds))
     return rows
 
 
 def _values(
-    function: Function, u: Sequence[Any], n: int, name: str = "function", kind: Any = np.float64
-) -> Any:
-    """Return n coordinates a point, (N, n), at some parameters."""
-    rows = _rows(function, u, n, name, "iubf" if kind is np.float64 else "iubfc")
-    points = np.stack(rows, axis=1).astype(kind)
-    lost = int(np.count_nonzero(~np.all(np.isfinite(points), axis=1)))
+    function: Function, u: Sequence[Numbers], n: int, name: str = "function"
+) -> NDArray[Any]:
+    """Return n finite coordinates per point, (N, n), complex where a parameter is."""
+    points = np.stack(_rows(function, u, n, name), axis=1).astype(np.result_type(np.float64, *u))
+    finite = np.all(np.isfinite(points), axis=1)
+    lost = int(np.count_nonzero(~finite))
     if lost:
         expected = "finite coordinates on its domain"
-        remedy = "choose a domain without them"
-        first = np.argmin(np.all(np.isfinite(points), axis=1))
-        where = ", ".join(f"{x[first]:g}" for x in u)
-        got = f"{lost} of {len(points)} points without, the first at ({where})"
-        raise ValueError(_check.message(name, expected, got, remedy))
+        where = ", ".join(f"{x[np.argmin(finite)]:g}" for x in u)
+        got = f"{lost} of {len(points)} points with NaN or infinity, the first at ({where})"
+        raise ValueError(_check.message(name, expected, got, "choose a domain without them"))
     return points
 
 
 def _central(function: Function, u: Sequence[Array], n: int, steps: Array, ends: Array) -> Array:
-    """Return slopes of the parabola through a point and two beside it, all within the domain."""
+    """Return the slopes of parabolas through three points, all within the domain."""
     rows = []
     for axis, h in enumerate(steps):
         low, high = ends[axis]
         middle = np.clip(u[axis], low + h, high - h)
         ahead, behind = list(u), list(u)
         ahead[axis], behind[axis] = np.minimum(middle + h, high), np.maximum(middle - h, low)
-        # The distance between both is what the floats have, not what was asked for.
+        # Rounding makes the actual distance differ from the requested one.
         width = (ahead[axis] - behind[axis])[:, np.newaxis]
         right, left = _values(function, ahead, n), _values(function, behind, n)
         slope = (right - left) / width
-        aside = np.flatnonzero(middle != u[axis])
-        if len(aside):
-            at = [x[aside] for x in u]
-            at[axis] = middle[aside]
-            bend = (right[aside] - 2 * _values(function, at, n) + left[aside]) / (width[aside] / 2)
-            slope[aside] += bend * (u[axis] - middle)[aside, np.newaxis] / (width[aside] / 2)
+        at_ends = np.flatnonzero(middle != u[axis])
+        if len(at_ends):
+            at = [x[at_ends] for x in u]
+            at[axis] = middle[at_ends]
+            half = width[at_ends] / 2
+            bend = (right[at_ends] - 2 * _values(function, at, n) + left[at_ends]) / half
+            slope[at_ends] += bend * (u[axis] - middle)[at_ends, np.newaxis] / half
         rows.append(slope)
     return np.stack(rows, axis=1)
 
@@ -344,23 +355,24 @@ def _complex_step(function: Function, u: Sequence[Array], n: int, steps: Array) 
     """Return ``Im f(u + i h) / h``."""
     rows = []
     for axis, h in enumerate(steps):
-        moved: list[Any] = list(u)
+        moved: list[Numbers] = list(u)
         moved[axis] = u[axis] + 1j * h
         try:
-            rows.append(_values(function, moved, n, kind=np.complex128).imag / h)
+            rows.append(_values(function, moved, n).imag / h)
         except TypeError as error:
             expected, remedy = "one that takes complex parameters", "pass tangents='central'"
             raise TypeError(_check.message("function", expected, str(error), remedy)) from error
     return np.stack(rows, axis=1)
 
 
-def _comes_back(sample: Any, ends: Array, axis: int, eps: float, same: float | None = None) -> bool:
-    """Tell whether both ends of a direction are one, with tangent spaces that differ by less."""
+def _is_closed(
+    sample: Samples, ends: Array, axis: int, eps: float, same: float | None = None
+) -> bool:
+    """Return whether the points, and to ``same`` the tangent spaces, at both ends coincide."""
     across = [np.linspace(low, high, 9) for low, high in ends]
 
-    def on(axes: Sequence[Any]) -> tuple[Array, Array]:
-        found: tuple[Array, Array] = sample(*(u.ravel() for u in np.meshgrid(*axes)))
-        return found
+    def on(axes: Sequence[ArrayLike]) -> tuple[Array, Array]:
+        return sample(*(u.ravel() for u in np.meshgrid(*axes)))
 
     (p, rows_p), (q, rows_q) = (
         on([*across[:axis], [end], *across[axis + 1 :]]) for end in ends[axis]
@@ -370,11 +382,7 @@ def _comes_back(sample: Any, ends: Array, axis: int, eps: float, same: float | N
         return False
     if same is None:
         return True
-    # A tangent space is compared by its projector, which no choice of rows changes.
-    one, other = (np.einsum("bki,bkj->bij", f, f) for f in map(_frame, (rows_p, rows_q)))
+    # Tangent spaces are compared by their projectors, which do not depend on the basis.
+    frames = [orthonormalize(rows)[0] for rows in (rows_p, rows_q)]
+    one, other = (np.einsum("bki,bkj->bij", frame, frame) for frame in frames)
     return bool(np.abs(one - other).max() < same)
-
-
-def _frame(rows: Array) -> Array:
-    frame: Array = orthonormalize(rows)[0]
-    return frame

@@ -1,10 +1,10 @@
-"""Turning in n-space and projecting to 3-space, positions and the vectors on them together."""
+"""Rotation in n-space and projection to 3-space, of positions and of the vectors at them."""
 
 from __future__ import annotations
 
 import math
 import numbers
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,9 +12,11 @@ from vizlight import _check
 from vizlight.model.frames import default_rtol, orthonormalize
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Array
+    from vizlight._types import Array, Indices
 
 __all__ = [
     "image_and_depth",
@@ -27,13 +29,15 @@ __all__ = [
 ]
 
 AXES = "xyzw"
-#: Matrices whose rows miss orthonormality by more than this are refused: text keeps 7 digits.
+#: Matrices whose rows deviate more than this from orthonormality are rejected. A matrix that was
+#: written as text with 7 digits passes.
 SLACK = 2e-7
-#: Images of a frame that span less are looked at closely: their volume loses half the digits.
+#: Below this volume of a frame's image the rank comes from singular values, because the volume has
+#: lost half its digits.
 DOUBTFUL = 1e-6
 
 
-def plane_rotation(n: int, plane: Any, angle: float, /) -> Array:
+def plane_rotation(n: int, plane: str | Sequence[int], angle: float, /) -> Array:
     """Return the rotation of n-space in a coordinate plane.
 
     Parameters
@@ -41,15 +45,15 @@ def plane_rotation(n: int, plane: Any, angle: float, /) -> Array:
     n : int
         Dimension of the space, 2 or more.
     plane : str or (int, int)
-        Two axes, the first of which turns toward the second: letters of ``xyzw``, ``"xw"``, or
-        numbers from 0, ``(0, 3)``.
+        Two axes, the first of which rotates toward the second: letters of ``xyzw``, such as
+        ``"xw"``, or indices from 0, such as ``(0, 3)``.
     angle : float
-        In radians.
+        Angle in radians.
 
     Returns
     -------
     ndarray, shape (n, n)
-        The matrix R of ``x -> R x``.
+        Matrix R of ``x -> R x``.
 
     Raises
     ------
@@ -66,28 +70,34 @@ def plane_rotation(n: int, plane: Any, angle: float, /) -> Array:
     return matrix
 
 
-def rotation(n: int, turns: Any, /) -> Array:
+def rotation(n: int, turns: object, /) -> Array:
     """Return a rotation of n-space as a matrix.
 
     Parameters
     ----------
     n : int
+        Dimension of the space, 2 or more.
     turns : array_like, shape (n, n), or ``(plane, angle)``, or a list of these
-        A matrix of SO(n), a turn as for :func:`plane_rotation`, or several, the first done first.
+        Matrix of SO(n), a plane and an angle as for :func:`plane_rotation`, or several of these, of
+        which the first is applied first.
 
     Returns
     -------
     ndarray, shape (n, n)
+        Matrix R of ``x -> R x``.
 
     Raises
     ------
     TypeError, ValueError
-        If it is none of these, the matrix is not orthogonal to 2e-7, or it is a reflection.
+        If ``turns`` is none of these, or the matrix is a reflection or not orthogonal to 2e-7.
     """
-    pair = isinstance(turns, list | tuple) and len(turns) == 2
-    # JSON keeps a pair as a list.
-    pair = pair and (isinstance(turns, tuple) or isinstance(turns[0], str) or _is_row(turns[0]))
-    if pair and isinstance(turns[1], numbers.Real):
+    # JSON turns the tuple (plane, angle) into a list.
+    if (
+        isinstance(turns, list | tuple)
+        and len(turns) == 2
+        and isinstance(turns[1], numbers.Real)
+        and (isinstance(turns, tuple) or isinstance(turns[0], str) or _is_row(turns[0]))
+    ):
         return plane_rotation(n, *turns)
     if isinstance(turns, list) and turns and not all(_is_row(part) for part in turns):
         matrix = np.eye(n)
@@ -97,14 +107,14 @@ def rotation(n: int, turns: Any, /) -> Array:
     return _special_orthogonal(n, turns)
 
 
-def _is_row(part: Any) -> bool:
-    """Tell whether a part of a list is a row of a matrix: numbers, and no turn of its own."""
+def _is_row(part: object) -> bool:
+    """Return whether an element of a list is a row of numbers rather than a rotation."""
     return isinstance(part, list | tuple | np.ndarray) and all(
         isinstance(number, numbers.Real) for number in part
     )
 
 
-def _special_orthogonal(n: int, value: Any) -> Array:
+def _special_orthogonal(n: int, value: object) -> Array:
     expected = f"a matrix of shape ({n}, {n}), (plane, angle) or a list of them"
     try:
         matrix = _check.floats("rotation", value).astype(np.float64)
@@ -114,21 +124,20 @@ def _special_orthogonal(n: int, value: Any) -> Array:
         raise ValueError(_check.message("rotation", expected, f"shape {matrix.shape}"))
     if not np.all(np.isfinite(matrix)):
         raise ValueError(_check.message("rotation", "finite numbers", "NaN or infinity"))
-    # Clipped, so that the squares of numbers that are far too large do not overflow.
+    # Clipped, so that the squares of very large numbers do not overflow.
     small = np.clip(matrix, -2, 2)
     miss = float(np.abs(small @ small.T - np.eye(n)).max())
     if miss > SLACK:
-        remedy = "scipy.linalg.polar(matrix)[0] is the nearest"
-        raise ValueError(
-            _check.message("rotation", "an orthogonal matrix", f"rows off by {miss:.2g}", remedy)
-        )
+        got = f"rows off by {miss:.2g}"
+        remedy = "pass the nearest one, scipy.linalg.polar(matrix)[0]"
+        raise ValueError(_check.message("rotation", "an orthogonal matrix", got, remedy))
     if np.linalg.det(matrix) < 0:
         remedy = "change the sign of one row"
         raise ValueError(_check.message("rotation", "a rotation", "a reflection", remedy))
     return matrix
 
 
-def _axes(plane: Any, n: int) -> tuple[int, int]:
+def _axes(plane: str | Sequence[int], n: int) -> tuple[int, int]:
     expected = f"two different axes of {n}-space, as 'xy' or (0, 1)"
     if isinstance(plane, str):
         axes = tuple(AXES.find(letter) for letter in plane)
@@ -142,13 +151,15 @@ def _axes(plane: Any, n: int) -> tuple[int, int]:
     return axes[0], axes[1]
 
 
-def turn(vectors: ArrayLike, matrix: ArrayLike, /) -> Any:
-    """Return ``R x`` of vectors or positions x.
+def turn(vectors: ArrayLike, matrix: ArrayLike, /) -> Array:
+    """Return ``R x`` for vectors or positions x.
 
     Parameters
     ----------
     vectors : array_like, shape (..., n)
+        Vectors or positions x.
     matrix : array_like, shape (n, n)
+        Matrix R.
 
     Returns
     -------
@@ -157,7 +168,7 @@ def turn(vectors: ArrayLike, matrix: ArrayLike, /) -> Any:
     Raises
     ------
     TypeError, ValueError
-        If shapes do not fit.
+        If the shapes do not match.
 
     Notes
     -----
@@ -171,40 +182,41 @@ def turn(vectors: ArrayLike, matrix: ArrayLike, /) -> Any:
     return rows @ square.T
 
 
-def perspective(points: ArrayLike, /, *, distance: float | None = None) -> Any:
+def perspective(points: ArrayLike, /, *, distance: float | None = None) -> Array:
     """Project points to 3-space.
 
     Parameters
     ----------
     points : array_like, shape (..., n)
-        n of 2 or more; points of the plane get z = 0.
+        Positions, n of 2 or more; points of the plane get z = 0.
     distance : float, optional
-        Of the eye from the origin, in the unit of the points, above 0. The eye is on the last
-        axis, the image the hyperplane across it through the origin; in more than 4 dimensions
-        one axis after the other is projected away, the last one first. Default: infinity, an
+        Distance of the eye from the origin, above 0, in the unit of the points. The eye is on the
+        last axis and the image is the hyperplane through the origin perpendicular to it. In more
+        than 4 dimensions this is repeated axis by axis, from the last one on. Default: infinity, an
         orthographic projection, which keeps the first three coordinates.
 
     Returns
     -------
     ndarray, shape (..., 3)
-        Not finite on the eye's hyperplane; turned over behind it (see :func:`image_and_depth`).
+        Image; not finite on the hyperplane of the eye and inverted behind it (see
+        :func:`image_and_depth`).
 
     Raises
     ------
     TypeError, ValueError
-        If an argument does not fit.
+        If an argument is invalid.
 
     Notes
     -----
     ``x -> x d / (d - x_n)``. With d the radius of a sphere in 4-space this is the stereographic
-    projection from its pole. Relative error 3 eps for each axis projected away, over the depths
-    ``(d - x)/d`` that are less than 1 by size.
+    projection from its pole. The relative error is 3 eps for each projected axis, divided by those
+    of the depths ``(d - x)/d`` whose magnitude is less than 1.
     """
     return image_and_depth(points, distance=distance)[0]
 
 
-def image_and_depth(points: ArrayLike, /, *, distance: float | None = None) -> tuple[Any, Any]:
-    """Project points to 3-space and say how far before the eye they are.
+def image_and_depth(points: ArrayLike, /, *, distance: float | None = None) -> tuple[Array, Array]:
+    """Project points to 3-space and return their relative depth in front of the eye.
 
     Parameters
     ----------
@@ -214,9 +226,10 @@ def image_and_depth(points: ArrayLike, /, *, distance: float | None = None) -> t
     Returns
     -------
     image : ndarray, shape (..., 3)
+        Projected points.
     depth : ndarray, shape (...)
-        The least of ``(d - x)/d`` over the axes projected away: 0 or less on or behind the
-        eye's hyperplane, 1 at most; NaN where a point is not finite.
+        Minimum of ``(d - x)/d`` over the projected axes, at most 1: it is 0 or less on or behind
+        the hyperplane of the eye and NaN where a point is not finite.
 
     Raises
     ------
@@ -225,8 +238,8 @@ def image_and_depth(points: ArrayLike, /, *, distance: float | None = None) -> t
 
     Notes
     -----
-    Error of the image as of :func:`perspective`; of the depth, of 4-space, 2 eps of the larger of
-    it and 1.
+    The error of the image is that of :func:`perspective`. The error of the depth in 4-space is 2
+    eps of the larger of the depth and 1.
     """
     positions = _check.vectors("points", points)
     near = np.ones(positions.shape[:-1], dtype=positions.dtype)
@@ -242,38 +255,41 @@ def image_and_depth(points: ArrayLike, /, *, distance: float | None = None) -> t
     return np.array(image[..., :3]), near
 
 
-def push_forward(vectors: ArrayLike, points: ArrayLike, /, *, distance: float | None = None) -> Any:
+def push_forward(
+    vectors: ArrayLike, points: ArrayLike, /, *, distance: float | None = None
+) -> Array:
     """Return the derivative of :func:`perspective` at points, applied to vectors there.
 
     Parameters
     ----------
     vectors : array_like, shape (..., k, n)
-        k vectors a point.
+        k vectors per point.
     points : array_like, shape (..., n)
+        Positions of the vectors.
     distance : float, optional
         As for :func:`perspective`.
 
     Returns
     -------
     ndarray, shape (..., k, 3)
-        Zero for a vector that points at the eye; the images of k tangents may be dependent
-        although these are not (a silhouette).
+        Images of the vectors; zero for a vector that points at the eye. The images of k independent
+        tangents may be dependent (a silhouette).
 
     Raises
     ------
     TypeError, ValueError
-        If an argument does not fit.
+        If an argument is invalid.
 
     Notes
     -----
-    Of ``y = x d/(d - x_n)``: ``dy = (d/(d - x_n)) (v + y v_n / d)``. Error as of
-    :func:`perspective`, of the lengths of both terms together: they cancel for a vector that
-    points at the eye.
+    For ``y = x d/(d - x_n)`` it is ``dy = (d/(d - x_n)) (v + y v_n / d)``. The error is that of
+    :func:`perspective`, relative to the sum of the lengths of both terms, which cancel for a vector
+    that points at the eye.
     """
     rows = _check.vectors("vectors", vectors)
     positions = _check.vectors("points", points, n=rows.shape[-1])
     if rows.ndim < 2 or rows.shape[:-2] != positions.shape[:-1]:
-        expected = f"shape (..., k, n) over points of shape {positions.shape}"
+        expected = f"shape (..., k, n) for points of shape {positions.shape}"
         raise ValueError(_check.message("vectors", expected, f"shape {rows.shape}"))
     if rows.shape[-1] == 2:
         return np.concatenate([rows, np.zeros_like(rows[..., :1])], axis=-1)
@@ -294,25 +310,26 @@ def push_frame(
     *,
     distance: float | None = None,
     rtol: float | None = None,
-) -> tuple[Any, Any]:
-    """Return a frame of the space that tangents are taken to by :func:`push_forward`.
+) -> tuple[Array, Indices]:
+    """Return a frame of the space to which :func:`push_forward` maps tangents.
 
     Parameters
     ----------
     frame : array_like, shape (..., k, n)
         Tangents at each point; orthonormalised here.
     points : array_like, shape (..., n)
+        Positions of the tangents.
     distance : float, optional
         As for :func:`perspective`.
     rtol : float, optional
-        The part of a unit vector's image, as a part of the largest that the projection gives
-        there, that counts as none. Default: ``8 sqrt(n) eps``.
+        Length below which the image of a unit vector counts as zero, relative to a bound on the
+        longest image there. Default: ``8 sqrt(n) eps``.
 
     Returns
     -------
     frame : ndarray, shape (..., k, 3)
-        Orthonormal rows, the first along the image of the first tangent. Where the projection
-        takes a direction of the space to nothing (a silhouette) rows past the rank are zero.
+        Orthonormal rows, the first along the image of the first tangent. Where the projection maps
+        a direction of the space to zero (a silhouette) the rows past the rank are zero.
     rank : ndarray of int, shape (...)
 
     Raises
@@ -322,11 +339,12 @@ def push_frame(
 
     Notes
     -----
-    The rank is the number of singular values of the image of an orthonormal frame above
-    ``rtol`` times a bound on rounding, the product over the axes projected away of
-    ``f (1 + |y|/d (1 + f |x_n|/d))`` with ``f = d/(d - x_n)``, 1 if orthographic: what is less is
-    rounding. Of orthonormal tangents what the rows span is known to 4 eps over the least
-    singular value that counts so.
+    The rank is the number of singular values of the image of an orthonormal frame that exceed
+    ``rtol`` times a bound on the rounding. The bound is the product over the projected axes of
+    ``f (1 + |y|/d (1 + f |x_n|/d))`` with ``f = d/(d - x_n)``; it is 1 for an orthographic
+    projection.
+    For orthonormal tangents the space that the rows span is known to 4 eps divided by the smallest
+    singular value that is counted.
     """
     rows = orthonormalize(frame)[0]
     k, n = rows.shape[-2:]
@@ -339,26 +357,26 @@ def push_frame(
         if distance is not None:
             image /= _rounding(np.asarray(points), float(distance))[..., np.newaxis, np.newaxis]
         found, rank = orthonormalize(image)
-        # The volume that the images span is at most the least singular value.
+        # The volume that the images span is at most the smallest singular value.
         doubtful = ~(_squared_volume(image) > max(DOUBTFUL, tolerance) ** 2)
     if doubtful.any():
         found[doubtful], rank[doubtful] = _significant(image[doubtful], tolerance)
     return found, rank
 
 
-def _squared_volume(rows: Any) -> Any:
+def _squared_volume(rows: Array) -> Array:
     """Return the square of the volume that 1 to 3 vectors in 3-space span."""
-    if rows.shape[-2] == 3:
-        return np.linalg.det(rows) ** 2
     a, b = rows[..., 0, :], rows[..., -1, :]
-    square = np.einsum("...i,...i", a, a)
-    if rows.shape[-2] == 1:
-        return square
-    return square * np.einsum("...i,...i", b, b) - np.einsum("...i,...i", a, b) ** 2
+    square: Array = np.einsum("...i,...i", a, a)
+    if rows.shape[-2] == 3:
+        square = np.linalg.det(rows) ** 2
+    elif rows.shape[-2] == 2:
+        square = square * np.einsum("...i,...i", b, b) - np.einsum("...i,...i", a, b) ** 2
+    return square
 
 
-def _rounding(points: Any, distance: float) -> Any:
-    """Return how much :func:`push_forward` enlarges the rounding of unit vectors and places."""
+def _rounding(points: Array, distance: float) -> Array:
+    """Return a bound on how :func:`push_forward` magnifies rounding of unit vectors and points."""
     bound = np.ones(points.shape[:-1], dtype=points.dtype)
     last = points
     for factor, image in _steps(points, distance):
@@ -368,30 +386,27 @@ def _rounding(points: Any, distance: float) -> Any:
     return bound
 
 
-def _significant(image: Any, tolerance: float) -> tuple[Any, Any]:
-    """Return a frame of what images span beyond a tolerance, and their rank."""
+def _significant(image: Array, tolerance: float) -> tuple[Array, Indices]:
+    """Return frames and ranks of images, where singular values up to a tolerance count as 0."""
     image = np.where(np.all(np.isfinite(image), axis=(-2, -1), keepdims=True), image, 0)
     left, size, right = np.linalg.svd(image, full_matrices=False)
     large = size > tolerance
     full = np.all(large, axis=-1)
-    # Along the images rather than against them.
+    # The sign makes the rows point along the images, not against them.
     sign = np.where(np.take_along_axis(left, np.abs(left).argmax(-2)[:, np.newaxis], -2) < 0, -1, 1)
     found = np.where(large[..., np.newaxis], right * sign.swapaxes(-2, -1), 0)
-    # The rows' own order is kept where nothing is lost.
+    # The rows keep their order where the rank is full.
     found[full] = orthonormalize(image[full], rtol=0.0)[0]
     return found, np.count_nonzero(large, axis=-1)
 
 
-def check_distance(distance: Any) -> float:
-    """Return a distance of the eye, if it is a number above 0."""
-    number = _check.number("distance", distance, low=0.0)
-    if number == 0:
-        raise ValueError(_check.message("distance", "a number above 0", distance))
-    return number
+def check_distance(distance: object) -> float:
+    """Return the distance of the eye, a number above 0."""
+    return _check.positive("distance", distance)
 
 
-def _steps(points: Any, distance: float) -> Any:
-    """Yield the factor and the image of each step that projects the last axis away."""
+def _steps(points: Array, distance: float) -> Iterator[tuple[Array, Array]]:
+    """Yield the factor and the image of each step, which projects along the last axis."""
     image = points
     while image.shape[-1] > 3:
         with np.errstate(all="ignore"):

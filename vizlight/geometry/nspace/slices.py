@@ -1,4 +1,4 @@
-"""Cutting a k-manifold made of simplices by a hyperplane: what is left is a (k - 1)-manifold."""
+"""Sections of a k-manifold of simplices by a hyperplane, which are (k - 1)-manifolds."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from vizlight import _check
 from vizlight.model.frames import default_rtol, orthonormalize
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
-    from vizlight._types import Array
+    from vizlight._types import Array, Indices
 
 __all__ = ["cut", "mean_frame", "slice_frame"]
 
@@ -25,7 +25,7 @@ _EDGES = {
 
 
 def _cases(corners: int) -> dict[int, tuple[tuple[int, ...], ...]]:
-    """Return for each pattern of corners above 0 the simplices of the cut, as edges."""
+    """Return for each pattern of non-negative corners the simplices of the cut, as edges."""
     edges = _EDGES[corners]
     cases: dict[int, tuple[tuple[int, ...], ...]] = {}
     for pattern in range(1, 2**corners - 1):
@@ -33,7 +33,7 @@ def _cases(corners: int) -> dict[int, tuple[tuple[int, ...], ...]]:
         if len(cut) < 4:
             cases[pattern] = (tuple(cut),)
             continue
-        # Four edges of a tetrahedron in a ring: neighbours share a corner.
+        # Four edges of a tetrahedron form a ring in which neighbours share a corner.
         a, b, c, d = cut
         far = next(e for e in (b, c, d) if not set(edges[a]) & set(edges[e]))
         near = [e for e in (b, c, d) if e != far]
@@ -41,44 +41,41 @@ def _cases(corners: int) -> dict[int, tuple[tuple[int, ...], ...]]:
     return cases
 
 
-def cut(values: ArrayLike, simplices: ArrayLike, /) -> tuple[Any, Any, Any]:
-    """Return where a function, linear on each simplex, is zero.
+def cut(values: ArrayLike, simplices: ArrayLike, /) -> tuple[Indices, Array, NDArray[Any]]:
+    """Return the zero set of a function that is linear on each simplex.
 
     Parameters
     ----------
     values : array_like, shape (N,)
-        Of the function at the points.
+        Values of the function at the points.
     simplices : array_like of int, shape (M, k + 1)
-        Segments, triangles or tetrahedra, k = 1, 2, 3.
+        Indices of the corners of segments, triangles or tetrahedra, k = 1, 2, 3.
 
     Returns
     -------
     edges : ndarray of int, shape (E, 2)
-        The two points that each point of the cut lies between; the same one twice where the
-        function is 0 at it.
+        Indices of the two points between which each point of the cut lies; both are equal where the
+        function is 0 at a point.
     weights : ndarray, shape (E,)
-        How far it is from the first of them to the second, from 0 to 1.
+        Position between these two, from 0 at the first to 1 at the second.
     cells : ndarray of int, shape (C, k)
         Points, segments or triangles of the cut, each once.
 
     Raises
     ------
     TypeError, ValueError
-        If shapes do not fit or an index is out of range.
+        If a shape is wrong or an index is out of range.
 
     Notes
     -----
-    Neighbours share the points of the cut, whatever their coordinates. A simplex that lies in
-    the hyperplane as a whole is no part of the cut; one with a value that is not finite neither.
+    Neighbouring simplices share the points of the cut whatever the coordinates are. A simplex that
+    lies entirely in the hyperplane is not part of the cut, nor is one with a value that is not
+    finite.
     """
     height = _check.floats("values", values).astype(np.float64)
-    corners = np.asarray(simplices)
-    if corners.ndim != 2 or corners.shape[1] not in _EDGES or corners.dtype.kind not in "iu":
-        expected = "integers of shape (M, 2), (M, 3) or (M, 4)"
-        raise ValueError(_check.message("simplices", expected, _check.describe(corners)))
-    if height.ndim != 1 or (corners.size and not 0 <= corners.min() <= corners.max() < len(height)):
-        expected = f"numbers of points, from 0 to {len(height) - 1}"
-        raise ValueError(_check.message("simplices", expected, _check.describe(corners)))
+    if height.ndim != 1:
+        raise ValueError(_check.message("values", "shape (N,)", height))
+    corners = _check.cells("simplices", simplices, len(height), list(_EDGES))
     size = corners.shape[1]
     corners = corners[np.all(np.isfinite(height[corners]), axis=1)]
     above = height[corners] >= 0
@@ -90,7 +87,7 @@ def cut(values: ArrayLike, simplices: ArrayLike, /) -> tuple[Any, Any, Any]:
             pairs = rows[:, np.array([_EDGES[size][edge] for edge in part])]
             found.append(np.sort(pairs, axis=2))
     pairs = np.concatenate(found) if found else np.empty((0, size - 1, 2), np.intp)
-    # A corner at 0 is one point of the cut, from whichever edge it is reached.
+    # A corner at 0 is a single point of the cut for all edges that meet there.
     for end in (0, 1):
         at = height[pairs[..., end]] == 0
         pairs[at, 1 - end] = pairs[at, end]
@@ -104,42 +101,43 @@ def cut(values: ArrayLike, simplices: ArrayLike, /) -> tuple[Any, Any, Any]:
     edges = edges[used]
     low, high = height[edges[:, 0]], height[edges[:, 1]]
     same = edges[:, 0] == edges[:, 1]
-    # Halves, so that the difference of the largest numbers is one.
+    # Halved, so that the difference of very large numbers does not overflow.
     weights = np.where(same, 0.0, (low / 2) / np.where(same, 1.0, low / 2 - high / 2))
     return edges, weights, np.asarray(cells_of, dtype=np.intp).reshape(cells.shape)
 
 
-def mean_frame(frame: ArrayLike, shares: Any, /) -> Any:
-    """Return tangent frames between points, each a mean of the spaces at some of them.
+def mean_frame(frame: ArrayLike, shares: csr_array[np.floating, Any], /) -> Array:
+    """Return tangent frames at new points as weighted means of the tangent spaces at given points.
 
-    A frame stands for the space that it spans, whatever basis it is: neighbours may differ by
-    any rotation or change of sign, so numbers cannot be mixed as they are. Each frame is turned
-    within its own space until it is nearest to that of the largest share, and mixed then.
+    A frame represents the space that it spans, and any basis of that space is equivalent:
+    neighbouring frames may differ by a rotation or a change of sign, so their numbers cannot be
+    averaged directly. Each frame is first rotated within its own space until it is nearest to the
+    frame with the largest share.
 
     Parameters
     ----------
     frame : array_like, shape (N, k, n)
         Tangents at the points; orthonormalised here.
     shares : sparse array, shape (M, N)
-        What each point has in each mean: 0 or more, in sum 1.
+        Weights of the given points in each mean, 0 or more and with sum 1.
 
     Returns
     -------
     ndarray, shape (M, k, n)
-        Orthonormal rows; zero where a point that has a share lacks tangents, or two of the
-        spaces have directions at right angles, which have no mean.
+        Orthonormal rows. They are zero where a point with a share lacks tangents, and where two of
+        the spaces have directions at right angles, which have no mean.
 
     Raises
     ------
     TypeError, ValueError
-        If shapes do not fit.
+        If the shapes do not match.
 
     Notes
     -----
-    The turn is the orthogonal factor ``U V^T`` of the matrix ``F G^T = U S V^T`` of two frames
-    (orthogonal Procrustes). Of orthonormal tangents, whatever their bases, what is spanned is
-    known to 2 eps over the cosine of the largest angle between the spaces. Between two points of
-    a smooth manifold the mean is off by the square of their distance.
+    The rotation is the orthogonal factor ``U V^T`` of the matrix ``F G^T = U S V^T`` of two frames
+    (orthogonal Procrustes). For orthonormal tangents in any basis, the space that the result spans
+    is known to 2 eps divided by the cosine of the largest angle between the spaces. Between two
+    points of a smooth manifold the error of the mean grows with the square of their distance.
     """
     rows, _ = orthonormalize(frame)
     if rows.ndim != 3:
@@ -147,10 +145,10 @@ def mean_frame(frame: ArrayLike, shares: Any, /) -> Any:
     count, k, n = rows.shape
     parts = shares.tocsr()
     if parts.shape[1] != count:
-        expected = f"a matrix of {count} columns, one a point"
+        expected = f"a matrix of {count} columns, one per point"
         raise ValueError(_check.message("shares", expected, f"shape {parts.shape}"))
     owner = np.repeat(np.arange(parts.shape[0]), np.diff(parts.indptr))
-    # The last of each owner's entries, ordered by share, is that of its largest.
+    # With entries sorted by share, the last entry of each owner is the one with its largest share.
     order = np.lexsort((parts.data, owner))
     largest = np.zeros(parts.shape[0], dtype=np.intp)
     largest[owner[order]] = parts.indices[order]
@@ -161,41 +159,42 @@ def mean_frame(frame: ArrayLike, shares: Any, /) -> Any:
     mixing = csr_array(
         (parts.data, np.arange(len(owner)), parts.indptr), (len(largest), len(owner))
     )
-    found: Array = orthonormalize((mixing @ turned).reshape(-1, k, n))[0]
-    # A frame with rows of zero has such a cosine with any frame.
+    found = orthonormalize((mixing @ turned).reshape(-1, k, n))[0]
+    # A frame with rows of zero gives a cosine of 0 with every frame.
     found[owner[cosines.min(axis=1) <= default_rtol(n, rows.dtype)]] = 0
     return found
 
 
-def slice_frame(frame: ArrayLike, normal: ArrayLike, /, *, rtol: float | None = None) -> Any:
-    """Return the tangent frame of a manifold's cut by a hyperplane.
+def slice_frame(frame: ArrayLike, normal: ArrayLike, /, *, rtol: float | None = None) -> Array:
+    """Return the tangent frame of the section of a manifold by a hyperplane.
 
     Parameters
     ----------
     frame : array_like, shape (..., k, n)
         Tangents of the manifold, k of 2 or more; orthonormalised here.
     normal : array_like, shape (n,)
-        Of the hyperplane, any length but 0.
+        Normal of the hyperplane, of any length but 0.
     rtol : float, optional
-        The sine of the angle between manifold and hyperplane below which they touch. Default:
-        ``8 sqrt(n) eps``.
+        Sine of the angle between manifold and hyperplane below which they count as tangent to each
+        other. Default: ``8 sqrt(n) eps``.
 
     Returns
     -------
     ndarray, shape (..., k - 1, n)
-        Orthonormal rows, tangent to the manifold and to the hyperplane; zero where the manifold
-        touches the hyperplane, or its own frame has rows of zero.
+        Orthonormal rows, tangent to both the manifold and the hyperplane; zero where these touch,
+        or where the frame of the manifold has rows of zero.
 
     Raises
     ------
     TypeError, ValueError
-        If shapes do not fit.
+        If the shapes do not match.
 
     Notes
     -----
-    With a the normal's coefficients on the frame, a reflection of the frame takes its first row
-    to a; the others are what is wanted. ``|F F^T - 1| <= 8 eps``; of orthonormal tangents what
-    they span is known to 2 eps over the sine of the angle between manifold and hyperplane.
+    Let a be the coefficients of the normal on the frame. A reflection of the frame maps its first
+    row to a; the other rows are the result. ``|F F^T - 1| <= 8 eps``; for orthonormal tangents the
+    space that the rows span is known to 2 eps divided by the sine of the angle between manifold and
+    hyperplane.
     """
     rows, rank = orthonormalize(frame)
     k, n = rows.shape[-2:]
@@ -214,6 +213,6 @@ def slice_frame(frame: ArrayLike, normal: ArrayLike, /, *, rtol: float | None = 
     square = np.sum(mirror**2, axis=-1)
     along = np.einsum("...k,...kn->...n", mirror, rows)
     factor = 2 * mirror[..., 1:] / np.where(good, square, 1)[..., np.newaxis]
-    result = rows[..., 1:, :] - factor[..., np.newaxis] * along[..., np.newaxis, :]
+    result: Array = rows[..., 1:, :] - factor[..., np.newaxis] * along[..., np.newaxis, :]
     result[~good] = 0
     return result

@@ -1,9 +1,9 @@
-"""Products of circles, curves wound on them, and the circles that fill the 3-sphere."""
+"""Products of circles, curves on them, and the Hopf fibres of the 3-sphere."""
 
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,41 +12,45 @@ from vizlight.geometry.nspace import lattice
 from vizlight.geometry.nspace.parametric import Manifold, manifold
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike
+
     from vizlight._types import Array
 
 TURN = 2 * np.pi
-#: Squares of larger ones leave the range of the type.
+#: Largest radius whose square is well within the range of float64.
 LARGEST_RADIUS = 1e150
 
 
-def torus(*radii: float, resolution: Any = 64) -> Manifold:
+def torus(*radii: float, resolution: int | Sequence[int] = 64) -> Manifold:
     """Return the product of 1 to 3 circles, a k-torus in 2k-space.
 
     ``torus(r1, r2)`` is the torus of Banks, section 3, a surface in 4-space:
-    ``(r1 cos t, r1 sin t, r2 cos f, r2 sin f)``; ``torus(r1, r2, r3)`` the 3-torus in 6-space.
+    ``(r1 cos t, r1 sin t, r2 cos f, r2 sin f)``; ``torus(r1, r2, r3)`` is the 3-torus in 6-space.
 
     Parameters
     ----------
     *radii : float
-        Above 0, in any unit.
+        Radii of the circles, above 0, in any unit.
     resolution : int or one for each circle, default: 64
-        Samples on a circle, 3 or more.
+        Number of samples on a circle, 3 or more.
 
     Returns
     -------
     Manifold
-        k segments, quadrilaterals or hexahedra without a boundary.
+        Segments, quadrilaterals or hexahedra without a boundary.
 
     Raises
     ------
     TypeError, ValueError
-        If an argument does not fit.
+        If an argument is invalid.
 
     Notes
     -----
-    The tangents are unit and orthogonal as they come. Error of points, as a part of the largest
-    radius, and of tangents: 8 eps a component, that of the angle included.
-    Source: Banks, section 3.
+    The tangents are orthonormal by construction. The error of points, relative to the largest
+    radius, and of tangents is 8 eps per component, including that of the angle. Source: Banks,
+    section 3.
     """
     if not 1 <= len(radii) <= 3:
         raise ValueError(_check.message("radii", "1 to 3 radii", len(radii)))
@@ -63,14 +67,15 @@ def torus(*radii: float, resolution: Any = 64) -> Manifold:
     return Manifold(points, tangents, lattice.cells(shape, [True] * k))
 
 
-def clifford_torus(*, radius: float = 1.0, resolution: Any = 64) -> Manifold:
-    """Return the torus of two equal circles that lies in the 3-sphere of a radius.
+def clifford_torus(*, radius: float = 1.0, resolution: int | Sequence[int] = 64) -> Manifold:
+    """Return the torus of two equal circles that lies in a 3-sphere.
 
     Parameters
     ----------
     radius : float, default: 1.0
-        Of the 3-sphere, in any unit.
+        Radius of the 3-sphere, in any unit.
     resolution : int or 2 of them, default: 64
+        Number of samples on each circle.
 
     Raises
     ------
@@ -90,34 +95,34 @@ def torus_curve(
     turns: int | None = None,
     resolution: int = 1024,
 ) -> Manifold:
-    """Return the curve ``f = A t`` wound on the product torus in 4-space.
+    """Return the curve ``f = A t`` on the product torus in 4-space.
 
     Parameters
     ----------
     ratio : float or Fraction
-        A: turns of the second circle to one of the first.
+        Number A of turns of the second circle per turn of the first.
     r1, r2 : float, default: 1.0
-        The radii, above 0, in any unit.
+        Radii of the circles, above 0, in any unit.
     turns : int, optional
-        Of the first circle. Default: as many as close the curve, the denominator of A, if that
-        is at most 1000; a ratio that is not such a fraction needs a number.
+        Number of turns of the first circle. Default: the denominator of A, which closes the curve,
+        if it is at most 1000; for any other ratio the number is required.
     resolution : int, default: 1024
-        Samples on the curve.
+        Number of samples on the curve.
 
     Returns
     -------
     Manifold
-        Segments: closed where ``turns * A`` is whole, else open at both ends.
+        Segments of a curve that is closed where ``turns * A`` is an integer, otherwise open.
 
     Raises
     ------
     TypeError, ValueError
-        If an argument does not fit.
+        If an argument is invalid.
 
     Notes
     -----
-    Error of points, as a part of the larger radius, and of tangents: ``8 eps`` a component and
-    2 eps times the larger of the angles, ``2 pi turns max(1, A)``, on top.
+    The error of points, relative to the larger radius, and of tangents is ``8 eps`` per component
+    plus 2 eps times the larger of the angles, ``2 pi turns max(1, A)``.
     Source: Banks, section 3.
     """
     number = _check.number("ratio", ratio)
@@ -125,13 +130,12 @@ def torus_curve(
     if turns is None:
         exact_ratio = ratio if isinstance(ratio, Fraction) else Fraction(number)
         turns = exact_ratio.limit_denominator(1000).denominator
-        if turns * number != round(turns * number):
-            # The nearest double of 1/3 times 3 is 1, but that of 5/49 times 49 need not be 5.
-            exact = abs(Fraction(number) * turns - round(turns * number)) < Fraction(1, 2**40)
-            if not exact:
-                remedy = "pass turns="
-                expected = "a fraction of a denominator up to 1000"
-                raise ValueError(_check.message("ratio", expected, number, remedy))
+        product = turns * number
+        # In doubles 1/3 times 3 is exactly 1, but 5/49 times 49 need not be exactly 5.
+        miss = abs(Fraction(number) * turns - round(product))
+        if product != round(product) and miss >= Fraction(1, 2**40):
+            expected = "a fraction with a denominator of at most 1000"
+            raise ValueError(_check.message("ratio", expected, number, "pass turns="))
     turns = _check.integer("turns", turns, low=1)
     whole = round(turns * number)
     closed = abs(turns * number - whole) < 1e-9
@@ -148,21 +152,26 @@ def torus_curve(
 
 
 def hopf_fibres(
-    base: Any = None, /, *, fibres: int = 24, radius: float = 1.0, resolution: int = 96
+    base: ArrayLike | None = None,
+    /,
+    *,
+    fibres: int = 24,
+    radius: float = 1.0,
+    resolution: int = 96,
 ) -> Manifold:
-    """Return fibres of the Hopf map: great circles of the 3-sphere, no two of which meet.
+    """Return fibres of the Hopf map: great circles of the 3-sphere, no two of which intersect.
 
     Parameters
     ----------
     base : array_like, shape (m, 3), optional
-        Points of the 2-sphere, any length but 0, whose fibres are wanted. Default: points
-        spread evenly over it.
+        Points of the 2-sphere, of any length but 0, whose fibres are returned. Default: points
+        spread evenly over the sphere.
     fibres : int, default: 24
-        How many, if no base is given.
+        Number of fibres, if no base is given.
     radius : float, default: 1.0
-        Of the 3-sphere, in any unit.
+        Radius of the 3-sphere, in any unit.
     resolution : int, default: 96
-        Samples on a fibre, 3 or more.
+        Number of samples on a fibre, 3 or more.
 
     Returns
     -------
@@ -172,14 +181,15 @@ def hopf_fibres(
     Raises
     ------
     TypeError, ValueError
-        If an argument does not fit.
+        If an argument is invalid.
 
     Notes
     -----
-    With a point (a, b, c) of the unit sphere and ``z1 = sqrt((1 + c)/2)``,
-    ``z2 = sqrt((1 - c)/2) (a - i b)/|a - i b|`` the fibre is ``e^(i t) (z1, z2)``; the Hopf map
-    ``(2 Re(z1 z2*), 2 Im(z1 z2*), |z1|^2 - |z2|^2)`` takes it to (a, b, c). The tangent is i
-    times the point, unit as it comes; error of both, over the radius, 8 eps a component.
+    For a point (a, b, c) of the unit sphere let ``z1 = sqrt((1 + c)/2)`` and
+    ``z2 = sqrt((1 - c)/2) (a - i b)/|a - i b|``. The fibre is ``e^(i t) (z1, z2)``; the Hopf map
+    ``(2 Re(z1 z2*), 2 Im(z1 z2*), |z1|^2 - |z2|^2)`` maps it to (a, b, c). The tangent is i times
+    the point, of unit length by construction. The error of both, relative to the radius, is 8 eps
+    per component.
     """
     radius = radius_of("radius", radius)
     if base is None:
@@ -187,8 +197,8 @@ def hopf_fibres(
     places = _check.vectors("base", base, n=3).astype(np.float64)
     size = np.linalg.norm(places.reshape(-1, 3), axis=1, keepdims=True)
     if not np.all((size > 0) & np.isfinite(size)):
-        expected = "points of the sphere, finite and not 0"
-        raise ValueError(_check.message("base", expected, _check.describe(places)))
+        expected = "points of the sphere, finite and not at its centre"
+        raise ValueError(_check.message("base", expected, places))
     a, b, c = (places.reshape(-1, 3) / size).T
     across = np.hypot(a, b)
     # |z1|^2 = (1 + c)/2 without cancellation where c is near -1, and z2 likewise.
@@ -204,20 +214,17 @@ def hopf_fibres(
 
 
 def circle(count: int) -> Array:
-    """Return angles evenly around a circle, from 0, without the last."""
+    """Return ``count`` evenly spaced angles around a circle, from 0 and without 2 pi."""
     return TURN * np.arange(count) / count
 
 
-def radius_of(name: str, value: Any) -> float:
-    """Return a radius, if it is a number above 0 whose square is one too."""
-    number = _check.number(name, value, low=0.0, high=LARGEST_RADIUS)
-    if number == 0:
-        raise ValueError(_check.message(name, "a number above 0", value))
-    return number
+def radius_of(name: str, value: object) -> float:
+    """Return a radius above 0 whose square does not overflow."""
+    return _check.positive(name, value, high=LARGEST_RADIUS)
 
 
 def _spread(count: int) -> Array:
-    """Return points spread over the sphere along a spiral of golden angles."""
+    """Return points on the unit sphere along a spiral of golden angles."""
     i = np.arange(count) + 0.5
     height, angle = 1 - 2 * i / count, np.pi * (1 + np.sqrt(5)) * i
     width = np.sqrt(1 - height**2)

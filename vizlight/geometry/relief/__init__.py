@@ -1,4 +1,4 @@
-"""Cos-theta shadows of height fields, the sun that casts them, and depth maps."""
+"""Cos-theta shadows of height fields, directions toward the sun, and depth maps."""
 
 from vizlight.geometry.relief.shadowing import inside_length, shadow
 

@@ -1,8 +1,8 @@
-"""What of triangles is nearest to an eye at infinity above a grid: the heights of a bas-relief."""
+"""Depth maps: the heights of triangles seen from above by an eye at infinity, for a bas-relief."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,50 +15,46 @@ if TYPE_CHECKING:
 
 __all__ = ["depth_map"]
 
-#: Pairs of a triangle and a node that are looked at together.
+#: Number of pairs of a triangle and a node that are tested together.
 BLOCK = 1 << 20
 
 
-def depth_map(x: ArrayLike, y: ArrayLike, points: ArrayLike, triangles: ArrayLike, /) -> Any:
-    """Return the highest z of triangles over the nodes of a grid.
+def depth_map(x: ArrayLike, y: ArrayLike, points: ArrayLike, triangles: ArrayLike, /) -> Array:
+    """Return the largest z of triangles above the nodes of a grid.
 
     Parameters
     ----------
     x, y : array_like, shapes (nx,), (ny,)
         Nodes, evenly spaced and rising.
     points : array_like, shape (N, 3)
+        Vertices of the triangles.
     triangles : array_like of int, shape (T, 3)
+        Indices of the vertices of each triangle.
 
     Returns
     -------
     ndarray, shape (ny, nx)
-        NaN where no triangle is.
+        Heights; NaN where no triangle covers the node.
 
     Raises
     ------
     TypeError, ValueError
-        If an argument does not fit.
+        If an argument is invalid.
 
     Notes
     -----
-    A node on an edge belongs to both triangles. Error at most ``4 eps (|z| + D L S / A)``: D is
-    the difference of a triangle's heights, L its longest edge and A twice its area as the eye
-    sees them, S the size of the grid. Steep triangles and slivers lose digits.
+    A node on an edge belongs to both triangles. The error is at most ``4 eps (|z| + D L S / A)``,
+    where D is the height difference of a triangle, L its longest edge and A twice its area, both in
+    projection, and S is the size of the grid. Steep triangles and slivers lose digits.
     """
     axes = [_check.floats(name, a).astype(np.float64) for name, a in (("x", x), ("y", y))]
     for name, axis in zip("xy", axes, strict=True):
         step = np.diff(axis)
         if axis.ndim != 1 or len(axis) < 2 or not np.allclose(step, step[0]) or step[0] <= 0:
-            raise ValueError(
-                _check.message(name, "rising nodes of one step", _check.describe(axis))
-            )
+            raise ValueError(_check.message(name, "rising nodes of equal spacing", axis))
     vertices = _check.vectors("points", points, n=3).astype(np.float64)
-    faces = np.asarray(triangles)
-    if faces.ndim != 2 or faces.shape[1] != 3 or faces.dtype.kind not in "iu":
-        raise ValueError(
-            _check.message("triangles", "integers of shape (T, 3)", _check.describe(faces))
-        )
-    # In steps of the grid from its first node.
+    faces = _check.cells("triangles", triangles, len(vertices), (3,))
+    # Positions are in units of the grid's spacing, from its first node.
     first = np.array([axis[0] for axis in axes])
     step = np.array([axis[1] - axis[0] for axis in axes])
     places = (vertices[:, :2] - first) / step
@@ -77,7 +73,7 @@ def depth_map(x: ArrayLike, y: ArrayLike, points: ArrayLike, triangles: ArrayLik
         done = total[begin - 1] if begin else 0
         end = max(int(np.searchsorted(total, done + BLOCK, side="right")), begin + 1)
         some = over[begin:end]
-        # All nodes in the box around each triangle.
+        # All nodes in the bounding box of each triangle.
         which = np.repeat(some, count[some])
         place = np.arange(len(which)) - np.repeat(np.cumsum(count[some]) - count[some], count[some])
         node = low[which].astype(np.intp)
@@ -92,7 +88,7 @@ def depth_map(x: ArrayLike, y: ArrayLike, points: ArrayLike, triangles: ArrayLik
 
 
 def _over(corners: Array, z: Array, node: Indices) -> tuple[Bools, Array]:
-    """Return which nodes are in their triangles, and the height of those triangles there."""
+    """Return a mask of the nodes inside their triangles, and the triangles' heights there."""
     a, b, c = (corners[:, k] - node for k in range(3))
     weights = np.stack([_cross(b, c), _cross(c, a), _cross(a, b)], axis=1)
     area = weights.sum(axis=1)

@@ -1,9 +1,9 @@
-"""A height field as cells: padded by what lies beyond its border, with bounds on every scale."""
+"""A height field as cells, padded by its surroundings, with bounds of heights on every scale."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 from scipy import ndimage
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Indices
 
-#: Nodes in a block.
+#: Number of nodes in a block.
 BLOCK = 1 << 16
 
 Border = Literal["extend", "wall"]
@@ -25,27 +25,30 @@ Border = Literal["extend", "wall"]
 class Field:
     """The bilinear surface over a grid and the solid below it, as :func:`make` returns them.
 
-    Coordinates are float64, relative to ``origin``. Cell k of an axis lies between edges k and
-    k + 1; the first and the last have no end and carry the heights of the border.
+    Coordinates are float64, relative to ``origin``. Cell k of an axis lies between edges k and k +
+    1; the first and the last cell are unbounded and have the heights of the border.
 
     Attributes
     ----------
     origin : ndarray, shape (3,)
-        First node of x and y, lowest height.
+        First node of x and of y, and the lowest height.
     x, y : ndarray, shape (nx,), (ny,)
         Nodes, rising.
     heights : ndarray, shape (ny, nx)
-        NaN in holes, unless the field extends over them.
+        Heights at the nodes; NaN in holes, unless the field extends over them.
     edges : tuple of ndarray, shapes (nx + 2,), (ny + 2,)
-        Ends of the cells, from -inf to inf.
+        Boundaries of the cells, from -inf to inf.
     corners : ndarray, shape (ny + 2, nx + 2)
-        Heights at the ends of the cells.
+        Heights at the corners of the cells.
     bounds : list of (ndarray, ndarray)
-        Largest and least height over 2^l x 2^l cells, for l = 0, 1, ...; both -inf where there
+        Largest and least height over 2^l x 2^l cells, for l = 0, 1, ...; both are -inf where there
         is no solid.
     base : float
+        Height of the lower side of the solid, -inf without one.
     top : float
+        Largest height.
     border : {"extend", "wall"}
+        Shape of the solid beyond the outermost nodes.
     """
 
     origin: Array
@@ -60,7 +63,7 @@ class Field:
     border: Border
 
     def height(self, x: Array, y: Array) -> Array:
-        """Return the surface at places relative to the origin, -inf where there is no solid."""
+        """Return heights at positions relative to the origin, -inf where there is no solid."""
         i, j = self.cell(0, x), self.cell(1, y)
         u, v = self.share(0, i, x), self.share(1, j, y)
         z = self.corners
@@ -70,11 +73,11 @@ class Field:
         return np.where(solid, low + v * (high - low), -np.inf)
 
     def cell(self, axis: int, place: Array) -> Indices:
-        """Return the cell of an axis that holds each place."""
+        """Return the index of the cell of an axis that contains each position."""
         return locate(self.edges[axis][1:-1], place)
 
     def share(self, axis: int, cell: Indices, place: Array) -> Array:
-        """Return how far through its cell a place is, 0 in a cell without end."""
+        """Return positions relative to their cells, from 0 to 1; 0 in an unbounded cell."""
         edges = self.edges[axis]
         low, high = edges[cell], edges[cell + 1]
         ends = np.isfinite(low) & np.isfinite(high)
@@ -83,7 +86,7 @@ class Field:
 
 
 def locate(nodes: Array, place: Array) -> Indices:
-    """Return how many of rising nodes are not above each place, at once where they are even."""
+    """Return the number of rising nodes at or below each position, fast for even spacing."""
     with np.errstate(over="ignore"):
         steps = (place - nodes[0]) / (nodes[1] - nodes[0])
     guess: Indices = np.clip(steps, 0, len(nodes) - 2).astype(np.intp)
@@ -94,42 +97,39 @@ def locate(nodes: Array, place: Array) -> Indices:
 
 
 def make(x: ArrayLike, y: ArrayLike, z: ArrayLike, *, base: float | None, border: Border) -> Field:
-    """Return the field of heights over a grid.
+    """Return the :class:`Field` of heights over a grid.
 
     Raises
     ------
     TypeError, ValueError
-        If an argument does not fit.
+        If an argument is invalid.
     """
     axes = [_axis(name, values) for name, values in (("x", x), ("y", y))]
     heights = _check.floats("z", z)
     shape = (len(axes[1]), len(axes[0]))
     if heights.shape != shape:
         expected = f"heights of shape (len(y), len(x)) = {shape}"
-        raise ValueError(_check.message("z", expected, _check.describe(heights)))
-    if border not in get_args(Border):
-        raise ValueError(_check.message("border", "'extend' or 'wall'", repr(border)))
+        raise ValueError(_check.message("z", expected, heights))
+    _check.choice("border", border, get_args(Border))
     wide: Array = heights.astype(np.float64)
     if np.isinf(wide).any():
-        raise ValueError(_check.message("z", "finite heights, NaN in holes", "infinite ones"))
+        raise ValueError(_check.message("z", "finite heights, NaN in holes", "infinite heights"))
     there = ~np.isnan(wide)
     if not there.any():
         raise ValueError(_check.message("z", "heights", "NaN everywhere"))
-    # Differences from the origin come first: float64 then keeps what float32 was given.
+    # The origin is subtracted in float64 first, so that no digit of float32 input is lost.
     low = float(wide[there].min())
     wide -= low
     top = float(wide[there].max())
     sides = [float(axis[-1] - axis[0]) for axis in axes]
     if not 1e-70 <= min(sides) <= max(*sides, top) <= 1e70:
-        raise ValueError(
-            _check.message("x, y, z", "a field between 1e-70 and 1e70 wide and high", (*sides, top))
-        )
+        expected = "a field with sides between 1e-70 and 1e70"
+        raise ValueError(_check.message("x, y, z", expected, (*sides, top)))
     if base is not None:
         base = _check.number("base", base)
         if base > low:
-            raise ValueError(
-                _check.message("base", f"a height not above the lowest, {low:g}", base)
-            )
+            expected = f"a height not above the lowest one, {low:g}"
+            raise ValueError(_check.message("base", expected, base))
     wide = wide if border == "wall" else filled(wide)
     corners = np.pad(wide, 1, mode="edge")
     return Field(
@@ -147,7 +147,7 @@ def make(x: ArrayLike, y: ArrayLike, z: ArrayLike, *, base: float | None, border
 
 
 def filled(heights: Array) -> Array:
-    """Return heights with each hole at the height of the node nearest by index."""
+    """Return heights in which each hole has the height of the nearest node by index."""
     holes = np.isnan(heights)
     if not holes.any():
         return heights
@@ -159,11 +159,11 @@ def filled(heights: Array) -> Array:
 def normals(field: Field) -> Array:
     """Return the upward unit normal at each node, shape (ny, nx, 3).
 
-    The slope at a node is that of the parabola through it and its two neighbours, at a border
-    or beside a hole that of the one cell that is there.
+    The slope at a node is that of the parabola through it and its two neighbours; at a border or
+    next to a hole it is the slope of the only cell there.
     """
     normal = np.empty((*field.heights.shape, 3))
-    # Row by row in blocks that stay in the cache, each with a row more on either side.
+    # Blocks of rows that fit the cache, each with one more row on either side.
     rows = max(BLOCK // len(field.x), 1)
     for first in range(0, len(field.y), rows):
         last = min(first + rows, len(field.y))
@@ -178,18 +178,18 @@ def normals(field: Field) -> Array:
 
 
 def _slope(heights: Array, nodes: Array, axis: int) -> Array:
-    """Return the slope at the nodes of one axis, 0 where no neighbour is."""
+    """Return the slope at the nodes along one axis, 0 at nodes without a neighbour."""
     if not np.isnan(heights).any():
         return np.asarray(np.gradient(heights, nodes, axis=axis))
     z = np.moveaxis(heights, axis, -1)
     step = np.diff(nodes)
     rise = np.diff(z, axis=-1) / step
-    # The slope on one side weighs as much as the step on the other side is long.
+    # The weight of the slope on one side is the length of the step on the other side.
     weight = np.where(np.isnan(rise), 0.0, 1.0)
     rise = np.where(np.isnan(rise), 0.0, rise)
     total, weights = np.zeros(z.shape), np.zeros(z.shape)
     for node, opposite in ((np.s_[..., :-1], step[:-1]), (np.s_[..., 1:], step[1:])):
-        # At a border there is no other side: what is there decides alone.
+        # At a border there is no other side, so the weight does not matter.
         far = np.ones(len(nodes))
         far[1:-1] = opposite
         total[node] += rise * weight * far[node]
@@ -199,23 +199,14 @@ def _slope(heights: Array, nodes: Array, axis: int) -> Array:
 
 
 def _axis(name: str, values: ArrayLike) -> Array:
-    """Return the nodes of an axis in float64, rising."""
+    """Return the nodes of an axis in float64, validated."""
     nodes = _check.floats(name, values).astype(np.float64)
     if nodes.ndim != 1 or len(nodes) < 2:
-        raise ValueError(
-            _check.message(
-                name,
-                "two nodes or more",
-                _check.describe(nodes),
-                "a field of one row has no sides: repeat the row",
-            )
-        )
+        remedy = "for a field of one row repeat the row"
+        raise ValueError(_check.message(name, "two nodes or more", nodes, remedy))
     if not (np.all(np.isfinite(nodes)) and np.all(np.diff(nodes) > 0)):
-        raise ValueError(
-            _check.message(
-                name, "finite, rising nodes", _check.describe(nodes), "sort them, heights along"
-            )
-        )
+        remedy = "sort the nodes and the heights"
+        raise ValueError(_check.message(name, "finite, rising nodes", nodes, remedy))
     return nodes
 
 
@@ -224,7 +215,7 @@ def _edges(nodes: Array) -> Array:
 
 
 def _pyramid(corners: Array, border: Border) -> list[tuple[Array, Array]]:
-    """Return largest and least height over ever larger squares of cells."""
+    """Return the largest and the least height over squares of 2^l x 2^l cells, l = 0, 1, ..."""
     four = [corners[:-1, :-1], corners[:-1, 1:], corners[1:, :-1], corners[1:, 1:]]
     largest, least = np.maximum.reduce(four), np.minimum.reduce(four)
     empty = np.isnan(largest)
@@ -240,9 +231,9 @@ def _pyramid(corners: Array, border: Border) -> list[tuple[Array, Array]]:
     return bounds
 
 
-def _halve(cells: Array, larger: Any, neutral: float) -> Array:
+def _halve(cells: Array, extreme: np.ufunc, neutral: float) -> Array:
     odd = [(0, size % 2) for size in cells.shape]
     even = np.pad(cells, odd, constant_values=neutral)
-    by_row = larger(even[::2], even[1::2])
-    result: Array = larger(by_row[:, ::2], by_row[:, 1::2])
+    by_row = extreme(even[::2], even[1::2])
+    result: Array = extreme(by_row[:, ::2], by_row[:, 1::2])
     return result

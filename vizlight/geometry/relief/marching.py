@@ -1,4 +1,4 @@
-"""Rays through a height field, cell by cell or by ever larger squares of cells where it can."""
+"""Rays through a height field, cell by cell or, where possible, through larger squares of cells."""
 
 from __future__ import annotations
 
@@ -10,25 +10,26 @@ if TYPE_CHECKING:
     from vizlight._types import Array, Bools, Indices
     from vizlight.geometry.relief.height_field import Field
 
-#: Stands for infinity on a ray: times 0 it is 0.
+#: Represents infinity on a ray; unlike infinity it gives 0 when multiplied by 0.
 FAR = 1e300
 
 
 def march(field: Field, start: Array, way: Array, reach: Array, *, coarse: bool) -> Array:
-    """Return the length of rays inside the solid, infinity where it has no end.
+    """Return the length of rays inside the solid; infinity where it is unbounded.
 
     Parameters
     ----------
     field : Field
+        Height field.
     start : ndarray, shape (3, N)
-        Relative to the field's origin, in float64.
+        Start of each ray, relative to the field's origin, in float64.
     way : ndarray, shape (3, N)
         Unit directions.
     reach : ndarray, shape (N,)
-        Length of the rays, at most FAR.
+        Lengths of the rays, at most FAR.
     coarse : bool
-        Cross 2^l x 2^l cells at once where all of them lie above or below the ray; else go
-        through every cell.
+        Whether to cross 2^l x 2^l cells at once where all of them lie above or below the ray;
+        otherwise rays go through every cell.
     """
     length = np.zeros(start.shape[1])
     first, end = _clip(field, start, way, reach)
@@ -36,7 +37,7 @@ def march(field: Field, start: Array, way: Array, reach: Array, *, coarse: bool)
     rays = _Rays(field, start[:, row], way[:, row], first[row], end[row], coarse=coarse)
     with np.errstate(divide="ignore", invalid="ignore"):
         while len(row):
-            # Rays have rows of their own, so none is added twice.
+            # Each ray has its own row, so no addition is lost.
             length[row] += rays.step()
             going = rays.s < rays.end
             if np.count_nonzero(going) < 0.8 * len(row):
@@ -47,9 +48,9 @@ def march(field: Field, start: Array, way: Array, reach: Array, *, coarse: bool)
 
 
 def _clip(field: Field, start: Array, way: Array, reach: Array) -> tuple[Array, Array]:
-    """Return where rays enter and leave the slab between base and top."""
+    """Return the distances at which rays enter and leave the slab between base and top."""
     rise, z = way[2], start[2]
-    # A rise near 0 reaches top or base farther away than FAR.
+    # With a rise near 0 the distance to top or base may exceed FAR.
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         up, down = (field.top - z) / rise, (field.base - z) / rise
     first = np.where(rise > 0, down, np.where(rise < 0, up, 0.0))
@@ -59,7 +60,7 @@ def _clip(field: Field, start: Array, way: Array, reach: Array) -> tuple[Array, 
 
 
 class _Rays:
-    """Rays on their way, each in a square of 2^l x 2^l cells; all change in every step."""
+    """Rays in progress, each in a square of 2^l x 2^l cells; every step advances all of them."""
 
     def __init__(
         self, field: Field, start: Array, way: Array, s: Array, end: Array, *, coarse: bool
@@ -80,12 +81,12 @@ class _Rays:
         self.cell = np.stack([field.cell(a, place[a]) for a in (0, 1)]).astype(np.int32)
 
     def keep(self, going: Bools) -> None:
-        """Forget the rays that are at their end."""
+        """Drop the rays that have reached their end."""
         for name in ("start", "way", "cell", "s", "end", "level"):
             setattr(self, name, getattr(self, name)[..., going])
 
     def step(self) -> Array:
-        """Take each ray through its square, or into a quarter of it; return the length inside."""
+        """Move each ray through its square or into a quarter of it; return the length inside."""
         (x, y), (i, j), level, s = self.way[:2], self.cell, self.level, self.s
         cross_x, cross_y = self._cross(0), self._cross(1)
         by_x = cross_x <= cross_y
@@ -102,23 +103,23 @@ class _Rays:
 
         descend = ~clear & (level > 0)
         onward = ~descend & (leave < self.end)
-        # Onward into the next square of the level ...
+        # Rays move on into the next square of their level ...
         i += np.where(by_x & onward, np.where(x >= 0, 1, -1), 0).astype(np.int32)
         j += np.where(onward & ~by_x, np.where(y >= 0, 1, -1), 0).astype(np.int32)
         np.copyto(s, leave, where=~descend)
         if self.top:
-            # ... or into the one twice as wide, where it begins with that one ...
+            # ... or into the square twice as wide, if both begin at the same place ...
             entry = np.where(by_x, i ^ (x < 0), j ^ (y < 0)) & 1
             ascend = (onward & (entry == 0) & (level < self.top)).astype(np.int32)
             i >>= ascend
             j >>= ascend
             level += ascend
-            # ... or down into the quarter that the ray is in.
+            # ... or down into the quarter that contains the ray.
             self._descend(np.flatnonzero(descend))
         return inside
 
     def _cross(self, axis: int) -> Array:
-        """Return where rays leave their square along an axis."""
+        """Return the distances at which rays leave their square along an axis."""
         way, edges = self.way[axis], self.edges[axis]
         out = np.minimum((self.cell[axis] + (way >= 0)) << self.level, len(edges) - 1)
         with np.errstate(over="ignore"):
@@ -137,13 +138,13 @@ class _Rays:
         self.level[which] = level
 
     def _in_cell(self, which: Indices, leave: Array) -> Array:
-        """Return the length below the bilinear surface of one cell: below f = h - z > 0."""
+        """Return the length below the bilinear surface of one cell, where f = h - z > 0."""
         i, j, s = self.cell[0, which], self.cell[1, which], self.s[which]
         at = j * self.stride + i
         z00, z01 = self.corners[at], self.corners[at + 1]
         z10, z11 = self.corners[at + self.stride], self.corners[at + self.stride + 1]
         (u, du), (v, dv) = (self._share(axis, which, s) for axis in (0, 1))
-        # h = z00 + u a + v b + u v c, u and v linear in what is left of the ray.
+        # h = z00 + u a + v b + u v c, where u and v are linear in the distance along the ray.
         a, b, c = z01 - z00, z10 - z00, (z11 - z10) - (z01 - z00)
         z = self.start[2, which] + s * self.way[2, which]
         f0 = (z00 - z) + u * a + v * (b + u * c)
@@ -151,7 +152,10 @@ class _Rays:
         return _positive(f0, f1, du * dv * c, leave - s)
 
     def _share(self, axis: int, which: Indices, s: Array) -> tuple[Array, Array]:
-        """Return how far through its cell a ray is, and how fast; 0 in a cell without end."""
+        """Return relative positions of rays in their cells and their rates of change.
+
+        Both are 0 in an unbounded cell.
+        """
         edges, cell, way = self.edges[axis], self.cell[axis, which], self.way[axis, which]
         low, width = edges[cell], edges[cell + 1] - edges[cell]
         place = self.start[axis, which] + s * way
@@ -160,15 +164,15 @@ class _Rays:
 
 
 def _positive(f0: Array, f1: Array, f2: Array, end: Array) -> Array:
-    """Return how much of [0, end] has f0 + f1 s + f2 s^2 > 0."""
+    """Return the length of the part of [0, end] where f0 + f1 s + f2 s^2 > 0."""
     square = f1 * f1 - 4 * f0 * f2
     root = np.sqrt(np.maximum(square, 0))
-    # Both roots without cancellation; where f2 is 0 one of them is at infinity.
+    # Both roots without cancellation; where f2 is 0 one of them is infinite.
     q = -0.5 * (f1 + np.copysign(root, f1))
     one, other = q / np.where(f2 == 0, 0.0, f2), f0 / q
     low, high = np.minimum(one, other), np.maximum(one, other)
     between = np.minimum(np.maximum(high, 0), end) - np.minimum(np.maximum(low, 0), end)
     length = np.where(f2 >= 0, end - between, between)
-    # No root, or f constant: one sign throughout.
+    # Without a root, or for a constant f, the sign is the same everywhere.
     whole = (square < 0) | (q == 0)
     return np.where(whole, np.where(np.maximum(f0, f0 + f2) > 0, end, 0.0), length)

@@ -1,8 +1,8 @@
-"""Cos-theta shadows on height fields: how far light runs inside the solid, what it leaves."""
+"""Cos-theta shadows on height fields, from the length of light rays inside the solid."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
@@ -23,9 +23,9 @@ __all__ = ["inside_length", "shadow"]
 
 Method = Literal["fast", "exact"]
 
-#: Rays in a block: what they need fits the cache.
+#: Number of rays in a block, whose arrays fit the cache.
 BLOCK = 1 << 14
-#: Depths below this share of the field are taken as the limit 0: rounding would decide.
+#: Depths below this share of the field's size use the limit for depth 0, since rounding dominates.
 LEAST_DEPTH = 1e-9
 
 
@@ -42,58 +42,58 @@ def inside_length(
     border: Border = "extend",
     method: Method = "fast",
     threads: int | None = None,
-) -> Any:
+) -> Array:
     """Return the length inside a height field of segments from points to a light.
 
     Parameters
     ----------
     x, y : array_like, shapes (nx,), (ny,)
-        Nodes, rising, at any spacing, in the unit of the mesh.
+        Nodes, rising and at any spacing, in the unit of the mesh.
     z : array_like, shape (ny, nx)
         Heights in the same unit, bilinear between the nodes; NaN in holes.
     points : array_like, shape (..., 3)
-        Where the segments start, inside the solid or not.
+        Starts of the segments, inside or outside the solid.
     direction : vector of 3 components, optional
-        Toward a light at infinity, of any length but 0.
+        Direction toward a light at infinity, of any length but 0.
     position : vector of 3 components, optional
-        Where a light stands, outside the solid. One of the two is given.
+        Position of a light outside the solid. Exactly one of direction and position is required.
     base : float, optional
-        Height of the solid's flat lower side, not above the lowest height; default: the solid
-        has none.
+        Height of the solid's flat lower side, not above the lowest height. Default: the solid is
+        unbounded below.
     border : {"extend", "wall"}
-        What is beyond the outermost nodes: "extend", the heights of the border go on without
-        end, and a hole has the height of the node nearest by index; "wall", the solid ends there
-        in vertical walls, and likewise at each cell that lacks a corner.
+        Shape of the solid beyond the outermost nodes. "extend": the heights of the border continue
+        without end, and a hole has the height of the nearest node by index. "wall": the solid ends
+        there in vertical walls, and likewise at each cell that lacks a corner.
     method : {"fast", "exact"}
-        "exact": cells are crossed one by one, or 2^l x 2^l at once where all of them are above
-        or below the ray. "fast": the same for a light with a position; for one at infinity the
-        field is resampled in profiles along its azimuth.
+        Method of following the rays. "exact": cells are crossed one by one, or 2^l x 2^l at once
+        where all of them are above or below the ray. "fast": the same for a light with a position;
+        for a light at infinity the field is resampled in profiles along the light's azimuth.
     threads : int, optional
-        Default: the processors that this process may use.
+        Number of threads. Default: the number of processors that this process may use.
 
     Returns
     -------
     ndarray, shape (...)
-        In the unit of the mesh, float64; infinity where a ray never leaves the solid; NaN for
-        a point that is not finite.
+        Lengths in the unit of the mesh, float64; infinity where a ray never leaves the solid; NaN
+        for a point that is not finite.
 
     Raises
     ------
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If shapes do not fit, there is one row or no height, the light is inside the solid, or
-        not one of direction and position is given.
+        If a shape is wrong, there is only one row or no height at all, the light is inside the
+        solid, or both or neither of direction and position are given.
 
     Notes
     -----
-    The surface is bilinear, not triangulated: it has no diagonals to choose, so a mirrored field
-    has the mirrored shadow, and along a ray it is a quadratic in each cell, whose roots are
-    taken in closed form. "exact" errs by at most ``3 eps`` times the size of the field for each
-    time that a ray, not grazing, crosses the surface; "fast" by the square of the spacing, as does
-    the bilinear surface itself from a smooth one. Cost of a ray: "exact" O(log N) squares for each
-    time that it crosses the surface, "fast" likewise along its own profile.
-    Source: cos-theta, section 2.
+    The surface is bilinear, not triangulated. It has no diagonals to choose, so a mirrored field
+    has the mirrored shadow. Along a ray its height is a quadratic in each cell, whose roots are
+    found in closed form. The error of "exact" is at most ``3 eps`` times the size of the field for
+    each time that a ray crosses the surface without grazing it. The error of "fast" decreases with
+    the square of the spacing, as does that of the bilinear surface for a smooth one. The cost of
+    "exact" is O(log N) squares for each time that a ray crosses the surface; that of "fast" is the
+    same along a profile. Source: cos-theta, section 2.
 
     Examples
     --------
@@ -125,7 +125,7 @@ def shadow(
     border: Border = "extend",
     method: Method = "fast",
     threads: int | None = None,
-) -> Any:
+) -> Array:
     """Return the cos-theta shadow of a height field at its nodes.
 
     Parameters
@@ -133,31 +133,32 @@ def shadow(
     x, y, z, direction, position, base, border, method, threads
         As for :func:`inside_length`.
     depth : float
-        d of 0 or more, how far below the surface the light is gathered, in the unit of the
-        mesh. The deeper, the softer shadows and ridges are.
+        Depth d below the surface at which the light is collected, 0 or more, in the unit of the
+        mesh. Larger depths give softer shadows and ridges.
     normals : array_like, shape (ny, nx, 3), optional
-        Unit normals at the nodes; default: those of the field.
+        Unit normals at the nodes. Default: the normals of the field.
 
     Returns
     -------
     ndarray, shape (ny, nx)
-        ``t = d / r`` clamped to [0, 1]: r is the length inside the solid of the segment from
-        ``p' = p - d n`` to the light; 1 where r is less than d. 0 at NaN heights, and where a
-        normal is zero or not finite.
+        ``t = d / r`` clamped to [0, 1], where r is the length inside the solid of the segment from
+        ``p' = p - d n`` to the light; it is 1 where r is less than d. It is 0 at NaN heights, and
+        where a normal is zero or not finite.
 
     Raises
     ------
     TypeError, ValueError
-        As :func:`inside_length`; if the depth is negative or 1e9 times the field's size.
+        As :func:`inside_length`; also if the depth is negative or more than 1e9 times the size of
+        the field.
 
     Notes
     -----
-    On a plane t is the cosine of the angle between n and the light as seen from p', whatever d;
-    "exact" errs there by at most ``(8 + S/d) eps``, S the size of the field, 8 eps at depth 0.
-    As d goes to 0, t goes to the clamped cosine where nothing occludes the light, else to 0;
-    depth 0 gives this limit. Where d is much less than the spacing, what counts is the slope of
-    the cell on the light's side of a node. The source prints ``t = r/d`` once; it is d/r.
-    Source: cos-theta, sections 2 and 3.
+    On a plane t is the cosine of the angle between n and the direction from p' to the light, for
+    every d. The error of "exact" there is at most ``(8 + S/d) eps``, where S is the size of the
+    field, and 8 eps at depth 0. As d goes to 0, t goes to the clamped cosine where nothing occludes
+    the light and to 0 elsewhere; depth 0 gives this limit. Where d is much less than the spacing, t
+    depends on the slope of the cell on the side of a node that faces the light. The source prints
+    ``t = r/d`` once; the correct ratio is d/r. Source: cos-theta, sections 2 and 3.
     """
     field = height_field.make(x, y, z, base=base, border=border)
     depth = _check.number("depth", depth, low=0.0)
@@ -168,7 +169,7 @@ def shadow(
         normal = _check.vectors("normals", normals, n=3).astype(np.float64)
         if normal.shape != (*field.heights.shape, 3):
             expected = f"shape {(*field.heights.shape, 3)}"
-            raise ValueError(_check.message("normals", expected, _check.describe(normal)))
+            raise ValueError(_check.message("normals", expected, normal))
         dark |= ~(np.any(normal, axis=-1) & np.all(np.isfinite(normal), axis=-1))
         normal[dark] = 0
     ray = toward(field, direction=direction, position=position)
@@ -178,13 +179,13 @@ def shadow(
 
 
 class Ray:
-    """The way from any place to one light, relative to a field's origin."""
+    """Directions from positions toward one light, relative to a field's origin."""
 
     def __init__(self, direction: Array | None, position: Array | None) -> None:
         self.direction, self.position = direction, position
 
     def from_places(self, start: Array) -> tuple[Array, Array]:
-        """Return unit directions and lengths, shapes (3, N), (N,), from places (3, N)."""
+        """Return unit directions (3, N) and lengths (N,) of the rays from positions (3, N)."""
         if self.direction is not None:
             way = np.repeat(self.direction[:, np.newaxis], start.shape[1], axis=1)
             return way, np.full(start.shape[1], marching.FAR)
@@ -197,7 +198,7 @@ class Ray:
 def toward(
     field: Field, *, direction: VectorLike | None = None, position: VectorLike | None = None
 ) -> Ray:
-    """Return the way to a light, which is not inside the solid."""
+    """Return the :class:`Ray` toward a light, which must not be inside the solid."""
     if (direction is None) == (position is None):
         got = "neither" if direction is None else "both"
         raise ValueError(_check.message("direction, position", "one of them", got))
@@ -213,14 +214,8 @@ def toward(
     height = float(field.height(place[:1], place[1:2])[0])
     size = max(field.x[-1], field.y[-1], field.top)
     if field.base <= place[2] < height - 1e-9 * size:
-        raise ValueError(
-            _check.message(
-                "position",
-                f"a light outside the solid, above {height + field.origin[2]:.9g} there",
-                vector,
-                "raise it",
-            )
-        )
+        expected = f"a light outside the solid, above {height + field.origin[2]:.9g} there"
+        raise ValueError(_check.message("position", expected, vector, "raise the light"))
     return Ray(None, place)
 
 
@@ -233,10 +228,10 @@ def ratio(
     method: Method = "fast",
     threads: int | None = None,
 ) -> Array:
-    """Return :func:`shadow` for a field and its normals."""
+    """Return :func:`shadow` for a validated field and its normals."""
     size = max(field.x[-1], field.y[-1], field.top)
     if depth * LEAST_DEPTH > size:
-        expected = f"at most {size / LEAST_DEPTH:g}, 1e9 times the field"
+        expected = f"at most {size / LEAST_DEPTH:g}, 1e9 times the size of the field"
         raise ValueError(_check.message("depth", expected, depth))
     limit = depth <= LEAST_DEPTH * size
     inset = 0.0 if limit else depth
@@ -270,12 +265,12 @@ def lengths(
     threads: int | None,
     below: float | None = None,
 ) -> Array:
-    """Return the length inside of rays whose places, shape (3, rays), are made block by block.
+    """Return the lengths inside the solid of rays that begin at ``start(rays)``, shape (3, rays).
 
-    ``below`` is how far from the surface they may start; None: anywhere.
+    ``start`` is called for one block of indices at a time. ``below`` is the largest distance from
+    the surface at which rays start; for None it is found from all of them.
     """
-    if method not in get_args(Method):
-        raise ValueError(_check.message("method", "'fast' or 'exact'", repr(method)))
+    _check.choice("method", method, get_args(Method))
     length = np.empty(count)
     endless = field.border == "extend" and field.base == -np.inf
     if ray.direction is not None and ray.direction[2] < 0 and endless:
@@ -283,7 +278,7 @@ def lengths(
         return length
     if method == "fast" and ray.direction is not None and count:
         if below is None:
-            below = _beside(field, start(np.arange(count)))
+            below = _largest_offset(field, start(np.arange(count)))
         profiles = sweeping.profiles(field, ray.direction, below)
         if profiles is not None:
             _by_profile(profiles, start, length, threads)
@@ -305,15 +300,14 @@ def _by_profile(
     length: Array,
     threads: int | None,
 ) -> None:
-    """Fill in lengths, the rays of one band of profiles after those of the other."""
+    """Fill in lengths, one band of profiles and its rays after the other."""
     count = len(length)
-    width = profiles.width(count)
-    # Sorting integers of 16 bits is quick.
-    width = max(width, profiles.count >> 15)
+    # The number of a band fits 16 bits, because such integers are sorted fast.
+    width = max(profiles.width(count), profiles.count >> 15)
     band = np.empty(count, np.uint16)
 
     def sort(rows: slice) -> int:
-        band[rows] = profiles.beside(start(np.arange(rows.start, rows.stop))) // width
+        band[rows] = profiles.profile_index(start(np.arange(rows.start, rows.stop))) // width
         return int(rows.stop)
 
     _all(sort, _pool.blocks(count, BLOCK), threads)
@@ -338,8 +332,8 @@ def _all(work: Callable[[slice], int], parts: list[slice], threads: int | None) 
         pass
 
 
-def _beside(field: Field, places: Array) -> float:
-    """Return how far places are beyond the field, beside it or below its lowest height."""
+def _largest_offset(field: Field, places: Array) -> float:
+    """Return the largest distance of positions from the field, sideways or downwards."""
     ends = [(0.0, field.x[-1]), (0.0, field.y[-1]), (0.0, np.inf)]
     out = [np.maximum(low - p, p - high) for p, (low, high) in zip(places, ends, strict=True)]
     return max(float(np.nanmax(np.stack(out), initial=0.0)), 0.0)

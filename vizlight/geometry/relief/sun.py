@@ -1,8 +1,8 @@
-"""Where the sun stands, and the disc that it is."""
+"""Directions toward the sun, and toward points of its disc."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,43 +11,43 @@ from vizlight import _check
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from vizlight._types import VectorLike
+    from vizlight._types import Array, VectorLike
 
 __all__ = ["DIAMETER", "directions", "disc"]
 
-#: The sun's mean angular diameter, in radians.
+#: Mean angular diameter of the sun, in radians.
 DIAMETER = np.radians(0.53)
 
 
-def directions(latitude: float, day: float, hours: ArrayLike, /) -> Any:
+def directions(latitude: float, day: float, hours: ArrayLike, /) -> Array:
     """Return unit directions toward the sun.
 
     Parameters
     ----------
     latitude : float
-        In radians, north positive, from -pi/2 to pi/2.
+        Latitude in radians, north positive, from -pi/2 to pi/2.
     day : float
-        Of the year, from 1 to 366.
+        Day of the year, from 1 to 366.
     hours : array_like, shape (...)
-        Of true solar time, 12 when the sun is highest.
+        Hours of true solar time, from 0 to 24; at 12 the sun is highest.
 
     Returns
     -------
     ndarray, shape (..., 3)
-        East, north, up; up is negative at night.
+        Components east, north and up; up is negative at night.
 
     Raises
     ------
     TypeError, ValueError
-        If an argument does not fit.
+        If an argument is invalid.
 
     Notes
     -----
-    The sun's ecliptic longitude is its mean one and the equation of the centre, from elements
-    averaged over the years 2001 to 2040. As no year is told, the declination is up to 0.2
-    degrees off near an equinox, for leap days alone, and half a day's turn of the earth as much
-    again; the disc is 0.53 degrees wide.
-    Refraction, which lifts a setting sun by 0.01 radians, is left out.
+    The ecliptic longitude of the sun is its mean longitude plus the equation of the centre, with
+    elements averaged over the years 2001 to 2040. Because the year is not an argument, leap days
+    make the declination wrong by up to 0.2 degrees near an equinox, and half a day's rotation of
+    the earth by as much again; the disc of the sun is 0.53 degrees wide. Refraction, which raises a
+    setting sun by 0.01 radians, is neglected.
     """
     latitude = _check.number("latitude", latitude, low=-np.pi / 2, high=np.pi / 2)
     day = _check.number("day", day, low=1.0, high=366.0)
@@ -67,26 +67,27 @@ def directions(latitude: float, day: float, hours: ArrayLike, /) -> Any:
     return np.stack(np.broadcast_arrays(east, north, up), axis=-1)
 
 
-def disc(direction: VectorLike, diameter: float, count: int, /) -> Any:
+def disc(direction: VectorLike, diameter: float, count: int, /) -> Array:
     """Return directions that are spread evenly over a disc of the sky.
 
     Parameters
     ----------
     direction : vector of 3 components
-        Toward its centre.
+        Direction toward the centre of the disc.
     diameter : float
-        In radians, from 0 to 1.
+        Angular diameter in radians, from 0 to 1.
     count : int
-        1 or more.
+        Number of directions, 1 or more.
 
     Returns
     -------
     ndarray, shape (count, 3)
-        Unit directions, each for an equal area; their mean is near the centre.
+        Unit directions, each representing an equal area; their mean is near the centre.
 
     Notes
     -----
-    A sunflower's spiral: radius by the square root, angle by the golden section.
+    The directions follow a sunflower's spiral: the radius grows as a square root and the angle by
+    the golden angle.
     """
     axis = np.array(_check.vector("direction", direction, direction=True))
     axis = axis / np.abs(axis).max()
@@ -105,4 +106,5 @@ def disc(direction: VectorLike, diameter: float, count: int, /) -> Any:
     spread = np.outer(np.cos(angle) * radius, side)
     spread += np.outer(np.sin(angle) * radius, np.cross(axis, side))
     way = axis + spread
-    return way / np.linalg.norm(way, axis=1, keepdims=True)
+    unit: Array = way / np.linalg.norm(way, axis=1, keepdims=True)
+    return unit

@@ -1,15 +1,15 @@
-"""A light at infinity: the field is resampled once in profiles along the light's azimuth.
+"""Shadows of a light at infinity, from profiles of the field along the azimuth of the light.
 
-In a profile the ray's own rise is taken from the heights, so that every ray toward the light
-becomes level and what is inside the solid is what stands above it. Bounds over 2^l steps of a
-profile then decide most of it at once, and the highest of all that is still to come ends it.
-Profiles are made in bands, one after the other, so that memory does not grow with the field and
-the bounds of a band stay in the cache.
+The rise of the light's rays is subtracted from the heights of a profile, so every ray toward the
+light becomes level and is inside the solid where the profile is higher. Bounds over 2^l steps of a
+profile then decide most of it at once, and a ray ends where nothing higher is ahead. Profiles are
+made in bands, one after the other, so that memory does not grow with the field and the bounds of a
+band stay in the cache.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,27 +19,27 @@ if TYPE_CHECKING:
     from vizlight._types import Array, Bools, Indices
     from vizlight.geometry.relief.height_field import Field
 
-#: Rays that leave the relief within so many columns are quicker to follow cell by cell.
+#: Rays that leave the relief within this number of columns are faster to follow cell by cell.
 STEEP = 3.0
-#: More profiles than this many times the rows are not made, however uneven the rows.
+#: Largest number of profiles per row of the field, for rows of any spacing.
 PROFILES = 4
-#: Rays of a band, about.
+#: Approximate number of rays in a band.
 BAND = 1 << 16
-#: Columns that are looked at one by one are 2^LEAF: fewer have no bounds.
+#: The finest bounds cover 2^LEAF columns; inside them columns are tested one by one.
 LEAF = 3
-#: Profiles of a band, at least: the last is made again for the next one.
+#: Smallest number of profiles in a band; the last one is computed again for the next band.
 NARROW = 8
-#: Heights that differ by less are the same.
+#: Smallest difference of heights that counts.
 LEVEL = 1e-300
-#: Stands for a level without solid: weighed by a rounded 0 it stays a number.
+#: Level where there is no solid; finite, so that a weight of 0 does not make it NaN.
 NO_SOLID = -1e6
 
 
 def profiles(field: Field, way: Array, below: float) -> Profiles | None:
-    """Return the profiles of a field, or None where rays are quicker to follow without.
+    """Return the profiles of a field, or None where rays are faster to follow without them.
 
-    They are so where they leave the relief within few columns or hardly rise at all, and where
-    the solid has a base or they start far outside of it.
+    That is so where rays leave the relief within few columns or hardly rise at all, and where the
+    solid has a base or the rays start far outside it.
     """
     across = float(np.hypot(way[0], way[1]))
     size = max(field.x[-1], field.y[-1])
@@ -53,22 +53,23 @@ def profiles(field: Field, way: Array, below: float) -> Profiles | None:
 
 
 class Profiles:
-    """A field along the azimuth of one light, ready for rays that start anywhere.
+    """A field along the azimuth of one light, prepared for rays that start anywhere.
 
     Parameters
     ----------
     field : Field
+        Height field.
     way : ndarray, shape (3,)
         Unit direction toward the light, above the horizon.
     below : float
-        How far beside and below the surface rays may start.
+        Largest distance beside and below the surface at which rays start.
     """
 
     def __init__(self, field: Field, way: Array, below: float) -> None:
         self._field, self._solid = field, field.border == "extend"
         nodes = [field.x, field.y]
         size = [abs(way[a]) / np.mean(np.diff(nodes[a])) for a in (0, 1)]
-        #: The axis that profiles step along, and the other.
+        #: The axis along which profiles step, and the other axis.
         self.main, self.side = (0, 1) if size[0] >= size[1] else (1, 0)
         self.sign = 1.0 if way[self.main] > 0 else -1.0
         along = self.sign * way[self.main]
@@ -85,22 +86,22 @@ class Profiles:
         self.first = rows[0] - reach[1] - below - step
         self.spacing = step
         self.count = int(np.ceil((rows[-1] - reach[0] + below + step - self.first) / step)) + 2
-        #: Levels are in this unit, so that they fit float32 whatever the field's size.
+        #: Unit of levels, with which they fit float32 for a field of any size.
         self.unit = field.top + below + self.rise * float(np.ptp(self.columns))
-        # At most as many columns as a ray crosses from as deep as this below level ground.
+        # Number of columns that a ray crosses from a depth of ``below`` under level ground.
         run = below / (self.rise * float(np.mean(np.diff(columns))))
         self.first_scale = max(int(np.log2(max(run, 1.0))) - LEAF, 0)
 
     def _padded(
         self, columns: Array, rows: Array, relief: float, below: float
     ) -> tuple[Array, slice]:
-        """Return the columns with those beyond the border, and which are the field's own."""
+        """Return the columns extended beyond the border, and the slice of the field's own."""
         step = float(np.mean(np.diff(columns)))
         before = columns[0] - step * np.arange(int(np.ceil(below / step)) + 1, 0, -1)
         far = relief / self.rise
         if self.slope:
             far = min(far, (np.ptp(rows) + below) / abs(self.slope))
-        # Beyond the border only the rows change: one column a row is enough of them.
+        # Beyond the border the heights change from row to row alone: one column per row is enough.
         stride = max(far / len(rows), step)
         after = columns[-1] + stride * np.arange(1, int(np.ceil(far / stride)) + 1)
         last = columns[-1] + below + relief / self.rise + 2 * stride
@@ -112,25 +113,25 @@ class Profiles:
         inner = slice(len(before), len(before) + len(columns))
         return np.concatenate([before, columns, after]), inner
 
-    def beside(self, start: Array) -> Array:
-        """Return between which profiles places are, in profiles from the first."""
+    def profile_index(self, start: Array) -> Array:
+        """Return the fractional index of the profile at each position."""
         across = start[self.side] - self.slope * self.sign * start[self.main]
         return np.asarray((across - self.first) / self.spacing)
 
     def surface(self, start: Array) -> Array:
-        """Return the height of the field itself at places."""
+        """Return the height of the field itself at each position."""
         return np.asarray(self._field.height(start[0], start[1]))
 
     def width(self, rays: int) -> int:
-        """Return of how many profiles a band for some of so many rays is."""
+        """Return the number of profiles per band for a total number of rays."""
         return max(NARROW, -(-BAND * self.count // max(rays, 1)))
 
     def band(self, first: int, width: int) -> _Band:
-        """Return the profiles for rays beside the first or up to so many more."""
+        """Return the band of ``width`` profiles from the first, and the one after them."""
         return _Band(self, self._level(first, min(width, self.count - 1 - first) + 1), first)
 
     def _level(self, first: int, count: int) -> Array:
-        """Return heights less the ray's rise, in units, shape (columns, count)."""
+        """Return heights minus the ray's rise, in units, shape (columns, count)."""
         rows, nodes = self._rows, len(self._rows)
         offsets = self.first + self.spacing * np.arange(first, first + count)
         place = offsets + self.slope * self.columns[:, np.newaxis]
@@ -142,7 +143,7 @@ class Profiles:
         at = held[:, np.newaxis] * nodes + row
         flat = self._heights.ravel()
         low = flat[at]
-        # At a node its neighbour does not matter, which may be a hole or not there.
+        # At a node its neighbour does not matter; it may be a hole or missing.
         between = share > 0
         at += between
         level = np.where(between, low + share * (flat[at] - low), low)
@@ -156,16 +157,16 @@ class Profiles:
 
 
 class _Band:
-    """Some profiles side by side: heights, bounds by level, the highest still to come."""
+    """Adjacent profiles: heights, bounds on every scale, and the highest level ahead."""
 
     def __init__(self, profiles: Profiles, level: Array, first: int) -> None:
         self.profiles, self.columns, self.first = profiles, profiles.columns, first
-        # The two profiles of a ray stand side by side in memory.
+        # The two profiles of a ray are adjacent in memory.
         self.steps, self.count = len(level) - 1, level.shape[1]
         self.level = level.ravel()
-        # Bounds are rounded outward to float32, which costs no accuracy and half the memory.
+        # Bounds are rounded outward to float32, which halves the memory without loss of accuracy.
         up, down = _rounded(level, np.inf), _rounded(level, -np.inf)
-        # The highest from each column on; at the last one nothing is still to come.
+        # The highest level from each column on; nothing is ahead of the last one.
         coming = np.maximum.accumulate(up[::-1], axis=0)[::-1]
         coming[-1] = NO_SOLID
         self.coming = coming.ravel()
@@ -188,14 +189,14 @@ class _Band:
         self.first_scale = min(profiles.first_scale, self.top)
 
     def lengths(self, start: Array) -> Array:
-        """Return the length inside the solid of rays that start at places, shape (3, N)."""
+        """Return the length inside the solid of rays that start at positions (3, N)."""
         world = self.profiles
         x = world.sign * start[world.main]
-        beside = world.beside(start) - self.first
-        rays = _Level(self, x, beside, (start[2] - world.rise * x) / world.unit)
+        index = world.profile_index(start) - self.first
+        rays = _Level(self, x, index, (start[2] - world.rise * x) / world.unit)
         length = np.zeros(len(x))
         row = np.arange(len(x))
-        # The surface at the start is the field's own, however shallow the start is below it.
+        # The field itself gives the surface at the start, which matters for a shallow start.
         surface = world.surface(start) - world.rise * x
         length += rays.begin(surface / world.unit)
         while True:
@@ -205,29 +206,29 @@ class _Band:
                 row = row.take(going)
             if not len(row):
                 return np.asarray(length * world.per_step)
-            # Rays have rows of their own, so none is added twice.
+            # Each ray has its own row, so no addition is lost.
             length[row] += rays.step()
 
 
 class _Level:
-    """Level rays, each between two profiles; all change in every step."""
+    """Level rays, each between two profiles; every step advances all of them."""
 
-    def __init__(self, world: _Band, x: Array, beside: Array, z: Array) -> None:
+    def __init__(self, world: _Band, x: Array, index: Array, z: Array) -> None:
         self.world, self.x, self.z = world, x, z
-        self.profile = np.floor(beside).astype(np.intp)
-        self.share = beside - self.profile
-        #: The column that a ray is at, and the scale l of its next step, to the end of the
-        #: 2^(LEAF + l) columns that hold it: it need not be at their beginning.
+        self.profile = np.floor(index).astype(np.intp)
+        self.share = index - self.profile
+        #: Column of each ray, and scale l of its next step, which leads to the end of the
+        #: 2^(LEAF + l) columns that contain it; the ray need not be at their beginning.
         self.at = locate(world.columns, x) - 1
         self.scale = np.full(len(x), world.first_scale, np.intp)
 
     def keep(self, going: Indices) -> None:
-        """Forget the rays that are at their end."""
+        """Drop the rays that have reached their end."""
         for name in ("z", "profile", "share", "at", "scale"):
             setattr(self, name, getattr(self, name).take(going))
 
     def begin(self, surface: Array) -> Array:
-        """Return what is inside of the first, partial step; the surface there is known better."""
+        """Return the length inside on the first, partial step, with the exact surface there."""
         columns = self.world.columns
         first, last = columns[self.at], columns[self.at + 1]
         low, high = self._height(self.at), self._height(self.at + 1)
@@ -239,12 +240,12 @@ class _Level:
         return _above(low, high, self.z) * (last - self.x)
 
     def going(self) -> Bools:
-        """Return which rays have something above them still to come."""
+        """Return a mask of the rays that have a higher level ahead."""
         world = self.world
         return self._mix(world.coming, self.at * world.count + self.profile) > self.z
 
     def step(self) -> Array:
-        """Take each ray to the end of its columns, or halve them; return the length inside."""
+        """Move each ray to the end of its columns, or halve them; return the length inside."""
         world, at, scale = self.world, self.at, self.scale
         square = at >> (scale + LEAF)
         place = world.offsets[scale] + square * world.count + self.profile
@@ -262,9 +263,9 @@ class _Level:
         return inside
 
     def _leaf(self, which: Indices) -> Array:
-        """Return the length inside up to the next multiple of 2^LEAF columns."""
+        """Return the length inside as far as the next multiple of 2^LEAF columns."""
         at = self.at[which]
-        # Columns that are behind or beyond have no width.
+        # Columns behind the ray or beyond the last one get a width of 0.
         nodes = (at >> LEAF << LEAF) + np.arange((1 << LEAF) + 1)[:, np.newaxis]
         nodes = np.minimum(np.maximum(nodes, at), self.world.steps)
         heights = self._height(nodes, which)
@@ -273,21 +274,21 @@ class _Level:
         result: Array = np.sum(part, axis=0)
         return result
 
-    def _height(self, at: Indices, which: Any = slice(None)) -> Array:
+    def _height(self, at: Indices, which: Indices | slice = slice(None)) -> Array:
         place = at * self.world.count + self.profile[which]
         low, high = self.world.level.take(place), self.world.level.take(place + 1)
         result: Array = low + self.share[which] * (high - low)
         return result
 
     def _mix(self, values: Array, place: Indices) -> Array:
-        """Return values of two profiles, each weighed by how near the ray is to it."""
+        """Return the values at rays, interpolated between their two profiles."""
         low = values.take(place)
         result: Array = low + self.share * (values.take(place + 1) - low)
         return result
 
 
 def _rounded(values: Array, toward: float) -> Array:
-    """Return float32 values, not below or not above those given."""
+    """Return float32 bounds of values: upper ones toward infinity, lower ones toward -infinity."""
     return np.asarray(np.nextafter(values.astype(np.float32), np.float32(toward)))
 
 
@@ -295,6 +296,6 @@ def _above(low: Array, high: Array, z: Array) -> Array:
     """Return the share of a straight line from low to high that is above z."""
     share = np.maximum(low, high)
     share -= z
-    # A level one is above z or not.
+    # For a level line the share is 0 or 1.
     share /= np.maximum(np.abs(high - low), LEVEL)
     return np.asarray(np.clip(share, 0.0, 1.0, out=share))

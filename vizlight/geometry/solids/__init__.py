@@ -1,4 +1,4 @@
-"""Spheres, truncuses and blocks, what combines them, and one closed mesh of the result."""
+"""Spheres, frusta and blocks, Boolean combinations of them, and their closed meshes."""
 
 from vizlight.geometry.solids.tessellation import tessellate
 

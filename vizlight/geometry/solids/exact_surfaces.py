@@ -1,4 +1,4 @@
-"""Surfaces of solids: signed distance, normal, and points spread over them."""
+"""Surfaces of solids: signed distance, outward normal and sample points."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Ball:
 
     @property
     def area(self) -> float:
-        """Its area."""
+        """The area of the sphere."""
         return 4 * math.pi * self.radius**2
 
     def distance(self, points: Array) -> Array:
@@ -35,14 +35,14 @@ class Ball:
         return _unit_rows(points - self.center)
 
     def samples(self, spacing: float, _: np.random.Generator) -> Array:
-        """Return points of about that spacing."""
+        """Return points about ``spacing`` apart."""
         count = max(int(4 * np.pi * self.radius**2 / (0.85 * spacing**2)), 12)
         return np.asarray(self.center + self.radius * fibonacci(count))
 
 
 @dataclass(frozen=True)
 class Plane:
-    """A plane, of which a disc or a rectangle is the solid's face."""
+    """The plane of a face, which is a disc or a rectangle."""
 
     center: Array
     outward: Array
@@ -51,7 +51,7 @@ class Plane:
 
     @property
     def area(self) -> float:
-        """The area of the rectangle of its extent."""
+        """The area of the rectangle of half widths ``extent``."""
         return 4 * self.extent[0] * self.extent[1]
 
     def distance(self, points: Array) -> Array:
@@ -63,14 +63,14 @@ class Plane:
         return np.broadcast_to(self.outward, points.shape)
 
     def samples(self, spacing: float, random: np.random.Generator) -> Array:
-        """Return points of about that spacing on the rectangle of the extent."""
+        """Return points about ``spacing`` apart on the rectangle of half widths ``extent``."""
         rows = [
             np.arange(-s - spacing, s + spacing, f * spacing)
             for s, f in zip(self.extent, (1, 0.866), strict=True)
         ]
         u, v = np.meshgrid(*rows, indexing="ij")
         u = u + 0.5 * spacing * (np.arange(len(rows[1])) % 2)
-        # No three in one line: tetrahedra along it would have no volume.
+        # No three points are collinear: tetrahedra along a line would have no volume.
         u, v = (x + spacing * random.uniform(-0.15, 0.15, x.shape) for x in (u, v))
         return np.asarray(
             self.center + u.reshape(-1, 1) * self.across[0] + v.reshape(-1, 1) * self.across[1]
@@ -79,7 +79,7 @@ class Plane:
 
 @dataclass(frozen=True)
 class Cone:
-    """The side of a truncus, a cone or cylinder without end."""
+    """The side of a frustum, as an infinite cone or cylinder."""
 
     center: Array
     axis: Array
@@ -88,13 +88,13 @@ class Cone:
 
     @property
     def area(self) -> float:
-        """The area of the side."""
+        """The area of the side between both ends."""
         slant = math.hypot(self.height, self.radii[0] - self.radii[1])
         return math.pi * sum(self.radii) * slant
 
     @property
     def apex(self) -> Array | None:
-        """The point of a cone, None where both ends have a radius."""
+        """The apex of a cone; None for a frustum or a cylinder."""
         if min(self.radii) > 0:
             return None
         half = self.height / 2 * self.axis
@@ -113,13 +113,13 @@ class Cone:
         return np.asarray((size - (sum(self.radii) / 2 + slope * along)) * cosine)
 
     def normal(self, points: Array) -> Array:
-        """Return outward unit normals; at the apex the axis' part alone decides."""
+        """Return outward unit normals; at the apex the normal is parallel to the axis."""
         _, across, size, slope, cosine = self._parts(points)
         unit = across / np.where(size > 0, size, 1)[:, np.newaxis]
         return np.asarray(_unit_rows(cosine * (unit - slope * self.axis)))
 
     def samples(self, spacing: float, random: np.random.Generator) -> Array:
-        """Return points of about that spacing."""
+        """Return points about ``spacing`` apart."""
         slant = math.hypot(self.height, self.radii[0] - self.radii[1])
         rows = max(int(slant / (0.866 * spacing)), 1)
         share = (np.arange(rows) + 0.5) / rows
@@ -127,7 +127,7 @@ class Cone:
         count = np.maximum((2 * np.pi * radius / spacing).astype(int), 5)
         row = np.repeat(np.arange(rows), count)
         turn = (np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)) / count[row]
-        # No two on one ruling: tetrahedra along it would have no volume.
+        # No two points share a ruling: tetrahedra along it would have no volume.
         turn += random.uniform(-0.15, 0.15, len(row)) / count[row]
         angle = 2 * np.pi * (turn + 0.382 * row)
         first, second = axial.frame(self.axis)
@@ -140,7 +140,7 @@ Surface = Ball | Plane | Cone
 
 
 def fibonacci(count: int) -> Array:
-    """Return points spread evenly on the unit sphere."""
+    """Return ``count`` points spread evenly over the unit sphere."""
     i = np.arange(count) + 0.5
     z = 1 - 2 * i / count
     angle = i * np.pi * (3 - math.sqrt(5))

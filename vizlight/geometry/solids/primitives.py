@@ -1,6 +1,6 @@
-"""Solids: sphere, truncus and block, and their union, intersection and difference.
+"""Solids: sphere, frustum and block, and their union, intersection and difference.
 
-A solid is what is inside of all its surfaces, or a combination of two solids.
+A solid is the region inside all of its surfaces, or a combination of two solids.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -19,15 +19,20 @@ from vizlight.geometry.solids.exact_surfaces import Ball, Cone, Plane
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from vizlight._types import Array, Bools
+    from numpy.typing import ArrayLike
+
+    from vizlight._types import Array, Bools, VectorLike
     from vizlight.geometry.solids.exact_surfaces import Surface
 
 
-__all__ = ["Block", "Boolean", "Primitive", "Solid", "Sphere", "Truncus"]
+__all__ = ["Block", "Boolean", "Frustum", "Primitive", "Solid", "Sphere", "Truncus"]
+
+#: Description of a solid in error messages.
+EXPECTED = "a vizlight.Sphere, Frustum, Block or a combination of them"
 
 
 class Solid:
-    """What all solids can do: ``a | b``, ``a & b`` and ``a - b``, nested to any depth."""
+    """Base class of solids, which combine by ``a | b``, ``a & b`` and ``a - b`` to any depth."""
 
     def __or__(self, other: Solid) -> Boolean:
         """Return the union."""
@@ -42,63 +47,64 @@ class Solid:
         return Boolean("difference", self, other)
 
     def primitives(self) -> Iterator[Primitive]:
-        """Yield spheres, truncuses and blocks from left to right."""
+        """Yield the spheres, frusta and blocks from left to right."""
         raise NotImplementedError
 
-    def combine(self, inside: Iterator[Any]) -> Any:
-        """Return whether points are inside, given it for each primitive in their order."""
+    def combine(self, inside: Iterator[Bools]) -> Bools:
+        """Return which points are inside, given the same for each primitive in their order."""
         raise NotImplementedError
 
-    def contains(self, points: Any, /) -> Any:
-        """Return which points are inside.
+    def contains(self, points: ArrayLike, /) -> Bools:
+        """Return which points are inside the solid.
 
         Parameters
         ----------
         points : array_like, shape (N, 3)
+            Positions, in the unit of the solid.
 
         Returns
         -------
         ndarray of bool, shape (N,)
-            Analytic inside tests; a point on a surface may be either.
+            Results of analytic tests; for a point on a surface either value is possible.
         """
         places = np.asarray(_check.vectors("points", points, n=3), dtype=np.float64)
         return self.combine(iter([solid.inside(places) for solid in self.primitives()]))
 
 
 class Primitive(Solid):
-    """A convex solid: what is inside of all its surfaces."""
+    """A convex solid: the region inside all of its surfaces."""
 
     def surfaces(self) -> tuple[Surface, ...]:
-        """Return the surfaces."""
+        """Return the surfaces that bound the solid."""
         raise NotImplementedError
 
     @functools.cached_property
     def _faces(self) -> tuple[Surface, ...]:
         return self.surfaces()
 
-    def moved(self, shift: Array, scale: float) -> Any:
+    def moved(self, shift: Array, scale: float) -> Primitive:
         """Return the solid ``(x - shift) / scale``."""
         raise NotImplementedError
 
     def box(self) -> tuple[Array, float]:
-        """Return the middle, and the radius of a ball around it that holds the solid."""
+        """Return the centre of the solid and the radius of a ball around it that contains it."""
         raise NotImplementedError
 
     @property
     def empty(self) -> bool:
-        """Whether there is no volume."""
+        """Whether the solid has no volume."""
         raise NotImplementedError
 
     def primitives(self) -> Iterator[Primitive]:
-        """Yield itself."""
+        """Yield the primitive itself."""
         yield self
 
-    def combine(self, inside: Iterator[Any]) -> Any:
-        """Return the next."""
+    def combine(self, inside: Iterator[Bools]) -> Bools:
+        """Return the next item."""
         return next(inside)
 
     def inside(self, points: Array) -> Bools:
-        """Return which points are inside of all surfaces."""
+        """Return which points are inside all surfaces."""
         if self.empty:
             return np.zeros(len(points), np.bool_)
         found = np.ones(len(points), np.bool_)
@@ -109,12 +115,19 @@ class Primitive(Solid):
 
 @dataclass(frozen=True)
 class Boolean(Solid):
-    """Two solids combined.
+    """A combination of two solids.
 
     Parameters
     ----------
     operation : {"union", "intersection", "difference"}
+        Set operation; a difference is the first solid without the second.
     first, second : Solid
+        Solids to combine.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is not valid.
     """
 
     operation: Literal["union", "intersection", "difference"]
@@ -127,20 +140,15 @@ class Boolean(Solid):
             raise ValueError(_check.message("operation", expected, repr(self.operation)))
         for name, solid in (("first", self.first), ("second", self.second)):
             if not isinstance(solid, Solid):
-                raise TypeError(
-                    _check.message(
-                        name, "a vizlight.Sphere, Truncus, Block or what was made of them",
-                        _check.describe(solid),
-                    )
-                )  # fmt: skip
+                raise TypeError(_check.message(name, EXPECTED, _check.describe(solid)))
 
     def primitives(self) -> Iterator[Primitive]:
-        """Yield the primitives of both."""
+        """Yield the primitives of both solids."""
         yield from self.first.primitives()
         yield from self.second.primitives()
 
-    def combine(self, inside: Iterator[Any]) -> Any:
-        """Combine what both say."""
+    def combine(self, inside: Iterator[Bools]) -> Bools:
+        """Combine the results of both solids."""
         first, second = self.first.combine(inside), self.second.combine(inside)
         if self.operation == "union":
             return first | second
@@ -154,17 +162,18 @@ class Sphere(Primitive):
 
     Parameters
     ----------
-    center : vector of 3 components
-    radius : float
-        0 or more; of radius 0 it is empty.
+    center : vector of 3 components, default: (0, 0, 0)
+        Centre.
+    radius : float, default: 1.0
+        Radius, 0 or more; a sphere of radius 0 is empty.
 
     Raises
     ------
     TypeError, ValueError
-        If an argument does not fit.
+        If an argument is not valid.
     """
 
-    def __init__(self, center: Any = (0.0, 0.0, 0.0), radius: float = 1.0) -> None:
+    def __init__(self, center: VectorLike = (0.0, 0.0, 0.0), radius: float = 1.0) -> None:
         self.center = axial.triple("center", center)
         self.radius = _check.number("radius", radius, low=0.0)
 
@@ -173,11 +182,11 @@ class Sphere(Primitive):
 
     @property
     def empty(self) -> bool:
-        """Whether there is no volume."""
+        """Whether the solid has no volume."""
         return self.radius == 0
 
     def surfaces(self) -> tuple[Surface, ...]:
-        """Return the ball."""
+        """Return the surface of the ball."""
         return (Ball(self.center, self.radius),)
 
     def moved(self, shift: Array, scale: float) -> Sphere:
@@ -185,42 +194,45 @@ class Sphere(Primitive):
         return Sphere((self.center - shift) / scale, self.radius / scale)
 
     def box(self) -> tuple[Array, float]:
-        """Return centre and radius."""
+        """Return the centre and the radius."""
         return self.center, self.radius
 
 
-class Truncus(Primitive):
-    """A cylinder, disc, rod, cone or frustum with both its ends.
+class Frustum(Primitive):
+    """A conical frustum with both ends, or its limits: cone, cylinder, disc and rod.
+
+    The source calls this shape a truncus; ``Truncus`` is another name of this class.
 
     Parameters
     ----------
-    center : vector of 3 components
-        The middle of the axis.
-    axis : vector of 3 components
-        From the second end to the first; its length is the height unless that is given.
-    radii : (float, float)
-        At the end ``center + axis / 2`` and at the other, 0 or more.
+    center : vector of 3 components, default: (0, 0, 0)
+        Midpoint of the axis.
+    axis : vector of 3 components, default: (0, 0, 1)
+        Direction from the second end to the first. Its length is the height unless ``height``
+        is given.
+    radii : (float, float), default: (0.5, 0.5)
+        Radii R1 at ``center + axis / 2`` and R2 at ``center - axis / 2``, 0 or more.
     height : float, optional
-        0 or more; of height 0 it is empty.
+        Height, 0 or more; a frustum of height 0 is empty.
 
     Raises
     ------
     TypeError, ValueError
-        If an argument does not fit.
+        If an argument is not valid.
     """
 
     def __init__(
         self,
-        center: Any = (0.0, 0.0, 0.0),
-        axis: Any = (0.0, 0.0, 1.0),
-        radii: Any = (0.5, 0.5),
+        center: VectorLike = (0.0, 0.0, 0.0),
+        axis: VectorLike = (0.0, 0.0, 1.0),
+        radii: VectorLike = (0.5, 0.5),
         *,
         height: float | None = None,
     ) -> None:
         self.center = axial.triple("center", center)
         along = axial.triple("axis", axis)
         if not np.any(along):
-            remedy = "give its direction, and height=0 for a disc without thickness"
+            remedy = "pass its direction, and height=0 for a disc without thickness"
             raise ValueError(_check.message("axis", "a vector of non-zero length", along, remedy))
         self.axis = axial.unit("axis", axis)
         self.height = (
@@ -234,15 +246,15 @@ class Truncus(Primitive):
 
     def __repr__(self) -> str:
         middle, axis = (tuple(map(float, v)) for v in (self.center, self.axis))
-        return f"Truncus({middle}, {axis}, {self.radii}, height={self.height:g})"
+        return f"Frustum({middle}, {axis}, {self.radii}, height={self.height:g})"
 
     @property
     def empty(self) -> bool:
-        """Whether there is no volume."""
+        """Whether the solid has no volume."""
         return self.height == 0 or max(self.radii) == 0
 
     def surfaces(self) -> tuple[Surface, ...]:
-        """Return the side, the first and the second end."""
+        """Return the side, the first end and the second end."""
         side = Cone(self.center, self.axis, self.height, self.radii)
         across = axial.frame(self.axis)
         ends = (
@@ -251,14 +263,18 @@ class Truncus(Primitive):
         )
         return (side, *ends)
 
-    def moved(self, shift: Array, scale: float) -> Truncus:
+    def moved(self, shift: Array, scale: float) -> Frustum:
         """Return the solid ``(x - shift) / scale``."""
-        radii = tuple(r / scale for r in self.radii)
-        return Truncus((self.center - shift) / scale, self.axis, radii, height=self.height / scale)
+        radii = np.array(self.radii) / scale
+        return Frustum((self.center - shift) / scale, self.axis, radii, height=self.height / scale)
 
     def box(self) -> tuple[Array, float]:
-        """Return centre and the radius of a ball around it."""
+        """Return the centre and the radius of the smallest ball around it."""
         return self.center, math.hypot(self.height / 2, max(self.radii))
+
+
+#: The source's word for :class:`Frustum`.
+Truncus = Frustum
 
 
 class Block(Primitive):
@@ -266,24 +282,25 @@ class Block(Primitive):
 
     Parameters
     ----------
-    center : vector of 3 components
-    size : vector of 3 components
-        Lengths of the edges, 0 or more.
+    center : vector of 3 components, default: (0, 0, 0)
+        Centre.
+    size : vector of 3 components, default: (1, 1, 1)
+        Lengths of the edges, 0 or more; a block with an edge of length 0 is empty.
     axes : array_like, shape (3, 3), optional
-        Orthonormal rows along the edges; default x, y and z.
+        Orthonormal rows along the edges. Default: the x, y and z axes.
 
     Raises
     ------
     TypeError, ValueError
-        If an argument does not fit.
+        If an argument is not valid.
     """
 
     def __init__(
         self,
-        center: Any = (0.0, 0.0, 0.0),
-        size: Any = (1.0, 1.0, 1.0),
+        center: VectorLike = (0.0, 0.0, 0.0),
+        size: VectorLike = (1.0, 1.0, 1.0),
         *,
-        axes: Any = None,
+        axes: ArrayLike | None = None,
     ) -> None:
         self.center = axial.triple("center", center)
         self.size = axial.triple("size", size)
@@ -295,7 +312,7 @@ class Block(Primitive):
         if self.axes.shape != (3, 3) or not np.allclose(
             self.axes @ self.axes.T, np.eye(3), atol=1e-6
         ):
-            remedy = "normalise them"
+            remedy = "orthonormalise them"
             raise ValueError(
                 _check.message("axes", "3 orthonormal rows", _check.describe(axes), remedy)
             )
@@ -306,7 +323,7 @@ class Block(Primitive):
 
     @property
     def empty(self) -> bool:
-        """Whether there is no volume."""
+        """Whether the solid has no volume."""
         return bool(np.any(self.size == 0))
 
     def surfaces(self) -> tuple[Surface, ...]:
@@ -327,5 +344,5 @@ class Block(Primitive):
         return Block((self.center - shift) / scale, self.size / scale, axes=self.axes)
 
     def box(self) -> tuple[Array, float]:
-        """Return centre and the radius of a ball around it."""
+        """Return the centre and the radius of the smallest ball around it."""
         return self.center, axial.length(self.size) / 2

@@ -1,14 +1,15 @@
 """One closed mesh of solids combined by union, intersection and difference.
 
-Points are put on corners, on the curves where surfaces meet, and on the surfaces; their Delaunay
-tetrahedra are inside or outside by analytic tests, and where inside meets outside is the mesh. It
-is closed by construction, whatever touches or coincides.
+Points are placed at corners, on the curves where surfaces meet, and on the surfaces. Analytic
+tests decide which of their Delaunay tetrahedra are inside; the mesh is the boundary between inside
+and outside. It is closed by construction, also where surfaces touch or coincide.
 """
 
 from __future__ import annotations
 
+import dataclasses
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -17,73 +18,72 @@ from scipy.spatial import Delaunay
 
 from vizlight import _check
 from vizlight.geometry.contours import refinement
-from vizlight.geometry.solids import primitives, sampling, triangle_mesh
+from vizlight.geometry.solids import sampling, triangle_mesh
 from vizlight.geometry.solids.exact_surfaces import Ball, Plane
-from vizlight.geometry.solids.primitives import Primitive
+from vizlight.geometry.solids.primitives import EXPECTED, Block, Frustum, Solid, Sphere
 from vizlight.geometry.solids.sampling import PROBE, Size, Unit
 from vizlight.geometry.solids.triangle_mesh import Mesh
 
 if TYPE_CHECKING:
     from vizlight._types import Array, Bools, Indices
     from vizlight.geometry.solids.exact_surfaces import Surface
+    from vizlight.geometry.solids.primitives import Primitive
 
 
 __all__ = ["tessellate"]
 
-#: Spacings that are tried where a thin wall or gap does not come out, as divisors of the first,
-#: up to so many points.
+#: Divisors of the spacing that are tried where a thin wall or gap is not resolved, and the
+#: largest number of points of such a trial.
 FINER, PATIENCE = (1.7, 2.9, 5.0, 8.5, 14.0, 24.0), 60_000
-#: Points that one spacing for all surfaces may take.
+#: Largest number of points with one spacing for all surfaces.
 PLENTY = 15_000
-#: The spacing that narrow faces ask for at most, as a share of the solid's size: narrower ones
-#: are tried.
+#: Smallest spacing that narrow faces ask for, as a share of the solid's size; finer ones are
+#: tried if it does not suffice.
 NARROW = 0.05
-#: How far points are moved for Delaunay's sake, in units of their spacing.
+#: Random displacement of points before the Delaunay tetrahedralisation, in units of spacing.
 JOGGLE = 1e-7
-#: Tetrahedra of less height, in units of the points' spacing, have no side of their own.
+#: Height, in units of spacing, below which a tetrahedron takes the side of its neighbours.
 FLAT = 1e-3
-#: With its middle closer to a surface, in units of the tolerance, a tetrahedron hugs it.
+#: Distance from a surface, in units of the tolerance, below which corners decide the side.
 HUG = 1
 
 
-def tessellate(solid: Any, /, *, tolerance: float = 3e-3) -> Mesh:
+def tessellate(solid: Solid, /, *, tolerance: float = 3e-3) -> Mesh:
     """Return a closed mesh of a solid.
 
     Parameters
     ----------
     solid : Solid
-        Primitives, or what ``|``, ``&`` and ``-`` made of them.
+        Primitive, or a combination of primitives by ``|``, ``&`` and ``-``.
     tolerance : float, default: 3e-3
-        How far triangles may be from curves and surfaces, as a share of the radius of a ball that
-        holds all primitives, from 1e-6 to 0.1.
+        Largest distance of triangles from curves and surfaces, as a share of the radius of a ball
+        that contains all primitives, from 1e-6 to 0.1.
 
     Returns
     -------
     Mesh
-        Its points are on the exact surfaces, those of edges on both to rounding. Without
-        triangles if nothing is left.
+        Mesh with points on the exact surfaces; points of an edge are on both surfaces to
+        rounding. An empty solid has no triangles.
 
     Raises
     ------
     TypeError, ValueError
-        If an argument does not fit, the tolerance asks for more than 400,000 points, or
-        something is too thin for it: what no spacing brings out that takes less than 60,000
-        points.
+        If an argument is not valid, if the tolerance needs more than 400,000 points, or if a wall
+        or gap is too thin to be resolved by any spacing that needs fewer than 60,000 points.
 
     Notes
     -----
-    Coincident faces count once: a point is on the solid if one side of it is inside and the
-    other is not, so that faces glued together vanish and faces that cancel leave nothing.
-    Surfaces that touch in a point or along a line meet there. Points are ``sqrt(2 tolerance r)``
-    apart on a surface of radius r; around what is small their spacing grows from its own to that
-    of the rest. Thin walls and gaps are tried with finer points. Volume and area converge with
-    the tolerance. Source: Isoluminance, Further Work.
+    A point belongs to the surface of the solid if one side of it is inside and the other is not.
+    Coincident faces therefore count once: shared faces of joined solids are removed, and the
+    difference of equal solids is empty. Surfaces that touch in a point or along a line meet
+    there. Points are ``sqrt(2 tolerance r)`` apart on a surface of radius r; the spacing grows
+    with the distance from a small surface. Finer points are tried for thin walls and gaps. Volume
+    and area converge with the tolerance. Source: Isoluminance, Further Work.
     """
-    if not isinstance(solid, primitives.Solid):
-        expected = "a vizlight.Sphere, Truncus, Block or what was made of them"
-        raise TypeError(_check.message("solid", expected, _check.describe(solid)))
+    if not isinstance(solid, Solid):
+        raise TypeError(_check.message("solid", EXPECTED, _check.describe(solid)))
     tolerance = _check.number("tolerance", tolerance, low=1e-6, high=0.1)
-    if isinstance(solid, Primitive):
+    if isinstance(solid, Sphere | Frustum | Block):
         segments = max(24, math.ceil(math.pi / math.acos(1 - tolerance)))
         return triangle_mesh.mesh(solid, segments)
     parts = list(solid.primitives())
@@ -92,7 +92,7 @@ def tessellate(solid: Any, /, *, tolerance: float = 3e-3) -> Mesh:
     if not unit.surfaces:
         return _empty(shift, scale)
     need = np.array([_spacing(surface, tolerance) for surface in unit.surfaces])
-    # Where the finest spacing would take too many points it is kept to the surfaces that need it.
+    # A spacing that would need too many points is used only near the surfaces that need it.
     area = sum(surface.area for surface in unit.surfaces)
     coarse = max(float(need.min()), math.sqrt(area / PLENTY))
     for attempt, finer in enumerate((1.0, 1.0, *FINER)):
@@ -107,14 +107,14 @@ def tessellate(solid: Any, /, *, tolerance: float = 3e-3) -> Mesh:
             return _signed(mesh)
     raise ValueError(
         _check.message(
-            "tolerance", "one fine enough for the thinnest part of the solid", f"{tolerance:g}",
-            "lower it, or move surfaces that nearly touch apart or onto each other",
+            "tolerance", "a value small enough for the thinnest part of the solid",
+            f"{tolerance:g}", "lower it, or separate or join surfaces that nearly touch",
         )
     )  # fmt: skip
 
 
 def _frame(parts: list[Primitive]) -> tuple[Array, float]:
-    """Return the middle of all primitives, and the radius of a ball that holds them."""
+    """Return the centre of all primitives and the length that becomes the unit."""
     boxes = [part.box() for part in parts if not part.empty]
     if not boxes:
         return np.asarray(parts[0].box()[0]), 1.0
@@ -122,13 +122,13 @@ def _frame(parts: list[Primitive]) -> tuple[Array, float]:
     high = np.max([center + radius for center, radius in boxes], axis=0)
     shift = low + (high - low) / 2
     largest = max(radius for _, radius in boxes)
-    # Far apart, but not so far that a primitive is lost in rounding.
+    # The distance of primitives counts too: all of them stay near the unit ball.
     apart = max(float(np.abs(center - shift).max()) for center, _ in boxes)
     return shift, max(largest, apart)
 
 
 def _spacing(surface: Surface, tolerance: float) -> float:
-    """Return the distance of points that keeps chords within the tolerance of a surface."""
+    """Return the spacing of points that keeps chords within the tolerance of a surface."""
     if isinstance(surface, Plane):
         return min(max(0.7 * min(surface.extent), NARROW), 6.4 * math.sqrt(tolerance))
     radius = surface.radius if isinstance(surface, Ball) else max(surface.radii)
@@ -139,13 +139,13 @@ def _spacing(surface: Surface, tolerance: float) -> float:
 def _mesh(
     unit: Unit, size: Size, tolerance: float, attempt: int
 ) -> tuple[Indices, Indices, Array] | None:
-    """Return triangles, their surfaces and points; None where they do not fit the surfaces."""
+    """Return triangles, their surfaces and points; None if they do not fit the surfaces."""
     random = np.random.default_rng([1990, attempt])
     points, on = sampling.points(unit, size, random)
     if len(points) < 5:
         return np.empty((0, 3), np.intp), np.empty(0, np.intp), np.empty((0, 3))
-    # Points on planes, circles and spheres are degenerate for Delaunay; moved by a little at
-    # random they are not, and any choice among tetrahedra without volume is as good.
+    # Points on planes, circles and spheres are degenerate for Delaunay; small random displacements
+    # avoid this, and any choice among tetrahedra without volume is equally good.
     moved = points + JOGGLE * size.of(points)[:, np.newaxis] * random.standard_normal(points.shape)
     tetrahedra = Delaunay(moved)
     cells = tetrahedra.simplices.astype(np.intp)
@@ -160,10 +160,10 @@ def _mesh(
     a, b, c = (moved[cells[:, i]] - moved[cells[:, 3]] for i in range(3))
     turned = (np.einsum("ij,ij->i", np.cross(a, b), c) < 0)[cell]
     triangles[turned] = triangles[turned][:, ::-1]
-    # Corner 3 is where the determinant looks from: positive means faces as listed look inward.
+    # Seen from corner 3: with a positive determinant the faces as listed are oriented inward.
     triangles = triangles[:, ::-1]
     patch, fits = _patches(unit, points, triangles, on, size, tolerance)
-    # A point that no triangle has is of a wall or a gap that tetrahedra reach through.
+    # A point without triangles belongs to a wall or gap that tetrahedra cross.
     lost = len(points) - len(np.unique(triangles))
     if not fits or lost > max(2, 0.003 * len(points)):
         return None
@@ -171,8 +171,8 @@ def _mesh(
     corner = _sheets(partner)
     _, first = np.unique(corner, return_index=True)
     places = points[triangles.ravel()[first]]
-    # A pair of points may still have two edges, each with two triangles of its own: all but the
-    # first get a point in the middle.
+    # A pair of points may still have two edges, each with its own two triangles: all but the
+    # first edge get a point in the middle.
     ends = np.sort(np.stack([corner, np.roll(corner, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
     own = np.minimum(np.arange(corner.size), partner.ravel())
     edge, one, which = np.unique(own, return_index=True, return_inverse=True)
@@ -190,7 +190,7 @@ def _mesh(
 def _thick(
     triangles: Indices, patch: Indices, points: Array, size: Size
 ) -> tuple[Indices, Indices, Array]:
-    """Return a mesh without parts of next to no height: tetrahedra along a straight line."""
+    """Return a mesh without connected parts of negligible height, as tetrahedra along a line."""
     a, b, c = triangles.T
     links = np.concatenate([np.stack([a, b]), np.stack([b, c])], axis=1)
     graph = coo_array((np.ones(links.shape[1], np.bool_), tuple(links)), shape=(len(points),) * 2)
@@ -211,16 +211,16 @@ def _thick(
 def _partners(
     cells: Indices, beyond: Indices, inside: Bools, cell: Indices, slot: Indices, triangles: Indices
 ) -> Indices:
-    """Return for the edge that begins at each corner the edge it meets, as 3 triangle + corner.
+    """Return the partner of the edge that begins at each corner, as 3 triangle + corner.
 
-    Around an edge a triangle meets the one that bounds the same wedge of the inside, so that
-    just two meet, also where a solid touches itself.
+    The partner is the edge of the triangle that bounds the same wedge of the inside, so that
+    exactly two triangles share an edge, also where a solid touches itself.
     """
     face = np.full(cells.size, -1)
     face[cell * 4 + slot] = np.arange(len(cell))
     partners = np.empty((len(cell), 3), np.intp)
     for start in range(3):
-        # Turn about the edge through the inside, from tetrahedron to tetrahedron.
+        # Rotate about the edge through the inside, from tetrahedron to tetrahedron.
         third = triangles[:, (start + 2) % 3]
         tetrahedron, left = cell.copy(), slot.copy()
         over = np.argmax(cells[tetrahedron] == third[:, np.newaxis], axis=1)
@@ -234,7 +234,7 @@ def _partners(
             left[going] = np.argmax(beyond[ahead] == at[:, np.newaxis], axis=1)
             tetrahedron[going] = ahead
         other = face[tetrahedron * 4 + over]
-        # There the edge runs the other way: it begins where this one ends.
+        # The partner runs in the opposite direction: it begins where this edge ends.
         end = triangles[:, (start + 1) % 3]
         begins = np.argmax(triangles[other] == end[:, np.newaxis], axis=1)
         partners[:, start] = 3 * other + begins
@@ -242,9 +242,9 @@ def _partners(
 
 
 def _sheets(partners: Indices) -> Indices:
-    """Return triangles numbered anew by the corners that hang together across edges.
+    """Return triangles with corners renumbered by connection across partner edges.
 
-    Where a solid touches itself in an edge or a corner, points are taken once for each part.
+    Where a solid touches itself in an edge or a corner, each part gets its own copy of the points.
     """
     here = np.arange(partners.size)
     there = partners.ravel()
@@ -266,9 +266,9 @@ def _inside(
 ) -> Bools:
     """Return which tetrahedra are inside.
 
-    Each is asked at a place of its own: the middle of corners that lie alike on both sides of a
-    face is in that face, which has no side. Where one hugs a surface its corners decide: toward
-    a line where surfaces touch what is between them is thinner than chords are off.
+    Each is tested at a random interior point: the mean of corners that lie symmetrically about a
+    face would be on that face. Where that point is close to a surface the corners decide, because
+    the space between surfaces that touch is thinner than the error of chords.
     """
     weight = 1 + random.uniform(-0.2, 0.2, cells.shape)
     corners = points[cells]
@@ -286,7 +286,7 @@ def _inside(
     inside = unit.combine(found)
     a, b, c = (corners[:, i] - corners[:, 3] for i in range(3))
     flat = np.abs(np.einsum("ij,ij->i", np.cross(a, b), c)) < 1e-7 * spacing**3
-    # One without volume may lie in a face: it is inside only if both its sides are.
+    # A tetrahedron without volume may lie in a face: it is inside only if both sides are.
     a, b, c, center = a[flat], b[flat], c[flat], center[flat]
     sides = np.stack([np.cross(a, b), np.cross(b, c), np.cross(c, a)], axis=1)
     size = np.einsum("ijk,ijk->ij", sides, sides)
@@ -299,9 +299,9 @@ def _inside(
 def _smooth(
     inside: Bools, corners: Array, beyond: Indices, spacing: Array, random: np.random.Generator
 ) -> None:
-    """Give tetrahedra of next to no height the side that most of their faces are on.
+    """Assign flat tetrahedra in place to the side that most of their face area borders on.
 
-    They lie on a surface; either side is as good, but a patchwork of both would be folded.
+    They lie on a surface, and either side is correct, but a mixture of both would be folded.
     """
     opposite = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]])
     a, b, c = (corners[:, opposite[:, i]] for i in range(3))
@@ -315,7 +315,7 @@ def _smooth(
         turn = np.where(inside[thin], wanted < 0, wanted > 0)
         if not np.any(turn):
             break
-        # Not all at once: neighbours would change places for ever.
+        # Only a random half changes at a time: neighbours would alternate for ever.
         turn &= random.random(len(thin)) < 0.5
         inside[thin[turn]] ^= True
 
@@ -323,7 +323,7 @@ def _smooth(
 def _patches(
     unit: Unit, points: Array, triangles: Indices, on: Bools, size: Size, tolerance: float
 ) -> tuple[Indices, bool]:
-    """Return the surface of each triangle, and whether all triangles fit theirs."""
+    """Return the surface of each triangle, and whether the triangles fit their surfaces."""
     corners = points[triangles]
     center = corners.mean(axis=1)
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -334,15 +334,15 @@ def _patches(
     patch = np.zeros(len(triangles), np.intp)
     for i, surface in enumerate(unit.surfaces):
         lean = 1 - np.abs(np.einsum("ij,ij->i", surface.normal(center), across))
-        # Corners on a surface decide, then the middle, then the way it faces; what has no area
-        # faces nowhere.
+        # Corners on a surface decide, then the distance of the centre, then the orientation,
+        # which a triangle without area lacks.
         off = 3 - np.count_nonzero(on[triangles, i], axis=1)
         score = 10.0 * off + np.abs(surface.distance(center)) / spacing
         score += 0.1 * np.where(area > 1e-4 * spacing**2, lean, 0)
         patch = np.where(score < best, i, patch)
         best = np.minimum(score, best)
-    # A triangle whose corners share no surface cuts an edge off, or reaches through a wall or
-    # gap; a few are where two surfaces touch.
+    # A triangle whose corners share no surface cuts off an edge or crosses a wall or gap; a few
+    # occur where two surfaces touch.
     stray = np.flatnonzero(best > 9)
     stray = stray[~_tangent(unit, corners[stray], across[stray], on[triangles[stray]], tolerance)]
     return patch, bool(area[stray].sum() <= 0.004 * area.sum())
@@ -351,7 +351,7 @@ def _patches(
 def _tangent(unit: Unit, corners: Array, across: Array, on: Bools, tolerance: float) -> Bools:
     """Return which triangles lie where surfaces touch: within the tolerance of one of them.
 
-    The solid is on the same side of all their corners, which it is not in a thin wall.
+    The solid is on the same side at all three corners, which is not so in a thin wall.
     """
     near = np.zeros(len(corners), np.bool_)
     alike = np.zeros(corners.shape[:2], np.bool_)
@@ -367,19 +367,20 @@ def _tangent(unit: Unit, corners: Array, across: Array, on: Bools, tolerance: fl
 
 
 def _signed(mesh: Mesh) -> Mesh:
-    """Return the mesh with the sign of each surface; one used from both sides becomes two."""
+    """Return the mesh with surface signs; a surface that is used from both sides is doubled."""
     corners = mesh.points[mesh.triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normal = refinement.normals_of(mesh, corners.mean(axis=1), mesh.patch)
     outward = np.einsum("ij,ij->i", normal, across) >= 0
-    # A triangle without area faces as its surface mostly does.
+    # A triangle without area takes the orientation of most of its surface.
     area = np.sqrt(np.einsum("ij,ij->i", across, across))
     weight = np.where(outward, area, -area)
     total = np.bincount(mesh.patch, weight, len(mesh.surfaces))
     flat = area < 1e-9
     outward[flat] = total[mesh.patch[flat]] >= 0
     count = len(mesh.surfaces)
-    return mesh.replace(
+    return dataclasses.replace(
+        mesh,
         patch=np.where(outward, mesh.patch, mesh.patch + count),
         surfaces=(*mesh.surfaces, *mesh.surfaces),
         signs=np.concatenate([np.ones(count), -np.ones(count)]),

@@ -1,16 +1,16 @@
-"""Coarse closed meshes of single primitives, each triangle on one exact surface."""
+"""Coarse closed meshes of single primitives; each triangle belongs to one exact surface."""
 
 from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vizlight.geometry.contours import axial
 from vizlight.geometry.solids.exact_surfaces import Plane, fibonacci
-from vizlight.geometry.solids.primitives import Block, Primitive, Sphere, Truncus
+from vizlight.geometry.solids.primitives import Block, Frustum, Sphere
 
 if TYPE_CHECKING:
     from vizlight._types import Array, Indices
@@ -19,19 +19,24 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Mesh:
-    """Triangles of a solid, each on one of its surfaces; lengths are divided by ``scale``.
+    """Triangles of a solid, each on one of its surfaces, in normalised lengths.
 
     Attributes
     ----------
     points : ndarray, shape (P, 3)
-        ``(x - shift) / scale`` of points x.
+        Normalised points ``(x - shift) / scale`` of points x.
     triangles : ndarray of int, shape (T, 3)
-        Counter-clockwise seen from outside.
+        Indices of corners, counter-clockwise seen from outside.
     patch : ndarray of int, shape (T,)
-        The surface of each.
+        Index of the surface of each triangle.
     surfaces : tuple of Surface
+        Exact surfaces, in normalised lengths.
     signs : ndarray, shape (number of surfaces,)
-        -1 where the solid lies outside of the surface.
+        -1 for a surface that the solid lies outside of, else 1.
+    shift : ndarray, shape (3,)
+        Origin of the normalised points, in the unit of the solid.
+    scale : float
+        Length of one normalised unit.
     """
 
     points: Array
@@ -43,30 +48,30 @@ class Mesh:
     scale: float
 
     def world(self, points: Array) -> Array:
-        """Return points in the solid's own unit."""
+        """Return points in the unit of the solid."""
         return np.asarray(self.shift + self.scale * points)
 
-    def replace(self, **changes: Any) -> Mesh:
-        """Return a mesh with some fields changed."""
-        return dataclasses.replace(self, **changes)
+    def replace(self, points: Array, triangles: Indices, patch: Indices) -> Mesh:
+        """Return a mesh of other triangles on the same surfaces."""
+        return dataclasses.replace(self, points=points, triangles=triangles, patch=patch)
 
 
-def mesh(solid: Primitive, segments: int) -> Mesh:
-    """Return a coarse closed mesh of one primitive; a circle has so many segments at least.
+def mesh(solid: Sphere | Frustum | Block, segments: int) -> Mesh:
+    """Return a coarse closed mesh of one primitive, with at least ``segments`` per circle.
 
-    Flat shapes without volume have their two faces; what has no area has no triangles.
+    A flat shape without volume consists of its two faces; a shape without area has no triangles.
     """
     shift, scale = solid.box()
     scale = scale or 1.0
     unit = solid.moved(shift, scale)
     if isinstance(unit, Sphere):
         points, triangles, patch = _ball(unit, segments)
-    elif isinstance(unit, Truncus):
-        points, triangles, patch = _truncus(unit, segments)
+    elif isinstance(unit, Frustum):
+        points, triangles, patch = _frustum(unit, segments)
     else:
         points, triangles, patch = _block(unit)
-    if isinstance(unit, Truncus) and unit.height == 0:
-        # The side is a flat ring: a plane, or nothing.
+    if isinstance(unit, Frustum) and unit.height == 0:
+        # The side is a flat ring: a plane, or empty.
         up = 1.0 if unit.radii[1] > unit.radii[0] else -1.0
         ends = unit.surfaces()[1:] if max(unit.radii) > 0 else ()
         reach, across = (max(unit.radii),) * 2, axial.frame(unit.axis)
@@ -76,7 +81,7 @@ def mesh(solid: Primitive, segments: int) -> Mesh:
     return Mesh(points, triangles, patch, found, np.ones(len(found)), np.asarray(shift), scale)
 
 
-def _ball(unit: Sphere, segments: int) -> tuple[Any, Any, Any]:
+def _ball(unit: Sphere, segments: int) -> tuple[Array, Indices, Indices]:
     from scipy.spatial import ConvexHull
 
     if unit.radius == 0:
@@ -89,7 +94,7 @@ def _ball(unit: Sphere, segments: int) -> tuple[Any, Any, Any]:
     return unit.center + unit.radius * points, faces, np.zeros(len(faces), np.intp)
 
 
-def _truncus(unit: Truncus, segments: int) -> tuple[Any, Any, Any]:
+def _frustum(unit: Frustum, segments: int) -> tuple[Array, Indices, Indices]:
     first, second = axial.frame(unit.axis)
     angle = 2 * np.pi * np.arange(segments) / segments
     ring = np.cos(angle)[:, None] * first + np.sin(angle)[:, None] * second
@@ -103,7 +108,7 @@ def _truncus(unit: Truncus, segments: int) -> tuple[Any, Any, Any]:
         start += len(there) + 1
     (top, top_middle), (bottom, bottom_middle) = indices
     if unit.height == 0 and unit.radii[0] == unit.radii[1]:
-        # Two discs back to back have one rim.
+        # Two discs back to back share one rim.
         bottom = top
     after, below = np.roll(top, -1), np.roll(bottom, -1)
     cells, patch = [], []
@@ -124,7 +129,7 @@ def _truncus(unit: Truncus, segments: int) -> tuple[Any, Any, Any]:
     return np.concatenate(parts), triangles, np.repeat(np.array(patch, np.intp), segments)
 
 
-def _block(unit: Block) -> tuple[Any, Any, Any]:
+def _block(unit: Block) -> tuple[Array, Indices, Indices]:
     signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
     points = unit.center + (signs * unit.size / 2) @ unit.axes
     cells = []

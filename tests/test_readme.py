@@ -1,0 +1,173 @@
+"""README and pages: code runs, commands and files exist, maps of the folders are true."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import pyvista as pv
+from test_tiers import TIER, TIERS
+
+import vizlight
+from vizlight import cli, studies
+
+ROOT = Path(__file__).parents[1]
+README = ROOT / "README.md"
+PAGES = ROOT / "gallery" / "pages"
+GUIDES = [README, PAGES / "guide.rst", PAGES / "index.rst"]
+DOCUMENTS = [README, *sorted(PAGES.glob("*.rst"))]
+
+
+def text_of(path):
+    return path.read_text(encoding="utf-8")
+
+
+def blocks(path, language):
+    """Return the code blocks of one language in a Markdown or reStructuredText file."""
+    text = text_of(path)
+    if path.suffix == ".md":
+        return re.findall(rf"^```{language}\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
+    pattern = rf"^\.\. code-block:: {language}\n\n((?:   .*\n|\n)+)"
+    found = re.findall(pattern, text, re.MULTILINE)
+    return [re.sub(r"^   ", "", block, flags=re.MULTILINE) for block in found]
+
+
+def lines(path):
+    """Return the lines of the shell blocks of a file, continued lines as one."""
+    joined = [re.sub(r"\\\n\s*", "", block) for block in blocks(path, "sh")]
+    return [line for block in joined for line in block.split("\n") if line]
+
+
+def named_commands(path):
+    """Return what stands between backticks or in a shell line after ``vizlight``."""
+    quoted = re.findall(r"`vizlight ([^`]+)`", text_of(path))
+    return quoted + [m[1] for line in lines(path) if (m := re.search(r"vizlight ((?!/).+)", line))]
+
+
+@pytest.mark.opengl
+@pytest.mark.parametrize("path", GUIDES, ids=lambda path: path.name)
+def test_every_python_block_runs(path, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(pv, "OFF_SCREEN", True)
+    space = {"__name__": "example"}
+    found = blocks(path, "python")
+    assert found
+    for i, block in enumerate(found):
+        exec(compile(block, f"{path.name}, block {i}", "exec"), space)
+    assert float(space["lit"]["luminance"].max()) > 0.5
+    pv.close_all()
+
+
+@pytest.mark.opengl
+def test_the_command_of_the_example_runs(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (line,) = [line for line in lines(README) if "vizlight light" in line]
+    arguments = shlex.split(line)[1:]
+    (tmp_path / arguments[1]).parent.mkdir()
+    shutil.copy(ROOT / arguments[1], arguments[1])
+    assert cli.main([*arguments, "--size", "120x80"]) == cli.OK
+    assert (tmp_path / "lit.vtp").exists()
+    assert (tmp_path / "lit.png").exists()
+
+
+@pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.name)
+def test_every_command_is_one(path, capsys):
+    for command in named_commands(path):
+        name, *words = shlex.split(command.partition("|")[0])
+        assert cli.main([name, "--help"]) == cli.OK, command
+        described = capsys.readouterr().out
+        for word in words:
+            if word.startswith("--") and word != "--help":
+                assert f"{word} " in described, command
+        if name == "study" and words and words[0] != "NAME":
+            assert words[0] in studies.names(), command
+
+
+def test_the_lines_that_ci_runs_are_there():
+    words = re.findall(r"readme '([^']+)'", text_of(ROOT / ".ci" / "run"))
+    assert len(words) >= 3
+    for word in words:
+        assert [line for line in lines(README) if word in line], word
+
+
+def test_readme_is_short():
+    assert len(text_of(README).splitlines()) <= 150
+
+
+def test_every_link_of_readme_is_a_file():
+    targets = re.findall(r"\]\(([^)#]+)\)", text_of(README))
+    assert len(targets) > 5
+    assert not [t for t in targets if "://" not in t and not (ROOT / t).exists()]
+
+
+def folder_map():
+    """Return the folders that README's map names, as paths, in its order."""
+    (block,) = re.findall(r"^## Folders\n\n```\n(.*?)^```$", text_of(README), re.S | re.M)
+    found, above = [], []
+    for line in block.splitlines():
+        indent, name = re.match(r"( *)(\w+)/ ?", line).groups()
+        above = [*above[: len(indent) // 2], name]
+        found.append("/".join(above))
+    return found
+
+
+def test_the_map_names_the_folders_that_exist():
+    inner = {
+        p.parent.relative_to(ROOT).as_posix() for p in (ROOT / "vizlight").rglob("__init__.py")
+    }
+    named = set(folder_map())
+    assert {path for path in named if path.startswith("vizlight/")} == inner - {"vizlight"}
+    assert all((ROOT / path).is_dir() for path in named)
+
+
+def test_the_map_is_in_the_order_of_imports():
+    order = [TIER[p.split("/")[1]] for p in folder_map() if p.startswith("vizlight/")]
+    assert order == sorted(order)
+
+
+def test_model_and_geometry_load_no_pyvista():
+    folders = [ROOT / "vizlight" / part for part in ("model", "geometry")]
+    paths = [path.relative_to(ROOT) for folder in folders for path in folder.rglob("*.py")]
+    names = [".".join(path.with_suffix("").parts).removesuffix(".__init__") for path in paths]
+    heavy = "{'pyvista', 'vtk', 'vtkmodules'} & set(sys.modules)"
+    code = f"import sys, {', '.join(names)}; sys.exit(str({heavy} or ''))"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert run.stderr.strip() == ""
+
+
+def test_the_architecture_page_has_the_tiers():
+    text = text_of(PAGES / "architecture.rst")
+    rows = [
+        set(re.findall(r"``(\w+)``", row)) for row in re.findall(r"^   \* - (``.*)$", text, re.M)
+    ]
+    assert rows == TIERS
+
+
+def test_the_files_that_the_architecture_page_names_exist():
+    text = text_of(PAGES / "architecture.rst")
+    paths = re.findall(r"``((?:vizlight|tests|gallery)/[\w/.]*)``", text)
+    assert len(paths) > 20
+    assert not [p for p in paths if "NAME" not in p and not (ROOT / p).exists()]
+
+
+def test_every_alias_that_the_architecture_page_names_is_one():
+    from vizlight._aliases import ALIASES
+
+    found = re.findall(
+        r"``(vizlight[.\w]+)`` for\s+``(vizlight[.\w]+)``", text_of(PAGES / "architecture.rst")
+    )
+    assert len(found) >= 3
+    assert set(found) <= set(ALIASES.items())
+
+
+def test_the_filters_that_readme_and_guide_name_are_all():
+    """Names in lower case that the package gives are its filters and a few helpers."""
+    helpers = {"example_path", "load_example", "provenance", "report"}
+    filters = {name for name in vizlight.__all__ if name.islower()} - helpers
+    assert not [name for name in filters if f"`{name}" not in text_of(PAGES / "guide.rst")]
+    assert not [name for name in filters if name not in text_of(README)]

@@ -1,0 +1,7 @@
+"""``python -m vizlight.cli``."""
+
+import sys
+
+from vizlight.cli.main import main
+
+sys.exit(main())

@@ -1,0 +1,179 @@
+"""The commands, and their errors: one line on standard error and an exit code."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import App, CycloptsError, Parameter
+
+from vizlight import _check, _console
+from vizlight._version import __version__
+from vizlight.cli import arguments
+from vizlight.cli.arguments import Backend  # noqa: TC001 - cyclopts reads the annotations
+from vizlight.cli.light import light
+from vizlight.cli.output import BAD_INPUT, LACKING, OK, complain, draw, say
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+app = App(
+    name="vizlight",
+    help="Light that makes scientific data legible.",
+    version=__version__,
+    result_action="return_value",
+)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit code; errors are one line on standard error.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        Words after ``vizlight``. Default: those of the process.
+    """
+    try:
+        result = app(
+            None if arguments is None else list(arguments),
+            exit_on_error=False,
+            print_error=False,
+            help_on_error=False,
+        )
+    except CycloptsError as error:
+        return _fail(str(error).replace("Unused Tokens", "arguments that belong to no option"))
+    except (TypeError, ValueError, OSError) as error:
+        return _fail(error)
+    except KeyboardInterrupt:
+        return _fail("interrupted")
+    return result if isinstance(result, int) else OK
+
+
+def _fail(error: object) -> int:
+    text = " ".join(str(error).split())
+    # The library names its options as Python does.
+    text = re.sub(r"\b([a-z]+(?:_[a-z]+)*)=(?:True)?(?=[ ,;.)]|$)", _option, text)
+    complain(text)
+    return BAD_INPUT
+
+
+def _option(found: re.Match[str]) -> str:
+    return f"--{found[1].replace('_', '-')}"
+
+
+@app.command
+def demo(
+    *,
+    out: Path = Path("vizlight-demo"),
+    size: str = "1200x500",
+    backend: Backend | None = None,
+) -> int:
+    """Light a real flow: an isosurface of the rotating disk, lit as a surface and by its flow.
+
+    Writes flow.png and flow.vtp and prints a table: points, terms, time, and the error against
+    a float64 reference that shares no code with the engine.
+
+    Parameters
+    ----------
+    out
+        The folder to write to; made if it is missing.
+    size
+        Width and height of the picture in pixels.
+    backend
+        What draws: egl (the default) or osmesa.
+    """
+    from rich.table import Table
+
+    from vizlight import demo, files
+
+    pixels = arguments.pixels(size)
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise files.FileError(
+            _check.message("out", "a folder that can be made", f"'{out}' ({error.strerror})")
+        ) from error
+    lit, camera, rows, explained = demo.light_flow()
+    mesh = files.write_mesh(lit, out / "flow.vtp")
+    table = Table(title="Isosurface Temp = 600 of the rotating disk")
+    for heading in ("lit", "points", "terms", "time, ms", "largest error"):
+        table.add_column(heading, justify="left" if heading in ("lit", "terms") else "right")
+    for row in rows:
+        table.add_row(
+            row.light, f"{row.points}", row.terms, f"{row.milliseconds:.2f}", f"{row.error:.1e}"
+        )
+    console = _console.console()
+    console.print(table)
+    console.print("Error: float32 luminance against plain NumPy in float64. The flow's plan:")
+    console.print(explained, highlight=False)
+    console.print(f"mesh     {mesh}", highlight=False)
+    return draw(demo.panels(lit), out / "flow.png", camera=camera, size=pixels, backend=backend)
+
+
+app.command(light)
+
+
+@app.command
+def doctor() -> int:
+    """Say what is installed, what draws here, what is missing and how to get it."""
+    from rich.table import Table
+
+    from vizlight import doctor
+    from vizlight.pictures import render
+
+    table = Table("part", "found", title="vizlight doctor")
+    table.columns[1].overflow = "fold"
+    for part, found in doctor.findings():
+        table.add_row(part, found)
+    _console.console().print(table)
+    try:
+        render.choose_backend()
+    except render.BackendError as error:
+        complain(error)
+        return LACKING
+    return OK
+
+
+@app.command
+def study(
+    name: str | None = None,
+    /,
+    *,
+    quick: bool = False,
+    out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("vizlight-study"),
+) -> int:
+    """Measure speed against error; without a name list the studies.
+
+    Prints a table and a verdict, and writes NAME.csv and the log-log figure NAME.png.
+
+    Parameters
+    ----------
+    name
+        Of the study.
+    quick
+        Measure less: under 20 s on 2 cores.
+    out
+        The folder to write to; made if it is missing.
+    """
+    from vizlight import files, studies
+
+    if name is None:
+        studies.print_list({known: studies.load(known) for known in studies.names()})
+        return OK
+    chosen = studies.load(name)
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise files.FileError(
+            _check.message("out", "a folder that can be made", f"'{out}' ({error.strerror})")
+        ) from error
+    try:
+        result = studies.run(name, chosen, quick=quick, progress_bar=True)
+    except studies.LackingError as error:
+        complain(error)
+        return LACKING
+    studies.print_result(result)
+    say(f"table    {result.write_csv(out / f'{name}.csv')}")
+    say(f"figure   {result.draw(out / f'{name}.png')}")
+    return OK

@@ -1,0 +1,126 @@
+"""Cos-theta shadows at several hours of a day."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vizlight import _check
+from vizlight.filters.lighting import VALID
+from vizlight.filters.relief_shadow import ReliefOptions, relief_shadow
+from vizlight.geometry.relief import sun
+from vizlight.mesh import point_arrays, records
+from vizlight.scene import Light, Material, Scene
+from vizlight.shading.options import accepts
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+    from typing_extensions import Unpack
+
+    from vizlight._types import Array
+    from vizlight.filters.relief_shadow import ReliefKeywords
+    from vizlight.mesh.blocks import MeshT
+
+
+@accepts(ReliefOptions, without=("lit", "components"))
+def relief_day(
+    mesh: MeshT,
+    /,
+    *,
+    latitude: float | None = None,
+    day: float | None = None,
+    hours: ArrayLike | None = None,
+    directions: ArrayLike | None = None,
+    threads: int | None = None,
+    progress_bar: bool = False,
+    **options: Unpack[ReliefKeywords],
+) -> MeshT:
+    """Return a mesh with its cos-theta shadow at several hours of a day.
+
+    Parameters
+    ----------
+    mesh
+        As for :func:`relief_shadow`; x is east, y north.
+    latitude : float, optional
+        Latitude in radians, north positive.
+    day : float, optional
+        Day of the year, 1 for the first of January.
+    hours : float or array_like, shape (H,), optional
+        Hours of true solar time, 12 when the sun is highest. Default: each hour from 4 to 20.
+    directions : array_like, shape (H, 3), optional
+        Directions toward the sun, in place of latitude, day and hours.
+    **options
+        Fields of ReliefOptions.
+    threads, progress_bar
+        As for :func:`relief_shadow`.
+
+    Returns
+    -------
+    pyvista.DataSet
+        With the point array ``t`` of H components, 0 where the sun is below the horizon,
+        ``t_mean``, their mean, which is active, and ``t_provenance``: its options make ``t`` again
+        without its scene, ``relief_day(mesh, **p["options"])``.
+
+    Raises
+    ------
+    TypeError, ValueError
+        As :func:`relief_shadow` and :func:`vizlight.geometry.sun.directions`.
+    """
+    own = {"latitude": latitude, "day": day, "hours": hours, "directions": directions}
+    toward = _directions(latitude, day, hours, directions)
+    up = [way for way in toward if way[2] > 0]
+    if not up:
+        given = "hours" if directions is None else "directions"
+        raise ValueError(_check.message(given, "the sun above the horizon", "night"))
+    scene = Scene(lights=[Light(direction=way) for way in up], material=Material(specular=0.0))
+    found = relief_shadow(
+        mesh,
+        scene,
+        threads=threads,
+        progress_bar=progress_bar,
+        **options | {"components": True},
+    )
+    name = options.get("name", ReliefOptions.name)
+    mean = f"{name}_mean"
+    records.refuse_overwriting([(found, "")], name, [mean])
+    t, seen = np.zeros((mesh.n_points, len(toward))), 0
+    for hour, way in enumerate(toward):
+        if way[2] > 0:
+            t[:, hour] = found.point_data[f"{name}_{seen}"]
+            seen += 1
+    arrays: dict[str, NDArray[np.generic]] = {name: t, mean: t.mean(axis=1)}
+    if name + VALID in found.point_data:
+        arrays[name + VALID] = np.asarray(found.point_data[name + VALID])
+    record = records.provenance(found, name)
+    record["filter"] = "relief_day"
+    for other in ("lit", "components"):
+        del record["options"][other]
+    record["options"] |= records.plain(own)
+    records.attach(found, name, arrays, record)
+    point_arrays.activate(found, mean)
+    return found
+
+
+def _directions(
+    latitude: float | None, day: float | None, hours: ArrayLike | None, directions: ArrayLike | None
+) -> Array:
+    """Return the directions toward the sun, one row for each hour."""
+    if directions is None:
+        if latitude is None or day is None:
+            expected = "both, or directions="
+            raise ValueError(_check.message("latitude, day", expected, (latitude, day)))
+        name, value = "hours", np.arange(4.0, 21.0) if hours is None else hours
+        toward: Array = np.atleast_2d(sun.directions(latitude, day, value))
+    elif latitude is not None or day is not None or hours is not None:
+        expected = "directions alone, or latitude, day and hours"
+        raise ValueError(_check.message("directions", expected, "both"))
+    else:
+        name, value = "directions", directions
+        toward = np.atleast_2d(_check.vectors("directions", directions, n=3))
+    if toward.ndim != 2 or not len(toward):
+        raise ValueError(_check.message(name, "a list of one or more", _check.describe(value)))
+    if directions is not None:
+        for i, way in enumerate(toward):
+            _check.vector(f"directions[{i}]", way, direction=True)
+    return toward

@@ -1,0 +1,223 @@
+"""Cos-theta shadows as point scalars, on height fields and on closed surfaces."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vizlight import _check, _progress
+from vizlight.filters.illuminate import shallow_copy
+from vizlight.filters.lighting import DEFAULT_NAME, VALID, attach, refuse_overwriting
+from vizlight.geometry.relief import sun
+from vizlight.mesh import point_arrays, records
+from vizlight.mesh.casters import CasterKeywords, CasterOptions, caster
+from vizlight.scene import Light, Scene
+from vizlight.shading import engine
+from vizlight.shading.options import accepts
+from vizlight.verify.report import note_ratio
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+    from typing_extensions import Unpack
+
+    from vizlight._types import Array
+    from vizlight.mesh.blocks import MeshT
+    from vizlight.mesh.casters import Caster
+
+
+class ReliefKeywords(CasterKeywords, total=False):
+    """The fields of :class:`ReliefOptions` as keyword arguments."""
+
+    angular_diameter: float
+    samples: int
+    lit: bool
+    components: bool
+    name: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReliefOptions(CasterOptions):
+    """How cos-theta shadows are made.
+
+    Parameters
+    ----------
+    angular_diameter : float, default: 0.0
+        Angular diameter of the lights at infinity, in radians: the sun's 0.53 degrees are 0.00925.
+    samples : int, default: 16
+        Number of directions, equal in area, that stand for a light with an angular diameter.
+    lit : bool, default: False
+        Whether ``luminance`` is added, and ``rgb`` where the scene has a colour: the engine's
+        light with t in place of the cosine; a highlight keeps ``min(1, t / cos)``.
+    components : bool, default: False
+        Whether ``t_0``, ``t_1``, ..., one for each light, are added, and with ``lit`` the terms of
+        the engine.
+    name : str, default: "t"
+        Name of the result.
+    """
+
+    angular_diameter: float = 0.0
+    samples: int = 16
+    lit: bool = False
+    components: bool = False
+    name: str = "t"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        _check.set_fields(
+            self,
+            angular_diameter=_check.number(
+                "angular_diameter", self.angular_diameter, low=0.0, high=1.0
+            ),
+            samples=_check.integer("samples", self.samples, low=1),
+        )
+
+
+@accepts(ReliefOptions)
+def relief_shadow(
+    mesh: MeshT,
+    /,
+    scene: Scene,
+    *,
+    threads: int | None = None,
+    inplace: bool = False,
+    progress_bar: bool = False,
+    **options: Unpack[ReliefKeywords],
+) -> MeshT:
+    """Return a mesh with its cos-theta shadow: cosine, shadow and scattering in one number.
+
+    Parameters
+    ----------
+    mesh : pyvista.ImageData, RectilinearGrid, StructuredGrid or PolyData
+        A height field of one layer, its rows and columns straight and square to each other; or a
+        closed surface. Not changed, unless ``inplace``.
+    scene : Scene
+        Scene whose lights cast the shadows, at infinity or near, in the unit of the mesh.
+    **options
+        Fields of ReliefOptions.
+    threads : int, optional
+        Number of threads. Default: the processors that this process may use.
+    inplace, progress_bar
+        As for :func:`vizlight.illuminate`.
+
+    Returns
+    -------
+    pyvista.DataSet
+        With the point array ``t`` in [0, 1], the mean of all lights weighed by their intensity,
+        and ``t_provenance``. ``t_valid`` marks points without height or normal, where t is 0.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument does not fit; if the mesh is open, a grid has several layers or one row,
+        or a light is inside the solid.
+
+    Warns
+    -----
+    UserWarning
+        Once, with the count, if points have no height or no normal.
+
+    Notes
+    -----
+    ``t = d / r``, r the length inside the solid of the segment from ``p' = p - d n`` to the
+    light; 1 where r is less than d. A field of cells of size h errs by h^2 / d, in the mean
+    where shadows begin. A closed surface is followed by VTK's StaticCellLocator in float64.
+    Source: cos-theta, section 3, which prints ``t = r/d`` once; it is d/r.
+
+    Examples
+    --------
+    >>> import pyvista as pv, vizlight
+    >>> sun = vizlight.Scene(lights=vizlight.Light(direction=(0, 3, 4)))
+    >>> flat = pv.ImageData(dimensions=(5, 5, 1))
+    >>> flat["height"] = [0.0] * 25
+    >>> round(float(vizlight.relief_shadow(flat, sun)["t"][7]), 9)
+    0.8
+    """
+    asked = ReliefOptions(**options)
+    lights = _lights(scene)
+    shadow = caster(mesh, scene, asked, threads)
+    name = asked.name
+    each = [f"{name}_{i}" for i in range(len(lights) if asked.components else 0)]
+    refuse_overwriting([(mesh, "")], name, components=False, colored=False)
+    records.refuse_overwriting([(mesh, "")], name, each)
+    if asked.lit:
+        refuse_overwriting(
+            [(mesh, "")], DEFAULT_NAME, components=asked.components, colored=scene.colored
+        )
+    t = _ratios(shadow, lights, asked, progress_bar=progress_bar)
+    weight = np.array([light.intensity for light in lights])
+    record = records.of_filter(
+        "relief_shadow", scene, asked, precision="float64", points=len(t),
+        invalid=int(np.count_nonzero(~shadow.valid)), depth=shadow.depth,
+    )  # fmt: skip
+    shading = None
+    if asked.lit:
+        fixed = scene.replace(lights=lights)
+        shading = engine.shade(
+            shadow.points, None, fixed, normals=shadow.normals, shadow=t, threads=threads,
+            components=asked.components,
+        )  # fmt: skip
+
+    # Nothing is attached before all is computed: a failure leaves the mesh as it was.
+    out = mesh if inplace else shallow_copy(mesh)
+    if shading is not None:
+        light = records.of_light(shading, "relief_shadow", scene, asked)
+        attach(out, shading, DEFAULT_NAME, light)
+    arrays: dict[str, NDArray[np.generic]] = {own: t[:, i].copy() for i, own in enumerate(each)}
+    arrays[name] = t @ (weight / weight.sum())
+    missing = int(np.count_nonzero(~shadow.valid))
+    if missing:
+        arrays[name + VALID] = shadow.valid
+        _check.warn(
+            f"{missing} of {len(t)} points have no height or no normal and t = 0; "
+            f"the point array {name + VALID!r} marks them"
+        )
+    records.attach(out, name, arrays, record)
+    if asked.lit:
+        point_arrays.activate(out, DEFAULT_NAME)
+    return out
+
+
+def _ratios(
+    shadow: Caster, lights: list[Light], options: ReliefOptions, *, progress_bar: bool
+) -> Array:
+    """Return t of each point (rows) and light, and add it to a report."""
+    start = time.perf_counter()
+    t = np.empty((len(shadow.points), len(lights)))
+    discs = [_disc(light, options) for light in lights]
+    with _progress.progress("shadow", len(lights), show=progress_bar) as report:
+        for i, disc in enumerate(discs):
+            t[:, i] = sum(shadow.of(one) for one in disc) / len(disc)
+            report(i + 1)
+
+    def again(point: int, light: int) -> float:
+        return float(np.mean([shadow.again(point, one) for one in discs[light]]))
+
+    size = t.itemsize * len(t) * (1 + len(lights) * options.components)
+    effort = shadow.effort * max(map(len, discs))
+    note_ratio(t, shadow.valid, time.perf_counter() - start, size, again, effort)
+    return t
+
+
+def _lights(scene: Scene) -> list[Light]:
+    """Return the lights that give light, fixed where they are."""
+    _check.instance("scene", scene, Scene)
+    lights = [light.seen_from(scene.view) for light in scene.lights if light.intensity > 0]
+    if not lights:
+        raise ValueError(_check.message("scene", "a light of intensity above 0", "none"))
+    if scene.n != 3:
+        raise ValueError(_check.message("scene", "vectors of 3 components", f"{scene.n}"))
+    return lights
+
+
+def _disc(light: Light, options: ReliefOptions) -> list[Light]:
+    """Return lights of equal area each that stand for the disc of a light."""
+    diameter, samples = options.angular_diameter, options.samples
+    if light.direction is None or diameter == 0 or samples == 1:
+        return [light]
+    return [
+        Light(direction=way, intensity=light.intensity)
+        for way in sun.disc(light.direction, diameter, samples)
+    ]

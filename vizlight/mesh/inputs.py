@@ -1,0 +1,82 @@
+"""What the engine lights of a mesh, by the options of a filter."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from vizlight import _check
+from vizlight.mesh import polylines
+from vizlight.mesh.normals import normals_of, onlooker
+from vizlight.mesh.point_arrays import points_of, tangents_of
+from vizlight.shading.decide import not_a_line
+from vizlight.shading.inputs import ShadingInputs
+
+if TYPE_CHECKING:
+    import pyvista as pv
+
+    from vizlight._types import Array
+    from vizlight.scene import Scene
+    from vizlight.shading.options import LightOptions
+
+
+def inputs_of(mesh: pv.DataSet, path: str, scene: Scene, options: LightOptions) -> ShadingInputs:
+    """Return what is lit of one mesh; the errors of a block name the block by its path.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an array is missing or does not fit, or options do not go together.
+    """
+    try:
+        points = points_of(mesh, options.positions)
+        n = int(points.shape[1])
+        tangents = _tangents(mesh, n, options)
+        _check_options(tangents, n, options)
+        base = normals = None
+        if isinstance(options.conditioned, str):
+            base = tangents_of(
+                mesh,
+                options.conditioned,
+                n,
+                average_cells=options.average_cells,
+                argument="conditioned",
+            )
+        elif tangents is None or options.conditioned:
+            normals = normals_of(mesh, options.normals, n, onlooker(scene))
+            if options.flip_normals:
+                normals = -_check.floats("normals", normals)
+    except (TypeError, ValueError) as error:
+        if not path:
+            raise
+        raise type(error)(f"block {path}: {error}") from error
+    return ShadingInputs(points=points, tangents=tangents, normals=normals, base_tangents=base)
+
+
+def _tangents(mesh: pv.DataSet, n: int, options: LightOptions) -> Array | None:
+    """Return the tangents that are named, or those of a mesh of lines."""
+    if options.tangents is not None:
+        return tangents_of(mesh, options.tangents, n, average_cells=options.average_cells)
+    if n == 3 and polylines.has_lines_only(mesh):
+        return polylines.line_tangents(mesh)
+    return None
+
+
+def _check_options(tangents: Array | None, n: int, options: LightOptions) -> None:
+    """Check that the options fit a surface, or tangents."""
+    one_line = tangents is not None and n == 3 and tangents.shape[1:] == (3,)
+    if options.model == "cylinder" and not one_line:
+        components = "" if tangents is None else f"{n}-space, {tangents.shape[-1]} components"
+        raise ValueError(not_a_line(components or "a surface"))
+    if tangents is None:
+        if options.conditioned:
+            remedy = "a surface without tangents has its own shadow in any case"
+            raise ValueError(_check.message("conditioned", "tangents to condition", None, remedy))
+        return
+    if options.conditioned and not isinstance(options.conditioned, str):
+        return
+    for name in ("normals", "two_sided", "flip_normals"):
+        value = getattr(options, name)
+        if value is not None and value is not False:
+            remedy = "pass conditioned=True, or leave one of them out"
+            expected = f"no {name} beside tangents, which have no sides"
+            raise ValueError(_check.message(name, expected, "both", remedy))

@@ -1,0 +1,136 @@
+"""OpenGL libraries that VTK can draw with offscreen: which of them work here."""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import os
+import subprocess
+import sys
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, get_args
+
+from vizlight import _check
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+__all__ = ["Backend", "BackendError", "Probe", "choose_backend", "probe"]
+
+Backend = Literal["egl", "osmesa"]
+
+_VARIABLE = "VTK_DEFAULT_OPENGL_WINDOW"
+_WINDOWS: dict[str, str] = {"egl": "vtkEGLRenderWindow", "osmesa": "vtkOSOpenGLRenderWindow"}
+_INSTALL: dict[str, str] = {
+    "egl": "apt-get install -y libegl1 libgl1-mesa-dri",
+    "osmesa": "apt-get install -y libosmesa6",
+}
+
+# VTK ends the process if the library is missing, so the probe runs in a process of its own.
+_PROBE = """
+import vtkmodules.vtkRenderingOpenGL2
+from vtkmodules.vtkRenderingCore import vtkRenderWindow
+window = vtkRenderWindow()
+window.SetOffScreenRendering(1)
+window.SetSize(8, 8)
+window.Render()
+lines = [line.partition(":") for line in window.ReportCapabilities().splitlines()]
+driver = [value.strip() for name, _, value in lines if name == "OpenGL renderer string"]
+assert driver and driver[0], "no OpenGL driver"
+print(window.GetClassName(), driver[0], sep="\\t")
+"""
+
+
+class BackendError(RuntimeError):
+    """No OpenGL library can draw here; the message says how to install one."""
+
+
+@dataclass(frozen=True)
+class Probe:
+    """Result of probing a backend: whether it works, and the driver or the remedy."""
+
+    backend: str
+    works: bool
+    detail: str
+
+
+@functools.cache
+def probe(backend: Backend) -> Probe:
+    """Test in a separate process whether a backend can draw.
+
+    Parameters
+    ----------
+    backend : {"egl", "osmesa"}
+        Name of the backend.
+
+    Returns
+    -------
+    Probe
+
+    Raises
+    ------
+    ValueError
+        If the name is unknown.
+    """
+    if backend not in get_args(Backend):
+        raise ValueError(_check.message("backend", "'egl' or 'osmesa'", repr(backend)))
+    try:
+        run = subprocess.run(
+            [sys.executable, "-c", _PROBE],
+            env={**os.environ, _VARIABLE: _WINDOWS[backend]},
+            capture_output=True,
+            text=True,
+            timeout=60,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        return Probe(backend, works=False, detail="no answer within 60 s")
+    if run.returncode == 0:
+        return Probe(backend, works=True, detail=run.stdout.strip().replace("\t", ", "))
+    return Probe(backend, works=False, detail=f"not available (try: {_INSTALL[backend]})")
+
+
+def choose_backend(backend: Backend | None = None) -> Backend | None:
+    """Return the backend to draw with: the requested one, otherwise EGL, otherwise OSMesa.
+
+    Parameters
+    ----------
+    backend : {"egl", "osmesa"}, optional
+        Requested backend.
+
+    Returns
+    -------
+    {"egl", "osmesa"} or None
+        None leaves the choice to VTK: on a platform other than Linux, or if the environment
+        variable ``VTK_DEFAULT_OPENGL_WINDOW`` names a window class.
+
+    Raises
+    ------
+    BackendError
+        If no backend can draw.
+    """
+    if backend is None and (not sys.platform.startswith("linux") or os.environ.get(_VARIABLE)):
+        return None
+    candidates: tuple[Backend, ...] = ("egl", "osmesa") if backend is None else (backend,)
+    for name in candidates:
+        if probe(name).works:
+            return name
+    remedy = " or ".join(f"{_INSTALL[name]} ({name.upper()})" for name in candidates)
+    raise BackendError(f"no picture: no OpenGL library can draw here; as root: {remedy}")
+
+
+@contextlib.contextmanager
+def window_class(backend: Backend | None) -> Iterator[None]:
+    """Make VTK create windows of a backend within this context only."""
+    if backend is None:
+        yield
+        return
+    before = os.environ.get(_VARIABLE)
+    os.environ[_VARIABLE] = _WINDOWS[backend]
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[_VARIABLE]
+        else:
+            os.environ[_VARIABLE] = before

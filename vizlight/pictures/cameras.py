@@ -1,0 +1,162 @@
+"""Cameras that show a whole mesh, and a light direction relative to a camera."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+import pyvista as pv
+
+from vizlight import _check
+from vizlight.mesh.blocks import leaves
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from numpy.typing import ArrayLike
+
+    from vizlight._types import Array
+
+__all__ = ["camera_on", "over_shoulder"]
+
+Mesh: TypeAlias = pv.DataSet | pv.MultiBlock
+#: Opening angle of a perspective camera, in degrees, which is VTK's default.
+VIEW_ANGLE = 30.0
+#: Factor by which the picture is larger than the mesh in it.
+MARGIN = 1.05
+
+
+def camera_on(
+    bounds: Mesh | ArrayLike,
+    direction: Sequence[float] = (1.0, 1.0, 1.0),
+    *,
+    up: Sequence[float] | None = None,
+    parallel: bool = False,
+    zoom: float = 1.0,
+    aspect: float = 1.0,
+) -> pv.Camera:
+    """Return a camera that shows a whole mesh or bounding box; OpenGL is not needed.
+
+    Parameters
+    ----------
+    bounds : (xmin, xmax, ymin, ymax, zmin, zmax), or mesh
+        Box or mesh to show, in the unit of the mesh. A box stays in the picture however it is
+        rotated about its centre. A mesh fills the picture: its finite points, projected along
+        the view, touch the margins.
+    direction : vector of 3 components
+        Direction from the centre toward the eye.
+    up : vector of 3 components, optional
+        Direction that points up in the picture. Default: z, or y for a view along z.
+    parallel : bool, default: False
+        Whether the projection is parallel instead of perspective.
+    zoom : float, default: 1.0
+        Magnification, above 0; 2 shows half the width.
+    aspect : float, default: 1.0
+        Width over height of the picture that a mesh fills.
+
+    Returns
+    -------
+    pyvista.Camera
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a value does not fit.
+    """
+    aspect = _check.number("aspect", aspect, low=1e-3)
+    toward = np.array(_check.vector("direction", direction, direction=True))
+    if toward.size != 3:
+        raise ValueError(_check.message("direction", "3 components", toward.size))
+    toward /= np.linalg.norm(toward)
+    if up is None:
+        up = (0.0, 1.0, 0.0) if abs(toward[2]) > 0.999 else (0.0, 0.0, 1.0)
+    if np.linalg.norm(np.cross(_check.vector("up", up, direction=True), toward)) < 1e-6:
+        raise ValueError(_check.message("up", "a direction across the view", tuple(up)))
+    zoom = _check.number("zoom", zoom, low=1e-6)
+    box = _box(bounds)
+    centre = box.mean(axis=1)
+    radius = 0.5 * float(np.linalg.norm(box[:, 1] - box[:, 0])) or 1.0
+    distance, height = radius / math.sin(math.radians(VIEW_ANGLE / 2)), radius
+    if isinstance(bounds, Mesh):
+        shift, distance, height = _fit(bounds, centre, toward, np.asarray(up), aspect)
+        centre = centre + shift
+    camera = pv.Camera()  # type: ignore[no-untyped-call]
+    camera.view_angle = VIEW_ANGLE
+    distance /= zoom
+    camera.focal_point = tuple(centre)
+    camera.position = tuple(centre + distance * toward)
+    camera.up = tuple(up)
+    camera.parallel_projection = parallel
+    camera.parallel_scale = height / zoom
+    camera.clipping_range = (max(distance - 2 * radius, distance * 1e-3), distance + 2 * radius)
+    return camera
+
+
+def _box(bounds: Mesh | ArrayLike) -> Array:
+    """Return the bounds of a mesh, or validated bounds, as an array of shape (3, 2)."""
+    given = common_bounds("bounds", [bounds]) if isinstance(bounds, Mesh) else bounds
+    box = _check.floats("bounds", given).astype(np.float64)
+    if box.shape != (6,) or not np.all(np.isfinite(box)):
+        expected = "a mesh or six finite numbers"
+        raise ValueError(_check.message("bounds", expected, _check.describe(bounds)))
+    return box.reshape(3, 2)
+
+
+def _fit(
+    mesh: Mesh, centre: Array, toward: Array, up: Array, aspect: float
+) -> tuple[Array, float, float]:
+    """Return the shift of the centre, the distance and the height at which a mesh fills a view."""
+    right = np.cross(up, toward)
+    axes = np.stack([v / np.linalg.norm(v) for v in (right, np.cross(toward, right), toward)])
+    parts = [np.asarray(leaf.points, dtype=np.float64) for leaf in leaves(mesh) if leaf.n_points]
+    points = np.concatenate(parts)
+    points = (points[np.all(np.isfinite(points), axis=1)] - centre) @ axes.T
+    if not len(points):
+        raise ValueError(_check.message("bounds", "a mesh with finite points", "none"))
+    middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    middle[2] = 0
+    across = np.maximum(np.abs(points[:, 0] - middle[0]) / aspect, np.abs(points[:, 1] - middle[1]))
+    height = MARGIN * float(across.max())
+    depth = float(np.ptp(points[:, 2]))
+    slope = math.tan(math.radians(VIEW_ANGLE / 2))
+    distance = float(np.max(MARGIN * across / slope + points[:, 2]))
+    # A single point, or a flat mesh that is seen edge on, has no extent in the picture.
+    size = 0.05 * depth or 1.0
+    return middle @ axes, max(distance, float(points[:, 2].max()) + size), max(height, size)
+
+
+def common_bounds(name: str, meshes: Iterable[Mesh]) -> list[float]:
+    """Return the bounds of several meshes together.
+
+    Raises
+    ------
+    ValueError
+        If none of the meshes has points; ``name`` is the argument that the message names.
+    """
+    parts = [part for mesh in meshes for part in leaves(mesh)]
+    boxes = np.array([part.bounds for part in parts if part.n_points])
+    if not boxes.size:
+        raise ValueError(_check.message(name, "a mesh with points", "empty meshes"))
+    low, high = boxes[:, ::2].min(axis=0), boxes[:, 1::2].max(axis=0)
+    return [float(x) for pair in zip(low, high, strict=True) for x in pair]
+
+
+def over_shoulder(camera: pv.Camera) -> tuple[float, float, float]:
+    """Return the direction toward a distant light above and to the left of the eye.
+
+    Parameters
+    ----------
+    camera : pyvista.Camera or vtkCamera
+        Camera of the eye.
+
+    Returns
+    -------
+    (float, float, float)
+        Direction, not of unit length.
+    """
+    back = -np.array(camera.GetDirectionOfProjection())
+    right = np.cross(np.array(camera.GetViewUp()), back)
+    right /= np.linalg.norm(right)
+    x, y, z = back - 0.6 * right + 0.6 * np.cross(back, right)
+    return float(x), float(y), float(z)

@@ -1,0 +1,194 @@
+"""The arrays of one mesh that the engine lights, checked against each other."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+import numpy as np
+
+from vizlight import _check
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from vizlight._types import Vector
+
+
+class ArraySource(Protocol):
+    """Anything that gives rows by slice: an array, or points that are made on demand."""
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape; the first axis is that of the points."""
+
+    @property
+    def dtype(self) -> np.dtype[np.generic]:
+        """The type of the numbers."""
+
+    def __getitem__(self, rows: slice, /) -> NDArray[np.generic]:
+        """Return some rows."""
+
+
+class Layout(NamedTuple):
+    """What a plan needs to know of the inputs.
+
+    Attributes
+    ----------
+    n : int
+        Dimension of the space.
+    k : int or None
+        Number of tangents per point; None for a surface that is given by its normals.
+    normals : bool
+        Whether there are normals.
+    base : int
+        Number of base tangents per point, 0 for none.
+    shadowed : bool
+        Whether t of a cos-theta shadow is given.
+    fur : float
+        Density of the fur that light passes.
+    """
+
+    n: int = 3
+    k: int | None = None
+    normals: bool = False
+    base: int = 0
+    shadowed: bool = False
+    fur: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShadingInputs:
+    """The rows that are lit; normals, base tangents and perhaps tangents serve ``repeat`` points.
+
+    Parameters
+    ----------
+    points : ArraySource, shape (N, n)
+        Positions, less ``origin`` where one is given.
+    tangents : ArraySource, shape (N or M, k n), optional
+        Tangents, row after row; N = M repeat.
+    normals : ArraySource, shape (M, n), optional
+        Outward normals.
+    base_tangents : ArraySource, shape (M, j n), optional
+        Tangents of the manifold in which those of ``tangents`` lie.
+    fur_height : ArraySource, shape (N,), optional
+        Height of the fur above each point.
+    fur : float, default: 0.0
+        Density of that fur.
+    shadow : ArraySource, shape (N, L), optional
+        t of the cos-theta shadow of each light.
+    repeat : int, default: 1
+        Number of points, one after the other, that share a normal.
+    block : int, optional
+        Number of rows in a block that suits an ``ArraySource`` which makes its rows.
+    origin : vector of n components, optional
+        What was subtracted from the points, where differences would lose digits.
+    generated : bool, default: False
+        Whether the points exist only once they are lit.
+    """
+
+    points: ArraySource
+    tangents: ArraySource | None = None
+    normals: ArraySource | None = None
+    base_tangents: ArraySource | None = None
+    fur_height: ArraySource | None = None
+    fur: float = 0.0
+    shadow: ArraySource | None = None
+    repeat: int = 1
+    block: int | None = None
+    origin: Vector | None = None
+    generated: bool = False
+
+    @property
+    def count(self) -> int:
+        """Number of points."""
+        return int(self.points.shape[0])
+
+    @property
+    def rows(self) -> int:
+        """Number of rows of normals."""
+        return self.count // self.repeat
+
+    @property
+    def layout(self) -> Layout:
+        """What a plan needs to know."""
+        n = int(self.points.shape[1])
+        k = None if self.tangents is None else int(np.prod(self.tangents.shape[1:])) // n
+        base = 0 if self.base_tangents is None else int(np.prod(self.base_tangents.shape[1:])) // n
+        return Layout(n, k, self.normals is not None, base, self.shadow is not None, self.fur)
+
+    @property
+    def narrow(self) -> bool:
+        """Whether the vectors have no more digits than float32."""
+        given = [rows.dtype for rows in (self.tangents, self.normals) if rows is not None]
+        return bool(given) and all(kind in (np.float16, np.float32) for kind in given)
+
+    def checked(self, lights: int) -> ShadingInputs:
+        """Return the inputs after a check of all shapes, for a number of lights.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If shapes or types do not fit.
+        """
+        shape = tuple(self.points.shape)
+        if len(shape) != 2 or shape[1] < 2:
+            got = f"shape {shape}"
+            raise ValueError(_check.message("points", "shape (N, n), n of 2 or more", got))
+        count, n = shape
+        rows, rest = divmod(count, _check.integer("repeat", self.repeat, low=1))
+        if rest:
+            raise ValueError(_check.message("repeat", f"a divisor of {count} points", self.repeat))
+        for name, given, counts in (
+            ("tangents", self.tangents, {count, rows}),
+            ("base_tangents", self.base_tangents, {rows}),
+        ):
+            if given is not None:
+                _check_tangents(name, tuple(given.shape), counts, n)
+        _check.number("fur", self.fur, low=0.0, high=1.0)
+        if (self.fur_height is None) == bool(self.fur):
+            raise ValueError(
+                _check.message("fur_height", "fur_height and fur= together", "one of them")
+            )
+        for name, given, expected in (
+            ("normals", self.normals, (rows, n)),
+            ("fur_height", self.fur_height, (count,)),
+        ):
+            if given is not None and tuple(given.shape) != expected:
+                got = f"shape {tuple(given.shape)}"
+                raise ValueError(_check.message(name, f"shape {expected}", got))
+        if self.shadow is not None:
+            got = f"shape {tuple(self.shadow.shape)}" if self.normals is not None else "no normals"
+            if got != f"shape {(count, lights)}":
+                expected_shadow = f"shape ({count}, {lights}), normals"
+                raise ValueError(_check.message("shadow", expected_shadow, got))
+        return self
+
+
+def array_source(name: str, value: ArrayLike | ArraySource) -> ArraySource:
+    """Return rows to slice: an array is validated, anything else that slices stays as it is.
+
+    Raises
+    ------
+    TypeError
+        If an array does not hold real numbers.
+    """
+    if hasattr(value, "dtype") and not isinstance(value, np.ndarray):
+        source: ArraySource = value  # type: ignore[assignment]
+        return source
+    array: NDArray[np.generic] = np.asarray(value)
+    if array.dtype.kind not in "iubf":
+        raise TypeError(_check.message(name, "real numbers", _check.describe(array)))
+    return array
+
+
+def _check_tangents(name: str, shape: tuple[int, ...], counts: set[int], n: int) -> None:
+    k = 0
+    if len(shape) == 3 and shape[0] in counts and shape[2] == n:
+        k = shape[1]
+    elif len(shape) == 2 and shape[0] in counts and shape[1] % n == 0:
+        k = shape[1] // n
+    if not 0 < k < n:
+        count = " or ".join(str(number) for number in sorted(counts))
+        expected = f"shape ({count}, k, {n}) or ({count}, {n} k) with k < {n}"
+        raise ValueError(_check.message(name, expected, f"shape {shape}"))

@@ -1,0 +1,208 @@
+"""Results of a study: run it, and present its rows as a table, a CSV file and a figure."""
+
+from __future__ import annotations
+
+import csv
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from vizlight import _console, _progress
+from vizlight.studies._framework import PIXEL, Curve
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from matplotlib.axes import Axes
+
+    from vizlight.studies._framework import Panel, Row, Study
+
+#: Colours of Okabe and Ito, which colour-blind readers can distinguish; markers and line styles.
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+MARKS, STYLES = "osD^vP*X<>", ("-", "--", ":", "-.")
+GREY = "#888888"
+
+
+@dataclass(frozen=True)
+class Result:
+    """Rows and verdict of a study that was run."""
+
+    name: str
+    study: Study
+    rows: list[Row] = field(repr=False)
+    verdict: str
+
+    def table(self) -> tuple[list[str], list[list[float | str]]]:
+        """Return headings and lines: method, parameter, error, cost, and the further columns."""
+        study = self.study
+        more = list(dict.fromkeys(key for row in self.rows for key in row.more))
+        headings = ["method", study.parameter, study.error, study.cost, *more]
+        lines = [[*row[:4], *(row.more.get(key, "") for key in more)] for row in self.rows]
+        return headings, lines
+
+    def write_csv(self, path: Path, /) -> Path:
+        """Write the table with all digits to a CSV file; no partial file is left."""
+        from vizlight import files
+
+        headings, lines = self.table()
+
+        def write(place: str) -> None:
+            with open(place, "w", newline="", encoding="utf-8") as file:  # noqa: PTH123
+                csv.writer(file).writerows([headings, *lines])
+
+        return files.replace_file(path, write)
+
+    def draw(self, path: Path, /) -> Path:
+        """Draw the panels of the study with logarithmic axes to a PNG file."""
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+
+        from vizlight import files
+
+        panels = (self.study, *self.study.beside)
+        figure = Figure(figsize=(4 + 4 * len(panels), 6), dpi=120, layout="constrained")
+        FigureCanvasAgg(figure)
+        figure.suptitle(self.study.approximates, fontsize=11)
+        for panel, axes in zip(
+            panels, figure.subplots(1, len(panels), squeeze=False)[0], strict=True
+        ):
+            self._draw_panel(panel, axes)
+        return files.replace_file(path, lambda place: figure.savefig(place, format="png"))
+
+    def _draw_panel(self, panel: Panel, axes: Axes) -> None:
+        curves: dict[Curve, list[Row]] = {}
+        for row in self.rows:
+            if curve := panel.curve(row):
+                curves.setdefault(curve, []).append(row)
+        _draw_curves(panel, curves, axes)
+        x, y = panel.axes
+        if y == "error" and "luminance" in self.study.error:
+            axes.axhline(PIXEL, color=GREY, linestyle="--", label="1/255")
+        axes.set(
+            xscale="log", yscale="log", xlabel=panel.x or getattr(self.study, x),
+            ylabel=getattr(self.study, y),
+        )  # fmt: skip
+        if panel.diagonal:
+            axes.axline((1, 1), (10, 10), color=GREY, linestyle="-", label=panel.diagonal)
+        _label_axes(axes)
+
+
+def _draw_curves(panel: Panel, curves: Mapping[Curve, Sequence[Row]], axes: Axes) -> None:
+    """Draw the curves of a panel; a method without error is a vertical line at its cost."""
+    names, kinds = (list(dict.fromkeys(curve[i] for curve in curves)) for i in (0, 1))
+    exact: dict[float, list[str]] = {}
+    for i, (curve, rows) in enumerate(curves.items()):
+        label = ", ".join(filter(None, curve))
+        points = _points(panel, rows)
+        if not points:
+            if panel.axes == ("cost", "error") and rows[0].error == 0 < rows[0].cost:
+                exact.setdefault(rows[0].cost, []).append(label)
+            continue
+        # The line style changes with each repetition of the colours, which are few.
+        repetition, colour = divmod(names.index(curve.name), len(COLOURS))
+        style = STYLES[(kinds.index(curve.kind) + repetition) % len(STYLES)]
+        axes.plot(
+            *zip(*points, strict=True), marker=MARKS[i % len(MARKS)], label=label,
+            color=COLOURS[colour], markersize=5, linestyle=style if panel.joined else "",
+        )  # fmt: skip
+    for cost, labels in exact.items():
+        axes.axvline(cost, color=GREY, linestyle=":", label=f"no error: {', '.join(labels)}")
+
+
+def _points(panel: Panel, rows: Sequence[Row]) -> list[tuple[float, float]]:
+    """Return the sorted points of a curve that logarithmic axes can show."""
+    pairs = [tuple(getattr(row, axis) for axis in panel.axes) for row in rows]
+    return sorted(
+        (x, y) for x, y in pairs
+        if all(isinstance(v, float | int) and 0 < v < math.inf for v in (x, y))
+    )  # fmt: skip
+
+
+def _label_axes(axes: Axes) -> None:
+    """Add tick labels, a grid and a legend below the panel."""
+    from matplotlib.ticker import LogFormatter
+
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter(LogFormatter())
+        # An axis within one decade has too few powers of 10 to be read without minor labels.
+        axis.set_minor_formatter(LogFormatter(minor_thresholds=(1.1, 0.5)))
+    axes.grid(visible=True, which="major", color="#dddddd")
+    if handles := axes.get_legend_handles_labels()[0]:
+        columns = 1 + (len(handles) > 4) + (len(handles) > 12)
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), fontsize=7, ncols=columns)
+
+
+def run(name: str, study: Study, /, *, quick: bool = False, progress_bar: bool = False) -> Result:
+    """Run a study.
+
+    Parameters
+    ----------
+    name : str
+        Name of the study, shown with the progress bar.
+    study : Study
+        Study to run.
+    quick : bool, default: False
+        Whether to measure less, within 20 s on 2 cores.
+    progress_bar : bool, default: False
+        Show progress on standard error.
+
+    Returns
+    -------
+    Result
+    """
+    steps = study.steps(quick)
+    rows: list[Row] = []
+    with _progress.progress(name, len(steps), show=progress_bar) as report:
+        for done, step in enumerate(steps):
+            rows += step()
+            report(done + 1)
+    return Result(name, study, rows, study.verdict(rows))
+
+
+def number(value: float | str) -> str:
+    """Return a table cell: a number with four digits, or a string as it is."""
+    if isinstance(value, str):
+        return value
+    return "" if math.isnan(value) else f"{value:.4g}"
+
+
+def print_result(result: Result) -> None:
+    """Print the table, the subject, the reference and the verdict of a study.
+
+    Parameters
+    ----------
+    result : Result
+        Result returned by :func:`run`.
+    """
+    from rich.table import Table
+
+    study, console = result.study, _console.console()
+    headings, lines = result.table()
+    table = Table(title=f"vizlight study {result.name}")
+    for i, heading in enumerate(headings):
+        strings = all(isinstance(line[i], str) for line in lines)
+        table.add_column(heading, justify="left" if strings else "right", overflow="fold")
+    for line in lines:
+        table.add_row(*map(number, line))
+    console.print(table)
+    console.print(f"approximated: {study.approximates}", highlight=False)
+    console.print(f"reference: {study.reference}", highlight=False)
+    console.print(f"verdict: {result.verdict}", style="bold", highlight=False)
+
+
+def print_list(studies: Mapping[str, Study]) -> None:
+    """Print the list of the studies.
+
+    Parameters
+    ----------
+    studies : dict of str to Study
+        Studies by name.
+    """
+    from rich.table import Table
+
+    table = Table("study", "approximated quantity", "reference", "parameter")
+    table.title = "vizlight study"
+    for name, study in studies.items():
+        table.add_row(name, study.approximates, study.reference, study.parameter)
+    _console.console().print(table)
