@@ -74,6 +74,36 @@ def line_light(wi, wo, tangent, shininess):
     return digits.line_light(*(unit(exact(v)) for v in (wi, wo, tangent)), exact(shininess))
 
 
+def quadrature(wi, wo, tangent, shininess):
+    """Return both terms of a thin cylinder by their integrals over normals, in 50 digits."""
+    wi, wo, t = (unit(exact(v)) for v in (wi, wo, tangent))
+    e1 = unit([x - dot(wo, t) * y for x, y in zip(wo, t, strict=True)])
+    e2 = [
+        t[1] * e1[2] - t[2] * e1[1],
+        t[2] * e1[0] - t[0] * e1[2],
+        t[0] * e1[1] - t[1] * e1[0],
+    ]
+    half = unit([x + y for x, y in zip(wi, wo, strict=True)])
+    lx, ly, hx, hy = dot(wi, e1), dot(wi, e2), dot(half, e1), dot(half, e2)
+    # A normal at angle x faces the light within a quarter turn of it, and the eye likewise.
+    at, s, peak = mp.atan2(ly, lx), exact(shininess), mp.atan2(hy, hx)
+    low, high = max(-mp.pi / 2, at - mp.pi / 2), min(mp.pi / 2, at + mp.pi / 2)
+    if low >= high or not (lx or ly):
+        return mp.mpf(0), mp.mpf(0)
+
+    def lambert(x):
+        return (lx * mp.cos(x) + ly * mp.sin(x)) * mp.cos(x) / 2
+
+    def blinn(x):
+        return max(hx * mp.cos(x) + hy * mp.sin(x), mp.mpf(0)) ** s * mp.cos(x) / 2
+
+    # Cut at the highlight's place and width, which the quadrature must not miss.
+    width = 1 / mp.sqrt(1 + s)
+    inner = [peak + j * width for j in (-8, -4, -2, -1, 0, 1, 2, 4, 8)]
+    cuts = [low, *(x for x in inner if low < x < high), high]
+    return mp.quad(lambert, [low, high]), mp.quad(blinn, cuts)
+
+
 def toward(owner, point):
     """Return direction and distance to a light or an eye; None at infinity."""
     return digits.toward(owner, point)

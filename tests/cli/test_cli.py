@@ -9,9 +9,8 @@ import pytest
 import pyvista as pv
 
 import vizlight
-from vizlight import cli, render
+from vizlight import Scene, cli, render
 from vizlight.pictures import backends
-from vizlight.scene import Scene
 
 
 @pytest.fixture

@@ -10,6 +10,7 @@ import pytest
 
 import vizlight
 from vizlight.filters.fur import FurKeywords, FurOptions
+from vizlight.filters.isoluminance import ContourKeywords, ContourOptions
 from vizlight.filters.project import ProjectKeywords, ProjectOptions
 from vizlight.filters.relief_shadow import ReliefKeywords, ReliefOptions
 from vizlight.filters.streamlines import StreamlineKeywords, StreamlineOptions
@@ -27,6 +28,7 @@ PAIRS = [
     (LightOptions, LightKeywords),
     (StreamlineOptions, StreamlineKeywords),
     (ProjectOptions, ProjectKeywords),
+    (ContourOptions, ContourKeywords),
     (FurOptions, FurKeywords),
     (ReliefOptions, ReliefKeywords),
 ]
@@ -57,6 +59,7 @@ def test_every_option_is_described_with_its_default(fields):
         ("project", ProjectOptions),
         ("manifold", ProjectOptions),
         ("fur", FurOptions),
+        ("isoluminance", ContourOptions),
         ("relief_shadow", ReliefOptions),
     ],
 )

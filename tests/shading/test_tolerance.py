@@ -200,3 +200,19 @@ def test_filter_and_provenance():
 def test_bad_tolerances(options, error, words):
     with pytest.raises(error, match=words):
         lines_of(Scene(lights=Light(direction=(1, 0, 1)), view=PARALLEL), **options)
+
+
+def test_no_bound_holds_where_light_and_eye_are_opposite(random):
+    """Rounding decides where the half vector points; the diffuse term is chosen without it."""
+    points, lines = random.standard_normal((2, 3000, 3))
+    scene = Scene(lights=Light(direction=(0, 0, -1)), view=PARALLEL)
+    exact = engine.shade(points, lines, scene, model="blinn")
+    made = engine.shade(points, lines, scene, model="blinn", tolerance=0.05)
+    assert exact.plan.exponent == pytest.approx(4.7635, abs=1e-4)
+    assert made.plan.exponent == 5
+    assert made.plan.dtype == np.float64
+    assert made.plan.choice.bound == np.inf
+    assert np.abs(made.luminance - exact.luminance).max() < 0.05
+    headlight = lines_of(Scene(lights=Light.headlight(), view=NEAR), model="blinn", tolerance=0.05)
+    assert headlight.dtype == np.float32
+    assert headlight.choice.bound < 0.05

@@ -150,7 +150,7 @@ def study(
     Parameters
     ----------
     name
-        Of the study.
+        Name of the study.
     quick
         Measure less: under 20 s on 2 cores.
     out

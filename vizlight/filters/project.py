@@ -88,8 +88,7 @@ class ProjectOptions(LightOptions):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.light not in get_args(LightWhen):
-            raise ValueError(_check.message("light", "'before' or 'after'", repr(self.light)))
+        _check.choice("light", self.light, get_args(LightWhen))
         point_arrays.refuse_unnamed("positions", self.positions or 0)
         vectors: object = () if self.vectors is None else self.vectors
         vectors = (vectors,) if isinstance(vectors, str) else vectors

@@ -193,7 +193,7 @@ def _ratios(
             report(i + 1)
 
     def again(point: int, light: int) -> float:
-        return float(np.mean([shadow.again(point, one) for one in discs[light]]))
+        return float(np.mean([shadow.reference(point, one) for one in discs[light]]))
 
     size = t.itemsize * len(t) * (1 + len(lights) * options.components)
     effort = shadow.effort * max(map(len, discs))

@@ -122,7 +122,7 @@ def _fit(
     slope = math.tan(math.radians(VIEW_ANGLE / 2))
     distance = float(np.max(MARGIN * across / slope + points[:, 2]))
     # A single point, or a flat mesh that is seen edge on, has no extent in the picture.
-    size = 0.05 * depth or 1.0
+    size = 0.05 * depth or (0.0 if height else 1.0)
     return middle @ axes, max(distance, float(points[:, 2].max()) + size), max(height, size)
 
 

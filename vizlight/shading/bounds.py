@@ -50,13 +50,11 @@ def rounding(plan: Plan) -> float:
         if plan.options.terminator:
             factors += 6 / plan.options.terminator
         for light, highlight in zip(scene.lights, plan.highlights, strict=True):
-            share = 1.0
-            if highlight.model == "blinn" and highlight.half is None:
-                apart = angle(light, scene.view)
-                if apart is None or apart > 3:
-                    return math.inf
-                share = min(2 * math.cos(apart / 2), 1.0)
-            term = specular_bound(highlight.shininess, eps / share) + factors * eps
+            own = highlight.model == "blinn" and highlight.half is None
+            if own and angle(light, scene.view) != 0:
+                # |wi + wo| may be as small as its rounding, except for a headlight.
+                return math.inf
+            term = specular_bound(highlight.shininess, eps) + factors * eps
             total += plan.factors[1] * term * material.specular * light.intensity
     return total
 

@@ -111,12 +111,9 @@ class ShadingOptions:
     precision: Precision | None = None
 
     def __post_init__(self) -> None:
-        if self.model not in get_args(Model):
-            expected = "'phong', 'blinn' or 'cylinder'"
-            raise ValueError(_check.message("model", expected, _check.describe(self.model)))
-        if self.precision not in (None, *get_args(Precision)):
-            got = _check.describe(self.precision)
-            raise ValueError(_check.message("precision", "'float32' or 'float64'", got))
+        _check.choice("model", self.model, get_args(Model))
+        if self.precision is not None:
+            _check.choice("precision", self.precision, get_args(Precision))
         conditioned: object = self.conditioned
         if conditioned is not None and not isinstance(conditioned, str | bool | np.bool_):
             expected = "True, False or the name of a point array"
