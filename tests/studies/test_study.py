@@ -169,13 +169,3 @@ def test_bad_command_lines(tmp_path, capfd):
     (tmp_path / "file").touch()
     assert cli.main(["study", "brightness", "-o", str(tmp_path / "file")]) == 2
     assert "out: expected a folder" in capfd.readouterr().err
-
-
-def test_a_study_that_lacks_something(capfd, tmp_path, monkeypatch, toy):
-    def missing(_):
-        raise studies.LackingError("embreex is missing; pip install 'vizlight[rays]'")
-
-    monkeypatch.setattr(studies, "load", lambda _: toy.__class__(**{**vars(toy), "steps": missing}))
-    assert cli.main(["study", "engine", "-o", str(tmp_path)]) == 1
-    assert capfd.readouterr().err == "vizlight: embreex is missing; pip install 'vizlight[rays]'\n"
-    assert not list(tmp_path.iterdir())
