@@ -5,6 +5,7 @@ They raise TypeError for a value of the wrong type, ValueError for a wrong shape
 
 from __future__ import annotations
 
+import functools
 import math
 import numbers
 import sys
@@ -14,20 +15,35 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
+    from typing import ParamSpec, TypeVar
 
     from vizlight._types import Array, Color, Indices, Vector
+
+    P = ParamSpec("P")
+    R = TypeVar("R")
 
 #: Largest intensity, coefficient or power: the product of three of them fits float32.
 LARGEST = 1e9
 
 
-def warn(text: str) -> None:
+def warn(text: str, category: type[Warning] = UserWarning) -> None:
     """Issue a warning that points at the caller's line outside this package."""
     level, frame = 2, sys._getframe(1)
     while frame.f_back and frame.f_globals.get("__name__", "").partition(".")[0] == "vizlight":
         level, frame = level + 1, frame.f_back
-    warnings.warn(text, stacklevel=level)
+    warnings.warn(text, category, stacklevel=level)
+
+
+def renamed(function: Callable[P, R], old: str) -> Callable[P, R]:
+    """Return a function under its old name, which warns that it has a new one."""
+
+    @functools.wraps(function)
+    def method(*args: P.args, **kwargs: P.kwargs) -> R:
+        warn(f"{old} is now called {function.__name__}", DeprecationWarning)
+        return function(*args, **kwargs)
+
+    return method
 
 
 def message(name: str, expected: str, got: object, remedy: str = "") -> str:

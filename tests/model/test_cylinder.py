@@ -59,7 +59,7 @@ def write_quadrature():
     for dtype in (np.float32, np.float64):
         table[np.dtype(dtype).name] = rows = []
         for case in hard_cases(np.random.default_rng(1994), dtype):
-            light = [oracles.line_light(*case, s) for s in SHININESS]
+            light = [oracles.quadrature(*case, s) for s in SHININESS]
             values = [light[0][0], *(specular for _, specular in light)]
             rows.append([[v.tolist() for v in case], [mp.nstr(v, 50) for v in values]])
     FILE.write_text(json.dumps(table, indent=0) + "\n", encoding="utf-8")

@@ -217,11 +217,7 @@ def study(
         raise files.FileError(
             _check.message("out", "a folder that can be made", f"'{out}' ({error.strerror})")
         ) from error
-    try:
-        result = studies.run(name, chosen, quick=quick, progress_bar=True)
-    except studies.LackingError as error:
-        complain(error)
-        return LACKING
+    result = studies.run(name, chosen, quick=quick, progress_bar=True)
     studies.print_result(result)
     say(f"table    {result.write_csv(out / f'{name}.csv')}")
     say(f"figure   {result.draw(out / f'{name}.png')}")

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from vizlight._types import Array, VectorLike
 
 
-def relief_from_mesh(
+def bas_relief(
     mesh: pv.PolyData,
     /,
     *,
@@ -125,3 +125,6 @@ def _unit(name: str, value: object) -> Array:
         raise ValueError(_check.message(name, "3 components", len(vector)))
     vector /= np.abs(vector).max()
     return np.asarray(vector / np.linalg.norm(vector))
+
+
+relief_from_mesh = _check.renamed(bas_relief, "relief_from_mesh")

@@ -15,7 +15,7 @@ from vizlight import _check
 from vizlight.geometry.relief import height_field, shadowing
 from vizlight.mesh import closed_meshes, normals, point_arrays
 from vizlight.mesh.height_grids import Grid, heights_of
-from vizlight.verify import oracle
+from vizlight.verify import rays
 
 if TYPE_CHECKING:
     from vizlight._types import Array, Bools
@@ -150,7 +150,7 @@ class _FieldCaster:
         self.valid: Bools = found.to_points(~self._holes).astype(np.bool_)
         field = self._field
         size = max(field.x[-1], field.y[-1], field.top)
-        self.effort = oracle.SAMPLES if self.depth > shadowing.LEAST_DEPTH * size else 0
+        self.effort = rays.SAMPLES if self.depth > shadowing.LEAST_DEPTH * size else 0
 
     def of(self, light: Light) -> Array:
         turn = np.eye(3) if self._turn is None else self._turn
@@ -169,7 +169,7 @@ class _FieldCaster:
         way = None if light.direction is None else turn @ np.array(light.direction)
         if way is not None and way[2] <= 0:
             return math.nan
-        return oracle.relief_ratio(
+        return rays.relief_ratio(
             field.x, field.y, field.heights,
             turn @ self.points[point] - field.origin, turn @ self.normals[point], self.depth,
             way=way,
@@ -232,7 +232,7 @@ class _SolidCaster:
         depth, normal = self.depth / self._unit, self.normals[point]
         way, reach = self._toward(light, (place - depth * normal)[np.newaxis])
         far = min(float(reach[0]), 10.0 * max(float(np.abs(c).max()) for c in self._corners))
-        return oracle.solid_ratio(self._corners, place, normal, depth, way[0], far)
+        return rays.solid_ratio(self._corners, place, normal, depth, way[0], far)
 
     def _toward(self, light: Light, start: Array) -> tuple[Array, Array]:
         if light.direction is not None:

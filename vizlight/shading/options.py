@@ -7,7 +7,6 @@ import difflib
 import functools
 import inspect
 import re
-import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, TypedDict, get_args
 
@@ -229,7 +228,7 @@ def accepts(
         def method(*arguments: P.args, **keywords: P.kwargs) -> R:
             for old in [name for name in keywords if name in aliases]:
                 new = aliases[old]
-                warnings.warn(f"{old}= is now called {new}=", DeprecationWarning, stacklevel=2)
+                _check.warn(f"{old}= is now called {new}=", DeprecationWarning)
                 keywords[new] = keywords.pop(old)
             for name in keywords:
                 if name not in known:
