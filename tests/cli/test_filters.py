@@ -252,6 +252,15 @@ def test_an_error_in_one_file_leaves_the_others(folder, capfd):
     assert not list(folder.glob("torus-lit*"))
 
 
+def test_no_input_is_overwritten(folder, capfd):
+    shutil.copy("torus.vtp", "flow-lit.vtp")
+    before = Path("flow-lit.vtp").read_bytes()
+    code, _, err = run(capfd, "light", "flow.vti", "flow-lit.vtp")
+    assert code == 2
+    assert "flow.vti: output: expected another file than the input, got 'flow-lit.vtp'" in err
+    assert Path("flow-lit.vtp").read_bytes() == before
+
+
 def test_report_stands_in_the_script_too(folder, capfd):
     arguments = ("relief", "terrain.vti", "--report", "-o", "lit.vti", "--progress")
     code, script, _ = run(capfd, *arguments, "--script")
@@ -337,3 +346,90 @@ def test_help_of_the_whole_loads_no_pyvista():
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert (run.returncode, run.stderr) == (0, "")
+
+
+@pytest.mark.parametrize(
+    ("line", "file", "name", "expected"),
+    [
+        (
+            "streamlines flow.vti --vectors V --contour r --confined --seeds 9 --model blinn",
+            "lit.vtp",
+            "luminance",
+            {"vectors": "V", "confined": True, "seeds": 9, "model": "blinn", "seed": 0},
+        ),
+        (
+            "relief terrain.vti --depth 0.5 --border wall --angular-diameter 0.01 --name shade",
+            "lit.vti",
+            "shade",
+            {"depth": 0.5, "border": "wall", "angular_diameter": 0.01, "method": "fast"},
+        ),
+        (
+            "fur flow.vti --contour r --density 0.3 --length r --toward -1,0,2 --bend 0.5 "
+            "--no-attenuated --fibres 8 --inward keep",
+            "lit-fibres.vtp",
+            "luminance",
+            {"density": 0.3, "length": "r", "toward": [-1, 0, 2], "bend": 0.5}
+            | {"attenuated": False, "conditioned": True, "inward": "keep"},
+        ),
+        (
+            "contours flow.vti --contour r --levels 1/50 --two-sided",
+            "lit-bands.vtp",
+            "luminance",
+            {"levels": 0.02, "two_sided": True},
+        ),
+        (
+            "project torus.vtp --rotation xw:0.5 --rotation yz:-1/4 --distance 4 --components",
+            "lit.vtk",
+            "luminance",
+            {"rotation": [["xw", 0.5], ["yz", -0.25]], "distance": 4.0, "components": True},
+        ),
+    ],
+)
+def test_options_reach_the_filter(line, file, name, expected, folder, capfd):
+    suffix = Path(file).suffix
+    code, _, err = run(capfd, *line.split(), "-o", f"lit{suffix}")
+    assert code == 0, err
+    options = vizlight.provenance(pv.read(file), name)["options"]
+    assert {key: options[key] for key in expected} == expected
+
+
+def test_a_saved_camera_is_the_view(folder, capfd):
+    Path("camera.json").write_text(json.dumps([[30, -10, 20], [5, 5, 5], [0, 0, 1]]))
+    arguments = ("light", "flow.vti", "--contour", "r", "--view", "camera.json", "-o", "lit.vtp")
+    for parallel in ((), ("--parallel",)):
+        assert run(capfd, *arguments, *parallel)[0] == 0
+        view = vizlight.provenance(pv.read("lit.vtp"))["scene"]["view"]
+        assert view["position"] == [30, -10, 20]
+        direction = np.array([25, -15, 15]) / np.linalg.norm([25, -15, 15])
+        np.testing.assert_allclose(view["direction"], direction, atol=1e-12)
+        assert view["parallel"] is bool(parallel)
+
+
+def test_lights_and_eye_of_n_space_are_filled_up_with_zeros(folder, capfd):
+    arguments = ("project", "torus.vtp", "--view", "0,-1,2", "-o", "lit.vtk")
+    assert run(capfd, *arguments, "--light", "90,0", "--light-position", "1,2,3,4")[0] == 0
+    scene = vizlight.provenance(pv.read("lit.vtk"))["scene"]
+    assert scene["view"]["direction"] == [0, -1, 2, 0]
+    assert scene["lights"][0]["direction"] == [1, 0, 0, 0]
+    assert scene["lights"][1]["position"] == [1, 2, 3, 4]
+    assert run(capfd, *arguments)[0] == 0
+    (light,) = vizlight.provenance(pv.read("lit.vtk"))["scene"]["lights"]
+    assert len(light["direction"]) == 4
+    assert light["direction"][0] < 0 < light["direction"][2]
+
+
+@pytest.mark.opengl
+def test_colours_of_data_are_multiplied_by_the_light(folder, capfd):
+    arguments = ("light", "flow.vti", "--slice", "z:4", "--scalars", "r", "-o", "a.png", *SMALL)
+    code, script, _ = run(capfd, *arguments, "--script")
+    assert code == 0
+    space = {}
+    exec(script, space)
+    lit, colors = (
+        space["lit"],
+        pv.LookupTable("viridis", scalar_range=space["lit"].get_data_range("r")),
+    )
+    expected = np.array([colors(float(r))[:3] for r in lit["r"]]) * lit["luminance"][:, np.newaxis]
+    np.testing.assert_allclose(space["shown"]["tint"], expected, atol=1 / 255)
+    picture = np.asarray(pv.read("a.png")["PNGImage"], dtype=int)
+    assert np.ptp(picture, axis=1).max() > 50

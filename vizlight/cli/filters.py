@@ -195,7 +195,7 @@ def project(
         n = 3 if asked.light == "after" or rows is None or rows.ndim == 1 else rows.shape[1]
         scene = look.scene_in(n)
         lit = _step("projected", "project", mesh, None, given | {"scene": scene}, common.out)
-        return Job(lit, asked.name, look, look.camera(lit), before=None, suffix=".vtk")
+        return Job(lit, asked.name, look, look.camera(lit), kind="", suffix=".vtk")
 
     return carry_out(files, job, common.out, "projected")
 

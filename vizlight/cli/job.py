@@ -6,17 +6,17 @@ import contextlib
 import time
 import warnings
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import vizlight
 from vizlight import _check
-from vizlight.cli.output import BAD_INPUT, OK, complain, draw, say
+from vizlight.cli.output import BAD_INPUT, OK, complain, draw, one_line, say
 from vizlight.cli.scenes import TINT
 from vizlight.cli.script import Step, source
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
-    from pathlib import Path
 
     import pyvista as pv
 
@@ -41,7 +41,9 @@ class Job:
     scalars
         Name of the array that is shown. Default: the light, or its colour.
     before
-        Mesh whose kind the result has. Default: the result is of the kind PolyData.
+        Mesh whose kind the result has.
+    kind
+        Kind of the result where no mesh has it before; empty where it is not known.
     parts
         Names of the blocks that are written to files of their own.
     suffix
@@ -59,6 +61,7 @@ class Job:
     shown: Step | None = None
     scalars: str | None = None
     before: Step | None = None
+    kind: str = "PolyData"
     parts: Sequence[str] = ()
     suffix: str = ".vtp"
     hint: Callable[[], str] = lambda: ""
@@ -96,6 +99,7 @@ def carry_out(files_: Sequence[Path], build: Callable[[Path], Job], out: Output,
         try:
             job = build(path)
             _set_outputs(job, path, out, stem)
+            _check_paths(job, files_)
             if out.script:
                 jobs.append(job)
             else:
@@ -103,7 +107,7 @@ def carry_out(files_: Sequence[Path], build: Callable[[Path], Job], out: Output,
         except (TypeError, ValueError, OSError) as error:
             if len(files_) == 1:
                 raise
-            complain(f"{path}: {' '.join(str(error).split())}")
+            complain(f"{path}: {one_line(error)}")
             codes.append(BAD_INPUT)
     if jobs:
         lit = [job.lit for job in jobs] if out.report else []
@@ -128,10 +132,6 @@ def _check_output(out: Output, *, several: bool) -> None:
 
 def _set_outputs(job: Job, file: Path, out: Output, stem: str) -> None:
     """Set the files of meshes and of pictures."""
-    from pathlib import Path
-
-    from vizlight import files
-
     paths: list[Path] = []
     for path in out.output or [Path()]:
         endings = (job.suffix, ".png") if job.suffix else (".png",)
@@ -142,15 +142,21 @@ def _set_outputs(job: Job, file: Path, out: Output, stem: str) -> None:
             job.pictures.append(path)
         else:
             job.meshes += job.of_parts(path)
+
+
+def _check_paths(job: Job, inputs: Sequence[Path]) -> None:
+    """Check that the outputs can be written, and that no input is among them."""
+    from vizlight import files
+
     for path in (*job.pictures, *(path for _, path in job.meshes)):
         files.check_output(path, (".png", *files.SUFFIXES))
-        if path.exists() and file.exists() and path.samefile(file):
-            raise files.FileError(
-                _check.message("output", "another file than the input", f"'{path}'")
-            )
+        if any(path.exists() and file.exists() and path.samefile(file) for file in inputs):
+            expected = "another file than the input"
+            raise files.FileError(_check.message("output", expected, f"'{path}'"))
+    formats = files.FORMATS.get(job.kind, files.SUFFIXES) if job.before is None else files.SUFFIXES
     for _, path in job.meshes:
-        if job.before is None and path.suffix.lower() not in files.FORMATS["PolyData"]:
-            expected = f"a name that ends in {', '.join(files.FORMATS['PolyData'])} for PolyData"
+        if path.suffix.lower() not in formats:
+            expected = f"a name that ends in {', '.join(formats)} for {job.kind}"
             raise files.FileError(_check.message("output", expected, f"'{path.name}'"))
 
 

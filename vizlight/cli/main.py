@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -13,7 +12,7 @@ from vizlight import _check, _console
 from vizlight._version import __version__
 from vizlight.cli import arguments
 from vizlight.cli.arguments import Backend  # noqa: TC001 - cyclopts reads the annotations
-from vizlight.cli.output import BAD_INPUT, LACKING, OK, complain, draw, say
+from vizlight.cli.output import BAD_INPUT, LACKING, OK, complain, draw, one_line, say
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -51,15 +50,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _fail(error: object) -> int:
-    text = " ".join(str(error).split())
-    # The library names its options as Python does.
-    text = re.sub(r"(?<![\w.(])([a-z]+(?:_[a-z]+)*)=(?:True)?(?=[ ,;.)]|$)", _option, text)
-    complain(text)
+    complain(one_line(error))
     return BAD_INPUT
-
-
-def _option(found: re.Match[str]) -> str:
-    return f"--{found[1].replace('_', '-')}"
 
 
 @app.command

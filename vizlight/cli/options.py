@@ -6,12 +6,14 @@ import importlib
 import inspect
 import re
 from dataclasses import field, make_dataclass
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
+from typing import TYPE_CHECKING, Annotated, Any, Union
 
 from cyclopts import Group, Parameter
 
 from vizlight import _check
 from vizlight.cli.arguments import fraction, numbers
+from vizlight.filters.fur import Inward
+from vizlight.filters.project import LightWhen
 from vizlight.geometry.relief.height_field import Border
 from vizlight.geometry.relief.shadowing import Method
 from vizlight.model.reflection import SpecularModel
@@ -35,8 +37,8 @@ TYPES: Mapping[str, object] = {
     "Precision": Precision,
     "Border": Border,
     "Method": Method,
-    "Inward": Literal["keep", "flip", "drop"],
-    "LightWhen": Literal["before", "after"],
+    "Inward": Inward,
+    "LightWhen": LightWhen,
 }
 #: Keywords of filters that are not options of what they make.
 NOT_OPTIONS = ("scene", "threads", "inplace", "progress_bar")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from typing import TYPE_CHECKING
 
@@ -16,6 +17,16 @@ OK, LACKING, BAD_INPUT = 0, 1, 2
 def say(text: str) -> None:
     """Write a line to standard output."""
     sys.stdout.write(f"{text}\n")
+
+
+def one_line(error: object) -> str:
+    """Return an error on one line, with the library's options named as on the command line."""
+    text = " ".join(str(error).split())
+    return re.sub(r"(?<![\w.(])([a-z]+(?:_[a-z]+)*)=(?:True)?(?=[ ,;.)]|$)", _option, text)
+
+
+def _option(found: re.Match[str]) -> str:
+    return f"--{found[1].replace('_', '-')}"
 
 
 def complain(text: object) -> None:
