@@ -25,13 +25,18 @@ def rounding(plan: Plan) -> float:
     Notes
     -----
     It uses the bounds of :mod:`vizlight.model.reflection`, with 8 eps more for each factor of the
-    scene. No bound holds for k tangents near each other, near opposite directions under Blinn's
-    model, near the line of a cylinder, and for t and fur, whose rounding is that of the data.
+    scene, and 4 eps of the brightest light and of the cue for a depth cue. No bound holds for k
+    tangents near each other, near opposite directions under Blinn's model, near the line of a
+    cylinder, and for t and fur, whose rounding is that of the data.
     """
     eps = float(np.finfo(plan.dtype).eps)
     scene, material = plan.scene, plan.scene.material
+    faded = 0.0
+    if scene.depth_cue is not None:
+        brightest = plan.ambient + weight(plan, material.diffuse + material.specular)
+        faded = 4 * eps * (scene.depth_cue.cue + brightest)
     if not (plan.diffuse or plan.specular):
-        return 4 * eps * plan.ambient
+        return 4 * eps * plan.ambient + faded
     if plan.model == "cylinder" or plan.shadowed or plan.fur or plan.base:
         return math.inf
     if not plan.surface and plan.k > 1:
@@ -39,7 +44,7 @@ def rounding(plan: Plan) -> float:
     factors = 8.0 * (
         1 + plan.conditioned + any(x.attenuation != NO_ATTENUATION for x in scene.lights)
     )
-    total = 4 * eps * (plan.ambient + weight(plan, material.diffuse + material.specular))
+    total = faded + 4 * eps * (plan.ambient + weight(plan, material.diffuse + material.specular))
     if plan.factors != (1.0, 1.0):
         # The mean brightness I of a line has an error of 9 (1 + |ln I|) eps, largest at I = 1.
         total += 10 * eps * weight(plan, material.diffuse + material.specular)
