@@ -208,7 +208,7 @@ def _run(job: Job, out: Output) -> int:
 
 def _light(job: Job, out: Output) -> pv.DataSet:
     """Light the mesh and print how."""
-    from vizlight.mesh.blocks import leaves
+    from vizlight.mesh.blocks import all_blocks
 
     for value in job.lit.parts():
         if isinstance(value, Step):
@@ -225,7 +225,7 @@ def _light(job: Job, out: Output) -> pv.DataSet:
         complain(warning.message)
     record = vizlight.provenance(lit, job.name)
     terms = " + ".join(record.get("terms", [job.name]))
-    points = sum(leaf.n_points for leaf in leaves(lit))
+    points = sum(block.n_points for block in all_blocks(lit))
     say(f"{points} points lit in {seconds:.3f} s, {record['precision']}: {terms}")
     if cost is not None:
         say(str(cost))
@@ -234,12 +234,12 @@ def _light(job: Job, out: Output) -> pv.DataSet:
 
 def _count_white(lit: pv.DataSet, name: str) -> None:
     """Print how many points are too bright for the picture."""
-    from vizlight.mesh.blocks import leaves
+    from vizlight.mesh.blocks import all_blocks
 
-    blocks = [leaf for leaf in leaves(lit) if name in leaf.point_data]
-    bright = sum(int((leaf.point_data[name] > 1).sum()) for leaf in blocks)
+    blocks = [block for block in all_blocks(lit) if name in block.point_data]
+    bright = sum(int((block.point_data[name] > 1).sum()) for block in blocks)
     if bright:
-        total = sum(leaf.n_points for leaf in blocks)
+        total = sum(block.n_points for block in blocks)
         complain(
             f"{bright} of {total} points are brighter than 1 and white in the "
             "picture; a smaller --ambient, --diffuse or --specular shows them"

@@ -70,30 +70,30 @@ def light(
 
 def _hint(mesh: pv.DataSet | pv.MultiBlock, *, surface: bool) -> str:
     """Return what may have been meant for a volume, of which the hull is lit, or a flat field."""
-    from vizlight.mesh.blocks import leaves
+    from vizlight.mesh.blocks import all_blocks
 
-    parts = [leaf for leaf in leaves(mesh) if leaf.n_cells]
+    parts = [block for block in all_blocks(mesh) if block.n_cells]
     names = [
-        name for leaf in parts[:1] for name, values in leaf.point_data.items() if values.ndim == 1
+        name for block in parts[:1] for name, values in block.point_data.items() if values.ndim == 1
     ]
     if not names:
         return ""
-    if any(leaf.GetMaxSpatialDimension() == 3 for leaf in parts):
+    if any(block.GetMaxSpatialDimension() == 3 for block in parts):
         hull = f"the hull of a volume is lit; --contour {names[0]} lights an isosurface of it"
         return hull if surface else ""
-    if all(leaf.GetMaxSpatialDimension() == 2 and not min(leaf.bounds_size) for leaf in parts):
+    if all(block.GetMaxSpatialDimension() == 2 and not min(block.bounds_size) for block in parts):
         return f"the mesh is flat; --warp {names[0]} raises it by its heights"
     return ""
 
 
 def _explain(lit: pv.DataSet, asked: LightOptions) -> None:
     """Print the plan by which a mesh was lit."""
-    from vizlight.mesh.blocks import leaves
+    from vizlight.mesh.blocks import all_blocks
     from vizlight.mesh.inputs import inputs_of
     from vizlight.shading.decide import decide
 
     record = vizlight.provenance(lit, asked.name)
     scene = vizlight.Scene.from_dict(record["scene"])
-    inputs = inputs_of(next(leaves(lit)), "", scene, asked)
+    inputs = inputs_of(next(all_blocks(lit)), "", scene, asked)
     dtype = None if asked.tolerance and asked.precision is None else record["precision"]
     say(decide(scene, inputs.layout, asked, dtype).explain())

@@ -200,16 +200,16 @@ def project(
         frame = None if asked.frame is None else f"{prefix}{asked.frame}"
         return light_mesh(shown, scene, asked.by(frame, positions), threads=threads)
 
-    total = 2 * sum(leaf.n_points for leaf in blocks.leaves(mesh))
+    total = 2 * sum(block.n_points for block in blocks.all_blocks(mesh))
     with _progress.progress("project", total, show=progress_bar) as report:
         done = Counter(report)
         lost = Counter(lambda _: None)
-        out = lit(_each(mesh, lambda leaf: job.turned(leaf, done, lost)), "before")
-        out = lit(_each(out, lambda leaf: job.projected(leaf, done, lost)), "after")
+        out = lit(_each(mesh, lambda block: job.turned(block, done, lost)), "before")
+        out = lit(_each(out, lambda block: job.projected(block, done, lost)), "after")
         if scene is not None:
-            for leaf in blocks.leaves(out):
-                light = records.provenance(leaf, asked.name)["options"]
-                records.amend(leaf, asked.name, "project", light, _own(asked))
+            for block in blocks.all_blocks(out):
+                light = records.provenance(block, asked.name)["options"]
+                records.amend(block, asked.name, "project", light, _own(asked))
     if lost.count:
         _check.warn(
             f"{lost.count} points cannot be projected (on or behind the eye's hyperplane, or not "
@@ -248,8 +248,8 @@ def _check_space(
     mesh: pv.DataSet | pv.MultiBlock, scene: Scene, light: LightWhen, positions: str
 ) -> None:
     """Check that lights and eye live in the space that is lit: that of positions, or 3-space."""
-    for leaf in blocks.leaves(mesh):
-        n = leaf.point_data[positions].shape[1]
+    for block in blocks.all_blocks(mesh):
+        n = block.point_data[positions].shape[1]
         lit, other, when = (n, 3, "after") if light == "before" else (3, n, "before")
         if scene.n not in (None, lit):
             remedy = f"pass light={when!r} to light in {other}-space" if scene.n == other else ""
@@ -265,12 +265,12 @@ def _check_tangents(
         return
     if job.frame is None:
         raise ValueError(_check.message("frame", "tangents to light by", None, "or pass tangents="))
-    for leaf in blocks.leaves(mesh):
-        if job.frame not in leaf.point_data:
+    for block in blocks.all_blocks(mesh):
+        if job.frame not in block.point_data:
             got = "the points of a cut curve, which have no tangents"
             raise ValueError(_check.message("scene", "a mesh that can be lit", got))
-        if prefix + job.frame not in leaf.point_data:
-            k = leaf.point_data[job.frame].shape[1] // leaf.point_data[job.positions].shape[1]
+        if prefix + job.frame not in block.point_data:
+            k = block.point_data[job.frame].shape[1] // block.point_data[job.positions].shape[1]
             got = f"a {k}-manifold, which fills 3-space and has no normals there"
             remedy = "pass light='before', or cut it by hyperplane="
             raise ValueError(_check.message("light", "a curve or a surface", got, remedy))

@@ -43,13 +43,13 @@ def surface(mesh: object, name: str) -> pv.PolyData:
     return mesh
 
 
-def leaves(mesh: object) -> Iterator[pv.DataSet]:
+def all_blocks(mesh: object) -> Iterator[pv.DataSet]:
     """Yield the datasets of a MultiBlock at every depth, or the dataset itself."""
-    for block, _ in named_leaves(mesh):
+    for block, _ in named_blocks(mesh):
         yield block
 
 
-def named_leaves(mesh: object, path: str = "") -> Iterator[tuple[pv.DataSet, str]]:
+def named_blocks(mesh: object, path: str = "") -> Iterator[tuple[pv.DataSet, str]]:
     """Yield the datasets of a MultiBlock at every depth, each with its path."""
     if not isinstance(mesh, pv.MultiBlock):
         if not isinstance(mesh, pv.DataSet):
@@ -60,7 +60,7 @@ def named_leaves(mesh: object, path: str = "") -> Iterator[tuple[pv.DataSet, str
         return
     for i in range(mesh.n_blocks):
         if mesh[i] is not None:
-            yield from named_leaves(mesh[i], f"{path}/{mesh.get_block_name(i) or i}")
+            yield from named_blocks(mesh[i], f"{path}/{mesh.get_block_name(i) or i}")
 
 
 def box(mesh: pv.DataSet) -> tuple[Array, float]:

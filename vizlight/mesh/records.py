@@ -73,10 +73,10 @@ def all_made(mesh: pv.DataSet) -> set[str]:
 
 
 def refuse_overwriting(
-    leaves: Iterable[tuple[pv.DataSet, str]], name: str, arrays: Iterable[str]
+    named: Iterable[tuple[pv.DataSet, str]], name: str, arrays: Iterable[str]
 ) -> None:
     """Raise ValueError if a point array that vizlight did not make would be replaced."""
-    for mesh, _ in leaves:
+    for mesh, _ in named:
         ours = made(mesh, name)
         for array in arrays:
             if array in mesh.point_data and array not in ours:
@@ -170,7 +170,7 @@ def provenance(mesh: pv.DataSet | pv.MultiBlock, /, name: str = "luminance") -> 
     if not isinstance(mesh, pv.DataSet | pv.MultiBlock):
         raise TypeError(_check.message("mesh", "a PyVista mesh", type(mesh).__name__))
     known = set()
-    for block in blocks.leaves(mesh):
+    for block in blocks.all_blocks(mesh):
         if (found := read(block, name)) is not None:
             return found
         known |= {k.removesuffix(key("")) for k in block.field_data if k.endswith(key(""))}
