@@ -65,6 +65,19 @@ def choice(name: str, value: object, allowed: Sequence[str]) -> None:
         raise ValueError(message(name, f"{', '.join(others)} or {last}", describe(value)))
 
 
+def boolean(name: str, value: object) -> bool:
+    """Return a truth value; 0 and 1 count as such, words do not.
+
+    Raises
+    ------
+    TypeError
+        If the value is neither.
+    """
+    if isinstance(value, bool | np.bool_) or (isinstance(value, int) and value in (0, 1)):
+        return bool(value)
+    raise TypeError(message(name, "True or False", describe(value)))
+
+
 def describe(value: object) -> str:
     """Return a short description of a value for an error message."""
     if isinstance(value, np.ndarray):

@@ -40,7 +40,7 @@ def illuminate(
     Parameters
     ----------
     mesh : pyvista.DataSet or pyvista.MultiBlock
-        MeshT that is lit; not changed, unless ``inplace``.
+        Mesh that is lit; not changed, unless ``inplace``.
     scene : Scene
         Lights, material and view, in the unit of the mesh.
     **options
@@ -109,7 +109,7 @@ def light_mesh(
     """Light a mesh by options that are checked; see :func:`illuminate`."""
     _check.instance("scene", scene, Scene)
     blocks.check(mesh)
-    out = mesh if inplace else shallow_copy(mesh)
+    out = mesh if _check.boolean("inplace", inplace) else shallow_copy(mesh)
     named = list(blocks.named_blocks(out))
     lighting.refuse_overwriting(
         named, options.name, components=options.components, colored=scene.colored

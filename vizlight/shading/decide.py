@@ -198,6 +198,7 @@ def _check_view(
     }
     for what, needed in needs.items():
         if needed:
-            remedy = "pass view=, or Material(specular=0)" if specular else "pass view="
+            remedy = "pass view= to the Scene"
+            remedy += ", or Material(specular=0)" if specular else ""
             expected = f"a View, which the {what} needs"
             raise ValueError(_check.message("view", expected, None, remedy))

@@ -124,9 +124,9 @@ class ShadingOptions:
             highlight_error=_check.number("highlight_error", self.highlight_error, low=0.0),
             tolerance=_check.number("tolerance", self.tolerance, low=0.0),
             terminator=_check.number("terminator", self.terminator, low=0.0, high=1.0),
-            compensate=bool(self.compensate),
-            two_sided=bool(self.two_sided),
-            components=bool(self.components),
+            compensate=_check.boolean("compensate", self.compensate),
+            two_sided=_check.boolean("two_sided", self.two_sided),
+            components=_check.boolean("components", self.components),
         )
         if self.tolerance and self.highlight_error:
             remedy = "the tolerance includes the error of the highlights"
@@ -176,6 +176,11 @@ class LightOptions(ShadingOptions):
     flip_normals: bool = False
     average_cells: bool = False
     name: str = "luminance"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        for name in ("flip_normals", "average_cells"):
+            _check.set_fields(self, **{name: _check.boolean(name, getattr(self, name))})
 
 
 def documented(kind: type) -> dict[str, str]:
@@ -228,6 +233,9 @@ def accepts(
         def method(*arguments: P.args, **keywords: P.kwargs) -> R:
             for old in [name for name in keywords if name in aliases]:
                 new = aliases[old]
+                if new in keywords:
+                    remedy = f"{old} is the old name of {new}"
+                    raise TypeError(_check.message(old, f"{new}= alone", "both", remedy))
                 _check.warn(f"{old}= is now called {new}=", DeprecationWarning)
                 keywords[new] = keywords.pop(old)
             for name in keywords:

@@ -177,7 +177,7 @@ def report(*, sample: int = 256, seed: int = 0) -> Iterator[Report]:
     all triangles of a closed surface; at depth 0 the report gives no error. Bands of
     ``isoluminance`` are compared with the light at their middles. A point of the sample takes about
     40 µs, 60 µs for ``model="cylinder"``, and a ray 3 ms; this time is not part of the reported
-    time.
+    time. Filters that other threads call are not recorded.
 
     Examples
     --------
