@@ -65,7 +65,7 @@ def choice(name: str, value: object, allowed: Sequence[str]) -> None:
         raise ValueError(message(name, f"{', '.join(others)} or {last}", describe(value)))
 
 
-def boolean(name: str, value: object) -> bool:
+def boolean(name: str, value: object, *, expected: str = "True or False") -> bool:
     """Return a truth value; 0 and 1 count as such, words do not.
 
     Raises
@@ -75,7 +75,7 @@ def boolean(name: str, value: object) -> bool:
     """
     if isinstance(value, bool | np.bool_) or (isinstance(value, int) and value in (0, 1)):
         return bool(value)
-    raise TypeError(message(name, "True or False", describe(value)))
+    raise TypeError(message(name, expected, describe(value)))
 
 
 def describe(value: object) -> str:

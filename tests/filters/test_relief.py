@@ -332,3 +332,15 @@ def test_bad_lights():
         relief_day(level(), latitude=0.5, day=1, hours=[0])
     with pytest.raises(ValueError, match="directions: expected directions alone"):
         relief_day(level(), directions=[(0, 0, 1)], day=4)
+
+
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [("luminance", {}), ("diffuse", {"components": True}), ("luminance_valid", {})],
+)
+def test_the_shadow_does_not_replace_the_light(name, options):
+    field = pv.ImageData(dimensions=(4, 4, 1))
+    field["h"] = np.zeros(16)
+    with pytest.raises(ValueError, match="name: expected a name that the light does not use"):
+        vizlight.relief_shadow(field, SCENE, lit=True, name=name, **options)
+    assert field.array_names == ["h"]

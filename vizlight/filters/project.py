@@ -11,7 +11,7 @@ import pyvista as pv
 from vizlight import _check, _progress
 from vizlight.filters.illuminate import light_mesh
 from vizlight.geometry.nspace import projection
-from vizlight.mesh import blocks, point_arrays, records
+from vizlight.mesh import blocks, records
 from vizlight.mesh.nspace import FRAME, POSITION, PROJECTED, Counter, Turning
 from vizlight.scene import Scene
 from vizlight.shading.options import LightKeywords, LightOptions, accepts
@@ -89,7 +89,10 @@ class ProjectOptions(LightOptions):
     def __post_init__(self) -> None:
         super().__post_init__()
         _check.choice("light", self.light, get_args(LightWhen))
-        point_arrays.refuse_unnamed("positions", self.positions or 0)
+        positions: object = self.positions
+        if not isinstance(positions, str) or not positions:
+            got, remedy = _check.describe(positions), "attach it to the mesh and name it"
+            raise TypeError(_check.message("positions", "the name of a point array", got, remedy))
         vectors: object = () if self.vectors is None else self.vectors
         vectors = (vectors,) if isinstance(vectors, str) else vectors
         if not isinstance(vectors, list | tuple):

@@ -163,7 +163,7 @@ def light_lines(
     made = _resolved(mesh, options)
     lines = _traced(mesh, scene, made)
     conditioned = made.surface is not None if made.conditioned is None else made.conditioned
-    normals = "Normals" if conditioned and made.normals is None else made.normals
+    normals = "Normals" if conditioned is True and made.normals is None else made.normals
     light = dataclasses.replace(made, conditioned=conditioned, normals=normals)
     lit = light_mesh(lines, scene, light, threads=threads, inplace=True, progress_bar=progress_bar)
     recorded = dataclasses.replace(options, vectors=made.vectors)

@@ -10,8 +10,6 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, TypedDict, get_args
 
-import numpy as np
-
 from vizlight import _check
 
 if TYPE_CHECKING:
@@ -114,13 +112,12 @@ class ShadingOptions:
         if self.precision is not None:
             _check.choice("precision", self.precision, get_args(Precision))
         conditioned: object = self.conditioned
-        if conditioned is not None and not isinstance(conditioned, str | bool | np.bool_):
-            expected = "True, False or the name of a point array"
-            got = _check.describe(conditioned)
-            raise TypeError(_check.message("conditioned", expected, got))
+        if conditioned is not None and not isinstance(conditioned, str):
+            names = "True, False or the name of a point array"
+            conditioned = _check.boolean("conditioned", conditioned, expected=names)
         _check.set_fields(
             self,
-            conditioned=bool(conditioned) if isinstance(conditioned, np.bool_) else conditioned,
+            conditioned=conditioned,
             highlight_error=_check.number("highlight_error", self.highlight_error, low=0.0),
             tolerance=_check.number("tolerance", self.tolerance, low=0.0),
             terminator=_check.number("terminator", self.terminator, low=0.0, high=1.0),
