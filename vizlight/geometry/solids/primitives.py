@@ -95,6 +95,11 @@ class Primitive(Solid):
         """Whether the solid has no volume."""
         raise NotImplementedError
 
+    @property
+    def volume(self) -> float:
+        """The volume."""
+        raise NotImplementedError
+
     def primitives(self) -> Iterator[Primitive]:
         """Yield the primitive itself."""
         yield self
@@ -185,6 +190,11 @@ class Sphere(Primitive):
         """Whether the solid has no volume."""
         return self.radius == 0
 
+    @property
+    def volume(self) -> float:
+        """The volume."""
+        return 4 * math.pi / 3 * self.radius**3
+
     def surfaces(self) -> tuple[Surface, ...]:
         """Return the surface of the ball."""
         return (Ball(self.center, self.radius),)
@@ -252,6 +262,12 @@ class Frustum(Primitive):
     def empty(self) -> bool:
         """Whether the solid has no volume."""
         return self.height == 0 or max(self.radii) == 0
+
+    @property
+    def volume(self) -> float:
+        """The volume."""
+        a, b = self.radii
+        return math.pi / 3 * self.height * (a * a + a * b + b * b)
 
     def surfaces(self) -> tuple[Surface, ...]:
         """Return the side, the first end and the second end."""
@@ -325,6 +341,11 @@ class Block(Primitive):
     def empty(self) -> bool:
         """Whether the solid has no volume."""
         return bool(np.any(self.size == 0))
+
+    @property
+    def volume(self) -> float:
+        """The volume."""
+        return float(np.prod(self.size))
 
     def surfaces(self) -> tuple[Surface, ...]:
         """Return the six faces."""
