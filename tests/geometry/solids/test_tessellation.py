@@ -447,6 +447,10 @@ def test_random_trees(seed):
     sigma = np.sqrt(max(share * (1 - share), 1e-5) / 100_000) * whole
     found = mesh.volume * mesh.scale**3
     assert abs(found - share * whole) < 4.5 * sigma + 1e-2 * found
+    if len(mesh.triangles) and seed % 4 < 2:
+        bands = refinement.draw(mesh, lambert, 8, low=0.1)
+        assert banded.is_closed(bands)
+        assert bands.error <= 1.1 * bands.steps.error
 
 
 def test_combined_solids_need_an_extra(monkeypatch):

@@ -30,12 +30,10 @@ class Ball:
 
 @dataclass(frozen=True)
 class Plane:
-    """The plane of a face, which is a disc or a rectangle."""
+    """The plane of a flat face."""
 
     center: Array
     outward: Array
-    extent: tuple[float, float]
-    across: tuple[Array, Array]
 
     def distance(self, points: Array) -> Array:
         """Return signed distances, negative inside."""

@@ -272,10 +272,8 @@ class Frustum(Primitive):
     def surfaces(self) -> tuple[Surface, ...]:
         """Return the side, the first end and the second end."""
         side = Cone(self.center, self.axis, self.height, self.radii)
-        across = axial.frame(self.axis)
         ends = (
-            Plane(self.center + s / 2 * self.height * self.axis, s * self.axis, (r, r), across)
-            for s, r in ((1, self.radii[0]), (-1, self.radii[1]))
+            Plane(self.center + s / 2 * self.height * self.axis, s * self.axis) for s in (1, -1)
         )
         return (side, *ends)
 
@@ -351,13 +349,9 @@ class Block(Primitive):
         """Return the six faces."""
         found = []
         for i in range(3):
-            j, k = (i + 1) % 3, (i + 2) % 3
             for sign in (1, -1):
                 center = self.center + sign * self.size[i] / 2 * self.axes[i]
-                extent = (self.size[j] / 2, self.size[k] / 2)
-                found.append(
-                    Plane(center, sign * self.axes[i], extent, (self.axes[j], self.axes[k]))
-                )
+                found.append(Plane(center, sign * self.axes[i]))
         return tuple(found)
 
     def moved(self, shift: Array, scale: float) -> Block:

@@ -42,7 +42,8 @@ GRID = 2.0**36
 #: Largest estimated share of the volume by which a mesh may differ from the exact solid, in units
 #: of the tolerance, and the divisor of the tolerance where it differs by more.
 SHARE, FINER = 8.0, 4.0
-#: Volume of the unit ball's order, in units of the tolerance, that is no reason for a finer one.
+#: Error of the volume, in units of the tolerance, that never needs a finer tolerance. The scaled
+#: solid is about as large as the unit ball.
 NEGLIGIBLE = 1e-3
 #: Number of times that the tolerance is divided for a solid that has less volume than its bound.
 TRIALS = 2
@@ -65,15 +66,15 @@ def tessellate(solid: Solid, /, *, tolerance: float = 3e-3) -> Mesh:
     -------
     Mesh
         Mesh with points on the exact surfaces; points of an edge are on both surfaces to
-        rounding. An empty solid has no triangles.
+        rounding, unless these touch without crossing. An empty solid has no triangles.
 
     Raises
     ------
     ImportError
         If a combined solid is given and manifold3d is not installed.
     TypeError, ValueError
-        If an argument is not valid, or if the tolerance or a thin wall or gap needs more than
-        400,000 points.
+        If an argument is not valid, if the tolerance needs more than 400,000 points, or if a thin
+        wall or gap needs more than 60,000.
 
     Notes
     -----

@@ -98,8 +98,7 @@ def mesh(solid: Sphere | Frustum | Block, segments: int) -> Mesh:
         # The side is a flat ring: a plane, or empty.
         up = 1.0 if unit.radii[1] > unit.radii[0] else -1.0
         ends = unit.surfaces()[1:] if max(unit.radii) > 0 else ()
-        reach, across = (max(unit.radii),) * 2, axial.frame(unit.axis)
-        found: tuple[Surface, ...] = (Plane(unit.center, up * unit.axis, reach, across), *ends)
+        found: tuple[Surface, ...] = (Plane(unit.center, up * unit.axis), *ends)
     else:
         found = unit.surfaces()
     return Mesh(points, triangles, patch, found, np.ones(len(found)), np.asarray(shift), scale)
