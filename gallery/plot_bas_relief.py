@@ -22,7 +22,7 @@ except Exception:  # noqa: BLE001 (a missing network raises many types)
     statue = pv.examples.load_ant().subdivide(2, "butterfly")
     toward, up = (0.25, 1, 0.3), (0, 0, 1)
 side = max(np.diff(np.reshape(statue.bounds, (3, 2))))[0]
-relief = vizlight.relief_from_mesh(
+relief = vizlight.bas_relief(
     statue.triangulate(), direction=toward, up=up, resolution=500, height=0.12 * side, margin=0.12
 )
 

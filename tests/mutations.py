@@ -1,9 +1,11 @@
-"""Show that pictures guard the light: put one wrong sign, exponent or term in, see what fails.
+"""Mutations: put one wrong sign, exponent or term into a copy of the package, and see what fails.
 
-``python tests/mutations.py [WORD ...]`` copies the package, breaks one line of the copy at a time
-and runs the picture tests on it, and those of the mathematics where no picture shows it. It prints
-what caught each and ends with exit code 1 if nothing caught one. Words take the mutations whose
-titles hold them. It takes minutes, so no test run includes it.
+``python tests/mutations.py [WORD ...]`` copies the package and breaks one line of the copy at a
+time. For MUTATIONS it runs the picture tests and, where no picture differs, the tests of the broken
+module; for OF_NUMBERS the tests of the module alone. It prints the tests that failed and ends with
+exit code 1 if a mutation passed them all. Words select the mutations whose titles contain all of
+them. A run takes minutes, so it is no part of the test suite; ``test_mutations.py`` checks that
+each line to break is still there.
 """
 
 from __future__ import annotations
@@ -18,12 +20,11 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 PICTURES = ["tests/test_pictures.py"]
-NUMBERS = ["tests/model"]
 
-#: What is broken: file, what stands there, what is put in its place.
+#: What the pictures show: file, text in it, replacement.
 MUTATIONS = {
     "Phong: sign of wo's tangential part (the slip of Banks' equation 2)": (
-        "shading/block.py", "along = lit.along + eye.along\n            return kernels.phong",
+        "shading/manifold.py", "along = lit.along + eye.along\n            return kernels.phong",
         "along = lit.along - eye.along\n            return kernels.phong",
     ),
     "Phong: normal parts added": (
@@ -37,7 +38,7 @@ MUTATIONS = {
         "power(normal / whole, shininess / 4, tangential / whole)",
     ),
     "Blinn, one half vector: power halved": (
-        "shading/block.py", "return kernels.power(self.side(cosine), shininess)",
+        "shading/manifold.py", "return kernels.power(self.side(cosine), shininess)",
         "return kernels.power(self.side(cosine), shininess / 2)",
     ),
     "diffuse: cosine to the tangent for the sine": (
@@ -45,7 +46,7 @@ MUTATIONS = {
         "return along, np.sqrt(np.maximum(1 - length(residual) ** 2, 0))",
     ),
     "diffuse on a surface: not clamped": (
-        "shading/block.py", "if self.two_sided else np.maximum(cosine, 0)",
+        "shading/manifold.py", "if self.two_sided else np.maximum(cosine, 0)",
         "if self.two_sided else np.abs(cosine)",
     ),
     "diffuse: no compensation": (
@@ -57,7 +58,7 @@ MUTATIONS = {
         "model/brightness.py", "a, d, h = (n - k) / 2,", "a, d, h = (n - k) / 4,",
     ),
     "highlight: on the dark side too": (
-        "shading/block.py", "return value * (lit.across > 0)", "return value",
+        "shading/manifold.py", "return value * (lit.across > 0)", "return value",
     ),
     "distance: no linear term": (
         "model/falloff.py", "denominator += c2 * wide", "denominator += 0",
@@ -76,11 +77,11 @@ MUTATIONS = {
         "model/falloff.py", "np.log1p(-density)", "np.log(density)",
     ),
     "exact line: alpha for pi - alpha": (
-        "model/cylinderkernels.py", "np.arctan2(cross, -dot)", "np.arctan2(cross, dot)",
+        "model/cylinder_kernels.py", "np.arctan2(cross, -dot)", "np.arctan2(cross, dot)",
     ),
-    "exact line: sine's term is missing": ("model/cylinderkernels.py", "    value += cross\n", ""),
+    "exact line: sine's term is missing": ("model/cylinder_kernels.py", "    value += cross\n", ""),
     "exact line: highlight without its ends": (
-        "model/cylinderkernels.py", "    mean += ends\n", "",
+        "model/cylinder_kernels.py", "    mean += ends\n", "",
     ),
     "turn in n-space: wrong way round": (
         "geometry/nspace/projection.py", "matrix[j, i] = math.sin(angle)",
@@ -101,6 +102,66 @@ MUTATIONS = {
         "model/kernels.py", "return power(sine, exponent)", "return 1.05 * power(sine, exponent)",
     ),
 }  # fmt: skip
+
+#: What no picture is needed for.
+OF_NUMBERS = {
+    "Phong in numbers: sign of wo's tangential part": (
+        "shading/manifold.py", "along = lit.along + eye.along\n            return kernels.phong",
+        "along = lit.along - eye.along\n            return kernels.phong",
+    ),
+    "half vector: tangential parts subtracted": (
+        "shading/manifold.py", "kernels.split(lit.vector + eye.vector, self.frame)",
+        "kernels.split(lit.vector - eye.vector, self.frame)",
+    ),
+    "fur of cylinders: the skin's own model is lost": (
+        "filters/fur.py", "options.shading.for_surface()", "options.shading",
+    ),
+    "streamlines: the part across the surface added": (
+        "filters/streamlines.py", "along = array - np.einsum", "along = array + np.einsum",
+    ),
+    "streamlines: forward alone": (
+        "filters/streamlines.py", 'integration_direction="both"',
+        'integration_direction="forward"',
+    ),
+    "streamlines: seeds on one edge of each triangle": (
+        "filters/streamlines.py",
+        "(1 - b - c) * corner[:, 0] + b * corner[:, 1] + c * corner[:, 2]",
+        "(1 - b) * corner[:, 0] + b * corner[:, 1]",
+    ),
+    "camera: up is not set": ("pictures/cameras.py", "    camera.up = tuple(up)\n", ""),
+    "camera: fitted with another up": (
+        "pictures/cameras.py", "right = np.cross(up, toward)",
+        "right = np.cross((0.1, 1.0, 0.2), toward)",
+    ),
+    "camera: clipping range is VTK's own": (
+        "pictures/cameras.py", "    camera.clipping_range = (", "    _ = (",
+    ),
+    "camera: clipped at the centre": (
+        "pictures/cameras.py", "(max(distance - 2 * radius, distance * 1e-3)", "(max(distance, 0)",
+    ),
+    "camera: clipped behind the centre": (
+        "pictures/cameras.py", "distance * 1e-3), distance + 2 * radius)",
+        "distance * 1e-3), distance)",
+    ),
+    "surface: Bezier's control points taken as nodes": (
+        "mesh/hull.py",
+        "np.where(off <= 1e-5 * np.abs(surface.points).max(initial=0), ids, -1)", "ids",
+    ),
+    "report: no time": ("verify/report.py", "made.seconds += time.perf_counter() - start", "pass"),
+    "report: the check counted as time": (
+        "verify/report.py", "active.seconds -= time.perf_counter() - start", "pass",
+    ),
+    "tolerance: a bound for opposite light and eye": (
+        "shading/bounds.py", "angle(light, scene.view) != 0", "angle(light, scene.view) is None",
+    ),
+}  # fmt: skip
+
+
+def tests_of(path: str) -> list[str]:
+    """Return the test files that mirror a file of the package; else those of its folder."""
+    file = ROOT / "tests" / path
+    own = sorted(file.parent.glob(f"test_{file.stem}*.py")) or [file.parent]
+    return [str(found.relative_to(ROOT)) for found in own]
 
 
 def failed(folder: Path, tests: list[str]) -> list[str]:
@@ -127,24 +188,29 @@ def main() -> int:
             shutil.copytree(ROOT / folder, copy / folder)
         for file in ("pyproject.toml", "README.md"):
             shutil.copy(ROOT / file, copy)
-        if found := failed(copy, PICTURES):
-            sys.exit(f"these fail as it is: {found}")
         chosen = {
             title: mutation
-            for title, mutation in MUTATIONS.items()
+            for title, mutation in (MUTATIONS | OF_NUMBERS).items()
             if all(word in title for word in sys.argv[1:])
         }
+        whole = {test for path, _, _ in chosen.values() for test in tests_of(path)}
+        if chosen.keys() & MUTATIONS.keys():
+            whole.update(PICTURES)
+        if found := failed(copy, sorted(whole)):
+            sys.exit(f"these fail without a mutation: {found}")
         for title, (path, old, new) in chosen.items():
             file = copy / "vizlight" / path
             text = file.read_text()
             if text.count(old) < 1:
                 sys.exit(f"{title}: {path} does not hold {old!r}")
             file.write_text(text.replace(old, new))
-            caught = failed(copy, PICTURES) or failed(copy, NUMBERS)
+            caught = title in MUTATIONS and failed(copy, PICTURES)
+            caught = caught or failed(copy, tests_of(path))
             file.write_text(text)
             escaped += not caught
-            told = ", ".join(name.partition("::")[2] for name in caught) or "NOTHING"
-            print(f"{title}\n    {told}", flush=True)  # noqa: T201
+            tests = dict.fromkeys(re.split(r"::|\[", name)[1] for name in caught or ())
+            names = ", ".join(tests) or "NOTHING"
+            print(f"{title}\n    {names}", flush=True)  # noqa: T201
     print(f"{len(chosen) - escaped} of {len(chosen)} caught")  # noqa: T201
     return 1 if escaped else 0
 

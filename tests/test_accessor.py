@@ -47,7 +47,9 @@ def test_accessor_on_blocks():
 
 
 def test_accessor_tells_what_it_can():
-    assert repr(pv.Sphere().vizlight).startswith("vizlight of PolyData: fur, illuminate")
+    assert repr(pv.Sphere().vizlight).startswith(
+        "vizlight of PolyData: bas_relief, fur, illuminate"
+    )
 
 
 def test_accessor_needs_no_import():

@@ -15,53 +15,50 @@ import vizlight
 from vizlight._aliases import ALIASES
 
 ROOT = Path(vizlight.__file__).parent
+MATHEMATICS = [
+    "vizlight.model",
+    "vizlight.model.frames",
+    "vizlight.model.reflection",
+    "vizlight.model.brightness",
+    "vizlight.model.cylinder",
+    "vizlight.model.half_vector",
+    "vizlight.model.highlights",
+    "vizlight.model.falloff",
+    "vizlight.geometry.manifolds",
+    "vizlight.geometry.projection",
+    "vizlight.geometry.slices",
+    "vizlight.geometry.relief",
+    "vizlight.geometry.isoluminance",
+    "vizlight.geometry.solids",
+]
+ENGINE = ["vizlight.engine", "vizlight.shading.decide", "vizlight.scene"]
+HEAVY = {"pyvista", "vtk", "vtkmodules", "scipy", "rich"}
+#: Runs lines of code in one process and prints what is loaded after each.
 PROBE = """
 import sys
-{code}
-heavy = {{"pyvista", "vtk", "vtkmodules", "scipy", "rich"}}
-print(sorted({{name.partition(".")[0] for name in sys.modules}} & heavy))
+for line in {lines}:
+    exec(line)
+    names = set(sys.modules)
+    print(*sorted({{name.partition(".")[0] for name in names}} & {heavy}), end=" ")
+    print(*sorted(name for name in names if name.startswith("vizlight.verify")))
 """
 
 
-def loaded(code):
-    run = subprocess.run(
-        [sys.executable, "-c", PROBE.format(code=code)], capture_output=True, text=True, check=True
-    )
-    return run.stdout.strip()
-
-
-@pytest.mark.parametrize(
-    "module",
-    [
-        "vizlight.model",
-        "vizlight.model.frames",
-        "vizlight.model.reflection",
-        "vizlight.model.brightness",
-        "vizlight.model.cylinder",
-        "vizlight.model.half_vector",
-        "vizlight.model.highlights",
-        "vizlight.model.falloff",
-        "vizlight.geometry.manifolds",
-        "vizlight.geometry.projection",
-        "vizlight.geometry.slices",
-        "vizlight.geometry.relief",
-        "vizlight.geometry.isoluminance",
-        "vizlight.geometry.solids",
-        "vizlight.engine",
-        "vizlight.studies",
-        "vizlight.scene",
-    ],
-)
-def test_mathematics_and_engine_load_no_pyvista(module):
-    assert "pyvista" not in loaded(f"import {module}")
-    assert "vtk" not in loaded(f"import {module}")
-
-
-@pytest.mark.parametrize("module", ["vizlight.engine", "vizlight.shading.decide"])
-def test_the_engine_loads_neither_oracle_nor_report(module):
-    code = f"import sys, {module}; print([m for m in sys.modules if 'vizlight.verify' in m])"
+def loaded(*lines):
+    """Return what is loaded after each line of code, in a process of its own."""
+    code = PROBE.format(lines=lines, heavy=HEAVY)
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert run.stdout.strip() == "[]"
+    found = [set(line.split()) for line in run.stdout.splitlines()]
+    assert len(found) == len(lines)
+    return found
+
+
+def test_mathematics_and_engine_load_no_pyvista_and_no_report():
+    """Those that come first are tested alone: what one of them loads, all others have."""
+    modules = [*ENGINE, *MATHEMATICS, "vizlight.studies"]
+    for module, names in zip(modules, loaded(*(f"import {m}" for m in modules)), strict=True):
+        assert not names & {"pyvista", "vtk", "vtkmodules"}, module
+        assert not {name for name in names if "verify" in name} or module not in ENGINE, module
 
 
 @pytest.mark.parametrize("name", [*ALIASES, "vizlight.geometry.relief", "vizlight.geometry.solids"])
@@ -75,13 +72,19 @@ def test_public_names_of_modules_are_the_modules(name):
 
 
 def test_the_probe_can_fail():
-    assert "pyvista" in loaded("import vizlight.filters")
+    before, after = loaded("import vizlight", "import vizlight.filters")
+    assert not before
+    assert {"pyvista", "vtkmodules", "vizlight.verify.report"} <= after
 
 
 def test_import_of_the_package_loads_next_to_nothing():
-    assert loaded("import vizlight") == "[]"
-    assert loaded("import vizlight; vizlight.__version__; dir(vizlight)") == "[]"
-    assert "pyvista" not in loaded("import vizlight; vizlight.Light(direction=(0, 0, 1))")
+    bare, listed, light = loaded(
+        "import vizlight",
+        "vizlight.__version__; dir(vizlight)",
+        "vizlight.Light(direction=(0, 0, 1))",
+    )
+    assert bare == listed == set()
+    assert "pyvista" not in light
 
 
 def test_every_public_name_is_there():

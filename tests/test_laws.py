@@ -13,6 +13,11 @@ from vizlight import Light, Material, Scene, View, engine
 from vizlight.geometry import manifolds
 from vizlight.model import brightness
 
+#: Gauss nodes from 0 to a right angle, close together at both ends, where powers have kinks.
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(500)
+NODES = np.pi / 4 * (NODES + 1)
+NODES, WEIGHTS = np.pi / 2 * np.sin(NODES) ** 2, WEIGHTS * np.sin(2 * NODES)
+
 MATTE = Material(ambient=0.0, diffuse=1.0, specular=0.0)
 PAIRS = [(1, 2), (1, 3), (2, 3), (1, 4), (2, 4), (3, 4), (2, 5), (3, 6), (4, 8), (7, 8), (5, 12)]
 
@@ -83,15 +88,13 @@ def test_the_exponent_gives_a_mean_of_one_half(n):
     """Quadrature and uniform directions, each for all k < n up to 12."""
     count = 100_000
     x = np.random.default_rng(n).standard_normal((count, n)) ** 2
-    nodes, weights = np.polynomial.legendre.leggauss(2000)
-    a = np.pi / 4 * (nodes + 1)
     for k in range(1, n):
         p = brightness.exponent(k, n)
         sine = np.sqrt(x[:, k:].sum(axis=1) / x.sum(axis=1)) ** p
         assert abs(sine.mean() - 0.5) < 5 * sine.std() / math.sqrt(count)
-        # a is spread as sin^(c-1) cos^(k-1) where directions are uniform.
-        density = weights * np.sin(a) ** (n - k - 1) * np.cos(a) ** (k - 1)
-        mean = np.sum(density * np.sin(a) ** p) / np.sum(density)
+        # The angle a is spread as sin^(c-1) cos^(k-1) where directions are uniform.
+        density = WEIGHTS * np.sin(NODES) ** (n - k - 1) * np.cos(NODES) ** (k - 1)
+        mean = np.sum(density * np.sin(NODES) ** p) / np.sum(density)
         assert mean == pytest.approx(0.5, abs=1e-9)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
@@ -31,7 +32,8 @@ USES_ALL = {"accessor", "cli", "demo", "doctor", "studies"}
 TIER = {part: i for i, tier in enumerate(TIERS) for part in tier}
 
 
-def sources():
+@cache
+def texts():
     """Return the text of each module by its dotted name."""
     found = {}
     for path in ROOT.rglob("*.py"):
@@ -40,14 +42,26 @@ def sources():
     return found
 
 
+def sources():
+    return dict(texts())
+
+
+@cache
+def import_statements(text):
+    """Return the import statements of a module, also those for types and within functions."""
+    return [
+        node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Import | ast.ImportFrom)
+    ]
+
+
 def imports(name, text, modules):
-    """Yield what a module imports: module and name, also for types and within functions."""
-    for node in ast.walk(ast.parse(text)):
+    """Yield what a module imports: module and name."""
+    for node in import_statements(text):
         if isinstance(node, ast.Import):
             for alias in node.names:
                 if alias.name.partition(".")[0] == "vizlight":
                     yield alias.name, None
-        elif isinstance(node, ast.ImportFrom):
+        else:
             assert node.level == 0, f"{name}: a relative import"
             if (node.module or "").partition(".")[0] == "vizlight":
                 for alias in node.names:

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     from vizlight import render as render
     from vizlight import testing as testing
     from vizlight.data import example_path, load_example
-    from vizlight.filters.bas_relief import relief_from_mesh
+    from vizlight.filters.bas_relief import bas_relief
+    from vizlight.filters.bas_relief import relief_from_mesh as relief_from_mesh
     from vizlight.filters.fur import fur
     from vizlight.filters.illuminate import illuminate
     from vizlight.filters.isoluminance import isoluminance
@@ -43,6 +44,7 @@ _HOMES = {
     "Sphere": "vizlight.geometry.solids.primitives",
     "Truncus": "vizlight.geometry.solids.primitives",
     "View": "vizlight.scene",
+    "bas_relief": "vizlight.filters",
     "example_path": "vizlight.data",
     "fur": "vizlight.filters",
     "illuminate": "vizlight.filters",
@@ -74,6 +76,7 @@ __all__ = [
     "Sphere",
     "Truncus",
     "View",
+    "bas_relief",
     "example_path",
     "fur",
     "illuminate",
@@ -83,7 +86,6 @@ __all__ = [
     "project",
     "provenance",
     "relief_day",
-    "relief_from_mesh",
     "relief_shadow",
     "report",
     "satin",

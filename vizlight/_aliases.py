@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import importlib
 import sys
-from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from importlib.abc import Loader
     from types import ModuleType
+else:
+    # The module of the base class takes 10 ms to load, and the import system needs only methods.
+    Loader = object
 
 #: Folder of each module that ``vizlight.geometry`` also offers under a short name.
 GEOMETRY = {
@@ -28,7 +31,7 @@ ALIASES = {
     "vizlight.engine": "vizlight.shading.engine",
     "vizlight.light": "vizlight.scene.light",
     "vizlight.movie": "vizlight.pictures.movie",
-    "vizlight.plan": "vizlight.shading.plan",
+    "vizlight.plan": "vizlight.shading.engine",
     "vizlight.render": "vizlight.pictures.render",
     "vizlight.testing": "vizlight.pictures.testing",
     **{f"vizlight.geometry.{m}": f"vizlight.geometry.{d}.{m}" for m, d in GEOMETRY.items()},
@@ -48,7 +51,7 @@ class _Alias(Loader):
         module.__spec__ = self._spec
 
 
-class _Finder(MetaPathFinder):
+class _Finder:
     def find_spec(
         self, fullname: str, _path: Sequence[str] | None, _target: ModuleType | None = None
     ) -> ModuleSpec | None:

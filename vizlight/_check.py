@@ -5,6 +5,7 @@ They raise TypeError for a value of the wrong type, ValueError for a wrong shape
 
 from __future__ import annotations
 
+import functools
 import math
 import numbers
 import sys
@@ -14,20 +15,35 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
+    from typing import ParamSpec, TypeVar
 
     from vizlight._types import Array, Color, Indices, Vector
+
+    P = ParamSpec("P")
+    R = TypeVar("R")
 
 #: Largest intensity, coefficient or power: the product of three of them fits float32.
 LARGEST = 1e9
 
 
-def warn(text: str) -> None:
+def warn(text: str, category: type[Warning] = UserWarning) -> None:
     """Issue a warning that points at the caller's line outside this package."""
     level, frame = 2, sys._getframe(1)
     while frame.f_back and frame.f_globals.get("__name__", "").partition(".")[0] == "vizlight":
         level, frame = level + 1, frame.f_back
-    warnings.warn(text, stacklevel=level)
+    warnings.warn(text, category, stacklevel=level)
+
+
+def renamed(function: Callable[P, R], old: str) -> Callable[P, R]:
+    """Return a function under its old name, which warns that it has a new one."""
+
+    @functools.wraps(function)
+    def method(*args: P.args, **kwargs: P.kwargs) -> R:
+        warn(f"{old} is now called {function.__name__}", DeprecationWarning)
+        return function(*args, **kwargs)
+
+    return method
 
 
 def message(name: str, expected: str, got: object, remedy: str = "") -> str:
@@ -47,6 +63,19 @@ def choice(name: str, value: object, allowed: Sequence[str]) -> None:
     if value not in allowed:
         *others, last = (repr(text) for text in allowed)
         raise ValueError(message(name, f"{', '.join(others)} or {last}", describe(value)))
+
+
+def boolean(name: str, value: object, *, expected: str = "True or False") -> bool:
+    """Return a truth value; 0 and 1 count as such, words do not.
+
+    Raises
+    ------
+    TypeError
+        If the value is neither.
+    """
+    if isinstance(value, bool | np.bool_) or (isinstance(value, int) and value in (0, 1)):
+        return bool(value)
+    raise TypeError(message(name, expected, describe(value)))
 
 
 def describe(value: object) -> str:

@@ -42,9 +42,10 @@ class Accessor:
         self._mesh: Any = mesh
 
     def __repr__(self) -> str:
-        known = ", ".join(name for name in dir(type(self)) if name[0] != "_")
+        known = ", ".join(name for name in filters.__all__ if hasattr(self, name))
         return f"vizlight of {type(self._mesh).__name__}: {known}"
 
+    bas_relief = _method(filters.bas_relief)
     fur = _method(filters.fur)
     illuminate = _method(filters.illuminate)
     isoluminance = _method(filters.isoluminance)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import csv
 import re
 import shutil
+import sys
 from pathlib import Path
 
 from sphinx.util.display import status_iterator
@@ -12,25 +12,31 @@ from sphinx.util.display import status_iterator
 from vizlight import studies
 from vizlight.studies._results import number
 
-#: All inputs of the stability suite: ``vizlight study stability -o gallery/pages``.
-KEPT = "stability.csv"
+#: Table of the stability suite, which ``.venv/bin/python tests/stability`` writes here.
+KEPT = Path(__file__).resolve().with_name("stability.csv")
+sys.path.append(str(KEPT.parents[2] / "tests"))
 
 
 def write(app):
     """Write a page, a table and a figure for each study, and the table of all verdicts."""
+    from stability import suite
+
     source = Path(app.srcdir)
     folder = source / "studies"
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir()
     overview = []
-    for name in status_iterator(
-        studies.names(), "measuring... ", "darkgreen", len(studies.names())
-    ):
-        study = studies.load(name)
-        kept = name == "stability"
-        result = _kept(study, source / KEPT) if kept else studies.run(name, study, quick=True)
+    names = sorted([*studies.names(), KEPT.stem])
+    for name in status_iterator(names, "measuring... ", "darkgreen", len(names)):
+        if name == KEPT.stem:
+            result, command = suite.read(KEPT), "python tests/stability"
+            headings, rows = suite.worst(result.rows)
+        else:
+            result = studies.run(name, studies.load(name), quick=True)
+            command = f"vizlight study {name} --quick"
+            headings, rows = result.table()
+        study = result.study
         result.draw(folder / f"{name}.png")
-        headings, rows = _worst(result) if kept else result.table()
         cells = [[_plain(number(cell)) for cell in row] for row in rows]
         approximates, verdict = _plain(study.approximates), _plain(result.verdict)
         overview.append([f":doc:`{name} <studies/{name}>`", approximates, verdict])
@@ -40,7 +46,7 @@ def write(app):
             f"Reference: {_plain(study.reference)}.", "",
             f"**Verdict**: {verdict}.", "",
             f".. figure:: {name}.png", f"   :alt: {study.error} over {study.cost}", "",
-            f"   ``vizlight study {name}{'' if kept else ' --quick'}``.", "",
+            f"   ``{command}``.", "",
             *_table(map(_plain, headings), cells),
         ]  # fmt: skip
         (folder / f"{name}.rst").write_text("\n".join(page) + "\n", encoding="utf-8")
@@ -58,31 +64,6 @@ def _table(headings, rows, widths="auto"):
     for row in [headings, *rows]:
         lines += [f"   {'*' if i == 0 else ' '} - {cell or '..'}" for i, cell in enumerate(row)]
     return [*lines[:4], "", *lines[4:], ""]
-
-
-def _kept(study, path):
-    """Return the result that was written to a file."""
-    with path.open(newline="", encoding="utf-8") as file:
-        _, *lines = csv.reader(file)
-    more = ("type", "case", "seen / claimed", "inputs", "")
-    rows = [
-        studies.Row(way, *map(float, numbers), dict(zip(more, rest, strict=True)))
-        for way, *numbers, rest in ((*line[:4], line[4:]) for line in lines)
-    ]
-    return studies.Result(path.stem, study, rows, study.verdict(rows))
-
-
-def _worst(result):
-    """Return headings, and for each kernel and type its worst case."""
-    headings = ["kernel", "type", "inputs", "worst case", "claimed, eps", "seen, eps", ""]
-    lines = []
-    for key in dict.fromkeys((row.way, row.more["type"]) for row in result.rows):
-        own = [row for row in result.rows if (row.way, row.more["type"]) == key]
-        top = max(own, key=lambda row: float(row.more["seen / claimed"]))
-        inputs = sum(int(row.more["inputs"]) for row in own)
-        more = top.more
-        lines.append([*key, f"{inputs}", more["case"], top.parameter, top.error, more[""]])
-    return headings, lines
 
 
 def setup(app):

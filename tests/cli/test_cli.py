@@ -9,9 +9,8 @@ import pytest
 import pyvista as pv
 
 import vizlight
-from vizlight import cli, render
+from vizlight import Scene, cli, render
 from vizlight.pictures import backends
-from vizlight.scene import Scene
 
 
 @pytest.fixture
@@ -201,7 +200,7 @@ def test_points_that_cannot_be_lit_are_told_and_no_error(volume, capfd):
         (["light", "flow.vti", "-o", "x.gif"], "output: expected a name that ends in"),
         (["light", "flow.vti", "-o", "none/x.vtp"], "output: expected a folder that exists"),
         (["light", "flow.vti", "-o", "x.vti"], "output: expected a name that ends in .vtp"),
-        (["light", "flow.vti", "--light", "1,2"], "--light: expected three numbers x,y,z"),
+        (["light", "flow.vti", "--light", "1"], "--light: expected three numbers x,y,z"),
         (
             ["light", "flow.vti", "--light", "0,0,0"],
             "--light: expected a direction x,y,z, not all zero",

@@ -9,6 +9,7 @@ import vtk
 
 import vizlight
 from vizlight import Light, Material, Scene, View, fur
+from vizlight.model import cylinder
 from vizlight.studies import fur as study
 from vizlight.studies._measuring import peak_memory
 
@@ -406,3 +407,18 @@ def test_surfaces_of_whole_numbers_have_fibres_between():
     hair = fur(mesh, Scene(view=View(direction=(0, 0, 1))), density=0.1, fibres=5)[0]
     assert hair.points.dtype.kind == "f"
     assert np.any(hair.points % 1)
+
+
+def test_fur_of_thin_cylinders_stands_on_a_skin_of_blinns():
+    """Each fibre has the exact line light along itself, the skin the same highlight's power."""
+    mesh, still = torus(), {"conditioned": False, "attenuated": False}
+    coat = fur(mesh, SCENE, density=0.02, fibres=400, length=0.2, model="cylinder", **still)
+    root, tip = strands(coat)[:, 0].astype(float), strands(coat)[:, -1].astype(float)
+    way = np.repeat(tip - root, 4, axis=0)
+    shine = cylinder.specular(TOWARD, EYE, way, shininess=SCENE.material.shininess)
+    light = 0.1 + 0.9 * cylinder.diffuse(TOWARD, EYE, way) + 0.1 * shine
+    np.testing.assert_allclose(coat["fibres"]["luminance"], light, atol=2e-5)
+    skin = vizlight.illuminate(mesh, SCENE, model="blinn")["luminance"]
+    np.testing.assert_allclose(coat["skin"]["luminance"], skin, atol=1e-6)
+    by_phong = vizlight.illuminate(mesh, SCENE)["luminance"]
+    assert np.abs(coat["skin"]["luminance"] - by_phong).max() > 0.01

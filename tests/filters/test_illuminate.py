@@ -332,7 +332,7 @@ def test_result_does_not_hold_the_input_in_memory_twice():
             "tangents: expected a point array of 3 or 6 components.*'two' with 2",
         ),
         ({"tangents": "nine"}, ValueError, "tangents: .*'nine' with 9"),
-        ({"tangents": np.ones((2, 3))}, ValueError, "tangents: expected 42 rows, one a point"),
+        ({"tangents": np.ones((2, 3))}, ValueError, "tangents: expected 42 rows, one per point"),
         (
             {"tangents": "V", "normals": "V"},
             ValueError,

@@ -43,7 +43,7 @@ def test_free_lines_follow_the_field():
 def test_confined_lines_stay_on_the_surface_and_follow_meridians():
     sphere = ball()
     before = sphere.copy()
-    lines = streamlines(sphere, SCENE, vectors="V", seeds=50)
+    lines = streamlines(sphere, SCENE, vectors="V", seeds=20)
     assert lines.field_data["drift"][0] < 1e-6
     distance = np.abs(lines.compute_implicit_distance(sphere)["implicit_distance"])
     assert distance.max() < 1e-6
@@ -60,7 +60,7 @@ def test_drift_is_measured_against_the_true_sphere_as_the_mesh_is_refined():
     """On triangles of size h a sphere is missed by h^2: order 2."""
     sizes, misses = [20, 40, 80], []
     for n in sizes:
-        lines = streamlines(ball(n), SCENE, vectors="V", seeds=40)
+        lines = streamlines(ball(n), SCENE, vectors="V", seeds=12)
         misses.append(np.abs(np.linalg.norm(lines.points, axis=1) - 0.5).max())
     order = -np.polyfit(np.log(sizes), np.log(misses), 1)[0]
     assert abs(order - 2) < 0.3
@@ -69,8 +69,8 @@ def test_drift_is_measured_against_the_true_sphere_as_the_mesh_is_refined():
 def test_a_surface_conditions_the_lines():
     sphere = ball()
     dark = SCENE.replace(material=Material(ambient=0.1))
-    free = streamlines(sphere, dark, vectors="V", conditioned=False, seeds=60)
-    shadowed = streamlines(sphere, dark, vectors="V", seeds=60)
+    free = streamlines(sphere, dark, vectors="V", conditioned=False, seeds=20)
+    shadowed = streamlines(sphere, dark, vectors="V", seeds=20)
     np.testing.assert_allclose(free.points, shadowed.points)
     outward = np.asarray(shadowed.points) / 0.5
     toward = np.array([1, -1, 0.8]) / np.linalg.norm([1, -1, 0.8])
@@ -211,11 +211,11 @@ def test_far_from_the_origin():
     sphere = ball()
     moved = sphere.copy()
     moved.points = np.asarray(sphere.points, float) + offset
-    here = streamlines(sphere, SCENE, vectors="V", seeds=sphere.points[100:110])
-    there = streamlines(moved, SCENE, vectors="V", seeds=np.asarray(moved.points)[100:110])
+    here = streamlines(sphere, SCENE, vectors="V", seeds=sphere.points[100:106])
+    there = streamlines(moved, SCENE, vectors="V", seeds=np.asarray(moved.points)[100:106])
     assert there.field_data["drift"][0] < 1e-6
-    drawn = streamlines(moved, SCENE, vectors="V", seeds=50)
-    assert drawn.n_lines == streamlines(sphere, SCENE, vectors="V", seeds=50).n_lines
+    drawn = streamlines(moved, SCENE, vectors="V", seeds=15)
+    assert drawn.n_lines == streamlines(sphere, SCENE, vectors="V", seeds=15).n_lines
     assert drawn.field_data["drift"][0] < 1e-6
     np.testing.assert_allclose(there.points - offset, here.points, atol=1e-5)
     np.testing.assert_allclose(there["luminance"], here["luminance"], atol=1e-3)
@@ -292,7 +292,7 @@ def test_carotid_artery():
 
 def test_provenance_makes_the_lines_again():
     sphere = ball()
-    lines = streamlines(sphere, SCENE, vectors="V", seeds=20, compensate=False)
+    lines = streamlines(sphere, SCENE, vectors="V", seeds=6, compensate=False)
     told = vizlight.provenance(lines)
     assert told["filter"] == "streamlines"
     again = streamlines(sphere, Scene.from_dict(told["scene"]), **told["options"])
@@ -343,3 +343,42 @@ def test_errors_name_the_arrays_that_could_be_traced():
         streamlines(grid, SCENE)
     with pytest.raises(TypeError, match="got MultiBlock; join its blocks by mesh.combine()"):
         streamlines(pv.MultiBlock([grid]), SCENE)
+
+
+def test_what_points_out_of_a_surface_does_not_count():
+    """The tangential part alone is traced, however large the rest is."""
+    sphere = ball(30)
+    normals = np.asarray(sphere["Normals"], dtype=float)
+    seeds = np.asarray(sphere.points)[100:106]
+    along = streamlines(sphere, SCENE, vectors="V", seeds=seeds)
+    sphere["V"] = sphere["V"] + normals * np.linspace(-3, 3, sphere.n_points)[:, np.newaxis]
+    tilted = streamlines(sphere, SCENE, vectors="V", seeds=seeds)
+    np.testing.assert_allclose(tilted.points, along.points, atol=1e-6)
+    np.testing.assert_allclose(tilted["luminance"], along["luminance"], atol=1e-5)
+
+
+def test_lines_run_from_their_seeds_both_ways():
+    grid = pv.ImageData(dimensions=(21, 5, 5), origin=(-1, 0, 0), spacing=(0.1, 0.1, 0.1))
+    grid["V"] = np.tile([2.0, 0, 0], (grid.n_points, 1))
+    lines = streamlines(grid, SCENE, vectors="V", seeds=[[0.3, 0.2, 0.2]], max_length=0.5)
+    x = np.asarray(lines.points)[:, 0]
+    assert x.min() == pytest.approx(0.3 - 0.5, abs=0.1)
+    assert x.max() == pytest.approx(0.3 + 0.5, abs=0.1)
+
+
+def test_seeds_on_a_surface_are_uniform_in_its_area():
+    """A square of two triangles; lines so short that each shows where its seed is."""
+    square = pv.Plane(i_resolution=1, j_resolution=1).triangulate()
+    square["V"] = np.tile([1.0, 0, 0], (4, 1))
+    lines = streamlines(square, SCENE, vectors="V", seeds=640, max_length=0.02, step=0.01)
+    seeds = np.array([line.mean(axis=0) for line in parts(lines)])
+    assert len(seeds) > 600
+    number, _, _ = np.histogram2d(*seeds[:, :2].T, bins=4, range=[[-0.5, 0.5]] * 2)
+    chi2 = np.sum((number - len(seeds) / 16) ** 2) / (len(seeds) / 16)
+    assert chi2 < 15 + 5 * np.sqrt(2 * 15)
+
+
+def parts(lines):
+    """Return the points of each line."""
+    ends = np.cumsum([lines.get_cell(i).n_points for i in range(lines.n_cells)])
+    return np.split(np.asarray(lines.points, dtype=float), ends[:-1])

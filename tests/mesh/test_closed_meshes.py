@@ -86,7 +86,7 @@ def test_cavity_is_outside(make):
     assert found[0] == pytest.approx(0.25 + 0.5, abs=5e-3)
 
 
-def test_faces_turned_at_random_are_turned_alike(make, random):
+def test_faces_flipped_at_random_are_oriented_consistently(make, random):
     mesh = pv.Sphere(theta_resolution=30, phi_resolution=30)
     faces = mesh.regular_faces.copy()
     turned = random.random(len(faces)) < 0.4
@@ -134,11 +134,11 @@ def test_open_surface_says_how_to_repair():
         closed_meshes.closed(mesh)
 
 
-def test_shell_of_faces_turned_unlike_is_refused():
+def test_shell_of_inconsistently_oriented_faces_is_refused():
     plane = pv.Plane(i_resolution=4, j_resolution=3).triangulate()
     faces = plane.regular_faces.copy()
     faces[5] = faces[5][::-1]
     mixed = pv.PolyData.from_regular_faces(plane.points, faces)
     normals = np.tile([0.0, 0, 1], (plane.n_points, 1))
-    with pytest.raises(ValueError, match="mesh: expected a surface whose faces are turned alike"):
+    with pytest.raises(ValueError, match="mesh: expected a surface of consistently oriented faces"):
         closed_meshes.shell(mixed, 0.1, normals)

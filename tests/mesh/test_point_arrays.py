@@ -1,14 +1,11 @@
-"""What is taken from a mesh: points by slice, and normals on the right side."""
+"""Points of grids by slice."""
 
 from __future__ import annotations
 
 import numpy as np
-import pytest
 import pyvista as pv
 
-import vizlight
-from vizlight import Light, Material, Scene, View
-from vizlight.mesh import normals, point_arrays
+from vizlight.mesh import point_arrays
 
 
 def test_points_of_a_turned_image_with_an_extent():
@@ -25,99 +22,9 @@ def test_points_of_a_turned_image_with_an_extent():
     np.testing.assert_allclose(rows[7:23], grid.points[7:23], atol=1e-12)
 
 
-@pytest.mark.parametrize("winding", [1, -1])
-def test_normals_of_a_closed_surface_are_outward(winding):
-    mesh = pv.Sphere().copy()
-    mesh.clear_data()
-    faces = mesh.regular_faces[:, ::winding]
-    mesh = pv.PolyData.from_regular_faces(mesh.points, faces)
-    found = normals.surface_normals(mesh, None)
-    outward = np.asarray(mesh.points) / 0.5
-    assert np.einsum("ij,ij->i", found, outward).min() > 0.99
-
-
-@pytest.mark.parametrize("winding", [1, -1])
-def test_normals_of_open_pieces_turn_outward_and_to_the_eye(winding):
-    cup = pv.Sphere(end_phi=150).triangulate()
-    cup.clear_data()
-    both = cup.merge(cup.translate((3, 0, 0), inplace=False), merge_points=False)
-    mesh = pv.PolyData.from_regular_faces(both.points, both.regular_faces[:, ::winding])
-    found = normals.surface_normals(mesh, None)
-    centre = np.where(np.asarray(mesh.points)[:, :1] > 1.5, [[3.0, 0, 0]], [[0.0, 0, 0]])
-    assert np.einsum("ij,ij->i", found, mesh.points - centre).min() > 0.45
-    sheet = pv.Plane(i_resolution=3, j_resolution=3)
-    sheet.clear_data()
-    for side in (1.0, -1.0):
-        for view in (View(direction=(0, 0.1, side)), View(position=(0, 0, 5 * side))):
-            up = normals.surface_normals(sheet, view)[:, 2]
-            np.testing.assert_allclose(up, side)
-
-
-def test_a_bowl_faces_the_eye_that_looks_into_it():
-    bowl = pv.Sphere(end_phi=90, theta_resolution=40, phi_resolution=40)
-    bowl.clear_data()
-    for side in (1, -1):
-        found = normals.surface_normals(bowl, View(direction=(0, 0.3, side)))
-        outward = np.einsum("ij,ij->i", found, np.asarray(bowl.points)) / 0.5
-        assert (side * outward).min() > 0.9
-
-
-def test_a_point_that_is_nowhere_has_no_say():
-    x, y = np.meshgrid(np.arange(40.0), np.arange(30.0))
-    z = 5 * np.exp(-((x - 20) ** 2 + (y - 15) ** 2) / 50)
-    z[10, 10] = np.nan
-    for side in (1, -1):
-        found = normals.surface_normals(pv.StructuredGrid(x, y, z), View(direction=(0, 0, side)))
-        known = np.isfinite(found).all(axis=1) & found.any(axis=1)
-        assert known.sum() > 1150
-        assert (side * found[known, 2]).min() > 0
-
-
-@pytest.mark.parametrize("winding", [1, -1])
-@pytest.mark.parametrize("eye", [(5, 0, 5), (-5, 0, 5), (0, 0, -9), (30, 1, 0)])
-def test_what_is_nearly_closed_faces_outward_wherever_the_eye_is(winding, eye):
-    slab = pv.Cube(x_length=4, y_length=1, z_length=0.2).triangulate().clean().subdivide(2)
-    kept = slab.regular_faces[slab.cell_centers().points[:, 0] < 1.99]
-    open_end = pv.PolyData.from_regular_faces(slab.points, kept[:, ::winding])
-    assert open_end.n_open_edges > 0
-    found = normals.surface_normals(open_end, View(position=eye))
-    flat = np.all(np.abs(open_end.points[:, :2]) < (1.6, 0.4), axis=1)
-    assert flat.sum() > 10
-    assert (np.sign(open_end.points[flat, 2]) * found[flat, 2]).min() > 0.99
-
-
-def test_without_a_view_the_light_is_looked_from():
-    sheet = pv.Plane(i_resolution=3, j_resolution=3)
-    sheet.clear_data()
-    for side in (1.0, -1.0):
-        for where in ({"direction": (0, 0.5, side)}, {"position": (0, 0, 7 * side)}):
-            scene = Scene(lights=Light(**where), material=Material(specular=0))
-            lit = vizlight.illuminate(sheet, scene)
-            assert lit["luminance"].min() > 0.3
-    assert normals.onlooker(Scene(lights=Light.headlight())) is None
-
-
-def test_separate_triangles_of_a_closed_surface_face_outward():
-    soup = pv.Sphere().separate_cells().extract_surface(algorithm="geometry")
-    soup.clear_data()
-    found = normals.surface_normals(soup, View(direction=(0, 0, 1)))
-    assert np.einsum("ij,ij->i", found, np.asarray(soup.points)).min() > 0.4
-
-
 def test_points_of_a_rectilinear_grid():
     grid = pv.RectilinearGrid([0.0, 1, 4], [2.0, 3], [5.0, 7, 8, 9])
     rows = point_arrays.GridPoints(grid)
     assert rows.shape == (24, 3)
     np.testing.assert_array_equal(rows[0:24], grid.points)
     np.testing.assert_array_equal(rows[5:9], grid.points[5:9])
-
-
-def test_strips_and_loose_points_have_their_piece():
-    strip = pv.Plane(i_resolution=4, j_resolution=4).triangulate().strip()
-    strip.clear_data()
-    found = normals.surface_normals(strip, View(direction=(0, 0, -1)))
-    np.testing.assert_allclose(found[:, 2], -1)
-    loose = pv.PolyData.from_regular_faces(np.vstack([np.eye(3), [[9.0, 9, 9]]]), [[0, 1, 2]])
-    found = normals.surface_normals(loose, View(direction=(1, 1, 1)))
-    np.testing.assert_allclose(found[:3], 3**-0.5, rtol=1e-6)
-    np.testing.assert_array_equal(found[3], 0)

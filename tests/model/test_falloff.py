@@ -1,4 +1,4 @@
-"""Distance and depth: the Lecture's functions against their formulas in 50 _digits."""
+"""Distance and depth: the Lecture's functions against their formulas in 50 digits."""
 
 from __future__ import annotations
 

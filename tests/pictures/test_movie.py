@@ -87,13 +87,13 @@ def test_the_camera_stays(torus, tmp_path):
 def test_rotation_comes_before_the_turn(torus, tmp_path):
     camera = render.camera_on((-3, 3, -3, 3, -1, 1))
     first = projection.rotation(4, [("yz", 0.4), ("xw", 0.3)])
+    expected = project(torus, rotation=[first, ("zw", 0.5)], scene=SCENE)
+    seen = next(render.pictures([expected], camera=camera, **SMALL))
     for rotation in (first, first.tolist(), [("yz", 0.4), ("xw", 0.3)]):
         movie.turn(
             torus, tmp_path / "t.png", scene=SCENE, frames=2, angle=1.0, rotation=rotation,
             plane="zw", camera=camera, picture=SMALL,
         )  # fmt: skip
-        expected = project(torus, rotation=[first, ("zw", 0.5)], scene=SCENE)
-        seen = next(render.pictures([expected], camera=camera, **SMALL))
         difference = np.asarray(Image.open(tmp_path / "t_0001.png"), int) - seen
         assert np.abs(difference).max() <= 1
 

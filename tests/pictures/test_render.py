@@ -85,39 +85,6 @@ def test_the_highlight_is_where_the_mirror_says(tmp_path):
     assert row == pytest.approx(149.5 - scale * normal[2], abs=4)
 
 
-@pytest.mark.parametrize("parallel", [False, True])
-@pytest.mark.parametrize("direction", [(1, 1, 1), (0, 0, 1), (0, 0, -2), (-1, 0.2, 0)])
-def test_camera_frames_as_vtk_would(direction, parallel):
-    bounds = (-3.0, 5, 2, 4, 1e3, 1e3 + 7)
-    camera = render.camera_on(bounds, direction, parallel=parallel)
-    renderer = pv.Plotter(off_screen=True).renderer
-    renderer.camera = camera.copy()
-    renderer.ResetCamera(*bounds)
-    np.testing.assert_allclose(camera.position, renderer.camera.position, rtol=1e-6)
-    np.testing.assert_allclose(camera.focal_point, renderer.camera.focal_point, rtol=1e-9)
-    assert camera.parallel_scale == pytest.approx(renderer.camera.parallel_scale)
-    assert camera.parallel_projection == parallel
-
-
-@pytest.mark.parametrize("direction", [(0.3, -1, 0.4), (0, 0, 1), (1, 0.2, -0.5)])
-def test_a_mesh_is_centred_as_it_is_seen(direction):
-    """The camera's focal point lies in the middle of what is seen, which is not the box's."""
-    points = np.array([[0, 0, 0], [4, 0, 0], [4, 3, 1], [0.5, 0.2, 5e-1]])
-    mesh = pv.MultiBlock([pv.PolyData(points[:2]), None, pv.PolyData(points[2:]), pv.PolyData()])
-    camera = render.camera_on(mesh, direction, parallel=True)
-    back = np.array(direction) / np.linalg.norm(direction)
-    right = np.cross(camera.up, back)
-    for axis in (right, np.cross(back, right)):
-        seen = points @ axis
-        assert camera.focal_point @ axis == pytest.approx((seen.min() + seen.max()) / 2)
-    box = render.camera_on(mesh.bounds, direction, parallel=True)
-    if np.count_nonzero(direction) == 3:
-        assert np.linalg.norm(np.subtract(camera.focal_point, box.focal_point)) > 0.1
-    assert camera.parallel_scale < box.parallel_scale
-    with pytest.raises(ValueError, match="bounds: expected a mesh with points"):
-        render.camera_on(pv.PolyData())
-
-
 @pytest.mark.opengl
 @pytest.mark.parametrize("parallel", [False, True])
 @pytest.mark.parametrize("size", [(300, 100), (100, 300), (150, 150)])
@@ -146,21 +113,6 @@ def test_a_scalar_bar_is_named(tmp_path):
     changed = np.any(with_bar != without, axis=-1)
     assert changed[:, :420].sum() == 0
     assert changed[:, 460:].mean() > 0.1
-
-
-def test_zoom_halves_the_distance():
-    bounds = (0, 1, 0, 1, 0, 1)
-    one, two = (render.camera_on(bounds, zoom=zoom) for zoom in (1, 2))
-    assert two.distance == pytest.approx(one.distance / 2)
-    assert two.parallel_scale == pytest.approx(one.parallel_scale / 2)
-
-
-def test_light_over_the_shoulder_is_above_left_of_the_eye():
-    camera = render.camera_on((0, 1, 0, 1, 0, 1), (0, -1, 0))
-    x, y, z = render.over_shoulder(camera)
-    assert x < 0
-    assert y < 0
-    assert z > 0
 
 
 def test_blocks_are_drawn_together_and_lines_on_black(tmp_path):

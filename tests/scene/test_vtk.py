@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from functools import cache
 
 import numpy as np
 import pytest
@@ -21,12 +22,17 @@ def turned(degrees, intensity=1.0):
     return Light(direction=direction, intensity=intensity)
 
 
+@cache
+def ball():
+    # The poles, where triangles are smaller than a pixel, lie at the rim.
+    made = pv.Sphere(radius=1, theta_resolution=300, phi_resolution=300, direction=(0, 1, 0))
+    made.point_data["Normals"] = np.asarray(made.points).copy()
+    made.point_data.active_normals_name = "Normals"
+    return made
+
+
 def pictures(lights, model, shininess, *, parallel, specular=1.0):
     """Red channels of a fine sphere as VTK lights it and as vizlight does, and the disk."""
-    # The poles, where triangles are smaller than a pixel, lie at the rim.
-    ball = pv.Sphere(radius=1, theta_resolution=400, phi_resolution=400, direction=(0, 1, 0))
-    ball.point_data["Normals"] = np.asarray(ball.points).copy()
-    ball.point_data.active_normals_name = "Normals"
     material = Material(ambient=0.0, diffuse=0.0, specular=specular, shininess=shininess)
     images = []
     for by_vtk in (True, False):
@@ -42,11 +48,11 @@ def pictures(lights, model, shininess, *, parallel, specular=1.0):
             for light in lights:
                 plotter.add_light(as_vtk(light))
             shown = material.to_property(lights=lights, view=view, model=model)
-            mapper = pv.DataSetMapper(ball)
+            mapper = pv.DataSetMapper(ball())
             plotter.add_actor(pv.Actor(mapper=mapper, prop=shown))
         else:
             scene = Scene(lights=lights, material=material, view=view)
-            lit = illuminate(ball, scene, model=model)
+            lit = illuminate(ball(), scene, model=model)
             # As bytes: a colour table would round a second time.
             grey = np.rint(255 * np.clip(lit["luminance"], 0, 1)).astype(np.uint8)
             lit["grey"] = np.repeat(grey[:, np.newaxis], 3, axis=1)

@@ -137,15 +137,10 @@ def test_cylinder_of_the_engine_is_the_model(light, view, shininess, dtype, rand
     np.testing.assert_allclose(shading.diffuse, diffuse, atol=slack)
     np.testing.assert_allclose(shading.specular, specular, atol=slack)
     assert shading.luminance.dtype == dtype
-    for i in range(0, 500, 125):
-        true = oracles.line_light(
-            np.broadcast_to(wi, points.shape)[i],
-            np.broadcast_to(wo, points.shape)[i],
-            t[i],
-            shininess,
-        )
-        assert shading.diffuse[i] == pytest.approx(0.7 * float(true[0]), abs=slack)
-        assert shading.specular[i] == pytest.approx(0.3 * float(true[1]), abs=slack)
+    wi, wo = (np.broadcast_to(way, points.shape) for way in (wi, wo))
+    true = oracles.line_light(wi[7], wo[7], t[7], shininess)
+    assert shading.diffuse[7] == pytest.approx(0.7 * float(true[0]), abs=slack)
+    assert shading.specular[7] == pytest.approx(0.3 * float(true[1]), abs=slack)
 
 
 def test_hard_points_of_cylinders(dtype):

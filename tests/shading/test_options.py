@@ -10,6 +10,7 @@ import pytest
 
 import vizlight
 from vizlight.filters.fur import FurKeywords, FurOptions
+from vizlight.filters.isoluminance import ContourKeywords, ContourOptions
 from vizlight.filters.project import ProjectKeywords, ProjectOptions
 from vizlight.filters.relief_shadow import ReliefKeywords, ReliefOptions
 from vizlight.filters.streamlines import StreamlineKeywords, StreamlineOptions
@@ -27,6 +28,7 @@ PAIRS = [
     (LightOptions, LightKeywords),
     (StreamlineOptions, StreamlineKeywords),
     (ProjectOptions, ProjectKeywords),
+    (ContourOptions, ContourKeywords),
     (FurOptions, FurKeywords),
     (ReliefOptions, ReliefKeywords),
 ]
@@ -57,6 +59,7 @@ def test_every_option_is_described_with_its_default(fields):
         ("project", ProjectOptions),
         ("manifold", ProjectOptions),
         ("fur", FurOptions),
+        ("isoluminance", ContourOptions),
         ("relief_shadow", ReliefOptions),
     ],
 )
@@ -116,6 +119,8 @@ def test_a_missing_option_is_named():
         ({"model": "lambert"}, ValueError, "model: expected 'phong', 'blinn' or 'cylinder'"),
         ({"precision": "half"}, ValueError, "precision: expected 'float32' or 'float64'"),
         ({"conditioned": 3}, TypeError, "conditioned: expected True, False or the name"),
+        ({"two_sided": "no"}, TypeError, "two_sided: expected True or False, got 'no'"),
+        ({"flip_normals": "no"}, TypeError, "flip_normals: expected True or False, got 'no'"),
         ({"tolerance": -1}, ValueError, "tolerance: expected a finite number of at least 0"),
         ({"tolerance": 1, "highlight_error": 1}, ValueError, "tolerance: .* got both"),
     ],
@@ -123,6 +128,11 @@ def test_a_missing_option_is_named():
 def test_bad_values(options, error, words):
     with pytest.raises(error, match=words):
         LightOptions(**options)
+
+
+def test_satin_has_more_seeds():
+    assert inspect.signature(vizlight.satin).parameters["seeds"].default == 300
+    assert inspect.signature(vizlight.streamlines).parameters["seeds"].default == 200
 
 
 def test_options_for_a_surface_beside_lines():
@@ -140,4 +150,14 @@ def test_old_names_of_the_engine_still_work():
         old = engine.shade(points, tangents, scene, carrier=base)
     new = engine.shade(points, tangents, scene, base_tangents=base)
     assert old.luminance == new.luminance
+    with pytest.raises(TypeError, match="carrier: expected base_tangents= alone, got both"):
+        engine.shade(points, tangents, scene, base_tangents=base, carrier=base)
+    with pytest.warns(DeprecationWarning, match="Plan.carrier is now called Plan.base"):
+        assert new.plan.carrier == new.plan.base == 2
+    with pytest.warns(DeprecationWarning, match="Plan.carrier_exponent is now"):
+        assert new.plan.carrier_exponent == new.plan.base_exponent
+    assert [new.plan.two_sided, new.plan.components, new.plan.colored] == [False] * 3
+    from vizlight.plan import plan
+
+    assert plan is engine.plan
     assert engine.Rows is engine.ArraySource

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 import vizlight
-from vizlight import Light, Material, Scene, View, engine
+from vizlight import DepthCue, Light, Material, Scene, View, engine
 from vizlight.model import cylinder
+from vizlight.shading import bounds
 from vizlight.shading.plan import EXACT
 
 PARALLEL, NEAR = View(direction=(0, 0, 1)), View(position=(0, 1, 9))
@@ -200,3 +201,40 @@ def test_filter_and_provenance():
 def test_bad_tolerances(options, error, words):
     with pytest.raises(error, match=words):
         lines_of(Scene(lights=Light(direction=(1, 0, 1)), view=PARALLEL), **options)
+
+
+def test_no_bound_holds_where_light_and_eye_are_opposite(random):
+    """Rounding decides where the half vector points; the diffuse term is chosen without it."""
+    points, lines = random.standard_normal((2, 3000, 3))
+    scene = Scene(lights=Light(direction=(0, 0, -1)), view=PARALLEL)
+    exact = engine.shade(points, lines, scene, model="blinn")
+    made = engine.shade(points, lines, scene, model="blinn", tolerance=0.05)
+    assert exact.plan.exponent == pytest.approx(4.7635, abs=1e-4)
+    assert made.plan.exponent == 5
+    assert made.plan.dtype == np.float64
+    assert made.plan.choice.bound == np.inf
+    assert np.abs(made.luminance - exact.luminance).max() < 0.05
+    headlight = lines_of(Scene(lights=Light.headlight(), view=NEAR), model="blinn", tolerance=0.05)
+    assert headlight.dtype == np.float32
+    assert headlight.choice.bound < 0.05
+
+
+@pytest.mark.parametrize("cue", [0.0, 0.5, 30.0, 1e5])
+@pytest.mark.parametrize("dull", [False, True])
+def test_the_depth_cue_is_in_the_bound(cue, dull, random):
+    points = random.standard_normal((2000, 3)).astype(np.float32)
+    normals = random.standard_normal((2000, 3)).astype(np.float32)
+    scene = Scene(
+        lights=Light(direction=(1, 2, 3)),
+        material=Material(diffuse=0.0, specular=0.0) if dull else Material(),
+        view=View(direction=(0, 0, 1)),
+        depth_cue=DepthCue(front=2, back=-2, cue=cue, smooth=True),
+    )
+    exact = engine.shade(points, None, scene, normals=normals, precision="float64").luminance
+    made = engine.shade(points, None, scene, normals=normals, precision="float32")
+    off = np.abs(made.luminance - exact).max()
+    assert off <= bounds.rounding(made.plan)
+    # The bound is of use: within a factor of 20 of what is seen where the cue is bright.
+    assert cue < 1 or off > bounds.rounding(made.plan) / 20
+    chosen = engine.shade(points, None, scene, normals=normals, tolerance=1e-3)
+    assert np.abs(chosen.luminance - exact).max() <= 1e-3

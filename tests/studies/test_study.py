@@ -52,7 +52,7 @@ def test_names():
     assert {"engine", "brightness", "frames", "highlights", "lines", "fur", "relief"} <= set(
         studies.names()
     )
-    assert {"mesh", "scaling", "stability", "streamlines", "tubes"} <= set(studies.names())
+    assert {"mesh", "scaling", "streamlines", "tubes"} <= set(studies.names())
     assert "reference" not in studies.names()
     with pytest.raises(ValueError, match=r"study: expected one of brightness, .*, got 'nothing'"):
         studies.load("nothing")
@@ -169,13 +169,3 @@ def test_bad_command_lines(tmp_path, capfd):
     (tmp_path / "file").touch()
     assert cli.main(["study", "brightness", "-o", str(tmp_path / "file")]) == 2
     assert "out: expected a folder" in capfd.readouterr().err
-
-
-def test_a_study_that_lacks_something(capfd, tmp_path, monkeypatch, toy):
-    def missing(_):
-        raise studies.LackingError("mpmath is missing; pip install 'vizlight[test]'")
-
-    monkeypatch.setattr(studies, "load", lambda _: toy.__class__(**{**vars(toy), "steps": missing}))
-    assert cli.main(["study", "stability", "-o", str(tmp_path)]) == 1
-    assert capfd.readouterr().err == "vizlight: mpmath is missing; pip install 'vizlight[test]'\n"
-    assert not list(tmp_path.iterdir())

@@ -8,7 +8,8 @@ from vizlight.studies import Row, tubes
 
 
 @pytest.mark.opengl
-def test_tubes_take_twenty_times_the_points():
+def test_tubes_take_twenty_times_the_points(monkeypatch):
+    monkeypatch.setattr(tubes, "SIDES", (4, 20))
     (lines, *tubes_of), meshes, _ = tubes.measure(10, repeats=1)
     tube = tubes_of[-1]
     assert 15 * lines.more["points"] < tube.more["points"] < 25 * lines.more["points"]

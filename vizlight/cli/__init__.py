@@ -1,4 +1,4 @@
-"""The command line: ``vizlight demo``, ``light FILE``, ``study NAME``, ``doctor``."""
+"""The command line: a command for each filter, ``demo``, ``doctor`` and ``study``."""
 
 from vizlight.cli.main import app, main
 from vizlight.cli.output import BAD_INPUT, LACKING, OK

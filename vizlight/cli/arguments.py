@@ -2,91 +2,139 @@
 
 from __future__ import annotations
 
-import re
-from dataclasses import dataclass, field, fields, make_dataclass
+import math
+from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated, Literal
 
-from cyclopts import Parameter
+from cyclopts import Group, Parameter
 
 from vizlight import _check
-from vizlight.shading.options import LightOptions, Model, Precision, documented
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 Backend = Literal["egl", "osmesa"]
-Vector = Annotated[str, Parameter(allow_leading_hyphen=True)]
-Vectors = Annotated[list[str], Parameter(allow_leading_hyphen=True, negative=())]
+Flag = Annotated[bool, Parameter(negative=(), show_default=False)]
+Text = Annotated[str, Parameter(allow_leading_hyphen=True)]
+Texts = Annotated[list[str], Parameter(allow_leading_hyphen=True, negative=())]
 Positions = Annotated[
     list[str],
     Parameter(name=["--light-position", "--lamp"], allow_leading_hyphen=True, negative=()),
 ]
 Outputs = Annotated[list[Path], Parameter(name=["--output", "-o"], negative=())]
 
+#: How the options of a group stand in a command's signature.
+GROUPS = {
+    name: Group(name, sort_key=place)
+    for place, name in enumerate(("What is lit", "How", "Light", "Material", "Camera", "Output"))
+}
+LIT, _, LIGHT, MATERIAL, CAMERA, OUTPUT = (
+    Parameter(name="*", group=group) for group in GROUPS.values()
+)
+COMMON = Parameter(name="*")
+
 
 @dataclass(frozen=True, kw_only=True)
-class Target:
+class Part:
+    """Part of a file.
+
+    Parameters
+    ----------
+    clip
+        Plane NORMAL:OFFSET beyond which is cut away: 0,0,1:5 or z:5.
+    threshold
+        Range NAME:LOW:HIGH of an array that is kept; an end may be empty.
+    contour
+        Point array of which an isosurface is taken.
+    level
+        Value of the isosurface. Default: the middle of the range.
+    """
+
+    clip: Texts | None = None
+    threshold: Texts | None = None
+    contour: str | None = None
+    level: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shape(Part):
+    """Surface of a file.
+
+    Parameters
+    ----------
+    slice
+        Plane NORMAL:OFFSET of which the section is taken.
+    warp
+        Point array, such as heights, by which points are raised.
+    warp_factor
+        Factor of that array's values. Default: 1.
+    """
+
+    slice: Text | None = None
+    warp: str | None = None
+    warp_factor: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Target(Shape):
     """What of a file is lit.
 
     Parameters
     ----------
-    contour
-        Point array of which an isosurface is lit; otherwise the outer surface.
-    level
-        Value of the isosurface. Default: the middle of the range.
-    warp
-        Point array by which the points of a grid are raised, such as the elevation of a terrain.
-    warp_factor
-        Factor of that array's values. Default: 1.
     surface
-        Take the surface of a volume; --no-surface lights all its points.
+        Take the outer surface; otherwise light all points.
     """
 
-    contour: str | None = None
-    level: float | None = None
-    warp: str | None = None
-    warp_factor: float | None = None
     surface: bool = True
 
 
 @dataclass(frozen=True, kw_only=True)
-class Lamps:
-    """Lights and material.
+class Lights:
+    """Lights.
 
     Parameters
     ----------
     light
-        Direction x,y,z toward a light at infinity; may be repeated. Default: over the left
-        shoulder of the eye.
-    lamp
-        Position x,y,z of a light; may be repeated.
+        Direction x,y,z to a far light, or azimuth,altitude in degrees.
+    light_position
+        Position x,y,z of a light.
     headlight
-        Add a light that follows the view; alone it takes the place of the default light.
-    ambient
-        Coefficient of the ambient term.
-    diffuse
-        Coefficient of the diffuse term.
-    specular
-        Coefficient of the specular term.
-    shininess
-        Power of the specular term.
-    color
-        Name of a colour or #rrggbb; the picture is then in colour.
+        Add a light that follows the view.
     depth_cue
         Fade to half with depth.
+    scene
+        JSON file of Scene.to_dict(); other options replace its values.
     """
 
-    light: Vectors | None = None
-    lamp: Positions | None = None
-    headlight: bool = False
-    ambient: float = 0.1
-    diffuse: float = 0.5
-    specular: float = 0.4
-    shininess: float = 20.0
+    light: Texts | None = None
+    light_position: Positions | None = None
+    headlight: Flag = False
+    depth_cue: Flag = False
+    scene: Path | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finish:
+    """Material.
+
+    Parameters
+    ----------
+    ambient
+        Coefficient of the ambient term. Default: 0.1.
+    diffuse
+        Coefficient of the diffuse term. Default: 0.5.
+    specular
+        Coefficient of the specular term. Default: 0.4.
+    shininess
+        Power of the specular term. Default: 20.
+    color
+        Name of a colour, or #rrggbb, for a picture in colour.
+    """
+
+    ambient: float | None = None
+    diffuse: float | None = None
+    specular: float | None = None
+    shininess: float | None = None
     color: str | None = None
-    depth_cue: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,18 +144,18 @@ class Eye:
     Parameters
     ----------
     view
-        Direction x,y,z from the mesh toward the eye.
+        Direction x,y,z to the eye, or a JSON file of a camera position. Default: 1,1,1.
     up
-        Direction that is up in the picture. Default: z.
+        Direction that is up in the picture. Default: z, or y seen along z.
     parallel
         Parallel projection.
     zoom
         Magnification; 2 shows half the width.
     """
 
-    view: Vector = "1,1,1"
-    up: Vector | None = None
-    parallel: bool = False
+    view: Text | None = None
+    up: Text | None = None
+    parallel: Flag = False
     zoom: float = 1.0
 
 
@@ -118,22 +166,21 @@ class Output:
     Parameters
     ----------
     output
-        A file: .png for the picture; .vtp, .vtu, .vtk, .vts, .vti or .vtr for the mesh; may be
-        repeated. Default: NAME-lit.vtp and NAME-lit.png here.
+        Picture .png, mesh .vtp, .vtu, .vtk, .vts, .vti or .vtr, or a folder.
     size
         Width and height of the picture in pixels.
     background
         Colour behind the mesh. Default: white, or black behind lines.
     line_width
-        Width of lines, in pixels of a picture of twice the size, as it is drawn.
+        Width of lines, in pixels of twice the picture's size.
     backend
-        Library that draws: egl (the default) or osmesa.
-    explain
-        Print what is computed and what is skipped.
+        Library that draws. Default: egl.
     report
-        Print the cost, and the error of a sample that is lit again in float64.
+        Print the cost, and the error of a sample lit again in float64.
     progress
         Show a progress bar.
+    script
+        Print the Python script that does the same, and do nothing else.
     """
 
     output: Outputs | None = None
@@ -141,70 +188,104 @@ class Output:
     background: str | None = None
     line_width: float = 1.0
     backend: Backend | None = None
-    explain: bool = False
-    report: bool = False
-    progress: bool = False
+    report: Flag = False
+    progress: Flag = False
+    script: Flag = False
 
 
-#: Types of the options of light on the command line; those that are not here stay in scripts.
-SHOWN: Mapping[str, object] = {
-    "tangents": str | None,
-    "normals": str | None,
-    "average_cells": bool,
-    "conditioned": bool,
-    "two_sided": bool,
-    "flip_normals": bool,
-    "compensate": bool,
-    "model": Model,
-    "terminator": float,
-    "highlight_error": float,
-    "tolerance": str,
-    "components": bool,
-    "precision": Precision | None,
-    "name": str,
-}
+@dataclass(frozen=True, kw_only=True)
+class Color:
+    """Colour of a picture by data.
+
+    Parameters
+    ----------
+    scalars
+        Point array that colours the picture, times the light.
+    cmap
+        Name of the colour map of --scalars.
+    """
+
+    scalars: str | None = None
+    cmap: str = "viridis"
 
 
-def _light_arguments() -> type:
-    """Return a class of the fields of LightOptions, each with the first sentence on it."""
-    texts = documented(LightOptions)
-    defaults = {f.name: f.default for f in fields(LightOptions)} | {"tolerance": "0"}
-    lines = []
-    for name in SHOWN:
-        text = " ".join(texts[name].partition("\n")[2].split()).replace("``", "")
-        sentence = re.split(r"(?<=[.:])\s(?=[A-Z])", text)[0].rstrip(":")
-        lines += [name, f"    {sentence}"]
-    made = make_dataclass(
-        "LightArguments",
-        [(name, kind, field(default=defaults[name])) for name, kind in SHOWN.items()],
-        frozen=True,
-        kw_only=True,
-    )
-    made.__module__ = __name__
-    made.__doc__ = "\n".join(["How it is lit.", "", "Parameters", "----------", *lines])
-    return made
+@dataclass(frozen=True, kw_only=True)
+class Common:
+    """Options of every command that lights files."""
+
+    lights: Annotated[Lights, LIGHT] = Lights()
+    finish: Annotated[Finish, MATERIAL] = Finish()
+    eye: Annotated[Eye, CAMERA] = Eye()
+    out: Annotated[Output, OUTPUT] = Output()
 
 
-LightArguments = _light_arguments()
-
-
-def light_options(arguments: object) -> LightOptions:
-    """Return the options of light from those of the command line."""
-    values = {name: getattr(arguments, name) for name in SHOWN}
-    return LightOptions(**values | {"tolerance": fraction("tolerance", values["tolerance"])})
-
-
-def vector(name: str, text: str, *, direction: bool = True) -> tuple[float, ...]:
-    """Return three numbers x,y,z; a direction is not zero."""
+def numbers(text: str, counts: tuple[int, ...] = (3,)) -> tuple[float, ...]:
+    """Return numbers separated by commas, none where the text is not that."""
     try:
         values = tuple(float(part) for part in text.split(","))
     except ValueError:
-        values = ()
-    if len(values) != 3:
-        raise ValueError(_check.message(f"--{name}", "three numbers x,y,z", repr(text)))
+        return ()
+    return values if len(values) in counts and all(map(math.isfinite, values)) else ()
+
+
+def vector(name: str, text: str, *, n: int = 3, direction: bool = True) -> tuple[float, ...]:
+    """Return a vector x,y,z, with zeros for what it lacks of n components.
+
+    A direction is not zero; a direction toward a light may be azimuth,altitude in degrees.
+    """
+    by_angles = name == "light"
+    values = numbers(text, (3, n, 2) if by_angles else (3, n))
+    if not values:
+        expected = "three numbers x,y,z" + f" or {n} numbers" * (n != 3)
+        expected += ", or azimuth,altitude in degrees" * by_angles
+        raise ValueError(_check.message(f"--{name}", expected, repr(text)))
+    if len(values) == 2:
+        values = toward(*values)
     if direction and not any(values):
         raise ValueError(_check.message(f"--{name}", "a direction x,y,z, not all zero", repr(text)))
-    return values
+    return values + (0.0,) * (n - len(values))
+
+
+def toward(azimuth: float, altitude: float) -> tuple[float, float, float]:
+    """Return a unit direction from degrees clockwise from y (north) and above the horizon."""
+    a, e = (
+        math.radians(azimuth),
+        math.radians(_check.number("altitude", altitude, low=-90, high=90)),
+    )
+    x, y, z = math.sin(a) * math.cos(e), math.cos(a) * math.cos(e), math.sin(e)
+    return round(x, 15), round(y, 15), round(z, 15)
+
+
+def plane(name: str, text: str, *, n: int = 3) -> tuple[tuple[float, ...], float]:
+    """Return a normal and the distance of the plane from the origin along it."""
+    normal, colon, offset = text.rpartition(":")
+    axis = normal.lower().removeprefix("-")
+    if axis in ("x", "y", "z"):
+        sign = -1.0 if normal.startswith("-") else 1.0
+        values: tuple[float, ...] = tuple(sign if axis == own else 0.0 for own in "xyz"[:n])
+    else:
+        values = numbers(normal, (n,))
+    distance = numbers(offset, (1,))
+    if not (colon and any(values) and distance):
+        example = "0,0,1:2.5 or z:2.5" if n == 3 else ",".join("0" * (n - 1)) + ",1:0.2"
+        expected = f"NORMAL:OFFSET, {n} numbers and one, such as {example}"
+        raise ValueError(_check.message(f"--{name}", expected, repr(text)))
+    return values, distance[0]
+
+
+def interval(name: str, text: str) -> tuple[str, float, float]:
+    """Return the name of an array and the ends of a range, infinite where one is empty."""
+    array, *ends = text.rsplit(":", 2)
+    found = [
+        numbers(end, (1,)) if end else (empty,)
+        for end, empty in zip(ends, (-math.inf, math.inf), strict=False)
+    ]
+    if len(found) == 2 and all(found):
+        low, high = found[0][0], found[1][0]
+        if low <= high and any(ends):
+            return array, low, high
+    expected = "NAME:LOW:HIGH, such as Temp:300:600 or Temp:300:"
+    raise ValueError(_check.message(f"--{name}", expected, repr(text)))
 
 
 def fraction(name: str, text: str) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import re
+import functools
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -12,8 +12,7 @@ from vizlight import _check, _console
 from vizlight._version import __version__
 from vizlight.cli import arguments
 from vizlight.cli.arguments import Backend  # noqa: TC001 - cyclopts reads the annotations
-from vizlight.cli.light import light
-from vizlight.cli.output import BAD_INPUT, LACKING, OK, complain, draw, say
+from vizlight.cli.output import BAD_INPUT, LACKING, OK, complain, draw, one_line, say
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -51,15 +50,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _fail(error: object) -> int:
-    text = " ".join(str(error).split())
-    # The library names its options as Python does.
-    text = re.sub(r"\b([a-z]+(?:_[a-z]+)*)=(?:True)?(?=[ ,;.)]|$)", _option, text)
-    complain(text)
+    complain(one_line(error))
     return BAD_INPUT
-
-
-def _option(found: re.Match[str]) -> str:
-    return f"--{found[1].replace('_', '-')}"
 
 
 @app.command
@@ -85,7 +77,7 @@ def demo(
     """
     from rich.table import Table
 
-    from vizlight import demo, files
+    from vizlight import demo, files, render
 
     pixels = arguments.pixels(size)
     try:
@@ -108,10 +100,59 @@ def demo(
     console.print("Error: float32 luminance against plain NumPy in float64. The flow's plan:")
     console.print(explained, highlight=False)
     console.print(f"mesh     {mesh}", highlight=False)
-    return draw(demo.panels(lit), out / "flow.png", camera=camera, size=pixels, backend=backend)
+    picture = functools.partial(
+        render.save_png,
+        demo.panels(lit),
+        out / "flow.png",
+        camera=camera,
+        size=pixels,
+        backend=backend,
+    )
+    return draw(picture)
 
 
-app.command(light)
+#: Commands that light files: module, what they do, and an example.
+LIGHTING = {
+    "light": (
+        "light",
+        "Light a mesh, and write the lit mesh and a picture.",
+        "flow.vtu --contour Temp --tangents V --conditioned",
+    ),
+    "streamlines": (
+        "filters",
+        "Trace streamlines, free or on a surface, and light them.",
+        "flow.vtu --vectors V --model cylinder --diffuse 0.8",
+    ),
+    "relief": (
+        "filters",
+        "Cast shadows on a height field or a closed surface.",
+        "terrain.dem --depth 60 --light 315,20",
+    ),
+    "fur": (
+        "filters",
+        "Cover a surface with fibres, and light them and the skin.",
+        "bunny.ply --density 0.2 --length 0.01",
+    ),
+    "contours": (
+        "filters",
+        "Find contours of equal luminance and the bands between.",
+        "part.stl --levels 8 --specular 0",
+    ),
+    "project": (
+        "filters",
+        "Turn a mesh of n-space, project it to 3-space and light it.",
+        "torus.vtp --rotation xw:0.5 --distance 3",
+    ),
+}
+for _name, (_module, _help, _example) in LIGHTING.items():
+    # By their path, so that PyVista is loaded for the command that is called alone.
+    app.command(
+        f"vizlight.cli.{_module}:{_name}",
+        name=_name,
+        help=_help,
+        help_epilogue=f"Example: vizlight {_name} {_example}",
+    )
+app.register_install_completion_command(help="Install shell completion.")
 
 
 @app.command
@@ -150,7 +191,7 @@ def study(
     Parameters
     ----------
     name
-        Of the study.
+        Name of the study.
     quick
         Measure less: under 20 s on 2 cores.
     out
@@ -168,11 +209,7 @@ def study(
         raise files.FileError(
             _check.message("out", "a folder that can be made", f"'{out}' ({error.strerror})")
         ) from error
-    try:
-        result = studies.run(name, chosen, quick=quick, progress_bar=True)
-    except studies.LackingError as error:
-        complain(error)
-        return LACKING
+    result = studies.run(name, chosen, quick=quick, progress_bar=True)
     studies.print_result(result)
     say(f"table    {result.write_csv(out / f'{name}.csv')}")
     say(f"figure   {result.draw(out / f'{name}.png')}")

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable
     from pathlib import Path
-
-    import pyvista as pv
-
-    from vizlight.pictures.render import Backend, Panel
 
 #: Exit codes: success; no picture or a machine that lacks something; bad input.
 OK, LACKING, BAD_INPUT = 0, 1, 2
@@ -22,34 +19,27 @@ def say(text: str) -> None:
     sys.stdout.write(f"{text}\n")
 
 
+def one_line(error: object) -> str:
+    """Return an error on one line, with the library's options named as on the command line."""
+    text = " ".join(str(error).split())
+    return re.sub(r"(?<![\w.(])([a-z]+(?:_[a-z]+)*)=(?:True)?(?=[ ,;.)]|$)", _option, text)
+
+
+def _option(found: re.Match[str]) -> str:
+    return f"--{found[1].replace('_', '-')}"
+
+
 def complain(text: object) -> None:
     """Write a line to standard error."""
     sys.stderr.write(f"vizlight: {text}\n")
 
 
-def draw(
-    panels: Panel | Sequence[Panel],
-    path: Path,
-    *,
-    camera: pv.Camera,
-    size: tuple[int, int],
-    background: str | None = None,
-    line_width: float = 1.0,
-    backend: Backend | None = None,
-) -> int:
+def draw(picture: Callable[[], Path]) -> int:
     """Draw a picture and return the exit code; without a library that draws print a message."""
     from vizlight import render
 
     try:
-        made = render.save_png(
-            panels,
-            path,
-            camera=camera,
-            size=size,
-            background=background,
-            line_width=line_width,
-            backend=backend,
-        )
+        made = picture()
     except render.BackendError as error:
         complain(error)
         return LACKING

@@ -1,6 +1,7 @@
 """PyVista in, PyVista out: arrays are taken from a mesh, lit, and attached to a new mesh."""
 
-from vizlight.filters.bas_relief import relief_from_mesh
+from vizlight.filters.bas_relief import bas_relief
+from vizlight.filters.bas_relief import relief_from_mesh as relief_from_mesh
 from vizlight.filters.fur import fur
 from vizlight.filters.illuminate import illuminate
 from vizlight.filters.isoluminance import isoluminance
@@ -13,6 +14,7 @@ from vizlight.filters.streamlines import streamlines
 from vizlight.mesh.records import provenance
 
 __all__ = [
+    "bas_relief",
     "fur",
     "illuminate",
     "isoluminance",
@@ -20,7 +22,6 @@ __all__ = [
     "project",
     "provenance",
     "relief_day",
-    "relief_from_mesh",
     "relief_shadow",
     "satin",
     "streamlines",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -11,60 +11,59 @@ from vizlight import _check
 from vizlight.geometry.relief.depth_map import depth_map
 from vizlight.mesh import closed_meshes
 
+if TYPE_CHECKING:
+    from vizlight._types import Array, VectorLike
 
-def relief_from_mesh(
-    mesh: Any,
+
+def bas_relief(
+    mesh: pv.PolyData,
     /,
     *,
-    direction: Any = (0.0, 0.0, 1.0),
-    up: Any = None,
+    direction: VectorLike = (0.0, 0.0, 1.0),
+    up: VectorLike | None = None,
     resolution: int = 512,
     height: float | None = None,
     margin: float = 0.05,
     name: str = "height",
-) -> Any:
+) -> pv.ImageData:
     """Return the bas-relief of a mesh: its depth map, flattened, on a plate.
 
     Parameters
     ----------
     mesh : pyvista.PolyData
-        A surface, closed or open.
+        Surface, closed or open; not changed.
     direction : vector of 3 components, default: (0, 0, 1)
-        Toward the eye, at infinity.
+        Direction toward the eye, which is at infinity.
     up : vector of 3 components, optional
-        What is up in the picture; default: z, or y if the eye looks along z.
+        Direction that is up in the picture. Default: z, or y if the eye looks along z.
     resolution : int, default: 512
-        Nodes along the longer side, 2 or more.
+        Number of nodes along the longer side of the plate, 2 or more.
     height : float, optional
-        Of the relief above the plate, in the mesh's unit; default: as deep as what is seen.
+        Height of the relief above the plate, in the unit of the mesh. Default: the depth of the
+        visible side.
     margin : float, default: 0.05
-        Of the plate around the mesh, as a share of its longer side.
+        Width of the plate around the mesh, as a share of the longer side of the mesh.
     name : str, default: "height"
+        Name of the point array of heights.
 
     Returns
     -------
     pyvista.ImageData
-        In the plane of x (right) and y (up), centred, with the point array ``height``, 0 on the
-        plate: what :func:`vizlight.relief_shadow` lights.
+        Height field for :func:`vizlight.relief_shadow`, centred, with x to the right and y up.
+        Heights are 0 on the plate.
 
     Raises
     ------
     TypeError, ValueError
-        If an argument does not fit, or nothing of the mesh is seen.
+        If an argument does not fit, or nothing of the mesh is visible.
 
     Notes
     -----
-    Sampled at the nodes (:func:`vizlight.geometry.depth_map.depth_map`), so that no OpenGL is
-    needed. Source: cos-theta, figure 1, lights a bas-relief of a statue.
+    The depth is sampled at the nodes by :func:`vizlight.geometry.depth_map.depth_map`, without
+    OpenGL. Source: cos-theta, figure 1, lights a bas-relief of a statue.
     """
     vertices, triangles = closed_meshes.triangles_of(mesh, "mesh")
-    toward = _unit("direction", direction)
-    if up is None:
-        up = (0.0, 1.0, 0.0) if abs(toward[2]) > 0.999 else (0.0, 0.0, 1.0)
-    right = np.cross(_unit("up", up), toward)
-    if np.linalg.norm(right) < 1e-6:
-        raise ValueError(_check.message("up", "a direction across the view", tuple(up)))
-    right /= np.linalg.norm(right)
+    frame = _eye_frame(direction, up)
     resolution = _check.integer("resolution", resolution, low=2)
     margin = _check.number("margin", margin, low=0.0, high=10.0)
     if height is not None:
@@ -76,14 +75,16 @@ def relief_from_mesh(
     if not len(used):
         raise ValueError(_check.message("mesh", "faces of some area", "none"))
     centre = (used.min(axis=0) + used.max(axis=0)) / 2
-    places = (vertices - centre) @ np.stack([right, np.cross(toward, right), toward], axis=1)
+    places = (vertices - centre) @ frame.T
     seen = places[np.unique(triangles)]
     low, high = seen.min(axis=0), seen.max(axis=0)
     side = float((high - low)[:2].max())
     if not side > 0:
-        raise ValueError(_check.message("mesh", "an extent across the view", "none"))
+        raise ValueError(
+            _check.message("mesh", "an extent across the view", "none", "turn direction")
+        )
     step = side * (1 + 2 * margin) / (resolution - 1)
-    # Rounding must not add a node.
+    # The tolerance prevents an additional node by rounding.
     count = np.ceil(((high - low)[:2] + 2 * margin * side) / step - 1e-6).astype(int) + 1
     count = np.maximum(count, 2)
     first = ((low + high)[:2] - (count - 1) * step) / 2
@@ -91,8 +92,8 @@ def relief_from_mesh(
     depth = depth_map(axes[0], axes[1], places, triangles)
     there = np.isfinite(depth)
     if not there.any():
-        remedy = "raise resolution"
-        raise ValueError(_check.message("mesh", "a surface wider than a node", "thinner", remedy))
+        expected, got = "a surface wider than a node", "a thinner one"
+        raise ValueError(_check.message("mesh", expected, got, "raise resolution"))
     depth -= depth[there].min()
     depth[~there] = 0
     tall = float(depth.max())
@@ -104,9 +105,26 @@ def relief_from_mesh(
     return out
 
 
-def _unit(name: str, value: Any) -> Any:
+def _eye_frame(direction: VectorLike, up: VectorLike | None) -> Array:
+    """Return the unit vectors to the right, up and toward the eye as rows."""
+    toward = _unit("direction", direction)
+    if up is None:
+        up = (0.0, 1.0, 0.0) if abs(toward[2]) > 0.999 else (0.0, 0.0, 1.0)
+    right = np.cross(_unit("up", up), toward)
+    if np.linalg.norm(right) < 1e-6:
+        remedy = "name another direction than that of the eye"
+        raise ValueError(_check.message("up", "a direction across the view", tuple(up), remedy))
+    right /= np.linalg.norm(right)
+    return np.stack([right, np.cross(toward, right), toward])
+
+
+def _unit(name: str, value: object) -> Array:
+    """Return a unit vector of 3 components."""
     vector = np.array(_check.vector(name, value, direction=True))
     if len(vector) != 3:
         raise ValueError(_check.message(name, "3 components", len(vector)))
     vector /= np.abs(vector).max()
-    return vector / np.linalg.norm(vector)
+    return np.asarray(vector / np.linalg.norm(vector))
+
+
+relief_from_mesh = _check.renamed(bas_relief, "relief_from_mesh")

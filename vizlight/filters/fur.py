@@ -110,9 +110,7 @@ class FurOptions:
     name: str = "luminance"
 
     def __post_init__(self) -> None:
-        if self.inward not in get_args(Inward):
-            got = repr(self.inward)
-            raise ValueError(_check.message("inward", "'keep', 'flip' or 'drop'", got))
+        _check.choice("inward", self.inward, get_args(Inward))
         for option in ("bend", "curl", "turns"):
             value = getattr(self, option)
             _check.number(option, value, low=-_check.LARGEST, high=_check.LARGEST)

@@ -40,7 +40,7 @@ def illuminate(
     Parameters
     ----------
     mesh : pyvista.DataSet or pyvista.MultiBlock
-        MeshT that is lit; not changed, unless ``inplace``.
+        Mesh that is lit; not changed, unless ``inplace``.
     scene : Scene
         Lights, material and view, in the unit of the mesh.
     **options
@@ -109,15 +109,15 @@ def light_mesh(
     """Light a mesh by options that are checked; see :func:`illuminate`."""
     _check.instance("scene", scene, Scene)
     blocks.check(mesh)
-    out = mesh if inplace else shallow_copy(mesh)
-    leaves = list(blocks.named_leaves(out))
+    out = mesh if _check.boolean("inplace", inplace) else shallow_copy(mesh)
+    named = list(blocks.named_blocks(out))
     lighting.refuse_overwriting(
-        leaves, options.name, components=options.components, colored=scene.colored
+        named, options.name, components=options.components, colored=scene.colored
     )
-    parts = [(inputs_of(leaf, path, scene, options), options) for leaf, path in leaves]
+    parts = [(inputs_of(block, path, scene, options), options) for block, path in named]
     results, fitted = lighting.light(parts, scene, threads=threads, progress_bar=progress_bar)
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
-    meshes = [leaf for leaf, _ in leaves]
+    meshes = [block for block, _ in named]
     lighting.finish(meshes, results, "illuminate", fitted, options, options.name)
     return out
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
-import functools
 import json
 import time
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 import pyvista as pv
@@ -22,46 +22,43 @@ from vizlight.mesh.inputs import inputs_of
 from vizlight.mesh.point_arrays import unit_rows
 from vizlight.scene import Scene
 from vizlight.shading import engine
-from vizlight.shading.options import LightOptions
+from vizlight.shading.options import LightOptions, accepts
 from vizlight.verify import report
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+    from typing_extensions import Unpack
+
     from vizlight._types import Array, Bools, Indices
     from vizlight.geometry.contours.banding import Bands, Laminae
     from vizlight.geometry.contours.spacing import Levels
     from vizlight.geometry.solids.triangle_mesh import Mesh
+    from vizlight.mesh.records import Record
     from vizlight.model.reflection import SpecularModel
     from vizlight.shading.engine import Shading
 
 
-def isoluminance(
-    mesh: Any,
-    /,
-    scene: Scene,
-    *,
-    levels: Levels = 16,
-    tolerance: float = 3e-3,
-    model: SpecularModel = "phong",
-    two_sided: bool = False,
-    flip_normals: bool = False,
-    normals: Any = None,
-    tangents: Any = None,
-    conditioned: bool = False,
-    compensate: bool = True,
-    threads: int | None = None,
-    name: str = "luminance",
-) -> Any:
-    """Return contours of equal luminance, and the bands between them with one value per band.
+class ContourKeywords(TypedDict, total=False):
+    """The fields of :class:`ContourOptions` as keyword arguments."""
+
+    levels: Levels
+    tolerance: float
+    model: SpecularModel
+    two_sided: bool
+    flip_normals: bool
+    normals: str | ArrayLike | None
+    tangents: str | ArrayLike | None
+    conditioned: bool
+    compensate: bool
+    name: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContourOptions:
+    """Which contours are drawn, and how the surface is lit.
 
     Parameters
     ----------
-    mesh : pyvista.DataSet, pyvista.MultiBlock or a solid
-        Surface to light, which is not modified. Of a mesh that is not a surface the outer surface
-        is lit; blocks are joined. A solid is a :class:`vizlight.Sphere`,
-        :class:`~vizlight.Frustum` or :class:`~vizlight.Block`, or a combination of them by ``|``,
-        ``&`` and ``-``.
-    scene : Scene
-        Scene with one light or several. A highlight needs a view.
     levels : int, float or sequence of float, default: 16
         Number of equal steps (int), allowed luminance error (float), or luminance of the contours
         (sequence).
@@ -74,10 +71,60 @@ def isoluminance(
         Treatment of back sides and normals, as for :func:`vizlight.illuminate`.
     normals, tangents, conditioned, compensate
         Arrays and options as for :func:`vizlight.illuminate`, for a mesh only.
-    threads : int, optional
-        Number of threads.
     name : str, default: "luminance"
         Name of the resulting cell arrays.
+    """
+
+    levels: Levels = 16
+    tolerance: float = 3e-3
+    model: SpecularModel = "phong"
+    two_sided: bool = False
+    flip_normals: bool = False
+    normals: str | ArrayLike | None = None
+    tangents: str | ArrayLike | None = None
+    conditioned: bool = False
+    compensate: bool = True
+    name: str = "luminance"
+
+    def __post_init__(self) -> None:
+        spacing.check(self.levels)
+        _check.number("tolerance", self.tolerance, low=1e-6, high=0.1)
+        name: object = self.name
+        if not isinstance(name, str) or not name:
+            expected = "a non-empty name of the cell array"
+            raise ValueError(_check.message("name", expected, repr(name)))
+
+    @property
+    def light(self) -> LightOptions:
+        """The options of the light."""
+        own = {field.name for field in fields(self)} - {"levels", "tolerance"}
+        return LightOptions(precision="float64", **{name: getattr(self, name) for name in own})
+
+
+@accepts(ContourOptions)
+def isoluminance(
+    mesh: pv.DataSet | pv.MultiBlock | Solid,
+    /,
+    scene: Scene,
+    *,
+    threads: int | None = None,
+    **options: Unpack[ContourKeywords],
+) -> pv.MultiBlock:
+    """Return contours of equal luminance, and the bands between them with one value per band.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet, pyvista.MultiBlock or a solid
+        Surface to light, which is not modified. Of a mesh that is not a surface the outer surface
+        is lit; blocks are joined. A solid is a :class:`vizlight.Sphere`,
+        :class:`~vizlight.Frustum` or :class:`~vizlight.Block`, or a combination of them by ``|``,
+        ``&`` and ``-``.
+    scene : Scene
+        Scene with one light or several. A highlight needs a view.
+    **options
+        Fields of ContourOptions.
+    threads : int, optional
+        Number of threads.
 
     Returns
     -------
@@ -111,43 +158,37 @@ def isoluminance(
     sphere or a frustum under one light without a highlight has closed forms.
     Source: Isoluminance.
     """
-    options = {
-        key: value for key, value in locals().items() if key not in ("mesh", "scene", "threads")
-    }
+    asked = ContourOptions(**options)
     start = time.perf_counter()
     with report.paused():
-        made, bands, light = _make(mesh, scene, options, threads)
+        made, bands, light = _make(mesh, scene, asked, threads)
     seconds = time.perf_counter() - start
-    _note(bands, light, seconds, 1024 * made.actual_memory_size, sampled=tangents is None)
+    _note(bands, light, seconds, 1024 * made.actual_memory_size, sampled=asked.tangents is None)
     return made
 
 
 def _make(
-    mesh: Any, scene: Scene, options: dict[str, Any], threads: int | None
+    mesh: pv.DataSet | pv.MultiBlock | Solid,
+    scene: Scene,
+    options: ContourOptions,
+    threads: int | None,
 ) -> tuple[pv.MultiBlock, Bands, _Light]:
     """Return bands and contours as meshes, the bands as arrays, and their luminance."""
-    levels, tolerance, name = options["levels"], options["tolerance"], options["name"]
-    model = options["model"]
-    two_sided, flip_normals = options["two_sided"], options["flip_normals"]
     _check.instance("scene", scene, Scene)
-    spacing.check(levels)
-    _check.number("tolerance", tolerance, low=1e-6, high=0.1)
-    if not isinstance(name, str) or not name:
-        raise ValueError(_check.message("name", "a non-empty name of the cell array", repr(name)))
+    light = _Light(scene, options, threads)
     if isinstance(mesh, Solid):
         for option in ("normals", "tangents"):
-            if options[option] is not None:
+            if getattr(options, option) is not None:
                 raise ValueError(
                     _check.message(
                         option, "None for a solid, which has its own", "an array", "leave it out"
                     )
                 )
-        light = _Light(scene, model, two_sided, flip_normals, threads)
-        found = _of_solid(mesh, light, levels, tolerance)
-        record = light.record(options)
+        found = _of_solid(mesh, light)
         rgb = _rgb(found, light) if scene.colored else None
-        return _blocks(found, name, record, rgb, patches=True), found, light
-    if not isinstance(mesh, pv.DataSet | pv.MultiBlock):
+        return _blocks(found, options.name, light.record(), rgb, patches=True), found, light
+    given: object = mesh
+    if not isinstance(given, pv.DataSet | pv.MultiBlock):
         remedy = "combine solids from vizlight.Sphere, Frustum and Block"
         raise TypeError(
             _check.message("mesh", "a PyVista mesh or a solid", type(mesh).__name__, remedy)
@@ -155,19 +196,14 @@ def _make(
     joined = mesh.combine() if isinstance(mesh, pv.MultiBlock) else mesh
     if not joined.n_points:
         joined = pv.PolyData()
-    return _of_mesh(joined, scene, levels, threads, options)
+    return _of_mesh(joined, light)
 
 
 class _Light:
     """The luminance of points with normals, and its record."""
 
-    def __init__(
-        self, scene: Scene, model: SpecularModel, two_sided: bool, flip: bool, threads: int | None
-    ) -> None:
-        self.scene, self.flip, self.two_sided, self.model = scene, flip, two_sided, model
-        self.shade = functools.partial(
-            engine.shade, precision="float64", threads=threads, model=model, two_sided=two_sided
-        )
+    def __init__(self, scene: Scene, options: ContourOptions, threads: int | None) -> None:
+        self.scene, self.options, self.threads = scene, options, threads
         self.last: Shading | None = None
         #: Mesh on the exact surfaces of a solid.
         self.shape: Mesh | None = None
@@ -177,28 +213,38 @@ class _Light:
 
     def lit(self, points: Array, normals: Array) -> Shading:
         """Return the light of points with normals."""
-        self.last = self.shade(points, None, self.scene, normals=-normals if self.flip else normals)
+        asked = self.options
+        self.last = engine.shade(
+            points,
+            None,
+            self.scene,
+            normals=-normals if asked.flip_normals else normals,
+            model=asked.model,
+            two_sided=asked.two_sided,
+            precision="float64",
+            threads=self.threads,
+        )
         return self.last
 
-    def record(self, options: dict[str, Any]) -> dict[str, Any]:
+    def record(self) -> Record:
         """Return the provenance of the bands."""
         last = self.last or self.lit(np.zeros((1, 3)), np.array([[0.0, 0, 1]]))
-        return records.of_light(last, "isoluminance", self.scene, options)
+        return records.of_light(last, "isoluminance", self.scene, self.options)
 
 
-def _of_solid(solid: Solid, light: _Light, levels: Levels, tolerance: float) -> Bands:
+def _of_solid(solid: Solid, light: _Light) -> Bands:
     """Return the bands of a solid, in closed form if there is one."""
-    scene = light.scene
+    scene, asked = light.scene, light.options
     low = scene.material.ambient * scene.ambient_intensity
     dull = scene.material.specular == 0 and scene.depth_cue is None
     found: Bands | Laminae | None = None
-    plain = dull and len(scene.lights) == 1 and not (light.two_sided or light.flip)
+    plain = dull and len(scene.lights) == 1 and not (asked.two_sided or asked.flip_normals)
     if plain and isinstance(solid, Sphere | Frustum):
         (lamp,) = scene.lights
         source: dict[str, Any] = {
             "direction": lamp.direction, "position": lamp.position, "ambient": low,
             "diffuse": scene.material.diffuse * lamp.intensity,
-            "attenuation": lamp.attenuation, "levels": levels,
+            "attenuation": lamp.attenuation, "levels": asked.levels,
         }  # fmt: skip
         if isinstance(solid, Sphere) and not lamp.follows_view:
             found = closed.sphere(solid.center, solid.radius, **source)
@@ -208,40 +254,38 @@ def _of_solid(solid: Solid, light: _Light, levels: Levels, tolerance: float) -> 
             )
     if isinstance(found, banding.Bands):
         return found
-    light.shape = tessellation.tessellate(solid, tolerance=tolerance)
-    return refinement.draw(light.shape, light, levels, low=low if dull else None)
+    light.shape = tessellation.tessellate(solid, tolerance=asked.tolerance)
+    return refinement.draw(light.shape, light, asked.levels, low=low if dull else None)
 
 
-def _of_mesh(
-    mesh: pv.DataSet, scene: Scene, levels: Levels, threads: int | None, options: dict[str, Any]
-) -> tuple[pv.MultiBlock, Bands, _Light]:
+def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Light]:
     """Return bands and contours of a mesh."""
+    scene, options, levels = light.scene, light.options, light.options.levels
     surface, triangles, used, ids = _surface(mesh)
-    given = dict(options)
+    asked = options.light
     if ids is not None:
-        for key in ("normals", "tangents"):
-            if given[key] is not None and not isinstance(given[key], str):
-                rows = point_arrays.array_of(mesh, key, given[key], average_cells=False)
-                given[key] = np.where(ids[:, np.newaxis] < 0, 0, rows[ids])
-    names = {field.name for field in dataclasses.fields(LightOptions)} - {"tolerance"}
-    asked = LightOptions(
-        precision="float64", **{key: value for key, value in given.items() if key in names}
-    )
+        asked = dataclasses.replace(
+            asked,
+            normals=_on_surface(mesh, "normals", asked.normals, ids),
+            tangents=_on_surface(mesh, "tangents", asked.tangents, ids),
+        )
     (lit,), fitted = lighting.light(
-        [(inputs_of(surface, "", scene, asked), asked)], scene, threads=threads, progress_bar=False
+        [(inputs_of(surface, "", scene, asked), asked)],
+        scene,
+        threads=light.threads,
+        progress_bar=False,
     )
     unlit = int(np.count_nonzero(~lit.valid[used]))
     if unlit:
         _check.warn(lighting.unlit(unlit, len(used)))
     points = np.array(surface.points, dtype=np.float64)
-    light = _Light(scene, options["model"], options["two_sided"], options["flip_normals"], threads)
     rgb: Array | None = None
     if not len(triangles):
         steps = spacing.steps(levels, 0.0, 0.0)
         bands, _ = banding.cut(np.empty((0, 3)), triangles, np.empty((0, 3)), steps)
         bands = dataclasses.replace(bands, error=0.0)
-    elif options["tangents"] is None:
-        found = normals.normals_of(surface, given["normals"], 3, normals.onlooker(scene))
+    elif options.tangents is None:
+        found = normals.normals_of(surface, asked.normals, 3, normals.onlooker(scene))
         unit = unit_rows(np.asarray(found, dtype=np.float64))
         rows = np.concatenate([points, unit], axis=1)
 
@@ -260,9 +304,19 @@ def _of_mesh(
             middles = cut.middles()
             rgb = _as_bright(middles[:, 4:], middles[:, 3], bands)
     record = records.of_light(lit, "isoluminance", fitted, options)
-    if scene.colored and options["tangents"] is None:
+    if scene.colored and options.tangents is None:
         rgb = _rgb(bands, light)
-    return _blocks(bands, options["name"], record, rgb, patches=False), bands, light
+    return _blocks(bands, options.name, record, rgb, patches=False), bands, light
+
+
+def _on_surface(
+    mesh: pv.DataSet, name: str, value: str | ArrayLike | None, ids: Indices
+) -> str | ArrayLike | None:
+    """Return values of a mesh as those of its outer surface; the name of an array stays."""
+    if value is None or isinstance(value, str):
+        return value
+    rows = point_arrays.array_of(mesh, name, value, average_cells=False)
+    return np.where(ids[:, np.newaxis] < 0, 0, rows[ids])
 
 
 def _surface(mesh: pv.DataSet) -> tuple[pv.PolyData, Indices, Indices, Indices | None]:
@@ -293,11 +347,21 @@ def _note(bands: Bands, light: _Light, seconds: float, size: int, *, sampled: bo
     """Record for the report the difference of bands from the light at their centres."""
     none: Array = np.empty((0, 3))
     places, normals = _middles(bands, light) if sampled and len(bands.values) else (none, none)
-    terms = engine.plan(light.scene, normals=True, model=light.model).terms
+    asked = light.options
+    terms = engine.plan(light.scene, normals=True, model=asked.model).terms
     report.note_bands(
-        bands.values, len(bands.points), places, -normals if light.flip else normals, light.scene,
-        terms, seconds, size, bands.error, model=light.model, two_sided=light.two_sided,
-    )  # fmt: skip
+        bands.values,
+        len(bands.points),
+        places,
+        -normals if asked.flip_normals else normals,
+        light.scene,
+        terms,
+        seconds,
+        size,
+        bands.error,
+        model=asked.model,
+        two_sided=asked.two_sided,
+    )
 
 
 def _middles(bands: Bands, light: _Light) -> tuple[Array, Array]:
@@ -324,7 +388,7 @@ def _as_bright(rgb: Array, value: Array, bands: Bands) -> Array:
 
 
 def _blocks(
-    bands: Bands, name: str, record: dict[str, Any], rgb: Array | None, *, patches: bool
+    bands: Bands, name: str, record: Record, rgb: Array | None, *, patches: bool
 ) -> pv.MultiBlock:
     """Return bands and contours as meshes."""
     points = bands.points[:, :3]

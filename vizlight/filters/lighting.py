@@ -82,14 +82,14 @@ def part_name(name: str, part: str) -> str:
 
 
 def refuse_overwriting(
-    leaves: list[tuple[pv.DataSet, str]], name: str, *, components: bool, colored: bool
+    named: list[tuple[pv.DataSet, str]], name: str, *, components: bool, colored: bool
 ) -> None:
     """Refuse a name under which the light would replace an array of the user."""
     if not isinstance(name, str) or not name:
         raise ValueError(_check.message("name", "a name for the point array", repr(name)))
     parts = [part for part in PARTS if (colored if part == "rgb" else components)]
     made = [part_name(name, part) for part in parts]
-    records.refuse_overwriting(leaves, name, [name, name + VALID, *made])
+    records.refuse_overwriting(named, name, [name, name + VALID, *made])
 
 
 def finish(

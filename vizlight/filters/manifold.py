@@ -1,4 +1,4 @@
-"""Sampled manifolds as meshes that carry where they are in n-space and how they lie there."""
+"""Sampled manifolds as meshes with their positions and frames in n-space."""
 
 from __future__ import annotations
 
@@ -10,14 +10,13 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.filters.project import ProjectOptions, project
 from vizlight.geometry.nspace.parametric import Manifold
+from vizlight.mesh.blocks import polydata
 from vizlight.mesh.nspace import FRAME, POSITION
 from vizlight.shading.options import accepts
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
     from typing_extensions import Unpack
 
-    from vizlight._types import Indices
     from vizlight.filters.project import ProjectKeywords
     from vizlight.scene import Scene
 
@@ -37,7 +36,7 @@ def manifold(
     Parameters
     ----------
     shape : Manifold
-        From :mod:`vizlight.geometry.manifolds`.
+        Manifold, such as one of :mod:`vizlight.geometry.manifolds`.
     scene, threads, progress_bar
         As for :func:`project`.
     **options
@@ -46,9 +45,10 @@ def manifold(
     Returns
     -------
     pyvista.PolyData or pyvista.UnstructuredGrid
-        Lines or quadrilaterals; hexahedra for k = 3. A closed 3-manifold has no outside to
-        draw: cut it by ``hyperplane=``, or draw its points. With the point arrays ``position``
-        (n components), ``frame`` (k n) and, for k < 3, ``projected_frame`` (3 k).
+        Lines for k = 1, quadrilaterals for k = 2, hexahedra for k = 3, with the point arrays
+        ``position`` (n components), ``frame`` (k n) and, for k < 3, ``projected_frame`` (3 k). A
+        closed 3-manifold has no outer surface to draw: cut it by ``hyperplane=``, or draw its
+        points.
 
     Raises
     ------
@@ -65,7 +65,7 @@ def manifold(
     """
     _check.instance("shape", shape, Manifold, home="geometry.manifolds")
     count, n = shape.points.shape
-    # Places are put in by the projection; until then the points only have to be there.
+    # The projection sets the points.
     points = np.zeros((count, 3))
     if shape.k == 3:
         cells = {pv.CellType.HEXAHEDRON: shape.cells}
@@ -75,13 +75,3 @@ def manifold(
     mesh.point_data[POSITION] = shape.points
     mesh.point_data[FRAME] = shape.frame.reshape(count, shape.k * n)
     return project(mesh, scene=scene, threads=threads, progress_bar=progress_bar, **options)
-
-
-def polydata(points: ArrayLike, cells: Indices) -> pv.PolyData:
-    """Return a mesh of points, segments, triangles or quadrilaterals, by the corners of a cell."""
-    mesh = pv.PolyData()
-    mesh.points = points
-    corners = cells.shape[1]
-    made = pv.CellArray.from_regular_cells(np.asarray(cells, dtype=int))
-    (mesh.SetVerts, mesh.SetLines, mesh.SetPolys, mesh.SetPolys)[corners - 1](made)
-    return mesh

@@ -11,7 +11,7 @@ import pyvista as pv
 from vizlight import _check, _progress
 from vizlight.filters.illuminate import light_mesh
 from vizlight.geometry.nspace import projection
-from vizlight.mesh import blocks, point_arrays, records
+from vizlight.mesh import blocks, records
 from vizlight.mesh.nspace import FRAME, POSITION, PROJECTED, Counter, Turning
 from vizlight.scene import Scene
 from vizlight.shading.options import LightKeywords, LightOptions, accepts
@@ -88,9 +88,11 @@ class ProjectOptions(LightOptions):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.light not in get_args(LightWhen):
-            raise ValueError(_check.message("light", "'before' or 'after'", repr(self.light)))
-        point_arrays.refuse_unnamed("positions", self.positions or 0)
+        _check.choice("light", self.light, get_args(LightWhen))
+        positions: object = self.positions
+        if not isinstance(positions, str) or not positions:
+            got, remedy = _check.describe(positions), "attach it to the mesh and name it"
+            raise TypeError(_check.message("positions", "the name of a point array", got, remedy))
         vectors: object = () if self.vectors is None else self.vectors
         vectors = (vectors,) if isinstance(vectors, str) else vectors
         if not isinstance(vectors, list | tuple):
@@ -101,7 +103,7 @@ class ProjectOptions(LightOptions):
             self,
             vectors=tuple(vectors),
             distance=None if distance is None else projection.check_distance(distance),
-            cut=bool(self.cut),
+            cut=_check.boolean("cut", self.cut),
         )
 
     def by(self, tangents: str | None, positions: str | None) -> LightOptions:
@@ -201,16 +203,16 @@ def project(
         frame = None if asked.frame is None else f"{prefix}{asked.frame}"
         return light_mesh(shown, scene, asked.by(frame, positions), threads=threads)
 
-    total = 2 * sum(leaf.n_points for leaf in blocks.leaves(mesh))
+    total = 2 * sum(block.n_points for block in blocks.all_blocks(mesh))
     with _progress.progress("project", total, show=progress_bar) as report:
         done = Counter(report)
         lost = Counter(lambda _: None)
-        out = lit(_each(mesh, lambda leaf: job.turned(leaf, done, lost)), "before")
-        out = lit(_each(out, lambda leaf: job.projected(leaf, done, lost)), "after")
+        out = lit(_each(mesh, lambda block: job.turned(block, done, lost)), "before")
+        out = lit(_each(out, lambda block: job.projected(block, done, lost)), "after")
         if scene is not None:
-            for leaf in blocks.leaves(out):
-                light = records.provenance(leaf, asked.name)["options"]
-                records.amend(leaf, asked.name, "project", light, _own(asked))
+            for block in blocks.all_blocks(out):
+                light = records.provenance(block, asked.name)["options"]
+                records.amend(block, asked.name, "project", light, _own(asked))
     if lost.count:
         _check.warn(
             f"{lost.count} points cannot be projected (on or behind the eye's hyperplane, or not "
@@ -249,8 +251,8 @@ def _check_space(
     mesh: pv.DataSet | pv.MultiBlock, scene: Scene, light: LightWhen, positions: str
 ) -> None:
     """Check that lights and eye live in the space that is lit: that of positions, or 3-space."""
-    for leaf in blocks.leaves(mesh):
-        n = leaf.point_data[positions].shape[1]
+    for block in blocks.all_blocks(mesh):
+        n = block.point_data[positions].shape[1]
         lit, other, when = (n, 3, "after") if light == "before" else (3, n, "before")
         if scene.n not in (None, lit):
             remedy = f"pass light={when!r} to light in {other}-space" if scene.n == other else ""
@@ -266,12 +268,12 @@ def _check_tangents(
         return
     if job.frame is None:
         raise ValueError(_check.message("frame", "tangents to light by", None, "or pass tangents="))
-    for leaf in blocks.leaves(mesh):
-        if job.frame not in leaf.point_data:
+    for block in blocks.all_blocks(mesh):
+        if job.frame not in block.point_data:
             got = "the points of a cut curve, which have no tangents"
             raise ValueError(_check.message("scene", "a mesh that can be lit", got))
-        if prefix + job.frame not in leaf.point_data:
-            k = leaf.point_data[job.frame].shape[1] // leaf.point_data[job.positions].shape[1]
+        if prefix + job.frame not in block.point_data:
+            k = block.point_data[job.frame].shape[1] // block.point_data[job.positions].shape[1]
             got = f"a {k}-manifold, which fills 3-space and has no normals there"
             remedy = "pass light='before', or cut it by hyperplane="
             raise ValueError(_check.message("light", "a curve or a surface", got, remedy))

@@ -10,7 +10,7 @@ import numpy as np
 
 from vizlight import _check, _progress
 from vizlight.filters.illuminate import shallow_copy
-from vizlight.filters.lighting import DEFAULT_NAME, VALID, attach, refuse_overwriting
+from vizlight.filters.lighting import DEFAULT_NAME, PARTS, VALID, attach, refuse_overwriting
 from vizlight.geometry.relief import sun
 from vizlight.mesh import point_arrays, records
 from vizlight.mesh.casters import CasterKeywords, CasterOptions, caster
@@ -143,6 +143,7 @@ def relief_shadow(
     refuse_overwriting([(mesh, "")], name, components=False, colored=False)
     records.refuse_overwriting([(mesh, "")], name, each)
     if asked.lit:
+        _check_names({name, name + VALID, *each})
         refuse_overwriting(
             [(mesh, "")], DEFAULT_NAME, components=asked.components, colored=scene.colored
         )
@@ -180,6 +181,14 @@ def relief_shadow(
     return out
 
 
+def _check_names(own: set[str]) -> None:
+    """Check that the arrays of the shadow do not replace those of the light."""
+    taken = own & {DEFAULT_NAME, DEFAULT_NAME + VALID, *PARTS}
+    if taken:
+        expected = "a name that the light does not use, with lit=True"
+        raise ValueError(_check.message("name", expected, repr(min(taken))))
+
+
 def _ratios(
     shadow: Caster, lights: list[Light], options: ReliefOptions, *, progress_bar: bool
 ) -> Array:
@@ -193,7 +202,7 @@ def _ratios(
             report(i + 1)
 
     def again(point: int, light: int) -> float:
-        return float(np.mean([shadow.again(point, one) for one in discs[light]]))
+        return float(np.mean([shadow.reference(point, one) for one in discs[light]]))
 
     size = t.itemsize * len(t) * (1 + len(lights) * options.components)
     effort = shadow.effort * max(map(len, discs))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import pyvista as pv
@@ -14,16 +15,27 @@ from vizlight.mesh import point_arrays
 from vizlight.shading.options import LightOptions, accepts
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
     from typing_extensions import Unpack
 
     from vizlight.filters.streamlines import StreamlineKeywords
     from vizlight.scene import Scene
 
 
-@accepts(
-    StreamlineOptions,
-    without=("conditioned", "vectors", "surface", "confined", "positions", "average_cells"),
-)
+@dataclass(frozen=True, kw_only=True)
+class SatinOptions(StreamlineOptions):
+    """How the curves of satin are traced, and all panels are lit.
+
+    Parameters
+    ----------
+    seeds : int or array_like, shape (M, 3), or mesh, default: 300
+        Points at which curves start; a number stands for places on the surface, uniform in area.
+    """
+
+    seeds: int | ArrayLike | pv.DataSet = 300
+
+
+@accepts(SatinOptions, without=("conditioned", "vectors", "surface", "confined"))
 def satin(
     surface: pv.PolyData,
     /,
@@ -44,7 +56,7 @@ def satin(
         Banks' material is ``Material(ambient=0.1, diffuse=0.5, specular=1.0,
         color=(1.0, 0.25, 0.30))``. His panels have ``compensate=False``.
     **options
-        Fields of StreamlineOptions.
+        Fields of SatinOptions.
     threads, progress_bar
         As for :func:`vizlight.illuminate`.
 
@@ -61,7 +73,7 @@ def satin(
     TypeError, ValueError
         As :func:`vizlight.illuminate` and :func:`vizlight.streamlines`.
     """
-    asked = StreamlineOptions(**options)
+    asked = SatinOptions(**options)
     if asked.tangents is None:
         raise ValueError(_check.message("tangents", "the name of a point array", None))
     if isinstance(surface, pv.DataSet):

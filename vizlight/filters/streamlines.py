@@ -163,7 +163,7 @@ def light_lines(
     made = _resolved(mesh, options)
     lines = _traced(mesh, scene, made)
     conditioned = made.surface is not None if made.conditioned is None else made.conditioned
-    normals = "Normals" if conditioned and made.normals is None else made.normals
+    normals = "Normals" if conditioned is True and made.normals is None else made.normals
     light = dataclasses.replace(made, conditioned=conditioned, normals=normals)
     lit = light_mesh(lines, scene, light, threads=threads, inplace=True, progress_bar=progress_bar)
     recorded = dataclasses.replace(options, vectors=made.vectors)
@@ -201,17 +201,17 @@ def _resolved(mesh: pv.DataSet, options: StreamlineOptions) -> StreamlineOptions
 def _traced(mesh: pv.DataSet, scene: Scene, options: StreamlineOptions) -> pv.PolyData:
     """Return the lines, put back on the surface that they are confined to."""
     vectors, confined = options.vectors or "", bool(options.confined)
-    surface, carrier, own = None, mesh, all_made(mesh)
+    surface, traced, own = None, mesh, all_made(mesh)
     if options.surface is not None:
         own |= all_made(options.surface)
         surface = surfaces.with_normals(options.surface, onlooker(scene))
         if confined:
-            surface = carrier = _tangential(surface, mesh, vectors)
+            surface = traced = _tangential(surface, mesh, vectors)
     # VTK traces in float32 to an absolute error: near the origin, in a box of size 1.
-    origin, size = np.array(blocks.near_origin(carrier)), blocks.box(carrier)[1]
-    carrier = blocks.moved(_traceable(carrier, vectors, own), -origin, 1 / size)
-    seeds = _seeds(carrier, options.seeds, options.seed, origin, size, on_surface=confined)
-    lines = carrier.streamlines_from_source(
+    origin, size = np.array(blocks.near_origin(traced)), blocks.box(traced)[1]
+    traced = blocks.moved(_traceable(traced, vectors, own), -origin, 1 / size)
+    seeds = _seeds(traced, options.seeds, options.seed, origin, size, on_surface=confined)
+    lines = traced.streamlines_from_source(
         pv.PolyData(seeds),
         vectors=TRACED,
         surface_streamlines=confined,
@@ -220,7 +220,7 @@ def _traced(mesh: pv.DataSet, scene: Scene, options: StreamlineOptions) -> pv.Po
         max_step_length=options.step,
         min_step_length=min(0.01, options.step),
         max_steps=options.max_steps,
-        max_length=_max_length(carrier, options.max_length, size),
+        max_length=_max_length(traced, options.max_length, size),
         terminal_speed=1e-6,
         compute_vorticity=False,
     )

@@ -1,1 +1,1 @@
-"""From PyVista to arrays and back: what filters take from a mesh and attach to it."""
+"""Conversion between PyVista meshes and arrays: the input and the output of the filters."""

@@ -1,8 +1,8 @@
-"""Meshes and blocks of meshes: checked, walked, measured, moved."""
+"""Meshes and MultiBlocks: checks, iteration over blocks, bounding box, translation, constructor."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 import pyvista as pv
@@ -12,27 +12,45 @@ from vizlight import _check
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from vizlight._types import Array, Vector
+    from vizlight._types import Array, Indices, Vector
 
-#: Type of a mesh that a filter returns as it takes it.
+#: Type of a mesh that a filter takes and returns.
 MeshT = TypeVar("MeshT", bound="pv.DataSet | pv.MultiBlock")
+DataSetT = TypeVar("DataSetT", bound=pv.DataSet)
 
 
-def check(mesh: Any) -> None:
-    """Refuse what is neither a dataset nor blocks of them."""
+def check(mesh: object) -> None:
+    """Raise TypeError for anything but a dataset or a MultiBlock."""
     if not isinstance(mesh, pv.DataSet | pv.MultiBlock):
         remedy = "read files by pyvista.read, wrap VTK objects by pyvista.wrap"
         raise TypeError(_check.message("mesh", "a PyVista mesh", type(mesh).__name__, remedy))
 
 
-def leaves(mesh: Any) -> Iterator[Any]:
-    """Yield the meshes of a MultiBlock, however deep, or the mesh itself."""
-    for leaf, _ in named_leaves(mesh):
-        yield leaf
+def has_faces(mesh: pv.PolyData) -> bool:
+    """Return whether a mesh has polygons or triangle strips."""
+    return bool(mesh.GetNumberOfPolys() or mesh.GetNumberOfStrips())
 
 
-def named_leaves(mesh: Any, path: str = "") -> Iterator[tuple[Any, str]]:
-    """Yield the meshes of a MultiBlock, however deep, with where they are."""
+def surface(mesh: object, name: str) -> pv.PolyData:
+    """Return a mesh if it is a PolyData mesh with faces; else raise TypeError or ValueError."""
+    remedy = "take the mesh's extract_surface() or a contour"
+    if not isinstance(mesh, pv.PolyData):
+        got = type(mesh).__name__
+        raise TypeError(_check.message(name, "a pyvista.PolyData surface", got, remedy))
+    if not has_faces(mesh):
+        got = "a PolyData mesh without faces"
+        raise ValueError(_check.message(name, "a surface with faces", got, remedy))
+    return mesh
+
+
+def all_blocks(mesh: object) -> Iterator[pv.DataSet]:
+    """Yield the datasets of a MultiBlock at every depth, or the dataset itself."""
+    for block, _ in named_blocks(mesh):
+        yield block
+
+
+def named_blocks(mesh: object, path: str = "") -> Iterator[tuple[pv.DataSet, str]]:
+    """Yield the datasets of a MultiBlock at every depth, each with its path."""
     if not isinstance(mesh, pv.MultiBlock):
         if not isinstance(mesh, pv.DataSet):
             where = f"block {path}: " if path else ""
@@ -42,11 +60,14 @@ def named_leaves(mesh: Any, path: str = "") -> Iterator[tuple[Any, str]]:
         return
     for i in range(mesh.n_blocks):
         if mesh[i] is not None:
-            yield from named_leaves(mesh[i], f"{path}/{mesh.get_block_name(i) or i}")
+            yield from named_blocks(mesh[i], f"{path}/{mesh.get_block_name(i) or i}")
 
 
 def box(mesh: pv.DataSet) -> tuple[Array, float]:
-    """Return the middle of a mesh's finite points and its longest side, 1 where it has none."""
+    """Return the centre of the bounding box of a mesh and its longest side.
+
+    Points that are not finite are ignored. The side is 1 if the mesh has no extent.
+    """
     low, high = np.reshape(mesh.bounds, (3, 2)).T
     if not np.all(np.isfinite([low, high])) and isinstance(mesh, pv.PointSet | pv.PolyData):
         points = np.asarray(mesh.points, dtype=np.float64)
@@ -59,25 +80,37 @@ def box(mesh: pv.DataSet) -> tuple[Array, float]:
 
 
 def near_origin(mesh: pv.DataSet) -> Vector:
-    """Return a place near a mesh, 0 where that is near enough not to lose digits of float32."""
+    """Return an origin relative to which float32 resolves the points of a mesh.
+
+    It is the centre of the mesh if that is farther from 0 than the longest side, else 0.
+    """
     middle, side = box(mesh)
     far = np.abs(middle).max() > side
     return tuple(float(x) if far else 0.0 for x in middle)
 
 
-def moved(mesh: Any, offset: Array, scale: float = 1.0) -> Any:
-    """Return a mesh with its points p at ``scale (p + offset)``, in float64."""
+def moved(mesh: DataSetT, offset: Array, scale: float = 1.0) -> DataSetT:
+    """Return a mesh with each point p at ``scale (p + offset)``, in float64."""
     out = mesh.copy(deep=False)
-    if isinstance(mesh, pv.ImageData):
-        out.origin = tuple(scale * (np.array(mesh.origin) + offset))
-        out.spacing = tuple(scale * np.array(mesh.spacing))
-    elif isinstance(mesh, pv.RectilinearGrid):
+    if isinstance(out, pv.ImageData):
+        out.origin = tuple(scale * (np.array(out.origin) + offset))
+        out.spacing = tuple(scale * np.array(out.spacing))
+    elif isinstance(out, pv.RectilinearGrid):
         for i, axis in enumerate("xyz"):
-            ticks = np.asarray(getattr(mesh, axis), dtype=np.float64)
+            ticks = np.asarray(getattr(out, axis), dtype=np.float64)
             setattr(out, axis, scale * (ticks + offset[i]))
     else:
-        points: Any = scale * (np.asarray(mesh.points, dtype=np.float64) + offset)
+        points = scale * (np.asarray(mesh.points, dtype=np.float64) + offset)
         points[~np.isfinite(points)] = np.nan
-        # Not by assigning to points, which would move those that the copy shares.
+        # Assigning to out.points would move the points that the shallow copy shares with the mesh.
         out.SetPoints(pv.vtk_points(points))
     return out
+
+
+def polydata(points: Array, cells: Indices) -> pv.PolyData:
+    """Return a mesh of cells of 1 to 4 points each; a row of ``cells`` has the points of a cell."""
+    mesh = pv.PolyData()
+    mesh.points = points
+    made = pv.CellArray.from_regular_cells(np.asarray(cells, dtype=int))
+    (mesh.SetVerts, mesh.SetLines, mesh.SetPolys, mesh.SetPolys)[cells.shape[1] - 1](made)
+    return mesh

@@ -1,4 +1,4 @@
-"""What casts shadows on itself: a height field, or a closed surface with others beside it."""
+"""Shadow casters: a height field, or a closed surface with further closed surfaces."""
 
 from __future__ import annotations
 
@@ -14,24 +14,21 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.geometry.relief import height_field, shadowing
 from vizlight.mesh import closed_meshes, normals, point_arrays
-from vizlight.mesh.height_grids import heights_of
-from vizlight.verify import oracle
+from vizlight.mesh.height_grids import Grid, heights_of
+from vizlight.verify import rays
 
 if TYPE_CHECKING:
-    from typing import TypeAlias
-
     from vizlight._types import Array, Bools
     from vizlight.geometry.relief.height_field import Border
     from vizlight.geometry.relief.shadowing import Method
     from vizlight.scene import Light, Scene
 
-    Grid: TypeAlias = pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid
-
-#: Default depth, as a share of the diagonal.
+#: Default depth, as a share of the diagonal of the mesh.
 DEPTH = 0.01
-#: Distance, in sizes of a surface, beyond which a light may be put: squares do not overflow.
+#: Largest distance of a light in sizes of the surface: a light farther away is moved there, so that
+#: squares do not overflow.
 FAR = 1e100
-#: Options of height fields alone.
+#: Options that only height fields have.
 FIELD_ALONE = ("elevation", "factor", "base", "border", "method")
 
 
@@ -50,24 +47,24 @@ class CasterKeywords(TypedDict, total=False):
 
 @dataclass(frozen=True, kw_only=True)
 class CasterOptions:
-    """What casts shadows, and how.
+    """How a mesh casts shadows.
 
     Parameters
     ----------
     depth : float, optional
-        Depth d of 0 or more below the surface at which light is gathered, in the unit of the
-        mesh: the deeper, the softer. Default: 0.01 of the diagonal of the faces, of a field's in x
-        and y.
+        Depth d below the surface at which light is gathered, 0 or more, in the unit of the mesh:
+        a larger depth gives softer shadows. Default: 0.01 of the diagonal of the faces, or of that
+        of a height field in x and y.
     elevation : str, optional
         Name of a point array of heights. Default: z of a StructuredGrid, else the active scalars.
         NaN is a hole.
     factor : float, default: 1.0
-        Factor of the heights; for height fields alone.
+        Factor of the heights; only for height fields.
     base, border, method
-        As for :func:`vizlight.geometry.relief.inside_length`; for height fields alone.
+        As for :func:`vizlight.geometry.relief.inside_length`; only for height fields.
     thickness : float, optional
-        Thickness of the shell below its normals as which an open surface is lit.
-    occluders : pyvista.PolyData or sequence of them
+        Thickness of the shell, measured against the normals, that stands for an open surface.
+    occluders : pyvista.PolyData or sequence of pyvista.PolyData
         Further closed surfaces between the surface and the light.
     """
 
@@ -85,16 +82,16 @@ class CasterOptions:
         if isinstance(given, pv.DataObject):
             given = [given]
         if isinstance(given, str) or not isinstance(given, Iterable):
-            expected = "closed surfaces, or one"
+            expected = "a closed surface or several"
             raise TypeError(_check.message("occluders", expected, _check.describe(given)))
         _check.set_fields(self, occluders=list(given))
 
 
 class Caster(Protocol):
-    """What casts shadows on itself.
+    """A mesh that casts shadows on itself.
 
-    Points, unit normals, which of them count, the depth, and how many places or triangles
-    ``again`` tries for one t; 0 where it finds none.
+    ``valid`` is the mask of the points that have a t, ``depth`` the depth d, and ``effort`` the
+    number of samples or triangles that ``reference`` visits for one t, 0 if it finds none.
     """
 
     points: Array
@@ -104,20 +101,20 @@ class Caster(Protocol):
     effort: int
 
     def of(self, light: Light) -> Array:
-        """Return t at the points."""
+        """Return t at all points."""
 
-    def again(self, point: int, light: Light) -> float:
-        """Return t of one point by other means; NaN where they say nothing."""
+    def reference(self, point: int, light: Light) -> float:
+        """Return t at one point by an independent method; NaN where that does not apply."""
 
 
 def caster(mesh: pv.DataSet, scene: Scene, options: CasterOptions, threads: int | None) -> Caster:
-    """Return what casts shadows, from a mesh and the options of the filter."""
-    if isinstance(mesh, pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid):
+    """Return the shadow caster of a mesh."""
+    if isinstance(mesh, Grid):
         for option in ("thickness", "occluders"):
             value = getattr(options, option)
             if value:
                 got = value if option == "thickness" else len(value)
-                remedy = "pass the grid's surface, made closed, to have them"
+                remedy = "leave it out, or pass the surface of the grid as a closed mesh"
                 raise ValueError(_check.message(option, "none on a height field", got, remedy))
         return _FieldCaster(mesh, options, threads)
     if isinstance(mesh, pv.PolyData):
@@ -125,20 +122,16 @@ def caster(mesh: pv.DataSet, scene: Scene, options: CasterOptions, threads: int 
         for option in FIELD_ALONE:
             given, default = getattr(options, option), defaults[option]
             if given is not default and (default is None or np.any(given != default)):
-                raise ValueError(_check.message(option, "none on a surface", repr(given)))
+                remedy = "leave it out, or pass a grid"
+                raise ValueError(_check.message(option, "none on a surface", repr(given), remedy))
         return _SolidCaster(mesh, scene, options)
-    raise TypeError(
-        _check.message(
-            "mesh",
-            "a height field (ImageData, RectilinearGrid, StructuredGrid) or a closed PolyData",
-            type(mesh).__name__,
-            "take the mesh's extract_surface()",
-        )
-    )
+    expected = "a height field (ImageData, RectilinearGrid, StructuredGrid) or a closed PolyData"
+    remedy = "take the mesh's extract_surface()"
+    raise TypeError(_check.message("mesh", expected, type(mesh).__name__, remedy))
 
 
 class _FieldCaster:
-    """The shadows of a height field."""
+    """Shadows of a height field."""
 
     def __init__(self, grid: Grid, options: CasterOptions, threads: int | None) -> None:
         found = heights_of(grid, options.elevation, options.factor)
@@ -157,7 +150,7 @@ class _FieldCaster:
         self.valid: Bools = found.to_points(~self._holes).astype(np.bool_)
         field = self._field
         size = max(field.x[-1], field.y[-1], field.top)
-        self.effort = oracle.SAMPLES if self.depth > shadowing.LEAST_DEPTH * size else 0
+        self.effort = rays.SAMPLES if self.depth > shadowing.LEAST_DEPTH * size else 0
 
     def of(self, light: Light) -> Array:
         turn = np.eye(3) if self._turn is None else self._turn
@@ -171,12 +164,12 @@ class _FieldCaster:
         t[self._holes] = 0
         return self._to_points(t)
 
-    def again(self, point: int, light: Light) -> float:
+    def reference(self, point: int, light: Light) -> float:
         field, turn = self._field, np.eye(3) if self._turn is None else self._turn
         way = None if light.direction is None else turn @ np.array(light.direction)
         if way is not None and way[2] <= 0:
             return math.nan
-        return oracle.relief_ratio(
+        return rays.relief_ratio(
             field.x, field.y, field.heights,
             turn @ self.points[point] - field.origin, turn @ self.normals[point], self.depth,
             way=way,
@@ -186,7 +179,7 @@ class _FieldCaster:
 
 
 class _SolidCaster:
-    """The shadows of a closed surface, and of others beside it."""
+    """Shadows of a closed surface and of the occluders."""
 
     def __init__(self, mesh: pv.PolyData, scene: Scene, options: CasterOptions) -> None:
         others = list(options.occluders)
@@ -201,7 +194,8 @@ class _SolidCaster:
                 raise ValueError(_check.message("thickness", "more than 0", thickness))
             body = closed_meshes.shell(mesh, thickness, self.normals)
         bodies = [body] + [closed_meshes.closed(o, f"occluders[{i}]") for i, o in enumerate(others)]
-        # In units of the surface's own size products neither overflow nor vanish.
+        # Lengths are in units of the size of the surface, so that products neither overflow nor
+        # underflow.
         self._origin = body[0].mean(axis=0)
         self._unit = float(np.linalg.norm(np.ptp(body[0], axis=0))) or 1.0
         self._solids = [closed_meshes.solid(*one, self._origin, self._unit) for one in bodies]
@@ -217,7 +211,7 @@ class _SolidCaster:
         depth = self.depth / self._unit
         limit = depth <= shadowing.LEAST_DEPTH
         inset = 1e-7 if limit else depth
-        # The limit of a depth of 0 is seen from just outside, where nothing of the facet is.
+        # For depth 0 rays start just outside the surface, so that they miss their own facet.
         place = (self.points[good] - self._origin) / self._unit
         normal = self.normals[good]
         start = place + inset * normal if limit else place - inset * normal
@@ -231,14 +225,14 @@ class _SolidCaster:
             t[good] = depth / np.maximum(length, depth)
         return t
 
-    def again(self, point: int, light: Light) -> float:
+    def reference(self, point: int, light: Light) -> float:
         if self._corners is None:
             self._corners = [body.vertices[body.triangles] for body in self._solids]
         place = (self.points[point] - self._origin) / self._unit
         depth, normal = self.depth / self._unit, self.normals[point]
         way, reach = self._toward(light, (place - depth * normal)[np.newaxis])
         far = min(float(reach[0]), 10.0 * max(float(np.abs(c).max()) for c in self._corners))
-        return oracle.solid_ratio(self._corners, place, normal, depth, way[0], far)
+        return rays.solid_ratio(self._corners, place, normal, depth, way[0], far)
 
     def _toward(self, light: Light, start: Array) -> tuple[Array, Array]:
         if light.direction is not None:
@@ -249,11 +243,8 @@ class _SolidCaster:
         place /= max(self._unit, np.abs(place).max() / FAR)
         for body in self._solids:
             if closed_meshes.is_inside(body, place):
-                raise ValueError(
-                    _check.message(
-                        "position", "a light outside the solid", light.position, "move it out"
-                    )
-                )
+                expected, got = "a light outside the solid", light.position
+                raise ValueError(_check.message("position", expected, got, "move the light"))
         reach = np.linalg.norm(place - start, axis=1)
         return (place - start) / np.where(reach > 0, reach, 1)[:, np.newaxis], reach
 

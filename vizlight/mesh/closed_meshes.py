@@ -1,67 +1,61 @@
-"""Closed meshes as solids: are they closed, and how far does a ray run inside them."""
+"""Closed meshes as solids: whether they are closed, and the length of rays inside them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkIdList
 from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 
 from vizlight import _check
-from vizlight.mesh import embree_rays
+from vizlight.mesh import blocks, embree_rays
 
 if TYPE_CHECKING:
+    from embreex.rtcore_scene import EmbreeScene
+
     from vizlight._types import Array, Indices
 
-#: Rays of which the hits are held at once.
+#: Number of rays whose hits are in memory at once.
 BLOCK = 1 << 15
-#: How near an edge, as a share of the solid, a triangle still counts as hit, and how near each
-#: other two hits are one.
+#: Tolerance, as a share of the size of the solid: a ray this near to a triangle hits it, and two
+#: hits this near to each other are merged.
 NEAR = 1e-10
 
 
 @dataclass(frozen=True)
 class Solid:
-    """Triangles of a closed surface in float64, relative to an origin, and a search tree.
+    """Triangles of a closed surface in float64, relative to an origin, and their search tree.
 
-    The tree is Embree's where the package embreex is installed, else VTK's.
+    The tree is that of Embree if the package embreex is installed, else that of VTK.
     """
 
     vertices: Array
     triangles: Indices
     normals: Array
-    locator: Any
-    embree: Any = None
+    tree: vtkStaticCellLocator | EmbreeScene
 
     @property
     def size(self) -> float:
-        """The diagonal of the box around it."""
+        """Diagonal of the bounding box."""
         return float(np.linalg.norm(np.ptp(self.vertices, axis=0)))
 
 
-def triangles_of(surface: Any, name: str) -> tuple[Array, Indices]:
-    """Return corners and triangles of a surface, corners of one place being one."""
+def triangles_of(surface: object, name: str) -> tuple[Array, Indices]:
+    """Return the vertices and triangles of a surface; coincident vertices are merged."""
     vertices, triangles, _, _ = _merged(surface, name)
     return vertices, triangles
 
 
-def _merged(surface: Any, name: str) -> tuple[Array, Indices, Indices, Indices]:
-    """Return corners, triangles, the points that faces use, and which corner each of them is."""
-    if not isinstance(surface, pv.PolyData):
-        remedy = "take the mesh's extract_surface()"
-        raise TypeError(
-            _check.message(name, "a pyvista.PolyData surface", type(surface).__name__, remedy)
-        )
-    if not (surface.GetNumberOfPolys() or surface.GetNumberOfStrips()):
-        raise ValueError(_check.message(name, "a surface with faces", "a mesh without"))
+def _merged(surface: object, name: str) -> tuple[Array, Indices, Indices, Indices]:
+    """Return vertices, triangles, the points that faces use, and the vertex of each such point."""
+    surface = blocks.surface(surface, name)
     faces = surface if surface.is_all_triangles else surface.triangulate()
     corners = np.asarray(faces.regular_faces, dtype=np.intp)
     points = np.asarray(faces.points, dtype=np.float64)
     if not np.all(np.isfinite(points[corners])):
-        raise ValueError(_check.message(name, "faces with finite points", "others"))
+        raise ValueError(_check.message(name, "faces with finite points", "NaN or infinite points"))
     used, place = np.unique(corners, return_inverse=True)
     vertices, same = np.unique(points[used], axis=0, return_inverse=True)
     same = same.reshape(-1)
@@ -70,8 +64,8 @@ def _merged(surface: Any, name: str) -> tuple[Array, Indices, Indices, Indices]:
     return vertices, corners[(a != b) & (b != c) & (c != a)], used, same
 
 
-def closed(surface: Any, name: str = "mesh") -> tuple[Array, Indices]:
-    """Return corners and triangles of a closed surface, turned alike.
+def closed(surface: object, name: str = "mesh") -> tuple[Array, Indices]:
+    """Return the vertices and the consistently oriented triangles of a closed surface.
 
     Raises
     ------
@@ -81,33 +75,29 @@ def closed(surface: Any, name: str = "mesh") -> tuple[Array, Indices]:
     vertices, triangles = triangles_of(surface, name)
     opened = _open_edges(triangles, directed=False)
     if len(opened):
-        raise ValueError(
-            _check.message(
-                name,
-                "a closed surface",
-                f"one with {len(opened)} open edges",
-                "mesh.clean(tolerance=) joins seams and mesh.fill_holes(size) closes holes; "
-                "thickness= lights an open surface as a shell",
-            )
+        remedy = (
+            "mesh.clean(tolerance=) joins seams and mesh.fill_holes(size) closes holes; "
+            "thickness= lights an open surface as a shell"
         )
+        got = f"one with {len(opened)} open edges"
+        raise ValueError(_check.message(name, "a closed surface", got, remedy))
     if len(_open_edges(triangles, directed=True)):
-        alike = _mesh_of(vertices, triangles).compute_normals(
+        oriented = blocks.polydata(vertices, triangles).compute_normals(
             cell_normals=False, split_vertices=False, auto_orient_normals=True
         )
-        # VTK drops points without faces, so the points are taken from it too.
-        vertices = np.asarray(alike.points, dtype=np.float64)
-        triangles = np.asarray(alike.regular_faces, dtype=np.intp)
+        # VTK drops points without faces, which changes the indices.
+        vertices = np.asarray(oriented.points, dtype=np.float64)
+        triangles = np.asarray(oriented.regular_faces, dtype=np.intp)
         if len(_open_edges(triangles, directed=True)):
-            raise ValueError(
-                _check.message(name, "a surface with an inside", "one that cannot be oriented")
-            )
+            got = "one that cannot be oriented"
+            raise ValueError(_check.message(name, "a surface with an inside", got))
     return vertices, triangles
 
 
-def shell(surface: Any, thickness: float, normals: Array) -> tuple[Array, Indices]:
-    """Return an open surface made closed: itself, its copy along -normals, walls between."""
+def shell(surface: object, thickness: float, normals: Array) -> tuple[Array, Indices]:
+    """Return a closed shell: an open surface, its copy along -normals, and walls between them."""
     vertices, triangles, used, same = _merged(surface, "mesh")
-    # Corners of one place are one here, so they share the sum of their normals.
+    # Merged points share the sum of their normals.
     total = np.zeros_like(vertices)
     np.add.at(total, same, normals[used])
     size = np.linalg.norm(total, axis=1, keepdims=True)
@@ -117,57 +107,52 @@ def shell(surface: Any, thickness: float, normals: Array) -> tuple[Array, Indice
     walls = [np.stack([b, a, a + n], axis=1), np.stack([b, a + n, b + n], axis=1)]
     faces = np.concatenate([triangles, triangles[:, ::-1] + n, *walls])
     if len(_open_edges(faces, directed=True)):
-        remedy = "mesh.compute_normals(consistent_normals=True) turns faces alike"
-        raise ValueError(
-            _check.message("mesh", "a surface whose faces are turned alike", "another", remedy)
-        )
+        expected, got = "a surface of consistently oriented faces", "faces of both orientations"
+        remedy = "call mesh.compute_normals(consistent_normals=True)"
+        raise ValueError(_check.message("mesh", expected, got, remedy))
     return np.concatenate([vertices, under]), faces
 
 
 def _open_edges(triangles: Indices, *, directed: bool) -> Indices:
-    """Return edges that have no partner: none in the other sense, or an odd number in all."""
-    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
-    forward = edges[:, 0] < edges[:, 1]
-    pairs, which = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True)
+    """Return the edges that are used an odd number of times, or unequally in the two directions."""
+    start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    count = triangles.max(initial=0) + 1
+    # One integer per edge sorts much faster than rows; its last bit is the direction.
+    keys = np.minimum(start, end) * count + np.maximum(start, end)
+    keys = np.sort(2 * keys + (start < end))
+    first = np.flatnonzero(np.diff(keys >> 1, prepend=-1))
+    pairs = np.stack(np.divmod(keys[first] >> 1, count), axis=1)
+    times = np.diff(first, append=len(keys))
     if not directed:
-        odd = np.bincount(which.reshape(-1), minlength=len(pairs)) % 2 == 1
-        return np.asarray(pairs[odd])
-    surplus = np.bincount(which.reshape(-1), np.where(forward, 1, -1), minlength=len(pairs))
-    one = pairs[surplus > 0], pairs[surplus < 0][:, ::-1]
-    return np.concatenate(one)
+        return np.asarray(pairs[times % 2 == 1])
+    forward = 2 * np.add.reduceat(keys & 1, first)
+    return np.concatenate([pairs[forward > times], pairs[forward < times][:, ::-1]])
 
 
 def solid(
     vertices: Array, triangles: Indices, origin: Array, unit: float = 1.0, *, embree: bool = True
 ) -> Solid:
-    """Return a solid ready for rays, its corners less an origin and over a unit of length."""
+    """Return a solid with a search tree, its vertices relative to an origin and in a unit."""
     place = (vertices - origin) / unit
     a, b, c = (place[triangles[:, k]] for k in range(3))
-    normals = np.cross(b - a, c - a)
-    scene = embree_rays.tree(place[triangles]) if embree else None
-    if scene is not None:
-        return Solid(place, triangles, normals, None, scene)
-    mesh = _mesh_of(place, triangles)
-    locator = vtkStaticCellLocator()
-    locator.SetDataSet(mesh)
-    locator.BuildLocator()
-    return Solid(place, triangles, normals, locator)
-
-
-def _mesh_of(vertices: Any, triangles: Any) -> Any:
-    return pv.PolyData.from_regular_faces(vertices, triangles)
+    tree = embree_rays.tree(place[triangles]) if embree else None
+    if tree is None:
+        tree = vtkStaticCellLocator()
+        tree.SetDataSet(blocks.polydata(place, triangles))
+        tree.BuildLocator()
+    return Solid(place, triangles, np.cross(b - a, c - a), tree)
 
 
 def hits(body: Solid, start: Array, way: Array, reach: Array) -> tuple[Indices, Indices]:
-    """Return which rays hit which triangles, all of them.
+    """Return the ray and the triangle of every hit.
 
-    VTK takes one ray a call, some 7 microseconds each; Embree takes all, some 0.8 each.
+    VTK takes about 7 microseconds per ray, one ray per call; Embree takes about 0.8, all in a call.
     """
-    if body.embree is not None:
+    if not isinstance(body.tree, vtkStaticCellLocator):
         corner = body.vertices[body.triangles[:, 0]]
-        return embree_rays.hits(body.embree, corner, body.normals, body.size, start, way, reach)
+        return embree_rays.hits(body.tree, corner, body.normals, body.size, start, way, reach)
     end = start + way * reach[:, np.newaxis]
-    find, found = body.locator.IntersectWithLine, vtkIdList()
+    find, found = body.tree.IntersectWithLine, vtkIdList()
     tolerance = NEAR * body.size
     rays: list[int] = []
     cells: list[int] = []
@@ -180,15 +165,15 @@ def hits(body: Solid, start: Array, way: Array, reach: Array) -> tuple[Indices, 
 
 
 def inside_length(solids: list[Solid], start: Array, way: Array, reach: Array) -> Array:
-    """Return how far rays run inside any of the solids.
+    """Return the length of each ray inside the union of the solids.
 
     Parameters
     ----------
     solids : list of Solid
     start, way : ndarray, shape (N, 3)
-        Places and unit directions.
+        Starting points and unit directions of the rays.
     reach : ndarray, shape (N,)
-        Length of the rays; their ends are outside of all solids.
+        Lengths of the rays; they end outside all solids.
 
     Returns
     -------
@@ -196,15 +181,16 @@ def inside_length(solids: list[Solid], start: Array, way: Array, reach: Array) -
 
     Notes
     -----
-    A hit on an edge that triangles share is found once for each of them: hits of one place and
-    one sense are one. A place is inside where the hits beyond it do not balance.
+    A hit on a shared edge is found once for each of its triangles: coincident hits in the same
+    direction are merged. A point is inside a solid if the ray beyond it leaves the solid more often
+    than it enters it.
     """
     length = np.zeros(len(start))
     for first in range(0, len(start), BLOCK):
         rows = slice(first, first + BLOCK)
         events = [_events(body, start[rows], way[rows], reach[rows]) for body in solids]
         ray, s, change = (np.concatenate(part) for part in zip(*events, strict=True))
-        # From the far end, where all is outside, to the start.
+        # From the end of a ray, which is outside, to its start.
         order = np.lexsort((-s, ray))
         ray, s, change = ray[order], s[order], change[order]
         ends = np.append(ray[1:] != ray[:-1], True)[: len(ray)]
@@ -215,9 +201,10 @@ def inside_length(solids: list[Solid], start: Array, way: Array, reach: Array) -
 
 
 def _events(body: Solid, start: Array, way: Array, reach: Array) -> tuple[Indices, Array, Indices]:
-    """Return where rays enter (-1) and leave (+1) one solid, seen from their far end.
+    """Return where rays enter (-1) and leave (+1) one solid: ray, distance and change.
 
-    Every ray has a last event at 0 that undoes what is still open.
+    Events are in the order from the end of the ray to its start, where a last event at distance 0
+    makes the sum of the changes 0.
     """
     reach = np.minimum(reach, _beyond(body, start))
     ray, cell = hits(body, start, way, reach)
@@ -237,7 +224,7 @@ def _events(body: Solid, start: Array, way: Array, reach: Array) -> tuple[Indice
 
     order = np.lexsort((-s, ray))
     ray, s, sense = ray[order], s[order], sense[order]
-    # How often the solid is around the ray just before each hit; the sum of a ray ends at 0.
+    # The event at 0 cancels the sum; the running sum is the winding number before each hit.
     rows = np.arange(len(start))
     rest = np.bincount(ray, sense, minlength=len(start)).astype(np.intp)
     ray = np.concatenate([ray, rows])
@@ -253,13 +240,13 @@ def _events(body: Solid, start: Array, way: Array, reach: Array) -> tuple[Indice
 
 
 def _beyond(body: Solid, start: Array) -> Array:
-    """Return how far rays may run until they are past the solid."""
+    """Return a length of each ray beyond which it cannot meet the solid."""
     centre = body.vertices.mean(axis=0)
     return np.asarray(np.linalg.norm(start - centre, axis=1) + 2 * body.size)
 
 
 def is_inside(body: Solid, place: Array) -> bool:
-    """Say whether a place is inside a solid."""
+    """Return whether a point is inside a solid."""
     if np.any(place < body.vertices.min(axis=0)) or np.any(place > body.vertices.max(axis=0)):
         return False
     for way in np.array([[0.6, 0.48, 0.64], [-0.48, 0.64, 0.6], [0.64, 0.6, -0.48]]):

@@ -1,8 +1,8 @@
-"""A mesh cut by a hyperplane of n-space: its simplices, and all its arrays between their points."""
+"""The section of a mesh by a hyperplane of n-space, with its point arrays interpolated."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -10,7 +10,7 @@ from scipy.sparse import coo_array, csr_array
 
 from vizlight import _check, _pool
 from vizlight.geometry.nspace import slices
-from vizlight.mesh import point_arrays, polylines
+from vizlight.mesh import blocks, point_arrays, polylines
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -18,41 +18,45 @@ if TYPE_CHECKING:
     from vizlight._types import Array, Indices
 
 _SIMPLICES = (pv.CellType.TETRA, pv.CellType.TRIANGLE, pv.CellType.LINE)
-#: The six faces of a hexahedron, corners in a ring.
+#: Six faces of a hexahedron, their corners in cyclic order.
 _FACES = np.array(
     [[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
 )
+#: Corners of a voxel in the order of those of a hexahedron.
 _VOXEL = [0, 1, 3, 2, 4, 5, 7, 6]
-#: Frames between points are made block by block: each needs some n k numbers for each point.
+#: Number of frames that are interpolated at once: each takes about n k numbers.
 BLOCK = 1 << 15
 
 
-def cut(mesh: Any, heights: Array, /, *, spaces: Mapping[str, int] | None = None) -> Any:
+def cut(
+    mesh: pv.DataSet, heights: Array, /, *, spaces: Mapping[str, int] | None = None
+) -> pv.PolyData:
     """Return the part of a mesh where a function of its points is 0, with its point arrays.
 
     Parameters
     ----------
     mesh : pyvista.DataSet
-        Of lines, faces or volumes; the cells of highest dimension are cut.
+        Mesh of lines, faces or volumes; the cells of highest dimension are cut.
     heights : ndarray, shape (N,)
-    spaces : mapping, optional
-        Names of point arrays that stand for the space their rows span, and the components n of
-        a row: their mean is that of spaces, whatever basis each point has.
+        Values of the function at the points.
+    spaces : mapping of str to int, optional
+        Names of point arrays whose rows span a space, and the number n of components of a row:
+        the mean is one of spaces, independent of the basis at each point.
 
     Returns
     -------
     pyvista.PolyData
-        Points, lines or triangles. Point arrays of numbers are interpolated along the cut edges,
-        cell arrays are left out; a hexahedron is cut as 12 tetrahedra around its mean point.
-        Triangles go either way around.
+        Points, lines or triangles. Numeric point arrays are interpolated along the cut edges,
+        cell arrays are left out. A hexahedron is cut as 12 tetrahedra around its mean point.
+        Triangles are not consistently oriented.
 
     Raises
     ------
     ValueError
-        If the mesh has only loose points.
+        If the mesh has neither lines nor faces nor volumes.
     """
     simplices, middles = _simplices(mesh)
-    heights = np.concatenate([heights, _mean(heights, middles)])
+    heights = np.concatenate([heights, heights[middles].mean(axis=1)])
     edges, weights, cells = slices.cut(heights, simplices)
     count, total = mesh.n_points, mesh.n_points + len(middles)
     rows = np.repeat(np.arange(len(edges)), 2)
@@ -67,12 +71,9 @@ def cut(mesh: Any, heights: Array, /, *, spaces: Mapping[str, int] | None = None
             shape=(len(middles), count),
         ).tocsr()
         between = between[:, :count] + between[:, count:] @ spread
-    # A zero weight must not bring in a point that is not finite.
+    # A point with weight 0 must not contribute a NaN.
     between.eliminate_zeros()
-    out = pv.PolyData()
-    out.points = between @ np.asarray(mesh.points, dtype=np.float64)
-    made: Any = pv.CellArray.from_regular_cells(cells)
-    (out.SetVerts, out.SetLines, out.SetPolys)[cells.shape[1] - 1](made)
+    out = blocks.polydata(between @ np.asarray(mesh.points, dtype=np.float64), cells)
     for key, value in mesh.point_data.items():
         array = np.asarray(value)
         if spaces and key in spaces:
@@ -85,7 +86,8 @@ def cut(mesh: Any, heights: Array, /, *, spaces: Mapping[str, int] | None = None
     return out
 
 
-def _mean_frames(array: Array, between: Any, n: int) -> Array:
+def _mean_frames(array: Array, between: csr_array, n: int) -> Array:
+    """Return weighted means of frames in n-space; a row of ``between`` has the weights of one."""
     found = np.empty((between.shape[0], array.shape[1]), dtype=array.dtype)
     for block in _pool.blocks(len(found), BLOCK):
         part = between[block]
@@ -98,40 +100,45 @@ def _mean_frames(array: Array, between: Any, n: int) -> Array:
     return found
 
 
-def _simplices(mesh: Any) -> tuple[Indices, Indices]:
-    """Return segments, triangles or tetrahedra, and the 8 corners of each added mean point."""
+def _simplices(mesh: pv.DataSet) -> tuple[Indices, Indices]:
+    """Return segments, triangles or tetrahedra, and the corners of the hexahedra that are split."""
     none = np.empty((0, 8), dtype=np.intp)
     if isinstance(mesh, pv.PolyData):
-        if mesh.GetNumberOfPolys() or mesh.GetNumberOfStrips():
-            faces: Any = mesh.triangulate().regular_faces
-            return np.asarray(faces, dtype=np.intp), none
+        if blocks.has_faces(mesh):
+            return np.asarray(mesh.triangulate().regular_faces, dtype=np.intp), none
         segments = polylines.segments(mesh.GetLines())
         if len(segments):
             return segments, none
     else:
         grid = mesh.cast_to_unstructured_grid()
-        kinds = dict(grid.cells_dict) if grid.n_cells else {}
+        kinds = _cells(grid)
         whole = {pv.CellType.TETRA, pv.CellType.HEXAHEDRON, pv.CellType.VOXEL}
         if kinds and set(kinds) <= whole:
             return _tetrahedra(kinds, mesh.n_points)
-        kinds = grid.triangulate().cells_dict if grid.n_cells else {}
+        kinds = _cells(grid.triangulate()) if kinds else {}
         for kind in _SIMPLICES:
             if kind in kinds:
-                return np.asarray(kinds[kind], dtype=np.intp), none
-    raise ValueError(
-        _check.message("mesh", "lines, faces or volumes to cut", "a mesh of points alone")
-    )
+                return kinds[kind], none
+    expected, got = "lines, faces or volumes to cut", "a mesh of points alone"
+    remedy = "connect the points, for example by delaunay_3d()"
+    raise ValueError(_check.message("mesh", expected, got, remedy))
 
 
-def _tetrahedra(kinds: Any, count: int) -> tuple[Indices, Indices]:
-    """Return tetrahedra around a mean point of each hexahedron.
+def _cells(grid: pv.UnstructuredGrid) -> dict[int, Indices]:
+    """Return the points of the cells of a grid, by the type of the cells."""
+    kinds = grid.cells_dict if grid.n_cells else {}
+    return {int(kind): np.asarray(cells, dtype=np.intp) for kind, cells in kinds.items()}
 
-    Each face is halved by the diagonal from its corner of the lowest number, so that both its
-    hexahedra halve it alike and the cut has no cracks.
+
+def _tetrahedra(kinds: Mapping[int, Indices], count: int) -> tuple[Indices, Indices]:
+    """Return the tetrahedra of a mesh, 12 around the mean point of each hexahedron.
+
+    Each face is split by the diagonal from its corner of the lowest index, so that both hexahedra
+    at a face split it by the same diagonal and the section has no cracks.
     """
-    boxes = [np.asarray(kinds.get(pv.CellType.HEXAHEDRON, np.empty((0, 8))), dtype=np.intp)]
-    voxels = np.asarray(kinds.get(pv.CellType.VOXEL, np.empty((0, 8))), dtype=np.intp)
-    corners = np.concatenate([*boxes, voxels[:, _VOXEL]])
+    none = np.empty((0, 8), dtype=np.intp)
+    voxels = kinds.get(pv.CellType.VOXEL, none)[:, _VOXEL]
+    corners = np.concatenate([kinds.get(pv.CellType.HEXAHEDRON, none), voxels])
     faces = corners[:, _FACES]
     first = np.argmin(faces, axis=2)[..., np.newaxis]
     ring = np.take_along_axis(faces, (first + np.arange(4)) % 4, axis=2)
@@ -142,10 +149,4 @@ def _tetrahedra(kinds: Any, count: int) -> tuple[Indices, Indices]:
         np.concatenate([ring[..., part], middle], axis=2).reshape(-1, 4)
         for part in ([0, 1, 2], [0, 2, 3])
     ]
-    tetra = np.asarray(kinds.get(pv.CellType.TETRA, np.empty((0, 4))), dtype=np.intp)
-    return np.concatenate([tetra, *found]), corners
-
-
-def _mean(values: Array, groups: Indices) -> Array:
-    mean: Array = values[groups].mean(axis=1) if len(groups) else np.empty(0)
-    return mean
+    return np.concatenate([kinds.get(pv.CellType.TETRA, none[:, :4]), *found]), corners

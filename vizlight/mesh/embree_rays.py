@@ -1,26 +1,30 @@
-"""All hits of many rays by Embree, where the package embreex is installed.
+"""All hits of many rays by Embree, if the package embreex is installed.
 
-Embree finds the first hit of all rays at once, in float32. Further hits are first hits of rays
-that start just behind; which triangle it is decides, the place is taken from it in float64.
+Embree finds the first hit of all rays in one call, in float32. The next hits are the first hits
+of rays that start just behind the previous ones. Embree gives the triangle that is hit; the
+distance is computed from the triangle in float64.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 if TYPE_CHECKING:
+    from embreex.rtcore_scene import EmbreeScene
+
     from vizlight._types import Array, Indices
 
-#: How far behind a hit the next ray starts, as a share of the mesh: what float32 can tell apart.
+#: Distance from a hit to the start of the next ray, as a share of the size of the mesh: what
+#: float32 resolves.
 STEP = 1e-6
-#: Rays that are stopped this often are in a mesh that Embree cannot resolve.
+#: Largest number of hits of a ray: a ray with more is in a mesh that Embree cannot resolve.
 MOST = 10_000
 
 
-def tree(corners: Array) -> Any | None:
-    """Return Embree's search tree of triangles, shape (T, 3, 3), or None without the package."""
+def tree(corners: Array) -> EmbreeScene | None:
+    """Return Embree's search tree of triangles, shape (T, 3, 3); None without embreex."""
     try:
         from embreex.mesh_construction import TriangleMesh
         from embreex.rtcore_scene import EmbreeScene
@@ -32,19 +36,27 @@ def tree(corners: Array) -> Any | None:
 
 
 def hits(
-    scene: Any, corner: Array, normal: Array, size: float, start: Array, way: Array, reach: Array
+    scene: EmbreeScene,
+    corner: Array,
+    normal: Array,
+    size: float,
+    start: Array,
+    way: Array,
+    reach: Array,
 ) -> tuple[Indices, Indices]:
-    """Return which rays hit which triangles, all of them.
+    """Return the ray and the triangle of every hit.
 
     Parameters
     ----------
     scene : EmbreeScene
     corner, normal : ndarray, shape (T, 3)
-        Of each triangle.
+        One corner and the normal of each triangle.
     size : float
-        Of the mesh.
+        Size of the mesh.
     start, way : ndarray, shape (N, 3)
+        Starting points and unit directions of the rays.
     reach : ndarray, shape (N,)
+        Lengths of the rays.
     """
     row = np.arange(len(start))
     s = np.zeros(len(start))
@@ -59,7 +71,7 @@ def hits(
         cells.append(cell)
         against = np.einsum("ij,ij->i", way[row], normal[cell])
         gap = np.einsum("ij,ij->i", corner[cell] - start[row], normal[cell])
-        # On a triangle seen edge-on the place is Embree's.
+        # Along the plane of a triangle there is no such distance, so that of Embree is used.
         place = np.divide(gap, against, out=s[row] + far, where=against != 0)
         near = np.abs(place - s[row] - far) < 1e-3 * size
         s[row] = np.maximum(np.where(near, place, s[row] + far), s[row]) + STEP * size

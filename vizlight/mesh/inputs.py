@@ -1,4 +1,4 @@
-"""What the engine lights of a mesh, by the options of a filter."""
+"""The arrays of a mesh that the engine lights, selected by the options of a filter."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 
 
 def inputs_of(mesh: pv.DataSet, path: str, scene: Scene, options: LightOptions) -> ShadingInputs:
-    """Return what is lit of one mesh; the errors of a block name the block by its path.
+    """Return the inputs of the engine from one mesh; an error names the path of its block.
 
     Raises
     ------
     TypeError, ValueError
-        If an array is missing or does not fit, or options do not go together.
+        If an array is missing or does not fit, or options contradict each other.
     """
     try:
         points = points_of(mesh, options.positions)
@@ -53,7 +53,7 @@ def inputs_of(mesh: pv.DataSet, path: str, scene: Scene, options: LightOptions) 
 
 
 def _tangents(mesh: pv.DataSet, n: int, options: LightOptions) -> Array | None:
-    """Return the tangents that are named, or those of a mesh of lines."""
+    """Return the tangents in the options, or those of a mesh of lines."""
     if options.tangents is not None:
         return tangents_of(mesh, options.tangents, n, average_cells=options.average_cells)
     if n == 3 and polylines.has_lines_only(mesh):
@@ -62,18 +62,21 @@ def _tangents(mesh: pv.DataSet, n: int, options: LightOptions) -> Array | None:
 
 
 def _check_options(tangents: Array | None, n: int, options: LightOptions) -> None:
-    """Check that the options fit a surface, or tangents."""
+    """Check that the options fit a surface, or tangents if there are any."""
     one_line = tangents is not None and n == 3 and tangents.shape[1:] == (3,)
     if options.model == "cylinder" and not one_line:
         components = "" if tangents is None else f"{n}-space, {tangents.shape[-1]} components"
         raise ValueError(not_a_line(components or "a surface"))
     if tangents is None:
         if options.conditioned:
-            remedy = "a surface without tangents has its own shadow in any case"
+            remedy = "leave it out: a surface without tangents has its attached shadow in any case"
             raise ValueError(_check.message("conditioned", "tangents to condition", None, remedy))
-        return
-    if options.conditioned and not isinstance(options.conditioned, str):
-        return
+    elif not options.conditioned or isinstance(options.conditioned, str):
+        _refuse_sides(options)
+
+
+def _refuse_sides(options: LightOptions) -> None:
+    """Raise ValueError if an option fits only a surface, which has two sides."""
     for name in ("normals", "two_sided", "flip_normals"):
         value = getattr(options, name)
         if value is not None and value is not False:

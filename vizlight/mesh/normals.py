@@ -1,8 +1,8 @@
-"""Outward normals of a mesh: those it carries, or those of its surface."""
+"""Outward normals of a mesh: an array that it carries, or the normals of its surface."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -10,6 +10,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from vizlight import _check
+from vizlight.mesh.blocks import has_faces
 from vizlight.mesh.hull import outer_surface, scattered
 from vizlight.mesh.point_arrays import unit_rows, vectors_of
 from vizlight.scene import View
@@ -18,25 +19,19 @@ if TYPE_CHECKING:
     from vizlight._types import Array, Bools, Indices
     from vizlight.scene import Scene
 
-#: Largest share of the area of a piece's faces that their vectors add up to, where the piece is
-#: nearly closed.
+#: A piece counts as nearly closed if the sum of the area vectors of its faces is shorter than this
+#: share of its area.
 NEARLY_CLOSED = 0.2
 
 
-def normals_of(mesh: pv.DataSet, value: Any, n: int, view: View | None) -> Array:
-    """Return outward normals: those given, those the mesh carries, or those of its surface."""
+def normals_of(mesh: pv.DataSet, value: object, n: int, view: View | None) -> Array:
+    """Return outward normals: those in ``value``, else those of the mesh or of its surface."""
     if value is not None:
         return vectors_of(mesh, "normals", value, n)
     if n != 3:
-        raise ValueError(
-            _check.message(
-                "normals",
-                f"a point array of {n} components for {n}-space",
-                None,
-                "where there are none, light by tangents=, "
-                "conditioned by the name of the surface's tangents",
-            )
-        )
+        expected = f"a point array of {n} components for {n}-space"
+        remedy = "without one pass tangents=, conditioned by the name of the surface's tangents"
+        raise ValueError(_check.message("normals", expected, None, remedy))
     carried = mesh.point_data.active_normals
     if carried is not None:
         return np.asarray(carried)
@@ -46,9 +41,10 @@ def normals_of(mesh: pv.DataSet, value: Any, n: int, view: View | None) -> Array
 def surface_normals(mesh: pv.DataSet, view: View | None) -> Array:
     """Return the normals of a mesh's outer surface, zero at points that are not on it.
 
-    A closed surface has them outward, and so has a connected piece that is nearly closed. Any
-    other has no outside: it is turned as a whole, rather toward the eye.
-    VTK computes them, in float32.
+    VTK computes them in float32 and orients them consistently. They point outward on a closed
+    surface and on a connected piece that is nearly closed. Any other piece has no outside: its
+    normals are flipped together if on average they point away from the eye, or toward the
+    centroid of the piece.
 
     Raises
     ------
@@ -63,15 +59,10 @@ def surface_normals(mesh: pv.DataSet, view: View | None) -> Array:
         surface, origin = mesh, None
     else:
         surface, origin = outer_surface(mesh)
-    if not (surface.GetNumberOfPolys() or surface.GetNumberOfStrips()):
-        raise ValueError(
-            _check.message(
-                "mesh",
-                "a surface, whose normals decide where no tangents are named",
-                f"a {type(mesh).__name__} without faces",
-                "name its tangent vectors by tangents=",
-            )
-        )
+    if not has_faces(surface):
+        expected, got = "a surface, whose normals are lit", f"a {type(mesh).__name__} without faces"
+        remedy = "name its tangent vectors by tangents="
+        raise ValueError(_check.message("mesh", expected, got, remedy))
     bare = pv.PolyData()
     bare.copy_structure(surface)
     closed = bare.n_open_edges == 0
@@ -87,18 +78,19 @@ def surface_normals(mesh: pv.DataSet, view: View | None) -> Array:
     used[_corners(bare)[0]] = True
     computed[~used] = 0
     if not closed:
-        _turn_open(computed, found, view)
+        _orient_open(computed, found, view)
     if origin is None:
         return computed
     return scattered(computed, origin, mesh.n_points)
 
 
-def _turn_open(normals: Array, surface: pv.PolyData, view: View | None) -> None:
-    """Turn over each connected piece whose normals rather point inward, or away from the eye.
+def _orient_open(normals: Array, surface: pv.PolyData, view: View | None) -> None:
+    """Flip the normals of each connected piece that point inward, or away from the eye.
 
-    A piece is nearly closed where the vectors of its faces' areas add up to little of their area:
-    then the volume it encloses decides. For a sheet or a bowl the mean of N toward the eye, which
-    counts three times, and away from the piece's centroid. Points that are not finite have no say.
+    A piece is nearly closed if the area vectors of its faces almost cancel; then the sign of the
+    enclosed volume decides. For a sheet or a bowl the sign of a sum over its points decides, of
+    three times the cosine between N and the direction toward the eye plus the cosine between N and
+    the direction away from the centroid of the piece. Points that are not finite are ignored.
     """
     points = np.asarray(surface.points, dtype=np.float64)
     piece = _pieces(surface)
@@ -115,19 +107,19 @@ def _turn_open(normals: Array, surface: pv.PolyData, view: View | None) -> None:
             else np.asarray(view.position) - points
         )
         score += 3 * _dots(normals, unit_rows(toward))
-    turned = np.bincount(piece, np.where(good, score, 0)) < 0
+    flipped = np.bincount(piece, np.where(good, score, 0)) < 0
 
     faces = surface if surface.is_all_triangles else surface.triangulate()
     corners = np.asarray(faces.regular_faces, dtype=np.intp)
     corners = corners[good[corners].all(axis=1)]
-    # Over their size, since products of tiny lengths vanish and those of huge ones overflow.
+    # Lengths are scaled, because products of tiny ones underflow and of huge ones overflow.
     a, b, c = (away[corners[:, i]] / (np.abs(away).max() or 1.0) for i in range(3))
     across, owner = np.cross(b - a, c - a), piece[corners[:, 0]]
     total = np.stack([np.bincount(owner, axis, len(size)) for axis in across.T], axis=1)
     area = np.bincount(owner, np.linalg.norm(across, axis=1), len(size))
     volume = np.bincount(owner, _dots(across, a), len(size))
     around = np.linalg.norm(total, axis=1) < NEARLY_CLOSED * area
-    normals[np.where(around, volume < 0, turned)[piece]] *= -1
+    normals[np.where(around, volume < 0, flipped)[piece]] *= -1
 
 
 def _dots(a: Array, b: Array) -> Array:
@@ -135,7 +127,7 @@ def _dots(a: Array, b: Array) -> Array:
 
 
 def onlooker(scene: Scene) -> View | None:
-    """Return the scene's view, or one from its first light, to which an open surface then turns."""
+    """Return the view that an open surface faces: the scene's, or one from its first light."""
     if scene.view is not None:
         return scene.view
     light = next((light for light in scene.lights if not light.follows_view), None)
@@ -145,9 +137,9 @@ def onlooker(scene: Scene) -> View | None:
 
 
 def _pieces(surface: pv.PolyData) -> Indices:
-    """Return for each point the number of the connected piece it belongs to.
+    """Return for each point the number of its connected piece.
 
-    Corners of one place belong together, so that separate triangles of one surface do too.
+    Coincident points are connected, so that triangles that share no point can form one piece.
     """
     corners, last = _corners(surface)
     follows = np.flatnonzero(~last)
@@ -162,7 +154,7 @@ def _pieces(surface: pv.PolyData) -> Indices:
 
 
 def _corners(surface: pv.PolyData) -> tuple[Indices, Bools]:
-    """Return the corners of all faces, one after the other, and which are the last of a face."""
+    """Return the corners of all faces, and a mask of those that are the last of their face."""
     corners, last = [], []
     for cells in (surface.GetPolys(), surface.GetStrips()):
         ids = pv.convert_array(cells.GetConnectivityArray()).astype(np.intp, copy=False)

@@ -1,8 +1,7 @@
-"""Arrays in n-space on a mesh: turned, cut by a hyperplane and projected, block by block."""
+"""Rotation, section by a hyperplane and projection of the arrays of a mesh in n-space."""
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -18,28 +17,30 @@ from vizlight.model.frames import default_rtol
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from numpy.typing import NDArray
+
     from vizlight._types import Array, Bools, VectorLike
 
 POSITION, FRAME, PROJECTED, RECORD = "position", "frame", "projected_", "projection"
-#: Number of rows worked on at once, in float64.
+#: Number of rows that are processed at once, in float64.
 BLOCK = 1 << 15
 
 
 class Counter:
-    """A count that is reported when it grows."""
+    """A sum that is reported after each addition."""
 
     def __init__(self, report: Callable[[int], None]) -> None:
         self.count, self._report = 0, report
 
     def add(self, more: int) -> None:
-        """Count more and report the sum."""
+        """Add a number and report the sum."""
         self.count += more
         self._report(self.count)
 
 
 @dataclass(frozen=True)
 class Turning:
-    """What :func:`project` does to each mesh, with its options."""
+    """The steps of :func:`vizlight.project` on one mesh, and their options."""
 
     rotation: object
     hyperplane: tuple[VectorLike, float] | None
@@ -50,17 +51,17 @@ class Turning:
     cut: bool
 
     def turned(self, mesh: pv.DataSet, done: Counter, lost: Counter) -> pv.DataSet:
-        """Return a mesh turned and cut; its points stay where they are."""
+        """Return a mesh with its arrays rotated, and cut by the hyperplane; not yet projected."""
         if isinstance(mesh, pv.ImageData | pv.RectilinearGrid):
             mesh = mesh.cast_to_structured_grid()
         out = mesh.copy(deep=False)
-        # The mesh that is given keeps its points; its normals are not those of the result.
+        # The normals of the mesh are not those of the result.
         out.point_data.active_normals_name = None
         arrays = self._arrays(out)
         n = arrays[self.positions].shape[1]
         matrix = None if self.rotation is None else projection.rotation(n, self.rotation)
         plane = None if self.hyperplane is None else _plane(self.hyperplane, n)
-        record = _record(self, mesh, matrix)
+        exact = None if matrix is None else matrix.tolist()
         for name, array in arrays.items():
             if matrix is not None:
                 rows = array.shape[1] // n
@@ -70,17 +71,28 @@ class Turning:
             point_arrays.attach_rows(out, name, array)
         if plane is not None:
             out = self._sliced(out, *plane, lost)
-        out.field_data[records.key(RECORD)] = [record]
+        records.write(out, RECORD, self._record(exact, records.read(mesh, RECORD)))
         done.add(mesh.n_points)
         return out
 
-    def _arrays(self, mesh: Any) -> dict[str, Array]:
-        """Return the arrays that turn, by name, each checked."""
+    def _record(self, rotation: object, earlier: object) -> records.Record:
+        """Return the record of the steps, given the rotation as a matrix and the earlier record."""
+        plane = self.hyperplane
+        exact = {
+            "rotation": rotation,
+            "hyperplane": plane and [[float(x) for x in plane[0]], float(plane[1])],
+            "earlier": earlier,
+        }
+        return {"vizlight": __version__, "filter": "project"} | records.plain(self) | exact
+
+    def _arrays(self, mesh: pv.DataSet) -> dict[str, Array]:
+        """Check the arrays that are rotated, and return them by name."""
         position = _named(mesh, "positions", self.positions)
         n = position.shape[1]
         if n < 2:
-            got = f"{self.positions!r} with 1"
-            raise ValueError(_check.message("positions", "2 components or more", got))
+            got = f"{self.positions!r} with {n}"
+            remedy = "name an array of positions in n-space"
+            raise ValueError(_check.message("positions", "2 components or more", got, remedy))
         found = {self.positions: position}
         given = [("vectors", name) for name in self.vectors]
         if self.frame is not None:
@@ -89,22 +101,19 @@ class Turning:
             array = _named(mesh, argument, name)
             most = n - 1 if argument == "frame" else array.shape[1]
             if array.shape[1] % n or not 0 < array.shape[1] // n <= most:
-                expected = f"a point array of {n} k components, rows of {n}, as positions have"
-                got = f"{name!r} with {array.shape[1]}"
-                raise ValueError(_check.message(argument, expected, got))
+                expected = f"a point array of {n} k components, as positions have {n}"
+                got = f"{name!r} with {array.shape[1]} components"
+                remedy = "name another array"
+                raise ValueError(_check.message(argument, expected, got, remedy))
             found[name] = array
-        ours = records.key(RECORD) in mesh.field_data
-        for name in list(found)[1:]:
-            if PROJECTED + name in mesh.point_data and not ours:
-                expected = "a mesh without an array of that name of its own"
-                remedy = "rename that array"
-                raise ValueError(_check.message("mesh", expected, repr(PROJECTED + name), remedy))
+        _refuse_overwriting(mesh, [PROJECTED + name for name in list(found)[1:]])
         return {
             name: array if array.dtype.kind == "f" else array.astype(np.float64)
             for name, array in found.items()
         }
 
-    def _sliced(self, mesh: Any, normal: Array, offset: float, lost: Counter) -> Any:
+    def _sliced(self, mesh: pv.DataSet, normal: Array, offset: float, lost: Counter) -> pv.PolyData:
+        """Return the section of a mesh by a hyperplane, with its frame restricted to it."""
         position = np.asarray(mesh.point_data[self.positions])
         heights = np.empty(len(position))
         with np.errstate(all="ignore"):
@@ -131,22 +140,22 @@ class Turning:
         return out
 
     def _count_lost(self, count: int, total: int, expected: str, lost: Counter) -> None:
-        """Count points that cannot be shown, if they may be left out."""
+        """Count points that cannot be cut or projected; raise ValueError if they must be kept."""
         if not self.cut:
             got = f"{count} of {total} points that are not"
-            remedy = "leave them out by cut=True"
+            remedy = "drop them by cut=True"
             if self.distance is not None:
                 remedy = "move the eye away by distance=, or " + remedy
             raise ValueError(_check.message("mesh", expected, got, remedy))
         lost.add(count)
 
-    def projected(self, mesh: Any, done: Counter, lost: Counter) -> Any:
+    def projected(self, mesh: pv.DataSet, done: Counter, lost: Counter) -> pv.DataSet:
         """Return a mesh projected to 3-space."""
         position = np.asarray(mesh.point_data[self.positions])
         n = position.shape[1]
         points, good = self._points(position)
         if not good.all():
-            expected = "points before the eye's hyperplane, and finite"
+            expected = "finite points before the eye's hyperplane"
             self._count_lost(int(np.count_nonzero(~good)), len(good), expected, lost)
             mesh = _without(mesh, ~good)
             position = np.asarray(mesh.point_data[self.positions])
@@ -158,7 +167,7 @@ class Turning:
         if self.frame is not None:
             name = PROJECTED + self.frame
             out.point_data.pop(name, None)
-            # Three directions fill 3-space: there is no frame that light could use.
+            # The image of three tangents is all of 3-space, which light cannot use as a frame.
             if self.frame in out.point_data and out.point_data[self.frame].shape[1] < 3 * n:
                 point_arrays.attach_rows(
                     out, name, self._image(out, self.frame, position, space=True)
@@ -166,10 +175,10 @@ class Turning:
         done.add(mesh.n_points)
         return out
 
-    def _points(self, position: Array) -> tuple[Any, Bools]:
-        """Return places in 3-space, and which of them can be seen.
+    def _points(self, position: Array) -> tuple[NDArray[Any], Bools]:
+        """Return points in 3-space, and a mask of those that are visible.
 
-        These are finite, and before the eye's hyperplane by more than rounding.
+        Visible points are finite and before the eye's hyperplane by more than rounding.
         """
         points = np.empty((len(position), 3), dtype=position.dtype)
         good = np.empty(len(position), dtype=np.bool_)
@@ -183,14 +192,14 @@ class Turning:
                 good[block] &= np.all(np.isfinite(points[block]), axis=1)
         return points, good
 
-    def _image(self, mesh: Any, name: str, position: Array, *, space: bool = False) -> Array:
-        """Return the vectors of an array as the projection's derivative takes them to 3-space.
+    def _image(self, mesh: pv.DataSet, name: str, position: Array, *, space: bool = False) -> Array:
+        """Return the images in 3-space of the vectors of an array by the projection's derivative.
 
-        With ``space`` they are tangents: an orthonormal frame of what their images span.
+        With ``space`` return an orthonormal frame of the space that the images span.
         """
         vectors, n = np.asarray(mesh.point_data[name]), position.shape[1]
         rows = vectors.shape[1] // n
-        # Orthographic images do not depend on the places.
+        # Orthographic images do not depend on the positions.
         rough = [vectors.dtype] if self.distance is None else [vectors.dtype, position.dtype]
         rtol = max(default_rtol(n, dtype) for dtype in rough)
 
@@ -209,9 +218,9 @@ class Turning:
 def _blocks(
     work: Callable[..., Array], array: Array, rows: int | None = None, n: int = 1, *others: Array
 ) -> Array:
-    """Return work done on float64 blocks of an array, in the array's own type.
+    """Return the results of a function on float64 blocks of an array, in the type of the array.
 
-    The result has ``rows`` vectors of n components a point, or as many numbers as the array.
+    The result has ``rows`` vectors of n components per point, or the shape of the array.
     """
     width = array.shape[1] if rows is None else rows * n
     out = np.empty((len(array), width), dtype=array.dtype)
@@ -222,20 +231,31 @@ def _blocks(
     return out
 
 
-def _named(mesh: Any, argument: str, name: Any) -> Array:
+def _named(mesh: pv.DataSet, argument: str, name: object) -> Array:
     if not isinstance(name, str):
         raise TypeError(_check.message(argument, "the name of a point array", repr(name)))
     return point_arrays.array_of(mesh, argument, name)
 
 
-def _without(mesh: Any, lost: Bools) -> Any:
-    """Return a mesh without some points and the cells that have one."""
+def _refuse_overwriting(mesh: pv.DataSet, names: list[str]) -> None:
+    """Raise ValueError if a result would replace a user's array."""
+    if records.key(RECORD) in mesh.field_data:
+        return
+    for name in names:
+        if name in mesh.point_data:
+            expected = "a mesh without an array under the name of a result"
+            raise ValueError(_check.message("mesh", expected, repr(name), "rename that array"))
+
+
+def _without(mesh: pv.DataSet, lost: Bools) -> pv.DataSet:
+    """Return a mesh without some points and without the cells that use one of them."""
     before = set(mesh.point_data), set(mesh.cell_data)
-    grid = mesh.extract_points(~lost, adjacent_cells=False, progress_bar=False)
+    kept = np.asarray(np.flatnonzero(~lost), dtype=int)
+    grid: pv.DataSet = mesh.extract_points(kept, adjacent_cells=False, progress_bar=False)
     if isinstance(mesh, pv.PolyData):
         grid = grid.extract_surface(algorithm="geometry", pass_pointid=False, pass_cellid=False)
-    for data, kept in zip((grid.point_data, grid.cell_data), before, strict=True):
-        for name in set(data) - kept:
+    for data, names in zip((grid.point_data, grid.cell_data), before, strict=True):
+        for name in set(data) - names:
             del data[name]
     for name in before[0] - set(grid.point_data):  # where no point is left
         point_arrays.attach_rows(grid, name, np.asarray(mesh.point_data[name])[:0])
@@ -244,35 +264,14 @@ def _without(mesh: Any, lost: Bools) -> Any:
     return grid
 
 
-def _plane(hyperplane: Any, n: int) -> tuple[Array, float]:
-    """Return a hyperplane's unit normal and its offset."""
+def _plane(hyperplane: object, n: int) -> tuple[Array, float]:
+    """Return the unit normal of a hyperplane and its offset."""
     expected = f"(normal of {n} components, offset)"
     if not isinstance(hyperplane, tuple | list) or len(hyperplane) != 2:
         raise TypeError(_check.message("hyperplane", expected, _check.describe(hyperplane)))
     normal = np.array(_check.vector("hyperplane", hyperplane[0], direction=True))
     if len(normal) != n:
-        got = f"a normal of {len(normal)}"
+        got = f"a normal of {len(normal)} components"
         raise ValueError(_check.message("hyperplane", expected, got))
     normal /= np.abs(normal).max()
     return normal / np.linalg.norm(normal), _check.number("hyperplane", hyperplane[1])
-
-
-def _record(job: Turning, mesh: Any, matrix: Array | None) -> str:
-    """Return what is done to a mesh, and what was before, as a line of JSON."""
-    plane = job.hyperplane
-    return json.dumps(
-        {
-            "vizlight": __version__,
-            "filter": "project",
-            "rotation": None if matrix is None else matrix.tolist(),
-            "hyperplane": None
-            if plane is None
-            else [[float(x) for x in plane[0]], float(plane[1])],
-            "distance": job.distance,
-            "positions": job.positions,
-            "frame": job.frame,
-            "vectors": list(job.vectors),
-            "cut": job.cut,
-            "earlier": records.read(mesh, RECORD),
-        }
-    )

@@ -1,8 +1,8 @@
-"""Point arrays of a mesh: taken as rows that the engine slices, and attached."""
+"""Point arrays of a mesh: read as rows for the engine, and attached."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
 
 class GridPoints:
-    """The points of an image or a rectilinear grid, made by slice: none are kept."""
+    """Points of an image or a rectilinear grid, computed for each slice and not stored."""
 
-    dtype: np.dtype[Any] = np.dtype(np.float64)
+    dtype = np.dtype(np.float64)
 
     def __init__(self, grid: pv.ImageData | pv.RectilinearGrid) -> None:
         self.shape: tuple[int, ...] = (grid.n_points, 3)
@@ -40,14 +40,14 @@ class GridPoints:
             )
 
     def __getitem__(self, rows: slice, /) -> Array:
-        """Return some points, the first index running fastest."""
+        """Return a slice of the points; the first index varies fastest."""
         flat = np.arange(*rows.indices(self.shape[0]))
         ijk = np.stack(np.unravel_index(flat, self._dimensions, order="F"), axis=1)
         return self._place(ijk)
 
 
 def points_of(mesh: pv.DataSet, positions: str | None) -> ArraySource:
-    """Return the points of a mesh, or a point array of positions in n-space."""
+    """Return the points of a mesh, or a point array with positions in n-space."""
     if positions is not None:
         return array_of(mesh, "positions", positions)
     if isinstance(mesh, pv.ImageData | pv.RectilinearGrid):
@@ -56,18 +56,19 @@ def points_of(mesh: pv.DataSet, positions: str | None) -> ArraySource:
 
 
 def array_of(
-    mesh: pv.DataSet, name: str, value: Any, *, average_cells: bool | None = None
+    mesh: pv.DataSet, name: str, value: object, *, average_cells: bool | None = None
 ) -> Array:
-    """Return a point array by name, or an array given as such; two-dimensional, real.
+    """Return a point array of real numbers, from its name or from an array with those values.
 
-    Cell data are averaged to the points, refused, or, where None, never averaged.
+    A cell array is averaged to the points if ``average_cells`` is true, else it is an error; None
+    stands for a filter without that option.
 
     Raises
     ------
     TypeError
-        If it does not hold real numbers.
+        If the array does not hold real numbers.
     ValueError
-        If there is no such array, or it is cell data and may not be averaged.
+        If there is no such array, its shape is wrong, or it is a cell array that is not averaged.
     """
     if isinstance(value, str):
         array = _named(mesh, name, value, average_cells=average_cells)
@@ -77,20 +78,14 @@ def array_of(
         if array.ndim == 3:
             array = array.reshape(len(array), -1)
         if array.ndim == 0 or len(array) != mesh.n_points:
-            raise ValueError(
-                _check.message(name, f"{mesh.n_points} rows, one a point", _check.describe(array))
-            )
+            expected = f"{mesh.n_points} rows, one per point"
+            raise ValueError(_check.message(name, expected, _check.describe(array)))
     if array.dtype.kind not in "iubf":
         raise TypeError(_check.message(name, "real numbers", f"{what}type {array.dtype}"))
     if array.ndim != 2:
-        raise ValueError(
-            _check.message(
-                name,
-                "vectors, an array of 2 or more components",
-                f"{what}1 component" if array.ndim == 1 else f"{what}shape {array.shape}",
-                "name another array",
-            )
-        )
+        expected = "vectors, an array of 2 or more components"
+        got = f"{what}1 component" if array.ndim == 1 else f"{what}shape {array.shape}"
+        raise ValueError(_check.message(name, expected, got, "name another array"))
     return array
 
 
@@ -111,26 +106,30 @@ def _named(mesh: pv.DataSet, name: str, value: str, *, average_cells: bool | Non
     raise ValueError(_check.message(name, f"the name of a point array ({there})", repr(value)))
 
 
-def refuse_unnamed(name: str, value: Any) -> None:
-    """Refuse anything but the name of an array, or None."""
+def refuse_unnamed(name: str, value: object) -> None:
+    """Raise TypeError for anything but a name of an array or None."""
     if value is not None and not isinstance(value, str):
-        remedy = "attach it to the mesh and name it"
-        raise TypeError(
-            _check.message(name, "the name of a point array", _check.describe(value), remedy)
-        )
+        remedy = "attach the array to the mesh and pass its name"
+        got = _check.describe(value)
+        raise TypeError(_check.message(name, "the name of a point array", got, remedy))
 
 
-def vectors_of(mesh: pv.DataSet, name: str, value: Any, n: int) -> Array:
-    """Return a point array of n components, by name or given as such."""
+def vectors_of(mesh: pv.DataSet, name: str, value: object, n: int) -> Array:
+    """Return a point array of n components, from its name or an array."""
     array = array_of(mesh, name, value)
     if array.shape[1] != n:
-        what = f"{value!r} with {array.shape[1]}" if isinstance(value, str) else array.shape[1]
-        raise ValueError(_check.message(name, f"{n} components", what))
+        got = _components(value, array)
+        raise ValueError(_check.message(name, f"{n} components", got, "pass another array"))
     return array
 
 
+def _components(value: object, array: Array) -> str:
+    """Return the name of an array, if it has one, and its number of components, for a message."""
+    return (f"{value!r} with " if isinstance(value, str) else "") + str(array.shape[1])
+
+
 def attach_rows(mesh: pv.DataSet, name: str, array: NDArray[np.generic]) -> None:
-    """Attach a point array, also one of no rows, which PyVista refuses."""
+    """Attach a point array; PyVista itself refuses an array without rows."""
     if len(array):
         mesh.point_data[name] = array
     else:
@@ -138,33 +137,27 @@ def attach_rows(mesh: pv.DataSet, name: str, array: NDArray[np.generic]) -> None
 
 
 def activate(mesh: pv.DataSet, name: str) -> None:
-    """Make a point array the active scalars of a mesh, also where those of its cells were."""
+    """Make a point array the active scalars of a mesh, even if a cell array was active."""
     mesh.point_data.active_scalars_name = name
     if mesh.n_points:
         mesh.set_active_scalars(name, preference="point")
 
 
 def tangents_of(
-    mesh: pv.DataSet, value: Any, n: int, *, average_cells: bool, argument: str = "tangents"
+    mesh: pv.DataSet, value: object, n: int, *, average_cells: bool, argument: str = "tangents"
 ) -> Array:
-    """Return tangents as (n_points, k n), 0 < k < n."""
+    """Return k tangents per point as an array of shape (n_points, k n), 0 < k < n."""
     array = array_of(mesh, argument, value, average_cells=average_cells)
     if array.shape[1] % n or not 0 < array.shape[1] // n < n:
         allowed = " or ".join(str(k * n) for k in range(1, min(n, 5)))
-        what = f"{value!r} with {array.shape[1]}" if isinstance(value, str) else array.shape[1]
-        raise ValueError(
-            _check.message(
-                argument,
-                f"a point array of {allowed} components, rows of {n}",
-                what,
-                "name another array, or the points in n-space by positions=",
-            )
-        )
+        expected = f"a point array of {allowed} components, rows of {n}"
+        remedy = "name another array, or name the positions in n-space by positions="
+        raise ValueError(_check.message(argument, expected, _components(value, array), remedy))
     return array
 
 
 def unit_rows(vectors: Array) -> Array:
-    """Return unit vectors in float64, of whatever length they were; zero without a direction."""
+    """Return vectors of any length as unit vectors in float64; zero where there is no direction."""
     columns = np.ascontiguousarray(np.asarray(vectors, dtype=np.float64).T)
     result: Array = kernels.unit(columns)[0].T
     return result

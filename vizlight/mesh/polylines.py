@@ -1,16 +1,18 @@
-"""The tangents of a mesh's own lines."""
+"""Lines of a mesh: their segments and tangents, and where they turn back."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
 
 from vizlight.geometry.lines.curves import polyline_tangents
-from vizlight.mesh import hull
+from vizlight.mesh import blocks, hull
 
 if TYPE_CHECKING:
+    from vtkmodules.vtkCommonDataModel import vtkCellArray
+
     from vizlight._types import Array, Indices
 
 
@@ -22,10 +24,9 @@ POINTS = {pv.CellType.VERTEX, pv.CellType.POLY_VERTEX}
 
 
 def has_lines_only(mesh: pv.DataSet) -> bool:
-    """Tell whether a mesh consists of lines (and perhaps loose points), without a surface."""
+    """Return whether a mesh has lines, possibly vertices, and no other cells."""
     if isinstance(mesh, pv.PolyData):
-        no_faces = not (mesh.GetNumberOfPolys() or mesh.GetNumberOfStrips())
-        return no_faces and mesh.n_lines > 0
+        return mesh.n_lines > 0 and not blocks.has_faces(mesh)
     if isinstance(mesh, pv.UnstructuredGrid):
         kinds = set(np.unique(mesh.celltypes).tolist())
         return bool(kinds & LINES) and kinds <= LINES | POINTS
@@ -33,15 +34,16 @@ def has_lines_only(mesh: pv.DataSet) -> bool:
 
 
 def line_tangents(mesh: pv.DataSet) -> Array:
-    """Return the unit tangents of a mesh of lines, zero at points of no line.
+    """Return the unit tangents of a mesh of lines; zero at points that no line uses.
 
-    Segments that follow each other, such as contour lines come in, are joined first.
+    Consecutive segments, such as those of contour lines, are joined first.
     """
     if not isinstance(mesh, pv.PolyData):
         surface, origin = hull.outer_surface(mesh)
         if mesh.has_nonlinear_cells:
-            # Each came as a line of its own.
-            surface.SetLines(pv.CellArray.from_regular_cells(segments(surface.GetLines())))
+            # VTK turns each curve into a polyline; segments let the curves be joined below.
+            ends = np.asarray(segments(surface.GetLines()), dtype=int)
+            surface.SetLines(pv.CellArray.from_regular_cells(ends))
         return hull.scattered(line_tangents(surface), origin, mesh.n_points)
     lines = mesh.GetLines()
     ids, offsets = _cells(lines)
@@ -54,8 +56,8 @@ def line_tangents(mesh: pv.DataSet) -> Array:
     return found
 
 
-def segments(lines: Any) -> Any:
-    """Return the ends of all segments of lines, shape (M, 2)."""
+def segments(lines: vtkCellArray) -> Indices:
+    """Return the two points of each segment of all lines, shape (M, 2)."""
     ids, offsets = _cells(lines)
     inside = np.ones(len(ids), dtype=np.bool_)
     inside[offsets[1:] - 1] = False
@@ -64,10 +66,10 @@ def segments(lines: Any) -> Any:
 
 
 def before_turning_back(mesh: pv.PolyData) -> pv.PolyData:
-    """Return a mesh of lines up to where each turns back or, at its end, moves no more.
+    """Return each line up to the point where it turns back or its last points coincide.
 
-    A line turns back where two steps that follow each other are more than a right angle apart.
-    Lines without a step are left out; each point is expected to have one line.
+    A line turns back where the angle between two consecutive steps is a right angle or more.
+    Lines without a step are left out. Each point must belong to exactly one line.
     """
     ids, offsets = _cells(mesh.GetLines())
     size = np.diff(offsets)
@@ -76,7 +78,7 @@ def before_turning_back(mesh: pv.PolyData) -> pv.PolyData:
     step = place[1:] - place[:-1]
     same = line[1:] == line[:-1]
     moving = np.any(step != 0, axis=1) & same
-    # Steps that move, each after the one before it on its line.
+    # Indices of the steps of non-zero length.
     at = np.flatnonzero(moving)
     back = np.einsum("ij,ij->i", step[at[1:]], step[at[:-1]]) <= 0
     back &= line[at[1:]] == line[at[:-1]]
@@ -92,8 +94,8 @@ def before_turning_back(mesh: pv.PolyData) -> pv.PolyData:
     out = pv.PolyData()
     out.points = np.asarray(mesh.points)[ids[kept]]
     length = np.bincount(line[kept], minlength=len(size))[keep_line]
-    ends: Any = np.concatenate([[0], np.cumsum(length)])
-    numbers: Any = np.arange(len(out.points))
+    ends = np.concatenate([[0], np.cumsum(length)])
+    numbers = np.asarray(np.arange(len(out.points)), dtype=int)
     out.SetLines(pv.CellArray.from_arrays(ends, numbers))
     for key, array in mesh.point_data.items():
         out.point_data[key] = np.asarray(array)[ids[kept]]
@@ -102,7 +104,8 @@ def before_turning_back(mesh: pv.PolyData) -> pv.PolyData:
     return out
 
 
-def _cells(cells: Any) -> tuple[Indices, Indices]:
+def _cells(cells: vtkCellArray) -> tuple[Indices, Indices]:
+    """Return the points of all cells, and the offset of each cell in them."""
     return (
         pv.convert_array(cells.GetConnectivityArray()).astype(np.intp, copy=False),
         pv.convert_array(cells.GetOffsetsArray()).astype(np.intp, copy=False),

@@ -1,4 +1,4 @@
-"""What made an array, kept beside it as field data, so that a saved file can be reproduced."""
+"""Records of how arrays were made, kept as field data, so that a saved file can be reproduced."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def key(name: str) -> str:
 def attach(
     mesh: pv.DataSet, name: str, arrays: Mapping[str, NDArray[np.generic]], record: Record
 ) -> None:
-    """Attach point arrays in place of those made under the name before; it becomes active."""
+    """Attach point arrays in place of earlier ones of a name, and activate the one of that name."""
     for stale in made(mesh, name):
         if stale in mesh.point_data:
             del mesh.point_data[stale]
@@ -54,7 +54,7 @@ def write(mesh: pv.DataSet, name: str, record: Record) -> None:
 
 
 def read(mesh: pv.DataSet, name: str) -> dict[str, Any] | None:
-    """Return the record of an array, None where the mesh has none."""
+    """Return the record of an array, or None if the mesh has none."""
     if key(name) not in mesh.field_data:
         return None
     record: dict[str, Any] = json.loads(str(mesh.field_data[key(name)][0]))
@@ -73,21 +73,16 @@ def all_made(mesh: pv.DataSet) -> set[str]:
 
 
 def refuse_overwriting(
-    leaves: Iterable[tuple[pv.DataSet, str]], name: str, arrays: Iterable[str]
+    named: Iterable[tuple[pv.DataSet, str]], name: str, arrays: Iterable[str]
 ) -> None:
-    """Refuse to replace the user's own arrays; those that vizlight made may be made anew."""
-    for leaf, _ in leaves:
-        ours = made(leaf, name)
+    """Raise ValueError if a point array that vizlight did not make would be replaced."""
+    for mesh, _ in named:
+        ours = made(mesh, name)
         for array in arrays:
-            if array in leaf.point_data and array not in ours:
-                raise ValueError(
-                    _check.message(
-                        "name",
-                        "one under which the mesh has no array of its own",
-                        repr(array),
-                        "pass another name= or rename that array",
-                    )
-                )
+            if array in mesh.point_data and array not in ours:
+                expected = "one under which the mesh has no array of its own"
+                remedy = "pass another name= or rename that array"
+                raise ValueError(_check.message("name", expected, repr(array), remedy))
 
 
 def of_light(shading: Shading, filter_name: str, scene: Scene, options: object) -> Record:
@@ -106,7 +101,7 @@ def of_light(shading: Shading, filter_name: str, scene: Scene, options: object) 
 
 
 def of_filter(filter_name: str, scene: Scene, options: object, **facts: object) -> Record:
-    """Return the record of an array that is no sum of an engine's terms."""
+    """Return the record of an array that a filter computed."""
     return {
         "vizlight": __version__,
         "filter": filter_name,
@@ -117,7 +112,7 @@ def of_filter(filter_name: str, scene: Scene, options: object, **facts: object) 
 
 
 def amend(mesh: pv.DataSet, name: str, filter_name: str, *options: object) -> None:
-    """Record that another filter made an array, with the help of the one in the record."""
+    """Replace the filter and the options in the record of an array; options are merged."""
     own = {key: value for each in options for key, value in plain(each).items()}
     write(mesh, name, (read(mesh, name) or {}) | {"filter": filter_name, "options": own})
 
@@ -131,7 +126,7 @@ def plain(options: object) -> Record:
 
 
 def _plain(value: object) -> object:
-    """Return a value that JSON can hold; a mesh or a long array is only described."""
+    """Return a value that JSON can hold, with a description of a mesh or a long array."""
     if value is None or isinstance(value, str | bool | int | float):
         return value
     if isinstance(value, pv.DataObject):
@@ -142,46 +137,46 @@ def _plain(value: object) -> object:
         return [_plain(part) for part in value]
     array: NDArray[np.generic] = np.asarray(value)
     if array.size <= WRITTEN_OUT and array.dtype.kind in "biufU":
-        # No JSON has more digits than float64.
+        # JSON holds at most the digits of float64.
         return (array.astype(np.float64) if array.dtype.kind == "f" else array).tolist()
     return _check.describe(array)
 
 
 def provenance(mesh: pv.DataSet | pv.MultiBlock, /, name: str = "luminance") -> dict[str, Any]:
-    """Return what made a point array: scene, options, terms, precision, version.
+    """Return the record of a point array: filter, scene, options, terms, precision, version.
 
     Parameters
     ----------
     mesh : pyvista.DataSet or pyvista.MultiBlock
-        A mesh that a filter of vizlight returned, or one read from a file of it.
+        Mesh that a filter of vizlight returned, or one read from a file of such a mesh.
     name : str, default: "luminance"
-        The array.
+        Name of the point array.
 
     Returns
     -------
     dict
-        ``p["filter"]`` names the filter, which makes the array again from the mesh it was given:
+        ``p["filter"]`` names the filter, which reproduces the array from the original mesh:
         ``illuminate(mesh, Scene.from_dict(p["scene"]), **p["options"])``; ``project`` takes the
         scene by ``scene=``, ``relief_day`` takes none. Meshes and arrays of more than 100 numbers
-        among the options are only described.
+        among the options are replaced by a description.
 
     Raises
     ------
     TypeError
         If it is not a mesh.
     ValueError
-        If the mesh tells nothing of such an array.
+        If the mesh has no record of such an array.
     """
     if not isinstance(mesh, pv.DataSet | pv.MultiBlock):
         raise TypeError(_check.message("mesh", "a PyVista mesh", type(mesh).__name__))
     known = set()
-    for leaf in blocks.leaves(mesh):
-        if (found := read(leaf, name)) is not None:
+    for block in blocks.all_blocks(mesh):
+        if (found := read(block, name)) is not None:
             return found
-        known |= {k.removesuffix(key("")) for k in leaf.field_data if k.endswith(key(""))}
+        known |= {k.removesuffix(key("")) for k in block.field_data if k.endswith(key(""))}
     if not known:
         remedy = "light it first, or read it from a file format that keeps field data"
-        raise ValueError(_check.message("mesh", "one that vizlight made arrays on", "none", remedy))
+        raise ValueError(_check.message("mesh", "one with an array by vizlight", "none", remedy))
     raise ValueError(
-        _check.message("name", f"one of the arrays made by vizlight, {sorted(known)}", repr(name))
+        _check.message("name", f"one of the arrays by vizlight, {sorted(known)}", repr(name))
     )

@@ -1,4 +1,4 @@
-"""Fibres with equal numbers of points, grown block by block when the engine asks for them."""
+"""Fibres with equal numbers of points, grown block by block when the engine reads them."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ if TYPE_CHECKING:
     from vizlight._types import Array, Bools, Vector
     from vizlight.shading import engine
 
-#: Number of points that all threads grow at once: few beside the points that are kept, enough that
-#: threads seldom wait for the interpreter.
+#: Number of points that all threads grow at once: few compared with the points that are kept, but
+#: enough that threads seldom wait for the interpreter.
 POINTS_AT_ONCE = 1 << 18
 
 
 class Grown(NamedTuple):
     """A block of F fibres of m points, in float32 and component by component.
 
-    ``offsets`` (m, 3, F) are points less roots; ``ways`` and ``normals`` (3, F) are unit.
+    ``offsets`` (m, 3, F) are points minus roots; ``ways`` and ``normals`` (3, F) are unit vectors.
     """
 
     roots: Array
@@ -38,9 +38,9 @@ class Grown(NamedTuple):
 
 
 class Strands:
-    """Fibres as rows for the engine, which takes one block after the other and each block once.
+    """Fibres as rows for the engine, which reads one block after the other and each block once.
 
-    The vectors of a block are kept as long as a thread works on it; only points are kept for all.
+    The vectors of a block are kept while a thread works on it; only points are kept for all.
     """
 
     def __init__(
@@ -70,7 +70,7 @@ class Strands:
         return min(SEED_BLOCK, 1 << max(share, 1).bit_length() - 1)
 
     def inputs(self, *, normals: bool, fur: float, origin: Vector) -> ShadingInputs:
-        """Return what the engine lights, through fur of a density."""
+        """Return the inputs of the engine, for light through fur of a density."""
         count, m = self.points.shape[:2]
         tangents = self._ways if self._straight else self._tangents
         rows = count if self._straight else count * m
@@ -88,7 +88,7 @@ class Strands:
         )
 
     def _at(self, rows: slice) -> tuple[Grown, int]:
-        """Return the block that rows belong to, and the number of their point within each fibre."""
+        """Return the block that rows belong to, and the index of their point within each fibre."""
         step = rows.step or 1
         fibres = slice(rows.start // step, rows.start // step + len(range(*rows.indices(1 << 62))))
         if getattr(self._block, "fibres", None) != fibres:
@@ -115,9 +115,9 @@ class Strands:
         return self._at(rows)[0].normals.T
 
     def _tangents(self, rows: slice) -> Array:
-        """Return tangents of any length, by the parabola through three points.
+        """Return tangents of any length, those of the parabola through three points.
 
-        A fibre of length 0 has the direction in which it would grow.
+        The tangent of a fibre of length 0 is the direction in which it would grow.
         """
         block, j = self._at(rows)
         offset, last = block.offsets, self.m - 1
@@ -137,7 +137,7 @@ class Strands:
         return result
 
     def _heights(self, rows: slice) -> Array:
-        """Return the height of the highest point of its fibre above each point."""
+        """Return the height above each point of the highest point of its fibre."""
         block, j = self._at(rows)
         last = self.m - 1
         if self._straight:
@@ -153,23 +153,15 @@ class Strands:
         kept = ~self.inside
         points = np.repeat(kept, self.m)
         self.points = self.points[kept]
-
-        def left(array: Array | None) -> Array | None:
-            return None if array is None else array[points]
-
-        return dataclasses.replace(
-            shading,
-            luminance=shading.luminance[points],
-            valid=shading.valid[points],
-            diffuse=left(shading.diffuse),
-            specular=left(shading.specular),
-            rgb=left(shading.rgb),
-        )
+        names = ("luminance", "valid", "diffuse", "specular", "rgb")
+        arrays = {name: getattr(shading, name) for name in names}
+        left = {name: array[points] for name, array in arrays.items() if array is not None}
+        return dataclasses.replace(shading, **left)
 
     def mesh(self) -> pv.PolyData:
         """Return the fibres as lines; their points are not copied."""
         count, m, _ = self.points.shape
-        # Numbers of 32 bits, where they suffice, take half the memory.
+        # Indices of 32 bits take half the memory.
         number = np.int32 if count * m < 2**31 else np.int64
         offsets = np.arange(0, count * m + 1, m, dtype=number)
         out = pv.PolyData()
@@ -179,7 +171,7 @@ class Strands:
 
 
 class _Rows:
-    """Rows that are made when the engine asks for them."""
+    """Rows that are computed on demand."""
 
     def __init__(
         self, shape: tuple[int, ...], kind: np.dtype[np.generic], make: Callable[[slice], Array]

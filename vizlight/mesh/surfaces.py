@@ -1,4 +1,4 @@
-"""The nearest place on a surface, and its normal there."""
+"""The closest point on a surface, and the interpolated normal there."""
 
 from __future__ import annotations
 
@@ -7,22 +7,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 
-from vizlight import _check
-from vizlight.mesh import normals
+from vizlight.mesh import blocks, normals
 
 if TYPE_CHECKING:
     from vizlight._types import Array
     from vizlight.scene import View
 
 
-#: The array that :func:`with_normals` adds, under a name that no user's array has.
+#: Name of the point array of normals, chosen not to clash with a user's array.
 NORMALS = "vizlight normals"
 
 
-def with_normals(surface: Any, view: View | None, name: str = "surface") -> pv.PolyData:
-    """Return the triangles of a surface with point normals; it shares nothing that is changed.
-
-    Normals stand under the name NORMALS, so that an array of the user's is not lost.
+def with_normals(surface: object, view: View | None, name: str = "surface") -> pv.PolyData:
+    """Return the triangles of a surface as a new mesh with the point normals ``NORMALS``.
 
     Raises
     ------
@@ -31,18 +28,8 @@ def with_normals(surface: Any, view: View | None, name: str = "surface") -> pv.P
     ValueError
         If it has no faces.
     """
-    if not isinstance(surface, pv.PolyData):
-        raise TypeError(
-            _check.message(
-                name,
-                "a pyvista.PolyData surface",
-                type(surface).__name__,
-                "take the mesh's extract_surface() or a contour",
-            )
-        )
-    if not (surface.GetNumberOfPolys() or surface.GetNumberOfStrips()):
-        raise ValueError(_check.message(name, "a surface with faces", "a mesh without"))
-    # Faces alone: with loose points or lines beside them, cells would not be triangles.
+    surface = blocks.surface(surface, name)
+    # Vertices and lines are left out, because every cell must be a triangle.
     triangles = pv.PolyData()
     triangles.SetPoints(surface.GetPoints())
     triangles.SetPolys(surface.GetPolys())
@@ -55,7 +42,7 @@ def with_normals(surface: Any, view: View | None, name: str = "surface") -> pv.P
 
 
 def closest(surface: pv.PolyData, points: Array) -> tuple[Array, Array]:
-    """Return the points of a triangle mesh closest to some points, and its normals there."""
+    """Return the closest points on a mesh of triangles, and its interpolated normals there."""
     if not len(points):
         return np.empty((0, 3)), np.empty((0, 3))
     nearest: Any = surface.find_closest_cell(points, return_closest_point=True)  # type: ignore[arg-type]

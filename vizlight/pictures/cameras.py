@@ -9,7 +9,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.mesh.blocks import leaves
+from vizlight.mesh.blocks import all_blocks
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -109,7 +109,9 @@ def _fit(
     """Return the shift of the centre, the distance and the height at which a mesh fills a view."""
     right = np.cross(up, toward)
     axes = np.stack([v / np.linalg.norm(v) for v in (right, np.cross(toward, right), toward)])
-    parts = [np.asarray(leaf.points, dtype=np.float64) for leaf in leaves(mesh) if leaf.n_points]
+    parts = [
+        np.asarray(block.points, dtype=np.float64) for block in all_blocks(mesh) if block.n_points
+    ]
     points = np.concatenate(parts)
     points = (points[np.all(np.isfinite(points), axis=1)] - centre) @ axes.T
     if not len(points):
@@ -122,7 +124,7 @@ def _fit(
     slope = math.tan(math.radians(VIEW_ANGLE / 2))
     distance = float(np.max(MARGIN * across / slope + points[:, 2]))
     # A single point, or a flat mesh that is seen edge on, has no extent in the picture.
-    size = 0.05 * depth or 1.0
+    size = 0.05 * depth or (0.0 if height else 1.0)
     return middle @ axes, max(distance, float(points[:, 2].max()) + size), max(height, size)
 
 
@@ -134,7 +136,7 @@ def common_bounds(name: str, meshes: Iterable[Mesh]) -> list[float]:
     ValueError
         If none of the meshes has points; ``name`` is the argument that the message names.
     """
-    parts = [part for mesh in meshes for part in leaves(mesh)]
+    parts = [part for mesh in meshes for part in all_blocks(mesh)]
     boxes = np.array([part.bounds for part in parts if part.n_points])
     if not boxes.size:
         raise ValueError(_check.message(name, "a mesh with points", "empty meshes"))

@@ -17,7 +17,7 @@ from vizlight._progress import progress
 from vizlight.files import check_output, replace_file
 from vizlight.filters.lighting import DEFAULT_NAME
 from vizlight.filters.project import ProjectOptions, project
-from vizlight.mesh.blocks import leaves
+from vizlight.mesh.blocks import all_blocks
 from vizlight.pictures import render
 from vizlight.pictures.cameras import Mesh, common_bounds
 from vizlight.shading.options import accepts
@@ -182,7 +182,7 @@ def _drawing(picture: render.PlotterKeywords | None) -> render.PlotterKeywords:
 
 def _draw_active(mesh: Mesh, drawing: render.PlotterKeywords) -> None:
     """Choose the scalars of a mesh that is not lit: the requested ones, otherwise the active."""
-    parts = [leaf for leaf in leaves(mesh) if leaf.n_points]
+    parts = [block for block in all_blocks(mesh) if block.n_points]
     if not parts:
         return
     name = drawing.setdefault("scalars", parts[0].active_scalars_name or "")

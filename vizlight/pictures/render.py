@@ -11,7 +11,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.files import check_output, replace_file
-from vizlight.mesh.blocks import leaves
+from vizlight.mesh.blocks import all_blocks
 from vizlight.mesh.polylines import has_lines_only
 from vizlight.pictures.backends import (
     Backend,
@@ -187,7 +187,7 @@ def _check_panels(panels: Mesh | Panel | Sequence[Mesh | Panel], scalars: str) -
             )
         if not isinstance(panel.title, str):
             raise TypeError(_check.message("title", "a string", _check.describe(panel.title)))
-        for mesh in leaves(panel.mesh):
+        for mesh in all_blocks(panel.mesh):
             if panel.scalars not in mesh.point_data and panel.scalars not in mesh.cell_data:
                 known = ", ".join(map(repr, [*mesh.point_data, *mesh.cell_data])) or "none"
                 expected = f"a point array or a cell array ({known})"
@@ -215,14 +215,14 @@ def _background_of(shown: Sequence[Panel], background: ColorLike | None) -> pv.C
     """Return the requested background, otherwise the one on which the meshes stand out."""
     if (channels := _check.color("background", background)) is not None:
         return pv.Color(channels)
-    lines = all(has_lines_only(mesh) for panel in shown for mesh in leaves(panel.mesh))
+    lines = all(has_lines_only(mesh) for panel in shown for mesh in all_blocks(panel.mesh))
     return pv.Color("black" if lines else "white")
 
 
 def _camera_on_all(shown: Sequence[Panel], aspect: float) -> pv.Camera:
     """Return a camera that shows the meshes of all panels."""
     common_bounds("panels", [panel.mesh for panel in shown])
-    meshes = pv.MultiBlock([leaf for panel in shown for leaf in leaves(panel.mesh)])
+    meshes = pv.MultiBlock([block for panel in shown for block in all_blocks(panel.mesh)])
     return camera_on(meshes, aspect=aspect)
 
 
@@ -318,7 +318,7 @@ def pixels_of(size: object) -> list[int]:
 def _draw(
     plotter: pv.Plotter, panel: Panel, cmap: Any, clim: tuple[float, float], line_width: float
 ) -> None:
-    for mesh in leaves(panel.mesh):
+    for mesh in all_blocks(panel.mesh):
         if not mesh.n_points:
             continue
         of_points = panel.scalars in mesh.point_data

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Literal, TypedDict
 import numpy as np
 
 from vizlight import _check
-from vizlight.model import highlights
 from vizlight.scene.light import WHITE, Light, as_lights
 from vizlight.scene.view import View
 
@@ -152,6 +151,8 @@ def _converted(power: float, angle: float, model: str) -> float:
     :func:`highlights.simple_factor`, corrected for Phong's power r, gives ``q = c (r + e)``.
     Below the validity of the correction, r = 1/2, the conversion is proportional.
     """
+    from vizlight.model import highlights
+
     cosine = max(float(np.cos(angle / 2)), LEAST_COSINE)
     least, factor = 0.5, float(highlights.simple_factor(2 * np.arccos(cosine)))
     low = least * float(highlights.simple_factor(2 * np.arccos(cosine), least))
@@ -169,6 +170,8 @@ def _warn_of_error(
     shown: float,
 ) -> None:
     """Warn if the highlight of VTK can differ visibly, and say by how much."""
+    from vizlight.model import highlights
+
     used = vtk_model(lights)
     if not lights or not specular or (used == model and shown == wanted):
         return

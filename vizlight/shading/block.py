@@ -26,10 +26,10 @@ class Output:
     def __init__(self, plan: Plan, count: int) -> None:
         self.luminance: Array = np.empty(count, plan.dtype)
         self.valid = np.empty(count, np.bool_)
-        parts = plan.options.components
+        parts = plan.components
         self.diffuse: Array | None = np.empty(count, plan.dtype) if parts else None
         self.specular: Array | None = np.empty(count, plan.dtype) if parts else None
-        self.rgb: Array | None = np.empty((count, 3), plan.dtype) if plan.scene.colored else None
+        self.rgb: Array | None = np.empty((count, 3), plan.dtype) if plan.colored else None
 
 
 class _Lit(NamedTuple):
@@ -96,10 +96,7 @@ def shade_block(plan: Plan, rows: slice, inputs: ShadingInputs, output: Output) 
     if inputs.normals is not None:
         normal, length = kernels.unit(columns(inputs.normals, rows, plan.dtype))
         normal = normal.astype(plan.dtype, copy=False)
-        asked = plan.options
-        surface = Surface(
-            normal, length > 0, two_sided=asked.two_sided, terminator=asked.terminator
-        )
+        surface = Surface(normal, length > 0, two_sided=plan.two_sided, terminator=plan.terminator)
     if inputs.base_tangents is not None:
         sheet = Tangents(*_spanned(plan, plan.base, inputs.base_tangents, rows))
     each = tangents is not None and tangents.shape[0] == inputs.points.shape[0]
@@ -258,9 +255,7 @@ class _Sums:
 
     def __init__(self, plan: Plan) -> None:
         self.dtype = plan.dtype
-        self.tinted = plan.scene.colored and any(
-            light.color is not None for light in plan.scene.lights
-        )
+        self.tinted = plan.colored and any(light.color is not None for light in plan.scene.lights)
         self.white: dict[str, Array] = {}
         self.channels: dict[str, Array] = {}
 
@@ -287,61 +282,67 @@ def _store(
     output: Output,
 ) -> None:
     """Multiply the sums by the material, fade them with depth, write them to the output."""
-    scene, number = plan.scene, plan.dtype.type
-    material, cue = scene.material, scene.depth_cue
-    diffuse, specular = plan.factors
-    weights = {
-        "diffuse": number(material.diffuse * diffuse),
-        "specular": number(material.specular * specular),
-    }
-    fade: Array | None = None
-    if cue is not None:
-        assert points is not None
-        assert cue.front is not None
-        assert cue.back is not None
-        fade = falloff.depth_scale(
-            view_depth(scene.view, points),
-            front=cue.front,
-            back=cue.back,
-            front_scale=cue.front_scale,
-            back_scale=cue.back_scale,
-            smooth=cue.smooth,
-        ).astype(plan.dtype)
-        valid &= np.isfinite(fade)
-        fade[~valid] = 1
+    fade = _fade(plan, points, valid)
+    factors = dict(zip(("diffuse", "specular"), plan.factors, strict=True))
     spoiled = None if valid.all() else ~valid
     for group in (sums.white, sums.channels):
         for term, value in group.items():
-            value *= weights[term]
+            value *= plan.dtype.type(getattr(plan.scene.material, term) * factors[term])
             if spoiled is not None:
                 value[..., spoiled] = 0
-
     light = output.luminance[block]
-    light[:] = number(plan.ambient)
+    light[:] = plan.dtype.type(plan.ambient)
     for value in sums.white.values():
         light += value
+    cue = plan.scene.depth_cue
     if cue is not None and fade is not None:
         light *= fade
-        light += (1 - fade) * number(cue.cue)
+        light += (1 - fade) * plan.dtype.type(cue.cue)
     output.valid[block] = valid
     for name, array in (("diffuse", output.diffuse), ("specular", output.specular)):
         if array is not None:
             array[block] = sums.white.get(name, 0)
     if output.rgb is not None:
-        parts = sums.channels or sums.white
-        colors = {
-            "ambient": np.multiply(material.color or WHITE, scene.ambient_color or WHITE),
-            "diffuse": material.color or WHITE,
-            "specular": material.specular_color or WHITE,
-        }
-        column = {name: np.array(c, plan.dtype)[:, np.newaxis] for name, c in colors.items()}
-        rgb = np.repeat(number(plan.ambient) * column["ambient"], len(valid), axis=1)
-        for term, value in parts.items():
-            rgb += column[term] * value
-        if cue is not None and fade is not None:
-            rgb *= fade
-            rgb += (1 - fade) * np.array(cue.color or WHITE, plan.dtype)[:, np.newaxis] * cue.cue
-        output.rgb[block] = rgb.T
+        output.rgb[block] = _rgb(plan, sums, fade, len(valid)).T
+
+
+def _fade(plan: Plan, points: Array | None, valid: Bools) -> Array | None:
+    """Return the scale of the depth cue, and mark points that have no depth."""
+    cue = plan.scene.depth_cue
+    if cue is None:
+        return None
+    assert points is not None
+    assert cue.front is not None
+    assert cue.back is not None
+    fade = falloff.depth_scale(
+        view_depth(plan.scene.view, points),
+        front=cue.front,
+        back=cue.back,
+        front_scale=cue.front_scale,
+        back_scale=cue.back_scale,
+        smooth=cue.smooth,
+    ).astype(plan.dtype)
+    valid &= np.isfinite(fade)
+    fade[~valid] = 1
+    return fade
+
+
+def _rgb(plan: Plan, sums: _Sums, fade: Array | None, count: int) -> Array:
+    """Return the colour, channel by channel."""
+    scene, material, cue = plan.scene, plan.scene.material, plan.scene.depth_cue
+    colors = {
+        "ambient": np.multiply(material.color or WHITE, scene.ambient_color or WHITE),
+        "diffuse": material.color or WHITE,
+        "specular": material.specular_color or WHITE,
+    }
+    column = {name: np.array(c, plan.dtype)[:, np.newaxis] for name, c in colors.items()}
+    rgb: Array = np.repeat(plan.dtype.type(plan.ambient) * column["ambient"], count, axis=1)
+    for term, value in (sums.channels or sums.white).items():
+        rgb += column[term] * value
+    if cue is not None and fade is not None:
+        rgb *= fade
+        rgb += (1 - fade) * np.array(cue.color or WHITE, plan.dtype)[:, np.newaxis] * cue.cue
+    return rgb
 
 
 def view_depth(view: View | None, points: Array) -> Array:

@@ -25,13 +25,18 @@ def rounding(plan: Plan) -> float:
     Notes
     -----
     It uses the bounds of :mod:`vizlight.model.reflection`, with 8 eps more for each factor of the
-    scene. No bound holds for k tangents near each other, near opposite directions under Blinn's
-    model, near the line of a cylinder, and for t and fur, whose rounding is that of the data.
+    scene, and 4 eps of the brightest light and of the cue for a depth cue. No bound holds for k
+    tangents near each other, near opposite directions under Blinn's model, near the line of a
+    cylinder, and for t and fur, whose rounding is that of the data.
     """
     eps = float(np.finfo(plan.dtype).eps)
     scene, material = plan.scene, plan.scene.material
+    faded = 0.0
+    if scene.depth_cue is not None:
+        brightest = plan.ambient + weight(plan, material.diffuse + material.specular)
+        faded = 4 * eps * (scene.depth_cue.cue + brightest)
     if not (plan.diffuse or plan.specular):
-        return 4 * eps * plan.ambient
+        return 4 * eps * plan.ambient + faded
     if plan.model == "cylinder" or plan.shadowed or plan.fur or plan.base:
         return math.inf
     if not plan.surface and plan.k > 1:
@@ -39,7 +44,7 @@ def rounding(plan: Plan) -> float:
     factors = 8.0 * (
         1 + plan.conditioned + any(x.attenuation != NO_ATTENUATION for x in scene.lights)
     )
-    total = 4 * eps * (plan.ambient + weight(plan, material.diffuse + material.specular))
+    total = faded + 4 * eps * (plan.ambient + weight(plan, material.diffuse + material.specular))
     if plan.factors != (1.0, 1.0):
         # The mean brightness I of a line has an error of 9 (1 + |ln I|) eps, largest at I = 1.
         total += 10 * eps * weight(plan, material.diffuse + material.specular)
@@ -50,13 +55,11 @@ def rounding(plan: Plan) -> float:
         if plan.options.terminator:
             factors += 6 / plan.options.terminator
         for light, highlight in zip(scene.lights, plan.highlights, strict=True):
-            share = 1.0
-            if highlight.model == "blinn" and highlight.half is None:
-                apart = angle(light, scene.view)
-                if apart is None or apart > 3:
-                    return math.inf
-                share = min(2 * math.cos(apart / 2), 1.0)
-            term = specular_bound(highlight.shininess, eps / share) + factors * eps
+            own = highlight.model == "blinn" and highlight.half is None
+            if own and angle(light, scene.view) != 0:
+                # |wi + wo| may be as small as its rounding, except for a headlight.
+                return math.inf
+            term = specular_bound(highlight.shininess, eps) + factors * eps
             total += plan.factors[1] * term * material.specular * light.intensity
     return total
 

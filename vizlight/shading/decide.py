@@ -91,12 +91,7 @@ def decide(
     _check_scene(scene, layout.n)
     n, surface = layout.n, layout.k is None
     k = n - 1 if layout.k is None else layout.k
-    lights = tuple(light for light in scene.lights if light.intensity > 0)
-    specular = bool(scene.material.specular > 0 and lights)
-    diffuse = bool(scene.material.diffuse > 0 and lights)
-    _check_view(scene, layout, options, diffuse=diffuse, specular=specular)
-    fixed = tuple(light.seen_from(scene.view) for light in lights) if diffuse or specular else ()
-    scene = scene.replace(lights=fixed)
+    scene, diffuse, specular = _needed(scene, layout, options)
     compensate = options.compensate and options.model != "cylinder"
     exact = Plan(
         n=n,
@@ -126,6 +121,16 @@ def decide(
     if not options.tolerance:
         return exact
     return relax(exact, options.tolerance, any_precision=dtype is None)
+
+
+def _needed(scene: Scene, layout: Layout, options: ShadingOptions) -> tuple[Scene, bool, bool]:
+    """Return the scene with the lights that have an effect, and which terms they need."""
+    lights = tuple(light for light in scene.lights if light.intensity > 0)
+    specular = bool(scene.material.specular > 0 and lights)
+    diffuse = bool(scene.material.diffuse > 0 and lights)
+    _check_view(scene, layout, options, diffuse=diffuse, specular=specular)
+    fixed = tuple(light.seen_from(scene.view) for light in lights) if diffuse or specular else ()
+    return scene.replace(lights=fixed), diffuse, specular
 
 
 def _precision(dtype: DTypeLike) -> np.dtype[np.floating]:
@@ -198,6 +203,7 @@ def _check_view(
     }
     for what, needed in needs.items():
         if needed:
-            remedy = "pass view=, or Material(specular=0)" if specular else "pass view="
+            remedy = "pass view= to the Scene"
+            remedy += ", or Material(specular=0)" if specular else ""
             expected = f"a View, which the {what} needs"
             raise ValueError(_check.message("view", expected, None, remedy))

@@ -75,6 +75,7 @@ class Tangents:
         if highlight.model == "phong":
             along = lit.along + eye.along
             return kernels.phong(kernels.dot(along, along), lit.across, eye.across, shininess)
+        assert highlight.model == "blinn", highlight.model
         along, across = kernels.split(lit.vector + eye.vector, self.frame)
         return kernels.blinn(kernels.dot(along, along), across * across, shininess)
 
@@ -151,6 +152,7 @@ class Surface:
             if self.two_sided:
                 cosines = (np.abs(lit.across), np.abs(eye.across))
             return self._cut(lit, kernels.phong(tangential, *cosines, shininess))
+        assert highlight.model == "blinn", highlight.model
         up = self.side(up)
         return self._cut(lit, kernels.blinn(tangential, up * up, shininess))
 

@@ -7,11 +7,8 @@ import difflib
 import functools
 import inspect
 import re
-import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, TypedDict, get_args
-
-import numpy as np
 
 from vizlight import _check
 
@@ -111,26 +108,22 @@ class ShadingOptions:
     precision: Precision | None = None
 
     def __post_init__(self) -> None:
-        if self.model not in get_args(Model):
-            expected = "'phong', 'blinn' or 'cylinder'"
-            raise ValueError(_check.message("model", expected, _check.describe(self.model)))
-        if self.precision not in (None, *get_args(Precision)):
-            got = _check.describe(self.precision)
-            raise ValueError(_check.message("precision", "'float32' or 'float64'", got))
+        _check.choice("model", self.model, get_args(Model))
+        if self.precision is not None:
+            _check.choice("precision", self.precision, get_args(Precision))
         conditioned: object = self.conditioned
-        if conditioned is not None and not isinstance(conditioned, str | bool | np.bool_):
-            expected = "True, False or the name of a point array"
-            got = _check.describe(conditioned)
-            raise TypeError(_check.message("conditioned", expected, got))
+        if conditioned is not None and not isinstance(conditioned, str):
+            names = "True, False or the name of a point array"
+            conditioned = _check.boolean("conditioned", conditioned, expected=names)
         _check.set_fields(
             self,
-            conditioned=bool(conditioned) if isinstance(conditioned, np.bool_) else conditioned,
+            conditioned=conditioned,
             highlight_error=_check.number("highlight_error", self.highlight_error, low=0.0),
             tolerance=_check.number("tolerance", self.tolerance, low=0.0),
             terminator=_check.number("terminator", self.terminator, low=0.0, high=1.0),
-            compensate=bool(self.compensate),
-            two_sided=bool(self.two_sided),
-            components=bool(self.components),
+            compensate=_check.boolean("compensate", self.compensate),
+            two_sided=_check.boolean("two_sided", self.two_sided),
+            components=_check.boolean("components", self.components),
         )
         if self.tolerance and self.highlight_error:
             remedy = "the tolerance includes the error of the highlights"
@@ -180,6 +173,11 @@ class LightOptions(ShadingOptions):
     flip_normals: bool = False
     average_cells: bool = False
     name: str = "luminance"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        for name in ("flip_normals", "average_cells"):
+            _check.set_fields(self, **{name: _check.boolean(name, getattr(self, name))})
 
 
 def documented(kind: type) -> dict[str, str]:
@@ -232,7 +230,10 @@ def accepts(
         def method(*arguments: P.args, **keywords: P.kwargs) -> R:
             for old in [name for name in keywords if name in aliases]:
                 new = aliases[old]
-                warnings.warn(f"{old}= is now called {new}=", DeprecationWarning, stacklevel=2)
+                if new in keywords:
+                    remedy = f"{old} is the old name of {new}"
+                    raise TypeError(_check.message(old, f"{new}= alone", "both", remedy))
+                _check.warn(f"{old}= is now called {new}=", DeprecationWarning)
                 keywords[new] = keywords.pop(old)
             for name in keywords:
                 if name not in known:

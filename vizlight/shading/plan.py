@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
+from vizlight import _check
 from vizlight.model.kernels import DEFICIT_FROM
 from vizlight.scene.light import NO_ATTENUATION
 
@@ -132,6 +133,38 @@ class Plan:
     choice: Choice = EXACT
 
     @property
+    def two_sided(self) -> bool:
+        """Whether the far side of normals is lit like the near one."""
+        return self.options.two_sided
+
+    @property
+    def terminator(self) -> float:
+        """Value of N.wi below which the highlight of a surface fades, 0 for a sharp end."""
+        return self.options.terminator
+
+    @property
+    def components(self) -> bool:
+        """Whether the terms are kept."""
+        return self.options.components
+
+    @property
+    def colored(self) -> bool:
+        """Whether the result has a colour."""
+        return self.scene.colored
+
+    @property
+    def carrier(self) -> int:
+        """Deprecated name of ``base``."""
+        _check.warn("Plan.carrier is now called Plan.base", DeprecationWarning)
+        return self.base
+
+    @property
+    def carrier_exponent(self) -> float:
+        """Deprecated name of ``base_exponent``."""
+        _check.warn("Plan.carrier_exponent is now called Plan.base_exponent", DeprecationWarning)
+        return self.base_exponent
+
+    @property
     def terms(self) -> tuple[str, ...]:
         """Names of the terms that are added up."""
         names = {"ambient": True, "diffuse": self.diffuse, "specular": self.specular}
@@ -209,7 +242,7 @@ def _why_not(plan: Plan, term: str) -> str:
 def _manifold(plan: Plan, words: _Words) -> None:
     words.add(f"ambient: the constant {plan.ambient:g}")
     if plan.surface:
-        sides = "both sides alike" if plan.options.two_sided else "the outer side only"
+        sides = "both sides alike" if plan.two_sided else "the outer side only"
         words.add(
             f"surface: one unit normal per point, lit on {sides}",
             "frame: a surface is lit by its normals, no tangents are needed",
@@ -222,7 +255,7 @@ def _manifold(plan: Plan, words: _Words) -> None:
 
 
 def _cosine(plan: Plan) -> str:
-    return "|N.wi|" if plan.options.two_sided else "max(0, N.wi)"
+    return "|N.wi|" if plan.two_sided else "max(0, N.wi)"
 
 
 def _diffuse(plan: Plan, words: _Words) -> None:
@@ -313,8 +346,8 @@ def _factors(plan: Plan, words: _Words) -> None:
         )
     elif not plan.surface:
         words.add(None, "self-shadow: no surface conditions the tangents")
-    if plan.options.terminator:
-        end = f"N.wi = {plan.options.terminator:g}"
+    if plan.terminator:
+        end = f"N.wi = {plan.terminator:g}"
         words.add(f"terminator: highlights fade smoothly below {end}")
     if plan.fur:
         words.add(f"fur: density {plan.fur:g}, on the way in for each light and out once")
@@ -326,7 +359,7 @@ def _results(plan: Plan, words: _Words) -> None:
         words.add(f"depth cue: {'smooth' if cue.smooth else 'linear'}")
     else:
         words.add(None, "depth cue: the scene has none")
-    if plan.scene.colored:
+    if plan.colored:
         words.add("rgb: three channels")
     else:
         words.add(None, "rgb: nothing in the scene has a colour")

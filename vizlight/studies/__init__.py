@@ -11,7 +11,6 @@ import pkgutil
 from vizlight import _check
 from vizlight.studies._framework import (
     Curve,
-    LackingError,
     Panel,
     Row,
     Study,
@@ -23,7 +22,6 @@ from vizlight.studies._results import Result, print_list, print_result, run
 
 __all__ = [
     "Curve",
-    "LackingError",
     "Panel",
     "Result",
     "Row",

@@ -19,10 +19,6 @@ PIXEL = 1 / 255
 CLEAR = 0.85
 
 
-class LackingError(RuntimeError):
-    """A package that a study needs is not installed; the message says how to install it."""
-
-
 class Row(NamedTuple):
     """One measurement.
 

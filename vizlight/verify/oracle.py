@@ -1,406 +1,460 @@
-"""The light of one point by the sources' formulas: plain Python numbers, nothing of the engine.
+"""The light of one point by the formulas of the sources, in any type of real numbers.
 
-What :func:`vizlight.report` recomputes a sample by. Each formula is written as its source has it,
-one point at a time in float64, with no code shared with kernels, blocks or plans.
+:class:`Oracle` writes each formula as its source has it, for one point at a time, and shares no
+code with kernels, blocks or plans. :data:`FLOATS` computes in float64; :func:`vizlight.report`
+compares samples with it. The tests make another oracle, of 50 digits.
 """
 
 from __future__ import annotations
 
-import itertools
 import math
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
+import operator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
-    from vizlight.scene import Scene
+    from vizlight.scene import DepthCue, Light, Scene, View
 
-    Numbers = Sequence[float]
+    #: Number of an oracle's own type, which is float in the package.
+    Real: TypeAlias = float
+    Vector: TypeAlias = Sequence[Real]
 
-#: Places on a ray through a height field.
-SAMPLES = 20_000
+WHITE = (1.0, 1.0, 1.0)
+#: Length below which numbers of float64 lose digits.
+TINY = 1e-300
 
 
-def light(
-    point: Numbers,
-    tangents: Sequence[Numbers] | None,
-    normal: Numbers | None,
-    scene: Scene,
-    *,
-    carrier: Sequence[Numbers] | None = None,
-    depth: float | None = None,
-    shadow: Numbers | None = None,
-    model: str = "phong",
-    compensate: bool = True,
-    conditioned: bool = True,
-    two_sided: bool = False,
-    terminator: float = 0.0,
-    fur: float = 0.0,
-    apart: float = 1e-14,
-    **_: Any,
-) -> list[float]:
-    """Return the luminance of one point, and its colour if the scene has one.
+class Lit(NamedTuple):
+    """Light of one point, in the numbers of the oracle.
 
-    Parameters
+    Attributes
     ----------
-    point : sequence of n floats
-    tangents : sequence of k vectors, or None for a surface
-    normal : vector or None
-    scene : Scene
-        Its depth cue with both ends.
-    carrier, depth, shadow, model, compensate, conditioned, two_sided, terminator, fur
-        As :func:`vizlight.engine.shade` takes them, for one point.
-    apart : float
-        The share of a tangent's length beyond which it is independent of those before it.
-
-    Returns
-    -------
-    list of 1 or 4 floats
-        Luminance, red, green and blue; NaN where the point cannot be lit.
+    luminance : float
+        Sum of all terms, with the depth cue.
+    rgb : tuple of 3 floats
+        Colour, with the depth cue; empty if the scene has no colour.
+    ambient, diffuse, specular : float
+        Terms of the luminance, without the depth cue.
     """
-    dark = [math.nan] * (4 if scene.colored else 1)
-    material, n = scene.material, len(point)
-    up = None if normal is None else _unit(normal)
-    frame = None if tangents is None else _orthonormal(tangents, apart)
-    sheet = None if carrier is None else _orthonormal(carrier, apart)
-    missing = (normal is not None and up is None) or (up is None and frame is None)
-    for given, made in ((tangents, frame), (carrier, sheet)):
-        missing |= given is not None and (made is None or len(made) < len(given))
-    places = [owner.position for owner in (*scene.lights, scene.view) if owner is not None]
-    nowhere = not all(map(math.isfinite, point)) and any(p is not None for p in places)
-    if missing or nowhere:
-        return dark
-    ambient = material.ambient * scene.ambient_intensity
-    power = 1.0
-    if compensate and model != "cylinder" and frame is not None:
-        power = _exponent(len(frame), n)
-    elif compensate and frame is None:
-        power = _exponent(n - 1, n)
-    view = scene.view
-    eye = None if view is None else _toward(view, point)
-    lit, number = 0.0, -1
-    white = (1.0, 1.0, 1.0)
-    rgb = [
-        ambient * a * b
-        for a, b in zip(material.color or white, scene.ambient_color or white, strict=True)
-    ]
-    for lamp in scene.lights:
-        if lamp.intensity <= 0:
-            continue
-        number += 1
-        wi, away = _toward(lamp.seen_from(view), point)
-        if wi is None:
-            continue
-        scale = lamp.intensity
-        if away is not None:
-            c1, c2, c3 = lamp.attenuation
-            scale *= min(1.0, 1 / max(c1 + c2 * away + c3 * away * away, 1e-300))
-        facing = None
-        if up is not None:
-            cosine = _dot(up, wi)
-            facing = abs(cosine) if two_sided else max(cosine, 0.0)
-            passed = None if shadow is None else float(shadow[number])
-            if frame is not None and conditioned:
-                scale *= facing if passed is None else passed
-            if fur and depth is not None and eye is not None and eye[0] is not None:
-                path = _path(depth, abs(cosine)) + _path(depth, abs(_dot(up, eye[0])))
-                scale *= (1 - fur) ** path if path < math.inf else 0.0
-        if sheet is not None:
-            scale *= _across(wi, sheet) ** (_exponent(len(sheet), n) if compensate else 1.0)
-        diffuse, specular = _terms(
-            wi, None if eye is None else eye[0], up, frame, facing, power,
-            material.shininess, model, two_sided=two_sided, terminator=terminator,
+
+    luminance: Real
+    rgb: tuple[Real, ...]
+    ambient: Real
+    diffuse: Real
+    specular: Real
+
+
+class _Place(NamedTuple):
+    """What the lights of one point share: unit vectors, exponents and options."""
+
+    normal: Vector | None
+    frame: list[Vector]
+    base: list[Vector]
+    wo: Vector | None
+    exponent: Real
+    base_exponent: Real
+    shininess: float
+    model: str
+    conditioned: bool
+    two_sided: bool
+    terminator: float
+    fur: float
+    fur_height: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Oracle:
+    """Formulas of the light of one point in one type of real numbers.
+
+    Vectors are sequences of n numbers of the type, frames are lists of orthonormal vectors.
+
+    Attributes
+    ----------
+    number : callable
+        Takes a float, returns the equal number of the type; returns its own numbers unchanged.
+    pi : float
+        Number pi.
+    dot : callable
+        Takes two vectors, returns their scalar product.
+    hypot : callable
+        Takes the components of a vector, returns its length.
+    sin, cos, exp, log_gamma : callable
+        Functions of one number.
+    atan2 : callable
+        Takes y and x, returns the angle of (x, y).
+    cosine_integral : callable
+        Takes an angle from -pi/2 to pi/2 and p >= 0, returns the integral of cos(x)^p from 0 to
+        the angle.
+    """
+
+    number: Callable[[float], Real]
+    pi: Real
+    dot: Callable[[Vector, Vector], Real]
+    hypot: Callable[..., Real]
+    sin: Callable[[Real], Real]
+    cos: Callable[[Real], Real]
+    exp: Callable[[Real], Real]
+    log_gamma: Callable[[Real], Real]
+    atan2: Callable[[Real, Real], Real]
+    cosine_integral: Callable[[Real, Real], Real]
+    _exponents: dict[tuple[int, int], Real] = field(default_factory=dict, repr=False)
+
+    def light(
+        self,
+        point: Vector,
+        tangents: Sequence[Vector] | None,
+        normal: Vector | None,
+        scene: Scene,
+        *,
+        base_tangents: Sequence[Vector] | None = None,
+        fur_height: float = 0.0,
+        shadow: Vector | None = None,
+        model: str = "phong",
+        compensate: bool = True,
+        exponent: float | None = None,
+        conditioned: bool = True,
+        two_sided: bool = False,
+        terminator: float = 0.0,
+        fur: float = 0.0,
+        apart: float = 1e-14,
+    ) -> Lit:
+        """Return the light of one point.
+
+        Parameters
+        ----------
+        point : sequence of n floats
+            Place of the point.
+        tangents : sequence of k vectors, or None for a surface
+            Tangents of any length.
+        normal : vector or None
+            Normal of any length.
+        scene : Scene
+            Scene whose depth cue, if it has one, has both ends.
+        base_tangents, fur_height, shadow, model, compensate, conditioned, two_sided, terminator, fur
+            Options of :func:`vizlight.engine.shade`, for one point.
+        exponent : float, optional
+            Exponent of the diffuse term, in place of that of ``compensate``.
+        apart : float
+            Share of a tangent's length beyond which it is independent of those before it.
+
+        Returns
+        -------
+        Lit
+            Light of the point; NaN where the point cannot be lit.
+        """  # noqa: E501
+        at, n, view = self.vector(point), len(point), scene.view
+        frames = self._frames(tangents, base_tangents, normal, apart)
+        if frames is None or not _placed(point, scene):
+            dark = self.number(math.nan)
+            return Lit(dark, (dark,) * (3 if scene.colored else 0), dark, dark, dark)
+        frame, base, up = frames
+        if exponent is None:
+            exponent = self._power(len(frame) or n - 1, n, compensate)
+        place = _Place(
+            normal=up[0] if up else None, frame=frame, base=base,
+            wo=None if view is None else self.toward(view, at)[0], exponent=exponent,
+            base_exponent=self._power(len(base), n, compensate),
+            shininess=scene.material.shininess, model=model, conditioned=conditioned,
+            two_sided=two_sided, terminator=terminator, fur=fur, fur_height=fur_height,
         )  # fmt: skip
-        if shadow is not None and frame is None and facing is not None:
-            specular *= min(float(shadow[number]) / facing, 1.0) if facing else 0.0
-            diffuse = float(shadow[number])
-        diffuse, specular = (
-            scale * material.diffuse * diffuse, scale * material.specular * specular
-        )  # fmt: skip
-        lit += diffuse + specular
-        for i, tint in enumerate(lamp.color or white):
-            own = (material.color or white)[i] * diffuse
-            rgb[i] += tint * (own + (material.specular_color or white)[i] * specular)
-    cue = scene.depth_cue
-    grey = [1.0, *((cue.color if cue is not None else None) or white)]
-    values = [ambient + lit, *rgb] if scene.colored else [ambient + lit]
-    return [_cued(value, g, point, scene) for value, g in zip(values, grey, strict=False)]
+        parts: list[tuple[Light, Real, Real]] = []
+        for i, light in enumerate(light for light in scene.lights if light.intensity > 0):
+            wi, distance = self.toward(light.seen_from(view), at)
+            if wi is not None:
+                scale = self._arriving(wi, distance, light, place)
+                passed = None if shadow is None else self.number(shadow[i])
+                diffuse, specular = self._reflected(wi, passed, place)
+                parts.append((light, scale * diffuse, scale * specular))
+        return self._sum(at, scene, parts)
 
+    def _frames(
+        self,
+        tangents: Sequence[Vector] | None,
+        base_tangents: Sequence[Vector] | None,
+        normal: Vector | None,
+        apart: float,
+    ) -> list[list[Vector]] | None:
+        """Return orthonormal frames, empty for None; None if rows are dependent or all are None."""
+        normals = None if normal is None else [normal]
+        given = [() if rows is None else rows for rows in (tangents, base_tangents, normals)]
+        made = [self.orthonormal(rows, apart) for rows in given]
+        whole = list(map(len, made)) == list(map(len, given))
+        return made if whole and (made[0] or made[2]) else None
 
-def relief_ratio(
-    x: Any, y: Any, z: Any, place: Any, normal: Any, depth: float, *, way: Numbers | None,
-    end: Numbers | None = None, base: float = -math.inf, wall: bool = False,
-) -> float:  # fmt: skip
-    """Return t of a point of a height field, by many samples along its ray.
+    def _power(self, k: int, n: int, compensate: bool) -> Real:
+        return self.exponent(k, n) if compensate and k else self.number(1.0)
 
-    Parameters
-    ----------
-    x, y, z : ndarray, shapes (nx,), (ny,), (ny, nx)
-    place, normal : ndarray, shape (3,)
-    depth : float
-        Above 0.
-    way : vector of 3 components or None
-        Toward the light, above the horizon.
-    end : vector of 3 components, optional
-        Where the light is, in place of a way.
-    base : float
-        Where the solid ends below.
-    wall : bool
-        Whether it ends at its border, else it goes on.
+    def _arriving(self, wi: Vector, distance: Real | None, light: Light, place: _Place) -> Real:
+        """Return the intensity after distance, fur and a base's diffuse term."""
+        scale = self.number(light.intensity)
+        if distance is not None:
+            scale *= self.attenuation(distance, light.attenuation)
+        if place.base:
+            scale *= self.across(wi, place.base) ** place.base_exponent
+        if place.fur and place.normal is not None and place.wo is not None:
+            for way in (wi, place.wo):
+                sine = abs(self.dot(place.normal, way))
+                scale *= self.fur(place.fur_height, sine, place.fur)
+        return scale
 
-    Returns
-    -------
-    float
-        To 1/20,000 of the ray over the depth.
-    """
-    start = place - depth * normal
-    rise = max(float(np.nanmax(z) - start[2]), 0.0)
-    if end is not None:
-        along = np.asarray(end, dtype=np.float64) - start
-        if along @ normal <= depth:
-            return 0.0
-        # Above the highest there is no solid.
-        along = along * min(rise / along[2], 1.0) if along[2] > 0 else along
-    else:
-        toward = np.asarray(_unit(() if way is None else list(way)))
-        along = rise / toward[2] * toward
-    places = start + (np.arange(SAMPLES)[:, np.newaxis] + 0.5) / SAMPLES * along
-    across, up = (np.clip(p, a[0], a[-1]) for p, a in ((places[:, 0], x), (places[:, 1], y)))
-    i, j = (np.clip(np.searchsorted(a, p) - 1, 0, len(a) - 2) for a, p in ((x, across), (y, up)))
-    u, v = (across - x[i]) / (x[i + 1] - x[i]), (up - y[j]) / (y[j + 1] - y[j])
-    low = (1 - u) * z[j, i] + u * z[j, i + 1]
-    high = (1 - u) * z[j + 1, i] + u * z[j + 1, i + 1]
-    within = (places[:, 2] < (1 - v) * low + v * high) & (places[:, 2] > base)
-    if wall:
-        within &= (across == places[:, 0]) & (up == places[:, 1])
-    inside = float(np.mean(within)) * math.hypot(*along)
-    return float(depth / max(inside, depth))
+    def _reflected(self, wi: Vector, passed: Real | None, place: _Place) -> tuple[Real, Real]:
+        """Return the diffuse and the specular term of a light of intensity 1.
 
+        ``passed`` is t of the light's cos-theta shadow, which takes the place of the cosine.
+        """
+        if place.normal is None:
+            return self._manifold(wi, place)
+        cosine = self.dot(place.normal, wi)
+        facing = abs(cosine) if place.two_sided else max(cosine, self.number(0.0))
+        if place.frame:
+            terms = self._manifold(wi, place)
+            scale = facing if passed is None else passed
+            return (scale * terms[0], scale * terms[1]) if place.conditioned else terms
+        specular = self._surface_specular(wi, cosine, place.normal, place)
+        if passed is None:
+            return facing**place.exponent, specular
+        return passed, specular * min(passed / facing, self.number(1.0)) if facing else facing
 
-def solid_ratio(
-    bodies: Sequence[Any], place: Any, normal: Any, depth: float, way: Any, reach: float
-) -> float:
-    """Return t of a point of closed surfaces: its ray against every triangle.
+    def _manifold(self, wi: Vector, place: _Place) -> tuple[Real, Real]:
+        """Return the diffuse and the specular term of a k-manifold: Banks (1) to (5)."""
+        wo, frame, s = place.wo, place.frame, place.shininess
+        if place.model == "cylinder":
+            none = self.number(0.0)
+            return (none, none) if wo is None else self.line_light(wi, wo, frame[0], s)
+        specular = self.number(0.0)
+        if wo is not None:
+            specular = self.specular(wi, wo, frame, s, place.model)
+        return self.across(wi, frame) ** place.exponent, specular
 
-    Parameters
-    ----------
-    bodies : sequence of ndarray, shape (T, 3, 3)
-        Corners of triangles, turned outward.
-    place, normal : ndarray, shape (3,)
-    depth : float
-        Above 0.
-    way : ndarray, shape (3,)
-        Unit, toward the light.
-    reach : float
-        How far the light is.
+    def _surface_specular(self, wi: Vector, cosine: Real, normal: Vector, place: _Place) -> Real:
+        """Return a surface's specular term; two-sided, the normal is turned toward the light."""
+        wo, two_sided, none = place.wo, place.two_sided, self.number(0.0)
+        if wo is None or (cosine <= 0 and not two_sided):
+            return none
+        if place.model == "blinn":
+            half = self.half(wi, wo)
+            base = none if half is None else self.dot(normal, half)
+            base = abs(base) if two_sided else base
+        else:
+            both = cosine * self.dot(normal, wo)
+            base = (abs(both) if two_sided else both) + both - self.dot(wi, wo)
+        value: Real = max(base, none) ** place.shininess
+        if place.terminator and not two_sided:
+            value *= self.smooth(min(cosine / place.terminator, self.number(1.0)))
+        return value
 
-    Returns
-    -------
-    float
-        NaN where the ray meets an edge.
-    """
-    start = place - depth * normal
-    inside: list[tuple[float, int]] = []
-    for corners in bodies:
-        a, e, f = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-        p = np.cross(way, f)
-        scale = np.einsum("ij,ij->i", e, p)
-        with np.errstate(all="ignore"):
-            u = np.einsum("ij,ij->i", start - a, p) / scale
-            q = np.cross(start - a, e)
-            v = q @ way / scale
-            s = np.einsum("ij,ij->i", f, q) / scale
-            near = np.minimum(np.minimum(u, v), 1 - u - v)
-        ahead = (s > 0) & (s < reach)
-        if np.any(ahead & (np.abs(near) < 1e-9)):
-            return math.nan
-        # The ray leaves where it runs with the outward normal e x f, of which scale is the inverse.
-        hit = ahead & (near > 0)
-        inside += [
-            (float(at), 1 if side < 0 else -1) for at, side in zip(s[hit], scale[hit], strict=True)
-        ]
-    length, depth_in, far = 0.0, 0, reach
-    for at, change in sorted(inside, reverse=True):
-        length += far - at if depth_in > 0 else 0.0
-        depth_in, far = depth_in + change, at
-    length += far if depth_in > 0 else 0.0
-    return float(depth / max(length, depth))
+    def _sum(self, at: Vector, scene: Scene, parts: Sequence[tuple[Light, Real, Real]]) -> Lit:
+        """Return the sum of the lights, given both terms of each for a white material."""
+        material, zero = scene.material, self.number(0.0)
+        ambient = self.number(material.ambient) * scene.ambient_intensity
+        parts = [(one, material.diffuse * d, material.specular * s) for one, d, s in parts]
+        diffuse = sum((d for _, d, _ in parts), zero)
+        specular = sum((s for _, _, s in parts), zero)
+        rgb: list[Real] = []
+        if scene.colored:
+            color, gloss = material.color or WHITE, material.specular_color or WHITE
+            for i, tint in enumerate(scene.ambient_color or WHITE):
+                own = ((one.color or WHITE, color[i] * d + gloss[i] * s) for one, d, s in parts)
+                rgb.append(ambient * tint * color[i] + sum(c[i] * value for c, value in own))
+        luminance, *rgb = self._faded([ambient + diffuse + specular, *rgb], at, scene)
+        return Lit(luminance, tuple(rgb), ambient, diffuse, specular)
 
+    def _faded(self, values: list[Real], at: Vector, scene: Scene) -> list[Real]:
+        """Return luminance, red, green and blue with the depth cue."""
+        cue, view = scene.depth_cue, scene.view
+        if cue is None or view is None or cue.front is None or cue.back is None:
+            return values
+        origin = self.vector(view.position or [0.0] * len(at))
+        away = [a - b for a, b in zip(origin, at, strict=True)]
+        axis = None if view.direction is None else self.unit(self.vector(view.direction))
+        depth = self.hypot(*away) if axis is None else self.dot(axis, away)
+        grey = (1.0, *(cue.color or WHITE))
+        return [self.depth_cue(v, depth, cue, g) for v, g in zip(values, grey, strict=False)]
 
-def _terms(
-    wi: Numbers,
-    wo: Numbers | None,
-    up: Numbers | None,
-    frame: list[list[float]] | None,
-    facing: float | None,
-    power: float,
-    shininess: float,
-    model: str,
-    *,
-    two_sided: bool,
-    terminator: float,
-) -> tuple[float, float]:
-    """Return the diffuse and the specular factor of one light."""
-    half = None if wo is None else _unit([a + b for a, b in zip(wi, wo, strict=True)])
-    if frame is not None:
-        sine = _across(wi, frame)
-        if model == "cylinder":
-            return _line_light(wi, wo, frame[0], half, shininess) if wo is not None else (0.0, 0.0)
-        if wo is None:
-            return sine**power, 0.0
+    def specular(
+        self, wi: Vector, wo: Vector, frame: Sequence[Vector], shininess: float, model: str
+    ) -> Real:
+        """Return max(0, |wi_N||wo_N| - wi_T . wo_T)^s (Banks (2), (3)), or Blinn's |h_N|^s."""
         if model == "blinn":
-            return sine**power, 0.0 if half is None else _across(half, frame) ** shininess
-        along = sum(_dot(wi, t) * _dot(wo, t) for t in frame)
-        mirror = sine * _across(wo, frame) - along
-        return sine**power, max(mirror, 0.0) ** shininess
-    assert up is not None
-    assert facing is not None
-    cosine = _dot(up, wi)
-    if wo is None or (not two_sided and cosine <= 0):
-        return facing**power, 0.0
-    if model == "blinn":
-        base = 0.0 if half is None else _dot(up, half)
-        base = abs(base) if two_sided else base
-    else:
-        seen = _dot(up, wo)
-        base = 2 * cosine * seen - _dot(wi, wo)
-        if two_sided:
-            base = abs(cosine * seen) + cosine * seen - _dot(wi, wo)
-    value = max(base, 0.0) ** shininess
-    if terminator and not two_sided:
-        t = min(cosine / terminator, 1.0)
-        value *= t * t * (3 - 2 * t)
-    return facing**power, value
+            half = self.half(wi, wo)
+            return self.number(0.0) if half is None else self.across(half, frame) ** shininess
+        mirror = self.across(wi, frame) * self.across(wo, frame)
+        for t in frame:
+            mirror -= self.dot(wi, t) * self.dot(wo, t)
+        value: Real = max(mirror, self.number(0.0)) ** shininess
+        return value
+
+    def line_light(
+        self, wi: Vector, wo: Vector, line: Vector, shininess: float
+    ) -> tuple[Real, Real]:
+        """Return the means of Lambert's and Blinn's terms over the visible half of a thin cylinder.
+
+        In closed form, with alpha the angle between wi_N and wo_N, beta and gamma those of their
+        sum with wo_N and with wi_N, and C(x, p) the integral of cos^p from 0 to x:
+        ``|wi_N| (sin alpha + (pi - alpha) cos alpha) / 4`` and ``|h_N|^s / 2`` times
+        ``cos beta (C(pi/2 - beta, s + 1) + C(pi/2 - gamma, s + 1)) +
+        sin beta (sin(beta)^(s+1) - sin(gamma)^(s+1)) / (s + 1)``.
+        """
+        across_i, across_o = self.rest(wi, [line]), self.rest(wo, [line])
+        size = self.hypot(*across_i)
+        if not size:
+            return self.number(0.0), self.number(0.0)
+        if not self.hypot(*across_o):
+            return self.end_on(wi, wo, line, shininess)
+        alpha = self.angle(across_i, across_o)
+        diffuse = size * (self.sin(alpha) + (self.pi - alpha) * self.cos(alpha)) / 4
+        half = self.half(wi, wo)
+        both = [x + y for x, y in zip(across_i, across_o, strict=True)]
+        if half is None or not any(both):
+            return diffuse, self.number(0.0)
+        beta, gamma = self.angle(both, across_o), self.angle(both, across_i)
+        p, quarter = self.number(shininess) + 1, self.pi / 2
+        whole = sum(self.cosine_integral(quarter - angle, p) for angle in (beta, gamma))
+        ends = self.sin(beta) ** p - self.sin(gamma) ** p
+        mean = self.cos(beta) * whole + self.sin(beta) * ends / p
+        scale = self.hypot(*both) / self.hypot(*(x + y for x, y in zip(wi, wo, strict=True)))
+        return diffuse, scale**shininess * mean / 2
+
+    def end_on(self, wi: Vector, wo: Vector, line: Vector, shininess: float) -> tuple[Real, Real]:
+        """Return both terms of a thin cylinder seen along its line: means over its round."""
+        mean = self.cosine_integral(self.pi / 2, self.number(shininess)) / self.pi
+        specular = self.specular(wi, wo, [line], shininess, "blinn")
+        return self.across(wi, [line]) / self.pi, specular * mean
+
+    def attenuation(self, distance: Real, coefficients: Sequence[float]) -> Real:
+        """Return min(1, 1 / (c1 + c2 d + c3 d^2)), of the Lecture."""
+        c1, c2, c3 = map(self.number, coefficients)
+        return 1 / max(c1 + c2 * distance + c3 * distance * distance, self.number(1.0))
+
+    def fur(self, height: float, sine: Real, density: float) -> Real:
+        """Return (1 - rho)^(h / sin a), of Banks (7) and (8): the share that passes once."""
+        if height == 0:
+            return self.number(1.0)
+        if sine == 0:
+            return self.number(0.0)
+        share: Real = (1 - self.number(density)) ** (self.number(height) / sine)
+        return share
+
+    def depth_cue(self, light: Real, depth: Real, cue: DepthCue, grey: float = 1.0) -> Real:
+        """Return S I + (1 - S) Icue, of the Lecture; ``grey`` is the cue's own colour."""
+        low, high, back = map(self.number, (cue.back_scale, cue.front_scale, cue.back or 0.0))
+        t = (depth - back) / (self.number(cue.front or 0.0) - back)
+        t = min(max(t, self.number(0.0)), self.number(1.0))
+        share = low + (high - low) * (self.smooth(t) if cue.smooth else t)
+        return share * light + (1 - share) * cue.cue * grey
+
+    @staticmethod
+    def smooth(t: Real) -> Real:
+        """Return the smooth step 3 t^2 - 2 t^3."""
+        return t * t * (3 - 2 * t)
+
+    def mean_intensity(self, k: int, n: int, p: float) -> Real:
+        """Return I(k, n, p) of Banks' appendix, by the gamma functions themselves."""
+        c, power, two = n - k, self.number(p), self.number(2.0)
+        log = self.log_gamma(n / two) + self.log_gamma((c + power) / 2)
+        return self.exp(log - self.log_gamma(c / two) - self.log_gamma((n + power) / 2))
+
+    def exponent(self, k: int, n: int) -> Real:
+        """Return the p of a mean brightness of 1/2, by bisection to the last digit."""
+        if (k, n) not in self._exponents:
+            low, high = self.number(0.0), self.number(1.0)
+            while self.mean_intensity(k, n, high) > 0.5:
+                high *= 2
+            while low < (middle := (low + high) / 2) < high:
+                above = self.mean_intensity(k, n, middle) > 0.5
+                low, high = (middle, high) if above else (low, middle)
+            self._exponents[k, n] = middle
+        return self._exponents[k, n]
+
+    def toward(self, end: Light | View, point: Vector) -> tuple[Vector | None, Real | None]:
+        """Return the unit direction to a light or an eye and its distance, None at infinity."""
+        if end.direction is not None and (end.position is None or getattr(end, "parallel", False)):
+            return self.unit(self.vector(end.direction)), None
+        assert end.position is not None
+        way = [a - b for a, b in zip(self.vector(end.position), point, strict=True)]
+        return self.unit(way), self.hypot(*way)
+
+    def vector(self, v: Sequence[float]) -> Vector:
+        """Return components as numbers of the type."""
+        return list(map(self.number, v))
+
+    def unit(self, v: Vector) -> Vector | None:
+        """Return a unit vector; None where a vector has no direction."""
+        size = self.hypot(*v)
+        if not TINY < size < math.inf:
+            # The length itself has no digits left, or the vector has no direction.
+            largest = max(map(abs, v))
+            if not 0 < largest < math.inf or size != size:
+                return None
+            v = [x / largest for x in v]
+            size = self.hypot(*v)
+        return [x / size for x in v]
+
+    def half(self, wi: Vector, wo: Vector) -> Vector | None:
+        """Return the half vector of two directions; None where they are opposite."""
+        return self.unit([x + y for x, y in zip(wi, wo, strict=True)])
+
+    def angle(self, u: Vector, v: Vector) -> Real:
+        """Return the angle between two vectors, without loss where it is near 0 or pi."""
+        a, b = self.hypot(*u), self.hypot(*v)
+        pairs = [(x * b, y * a) for x, y in zip(u, v, strict=True)]
+        apart, near = (self.hypot(*(x + s * y for x, y in pairs)) for s in (-1, 1))
+        return 2 * self.atan2(apart, near)
+
+    def rest(self, v: Vector, frame: Sequence[Vector]) -> Vector:
+        """Return the part of a vector that is normal to a frame."""
+        for t in frame:
+            c = self.dot(v, t)
+            v = [x - c * y for x, y in zip(v, t, strict=True)]
+        return v
+
+    def across(self, v: Vector, frame: Sequence[Vector]) -> Real:
+        """Return the length of the part of a vector that is normal to a frame."""
+        return self.hypot(*self.rest(v, frame))
+
+    def orthonormal(self, rows: Sequence[Sequence[float]], apart: float = 0.0) -> list[Vector]:
+        """Return an orthonormal frame of rows, without those that depend on the ones before."""
+        frame: list[Vector] = []
+        for row in rows:
+            own = self.unit(self.vector(row))
+            if own is not None and frame:
+                rest = self.rest(own, frame)
+                size = self.hypot(*rest)
+                own = self.unit(rest) if size > apart else None
+                if own is not None and size < 0.5:
+                    # A second pass removes what rounding left of the frame.
+                    own = self.unit(self.rest(own, frame))
+            if own is not None:
+                frame.append(own)
+        return frame
 
 
-def _line_light(
-    wi: Numbers, wo: Numbers, line: Numbers, half: list[float] | None, shininess: float
-) -> tuple[float, float]:
-    """Return Lambert's and Blinn's means over the visible half of a cylinder, by quadrature."""
+def _placed(point: Vector, scene: Scene) -> bool:
+    """Return whether a point is finite, or no direction depends on it."""
+    ends = (*scene.lights, scene.view)
+    near = any(end is not None and end.position is not None for end in ends)
+    return not near or all(map(math.isfinite, point))
+
+
+def _dot(u: Vector, v: Vector) -> float:
+    return math.fsum(map(operator.mul, u, v))
+
+
+def _cosine_integral(angle: float, power: float) -> float:
+    """Return the integral of cos(x)^p from 0 to an angle, by quadrature."""
     from scipy import integrate
 
-    eye = _unit([x - _dot(wo, line) * t for x, t in zip(wo, line, strict=True)])
-    if eye is None:
-        return 0.0, 0.0
-    side = [
-        line[1] * eye[2] - line[2] * eye[1],
-        line[2] * eye[0] - line[0] * eye[2],
-        line[0] * eye[1] - line[1] * eye[0],
-    ]
-    x, y = _dot(wi, eye), _dot(wi, side)
-    at = math.atan2(y, x)
-    low, high = max(-math.pi / 2, at - math.pi / 2), min(math.pi / 2, at + math.pi / 2)
-    hx, hy = (0.0, 0.0) if half is None else (_dot(half, eye), _dot(half, side))
-
-    def lambert(a: float) -> float:
-        return (x * math.cos(a) + y * math.sin(a)) * math.cos(a) / 2
-
-    def blinn(a: float) -> float:
-        base = max(hx * math.cos(a) + hy * math.sin(a), 0.0)
-        return float(base**shininess) * math.cos(a) / 2
-
-    peak, width = math.atan2(hy, hx), 1 / math.sqrt(1 + shininess)
-    marks = [peak + j * width for j in (-8, -4, -2, -1, 0, 1, 2, 4, 8)]
-    cuts = [low, *(a for a in marks if low < a < high), high]
-    pieces = itertools.pairwise(cuts)
-    shine = sum(integrate.quad(blinn, a, b, epsabs=1e-13)[0] for a, b in pieces)
-    return integrate.quad(lambert, low, high, epsabs=1e-13)[0], shine
+    # Beyond 9 widths of the peak cos(x)^p <= exp(-p x^2 / 2) is below all rounding.
+    end = min(abs(angle), 9 / math.sqrt(1 + power))
+    value = integrate.quad(lambda x: math.cos(x) ** power, 0.0, end, epsabs=1e-15, epsrel=1e-13)
+    return math.copysign(value[0], angle)
 
 
-def _exponent(k: int, n: int) -> float:
-    """Return the p whose mean brightness is 1/2: bisection of the gamma functions themselves."""
-    from scipy import special
-
-    if (k, n) in _EXPONENTS:
-        return _EXPONENTS[k, n]
-
-    def mean(p: float) -> float:
-        c = n - k
-        return math.exp(
-            float(
-                special.gammaln(n / 2) + special.gammaln((c + p) / 2)
-                - special.gammaln(c / 2) - special.gammaln((n + p) / 2)
-            )
-        )  # fmt: skip
-
-    low, high = 0.0, 1.0
-    while mean(high) > 0.5:
-        high *= 2
-    for _ in range(200):
-        middle = (low + high) / 2
-        low, high = (middle, high) if mean(middle) > 0.5 else (low, middle)
-    _EXPONENTS[k, n] = (low + high) / 2
-    return _EXPONENTS[k, n]
-
-
-_EXPONENTS: dict[tuple[int, int], float] = {}
-
-
-def _cued(light: float, grey: float, point: Numbers, scene: Scene) -> float:
-    """Return the light faded with depth toward a share of the cue's."""
-    cue, view = scene.depth_cue, scene.view
-    if cue is None or view is None or cue.front is None or cue.back is None:
-        return light
-    origin = view.position or [0.0] * len(point)
-    away = [a - b for a, b in zip(origin, point, strict=True)]
-    axis = None if view.direction is None else _unit(view.direction)
-    depth = math.hypot(*away) if axis is None else _dot(axis, away)
-    t = min(max((depth - cue.back) / (cue.front - cue.back), 0.0), 1.0)
-    t = t * t * (3 - 2 * t) if cue.smooth else t
-    scale = cue.back_scale + (cue.front_scale - cue.back_scale) * t
-    return scale * light + (1 - scale) * cue.cue * grey
-
-
-def _toward(owner: Any, point: Numbers) -> tuple[list[float] | None, float | None]:
-    """Return the unit direction to a light or an eye, and how far it is; None at infinity."""
-    if owner.position is None or getattr(owner, "parallel", False):
-        return _unit(owner.direction), None
-    way = [a - b for a, b in zip(owner.position, point, strict=True)]
-    return _unit(way), math.hypot(*way)
-
-
-def _path(depth: float, sine: float) -> float:
-    if depth == 0:
-        return 0.0
-    return depth / sine if sine else math.inf
-
-
-def _dot(a: Numbers, b: Numbers) -> float:
-    return math.fsum(x * y for x, y in zip(a, b, strict=True))
-
-
-def _unit(v: Numbers) -> list[float] | None:
-    """Return a unit vector; None where it has no direction."""
-    largest = max(abs(x) for x in v)
-    if not (0 < largest < math.inf) or any(math.isnan(x) for x in v):
-        return None
-    scaled = [x / largest for x in v]
-    size = math.hypot(*scaled)
-    return [x / size for x in scaled]
-
-
-def _rest(v: Numbers, frame: list[list[float]]) -> list[float]:
-    rest = list(v)
-    for t in frame:
-        c = _dot(rest, t)
-        rest = [x - c * y for x, y in zip(rest, t, strict=True)]
-    return rest
-
-
-def _across(v: Numbers, frame: list[list[float]]) -> float:
-    return math.hypot(*_rest(v, frame))
-
-
-def _orthonormal(rows: Sequence[Numbers], apart: float) -> list[list[float]] | None:
-    """Return an orthonormal frame of the rows; fewer rows where some depend on the others."""
-    frame: list[list[float]] = []
-    for row in rows:
-        own = _unit(row)
-        rest = None if own is None else _unit(_rest(own, frame))
-        if own is not None and rest is not None and math.hypot(*_rest(own, frame)) > apart:
-            again = _unit(_rest(rest, frame))
-            if again is not None:
-                frame.append(again)
-    return frame or None
+#: The oracle in float64.
+FLOATS = Oracle(
+    number=float, pi=math.pi, dot=_dot, hypot=math.hypot, sin=math.sin, cos=math.cos,
+    exp=math.exp, log_gamma=math.lgamma, atan2=math.atan2, cosine_integral=_cosine_integral,
+)  # fmt: skip
+light = FLOATS.light

@@ -1,4 +1,4 @@
-"""What light cost and how wrong it is: a record of the engine's runs while one is asked for."""
+"""Cost and error of the light: a record of the engine's runs while a report is open."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import contextvars
 import math
 import time
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,15 +19,16 @@ from vizlight.verify import oracle
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    from vizlight._types import Array, Bools
     from vizlight.scene import Scene
     from vizlight.shading.engine import Shading
-    from vizlight.shading.inputs import ShadingInputs
+    from vizlight.shading.inputs import ArraySource, ShadingInputs
     from vizlight.shading.options import ShadingOptions
 
 
-#: Rays through a solid that are sampled again, at most.
+#: Largest number of rays through a solid that are computed again.
 RAYS = 64
-#: Places or triangles that are tried in all.
+#: Largest number of places or triangles that all these rays are tested against.
 TRIALS = 20_000_000
 SHADOW = ("t",)
 
@@ -39,25 +40,27 @@ class Run:
     Attributes
     ----------
     points : int
+        Number of points.
     terms : tuple of str
-        That were added up; ``("t",)`` for a cos-theta shadow.
+        Terms that were added up; ``("t",)`` for a cos-theta shadow.
     precision : str
+        Type of the numbers.
     seconds : float
         Wall time of the run.
     bytes : int
-        Of the results: light, validity, components, colour.
+        Size of the results: light, validity, components, colour.
     sample : int
-        Points drawn at random and lit again, one by one in float64, by formulas that share no code
-        with the engine.
+        Number of points that were drawn at random and computed again, one by one in float64, by
+        formulas that share no code with the engine.
     error, rms : float
         Largest and root mean square difference of their luminance and colour, or of t; NaN
         without a sample.
     invalid : int
-        Points that could not be lit.
+        Number of points that could not be lit.
     disagreed : int
-        Points of the sample that only one of both could light.
+        Number of points of the sample that only one of the two implementations could light.
     bound : float
-        Of what ``tolerance=`` chose, or of the bands of ``isoluminance``; NaN without.
+        Stated error bound of ``tolerance=`` or of the bands of ``isoluminance``; NaN without.
     """
 
     points: int
@@ -74,13 +77,13 @@ class Run:
 
     @property
     def nanoseconds(self) -> float:
-        """Wall time for a point, in ns."""
+        """Wall time per point, in ns."""
         return 1e9 * self.seconds / self.points if self.points else math.nan
 
 
 @dataclass
 class Report:
-    """Runs of the engine, and the wall time of all that was done meanwhile; see :func:`report`."""
+    """Runs of the engine, and the wall time while the report was open; see :func:`report`."""
 
     sample: int = 256
     seed: int = 0
@@ -89,28 +92,28 @@ class Report:
 
     @property
     def points(self) -> int:
-        """Points lit in all runs; those of shadows where nothing was lit."""
+        """Number of points lit in all runs, or of points with shadows if no run lit any."""
         lit = [run.points for run in self.runs if run.terms != SHADOW]
         return sum(lit or [run.points for run in self.runs])
 
     @property
     def invalid(self) -> int:
-        """Points that could not be lit."""
+        """Number of points that could not be lit."""
         return sum(run.invalid for run in self.runs)
 
     @property
     def bytes(self) -> int:
-        """Bytes of all results."""
+        """Size of all results in bytes."""
         return sum(run.bytes for run in self.runs)
 
     @property
     def error(self) -> float:
-        """The largest error seen in the samples; NaN without one."""
+        """Largest error of all samples; NaN without a sample."""
         return max((run.error for run in self.runs if run.error == run.error), default=math.nan)
 
     @property
     def terms(self) -> tuple[str, ...]:
-        """The terms of any run."""
+        """Terms of all runs, each once."""
         return tuple(dict.fromkeys(term for run in self.runs for term in run.terms))
 
     def __str__(self) -> str:
@@ -121,18 +124,20 @@ class Report:
         for run in self.runs:
             lines.append(
                 f"{run.points} points, {run.precision}: {' + '.join(run.terms)}; "
-                f"{run.seconds:.3g} s, {run.nanoseconds:.3g} ns a point, {run.bytes} bytes"
+                f"{run.seconds:.3g} s, {run.nanoseconds:.3g} ns per point, {run.bytes} bytes"
             )
             wrong = (
-                f"  error {run.error:.2g} at most, {run.rms:.2g} RMS, of {run.sample} points lit "
-                "again one by one in float64" if run.sample else "  no point to light again"
+                f"  error {run.error:.2g} at most, {run.rms:.2g} RMS, in a sample of {run.sample} "
+                "points computed again one by one in float64" if run.sample
+                else "  no sample: error unknown"
             )  # fmt: skip
             if not math.isnan(run.bound):
                 wrong += f"; stated bound {run.bound:.2g}"
             lines.append(f"{wrong}; {run.invalid} invalid")
             if run.disagreed:
                 lines.append(
-                    f"  {run.disagreed} points of the sample are valid in one of both only"
+                    f"  {run.disagreed} points of the sample are valid in only one of the two "
+                    "implementations"
                 )
         return "\n".join(lines)
 
@@ -142,20 +147,22 @@ _ACTIVE: contextvars.ContextVar[Report | None] = contextvars.ContextVar("report"
 
 @contextlib.contextmanager
 def report(*, sample: int = 256, seed: int = 0) -> Iterator[Report]:
-    """Record what filters do while this context is entered: cost, terms, error.
+    """Record the cost, the terms and the error of all light computed in this context.
 
     Parameters
     ----------
     sample : int, default: 256
-        Points of each run, drawn at random, that are lit again one by one; 0 for none.
+        Number of points of each run, drawn at random, that are computed again one by one; 0 for
+        none.
     seed : int, default: 0
-        Of the drawing.
+        Seed of the drawing.
 
     Yields
     ------
     Report
-        ``print`` it after the filters ran, or read ``points``, ``terms``, ``seconds``, ``bytes``,
-        ``error``, ``invalid``, and ``runs``, one for each mesh that was lit.
+        Report to print after the filters ran, with the attributes ``points``, ``terms``,
+        ``seconds``, ``bytes``, ``error``, ``invalid``, and ``runs``, one for each mesh that was
+        lit.
 
     Raises
     ------
@@ -164,20 +171,21 @@ def report(*, sample: int = 256, seed: int = 0) -> Iterator[Report]:
 
     Notes
     -----
-    The sample's light is computed from the scene as given, not from a plan: its error includes what
-    ``tolerance=`` and ``highlight_error=`` chose. t of a cos-theta shadow is found again on at most
-    64 rays: at 20,000 places of each in a height field, against all triangles of a closed surface;
-    a depth of 0 is told without an error. Bands of ``isoluminance`` are compared with the light at
-    their middles. About 40 µs a point of the sample, 3 ms for ``model="cylinder"`` and a ray, not
-    counted as time.
+    The sample's light is computed from the scene itself, not from a plan, so its error includes
+    the approximations that ``tolerance=`` and ``highlight_error=`` chose. t of a cos-theta shadow
+    is computed again on at most 64 rays, at 20,000 places of each ray in a height field, or against
+    all triangles of a closed surface; at depth 0 the report gives no error. Bands of
+    ``isoluminance`` are compared with the light at their middles. A point of the sample takes about
+    40 µs, 60 µs for ``model="cylinder"``, and a ray 3 ms; this time is not part of the reported
+    time. Filters that other threads call are not recorded.
 
     Examples
     --------
     >>> import pyvista as pv, vizlight
     >>> scene = vizlight.Scene(view=vizlight.View(direction=(0, 0, 1)))
-    >>> with vizlight.report() as told:
+    >>> with vizlight.report() as report:
     ...     lit = vizlight.illuminate(pv.Sphere(), scene)
-    >>> told.error < 1e-5
+    >>> report.error < 1e-5
     True
     """
     made = Report(
@@ -193,7 +201,7 @@ def report(*, sample: int = 256, seed: int = 0) -> Iterator[Report]:
 
 
 def note(given: ShadingInputs, scene: Scene, shading: Shading, options: ShadingOptions) -> None:
-    """Add a run of the engine to the report that is asked for, if one is."""
+    """Add a run of the engine to the open report, if there is one."""
     active = _ACTIVE.get()
     if active is None:
         return
@@ -203,8 +211,8 @@ def note(given: ShadingInputs, scene: Scene, shading: Shading, options: ShadingO
     drawn = np.sort(random.choice(count, min(active.sample, count), replace=False))
     apart = frames.default_rtol(shading.plan.n, shading.plan.dtype)
     width = 1 if shading.rgb is None else 4
-    again = [_again(given, int(i), scene, options, apart) for i in drawn]
-    true = np.array(again, dtype=np.float64).reshape(-1, width)
+    reference = [_reference(given, int(i), scene, options, apart) for i in drawn]
+    true = np.array([[lit.luminance, *lit.rgb] for lit in reference]).reshape(-1, width)
     got = shading.luminance[drawn, np.newaxis]
     got = got if shading.rgb is None else np.hstack([got, shading.rgb[drawn]])
     valid, known = shading.valid[drawn], np.isfinite(true[:, 0])
@@ -214,7 +222,7 @@ def note(given: ShadingInputs, scene: Scene, shading: Shading, options: ShadingO
         shading.luminance, shading.valid, shading.diffuse, shading.specular, shading.rgb
     )  # fmt: skip
     choice = shading.plan.choice
-    # What the check itself takes is no cost of the light.
+    # The time of the check is not a cost of the light.
     active.seconds -= time.perf_counter() - start
     active.runs.append(
         Run(
@@ -234,11 +242,23 @@ def note(given: ShadingInputs, scene: Scene, shading: Shading, options: ShadingO
 
 
 def note_ratio(
-    t: Any, valid: Any, seconds: float, size: int, again: Callable[[int, int], float], effort: int
-) -> None:
-    """Add a cos-theta shadow to the report.
+    t: Array, valid: Bools, seconds: float, size: int, reference: Callable[[int, int], float],
+    effort: int,
+) -> None:  # fmt: skip
+    """Add a cos-theta shadow to the open report, if there is one.
 
-    t of each light, bytes, what finds one of them again, and what that tries; 0: it cannot.
+    Parameters
+    ----------
+    t : ndarray, shape (n_points, n_lights)
+        Cos-theta shadow of each light.
+    valid : ndarray of bool, shape (n_points,)
+        Points that have a shadow.
+    seconds, size : float, int
+        Wall time, and bytes of the results.
+    reference : callable
+        Takes the indices of a point and a light, returns t by a second implementation.
+    effort : int
+        Number of places or triangles that ``reference`` tests; 0 if it cannot be called.
     """
     active = _ACTIVE.get()
     if active is None:
@@ -248,7 +268,7 @@ def note_ratio(
     rays = min(active.sample, RAYS, max(TRIALS // effort, 1)) if effort else 0
     drawn = random.choice(good.size * t.shape[1], min(rays, good.size * t.shape[1]), replace=False)
     at = [(int(good[k // t.shape[1]]), int(k % t.shape[1])) for k in drawn]
-    off = np.array([abs(t[i, light] - again(i, light)) for i, light in at], dtype=np.float64)
+    off = np.array([abs(t[i, light] - reference(i, light)) for i, light in at], dtype=np.float64)
     off = off[np.isfinite(off)]
     active.seconds -= time.perf_counter() - start
     invalid = int(np.count_nonzero(~valid))
@@ -256,10 +276,10 @@ def note_ratio(
 
 
 def note_bands(
-    values: Any, points: int, places: Any, normals: Any, scene: Scene, terms: tuple[str, ...],
-    seconds: float, size: int, bound: float, **options: Any,
+    values: Array, points: int, places: Array, normals: Array, scene: Scene,
+    terms: tuple[str, ...], seconds: float, size: int, bound: float, *, model: str, two_sided: bool,
 ) -> None:  # fmt: skip
-    """Add bands of equal luminance to the report, to be compared with the light at places."""
+    """Add bands of equal luminance to the open report, compared with the light at places."""
     active = _ACTIVE.get()
     if active is None:
         return
@@ -268,20 +288,24 @@ def note_bands(
     drawn = random.choice(count, min(active.sample, count), replace=False)
     off = np.array(
         [
-            abs(values[i] - oracle.light(place, None, normal, scene, **options)[0])
-            for i, place, normal in zip(
-                drawn, places[drawn].tolist(), normals[drawn].tolist(), strict=True
+            abs(
+                values[i]
+                - oracle.light(
+                    places[i].tolist(), None, normals[i].tolist(), scene, model=model,
+                    two_sided=two_sided,
+                ).luminance
             )
+            for i in drawn
         ],
         dtype=np.float64,
-    )
+    )  # fmt: skip
     off = off[np.isfinite(off)]
     active.seconds -= time.perf_counter() - start
     active.runs.append(_run(off, terms, values, seconds, size, points, 0, bound))
 
 
 def _run(
-    off: Any, terms: tuple[str, ...], values: Any, seconds: float, size: int, points: int,
+    off: Array, terms: tuple[str, ...], values: Array, seconds: float, size: int, points: int,
     invalid: int, bound: float,
 ) -> Run:  # fmt: skip
     return Run(
@@ -300,7 +324,7 @@ def _run(
 
 @contextlib.contextmanager
 def paused() -> Iterator[None]:
-    """Record nothing of what is done meanwhile: a filter that lights much to make little."""
+    """Record nothing in this context, for a filter that lights many points on its way."""
     token = _ACTIVE.set(None)
     try:
         yield
@@ -308,30 +332,31 @@ def paused() -> Iterator[None]:
         _ACTIVE.reset(token)
 
 
-def _again(
+def _reference(
     given: ShadingInputs, i: int, scene: Scene, options: ShadingOptions, apart: float
-) -> list[float]:
-    """Return the light of one point by the scalar formulas."""
+) -> oracle.Lit:
+    """Return the light of one point by the oracle."""
     n, row = given.points.shape[1], i // given.repeat
     own, shared = slice(i, (row + 1) * given.repeat, given.repeat), slice(row, row + 1)
 
-    def numbers(rows: Any, at: slice) -> Any:
-        return np.asarray(rows[at], dtype=np.float64).ravel()
+    def numbers(rows: ArraySource, at: slice) -> list[float]:
+        values: list[float] = np.asarray(rows[at], dtype=np.float64).ravel().tolist()
+        return values
 
-    def vectors(rows: Any) -> Any:
+    def vectors(rows: ArraySource | None) -> list[list[float]] | None:
         if rows is None:
             return None
-        at = own if rows.shape[0] == given.points.shape[0] else shared
-        return numbers(rows, at).reshape(-1, n).tolist()
+        flat = numbers(rows, own if rows.shape[0] == given.points.shape[0] else shared)
+        return [flat[j : j + n] for j in range(0, len(flat), n)]
 
     return oracle.light(
-        numbers(given.points, own).tolist(),
+        numbers(given.points, own),
         vectors(given.tangents),
-        None if given.normals is None else numbers(given.normals, shared).tolist(),
+        None if given.normals is None else numbers(given.normals, shared),
         scene,
-        carrier=vectors(given.base_tangents),
-        depth=(None if given.fur_height is None else float(numbers(given.fur_height, own)[0])),
-        shadow=None if given.shadow is None else numbers(given.shadow, own).tolist(),
+        base_tangents=vectors(given.base_tangents),
+        fur_height=0.0 if given.fur_height is None else numbers(given.fur_height, own)[0],
+        shadow=None if given.shadow is None else numbers(given.shadow, own),
         model=options.model,
         compensate=options.compensate,
         conditioned=bool(options.conditioned),

@@ -28,7 +28,7 @@ def made(shape, **options):
 
 
 def source_normal(point, axis, height, radii):
-    """The source's N at a point of the side, by its h: p14 - (c - h a/|a|), in 50 _digits."""
+    """The source's N at a point of the side, by its h: p14 - (c - h a/|a|), in 50 digits."""
     a, p = oracles.exact(axis), oracles.exact(point)
     r1, r2 = (mp.mpf(r) for r in radii)
     h = (r2 * r2 - r1 * r1) / (2 * mp.mpf(height))

@@ -28,7 +28,7 @@ LIGHTS = {
 
 def luminance(point, *, direction=None, position=None, power=1.0, attenuation=(1, 0, 0),
               ambient=0.1, diffuse=0.8):  # fmt: skip
-    """The law at one point of the unit sphere, in 50 _digits."""
+    """The law at one point of the unit sphere, in 50 digits."""
     normal = oracles.unit(oracles.exact(point))
     if direction is not None:
         toward, fading = oracles.exact(direction), mp.mpf(1)

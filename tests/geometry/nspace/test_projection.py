@@ -1,4 +1,4 @@
-"""Rotations are rotations; projections and their derivatives against 50 _digits."""
+"""Rotations are rotations; projections and their derivatives against 50 digits."""
 
 from __future__ import annotations
 

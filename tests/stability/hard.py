@@ -2,15 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
-
 import numpy as np
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[Any]
-    Random = np.random.Generator
 
 #: Names of the ways in which a direction stands to a tangent space.
 DIRECTIONS = ("random", "along the tangent", "one ulp off it", "near it", "across", "near across")
@@ -20,24 +12,24 @@ EYES = ("random", "at the mirror", "near it", "one ulp off it", "at the light", 
 STEEP = ("where it falls", "where it ends", "opposite, where it falls", "opposite, where it ends")
 
 
-def units(random: Random, count: int, n: int) -> Array:
+def units(random, count, n):
     """Return unit vectors in all directions."""
     v = random.standard_normal((count, n))
     return np.asarray(v / np.linalg.norm(v, axis=1, keepdims=True))
 
 
-def steps(random: Random, count: int, low: float = -17.0, high: float = -0.5) -> Array:
+def steps(random, count, low=-17.0, high=-0.5):
     """Return small numbers of any size, shape (count, 1)."""
     return np.asarray(10 ** random.uniform(low, high, (count, 1)))
 
 
-def frames(random: Random, count: int, k: int, n: int, dtype: Any) -> Array:
+def frames(random, count, k, n, dtype):
     """Return frames, shape (count, k, n), orthonormal as far as work in the type goes."""
     q, _ = np.linalg.qr(random.standard_normal((count, n, k)).astype(dtype))
     return np.asarray(np.swapaxes(q, 1, 2))
 
 
-def nudged(random: Random, v: Array) -> Array:
+def nudged(random, v):
     """Return vectors with one component each moved by one unit in the last place."""
     out = v.copy()
     at = np.arange(len(v)), random.integers(v.shape[1], size=len(v))
@@ -45,7 +37,7 @@ def nudged(random: Random, v: Array) -> Array:
     return out
 
 
-def directions(random: Random, frame: Array, kind: str, power: float = 1.0) -> Array:
+def directions(random, frame, kind, power=1.0):
     """Return a direction for each frame, in the frame's precision, of some length.
 
     "where it is steepest" is where sin^power changes most: as far from across as that is wide.
@@ -72,19 +64,19 @@ def directions(random: Random, frame: Array, kind: str, power: float = 1.0) -> A
     return np.asarray(np.ldexp(made, random.integers(-limit, limit, (count, 1))))
 
 
-def _width(random: Random, count: int, power: float) -> Array:
+def _width(random, count, power):
     """Return lengths about that over which cos^power falls, shape (count, 1)."""
     return np.asarray(np.sqrt(random.uniform(0.1, 4, (count, 1)) / max(power, 4.0)))
 
 
-def eyes(random: Random, wi: Array, frame: Array, kind: str, power: float = 1.0) -> Array:
+def eyes(random, wi, frame, kind, power=1.0):
     """Return a direction toward the eye for each light and frame."""
     light, rows = wi.astype(np.float64), frame.astype(np.float64)
     light /= np.abs(light).max(axis=1, keepdims=True)
     light /= np.linalg.norm(light, axis=1, keepdims=True)
     count, n = light.shape
 
-    def across(v: Array) -> Array:
+    def across(v):
         return np.asarray(v - np.einsum("bkn,bk->bn", rows, np.einsum("bkn,bn->bk", rows, v)))
 
     normal = across(across(units(random, count, n)))
@@ -99,7 +91,7 @@ def eyes(random: Random, wi: Array, frame: Array, kind: str, power: float = 1.0)
     lies = np.linalg.norm(low, axis=1, keepdims=True)
     low = normal * lies + low * size / np.where(lies > 0, lies, 1)
 
-    def about(half: Array) -> Array:
+    def about(half):
         half = half / np.linalg.norm(half, axis=1, keepdims=True)
         return np.asarray(2 * np.sum(half * light, axis=1, keepdims=True) * half - light)
 
@@ -120,9 +112,7 @@ def eyes(random: Random, wi: Array, frame: Array, kind: str, power: float = 1.0)
     return nudged(random, made) if kind == "one ulp off it" else np.asarray(made)
 
 
-def pairs(
-    random: Random, frame: Array, light: str, eye: str, power: float = 1.0
-) -> tuple[Array, Array]:
+def pairs(random, frame, light, eye, power=1.0):
     """Return a light and an eye for each frame; ``light`` counts but for opposite steep ones."""
     if not eye.startswith("opposite, "):
         wi = directions(random, frame, light)

@@ -1,48 +1,34 @@
 """Every kernel on its hard cases against 50 digits: what is claimed, what is seen, pass or fail.
 
 Inputs are directed at each singularity, down to one unit in the last place from it, and random. An
-error is told in eps of its type and, where the claim is in other units (over ``|wi + wo|``, of the
-result, of the size), in these. A claim passes if nothing seen is above it, and a defined value
-(0, NaN, a refusal) if it is that exactly. What has a claim of its own, as powers below 1 have, is
+error is given in eps of its type and, where the claim is in other units (over ``|wi + wo|``, of the
+result, of the size), in these. A claim passes if no error seen is above it, and a defined value
+(0, NaN, a refusal) if it is exactly that. What has a claim of its own, as powers below 1 have, has
 a row of its own, and a claim is tight if its worst case comes within a factor 8 of it.
 """
 
 from __future__ import annotations
 
+import csv
 import warnings
 from functools import partial
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vizlight.studies import (
-    _stability_engine,
-    _stability_geometry,
-    _stability_model,
-    _stability_shapes,
-)
-from vizlight.studies._framework import Curve, Row, Study, words
-from vizlight.studies._stability_checks import rows_of
+from stability import engine, geometry, model, shapes
+from stability.checks import rows_of
+from vizlight.studies import Curve, Result, Row, Study
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
-
-    from vizlight.studies._stability_checks import Check
-
-#: Inputs of a kernel and a type, and in a quick run.
+#: Number of inputs of a kernel and a type, and in a quick run.
 INPUTS, QUICK = 10_600, 600
-#: How many times what is seen a claim may be, and the inputs of a claim that can tell.
+#: Largest ratio of claim to error of a tight claim, and number of inputs that can tell.
 TIGHT, ENOUGH = 8.0, 1000
 
-KERNELS: dict[str, tuple[Callable[..., Iterator[Check]], tuple[Any, ...]]] = {
-    **_stability_model.CHECKS,
-    **_stability_shapes.CHECKS,
-    **_stability_geometry.CHECKS,
-    **_stability_engine.CHECKS,
-}
+#: Checks of each kernel, and the types that it is checked in.
+KERNELS = {**model.CHECKS, **shapes.CHECKS, **geometry.CHECKS, **engine.CHECKS}
 
 
-def measure(kernel: str, dtype: Any, count: int) -> list[Row]:
+def measure(kernel, dtype, count):
     """Return the rows of one kernel in one type."""
     work, _ = KERNELS[kernel]
     with warnings.catch_warnings():
@@ -50,10 +36,8 @@ def measure(kernel: str, dtype: Any, count: int) -> list[Row]:
         return rows_of(kernel, dtype, work(dtype, count, np.random.default_rng(50)))
 
 
-def steps(quick: bool) -> list[Callable[[], list[Row]]]:
+def steps(quick):
     """Return a step for each kernel and type."""
-    from vizlight.studies import _digits  # noqa: F401 - says at once what is missing
-
     count = QUICK if quick else INPUTS
     return [
         partial(measure, kernel, dtype, count)
@@ -62,19 +46,19 @@ def steps(quick: bool) -> list[Callable[[], list[Row]]]:
     ]
 
 
-def loosest(rows: Sequence[Row]) -> dict[tuple[str, str], float]:
-    """Return for each claim and type how many times it is what was seen at worst.
+def loosest(rows):
+    """Return for each claim and type its ratio to the largest error seen.
 
-    A claim is that of a kernel, or of what it has an own claim for.
+    A claim is that of a kernel, or of a case that has a claim of its own.
     """
-    worst: dict[tuple[str, str], float] = {}
+    worst = {}
     for row in rows:
         claim = row.way, str(row.more["type"])
         worst[claim] = max(worst.get(claim, 0.0), float(row.more["seen / claimed"]))
     return {claim: 1 / ratio if ratio else np.inf for claim, ratio in worst.items()}
 
 
-def verdict(rows: Sequence[Row]) -> str:
+def verdict(rows):
     """Return what holds, what does not, and how tight the claims are."""
     failed = [
         f"{row.way}, {row.more['type']} ({row.more['case']})"
@@ -84,7 +68,7 @@ def verdict(rows: Sequence[Row]) -> str:
     inputs = sum(int(row.more["inputs"]) for row in rows)
     slack = loosest(rows)
     loose = [
-        f"{claim}, {kind} {words(ratio)}" for (claim, kind), ratio in slack.items() if ratio > TIGHT
+        f"{claim}, {kind} {ratio:.3g}" for (claim, kind), ratio in slack.items() if ratio > TIGHT
     ]
     said = (
         f"do not rely on the claims of {'; '.join(failed)}" if failed
@@ -95,16 +79,41 @@ def verdict(rows: Sequence[Row]) -> str:
         "too few inputs to tell how tight they are" if inputs < ENOUGH * len(slack)
         else f"claims more than {TIGHT:g} times what is seen in their worst case: "
         f"{', '.join(loose)}" if loose
-        else f"the worst case of each comes within a factor {words(max(slack.values()))} of what "
+        else f"the worst case of each comes within a factor {max(slack.values()):.3g} of what "
         "is claimed, other cases may be far below"
     )  # fmt: skip
     return f"{said}; {tight}"
 
 
-def curve(row: Row) -> Curve:
-    """Return what a row is drawn as: a colour for each part of the library, a mark for a type."""
+def worst(rows):
+    """Return headings and, for each kernel and type, the case that comes nearest to its claim."""
+    headings = ["kernel", "type", "inputs", "worst case", "claimed, eps", "seen, eps", ""]
+    lines = []
+    for key in dict.fromkeys((row.way, row.more["type"]) for row in rows):
+        own = [row for row in rows if (row.way, row.more["type"]) == key]
+        top = max(own, key=lambda row: float(row.more["seen / claimed"]))
+        inputs = sum(int(row.more["inputs"]) for row in own)
+        more = top.more
+        lines.append([*key, f"{inputs}", more["case"], top.parameter, top.error, more[""]])
+    return headings, lines
+
+
+def read(path):
+    """Return the result that :meth:`Result.write_csv` wrote to a file."""
+    with path.open(newline="", encoding="utf-8") as file:
+        (*_, case), *lines = csv.reader(file)
+    names = ("type", "case", "seen / claimed", "inputs", case)
+    rows = [
+        Row(line[0], *map(float, line[1:4]), dict(zip(names, line[4:], strict=True)))
+        for line in lines
+    ]
+    return Result(path.stem, STUDY, rows, verdict(rows))
+
+
+def curve(row):
+    """Return the curve of a row: a colour for each part of the library, a mark for a type."""
     module = row.way.partition(".")[0]
-    parts = {"model": _stability_model.CHECKS, "engine": _stability_engine.CHECKS}
+    parts = {"model": model.CHECKS, "engine": engine.CHECKS}
     part = next(
         (name for name, checks in parts.items() if any(k.startswith(f"{module}.") for k in checks)),
         "geometry",
@@ -117,7 +126,7 @@ STUDY = Study(
     reference="mpmath at 50 digits",
     parameter="claimed, eps",
     error="seen, eps",
-    cost="ns an input",
+    cost="ns per input",
     steps=steps,
     verdict=verdict,
     axes=("parameter", "error"),

@@ -4,69 +4,55 @@ from __future__ import annotations
 
 import itertools
 from functools import partial
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import oracles
 
+from stability.checks import DOUBLE, Check, exactly, off, refused, timed
 from vizlight.geometry.contours import isoluminance
 from vizlight.geometry.nspace import manifolds
-from vizlight.studies._stability_checks import DOUBLE, Check, exactly, off, refused, timed
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from numpy.typing import NDArray
-
-    Array = NDArray[Any]
-
-#: How many shapes share the inputs of a check.
-SHAPES = 8
+#: Largest number of shapes that share the inputs of a check, and least number of inputs of one.
+SHAPES, INPUTS = 8, 60
 
 
-def _radii(random: Any, count: int) -> Array:
+def _radii(random, count):
     """Return radii of all sizes."""
     return np.asarray(10 ** random.uniform(-100, 100, 1) * 10 ** random.uniform(-3, 3, count))
 
 
-def _far(value: Any, true: Any) -> Any:
+def _far(value, true):
     """Return the largest difference of components."""
-    from vizlight.studies import _digits
-
-    return max(abs(_digits.exact(float(a)) - b) for a, b in zip(value, true, strict=True))
+    return max(abs(oracles.exact(float(a)) - b) for a, b in zip(value, true, strict=True))
 
 
-def _outside(rows: Any, space: Any) -> Any:
+def _outside(rows, space):
     """Return the most that orthonormal rows are outside a space, or less than unit."""
-    from vizlight.studies import _digits
-
-    worst = _digits.mp.mpf(0)
-    frame = _digits.orthonormal(space)
-    for row in _digits.exact(rows):
-        along, rest = _digits.split(row, frame)
-        worst = max(worst, rest, abs(_digits.dot(row, row) - 1) / 2)
-        del along
+    worst = oracles.mp.mpf(0)
+    frame = oracles.orthonormal(space)
+    for row in oracles.exact(rows):
+        rest = oracles.digits.across(row, frame)
+        worst = max(worst, rest, abs(oracles.dot(row, row) - 1) / 2)
     return worst
 
 
-def torus(_: Any, count: int, random: Any) -> Iterator[Check]:
+def torus(_, count, random):
     """Points, of the largest radius, and tangents, of tori of 1, 2 and 3 circles."""
-    from vizlight.studies import _digits
-
-    mp = _digits.mp
+    mp, shapes = oracles.mp, min(max(count // INPUTS, 1), SHAPES)
     for k in (1, 2, 3):
         errors, seconds = [], 0.0
-        for _i in range(SHAPES):
-            side = max(round((count / (3 * SHAPES)) ** (1 / k)), 3)
+        for _i in range(shapes):
+            side = max(round((count / (3 * shapes)) ** (1 / k)), 3)
             shape = [int(n) for n in side + random.integers(0, 5, k)]
             radii = _radii(random, k)
             made, taken = timed(partial(manifolds.torus, *radii, resolution=shape))
             seconds += taken
             turns = [[2 * mp.pi * i / n for i in range(n)] for n in shape]
             circle = [[(mp.cos(t), mp.sin(t)) for t in turn] for turn in turns]
-            top = _digits.exact(max(radii))
+            top = oracles.exact(max(radii))
             rows = zip(made.points, made.frame, itertools.product(*circle), strict=True)
             for point, frame, pairs in rows:
-                sized = zip(_digits.exact(radii), pairs, strict=True)
+                sized = zip(oracles.exact(radii), pairs, strict=True)
                 worst = _far(point / float(top), [r * c / top for r, pair in sized for c in pair])
                 for j, (c, s) in enumerate(pairs):
                     way = [mp.mpf(0)] * (2 * k)
@@ -77,12 +63,10 @@ def torus(_: Any, count: int, random: Any) -> Iterator[Check]:
     yield refused("radius 0", partial(manifolds.torus, 1.0, 0.0), "radii[1]")
 
 
-def torus_curve(_: Any, count: int, random: Any) -> Iterator[Check]:
+def torus_curve(_, count, random):
     """Points, of the larger radius, and tangents, over 8 and the largest angle."""
-    from vizlight.studies import _digits
-
-    mp = _digits.mp
-    kinds: tuple[tuple[str, Any, int | None], ...] = (
+    mp = oracles.mp
+    kinds = (
         ("closed", 1.5, None), ("closed", 3.0, None), ("closed", 7 / 5, None),
         ("open", np.sqrt(2), 3), ("open", 1 / 3 + 1e-6, 40), ("many turns", np.pi, 1000),
     )  # fmt: skip
@@ -93,12 +77,12 @@ def torus_curve(_: Any, count: int, random: Any) -> Iterator[Check]:
             manifolds.torus_curve, ratio, r1=r1, r2=r2, turns=turns, resolution=many
         )  # fmt: skip
         made, seconds = timed(work)
-        a, errors = _digits.exact(ratio), []
+        a, errors = oracles.exact(ratio), []
         if turns is None:
             turns = {1.5: 2, 3.0: 1, 7 / 5: 5}[ratio]
             a = mp.mpf(round(turns * ratio)) / turns
         steps = many if case == "closed" else many - 1
-        sizes = _digits.exact([r1, r2])
+        sizes = oracles.exact([r1, r2])
         top = max(sizes)
         for i, (point, frame) in enumerate(zip(made.points, made.frame, strict=True)):
             t = 2 * mp.pi * turns * i / steps
@@ -107,7 +91,7 @@ def torus_curve(_: Any, count: int, random: Any) -> Iterator[Check]:
             place = [s / top * c for s, c in zip(scales, turned, strict=True)]
             rates = (-1, 1, -a, a)
             swapped = (turned[1], turned[0], turned[3], turned[2])
-            way = _digits.unit(
+            way = oracles.unit(
                 [q * s / top * c for q, s, c in zip(rates, scales, swapped, strict=True)]
             )
             errors.append(max(_far(point / float(top), place), _far(frame[0], way)))
@@ -116,11 +100,9 @@ def torus_curve(_: Any, count: int, random: Any) -> Iterator[Check]:
         yield off(case, errors, claim, seconds, regime)
 
 
-def hopf_fibres(_: Any, count: int, random: Any) -> Iterator[Check]:
+def hopf_fibres(_, count, random):
     """Points, of the radius, and tangents; fibres over both poles and beside them."""
-    from vizlight.studies import _digits
-
-    mp, each = _digits.mp, 7
+    mp, each = oracles.mp, 7
     for case in ("random", "near the poles", "at the poles"):
         base = random.standard_normal((max(count // (3 * each), 2), 3))
         if case == "near the poles":
@@ -132,7 +114,7 @@ def hopf_fibres(_: Any, count: int, random: Any) -> Iterator[Check]:
         made, seconds = timed(work)
         errors = []
         for i, (point, frame) in enumerate(zip(made.points, made.frame, strict=True)):
-            x, y, z = _digits.unit(_digits.exact(base[i // each]))
+            x, y, z = oracles.unit(oracles.exact(base[i // each]))
             across = mp.sqrt(x * x + y * y)
             z1 = mp.sqrt((1 + z) / 2)
             z2 = mp.sqrt((1 - z) / 2) * (mp.mpc(x, -y) / across if across else 1)
@@ -143,23 +125,21 @@ def hopf_fibres(_: Any, count: int, random: Any) -> Iterator[Check]:
         yield off(case, errors, 8.0, seconds)
 
 
-def klein_bottle(_: Any, count: int, random: Any) -> Iterator[Check]:
+def klein_bottle(_, count, random):
     """Points, of the major radius, and the space of the frame, over R / (R - r)."""
-    from vizlight.studies import _digits
-
-    mp = _digits.mp
+    mp, shapes = oracles.mp, min(max(count // INPUTS, 1), SHAPES)
     for case, low, high in (("R/(R - r) to 10", -1.0, 0.0), ("R near r", -9.0, -3.0)):
         points, spaces, seconds, claim = [], [], 0.0, []
-        for _i in range(SHAPES):
+        for _i in range(shapes):
             major = float(_radii(random, 1)[0])
             gap = 10 ** random.uniform(low, high)
             minor = min(major * (1 - gap) + major * 1e-4 * (gap > 0.9999), np.nextafter(major, 0))
-            side = max(round((count / (2 * SHAPES)) ** 0.5), 3)
+            side = max(round((count / (2 * shapes)) ** 0.5), 3)
             shape = (side + int(random.integers(0, 5)), side)
             work = partial(manifolds.klein_bottle, major=major, minor=minor, resolution=shape)
             made, taken = timed(work)
             seconds += taken
-            r = _digits.exact(minor) / _digits.exact(major)
+            r = oracles.exact(minor) / oracles.exact(major)
             rows = zip(made.points, made.frame, itertools.product(*map(range, shape)), strict=True)
             for point, frame, (i, j) in rows:
                 u, v = 2 * mp.pi * i / shape[0], 2 * mp.pi * j / shape[1]
@@ -177,34 +157,29 @@ def klein_bottle(_: Any, count: int, random: Any) -> Iterator[Check]:
     yield same._replace(regime="points")
 
 
-def _lattice(corners: Any, size: int) -> dict[Any, Any]:
+def _lattice(corners, size):
     """Return unit vectors through lattice points of a cube's skin, in 50 digits, by the points."""
-    from vizlight.studies import _digits
-
-    mp = _digits.mp
+    mp = oracles.mp
     tangent = {c: mp.tan(mp.pi / 4 * c / size) for c in range(-size, size + 1)}
-    return {corner: _digits.unit([tangent[c] for c in corner]) for corner in corners}
+    return {corner: oracles.unit([tangent[c] for c in corner]) for corner in corners}
 
 
-def _skin(n: int, size: int) -> list[tuple[int, ...]]:
+def _skin(n, size):
     """Return the lattice points of a cube's skin: ``size`` cells of 2 along an edge."""
     line = range(-size, size + 1, 2)
     return [p for p in itertools.product(line, repeat=n) if max(map(abs, p)) == size]
 
 
-def _matched(points: Array, true: list[Any]) -> list[int]:
+def _matched(points, true):
     """Return for each point which of the true ones is nearest."""
     from scipy.spatial import cKDTree
 
     tree = cKDTree(np.array([[float(c) for c in place] for place in true]))
-    nearest: list[int] = np.asarray(tree.query(points)[1]).tolist()
-    return nearest
+    return np.asarray(tree.query(points)[1]).tolist()
 
 
-def veronese(_: Any, count: int, random: Any) -> Iterator[Check]:
+def veronese(_, count, random):
     """Points, of the square of the radius, and the space of the frame."""
-    from vizlight.studies import _digits
-
     for share in (0.4, 0.7):
         size = max(round((share * count / 3) ** 0.5), 2)
         radius = float(10 ** random.uniform(-70, 70))
@@ -213,22 +188,22 @@ def veronese(_: Any, count: int, random: Any) -> Iterator[Check]:
         images = [[x * y, x * z, y * z, (x * x - y * y) / 2] for x, y, z in spheres]
         errors = []
         near = _matched(made.points / radius**2, images)
-        square = _digits.exact(radius) ** 2
+        square = oracles.exact(radius) ** 2
         for point, frame, i in zip(made.points, made.frame, near, strict=True):
             x, y, z = spheres[i]
             slope = [[y, x, 0], [z, 0, x], [0, z, y], [x, -y, 0]]
             lengths = [abs(c) for c in (x, y, z)]
-            axis = [_digits.mp.mpf(j == lengths.index(min(lengths))) for j in range(3)]
-            _, *flat = _digits.orthonormal([[x, y, z], axis, _cross([x, y, z], axis)])
-            space = [[_digits.dot(row, t) for row in slope] for t in flat]
+            axis = [oracles.mp.mpf(j == lengths.index(min(lengths))) for j in range(3)]
+            _, *flat = oracles.orthonormal([[x, y, z], axis, _cross([x, y, z], axis)])
+            space = [[oracles.dot(row, t) for row in slope] for t in flat]
             worst = max(
-                abs(_digits.exact(a) / square - b) for a, b in zip(point, images[i], strict=True)
+                abs(oracles.exact(a) / square - b) for a, b in zip(point, images[i], strict=True)
             )
             errors.append(max(worst, _outside(frame, space)))
         yield off(f"{size} cells along an edge", errors, 12.0, seconds)
 
 
-def _cross(a: Any, b: Any) -> list[Any]:
+def _cross(a, b):
     return [
         a[1] * b[2] - a[2] * b[1],
         a[2] * b[0] - a[0] * b[2],
@@ -236,7 +211,7 @@ def _cross(a: Any, b: Any) -> list[Any]:
     ]
 
 
-def sphere3(_: Any, count: int, random: Any) -> Iterator[Check]:
+def sphere3(_, count, random):
     """Points, of the radius, and frames: i, j and k times the point as a quaternion."""
     for share in (0.3, 0.7):
         size = max(round((share * count / 8) ** (1 / 3)), 1)
@@ -253,13 +228,11 @@ def sphere3(_: Any, count: int, random: Any) -> Iterator[Check]:
         yield off(f"{size} cells along an edge", errors, 4.0, seconds)
 
 
-def complex_curve(_: Any, count: int, random: Any) -> Iterator[Check]:
+def complex_curve(_, count, random):
     """Slopes without a derivative, over what is claimed of Cauchy's integral, and with one."""
-    from vizlight.studies import _digits
-
-    mp = _digits.mp
+    mp = oracles.mp
     h = float(np.finfo(float).eps) ** 0.2 * 2
-    cases: tuple[tuple[str, Any, Any, Any], ...] = (
+    cases = (
         ("exp", np.exp, mp.exp, mp.exp),
         ("cubic", lambda z: z**3 - z, lambda z: z**3 - z, lambda z: 3 * z * z - 1),
         ("pole at 2", lambda z: 1 / (z - 2), lambda z: 1 / (z - 2), lambda z: -1 / (z - 2) ** 2),
@@ -272,7 +245,7 @@ def complex_curve(_: Any, count: int, random: Any) -> Iterator[Check]:
         errors, claim = [], []
         for (x, y, *_w), frame in zip(made.points, made.frame, strict=True):
             z = mp.mpc(float(x), float(y))
-            first = _digits.exact(frame[0])
+            first = oracles.exact(frame[0])
             found = mp.mpc(first[2], first[3]) / first[0]
             errors.append(abs(found - slope(z)))
             size = float(abs(exact(z)) + abs(z * slope(z)))
@@ -283,7 +256,7 @@ def complex_curve(_: Any, count: int, random: Any) -> Iterator[Check]:
         yield off(case, errors, np.array(claim), seconds)
 
 
-def sphere(_: Any, count: int, random: Any) -> Iterator[Check]:
+def sphere(_, count, random):
     """Luminance at a contour's points less its level, of the range, the points as they are."""
     yield from _contours(count, random, _sphere_of)
     none = isoluminance.sphere((0, 0, 0), 0.0, direction=(0, 0, 1))
@@ -293,12 +266,12 @@ def sphere(_: Any, count: int, random: Any) -> Iterator[Check]:
         yield exactly(case, np.unique(dark.values), [0.25])
 
 
-def _contours(count: int, random: Any, make: Callable[..., Any]) -> Iterator[Check]:
+def _contours(count, random, make):
     """Check the contours of both kinds of light and of some powers."""
     kinds = [(p, near) for near in ("", "near", "close") for p in (1.0, 3.0, 50.0, 0.5, 1e4)]
     for power, near in kinds:
-        errors: list[Any] = []
-        claim: list[float] = []
+        errors = []
+        claim = []
         seconds, many = 0.0, max(count // len(kinds), 4)
         while len(errors) < many:
             offs, claims, taken = make(random, power, near, many)
@@ -313,18 +286,14 @@ def _contours(count: int, random: Any, make: Callable[..., Any]) -> Iterator[Che
             yield off(case, errors, np.array(claim), seconds, regime)
 
 
-def _sphere_of(
-    random: Any, power: float, near: str, many: int
-) -> tuple[list[Any], list[float], float]:
-    from vizlight.studies import _digits
-
-    mp = _digits.mp
+def _sphere_of(random, power, near, many):
+    mp = oracles.mp
     radius = float(10 ** random.uniform(-3, 3))
     way = random.standard_normal(3)
     way /= np.linalg.norm(way)
     gap = {"": 1.0, "near": random.uniform(0.5, 3), "close": 10 ** random.uniform(-5, -1)}[near]
     place = radius * (1 + gap) * way
-    where: dict[str, Any] = {"position": tuple(place)} if near else {"direction": tuple(way)}
+    where = {"position": tuple(place)} if near else {"direction": tuple(way)}
     low, scale = random.uniform(0, 1), random.uniform(0.1, 2)
     segments = max(min(many // 60, 60), 3)
     work = partial(
@@ -332,21 +301,21 @@ def _sphere_of(
         levels=8, segments=segments, **where,
     )  # fmt: skip
     made, seconds = timed(work)
-    span = _digits.exact(float(made.steps.edges[-1] - made.steps.edges[0]))
+    span = oracles.exact(float(made.steps.edges[-1] - made.steps.edges[0]))
     errors, claim = [], []
-    toward, light = _digits.unit(_digits.exact(way)), _digits.exact(place)
+    toward, light = oracles.unit(oracles.exact(way)), oracles.exact(place)
     for (i, _), level in zip(made.lines, made.line_levels, strict=True):
-        point = _digits.exact(made.points[i])
+        point = oracles.exact(made.points[i])
         if near:
-            toward = _digits.unit([a - b for a, b in zip(light, point, strict=True)])
-        cosine = max(_digits.dot(_digits.unit(point), toward), mp.mpf(0))
-        lit = _digits.exact(low) + _digits.exact(scale) * cosine ** _digits.exact(power)
-        errors.append((lit - _digits.exact(level)) / span)
+            toward = oracles.unit([a - b for a, b in zip(light, point, strict=True)])
+        cosine = max(oracles.dot(oracles.unit(point), toward), mp.mpf(0))
+        lit = oracles.exact(low) + oracles.exact(scale) * cosine ** oracles.exact(power)
+        errors.append((lit - oracles.exact(level)) / span)
         claim.append(_law(power, 16.0, 2 * max(power, 1.0) ** 0.5 / gap if near else 0.0))
     return errors, claim, seconds
 
 
-def _law(power: float, rounding: float, turned: float) -> float:
+def _law(power, rounding, turned):
     """Return the claim for a law of a power, in eps: also of what turns normal or light."""
     eps = float(np.finfo(float).eps)
     if power < 1:
@@ -354,15 +323,13 @@ def _law(power: float, rounding: float, turned: float) -> float:
     return rounding + 4 * power + turned
 
 
-def truncus(_: Any, count: int, random: Any) -> Iterator[Check]:
+def truncus(_, count, random):
     """Luminance at rulings less their level, of ``diffuse``, the points as they are."""
-    from vizlight.studies import _digits
-
     shapes = ("frustum", "cone, R1 = 0", "cone, R2 = 0", "cylinder, R1 = R2", "thin")
     for case in shapes:
         for power in (1.0, 3.0, 50.0, 0.5, 1e4):
-            errors: list[Any] = []
-            claim: list[float] = []
+            errors = []
+            claim = []
             seconds, tries = 0.0, 0
             while len(errors) < count // (len(shapes) * 5) and tries < 400:
                 tries += 1
@@ -376,7 +343,7 @@ def truncus(_: Any, count: int, random: Any) -> Iterator[Check]:
     call = partial(isoluminance.truncus, (0, 0, 0), (0, 0, 2), diffuse=0.5, ambient=0.125)
     # A light along the axis makes the side one band: half a right angle's cosine, and none.
     made = call((1.0, 3.0), height=2.0, direction=(0, 0, 1))
-    side = _digits.exact(0.125) + _digits.exact(0.5) / _digits.mp.sqrt(2)
+    side = oracles.exact(0.125) + oracles.exact(0.5) / oracles.mp.sqrt(2)
     yield Check("light along the axis", made.values[made.patch == 0], [side] * np.count_nonzero(
         made.patch == 0), 12.0, 0.0)  # fmt: skip
     yield exactly("light along the axis", [len(made.lines), *made.values[made.patch > 0]],
@@ -398,10 +365,8 @@ def truncus(_: Any, count: int, random: Any) -> Iterator[Check]:
     yield exactly("cone, one end", [np.count_nonzero(ends.patch == j) for j in (1, 2)], [1, 0])
 
 
-def _truncus_of(random: Any, power: float, case: str) -> tuple[list[Any], list[float], float]:
-    from vizlight.studies import _digits
-
-    mp = _digits.mp
+def _truncus_of(random, power, case):
+    mp = oracles.mp
     first, second = 10 ** random.uniform(-1, 1, 2)
     height = float(10 ** random.uniform(-1, 1))
     if "R1 = R2" in case:
@@ -418,21 +383,21 @@ def _truncus_of(random: Any, power: float, case: str) -> tuple[list[Any], list[f
         direction=way, diffuse=1.0, power=power, levels=16,
     )  # fmt: skip
     made, seconds = timed(work)
-    up, toward = _digits.unit(_digits.exact(axis)), _digits.unit(_digits.exact(way))
-    r1, r2, tall = _digits.exact([first, second, height])
+    up, toward = oracles.unit(oracles.exact(axis)), oracles.unit(oracles.exact(way))
+    r1, r2, tall = oracles.exact([first, second, height])
     errors, claim = [], []
     for ends, level in zip(made.lines, made.line_levels, strict=True):
-        point = _digits.exact(made.points[ends[0 if first >= second else 1]])
-        along = _digits.dot(point, up)
-        out = _digits.unit([p - along * a for p, a in zip(point, up, strict=True)])
+        point = oracles.exact(made.points[ends[0 if first >= second else 1]])
+        along = oracles.dot(point, up)
+        out = oracles.unit([p - along * a for p, a in zip(point, up, strict=True)])
         normal = [tall * o + (r2 - r1) * a for o, a in zip(out, up, strict=True)]
-        cosine = max(_digits.dot(_digits.unit(normal), toward), mp.mpf(0))
-        errors.append(cosine ** _digits.exact(power) - _digits.exact(level))
+        cosine = max(oracles.dot(oracles.unit(normal), toward), mp.mpf(0))
+        errors.append(cosine ** oracles.exact(power) - oracles.exact(level))
         claim.append(_law(power, 8.0, height / max(first, second)))
     return errors, claim, seconds
 
 
-CHECKS: dict[str, tuple[Callable[..., Iterator[Check]], tuple[Any, ...]]] = {
+CHECKS = {
     "manifolds.torus": (torus, DOUBLE),
     "manifolds.torus_curve": (torus_curve, DOUBLE),
     "manifolds.hopf_fibres": (hopf_fibres, DOUBLE),

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
 from functools import partial
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import oracles
+from oracles import dot, exact
 
+from stability import hard, references
+from stability.checks import DOUBLE, TYPES, Check, exactly, off, some, spread, timed
 from vizlight.model import (
     brightness,
     cylinder,
@@ -17,29 +21,17 @@ from vizlight.model import (
     reflection,
 )
 from vizlight.model import frames as spaces
+from vizlight.scene import DepthCue
 from vizlight.shading import bounds
-from vizlight.studies import _hard
-from vizlight.studies._stability_checks import DOUBLE, TYPES, Check, exactly, off, spread, timed
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from numpy.typing import NDArray
-
-    Array = NDArray[Any]
 
 SIZES = ((1, 3), (1, 2), (2, 3), (1, 4), (2, 4), (3, 8), (7, 8))
 EXPONENTS = (1.0, 4.7635, 0.5, 2.0, 64.0, 65.0, 128.0, 150.0, 1e3, 1e6)
 SHININESS = (20.0, 1.0, 0.5, 20.5, 64.0, 65.0, 128.0, 200.0, 1e4, 1e6)
-CYLINDER = (20.0, 0.0, 1.0, 2.0, 5.0, 33.0, 100.0)
-CYLINDER_SLOW = (0.5, 7.5, 20.5, 1e3, 1e5)
+CYLINDER = (20.0, 0.0, 1.0, 2.0, 5.0, 33.0, 100.0, 0.5, 7.5, 20.5, 1e3, 1e5)
 
 
-def orthonormalize(dtype: Any, count: int, random: Any) -> Iterator[Check]:
+def orthonormalize(dtype, count, random):
     """|F F^T - 1|, hard case 3: nearly dependent, wildly scaled, smallest and largest numbers."""
-    from vizlight.studies import _digits
-    from vizlight.studies._digits import dot, exact
-
     apart = 1e-3 if dtype == np.float32 else 1e-8
     scale = 30 if dtype == np.float32 else 150
     cases = ("random", f"{apart:g} apart", f"1e±{scale} long", "smallest and largest")
@@ -68,7 +60,7 @@ def orthonormalize(dtype: Any, count: int, random: Any) -> Iterator[Check]:
     yield exactly("zero, NaN, infinite", [*rank, *np.ravel(frame)], [0] * 4 * len(bad), seconds)
     small = _denormal(dtype)
     (frame, rank), seconds = timed(partial(spaces.orthonormalize, small[:, np.newaxis]))
-    true = [a for v in exact(small) for a in _digits.unit(v)]
+    true = [a for v in exact(small) for a in oracles.unit(v)]
     yield Check("denormal", frame, true, np.array(6.0), seconds)
     twice = np.repeat(random.standard_normal((50, 1, 4)), 2, axis=1).astype(dtype)
     (_, rank), seconds = timed(partial(spaces.orthonormalize, twice))
@@ -77,13 +69,13 @@ def orthonormalize(dtype: Any, count: int, random: Any) -> Iterator[Check]:
     yield exactly("none", [*frame.shape, *rank.shape], [0, 2, 3, 0], seconds)
 
 
-def _bad(dtype: Any) -> Array:
+def _bad(dtype):
     """Return vectors without a direction."""
     nan, inf = np.nan, np.inf
     return np.array([[0, 0, 0], [nan, 0, 1], [inf, 0, 0], [-inf, 1, nan], [0, -inf, inf]], dtype)
 
 
-def _denormal(dtype: Any) -> Array:
+def _denormal(dtype):
     """Return vectors whose squares are nothing: they have a direction all the same."""
     info = np.finfo(dtype)
     least = float(info.smallest_subnormal)
@@ -91,23 +83,21 @@ def _denormal(dtype: Any) -> Array:
     return np.array([*rows, [float(info.tiny) / 4, float(info.tiny) / 3, 0]], dtype)
 
 
-def split(dtype: Any, count: int, random: Any) -> Iterator[Check]:
+def split(dtype, count, random):
     """Coefficients and |x_N|, over |x|; hard case 1."""
-    from vizlight.studies import _digits
-
-    for case in _hard.DIRECTIONS:
+    for case in hard.DIRECTIONS:
         for k, n in SIZES:
-            many = spread(count, _hard.DIRECTIONS * len(SIZES))
-            frame = _hard.frames(random, many, k, n, dtype)
-            x = _hard.directions(random, frame, case)
+            many = spread(count, hard.DIRECTIONS * len(SIZES))
+            frame = hard.frames(random, many, k, n, dtype)
+            x = hard.directions(random, frame, case)
             (along, normal), seconds = timed(partial(spaces.split, x, frame))
             values, true = [], []
             for i in range(many):
-                own, f = _digits.exact(x[i]), _digits.orthonormal(_digits.exact(frame[i]))
-                size = _digits.mp.sqrt(_digits.dot(own, own))
-                exact_along, exact_normal = _digits.split(own, f)
+                own, f = oracles.exact(x[i]), oracles.orthonormal(oracles.exact(frame[i]))
+                size = oracles.size(own)
+                exact_along, exact_normal = oracles.split(own, f)
                 pairs = [*zip(along[i], exact_along, strict=True), (normal[i], exact_normal)]
-                off = max(abs(_digits.exact(a) - b) for a, b in pairs)
+                off = max(abs(oracles.exact(a) - b) for a, b in pairs)
                 values.append(0.0 if np.all(np.isfinite(along[i])) else np.nan)
                 true.append(off / size)
             yield Check(case, np.array(values), true, np.array(10.0), seconds)
@@ -115,41 +105,39 @@ def split(dtype: Any, count: int, random: Any) -> Iterator[Check]:
     (along, normal), seconds = timed(partial(spaces.split, bad, frame))
     true = [0, *[np.nan] * 4]
     yield exactly("zero, NaN, infinite", [*along[:, 0], *normal], [*true, *true], seconds)
-    whole = _hard.units(random, 20, 3).astype(dtype)
+    whole = hard.units(random, 20, 3).astype(dtype)
     (along, normal), seconds = timed(partial(spaces.split, whole, np.zeros((1, 3), dtype)))
-    sizes = [_digits.mp.sqrt(_digits.dot(v, v)) for v in _digits.exact(whole)]
+    sizes = [oracles.size(v) for v in oracles.exact(whole)]
     yield Check("frame of rank 0", [*along[:, 0], *normal], [0] * 20 + sizes, 10.0, seconds)
     (along, normal), seconds = timed(lambda: spaces.split(np.empty((0, 3), dtype), frame))
     yield exactly("none", [*along.shape, *normal.shape], [0, 1, 0], seconds)
 
 
-def diffuse(dtype: Any, count: int, random: Any) -> Iterator[Check]:
+def diffuse(dtype, count, random):
     """sin(a)^p; hard cases 1 and 2."""
-    from vizlight.studies import _digits
-
     eps = float(np.finfo(dtype).eps)
-    cases = (*_hard.DIRECTIONS, "where it is steepest")
+    cases = (*hard.DIRECTIONS, "where it is steepest")
     for case in cases:
         for j, p in enumerate(EXPONENTS):
             k, n = SIZES[j % len(SIZES)]
             many = spread(count, cases * len(EXPONENTS))
-            frame = _hard.frames(random, many, k, n, dtype)
-            wi = _hard.directions(random, frame, case, p)
+            frame = hard.frames(random, many, k, n, dtype)
+            wi = hard.directions(random, frame, case, p)
             value, seconds = timed(partial(reflection.diffuse, wi, frame, exponent=p))
-            true = [_digits.diffuse(a, f, p) for a, f in zip(wi, frame, strict=True)]
+            true = [oracles.diffuse(a, f, p) for a, f in zip(wi, frame, strict=True)]
             claim = np.array(bounds.diffuse_bound(p, eps) / eps)
             yield Check(case, value, true, claim, seconds, _steep(p))
     yield from _nothing(dtype, lambda v, f: reflection.diffuse(v, f, exponent=4.7635))
     small, frame = _denormal(dtype), np.eye(3, dtype=dtype)[:1]
     value, seconds = timed(partial(reflection.diffuse, small, frame, exponent=2.0))
-    yield Check("denormal", value, [_digits.diffuse(v, frame, 2.0) for v in small], 8.0, seconds)
+    yield Check("denormal", value, [oracles.diffuse(v, frame, 2.0) for v in small], 8.0, seconds)
 
 
-def _steep(power: float) -> str:
+def _steep(power):
     return "power < 1" if power < 1 else "power > 128" if power > 128 else ""
 
 
-def _nothing(dtype: Any, *works: Callable[[Array, Array], Array]) -> Iterator[Check]:
+def _nothing(dtype, *works):
     """Vectors without a direction give 0, and none give none."""
     bad, frame = _bad(dtype), np.eye(3, dtype=dtype)[:1]
     for work in works:
@@ -158,37 +146,33 @@ def _nothing(dtype: Any, *works: Callable[[Array, Array], Array]) -> Iterator[Ch
         yield exactly("none", work(bad[:0], frame).shape, [0])
 
 
-def specular(model: Any, dtype: Any, count: int, random: Any) -> Iterator[Check]:
+def specular(model, dtype, count, random):
     """Phong and Blinn; hard cases 1, 2, 4, 5. Blinn's in units of eps / |wi + wo| below 1."""
-    from vizlight.studies import _digits
-
     eps = float(np.finfo(dtype).eps)
-    cases = (*_hard.EYES, *_hard.STEEP)
-    kinds = [(d, e) for d in ("random", "near it", "near across") for e in cases]
-    for turn, (at, case) in enumerate(kinds):
-        for j, s in enumerate(SHININESS):
-            k, n = SIZES[(turn + j) % len(SIZES)]
-            many = spread(count, kinds * len(SHININESS))
-            frame = _hard.frames(random, many, k, n, dtype)
-            wi, wo = _hard.pairs(random, frame, at, case, s)
-            work = partial(reflection.specular, wi, wo, frame, shininess=s, model=model)
-            value, seconds = timed(work)
-            # The claim over |wi + wo| is a claim of its own where that is small.
-            apart = ", over |wi + wo|" if model == "blinn" and case.startswith("opposite") else ""
-            regime = f"{_steep(s)}{apart}".removeprefix(", ")
-            true, claim = [], np.full(many, bounds.specular_bound(s, eps) / eps)
-            for i in range(many):
-                true.append(_digits.specular(wi[i], wo[i], frame[i], s, model))
-                if model == "blinn":
-                    a, b = (_digits.unit(_digits.exact(v[i])) for v in (wi, wo))
-                    half = [x + y for x, y in zip(a, b, strict=True)]
-                    size = float(_digits.mp.sqrt(_digits.dot(half, half)))
-                    share = min(size, 1.0)
-                    if s < 1:
-                        claim[i] = bounds.specular_bound(s, eps / share) / eps if share else np.inf
-                    else:
-                        claim[i] = claim[i] / share if share else np.inf
-            yield Check(f"eye {case}", value, true, claim, seconds, regime)
+    cases = (*hard.EYES, *hard.STEEP)
+    ends = itertools.product(("random", "near it", "near across"), cases)
+    kinds = list(itertools.product(enumerate(ends), enumerate(SHININESS)))
+    for (turn, (at, case)), (j, s) in some(random, kinds, count):
+        k, n = SIZES[(turn + j) % len(SIZES)]
+        many = spread(count, kinds)
+        frame = hard.frames(random, many, k, n, dtype)
+        wi, wo = hard.pairs(random, frame, at, case, s)
+        work = partial(reflection.specular, wi, wo, frame, shininess=s, model=model)
+        value, seconds = timed(work)
+        # The claim over |wi + wo| is a claim of its own where that is small.
+        apart = ", over |wi + wo|" if model == "blinn" and case.startswith("opposite") else ""
+        regime = f"{_steep(s)}{apart}".removeprefix(", ")
+        true, claim = [], np.full(many, bounds.specular_bound(s, eps) / eps)
+        for i in range(many):
+            true.append(oracles.specular(wi[i], wo[i], frame[i], s, model))
+            if model == "blinn":
+                a, b = (oracles.unit(oracles.exact(v[i])) for v in (wi, wo))
+                share = min(float(oracles.size([x + y for x, y in zip(a, b, strict=True)])), 1.0)
+                if s < 1:
+                    claim[i] = bounds.specular_bound(s, eps / share) / eps if share else np.inf
+                else:
+                    claim[i] = claim[i] / share if share else np.inf
+        yield Check(f"eye {case}", value, true, claim, seconds, regime)
     here = np.ones(3, dtype)
     yield from _nothing(
         dtype,
@@ -198,46 +182,38 @@ def specular(model: Any, dtype: Any, count: int, random: Any) -> Iterator[Check]
     small, frame = _denormal(dtype), np.eye(3, dtype=dtype)[:1]
     work = partial(reflection.specular, small, here, frame, shininess=3.0, model=model)
     value, seconds = timed(work)
-    true = [_digits.specular(v, here, frame, 3.0, model) for v in small]
+    true = [oracles.specular(v, here, frame, 3.0, model) for v in small]
     yield Check("denormal", value, true, 7.0, seconds)
     if model == "blinn":
-        wi = _hard.units(random, 20, 3).astype(dtype)
+        wi = hard.units(random, 20, 3).astype(dtype)
         value, seconds = timed(
             partial(reflection.specular, wi, -wi, frame, shininess=3.0, model=model)
         )
         yield exactly("eye exactly opposite", value, np.zeros(20), seconds)
 
 
-def line_light(which: str, dtype: Any, count: int, random: Any) -> Iterator[Check]:
+def line_light(which, dtype, count, random):
     """Check the line light, in units of eps over the least of |wi_N|, |wo_N|, |wi + wo|."""
-    from vizlight.studies import _digits
-
-    kinds = [(d, e) for d in ("random", "near it", "across") for e in _hard.EYES]
-    powers = (0.0,) if which == "diffuse" else CYLINDER + CYLINDER_SLOW
-    for at, case in kinds:
-        for s in powers:
-            # mpmath's incomplete beta function takes a hundred times as long as whole powers.
-            slow = which == "specular" and s in CYLINDER_SLOW
-            if slow and at != "random":
-                continue
-            rest = 1 if which == "diffuse" else len(CYLINDER)
-            many = max(count // 2000 if slow else count // (len(kinds) * rest), 1)
-            frame = _hard.frames(random, many, 1, 3, dtype)
-            wi = _hard.directions(random, frame, at)
-            wo = _hard.eyes(random, wi, frame, case)
-            t = frame[:, 0]
-            if which == "diffuse":
-                value, seconds = timed(partial(cylinder.diffuse, wi, wo, t))
-            else:
-                value, seconds = timed(partial(cylinder.specular, wi, wo, t, shininess=s))
-            true, claim = [], []
-            for i in range(many):
-                light, shine, a, b, size = _digits.cylinder(wi[i], wo[i], t[i], s)
-                least = float(b if which == "diffuse" else min(a, b, size))
-                true.append(light if which == "diffuse" else shine)
-                claim.append((4.0 if which == "diffuse" else 10.0) / least if least else np.inf)
-            yield Check(f"light {at}, eye {case}", value, true, np.array(claim), seconds)
-    call: Callable[..., Array] = cylinder.diffuse
+    powers = (0.0,) if which == "diffuse" else CYLINDER
+    kinds = list(itertools.product(("random", "near it", "across"), hard.EYES, powers))
+    for at, case, s in some(random, kinds, count):
+        many = spread(count, kinds)
+        frame = hard.frames(random, many, 1, 3, dtype)
+        wi = hard.directions(random, frame, at)
+        wo = hard.eyes(random, wi, frame, case)
+        t = frame[:, 0]
+        if which == "diffuse":
+            value, seconds = timed(partial(cylinder.diffuse, wi, wo, t))
+        else:
+            value, seconds = timed(partial(cylinder.specular, wi, wo, t, shininess=s))
+        true, claim = [], []
+        for i in range(many):
+            light, shine, a, b, size = references.cylinder(wi[i], wo[i], t[i], s)
+            least = float(b if which == "diffuse" else min(a, b, size))
+            true.append(light if which == "diffuse" else shine)
+            claim.append((4.0 if which == "diffuse" else 10.0) / least if least else np.inf)
+        yield Check(f"light {at}, eye {case}", value, true, np.array(claim), seconds)
+    call = cylinder.diffuse
     if which == "specular":
         call = partial(cylinder.specular, shininess=9.0)
     up = np.array([0, 0, 1], dtype)
@@ -247,47 +223,46 @@ def line_light(which: str, dtype: Any, count: int, random: Any) -> Iterator[Chec
     )  # fmt: skip
     small = _denormal(dtype)
     value, seconds = timed(lambda: call(small, up, np.array([0, 1, 0], dtype)))
-    true = [_digits.cylinder(v, up, [0.0, 1.0, 0.0], 9.0)[which == "specular"] for v in small]
+    true = [references.cylinder(v, up, [0.0, 1.0, 0.0], 9.0)[which == "specular"] for v in small]
     yield Check("denormal", value, true, 10.0, seconds)
     # Exactly along the line: of the light nothing, of the eye the mean over the whole round.
-    line = np.ldexp(_hard.units(random, 50, 3), 3).astype(dtype)
-    other = _hard.units(random, 50, 3).astype(dtype)
+    line = np.ldexp(hard.units(random, 50, 3), 3).astype(dtype)
+    other = hard.units(random, 50, 3).astype(dtype)
     value, seconds = timed(lambda: call(line, other, line))
     apart = np.linalg.norm(np.cross(other, line), axis=1) / np.linalg.norm(line, axis=1)
     bound = 0 * apart if which == "specular" else 4 / apart
     yield Check("light along the line", value, [0] * 50, bound, seconds)
     value, seconds = timed(lambda: call(other, line, line))
-    true = [_digits.cylinder_end_on(a, t, 9.0)[which == "specular"]
-            for a, t in zip(other, line, strict=True)]  # fmt: skip
+    true = []
+    for a, t in zip(other, line, strict=True):
+        wi, along = (oracles.unit(oracles.exact(v)) for v in (a, t))
+        true.append(oracles.digits.end_on(wi, along, along, 9.0)[which == "specular"])
     yield Check("eye along the line", value, true, 10.0 if which == "specular" else 4.0, seconds)
     if which == "specular":
         value, seconds = timed(lambda: call(other, -other, line))
         yield exactly("eye exactly opposite", value, np.zeros(50), seconds)
 
 
-def half_integral(dtype: Any, count: int, random: Any) -> Iterator[Check]:
+def half_integral(dtype, count, random):
     """G(z), of its largest value G(1): the incomplete beta function, and its table."""
-    from vizlight.studies import _digits
-
+    mp = oracles.mp
     for s in CYLINDER:
         many = spread(count, CYLINDER)
         ends = np.nextafter(np.array([1, -1], dtype), dtype(0))
         z = np.concatenate([random.uniform(-1, 1, many // 2), 10 ** random.uniform(-30, 0, many)])
         z = np.concatenate([z.astype(dtype)[:many], ends, np.array([0, 1, -1], dtype)])
         value, seconds = timed(partial(cylinder_kernels.half_integral(s, dtype), z))
-        whole = _digits.half_integral(_digits.exact(1.0), s)
+        whole = oracles.cosine_integral(mp.pi / 2, s + 1)
         errors = [
-            (_digits.exact(v) - _digits.half_integral(_digits.exact(x), s)) / whole
+            (oracles.exact(v) - oracles.cosine_integral(mp.asin(oracles.exact(x)), s + 1)) / whole
             for v, x in zip(value, z, strict=True)
         ]
         how = "by the beta function" if s < cylinder_kernels.TABLE_FROM else "by a table"
         yield off(how, errors, 16.0 if dtype == np.float64 else 2.0, seconds)
 
 
-def mean_intensity(dtype: Any, count: int, random: Any) -> Iterator[Check]:
+def mean_intensity(dtype, count, random):
     """I(k, n, p) up to n = 1e6; relative, in units of (1 + |ln I|) eps; hard case 5."""
-    from vizlight.studies import _digits
-
     for case, top in (("n to 10", 1.0), ("n to 1e6", 6.0)):
         values, true, seconds = [], [], 0.0
         for _ in range(count // 2):
@@ -295,39 +270,35 @@ def mean_intensity(dtype: Any, count: int, random: Any) -> Iterator[Check]:
             k = int(random.integers(1, n)) if n > 2 else 1
             p = float(10 ** random.uniform(-3, top))
             value, taken = timed(partial(brightness.mean_intensity, k, n, p))
-            exact = _digits.mean_intensity(k, n, p)
-            scale = exact * (1 + abs(_digits.mp.log(exact)))
+            exact = oracles.mean_intensity(k, n, p)
+            scale = exact * (1 + abs(oracles.mp.log(exact)))
             values.append(0.0 if value == value else np.nan)
             normal = exact > 4 * float(np.finfo(dtype).tiny)
-            true.append((_digits.exact(value) - exact) / scale if normal else _digits.exact(0.0))
+            true.append((oracles.exact(value) - exact) / scale if normal else oracles.exact(0.0))
             seconds += taken
         yield Check(case, np.array(values), true, np.array(32.0), seconds)
 
 
-def exponent(_: Any, count: int, random: Any) -> Iterator[Check]:
+def exponent(_, count, random):
     """p(k, n) up to n = 1e6: the step of Newton's method in 50 digits; relative; hard case 5."""
-    from vizlight.studies import _digits
-
-    mp = _digits.mp
+    mp = oracles.mp
     for case, top in (("n to 10", 1.0), ("n to 1e6", 6.0)):
         values, true, seconds = [], [], 0.0
         for _i in range(count // 2):
             n = int(10 ** random.uniform(0.31, top))
             k = int(random.integers(1, n)) if n > 2 else 1
             p, taken = timed(partial(brightness.exponent, k, n))
-            c, e = n - k, _digits.exact(p)
+            c, e = n - k, oracles.exact(p)
             slope = (mp.digamma((c + e) / 2) - mp.digamma((n + e) / 2)) / 2
-            step = mp.log(2 * _digits.mean_intensity(k, n, e)) / slope
+            step = mp.log(2 * oracles.mean_intensity(k, n, e)) / slope
             values.append(0.0 if p == p else np.nan)
             true.append(step / e)
             seconds += taken
         yield Check(case, np.array(values), true, np.array(2e-14 / np.finfo(float).eps), seconds)
 
 
-def distance(dtype: Any, count: int, random: Any) -> Iterator[Check]:
+def distance(dtype, count, random):
     """Check the attenuation, relative; hard case 8: the light on the point, and far away."""
-    from vizlight.studies import _digits
-
     for case, low, high in (("random", -5, 8), ("near 0", -30, -5), ("far", 8, 15)):
         values, true, seconds = [], [], 0.0
         for _ in range(count // 60):
@@ -335,11 +306,10 @@ def distance(dtype: Any, count: int, random: Any) -> Iterator[Check]:
             d = (10 ** random.uniform(low, high, 20)).astype(dtype)
             value, taken = timed(partial(falloff.distance, d, *c))
             for x, y in zip(value, d, strict=True):
-                a, b, e, z = (_digits.exact(v) for v in (*c, y))
-                whole = 1 / max(_digits.mp.mpf(1), a + b * z + e * z * z)
+                whole = oracles.digits.attenuation(oracles.exact(y), c)
                 values.append(0.0 if x == x else np.nan)
                 normal = whole > 4 * float(np.finfo(dtype).tiny)
-                true.append(_digits.exact(x) / whole - 1 if normal else _digits.exact(0.0))
+                true.append(oracles.exact(x) / whole - 1 if normal else oracles.exact(0.0))
             seconds += taken
         yield Check(case, np.array(values), true, np.array(2.0), seconds)
     ends = np.array([0, np.inf], dtype)
@@ -348,11 +318,8 @@ def distance(dtype: Any, count: int, random: Any) -> Iterator[Check]:
     yield exactly("none", falloff.distance(ends[:0], 4.0, 0.0, 1.0).shape, [0])
 
 
-def depth_cue(dtype: Any, count: int, random: Any) -> Iterator[Check]:
+def depth_cue(dtype, count, random):
     """Check the depth cue, of the larger of |I| and |Icue|."""
-    from vizlight.studies import _digits
-
-    mp = _digits.mp
     for smooth in (False, True):
         values, true, seconds = [], [], 0.0
         for _ in range(count // 40):
@@ -362,30 +329,26 @@ def depth_cue(dtype: Any, count: int, random: Any) -> Iterator[Check]:
             back = float(random.integers(-8, 8))
             front = back + float(2.0 ** random.integers(-3, 4))
             z = (back + (front - back) * random.integers(-64, 192, 20) / 128).astype(dtype)
+            ends = DepthCue(
+                front=front, back=back, front_scale=high, back_scale=low, cue=cue, smooth=smooth
+            )
             work = partial(
                 falloff.depth_cue, light, z, front=front, back=back, front_scale=high,
                 back_scale=low, cue=cue, smooth=smooth,
             )  # fmt: skip
             value, taken = timed(work)
             for x, depth in zip(value, z, strict=True):
-                t = (_digits.exact(depth) - _digits.exact(back)) / _digits.exact(front - back)
-                t = min(max(t, mp.mpf(0)), mp.mpf(1))
-                t = t * t * (3 - 2 * t) if smooth else t
-                s = _digits.exact(low) + (_digits.exact(high) - _digits.exact(low)) * t
-                whole = s * _digits.exact(light) + (1 - s) * _digits.exact(cue)
+                whole = oracles.digits.depth_cue(oracles.exact(light), oracles.exact(depth), ends)
                 values.append(0.0 if x == x else np.nan)
-                true.append((_digits.exact(x) - whole) / _digits.exact(max(light, cue)))
+                true.append((oracles.exact(x) - whole) / oracles.exact(max(light, cue)))
             seconds += taken
         yield Check(
             "smooth" if smooth else "linear", np.array(values), true, np.array(4.0), seconds
         )
 
 
-def fur(dtype: Any, count: int, random: Any) -> Iterator[Check]:
+def fur(dtype, count, random):
     """(1 - rho)^(h / sin a); hard case 6."""
-    from vizlight.studies import _digits
-
-    mp = _digits.mp
     for case, low in (("random", -6.0), ("grazing", -37.0)):
         values, true, seconds = [], [], 0.0
         for j in range(count // 40):
@@ -393,9 +356,8 @@ def fur(dtype: Any, count: int, random: Any) -> Iterator[Check]:
             sine = (10 ** random.uniform(low, 0, 20)).astype(dtype)
             density = float((random.uniform(0, 1), 1e-6, 1 - 1e-6, 1e-15)[j % 4])
             value, taken = timed(partial(falloff.fur, height, sine, density))
-            rate = mp.log1p(-_digits.exact(density))
             for h, a in zip(height, sine, strict=True):
-                true.append(mp.exp(_digits.exact(h) / _digits.exact(a) * rate))
+                true.append(oracles.digits.fur(h, oracles.exact(a), density))
             values += value.tolist()
             seconds += taken
         yield Check(case, np.array(values), true, np.array(3.0), seconds)
@@ -406,72 +368,64 @@ def fur(dtype: Any, count: int, random: Any) -> Iterator[Check]:
     yield exactly("none", falloff.fur(h[:0], s[:0], 0.5).shape, [0])
 
 
-def reflection_by_half(dtype: Any, count: int, random: Any) -> Iterator[Check]:
+def reflection_by_half(dtype, count, random):
     """R.E by N.H, in units of eps / |wi + wo|; hard case 4."""
-    from vizlight.studies import _digits
-
-    cases = (*_hard.EYES, *_hard.STEEP)
+    cases = (*hard.EYES, *hard.STEEP)
     for case in cases:
         many = spread(count, cases)
-        frame = _hard.frames(random, many, 2, 3, dtype)
+        frame = hard.frames(random, many, 2, 3, dtype)
         normal = np.cross(frame[:, 0], frame[:, 1]).astype(dtype)
-        wi, wo = _hard.pairs(random, frame, "random", case)
+        wi, wo = hard.pairs(random, frame, "random", case)
         value, seconds = timed(partial(half_vector.reflection, wi, wo, normal))
         true, claim = [], []
         for i in range(many):
-            a, b, up = (_digits.unit(_digits.exact(v[i])) for v in (wi, wo, normal))
+            a, b, up = (oracles.unit(oracles.exact(v[i])) for v in (wi, wo, normal))
             half = [x + y for x, y in zip(a, b, strict=True)]
-            true.append(2 * _digits.dot(up, a) * _digits.dot(up, b) - _digits.dot(a, b))
-            size = float(_digits.mp.sqrt(_digits.dot(half, half)))
+            true.append(2 * oracles.dot(up, a) * oracles.dot(up, b) - oracles.dot(a, b))
+            size = float(oracles.size(half))
             claim.append(16 / size if size else np.inf)
         regime = "over |wi + wo|" if case.startswith("opposite") else ""
         yield Check(f"eye {case}", value, true, np.array(claim), seconds, regime)
     bad, here, up = _bad(dtype), np.array([1, 2, 3], dtype), np.array([0, 0, 1], dtype)
     nan = np.full(len(bad), np.nan)
     for place in range(3):
-        given: list[Array] = [here, here, up]
+        given = [here, here, up]
         given[place] = bad
         value, seconds = timed(partial(half_vector.reflection, *given))
         yield exactly("zero, NaN, infinite", value, nan, seconds)
     small = _denormal(dtype)
     value, seconds = timed(partial(half_vector.reflection, small, here, up))
     yield Check("denormal", value, [_mirror(v, here, up) for v in small], 16.0, seconds)
-    wi = _hard.units(random, 50, 3).astype(dtype)
+    wi = hard.units(random, 50, 3).astype(dtype)
     value, seconds = timed(partial(half_vector.reflection, wi, -wi, up))
     yield Check("eye exactly opposite", value, [_mirror(v, -v, up) for v in wi], 16.0, seconds)
     yield exactly("none", half_vector.reflection(wi[:0], wi[:0], up).shape, [0])
 
 
-def _mirror(wi: Array, wo: Array, normal: Array) -> Any:
+def _mirror(wi, wo, normal):
     """Return 2 (N.L)(N.E) - L.E."""
-    from vizlight.studies import _digits
-
-    a, b, up = (_digits.unit(_digits.exact(v)) for v in (wi, wo, normal))
-    return 2 * _digits.dot(up, a) * _digits.dot(up, b) - _digits.dot(a, b)
+    a, b, up = (oracles.unit(oracles.exact(v)) for v in (wi, wo, normal))
+    return 2 * oracles.dot(up, a) * oracles.dot(up, b) - oracles.dot(a, b)
 
 
-def from_half(dtype: Any, count: int, random: Any) -> Iterator[Check]:
+def from_half(dtype, count, random):
     """R.E from N.H and the triple product."""
-    from vizlight.studies import _digits
-
     many = count
     n_h = random.uniform(-1, 1, many).astype(dtype)
     triple = (random.uniform(-1, 1, many) * np.sqrt(1 - np.square(n_h))).astype(dtype)
     value, seconds = timed(partial(half_vector.reflection_from_half, n_h, triple=triple))
-    pairs = [tuple(map(_digits.exact, pair)) for pair in zip(n_h, triple, strict=True)]
+    pairs = [tuple(map(oracles.exact, pair)) for pair in zip(n_h, triple, strict=True)]
     true = [2 * a * a - 1 + 2 * b * b for a, b in pairs]
     yield Check("random", value, true, np.array(4.0), seconds)
     ends = np.nextafter(np.array([1, -1, 0], dtype), dtype(0.5))
     value, seconds = timed(partial(half_vector.reflection_from_half, ends))
-    true = [2 * a * a - 1 for a in _digits.exact(ends)]
+    true = [2 * a * a - 1 for a in oracles.exact(ends)]
     yield Check("one ulp off 1, -1 and 0", value, true, np.array(4.0), seconds)
 
 
-def from_angles(dtype: Any, count: int, random: Any) -> Iterator[Check]:
+def from_angles(dtype, count, random):
     """R.E from the angles of normal, light and eye; also small ones and right ones."""
-    from vizlight.studies import _digits
-
-    mp, many = _digits.mp, count
+    mp, many = oracles.mp, count
     angles = random.uniform(0, np.pi / 2, (3, many))
     angles *= 10 ** (random.uniform(-20, 0, (3, many)) * random.integers(0, 2, (3, many)))
     angles = np.where(random.random((3, many)) < 1 / 3, np.pi / 2 - angles, angles).astype(dtype)
@@ -480,18 +434,18 @@ def from_angles(dtype: Any, count: int, random: Any) -> Iterator[Check]:
     value, seconds = timed(work)
     true = []
     for a, b, c in zip(*angles, strict=True):
-        cross = mp.sin(_digits.exact(b)) * mp.cos(_digits.exact(c))
-        true.append(mp.cos(2 * _digits.exact(a)) + 2 * cross * cross)
+        cross = mp.sin(oracles.exact(b)) * mp.cos(oracles.exact(c))
+        true.append(mp.cos(2 * oracles.exact(a)) + 2 * cross * cross)
     yield Check("random, small, near right", value, true, np.array(8.0), seconds)
 
 
-def identity(dtype: Any, count: int, random: Any) -> Iterator[Check]:
+def identity(dtype, count, random):
     """Check the identity of three unit vectors, which is 0."""
-    for case in _hard.EYES:
-        many = spread(count, _hard.EYES)
-        frame = _hard.frames(random, many, 1, 3, dtype)
-        wi = _hard.directions(random, frame, "random")
-        wo = _hard.eyes(random, wi, frame, case)
+    for case in hard.EYES:
+        many = spread(count, hard.EYES)
+        frame = hard.frames(random, many, 1, 3, dtype)
+        wi = hard.directions(random, frame, "random")
+        wo = hard.eyes(random, wi, frame, case)
         value, seconds = timed(partial(half_vector.identity, wi, wo, frame[:, 0]))
         yield Check(f"eye {case}", value, [0] * many, np.array(16.0), seconds)
     bad, here = _bad(dtype), np.array([1, 2, 3], dtype)
@@ -499,45 +453,39 @@ def identity(dtype: Any, count: int, random: Any) -> Iterator[Check]:
     yield exactly("zero, NaN, infinite", value, np.full(len(bad), np.nan), seconds)
 
 
-def required_factor(dtype: Any, count: int, random: Any) -> Iterator[Check]:
+def required_factor(dtype, count, random):
     """Check the factor f of Fisher and Woo (5), relative: from 0 to 1.5."""
-    from vizlight.studies import _digits
-
-    mp = _digits.mp
+    mp = oracles.mp
     for case, low, high in (("random", -2.0, 0.17), ("near 0", -20.0, -2.0)):
         rho = np.minimum(10 ** random.uniform(low, high, count // 2), 1.5).astype(dtype)
         value, seconds = timed(partial(highlights.required_factor, rho))
         off = []
         for x, angle in zip(value, rho, strict=True):
-            a = _digits.exact(angle)
+            a = oracles.exact(angle)
             below, above = (2 * mp.log1p(-2 * mp.sin(b) ** 2) for b in (a / 2, a / 4))
             exact = below / above if a else mp.mpf(4)
-            off.append(_digits.exact(x) / exact - 1)
+            off.append(oracles.exact(x) / exact - 1)
         yield Check(case, np.zeros(len(off)), off, np.array(8.0), seconds)
 
 
-def pixel_error(dtype: Any, count: int, random: Any) -> Iterator[Check]:
+def pixel_error(dtype, count, random):
     """Blinn minus Phong, of 255, by power; hard case 5."""
-    from vizlight.studies import _digits
-
-    mp = _digits.mp
+    mp = oracles.mp
     powers = (10.0, 40.5, 400.0, 1e6)
     for r in powers:
         rho = (10 ** random.uniform(-8, 0.49, spread(count, powers))).astype(dtype)
         value, seconds = timed(partial(highlights.pixel_error, rho, r))
         true = []
         for angle in rho:
-            a = _digits.exact(angle)
-            phong = max(mp.cos(a), mp.mpf(0)) ** _digits.exact(r)
-            true.append(255 * (mp.cos(a / 2) ** (4 * _digits.exact(r)) - phong))
+            a = oracles.exact(angle)
+            phong = max(mp.cos(a), mp.mpf(0)) ** oracles.exact(r)
+            true.append(255 * (mp.cos(a / 2) ** (4 * oracles.exact(r)) - phong))
         claim = np.array(255 * 3.0)
         yield Check(f"power {r:g}", np.asarray(value), true, claim, seconds)
 
 
-def max_pixel_error(_: Any, count: int, random: Any) -> Iterator[Check]:
-    """Check the largest difference of Phong and Blinn by a scan, Newton's method and 50 _digits."""
-    from vizlight.studies import _digits
-
+def max_pixel_error(_, count, random):
+    """Check the largest difference of Phong and Blinn by a scan, Newton's method and 50 oracles."""
     powers = (0.2, 1.5, 10.0, 40.5, 400.0, 1e4, 1e6)
     for r in powers:
         many = spread(count, powers)
@@ -547,13 +495,13 @@ def max_pixel_error(_: Any, count: int, random: Any) -> Iterator[Check]:
         factor = random.uniform(1.1, 6, many)
         work = partial(highlights.max_pixel_error, angle, r, factor=factor)
         found, seconds = timed(work)
-        true = _digits.largest_differences(angle, r, factor)
+        true = references.largest_differences(angle, r, factor)
         yield Check(f"power {r:g}", found.error, true, 255 * 4.0, seconds)
     (ends, *_), seconds = timed(partial(highlights.max_pixel_error, [0.0, np.pi], 0.0))
     yield exactly("power 0", ends, [0, 0], seconds)
 
 
-CHECKS: dict[str, tuple[Callable[..., Iterator[Check]], tuple[Any, ...]]] = {
+CHECKS = {
     "frames.orthonormalize": (orthonormalize, TYPES),
     "frames.split": (split, TYPES),
     "reflection.diffuse": (diffuse, TYPES),

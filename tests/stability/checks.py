@@ -3,18 +3,12 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+import oracles
 
-from vizlight.studies._framework import Row
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
-
-    from numpy.typing import NDArray
-
-    Array = NDArray[Any]
+from vizlight.studies import Row
 
 TYPES = (np.float32, np.float64)
 DOUBLE = (np.float64,)
@@ -30,19 +24,19 @@ class Check(NamedTuple):
     """
 
     case: str
-    values: Any
-    true: Sequence[Any]
-    claimed: Any
+    values: object
+    true: object
+    claimed: object
     seconds: float
     regime: str = ""
 
 
-def off(case: str, errors: Sequence[Any], claimed: Any, seconds: float, regime: str = "") -> Check:
+def off(case, errors, claimed, seconds, regime=""):
     """Return a check of errors that are already differences, or parts of what they are parts of."""
     return Check(case, np.zeros(len(errors)), errors, claimed, seconds, regime)
 
 
-def exactly(case: str, values: Any, true: Any, seconds: float = 0.0) -> Check:
+def exactly(case, values, true, seconds=0.0):
     """Return a check of values that are defined: they have no error; NaN is NaN."""
     values, true = (np.asarray(v, dtype=np.float64) for v in (values, true))
     if values.shape != true.shape:
@@ -51,7 +45,7 @@ def exactly(case: str, values: Any, true: Any, seconds: float = 0.0) -> Check:
     return Check(case, (~same).astype(float).ravel(), [0.0] * same.size, 0.0, seconds)
 
 
-def refused(case: str, work: Callable[[], Any], word: str) -> Check:
+def refused(case, work, word):
     """Return a check that a call is refused by a message that has a word."""
     seconds, said = 0.0, ""
     try:
@@ -61,23 +55,28 @@ def refused(case: str, work: Callable[[], Any], word: str) -> Check:
     return Check(case, [0.0 if word in said else np.nan], [0.0], 0.0, seconds)
 
 
-def timed(work: Callable[[], Any]) -> tuple[Any, float]:
+def timed(work):
     """Return what work returns, and its seconds."""
     start = time.perf_counter()
     return work(), time.perf_counter() - start
 
 
-def spread(count: int, kinds: Sequence[Any]) -> int:
+def spread(count, kinds):
     """Return how many inputs each of some kinds has."""
     return max(count // len(kinds), 1)
 
 
-def rows_of(kernel: str, dtype: Any, checks: Iterator[Check]) -> list[Row]:
-    """Return a row for each case: the input that comes nearest to its claim, or passes it."""
-    from vizlight.studies import _digits
+def some(random, kinds, count):
+    """Return all kinds, or as many at random as there are inputs if there are fewer."""
+    if count >= len(kinds):
+        return kinds
+    return [kinds[i] for i in np.sort(random.permutation(len(kinds))[:count])]
 
+
+def rows_of(kernel, dtype, checks):
+    """Return a row for each case: the input that comes nearest to its claim, or passes it."""
     eps = float(np.finfo(dtype).eps)
-    found: dict[tuple[str, str], Row] = {}
+    found = {}
     kind = np.dtype(dtype).name
     for check in checks:
         worst = (-1.0, 0.0, 0.0)
@@ -87,7 +86,7 @@ def rows_of(kernel: str, dtype: Any, checks: Iterator[Check]) -> list[Row]:
         ):  # fmt: skip
             number, claim = float(value), float(claimed)
             if abs(number) < np.inf:
-                seen = float(abs(_digits.exact(number) - true)) / eps
+                seen = float(abs(oracles.exact(number) - true)) / eps
             else:
                 seen = 0.0 if number == true else np.inf
             # A reference that is no number has found an error too.
@@ -104,7 +103,7 @@ def rows_of(kernel: str, dtype: Any, checks: Iterator[Check]) -> list[Row]:
         if before and float(before.more["seen / claimed"]) >= ratio:
             found[way, check.case] = before._replace(more={**before.more, "inputs": count})
             continue
-        more: dict[str, float | str] = {
+        more = {
             "type": kind,
             "case": check.case,
             "seen / claimed": ratio,

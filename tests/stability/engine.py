@@ -3,22 +3,15 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import oracles
 
+from stability import hard, references
+from stability.checks import TYPES, Check, exactly, spread, timed
 from vizlight.scene import Light, Material, Scene, View
 from vizlight.shading import bounds as stated
 from vizlight.shading import engine
-from vizlight.studies import _hard
-from vizlight.studies._stability_checks import TYPES, Check, exactly, spread, timed
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from numpy.typing import NDArray
-
-    Array = NDArray[Any]
 
 #: What is lit, in which space, under which law.
 KINDS = (
@@ -28,7 +21,7 @@ KINDS = (
 AMBIENT, SHININESS = 0.125, 20.0
 
 
-def shade(dtype: Any, count: int, random: Any) -> Iterator[Check]:
+def shade(dtype, count, random):
     """Light of lines, surfaces and 4-space, light and eye nearby, also far off; hard cases 7, 8."""
     for what, k, n, model in KINDS:
         for case, far in (("random", 0.0), ("5e6 from the origin", 5e6), ("light far off", 1e12)):
@@ -37,11 +30,7 @@ def shade(dtype: Any, count: int, random: Any) -> Iterator[Check]:
     yield from _ends(dtype, random)
 
 
-def _lit(
-    dtype: Any, many: int, random: Any, kind: tuple[str, int, int, Any], case: str, far: float
-) -> Check:
-    from vizlight.studies import _digits
-
+def _lit(dtype, many, random, kind, case, far):
     what, k, n, model = kind
     eps = float(np.finfo(dtype).eps)
     way = np.array([1.0, 2.0, 3.0, -1.0])[:n]
@@ -67,44 +56,29 @@ def _lit(
             engine.shade, points, None, scene, normals=normal, model=model, precision=precision
         )
     else:
-        frame = _hard.frames(random, many, k, n, dtype)
+        frame = hard.frames(random, many, k, n, dtype)
         work = partial(engine.shade, points, frame, scene, model=model, precision=precision)
     shading, seconds = timed(work)
     p, true, claim = shading.plan.exponent, [], []
     bounds = stated.diffuse_bound(p, eps) / eps, stated.specular_bound(SHININESS, eps) / eps
-    ends = [_digits.exact(end) for end in (light, eye)]
+    digits = oracles.digits
     for i, at in enumerate(points):
-        wi, wo = (
-            _digits.unit([a - b for a, b in zip(end, _digits.exact(at), strict=True)])
-            for end in ends
-        )
-        half = [a + b for a, b in zip(wi, wo, strict=True)]
-        share = min(float(_digits.mp.sqrt(_digits.dot(half, half))), 1.0)
-        if what == "surface":
-            up = _digits.unit(_digits.exact(normal[i]))
-            lit, seen = _digits.dot(up, wi), _digits.dot(up, wo)
-            base = 2 * lit * seen - _digits.dot(wi, wo)
-            if model == "blinn":
-                base = _digits.dot(up, _digits.unit(half))
-            zero = _digits.mp.mpf(0)
-            shine = max(base, zero) ** SHININESS if lit > 0 else zero
-            true.append(AMBIENT + max(lit, zero) + shine)
-        elif model == "cylinder":
-            diffuse, shine, a, b, size = _digits.cylinder(wi, wo, frame[i, 0], SHININESS)
-            true.append(AMBIENT + diffuse + shine)
+        lines, up = (None, normal[i]) if what == "surface" else (frame[i], None)
+        true.append(digits.light(at, lines, up, scene, model=model, exponent=p, apart=0).luminance)
+        wi, wo = (digits.toward(end, oracles.exact(at))[0] for end in (scene.lights[0], scene.view))
+        if model == "cylinder":
+            _, _, a, b, size = references.cylinder(wi, wo, frame[i, 0], SHININESS)
             claim.append(float(4 / b + 10 / min(a, b, size)))
             continue
-        else:
-            diffuse = _digits.diffuse(wi, frame[i], p)
-            shine = _digits.specular(wi, wo, frame[i], SHININESS, model)
-            true.append(AMBIENT + diffuse + shine)
+        half = [a + b for a, b in zip(wi, wo, strict=True)]
+        share = min(float(oracles.size(half)), 1.0)
         claim.append(bounds[0] + bounds[1] / (share if model == "blinn" else 1.0))
     return Check(
         case, shading.luminance, true, np.array(claim), seconds, f"{what}, {model.title()}"
     )
 
 
-def _ends(dtype: Any, random: Any) -> Iterator[Check]:
+def _ends(dtype, random):
     """Check what is defined: the ambient light where no other comes from, none of no points."""
     here = random.standard_normal((20, 3)).astype(dtype)
     scene = Scene(
@@ -115,9 +89,9 @@ def _ends(dtype: Any, random: Any) -> Iterator[Check]:
     for what, k, n, model in KINDS:
         if n > 3:
             continue
-        vectors = _hard.frames(random, 20, k, n, dtype)
-        given: dict[str, Any] = {"model": model, "precision": np.dtype(dtype).name}
-        tangents: Array | None = vectors
+        vectors = hard.frames(random, 20, k, n, dtype)
+        given = {"model": model, "precision": np.dtype(dtype).name}
+        tangents = vectors
         if what == "surface":
             tangents, given["normals"] = None, vectors[:, 0]
         regime = f"{what}, {model.title()}"
@@ -144,6 +118,6 @@ def _ends(dtype: Any, random: Any) -> Iterator[Check]:
         yield exactly("none", made.luminance.shape, [0])._replace(regime=regime)
 
 
-CHECKS: dict[str, tuple[Callable[..., Iterator[Check]], tuple[Any, ...]]] = {
+CHECKS = {
     "engine.shade": (shade, TYPES),
 }

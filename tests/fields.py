@@ -1,0 +1,75 @@
+"""Height fields as arrays and as grids, places on them, directions to the sun."""
+
+from __future__ import annotations
+
+import numpy as np
+import pyvista as pv
+
+METHODS = ("fast", "exact")
+X, Y = np.arange(9.0) * 0.5 + 2, np.arange(7.0) * 0.25 - 1
+
+
+def unit(v):
+    v = np.asarray(v, dtype=float)
+    return v / np.linalg.norm(v)
+
+
+def sun(elevation, azimuth):
+    """Return a direction from angles in degrees, azimuth from x toward y."""
+    e, a = np.radians([elevation, azimuth])
+    return np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
+
+
+def hills(n=60, ny=None, seed=3, size=10.0):
+    """Return a smooth random field on uneven nodes."""
+    random = np.random.default_rng(seed)
+    x = np.sort(np.append(random.uniform(0, size, n - 2), [0, size]))
+    y = np.sort(np.append(random.uniform(0, size, (ny or n) - 2), [0, size]))
+    z = np.zeros((len(y), len(x)))
+    for _ in range(12):
+        a, b = random.uniform(0, size, 2)
+        z += random.uniform(0.2, 1) * np.exp(-((x - a) ** 2 + (y[:, None] - b) ** 2))
+    return x, y, z
+
+
+def places(x, y, z, count, random, below=0.4):
+    i, j = random.integers(0, len(x), count), random.integers(0, len(y), count)
+    jitter = random.uniform(-0.3, 0.3, (count, 2))
+    return np.column_stack([x[i], y[j], z[j, i] - random.uniform(0, below, count)]) + np.pad(
+        jitter, [(0, 0), (0, 1)]
+    )
+
+
+def bumps(x, y):
+    return 0.3 * np.sin(2 * x) * np.cos(3 * y)
+
+
+Z = bumps(X, Y[:, None])
+
+
+def grids():
+    image = pv.ImageData(dimensions=(9, 7, 1), spacing=(0.5, 0.25, 1), origin=(2, -1, 5))
+    image["height"] = Z.ravel().copy()
+    rectilinear = pv.RectilinearGrid(X, Y, [5.0])
+    rectilinear["height"] = Z.ravel().copy()
+    x, y = np.meshgrid(X, Y, indexing="ij")
+    warped = pv.StructuredGrid(x, y, bumps(x, y))
+    turned = pv.StructuredGrid(x.T[::-1], y.T[::-1], bumps(x, y).T[::-1])
+    flat = pv.StructuredGrid(x, y, 0 * x)
+    flat["height"] = bumps(x, y).ravel(order="F")
+    return {
+        "ImageData": (image, {}),
+        "RectilinearGrid": (rectilinear, {"elevation": "height"}),
+        "warped": (warped, {}),
+        "turned": (turned, {}),
+        "flat": (flat, {"elevation": "height"}),
+    }
+
+
+def level(**changes):
+    """Return a flat field of 4 x 4 points."""
+    grid = pv.ImageData(dimensions=(4, 4, 1))
+    grid["height"] = np.zeros(16)
+    for name, value in changes.items():
+        grid[name] = value
+    return grid

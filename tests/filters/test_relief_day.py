@@ -1,0 +1,78 @@
+"""A day of shadows: hours, directions, what does not fit."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from fields import grids, level
+
+import vizlight
+from vizlight import Light, Scene, relief_day, relief_shadow
+from vizlight.geometry import sun
+
+
+def test_hours_of_a_day():
+    grid, _ = grids()["ImageData"]
+    out = relief_day(grid, latitude=np.radians(46.2), day=172, hours=[0, 6, 12, 18], depth=0.1)
+    assert out["t"].shape == (63, 4)
+    assert not out["t"][:, 0].any()
+    noon = sun.directions(np.radians(46.2), 172, 12)
+    single = relief_shadow(grid, Scene(lights=Light(direction=noon)), depth=0.1)
+    np.testing.assert_array_equal(out["t"][:, 2], single["t"])
+    np.testing.assert_allclose(out["t_mean"], out["t"].mean(axis=1))
+    given = relief_day(grid, directions=[[0, 0, -1], noon], depth=0.1)
+    np.testing.assert_array_equal(given["t"][:, 1], single["t"])
+    assert set(given.point_data) == {"height", "t", "t_mean"}
+
+
+def test_one_hour_of_a_day():
+    grid, _ = grids()["ImageData"]
+    when = {"latitude": 0.7, "day": 172}
+    one, many = (relief_day(grid, hours=hours, **when) for hours in (12, [12]))
+    np.testing.assert_array_equal(one["t"], many["t"])
+    assert one["t_mean"].shape == (63,)
+
+
+@pytest.mark.parametrize(
+    ("options", "error", "words"),
+    [
+        ({"directions": [[[0, 0, 1]]]}, ValueError, "directions: expected a list of one or more"),
+        ({"directions": np.zeros((0, 3))}, ValueError, "directions: expected a list of one"),
+        ({"directions": ()}, ValueError, "directions: expected vectors"),
+        (
+            {"directions": [(0, 0, 0)]},
+            ValueError,
+            r"directions\[0\]: expected a direction of non-z",
+        ),
+        ({"directions": [(0, 0, 1), (0, 0, np.nan)]}, ValueError, r"directions\[1\]: expected fin"),
+        ({"directions": [(0, 0, -1)]}, ValueError, "directions: expected the sun above the hor"),
+        ({"latitude": 0, "day": 9, "hours": [[12]]}, ValueError, "hours: expected a list of one"),
+        ({"latitude": 0, "day": 9, "hours": []}, ValueError, "hours: expected a list of one"),
+        (
+            {"directions": (0, 0, 1), "scene": Scene(lights=[])},
+            TypeError,
+            "scene: expected an option of",
+        ),
+        ({"directions": (0, 0, 1), "lit": True}, TypeError, "lit: expected an option of"),
+    ],
+)
+def test_bad_days(options, error, words):
+    with pytest.raises(error, match=words):
+        relief_day(level(), **options)
+
+
+@pytest.mark.parametrize(
+    "when",
+    [
+        {"latitude": 0.7, "day": 172, "hours": np.array([3.0, 9, 12])},
+        {"directions": [(0, 1, 1), (1, 0, -1)]},
+    ],
+)
+def test_a_day_is_made_again_from_what_is_told(when):
+    grid, _ = grids()["warped"]
+    day = relief_day(grid, depth=0.2, name="sunlit", **when)
+    told = vizlight.provenance(day, "sunlit")
+    assert told["filter"] == "relief_day"
+    again = relief_day(grid, **told["options"])
+    np.testing.assert_array_equal(again["sunlit"], day["sunlit"])
+    assert vizlight.provenance(again, "sunlit") == told

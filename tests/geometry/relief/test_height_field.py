@@ -1,0 +1,114 @@
+"""Height fields as arguments: nodes, holes, a base, small fields, what does not fit."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from fields import METHODS, sun
+
+from vizlight.geometry import relief
+from vizlight.geometry.relief import height_field
+
+
+@pytest.mark.parametrize(
+    "nodes",
+    [
+        np.linspace(0.0, 1.0, 1000),
+        np.cumsum(np.geomspace(1e-9, 1.0, 50)),
+        np.array([0.0, 1e-300, 1e70]),
+        np.array([-3.0, -1.0]),
+    ],
+    ids=["even", "ever wider", "smallest and largest", "one cell"],
+)
+def test_intervals_are_those_of_a_binary_search(nodes, random):
+    near = [np.nextafter(nodes, end) for end in (-np.inf, np.inf)]
+    between = random.uniform(nodes[0], nodes[-1], 1000)
+    place = np.concatenate([nodes, *near, between, [-1e70, 1e70]])
+    found = height_field.locate(nodes, place)
+    assert np.array_equal(found, np.searchsorted(nodes, place, side="right"))
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_holes(method):
+    """A flat field stays flat under holes; with walls, light comes in through them."""
+    x = np.arange(21.0)
+    z = np.zeros((21, 21))
+    z[8:12, 9:13] = np.nan
+    way = sun(30, 0)
+    t = relief.shadow(x, x, z, depth=0.5, direction=way, method=method)
+    hole = np.isnan(z)
+    assert not t[hole].any()
+    np.testing.assert_allclose(t[~hole], 0.5, atol=1e-12)
+    wall = relief.shadow(x, x, z, depth=1.0, direction=way, border="wall", method=method)
+    row = 10
+    # The wall stands at x = 8: the ray from depth 1 reaches it before the surface.
+    expected = np.where((x <= 8) & (8 - x < 3**0.5), 1 / np.maximum((8 - x) * 2 / 3**0.5, 1), 0.5)
+    expected[20 - x < 3**0.5] = 1 / np.maximum((20 - x) * 2 / 3**0.5, 1)[20 - x < 3**0.5]
+    np.testing.assert_allclose(wall[row][~hole[row]], expected[~hole[row]], atol=1e-12)
+
+
+@pytest.mark.parametrize("shape", [(2, 2), (2, 7), (9, 2), (3, 3)])
+@pytest.mark.parametrize("method", METHODS)
+def test_small_fields(shape, method, random):
+    y, x = (np.arange(float(n)) for n in shape)
+    z = random.uniform(0, 0.1, shape)
+    for way in (sun(45, 10), sun(5, 200), sun(90, 0)):
+        t = relief.shadow(x, y, z, depth=0.1, direction=way, method=method)
+        assert np.all((t > 0) & (t <= 1))
+
+
+def test_base():
+    """Light from below comes through a slab of finite height, and not through one without end."""
+    x = np.arange(5.0)
+    z = np.zeros((5, 5))
+    slab = relief.shadow(x, x, z, depth=0.25, direction=(0, 0, -1), base=-1)
+    np.testing.assert_allclose(slab, 1 / 3)
+    assert not relief.shadow(x, x, z, depth=0.25, direction=(0, 0, -1)).any()
+    assert not relief.shadow(x, x, z, depth=0.25, direction=(1, 0, -1e-12)).any()
+
+
+FLAT = ([0, 1, 2], [0, 1], np.zeros((2, 3)))
+
+
+UP = {"direction": (0, 0, 1)}
+
+
+@pytest.mark.parametrize(
+    ("field", "options", "error", "words"),
+    [
+        (FLAT, {**UP, "depth": -1}, ValueError, "depth: expected a finite number of at least 0"),
+        (FLAT, {**UP, "depth": 1e300}, ValueError, "depth: expected at most 2e.09, 1e9 times"),
+        (FLAT, {**UP, "depth": "1"}, TypeError, "depth: expected a number"),
+        (FLAT, {"depth": 1}, ValueError, "direction, position: expected one of them, got neither"),
+        (FLAT, {"depth": 1, **UP, "position": (0, 0, 9)}, ValueError, "got both"),
+        (FLAT, {"depth": 1, "direction": (0, 0, 0)}, ValueError, "direction of non-zero length"),
+        (FLAT, {"depth": 1, "direction": (0, 1)}, ValueError, "direction: expected 3 components"),
+        (
+            FLAT,
+            {"depth": 1, "position": (1, 0.5, -0.1)},
+            ValueError,
+            "position: expected a light outside the solid, above 0 there",
+        ),
+        (FLAT, {"depth": 1, **UP, "method": "slow"}, ValueError, "method: expected 'fast' or"),
+        (FLAT, {"depth": 1, **UP, "border": "none"}, ValueError, "border: expected 'extend' or"),
+        (FLAT, {"depth": 1, **UP, "base": 0.5}, ValueError, "base: expected a height not above"),
+        (FLAT, {"depth": 1, **UP, "normals": np.zeros((3, 3))}, ValueError, r"normals: .*\(2, 3"),
+        (([0, 1], [0, 1], np.full((2, 2), np.nan)), {"depth": 1, **UP}, ValueError, "NaN every"),
+        (([0, 1], [0, 1], [[0, np.inf]] * 2), {"depth": 1, **UP}, ValueError, "z: expected finite"),
+        (([0, 1], [0], np.zeros((1, 2))), {"depth": 1, **UP}, ValueError, "y: .*repeat the row"),
+        (([], [0, 1], np.zeros((2, 0))), {"depth": 1, **UP}, ValueError, "x: expected two nodes"),
+        (([1, 0], [0, 1], np.zeros((2, 2))), {"depth": 1, **UP}, ValueError, "x: .*rising"),
+        (([0, np.nan], [0, 1], np.zeros((2, 2))), {"depth": 1, **UP}, ValueError, "x: .*finite"),
+        (([0, 1], [0, 1, 2], np.zeros((2, 3))), {"depth": 1, **UP}, ValueError, r"z: .*\(3, 2\)"),
+        (([0, 1], [0, 1], [["a"] * 2] * 2), {"depth": 1, **UP}, TypeError, "z: expected real"),
+        (([0, 1e-80], [0, 1], np.zeros((2, 2))), {"depth": 1, **UP}, ValueError, "1e-70 and 1e70"),
+    ],
+)
+def test_bad_input(field, options, error, words):
+    with pytest.raises(error, match=words):
+        relief.shadow(*field, **options)
+
+
+def test_integers_and_lists_are_numbers():
+    t = relief.shadow([0, 1, 2], [0, 1], [[0, 1, 0], [0, 1, 0]], depth=1, direction=[0, 0, 1])
+    assert t.shape == (2, 3)

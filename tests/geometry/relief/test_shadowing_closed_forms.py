@@ -1,0 +1,236 @@
+"""The ratio t on planes, ridges and domes, whose shadows are known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from fields import METHODS, hills, sun, unit
+from scipy.interpolate import RegularGridInterpolator
+
+from vizlight.geometry import relief
+
+
+def between(lows, highs):
+    """Return the length of a union of two intervals, empty where low > high."""
+    (a, c), (b, d) = lows, highs
+    one, two = np.maximum(b - a, 0), np.maximum(d - c, 0)
+    both = np.maximum(np.minimum(b, d) - np.maximum(a, c), 0)
+    return one + two - np.where((one > 0) & (two > 0), both, 0)
+
+
+def ridge(x, height=1.0, slope=2.0):
+    return np.maximum(height - slope * np.abs(x), 0)
+
+
+def ridge_length(start, way, height=1.0, slope=2.0):
+    """Return the length in the ground and in the wedge z < height - slope |x| above it."""
+    x, z = start[..., 0], start[..., 2]
+    ground = -z / way[2]
+    low, high = np.full(x.shape, 0.0), np.full(x.shape, np.inf)
+    for side in (1, -1):
+        # z + s wz < height - side slope (x + s wx)
+        rate, room = way[2] + side * slope * way[0], height - side * slope * x - z
+        bound = room / rate
+        if rate > 0:
+            high = np.minimum(high, bound)
+        else:
+            low = np.maximum(low, bound)
+    low = np.maximum(low, ground)
+    return between((np.zeros_like(low), low), (ground, high))
+
+
+@pytest.mark.parametrize(
+    ("method", "azimuth", "mean", "largest"),
+    [
+        ("exact", 20, 1e-12, 1e-12),
+        ("exact", 75, 1e-12, 1e-12),
+        ("fast", 20, 1e-12, 1e-12),
+        ("fast", 75, 1e-4, 0.03),
+    ],
+)
+def test_ridge_has_its_closed_form(method, azimuth, mean, largest):
+    """To rounding; in profiles that run along a sharp ridge, between its nodes, in the mean."""
+    x, y = np.linspace(-6, 3, 361), np.linspace(-3, 3, 121)
+    z = np.broadcast_to(ridge(x), (121, 361))
+    depth, way = 0.15, sun(22, azimuth)
+    flat = np.abs(x) > 0.5 + 0.03
+    start = np.stack([*np.meshgrid(x[flat], y), np.full((121, flat.sum()), -depth)], axis=-1)
+    expected = np.minimum(depth / ridge_length(start, way), 1)
+    t = relief.shadow(x, y, z, depth=depth, direction=way, method=method)[:, flat]
+    assert expected.min() < 0.2
+    assert np.abs(t - expected).mean() < mean
+    assert np.abs(t - expected).max() < largest
+
+
+def ball_length(start, way, radius=1.0):
+    """Return the length in the half-space z < 0 and in the ball about the origin."""
+    ground = -start[..., 2] / way[2]
+    middle = -(start @ way)
+    inside = radius**2 - np.einsum("...i,...i", start, start) + middle**2
+    half = np.sqrt(np.maximum(inside, 0))
+    low, high = np.maximum(middle - half, 0), np.where(inside > 0, middle + half, -1)
+    return between((np.zeros_like(low), low), (np.maximum(ground, 0), high))
+
+
+def hemisphere(x, y):
+    return np.sqrt(np.maximum(1 - x**2 - y**2, 0))
+
+
+@pytest.mark.parametrize("b", [0.0, 0.6])
+def test_hemisphere_on_a_plane_below_1e_6_by_the_exact_method(b):
+    """Nodes close up at the rim, where the slope has no bound; the order is 2."""
+    rim, way, depth = np.sqrt(1 - b * b), sun(30, 0), 0.1
+    errors = []
+    for n in (1000, 2000, 4000, 8000):
+        x = np.concatenate([[-9.0], -rim * np.cos(np.linspace(0, np.pi, n)), [9.0]])
+        y = b + np.array([-1e-3, 0, 1e-3])
+        z = hemisphere(x, y[:, None])
+        ground = np.linspace(-3.5, -rim - 1e-2, 60)
+        top = -rim * np.cos(np.linspace(0.05, np.pi - 0.05, 61))
+        p = np.concatenate(
+            [
+                np.stack([ground, np.full(60, b), np.full(60, -depth)], axis=1),
+                np.stack([top, np.full(61, b), hemisphere(top, b)], axis=1) * (1 - depth),
+            ]
+        )
+        p[60:, 1] = b
+        length = relief.inside_length(x, y, z, p, direction=way, method="exact")
+        t, expected = np.minimum(depth / np.array([length, ball_length(p, way)]), 1)
+        errors.append(np.abs(t - expected).max())
+    assert errors[-1] < 1e-6
+    order = -np.polyfit(np.log([1, 2, 4, 8]), np.log(errors), 1)[0]
+    assert order == pytest.approx(2, abs=0.2)
+
+
+def test_hemisphere_on_a_plane_below_1e_3_by_default():
+    """In the mean; at the rim and the shadow's edge the chord goes as the root of the height."""
+    errors = []
+    for n in (151, 301, 601):
+        x = np.linspace(-3, 3, n)
+        z = hemisphere(x, x[:, None])
+        p = np.stack([*np.meshgrid(x, x), z], axis=-1)
+        normal = np.where(z[..., None] > 0, p, [0, 0, 1.0])
+        depth, way = 0.1, sun(35, 20)
+        start = p - depth * normal
+        expected = np.minimum(depth / np.maximum(ball_length(start, way), 1e-9), 1)
+        t = relief.shadow(x, x, z, depth=depth, direction=way, normals=normal)
+        errors.append(np.abs(t - expected).mean())
+    assert errors[-1] < 1e-3
+    assert np.log2(errors[0] / errors[-1]) / 2 > 1
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_both_methods_are_of_second_order_on_a_smooth_field(method, random):
+    """Against roots of the field itself along the ray, not of its cells."""
+
+    def height(x, y):
+        return 0.4 * np.sin(1.3 * x) * np.cos(1.1 * y) + 0.2 * np.sin(0.7 * x + y)
+
+    way = sun(18, 35)
+    start = random.uniform(3, 7, (120, 2))
+    start = np.column_stack([start, height(*start.T) - 0.1])
+    s = np.linspace(0, 4, 20_001)
+    p = start[:, None] + s[:, None] * way
+    f = height(p[..., 0], p[..., 1]) - p[..., 2]
+    share = np.clip(np.maximum(f[:, :-1], f[:, 1:]) / np.abs(np.diff(f, axis=1)), 0, 1)
+    expected = np.where((f[:, :-1] > 0) & (f[:, 1:] > 0), 1, share).sum(axis=1) * s[1]
+    errors = []
+    for n in (81, 161, 321, 641):
+        x = np.linspace(0, 12, n)
+        found = relief.inside_length(
+            x, x, height(x, x[:, None]), start, direction=way, method=method
+        )
+        errors.append(np.median(np.abs(found - expected)))
+    order = -np.polyfit(np.log([1, 2, 4, 8]), np.log(errors), 1)[0]
+    assert order == pytest.approx(2, abs=0.2)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("depth", [1e-6, 0.1, 3.0])
+def test_a_flat_field_has_the_cosine_exactly(method, depth):
+    x, y = np.array([0, 1, 3, 3.5, 9]), np.arange(4.0) ** 2
+    z = np.full((4, 5), 7.25)
+    for way in (sun(90, 0), sun(50, 33), sun(3, 190), sun(0, 10), sun(-10, 0), (1e-9, 0, 1)):
+        t = relief.shadow(x, y, z, depth=depth, direction=way, method=method)
+        np.testing.assert_allclose(t, max(0, unit(way)[2]), atol=3e-9 if depth == 1e-6 else 1e-14)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("depth", [0.0, 1e-5, 0.2, 2.0])
+def test_a_plane_has_the_cosine_for_every_depth(method, depth):
+    """Where the ray leaves it before its border: toward the light it falls, or goes on."""
+    x, y = np.linspace(0, 40, 81), np.linspace(0, 30, 101)
+    z = 0.3 * x - 0.2 * y[:, None]
+    n = unit([-0.3, 0.2, 1])
+    inner = np.s_[35:65, 30:50]
+    for way in (sun(50, 20), sun(35, 250), sun(25, 140), sun(80, 0)):
+        t = relief.shadow(x, y, z, depth=depth, direction=way, method=method)
+        np.testing.assert_allclose(t[inner], max(0, n @ way), atol=1e-9)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_plane_under_a_near_light_has_the_cosine_seen_from_below_the_surface(method):
+    x = np.linspace(-5, 5, 41)
+    light, depth = np.array([1.0, -0.5, 2.0]), 0.3
+    t = relief.shadow(x, x, np.zeros((41, 41)), depth=depth, position=light, method=method)
+    gap = light - np.stack([*np.meshgrid(x, x), np.full((41, 41), -depth)], axis=-1)
+    np.testing.assert_allclose(t, gap[..., 2] / np.linalg.norm(gap, axis=-1), atol=1e-14)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_shallow_depth_goes_to_the_clamped_cosine(method):
+    """A dome occludes nothing: t is the cosine or 0; small depths come as near as cells allow."""
+    errors = []
+    for n in (101, 201):
+        x = np.linspace(-2, 2, n)
+        z = 1 - 0.2 * (x**2 + x[:, None] ** 2)
+        slope = -0.4 * x
+        normal = np.stack(
+            [
+                -np.broadcast_to(slope, (n, n)),
+                -np.broadcast_to(slope[:, None], (n, n)),
+                np.ones((n, n)),
+            ],
+            axis=-1,
+        )
+        normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
+        way = sun(30, 40)
+        cosine = np.maximum(normal @ way, 0)
+        inner = np.s_[5:-5, 5:-5]
+        limit = relief.shadow(x, x, z, depth=0, direction=way, normals=normal, method=method)
+        lit = cosine > 0.02
+        np.testing.assert_allclose(limit[inner][lit[inner]], cosine[inner][lit[inner]], atol=1e-12)
+        assert not limit[normal @ way <= 0].any()
+        t = relief.shadow(x, x, z, depth=1e-6, direction=way, normals=normal, method=method)
+        errors.append(np.abs(t - cosine)[inner].max())
+    assert errors[1] < 0.01
+    assert np.log2(errors[0] / errors[1]) > 0.8
+
+
+def test_the_hard_boundary_is_that_of_the_horizon_angle():
+    """A point is lit where it faces a light above its horizon, found by sampling the field."""
+    x, y, z = hills(80)
+    surface = RegularGridInterpolator((y, x), z)
+    s = np.arange(1, 750) * 0.02
+    for azimuth in (20, 130, 265):
+        elevation = 14.0
+        way = sun(0, azimuth)
+        gx, gy = np.meshgrid(x, y)
+        horizon = np.full(z.shape, -np.inf)
+        for k in s:
+            beside = np.stack(
+                [np.clip(gy + k * way[1], 0, 10), np.clip(gx + k * way[0], 0, 10)], -1
+            )
+            horizon = np.maximum(horizon, (surface(beside) - z) / k)
+        margin = np.degrees(np.arctan(horizon)) - elevation
+        lit = relief.shadow(x, y, z, depth=0, direction=sun(elevation, azimuth), method="exact") > 0
+        # At the border a normal knows one side alone.
+        margin, lit = margin[1:-1, 1:-1], lit[1:-1, 1:-1]
+        down, right = (slope[1:-1, 1:-1] for slope in np.gradient(z, y, x))
+        facing = np.tan(np.radians(elevation)) > right * way[0] + down * way[1]
+        differs = lit != ((margin < 0) & facing)
+        assert 0.05 < lit.mean() < 0.95
+        assert differs.mean() < 0.01
+        assert np.abs(margin[differs]).max(initial=0) < 2
+        soft = relief.shadow(x, y, z, depth=0.03, direction=sun(elevation, azimuth))
+        assert soft[1:-1, 1:-1][margin > 5].max() < 0.4

@@ -1,0 +1,87 @@
+"""Cameras that see all of a mesh: where they stand, what is up, what is clipped."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from vizlight import render
+
+
+@pytest.mark.parametrize("parallel", [False, True])
+@pytest.mark.parametrize("direction", [(1, 1, 1), (0, 0, 1), (0, 0, -2), (-1, 0.2, 0)])
+def test_camera_frames_as_vtk_would(direction, parallel):
+    bounds = (-3.0, 5, 2, 4, 1e3, 1e3 + 7)
+    camera = render.camera_on(bounds, direction, parallel=parallel)
+    renderer = pv.Plotter(off_screen=True).renderer
+    renderer.camera = camera.copy()
+    renderer.ResetCamera(*bounds)
+    np.testing.assert_allclose(camera.position, renderer.camera.position, rtol=1e-6)
+    np.testing.assert_allclose(camera.focal_point, renderer.camera.focal_point, rtol=1e-9)
+    assert camera.parallel_scale == pytest.approx(renderer.camera.parallel_scale)
+    assert camera.parallel_projection == parallel
+
+
+@pytest.mark.parametrize("direction", [(0.3, -1, 0.4), (0, 0, 1), (1, 0.2, -0.5)])
+def test_a_mesh_is_centred_as_it_is_seen(direction):
+    """The camera's focal point lies in the middle of what is seen, which is not the box's."""
+    points = np.array([[0, 0, 0], [4, 0, 0], [4, 3, 1], [0.5, 0.2, 5e-1]])
+    mesh = pv.MultiBlock([pv.PolyData(points[:2]), None, pv.PolyData(points[2:]), pv.PolyData()])
+    camera = render.camera_on(mesh, direction, parallel=True)
+    back = np.array(direction) / np.linalg.norm(direction)
+    right = np.cross(camera.up, back)
+    for axis in (right, np.cross(back, right)):
+        seen = points @ axis
+        assert camera.focal_point @ axis == pytest.approx((seen.min() + seen.max()) / 2)
+    box = render.camera_on(mesh.bounds, direction, parallel=True)
+    if np.count_nonzero(direction) == 3:
+        assert np.linalg.norm(np.subtract(camera.focal_point, box.focal_point)) > 0.1
+    assert camera.parallel_scale < box.parallel_scale
+    with pytest.raises(ValueError, match="bounds: expected a mesh with points"):
+        render.camera_on(pv.PolyData())
+
+
+def test_zoom_halves_the_distance():
+    bounds = (0, 1, 0, 1, 0, 1)
+    one, two = (render.camera_on(bounds, zoom=zoom) for zoom in (1, 2))
+    assert two.distance == pytest.approx(one.distance / 2)
+    assert two.parallel_scale == pytest.approx(one.parallel_scale / 2)
+
+
+def test_light_over_the_shoulder_is_above_left_of_the_eye():
+    camera = render.camera_on((0, 1, 0, 1, 0, 1), (0, -1, 0))
+    x, y, z = render.over_shoulder(camera)
+    assert x < 0
+    assert y < 0
+    assert z > 0
+
+
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e6])
+def test_what_is_up_is_up_in_the_picture(size):
+    """A plate 4 wide and 1 high, seen from above: what is up decides its height."""
+    plate = pv.Plane(i_size=4 * size, j_size=size)
+    for up, height in ((None, 1), ((0, -1, 0), 1), ((1, 0, 0), 4)):
+        camera = render.camera_on(plate, (0, 0, 1), up=up, parallel=True, aspect=4.0)
+        assert camera.up == (up or (0, 1, 0))
+        assert camera.parallel_scale == pytest.approx(1.05 * size * height / 2)
+        camera = render.camera_on(plate, (0, 0, 1), up=up, aspect=4.0)
+        seen = camera.distance * np.tan(np.radians(15))
+        assert seen == pytest.approx(1.05 * size * height / 2)
+    assert render.camera_on(plate.bounds, (1, 0, 0)).up == (0, 0, 1)
+
+
+@pytest.mark.parametrize("zoom", [0.5, 1.0, 3.0, 50.0])
+@pytest.mark.parametrize("direction", [(1, 1, 1), (0, 0, -1), (0.3, -1, 0.2)])
+def test_nothing_before_the_eye_is_clipped(direction, zoom):
+    """The near plane stands before the box or close to the eye, the far one behind it."""
+    bounds = (-3, 5, 1, 2, 1e3, 1004)
+    camera = render.camera_on(bounds, direction, zoom=zoom)
+    corners = np.stack(np.meshgrid(*np.reshape(bounds, (3, 2))), axis=-1).reshape(-1, 3)
+    way = np.subtract(camera.focal_point, camera.position)
+    depth = (corners - camera.position) @ way / camera.distance
+    near, far = camera.clipping_range
+    assert 0 < near <= max(depth.min(), camera.distance * 1.001e-3)
+    assert depth.max() <= far
+    # Depth is kept in few digits: no more than the box twice over.
+    assert far - near < 2.01 * np.linalg.norm(corners[0] - corners[-1])

@@ -1,0 +1,1 @@
+"""The stability suite; ``.venv/bin/python tests/stability`` runs it."""

@@ -1,0 +1,234 @@
+"""``vizlight streamlines``, ``relief``, ``fur``, ``contours`` and ``project``."""
+
+from __future__ import annotations
+
+from pathlib import Path  # noqa: TC003 - cyclopts reads the annotations
+from typing import TYPE_CHECKING, Annotated
+
+import vizlight
+from vizlight.cli import options, scenes
+from vizlight.cli.arguments import COMMON, LIT, OUTPUT, Color, Common, Part, Shape
+from vizlight.cli.job import Job, carry_out
+from vizlight.cli.script import Step
+from vizlight.filters.fur import FurOptions
+from vizlight.filters.isoluminance import ContourOptions
+from vizlight.filters.project import ProjectOptions
+from vizlight.filters.relief_shadow import ReliefOptions
+from vizlight.filters.streamlines import StreamlineOptions
+
+if TYPE_CHECKING:
+    import pyvista as pv
+
+    from vizlight.cli.arguments import Output
+
+#: Option of ``project`` that the lights have the name of.
+RENAMED = {"light": "when"}
+
+
+@options.takes(vizlight.streamlines, "Streamlines", without=("positions", "tangents"))
+def streamlines(
+    files: list[Path],
+    /,
+    *,
+    part: Annotated[Part, LIT] = Part(),  # noqa: B008
+    how: object = None,
+    common: Annotated[Common, COMMON] = Common(),  # noqa: B008
+    color: Annotated[Color, OUTPUT] = Color(),  # noqa: B008
+) -> int:
+    """Trace streamlines of a vector field, free or on a surface, and light them.
+
+    With --contour the isosurface conditions the light of the lines, and --confined keeps them
+    on it.
+
+    Parameters
+    ----------
+    files
+        Mesh with vectors; of several each is lit by itself.
+    """
+    scenes.check_target(part)
+    scenes.check_color(color)
+    look = scenes.Look(common)
+    given = options.keywords(how)
+    asked = StreamlineOptions(**given)
+
+    def job(path: Path) -> Job:
+        mesh = scenes.data(path, part, average_cells=asked.average_cells)
+        on = {} if part.contour is None else {"surface": scenes.surface(mesh, part)}
+        camera = look.camera(on.get("surface", mesh) if asked.confined else mesh)
+        lit = _step("lit", "streamlines", mesh, look.scene(camera), given | on, common.out)
+        made = Job(lit, asked.name, look, camera)
+        made.tint(scenes.tinted(lit, asked.name, mesh, color))
+        return made
+
+    return carry_out(files, job, common.out, "streamlines")
+
+
+@options.takes(vizlight.relief_shadow, "Relief")
+def relief(
+    files: list[Path],
+    /,
+    *,
+    shape: Annotated[Shape, LIT] = Shape(),  # noqa: B008
+    how: object = None,
+    common: Annotated[Common, COMMON] = Common(),  # noqa: B008
+) -> int:
+    """Cast shadows on a height field or a closed surface: the cos-theta shadow t.
+
+    Parameters
+    ----------
+    files
+        Height field, or closed surface; of several each is lit by itself.
+    """
+    scenes.check_target(shape)
+    look = scenes.Look(common)
+    given = options.keywords(how)
+    asked = ReliefOptions(**given)
+
+    def job(path: Path) -> Job:
+        mesh = scenes.data(path, shape)
+        found = mesh.run()
+        if shape.contour is not None or shape.slice is not None or not _is_field(found):
+            mesh = scenes.surface(mesh, shape)
+            found = None
+        heights = None if found is None else _heights(found, asked)
+        raised = mesh if heights is None else Step("raised", "files.warped", mesh, *heights)
+        camera = look.camera(raised, is_map=found is not None)
+        lit = _step("shaded", "relief_shadow", mesh, look.scene(camera), given, common.out)
+        shown = None if heights is None else Step("shown", "files.warped", lit, *heights)
+        made = Job(lit, asked.name, look, camera, shown=shown, scalars=asked.name, before=mesh)
+        made.suffix = ".vtp" if found is None else _suffix(found)
+        if asked.lit:
+            made.scalars = "rgb" if look.colored else "luminance"
+        return made
+
+    return carry_out(files, job, common.out, "relief")
+
+
+@options.takes(vizlight.fur, "Fur")
+def fur(
+    files: list[Path],
+    /,
+    *,
+    how: object,
+    shape: Annotated[Shape, LIT] = Shape(),  # noqa: B008
+    common: Annotated[Common, COMMON] = Common(),  # noqa: B008
+) -> int:
+    """Cover a surface with fibres, and light them and the skin below.
+
+    Parameters
+    ----------
+    files
+        Surface, or a mesh with one; of several each is lit by itself.
+    """
+    scenes.check_target(shape)
+    look = scenes.Look(common)
+    given = options.keywords(how)
+    asked = FurOptions(**given)
+
+    def job(path: Path) -> Job:
+        mesh = scenes.surface(scenes.data(path, shape), shape)
+        camera = look.camera(mesh)
+        lit = _step("furry", "fur", mesh, look.scene(camera), given, common.out)
+        return Job(lit, asked.name, look, camera, parts=("fibres", "skin"))
+
+    return carry_out(files, job, common.out, "fur")
+
+
+# The tolerance is that of solids, which no file holds.
+@options.takes(vizlight.isoluminance, "Contours", without=("tolerance",))
+def contours(
+    files: list[Path],
+    /,
+    *,
+    shape: Annotated[Shape, LIT] = Shape(),  # noqa: B008
+    how: object = None,
+    common: Annotated[Common, COMMON] = Common(),  # noqa: B008
+) -> int:
+    """Find the contours of equal luminance of a surface, and the bands between them.
+
+    Parameters
+    ----------
+    files
+        Surface, or a mesh with one; of several each is lit by itself.
+    """
+    scenes.check_target(shape)
+    look = scenes.Look(common)
+    given = options.keywords(how)
+    asked = ContourOptions(**given)
+
+    def job(path: Path) -> Job:
+        mesh = scenes.surface(scenes.data(path, shape), shape)
+        camera = look.camera(mesh)
+        lit = Step("found", "vizlight.isoluminance", mesh, look.scene(camera), **given)
+        bands = Step("", "[]", lit, "bands")
+        return Job(lit, asked.name, look, camera, shown=bands, parts=("bands", "contours"))
+
+    return carry_out(files, job, common.out, "contours")
+
+
+@options.takes(vizlight.project, "Projection", renamed=RENAMED)
+def project(
+    files: list[Path],
+    /,
+    *,
+    how: object = None,
+    common: Annotated[Common, COMMON] = Common(),  # noqa: B008
+) -> int:
+    """Turn, cut and project a mesh of n-space to 3-space, lit before or after.
+
+    Lights and eye have 3 numbers, or n before the projection; what they lack is 0. The light is
+    that of an eye at infinity.
+
+    Parameters
+    ----------
+    files
+        Mesh with positions and tangents in n-space; of several each is lit by itself.
+    """
+    look = scenes.Look(common)
+    given = options.keywords(how, RENAMED)
+    asked = ProjectOptions(**given)
+
+    def job(path: Path) -> Job:
+        mesh = scenes.data(path, Part())
+        found = mesh.run()
+        rows = found.point_data.get(asked.positions or "")
+        n = 3 if asked.light == "after" or rows is None or rows.ndim == 1 else rows.shape[1]
+        scene = look.scene_in(n)
+        lit = _step("projected", "project", mesh, None, given | {"scene": scene}, common.out)
+        return Job(lit, asked.name, look, look.camera(lit), kind="", suffix=".vtk")
+
+    return carry_out(files, job, common.out, "projected")
+
+
+def _step(
+    name: str,
+    filter_: str,
+    mesh: Step,
+    scene: Step | None,
+    given: dict[str, object],
+    out: Output,
+) -> Step:
+    """Return the step that runs a filter."""
+    progress = {"progress_bar": True} if out.progress else {}
+    arguments = (mesh,) if scene is None else (mesh, scene)
+    return Step(name, f"vizlight.{filter_}", *arguments, **given, **progress)
+
+
+def _heights(field: pv.DataSet, asked: ReliefOptions) -> tuple[str, float] | None:
+    """Return the heights that raise a flat grid in a picture, and their factor."""
+    name = asked.elevation or field.point_data.active_scalars_name
+    if name is None or name not in field.point_data or field.bounds.z_min != field.bounds.z_max:
+        return None
+    return name, asked.factor
+
+
+def _is_field(mesh: pv.DataSet) -> bool:
+    """Tell whether a mesh is a grid of one layer."""
+    sizes: tuple[int, ...] = getattr(mesh, "dimensions", ())
+    return sum(size > 1 for size in sizes) == 2
+
+
+def _suffix(mesh: pv.DataSet) -> str:
+    from vizlight import files
+
+    return files.FORMATS[type(mesh).__name__][0]

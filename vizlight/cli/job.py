@@ -1,0 +1,246 @@
+"""What a command does with each file: check, compute, write and draw, or print a script."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+import warnings
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import vizlight
+from vizlight import _check
+from vizlight.cli.output import BAD_INPUT, OK, complain, draw, one_line, say
+from vizlight.cli.scenes import TINT
+from vizlight.cli.script import Step, source
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    import pyvista as pv
+
+    from vizlight.cli.arguments import Output
+    from vizlight.cli.scenes import Look
+
+
+@dataclass
+class Job:
+    """Steps for one file.
+
+    Parameters
+    ----------
+    lit
+        Step that lights.
+    name
+        Name of the array that it makes.
+    look, camera
+        How the picture is seen.
+    shown
+        Mesh of the picture. Default: what is lit.
+    scalars
+        Name of the array that is shown. Default: the light, or its colour.
+    before
+        Mesh whose kind the result has.
+    kind
+        Kind of the result where no mesh has it before; empty where it is not known.
+    parts
+        Names of the blocks that are written to files of their own.
+    suffix
+        Format of the mesh where none is given, none to write only a picture.
+    hint
+        Message about what else may have been meant.
+    explain
+        Function that prints how the result was made.
+    """
+
+    lit: Step
+    name: str
+    look: Look
+    camera: Step
+    shown: Step | None = None
+    scalars: str | None = None
+    before: Step | None = None
+    kind: str = "PolyData"
+    parts: Sequence[str] = ()
+    suffix: str = ".vtp"
+    hint: Callable[[], str] = lambda: ""
+    explain: Callable[[pv.DataSet], None] | None = None
+    meshes: list[tuple[Step, Path]] = field(default_factory=list)
+    pictures: list[Path] = field(default_factory=list)
+
+    def tint(self, shown: Step | None) -> None:
+        """Show another mesh by its colours, if there is one."""
+        if shown is not None:
+            self.shown, self.scalars = shown, TINT
+
+    def of_parts(self, path: Path) -> list[tuple[Step, Path]]:
+        """Return what is written for the path of a mesh: the mesh, or each part beside it."""
+        if not self.parts:
+            return [(self.lit, path)]
+        return [
+            (Step("", "[]", self.lit, part), path.with_stem(f"{path.stem}-{part}"))
+            for part in self.parts
+        ]
+
+
+def carry_out(files_: Sequence[Path], build: Callable[[Path], Job], out: Output, stem: str) -> int:
+    """Do the job of each file, or print the script that does; return the exit code.
+
+    With several files an error is reported, and the other files are still done.
+    """
+    _check_output(out, several=len(files_) > 1)
+    stems = [path.stem for path in files_]
+    for twice in (name for name in stems if stems.count(name) > 1):
+        expected = "files of different names, after which the outputs are named"
+        raise ValueError(_check.message("file", expected, f"{twice!r} twice"))
+    jobs, codes = [], [OK]
+    for path in files_:
+        try:
+            job = build(path)
+            _set_outputs(job, path, out, stem)
+            _check_paths(job, files_)
+            if out.script:
+                jobs.append(job)
+            else:
+                codes.append(_run(job, out))
+        except (TypeError, ValueError, OSError) as error:
+            if len(files_) == 1:
+                raise
+            complain(f"{path}: {one_line(error)}")
+            codes.append(BAD_INPUT)
+    if jobs:
+        lit = [job.lit for job in jobs] if out.report else []
+        say(source([_last_steps(job, out) for job in jobs], reported=lit))
+    return max(codes)
+
+
+def _check_output(out: Output, *, several: bool) -> None:
+    """Check the options of output that need no mesh."""
+    from vizlight import files
+
+    _check.color("background", out.background)
+    _check.number("line_width", out.line_width, low=0.1, high=1000.0)
+    for path in out.output or ():
+        if path.is_dir():
+            continue
+        if several:
+            expected = "a folder that exists, for several files"
+            raise files.FileError(_check.message("output", expected, f"'{path}'"))
+        files.check_output(path, (".png", *files.SUFFIXES))
+
+
+def _set_outputs(job: Job, file: Path, out: Output, stem: str) -> None:
+    """Set the files of meshes and of pictures."""
+    paths: list[Path] = []
+    for path in out.output or [Path()]:
+        endings = (job.suffix, ".png") if job.suffix else (".png",)
+        folder = path.is_dir()
+        paths += [path / f"{file.stem}-{stem}{end}" for end in endings] if folder else [path]
+    for path in paths:
+        if path.suffix.lower() == ".png":
+            job.pictures.append(path)
+        else:
+            job.meshes += job.of_parts(path)
+
+
+def _check_paths(job: Job, inputs: Sequence[Path]) -> None:
+    """Check that the outputs can be written, and that no input is among them."""
+    from vizlight import files
+
+    for path in (*job.pictures, *(path for _, path in job.meshes)):
+        files.check_output(path, (".png", *files.SUFFIXES))
+        if any(path.exists() and file.exists() and path.samefile(file) for file in inputs):
+            expected = "another file than the input"
+            raise files.FileError(_check.message("output", expected, f"'{path}'"))
+    formats = files.FORMATS.get(job.kind, files.SUFFIXES) if job.before is None else files.SUFFIXES
+    for _, path in job.meshes:
+        if path.suffix.lower() not in formats:
+            expected = f"a name that ends in {', '.join(formats)} for {job.kind}"
+            raise files.FileError(_check.message("output", expected, f"'{path.name}'"))
+
+
+def _picture(job: Job, path: Path, out: Output) -> Step:
+    """Return the step that draws the picture."""
+    from vizlight.filters.lighting import part_name
+
+    scalars = job.scalars or (part_name(job.name, "rgb") if job.look.colored else job.name)
+    options = {
+        "background": out.background,
+        "line_width": None if out.line_width == 1 else out.line_width,
+        "backend": out.backend,
+    }
+    return Step(
+        "",
+        "render.save_png",
+        Step("", "render.Panel", job.shown or job.lit, scalars),
+        path,
+        camera=job.camera,
+        size=job.look.size,
+        **{key: value for key, value in options.items() if value is not None},
+    )
+
+
+def _last_steps(job: Job, out: Output) -> list[Step]:
+    """Return the steps that leave something behind."""
+    written = [Step("", "files.write_mesh", mesh, path) for mesh, path in job.meshes]
+    return [job.lit, *written, *(_picture(job, path, out) for path in job.pictures)]
+
+
+def _run(job: Job, out: Output) -> int:
+    from vizlight import files
+
+    if job.before is not None:
+        mesh = job.before.run()
+        for _, path in job.meshes:
+            files.check_format(mesh, path)
+    lit = _light(job, out)
+    for step, path in job.meshes:
+        files.check_format(step.run(), path)
+    if job.pictures:
+        _count_white(lit, job.name)
+    if job.explain is not None:
+        job.explain(lit)
+    for step, path in job.meshes:
+        say(f"mesh     {files.write_mesh(step.run(), path)}")
+    return max((draw(_picture(job, path, out).run) for path in job.pictures), default=OK)
+
+
+def _light(job: Job, out: Output) -> pv.DataSet:
+    """Light the mesh and print how."""
+    from vizlight.mesh.blocks import all_blocks
+
+    for value in job.lit.parts():
+        if isinstance(value, Step):
+            value.run()
+    start = time.perf_counter()
+    asked = vizlight.report() if out.report else contextlib.nullcontext()
+    with warnings.catch_warnings(record=True) as caught, asked as cost:
+        warnings.simplefilter("always", UserWarning)
+        lit: pv.DataSet = job.lit.run()
+    seconds = time.perf_counter() - start
+    if hint := job.hint():
+        say(f"note     {hint}")
+    for warning in caught:
+        complain(warning.message)
+    record = vizlight.provenance(lit, job.name)
+    terms = " + ".join(record.get("terms", [job.name]))
+    points = sum(block.n_points for block in all_blocks(lit))
+    say(f"{points} points lit in {seconds:.3f} s, {record['precision']}: {terms}")
+    if cost is not None:
+        say(str(cost))
+    return lit
+
+
+def _count_white(lit: pv.DataSet, name: str) -> None:
+    """Print how many points are too bright for the picture."""
+    from vizlight.mesh.blocks import all_blocks
+
+    blocks = [block for block in all_blocks(lit) if name in block.point_data]
+    bright = sum(int((block.point_data[name] > 1).sum()) for block in blocks)
+    if bright:
+        total = sum(block.n_points for block in blocks)
+        complain(
+            f"{bright} of {total} points are brighter than 1 and white in the "
+            "picture; a smaller --ambient, --diffuse or --specular shows them"
+        )

@@ -1,0 +1,304 @@
+"""Steps that every command shares: read a file, take a surface, set a camera, make a scene."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import vizlight
+from vizlight import _check
+from vizlight.cli import arguments
+from vizlight.cli.arguments import Shape
+from vizlight.cli.script import Step
+
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    from vizlight._types import Vector
+    from vizlight.cli.arguments import Color, Common, Part
+    from vizlight.scene import Scene, View
+
+    #: Position, focal point and direction up of a camera that no mesh changes.
+    Fixed: TypeAlias = tuple[Vector, Vector, Vector | None]
+
+#: Direction toward the eye where none is given: of anything, and of a map.
+VIEW, MAP = (1.0, 1.0, 1.0), (0.0, 0.0, 1.0)
+#: Bounding box that shows where a camera looks.
+BOX = (-1, 1, -1, 1, -1, 1)
+#: Name of the array of colours times light.
+TINT = "tint"
+#: Angle of view, in degrees.
+ANGLE = 30.0
+
+
+def check_target(target: Part) -> None:
+    """Check the options of a target that need no mesh."""
+    together = [("level", target.level, "contour", target.contour)]
+    if isinstance(target, Shape):
+        together.append(("warp-factor", target.warp_factor, "warp", target.warp))
+        if target.slice is not None and target.contour is not None:
+            raise ValueError(_check.message("--slice", "no --contour beside it", "both"))
+    for option, value, needs, given in together:
+        if value is not None and given is None:
+            raise ValueError(_check.message(f"--{option}", f"--{needs} with it", "it alone"))
+
+
+def check_color(color: Color) -> None:
+    """Check the options of a picture in colour that need no mesh."""
+    import pyvista as pv
+
+    try:
+        pv.LookupTable(color.cmap)
+    except ValueError as error:
+        expected = "the name of a colour map"
+        raise ValueError(_check.message("--cmap", expected, repr(color.cmap))) from error
+
+
+def data(file: Path, target: Part, *, average_cells: bool = False) -> Step:
+    """Return the step that reads a file, after those that raise and cut what is in it."""
+    mesh = Step("data", "files.read_mesh", file)
+    warp = target.warp if isinstance(target, Shape) else None
+    wanted = {target.contour, warp} - {None}
+    if average_cells and wanted and not wanted <= {*mesh.run().point_data}:
+        mesh = Step("averaged", ".cell_data_to_point_data", mesh)
+    if isinstance(target, Shape) and warp is not None:
+        factor = 1.0 if target.warp_factor is None else target.warp_factor
+        mesh = Step("raised", "files.warped", mesh, warp, factor)
+    for text in target.threshold or ():
+        mesh = _threshold(mesh, text)
+    for text in target.clip or ():
+        mesh = _cut("clipped", "clip", mesh, text)
+    return mesh
+
+
+def _threshold(mesh: Step, text: str) -> Step:
+    """Return the step that keeps the cells whose values are in a range."""
+    name, low, high = arguments.interval("threshold", text)
+    found = mesh.run()
+    there = [*found.point_data, *found.cell_data]
+    if name not in there:
+        expected = f"the name of an array, {_check.one_of(there)}"
+        raise ValueError(_check.message("--threshold", expected, repr(name)))
+    if math.isinf(high):
+        step = Step("kept", ".threshold", mesh, low, scalars=name)
+    elif math.isinf(low):
+        step = Step("kept", ".threshold", mesh, high, scalars=name, method="lower")
+    else:
+        step = Step("kept", ".threshold", mesh, (low, high), scalars=name)
+    step.asked = ("--threshold", repr(text))
+    return step
+
+
+def _cut(name: str, option: str, mesh: Step, text: str) -> Step:
+    """Return the step that cuts a mesh by a plane."""
+    normal, offset = arguments.plane(option, text)
+    length = math.hypot(*normal)
+    origin = tuple(offset * component / length for component in normal)
+    step = Step(name, f".{option}", mesh, normal=normal, origin=origin)
+    step.asked = (f"--{option}", repr(text))
+    return step
+
+
+def surface(mesh: Step, target: Part) -> Step:
+    """Return the step that takes the surface, an isosurface or a section of a mesh."""
+    if isinstance(target, Shape) and target.slice is not None:
+        return _cut("section", "slice", mesh, target.slice)
+    options: dict[str, object] = {"contour": target.contour, "level": target.level}
+    return Step("surface", "files.surface_of", mesh, **_given(options))
+
+
+def _given(options: dict[str, object]) -> dict[str, object]:
+    return {name: value for name, value in options.items() if value is not None}
+
+
+def tinted(lit: Step, name: str, data: Step, color: Color) -> Step | None:
+    """Return the step that colours a lit mesh by an array, the colour times the light."""
+    if color.scalars is None:
+        return None
+    values = data.run().point_data.get(color.scalars)
+    if values is None or values.ndim != 1:
+        there = [key for key, array in data.run().point_data.items() if array.ndim == 1]
+        expected = f"a point array of one component, {_check.one_of(there)}"
+        raise ValueError(_check.message("--scalars", expected, repr(color.scalars)))
+    values = Step("", "[]", lit, color.scalars)
+    ends = Step("", ".get_data_range", lit, color.scalars)
+    table = Step("colors", "pyvista.LookupTable", color.cmap, scalar_range=ends)
+    rgb = Step("", "numpy.delete", Step("", "()", table, values), 3, axis=1)
+    light = Step("", "numpy.expand_dims", Step("", "[]", lit, name), 1)
+    shown = Step("shown", ".copy", lit, deep=False)
+    shown.items = {TINT: Step("", "numpy.multiply", rgb, light)}
+    return shown
+
+
+class Look:
+    """Camera and scene as the options describe them; what needs no mesh is checked first."""
+
+    def __init__(self, common: Common) -> None:
+        self._lights, self._eye = common.lights, common.eye
+        self.size = arguments.pixels(common.out.size)
+        file = common.lights.scene
+        self._file = None if file is None else read_scene(file)
+        base = vizlight.Scene() if self._file is None else self._file
+        changes = _given(vars(common.finish))
+        self._material: Step | None = None
+        if changes:
+            kept = {} if self._file is None else _given(vars(base.material))
+            self._material = Step("", "vizlight.Material", **(kept | changes))
+            base = base.replace(material=self._material.run())
+        #: Whether the light has a colour.
+        self.colored = base.colored
+        #: View of the scene's file, if it is that of the picture.
+        self._view = base.view if self._eye.view is None else None
+        self._toward, self._fixed = (
+            _asked_view(self._eye.view) if self._view is None else _file_view(self._view)
+        )
+
+    def camera(self, mesh: Step, *, is_map: bool = False) -> Step:
+        """Return the step that sets the camera on a mesh."""
+        eye = self._eye
+        up = None if eye.up is None else arguments.vector("up", eye.up)
+        if self._fixed is not None:
+            return self._fixed_camera(self._fixed, up)
+        toward = (self._toward or (MAP if is_map else VIEW))[:3]
+        parallel = eye.parallel or (is_map and self._toward is None)
+        parallel = parallel or (self._view is not None and self._view.parallel)
+        options: dict[str, object] = {
+            "up": up,
+            "parallel": True if parallel else None,
+            "zoom": None if eye.zoom == 1 else eye.zoom,
+        }
+        aspect = self.size[0] / self.size[1]
+        return Step("camera", "render.camera_on", mesh, toward, **_given(options), aspect=aspect)
+
+    def _fixed_camera(self, fixed: Fixed, up: Vector | None) -> Step:
+        """Return the step that sets a camera where it was saved."""
+        position, focus, saved_up = fixed
+        zoom = _check.number("zoom", self._eye.zoom, low=1e-6)
+        along_z = not any(p - f for p, f in zip(position[:2], focus[:2], strict=True))
+        camera = Step("camera", "pyvista.Camera")
+        camera.attributes = {
+            "position": position,
+            "focal_point": focus,
+            "up": up or saved_up or ((0.0, 1.0, 0.0) if along_z else (0.0, 0.0, 1.0)),
+            "view_angle": ANGLE / zoom,
+        }
+        if self._eye.parallel:
+            half = math.dist(position, focus) * math.tan(math.radians(ANGLE / 2))
+            camera.attributes |= {"parallel_projection": True, "parallel_scale": half / zoom}
+        return camera
+
+    def scene(self, camera: Step) -> Step:
+        """Return the step that makes the scene, seen by a camera."""
+        shoulder = Step("", "render.over_shoulder", camera)
+        return self._scene(Step("", "vizlight.View.from_camera", camera), shoulder, 3)
+
+    def scene_in(self, n: int) -> Step:
+        """Return the step that makes a scene of n-space, seen from infinity."""
+        from vizlight.pictures import render
+
+        toward = self._toward or VIEW
+        if self._fixed is not None:
+            toward = tuple(p - f for p, f in zip(*self._fixed[:2], strict=True))
+        if len(toward) not in (3, n):
+            expected = "three numbers x,y,z" + f" or {n} numbers" * (n != 3)
+            raise ValueError(_check.message("--view", expected, repr(self._eye.view)))
+        zeros = (0.0,) * (n - len(toward))
+        up = None if self._eye.up is None else arguments.vector("up", self._eye.up)
+        shoulder = render.over_shoulder(render.camera_on(BOX, toward[:3], up=up))
+        view = Step("", "vizlight.View", direction=(*toward, *zeros))
+        return self._scene(view, (*shoulder, *(0.0,) * (n - 3)), n)
+
+    def _scene(self, view: Step, shoulder: object, n: int) -> Step:
+        asked = self._lights
+        lights = [
+            Step("", "vizlight.Light", direction=arguments.vector("light", text, n=n))
+            for text in asked.light or ()
+        ]
+        lights += [
+            Step(
+                "",
+                "vizlight.Light",
+                position=arguments.vector("light-position", text, n=n, direction=False),
+            )
+            for text in asked.light_position or ()
+        ]
+        if asked.headlight:
+            lights.append(Step("", "vizlight.Light.headlight"))
+        if not lights and self._file is None:
+            lights = [Step("", "vizlight.Light", direction=shoulder)]
+        cue = Step("", "vizlight.DepthCue", back_scale=0.5) if asked.depth_cue else None
+        values = _given(
+            {
+                "lights": lights or None,
+                "material": self._material,
+                "view": view if self._view is None else None,
+                "depth_cue": cue,
+            }
+        )
+        if asked.scene is None:
+            return Step("scene", "vizlight.Scene", **values)
+        text = Step("", ".read_text", Step("", "pathlib.Path", asked.scene))
+        read = Step("scene", "vizlight.Scene.from_dict", Step("", "json.loads", text))
+        return Step("scene", ".replace", read, **values) if values else read
+
+
+def read_scene(path: Path) -> Scene:
+    """Return the scene of a JSON file.
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be read or holds no scene.
+    """
+    values = _json("scene", path)
+    try:
+        return vizlight.Scene.from_dict(values)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"--scene '{path}': {error}") from error
+
+
+def _json(option: str, path: Path) -> Any:
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        got = f"'{path}' ({error.strerror})"
+        raise ValueError(_check.message(f"--{option}", "a JSON file", got)) from error
+    except ValueError as error:
+        got = f"'{path}' ({error})"
+        raise ValueError(_check.message(f"--{option}", "a JSON file", got)) from error
+
+
+def _asked_view(view: str | None) -> tuple[Vector | None, Fixed | None]:
+    """Return the direction toward the eye, or a camera that was saved, from an option."""
+    if view is None:
+        return None, None
+    if view.lower().endswith(".json"):
+        return None, _saved_camera(view)
+    # In n-space the eye has n components.
+    return arguments.numbers(view, tuple(range(3, 100))) or arguments.vector("view", view), None
+
+
+def _file_view(view: View) -> tuple[Vector | None, Fixed | None]:
+    """Return the direction toward the eye, and where the camera stands if that is known."""
+    if view.direction is None:
+        remedy = "give the view a direction too, or pass --view"
+        raise ValueError(_check.message("--scene", "a view with a direction", view, remedy))
+    if view.position is None or view.parallel or len(view.position) != 3:
+        return view.direction, None
+    target = tuple(p - d for p, d in zip(view.position, view.direction, strict=True))
+    return view.direction, (view.position, target, None)
+
+
+def _saved_camera(file: str) -> Fixed:
+    """Return the position, the focal point and the direction up of a saved camera."""
+    saved = _json("view", Path(file))
+    try:
+        position, focus, up = (_check.vector("view", part) for part in saved)
+        if {len(position), len(focus), len(up)} != {3} or position == focus or not any(up):
+            raise ValueError
+    except (TypeError, ValueError) as error:
+        expected = "a JSON list of the camera's position, focal point and direction up"
+        raise ValueError(_check.message("--view", expected, f"'{file}'")) from error
+    return position, focus, up

@@ -1,0 +1,188 @@
+"""Calls that can be run or written as a Python script: what a command does, defined once."""
+
+from __future__ import annotations
+
+import functools
+import importlib
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from vizlight import _check
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+#: First names of paths: modules in groups, and modules of vizlight.
+MODULES = (("json", "pathlib"), ("numpy", "pyvista"), ("vizlight",))
+OWN = ("files", "render")
+INDENT, WIDTH = 4, 88
+#: Indentation at which nothing is broken.
+ONE_LINE = -(10**6)
+
+
+class Step:
+    """One call, whose arguments may be results of other steps.
+
+    Parameters
+    ----------
+    name : str
+        Name of the variable that holds the result; without one the call stands where it is used.
+    path : str
+        Dotted path of a public function; ``.name`` is a method of the first argument, ``[]`` an
+        item of it, ``()`` the call of it.
+    *arguments, **keywords : object
+        Arguments: plain values, steps, or lists, tuples and dicts of them.
+    """
+
+    def __init__(self, name: str, path: str, /, *arguments: object, **keywords: object) -> None:
+        self.name, self.path = name, path
+        self.arguments, self.keywords = arguments, keywords
+        #: Attributes that the result is given.
+        self.attributes: dict[str, object] = {}
+        #: Items that the result is given.
+        self.items: dict[str, object] = {}
+        #: Option and value of a user, with which the result must have points.
+        self.asked = ("", "")
+
+    def run(self) -> Any:
+        """Return the result; the call is made once."""
+        return self._result
+
+    @functools.cached_property
+    def _result(self) -> Any:
+        made = self._called()
+        if self.asked[0] and not made.n_points:
+            raise ValueError(
+                _check.message(self.asked[0], "a value that leaves points", self.asked[1])
+            )
+        for key, value in self.attributes.items():
+            setattr(made, key, _run(value))
+        for key, value in self.items.items():
+            made[key] = _run(value)
+        return made
+
+    def _called(self) -> Any:
+        arguments: list[Any] = [_run(value) for value in self.arguments]
+        keywords = {key: _run(value) for key, value in self.keywords.items()}
+        if self.path == "[]":
+            return arguments[0][arguments[1]]
+        if self.path == "()":
+            return arguments[0](*arguments[1:], **keywords)
+        if self.path.startswith("."):
+            return getattr(arguments[0], self.path[1:])(*arguments[1:], **keywords)
+        head, *names = self.path.split(".")
+        function: Any = importlib.import_module(f"vizlight.{head}" if head in OWN else head)
+        for name in names:
+            function = getattr(function, name)
+        return function(*arguments, **keywords)
+
+    def parts(self) -> Iterator[object]:
+        """Yield the arguments, keywords, attributes and items."""
+        yield from self.arguments
+        yield from self.keywords.values()
+        yield from self.attributes.values()
+        yield from self.items.values()
+
+
+def _run(value: object) -> object:
+    if isinstance(value, Step):
+        return value.run()
+    if isinstance(value, list | tuple):
+        return type(value)(_run(part) for part in value)
+    if isinstance(value, Mapping):
+        return {key: _run(part) for key, part in value.items()}
+    return str(value) if isinstance(value, Path) else value
+
+
+def source(jobs: Sequence[Sequence[Step]], *, reported: Sequence[Step] = ()) -> str:
+    """Return the script that runs the steps of each job in order.
+
+    The steps ``reported`` stand in a block whose cost is printed.
+    """
+    lines: list[str] = []
+    heads: set[str] = set()
+    for job in jobs:
+        for step in _in_order(job):
+            heads.add(step.path.partition(".")[0])
+            if step.name or any(step is last for last in job):
+                lines += _statement(step, reported=any(step is one for one in reported))
+    groups = [[f"import {head}" for head in group if head in heads] for group in MODULES]
+    if own := [head for head in OWN if head in heads]:
+        groups[-1].append(f"from vizlight import {', '.join(own)}")
+    return "\n\n".join("\n".join(group) for group in (*groups, lines) if group)
+
+
+def _in_order(steps: Sequence[Step]) -> list[Step]:
+    """Return the steps and all that they need, each once and after what it needs."""
+    found: list[Step] = []
+
+    def visit(value: object) -> None:
+        if isinstance(value, Step):
+            if not any(value is step for step in found):
+                for part in value.parts():
+                    visit(part)
+                found.append(value)
+        elif isinstance(value, list | tuple):
+            for part in value:
+                visit(part)
+        elif isinstance(value, Mapping):
+            visit(list(value.values()))
+
+    visit(list(steps))
+    return found
+
+
+def _statement(step: Step, *, reported: bool) -> list[str]:
+    indent = INDENT if reported else 0
+    head = f"{step.name} = " if step.name else ""
+    lines = [f"{' ' * indent}{head}{_call(step, indent, len(head))}"]
+    lines += [f"{step.name}.{key} = {_text(value)}" for key, value in step.attributes.items()]
+    for key, value in step.items.items():
+        start = f"{step.name}[{_text(key)}] = "
+        lines.append(start + _text(value, indent, len(start)))
+    return ["with vizlight.report() as report:", *lines, "print(report)"] if reported else lines
+
+
+def _text(value: object, indent: int = 0, taken: int = 0) -> str:
+    """Return a value as Python source, on several lines where one is too short for it."""
+    if isinstance(value, Step):
+        return value.name or _call(value, indent, taken)
+    if isinstance(value, list | tuple):
+        ends = "[]" if isinstance(value, list) else "()"
+        comma = len(value) == 1 and isinstance(value, tuple)
+        return _joined(ends[0], [("", part) for part in value], ends[1], indent, taken, comma=comma)
+    if isinstance(value, str | Path):
+        # Double quotes, as formatters of Python write.
+        return json.dumps(str(value), ensure_ascii=False)
+    return repr(value)
+
+
+def _call(step: Step, indent: int, taken: int) -> str:
+    arguments = list(step.arguments)
+    if step.path == "[]":
+        return f"{_text(arguments[0])}[{_text(arguments[1])}]"
+    head = "" if step.path == "()" else step.path
+    if head[:1] in ("", "."):
+        head = f"{_text(arguments.pop(0))}{head}"
+    parts = [("", value) for value in arguments]
+    parts += [(f"{key}=", value) for key, value in step.keywords.items()]
+    return _joined(f"{head}(", parts, ")", indent, taken)
+
+
+def _joined(
+    head: str,
+    parts: list[tuple[str, object]],
+    tail: str,
+    indent: int,
+    taken: int,
+    *,
+    comma: bool = False,
+) -> str:
+    line = head + ", ".join(key + _text(part, ONE_LINE) for key, part in parts) + "," * comma + tail
+    if indent + taken + len(line) <= WIDTH or not parts:
+        return line
+    inner = indent + INDENT
+    rows = [f"{' ' * inner}{key}{_text(part, inner, len(key) + 1)},\n" for key, part in parts]
+    return f"{head}\n{''.join(rows)}{' ' * indent}{tail}"
