@@ -19,6 +19,7 @@ OPTIONAL = (
     ("movies in GIF files", "imageio", "movie"),
     ("movies in MP4 files", "imageio-ffmpeg", "movie"),
     ("shadows of closed meshes ten times as fast", "embreex", "rays"),
+    ("combined solids", "manifold3d", "solids"),
     ("all tests", "pytest", "test"),
     ("tests of pictures", "pytest-pyvista", "test"),
     ("tests with searched inputs", "hypothesis", "test"),

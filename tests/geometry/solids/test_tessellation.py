@@ -357,16 +357,110 @@ def test_single_primitives(solid, random):
     assert bands.error <= 1.3 * bands.steps.error
 
 
-def test_too_thin_or_too_fine_is_refused():
-    # Walls and gaps that are thinner than the distance of points. The area of the block around
-    # them counts in the number of points, so that fewer spacings are tried.
-    wall = Block() - Block(size=(0.998, 0.998, 0.998))
-    gap = Block() | Block((1.001, 0, 0))
-    for solid in (wall & Block(size=(4, 4, 4)), gap & Block((0.5, 0, 0), (4, 4, 4))):
-        with pytest.raises(
-            ValueError, match="tolerance: expected a value small enough for the thinn"
-        ):
-            solids.tessellate(solid)
+@pytest.mark.parametrize("wall", [2e-3, 1e-4, 1e-6])
+def test_thin_walls_and_gaps_between_planes_are_exact(wall):
+    inner = 1 - 2 * wall
+    shell = mesh_of(Block() - Block(size=(inner,) * 3))
+    apart = mesh_of(Block() | Block((1 + wall, 0, 0)))
+    assert shell.volume * shell.scale**3 == pytest.approx(1 - inner**3, rel=1e-9)
+    assert apart.volume * apart.scale**3 == pytest.approx(2, rel=1e-13)
+    assert len(apart.triangles) == 24
+
+
+@pytest.mark.parametrize("wall", [1e-2, 1e-3, 1e-4])
+@pytest.mark.parametrize("offset", [0, 0.5])
+def test_thin_tubes_and_narrow_bores(wall, offset):
+    inner = Frustum((offset * wall, 0, 0), (0, 0, -3), (1 - wall, 1 - wall))
+    tube = mesh_of(Frustum(radii=(1, 1)) - inner)
+    assert tube.volume * tube.scale**3 == pytest.approx(PI * (1 - (1 - wall) ** 2), rel=6e-3)
+    bored = mesh_of(Block() - Frustum(axis=(0, 0, 3), radii=(wall, wall)))
+    assert 1 - bored.volume * bored.scale**3 == pytest.approx(PI * wall**2, rel=0.02)
+    shell = mesh_of(Sphere() - Sphere((offset * wall, 0, 0), 1 - wall))
+    expected = 4 * PI / 3 * (1 - (1 - wall) ** 3)
+    assert shell.volume * shell.scale**3 == pytest.approx(expected, rel=1e-2)
+
+
+def test_equal_crossing_cylinders():
+    """What remains of one cylinder is bounded by half of Steinmetz' solid."""
+    ends = (0.5, 0.5)
+    solid = Frustum(axis=(0, 0, 2), radii=ends) - Frustum(axis=(2, 0, 0), radii=ends)
+    bands = bands_of(solid, levels=2)
+    assert banded.is_closed(bands)
+    assert banded.volume(bands) == pytest.approx(PI / 2 - 2 / 3, rel=3e-3)
+    assert banded.area(bands) == pytest.approx(2.5 * PI, rel=3e-3)
+
+
+def test_many_holes():
+    plate, volume = Block(size=(2, 2, 0.1)), 0.4
+    for x, y in itertools.product(np.arange(12) * 0.16 - 0.88, repeat=2):
+        plate, volume = plate - Frustum((x, y, 0), radii=(0.05, 0.05)), volume - PI * 0.05**2 * 0.1
+    mesh = mesh_of(plate)
+    assert mesh.volume * mesh.scale**3 == pytest.approx(volume, rel=1e-2)
+    assert abs(mesh.volume * mesh.scale**3 - volume) < 1.3 * mesh.volume_error * mesh.scale**3
+
+
+def grid_part(random):
+    """Return a primitive with faces and axes on a grid of half units, some moved by 1e-6."""
+    center = random.integers(-2, 3, 3) / 2 + 1e-6 * random.integers(-1, 2, 3) * random.integers(2)
+    axis = np.eye(3)[random.integers(3)] * random.choice([-1, 1])
+    a, b = random.choice([0.5, 1.0], 2)
+    height = random.integers(1, 5) / 2
+    return (
+        Sphere(center, a), Block(center, random.integers(1, 4, 3) / 2),
+        Frustum(center, axis, (a, a), height=height),
+        Frustum(center, axis, (0, a), height=height),
+        Frustum(center, axis, (a, b), height=height),
+    )[random.integers(5)]  # fmt: skip
+
+
+def free_part(random):
+    """Return a primitive of any position, size and orientation."""
+    center, axis = random.uniform(-1, 1, 3), random.standard_normal(3)
+    a, b = random.uniform(0.2, 0.9, 2)
+    turn = np.linalg.qr(random.standard_normal((3, 3)))[0]
+    return (
+        Sphere(center, a), Block(center, random.uniform(0.5, 1.6, 3), axes=turn),
+        Frustum(center, axis, (a, a), height=b), Frustum(center, axis, (0, a), height=2 * b),
+        Frustum(center, axis, (a, b), height=1),
+    )[random.integers(5)]  # fmt: skip
+
+
+@pytest.mark.parametrize("seed", range(100))
+def test_random_trees(seed):
+    """Closed and outward, with the volume that points inside say, degenerate positions or not."""
+    random = np.random.default_rng([1990, seed])
+    parts = [(grid_part if seed % 2 else free_part)(random) for _ in range(random.integers(2, 8))]
+    solid = parts[0]
+    for part in parts[1:]:
+        solid = (solid | part, solid & part, solid - part, part | solid)[random.integers(4)]
+    mesh = solids.tessellate(solid)
+    start, stop = mesh.triangles, np.roll(mesh.triangles, -1, axis=1)
+    forth = start * len(mesh.points) + stop
+    back = stop * len(mesh.points) + start
+    assert len(np.unique(forth)) == forth.size
+    np.testing.assert_array_equal(np.unique(forth), np.unique(back))
+    boxes = [part.box() for part in parts]
+    low = np.min([center - radius for center, radius in boxes], axis=0)
+    high = np.max([center + radius for center, radius in boxes], axis=0)
+    share = solid.contains(random.uniform(low, high, (100_000, 3))).mean()
+    whole = np.prod(high - low)
+    sigma = np.sqrt(max(share * (1 - share), 1e-5) / 100_000) * whole
+    found = mesh.volume * mesh.scale**3
+    assert abs(found - share * whole) < 4.5 * sigma + 1e-2 * found
+    if len(mesh.triangles) and seed % 4 < 2:
+        bands = refinement.draw(mesh, lambert, 8, low=0.1)
+        assert banded.is_closed(bands)
+        assert bands.error <= 1.1 * bands.steps.error
+
+
+def test_combined_solids_need_an_extra(monkeypatch):
+    monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
+    with pytest.raises(ImportError, match=r"solid: expected a single.*vizlight\[solids\]"):
+        solids.tessellate(PAIR)
+    assert len(solids.tessellate(Sphere()).triangles)
+
+
+def test_too_fine_is_refused():
     with pytest.raises(ValueError, match="tolerance: expected a value that needs at most 400000"):
         solids.tessellate(PAIR, tolerance=1e-6)
     with pytest.raises(ValueError, match="tolerance: expected a number from"):

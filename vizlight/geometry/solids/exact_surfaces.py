@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vizlight.geometry.contours import axial
-
 if TYPE_CHECKING:
     from vizlight._types import Array
 
@@ -21,11 +19,6 @@ class Ball:
     center: Array
     radius: float
 
-    @property
-    def area(self) -> float:
-        """The area of the sphere."""
-        return 4 * math.pi * self.radius**2
-
     def distance(self, points: Array) -> Array:
         """Return signed distances, negative inside."""
         return _sizes(points - self.center) - self.radius
@@ -34,25 +27,13 @@ class Ball:
         """Return outward unit normals."""
         return _unit_rows(points - self.center)
 
-    def samples(self, spacing: float, _: np.random.Generator) -> Array:
-        """Return points about ``spacing`` apart."""
-        count = max(int(4 * np.pi * self.radius**2 / (0.85 * spacing**2)), 12)
-        return np.asarray(self.center + self.radius * fibonacci(count))
-
 
 @dataclass(frozen=True)
 class Plane:
-    """The plane of a face, which is a disc or a rectangle."""
+    """The plane of a flat face."""
 
     center: Array
     outward: Array
-    extent: tuple[float, float]
-    across: tuple[Array, Array]
-
-    @property
-    def area(self) -> float:
-        """The area of the rectangle of half widths ``extent``."""
-        return 4 * self.extent[0] * self.extent[1]
 
     def distance(self, points: Array) -> Array:
         """Return signed distances, negative inside."""
@@ -61,20 +42,6 @@ class Plane:
     def normal(self, points: Array) -> Array:
         """Return the outward unit normal for each point."""
         return np.broadcast_to(self.outward, points.shape)
-
-    def samples(self, spacing: float, random: np.random.Generator) -> Array:
-        """Return points about ``spacing`` apart on the rectangle of half widths ``extent``."""
-        rows = [
-            np.arange(-s - spacing, s + spacing, f * spacing)
-            for s, f in zip(self.extent, (1, 0.866), strict=True)
-        ]
-        u, v = np.meshgrid(*rows, indexing="ij")
-        u = u + 0.5 * spacing * (np.arange(len(rows[1])) % 2)
-        # No three points are collinear: tetrahedra along a line would have no volume.
-        u, v = (x + spacing * random.uniform(-0.15, 0.15, x.shape) for x in (u, v))
-        return np.asarray(
-            self.center + u.reshape(-1, 1) * self.across[0] + v.reshape(-1, 1) * self.across[1]
-        )
 
 
 @dataclass(frozen=True)
@@ -85,12 +52,6 @@ class Cone:
     axis: Array
     height: float
     radii: tuple[float, float]
-
-    @property
-    def area(self) -> float:
-        """The area of the side between both ends."""
-        slant = math.hypot(self.height, self.radii[0] - self.radii[1])
-        return math.pi * sum(self.radii) * slant
 
     @property
     def apex(self) -> Array | None:
@@ -117,23 +78,6 @@ class Cone:
         _, across, size, slope, cosine = self._parts(points)
         unit = across / np.where(size > 0, size, 1)[:, np.newaxis]
         return np.asarray(_unit_rows(cosine * (unit - slope * self.axis)))
-
-    def samples(self, spacing: float, random: np.random.Generator) -> Array:
-        """Return points about ``spacing`` apart."""
-        slant = math.hypot(self.height, self.radii[0] - self.radii[1])
-        rows = max(int(slant / (0.866 * spacing)), 1)
-        share = (np.arange(rows) + 0.5) / rows
-        radius = self.radii[1] + share * (self.radii[0] - self.radii[1])
-        count = np.maximum((2 * np.pi * radius / spacing).astype(int), 5)
-        row = np.repeat(np.arange(rows), count)
-        turn = (np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)) / count[row]
-        # No two points share a ruling: tetrahedra along it would have no volume.
-        turn += random.uniform(-0.15, 0.15, len(row)) / count[row]
-        angle = 2 * np.pi * (turn + 0.382 * row)
-        first, second = axial.frame(self.axis)
-        ring = np.cos(angle)[:, None] * first + np.sin(angle)[:, None] * second
-        lift = ((share - 0.5) * self.height)[row]
-        return np.asarray(self.center + lift[:, None] * self.axis + radius[row][:, None] * ring)
 
 
 Surface = Ball | Plane | Cone

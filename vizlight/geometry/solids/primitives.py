@@ -95,6 +95,11 @@ class Primitive(Solid):
         """Whether the solid has no volume."""
         raise NotImplementedError
 
+    @property
+    def volume(self) -> float:
+        """The volume."""
+        raise NotImplementedError
+
     def primitives(self) -> Iterator[Primitive]:
         """Yield the primitive itself."""
         yield self
@@ -185,6 +190,11 @@ class Sphere(Primitive):
         """Whether the solid has no volume."""
         return self.radius == 0
 
+    @property
+    def volume(self) -> float:
+        """The volume."""
+        return 4 * math.pi / 3 * self.radius**3
+
     def surfaces(self) -> tuple[Surface, ...]:
         """Return the surface of the ball."""
         return (Ball(self.center, self.radius),)
@@ -253,13 +263,17 @@ class Frustum(Primitive):
         """Whether the solid has no volume."""
         return self.height == 0 or max(self.radii) == 0
 
+    @property
+    def volume(self) -> float:
+        """The volume."""
+        a, b = self.radii
+        return math.pi / 3 * self.height * (a * a + a * b + b * b)
+
     def surfaces(self) -> tuple[Surface, ...]:
         """Return the side, the first end and the second end."""
         side = Cone(self.center, self.axis, self.height, self.radii)
-        across = axial.frame(self.axis)
         ends = (
-            Plane(self.center + s / 2 * self.height * self.axis, s * self.axis, (r, r), across)
-            for s, r in ((1, self.radii[0]), (-1, self.radii[1]))
+            Plane(self.center + s / 2 * self.height * self.axis, s * self.axis) for s in (1, -1)
         )
         return (side, *ends)
 
@@ -326,17 +340,18 @@ class Block(Primitive):
         """Whether the solid has no volume."""
         return bool(np.any(self.size == 0))
 
+    @property
+    def volume(self) -> float:
+        """The volume."""
+        return float(np.prod(self.size))
+
     def surfaces(self) -> tuple[Surface, ...]:
         """Return the six faces."""
         found = []
         for i in range(3):
-            j, k = (i + 1) % 3, (i + 2) % 3
             for sign in (1, -1):
                 center = self.center + sign * self.size[i] / 2 * self.axes[i]
-                extent = (self.size[j] / 2, self.size[k] / 2)
-                found.append(
-                    Plane(center, sign * self.axes[i], extent, (self.axes[j], self.axes[k]))
-                )
+                found.append(Plane(center, sign * self.axes[i]))
         return tuple(found)
 
     def moved(self, shift: Array, scale: float) -> Block:

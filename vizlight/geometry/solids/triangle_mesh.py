@@ -51,6 +51,30 @@ class Mesh:
         """Return points in the unit of the solid."""
         return np.asarray(self.shift + self.scale * points)
 
+    @property
+    def volume(self) -> float:
+        """The volume inside the triangles, in normalised lengths."""
+        corners = self.points[self.triangles]
+        return float(np.linalg.det(corners).sum()) / 6
+
+    @property
+    def volume_error(self) -> float:
+        """The volume between triangles and exact surfaces, in normalised lengths.
+
+        The height of the surface over a triangle is averaged over the middles of its edges, which
+        is exact for a quadratic height.
+        """
+        corners = self.points[self.triangles]
+        across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        height = np.zeros(len(across))
+        for i, surface in enumerate(self.surfaces):
+            on = self.patch == i
+            for j in range(3):
+                middle = (corners[on, j] + corners[on, (j + 1) % 3]) / 2
+                height[on] -= self.signs[i] * surface.distance(middle) / 3
+        area = np.sqrt(np.einsum("ij,ij->i", across, across)) / 2
+        return abs(float(area @ height))
+
     def replace(self, points: Array, triangles: Indices, patch: Indices) -> Mesh:
         """Return a mesh of other triangles on the same surfaces."""
         return dataclasses.replace(self, points=points, triangles=triangles, patch=patch)
@@ -74,8 +98,7 @@ def mesh(solid: Sphere | Frustum | Block, segments: int) -> Mesh:
         # The side is a flat ring: a plane, or empty.
         up = 1.0 if unit.radii[1] > unit.radii[0] else -1.0
         ends = unit.surfaces()[1:] if max(unit.radii) > 0 else ()
-        reach, across = (max(unit.radii),) * 2, axial.frame(unit.axis)
-        found: tuple[Surface, ...] = (Plane(unit.center, up * unit.axis, reach, across), *ends)
+        found: tuple[Surface, ...] = (Plane(unit.center, up * unit.axis), *ends)
     else:
         found = unit.surfaces()
     return Mesh(points, triangles, patch, found, np.ones(len(found)), np.asarray(shift), scale)
