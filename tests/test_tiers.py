@@ -69,13 +69,17 @@ def imports(name, text, modules):
                     yield (inner, None) if inner in modules else (node.module, alias.name)
 
 
+def is_folder(module):
+    return (ROOT.parent / module.replace(".", "/")).is_dir()
+
+
 def part_of(module):
     return module.split(".")[1] if "." in module else ""
 
 
 def faults(modules):
     """Return what breaks the rules, a line for each."""
-    found, graph = [], {}
+    found, graph, rooms = [], {}, {}
     for name, text in modules.items():
         own = part_of(name)
         for target, value in imports(name, text, modules):
@@ -98,10 +102,17 @@ def faults(modules):
                     found.append(f"{name}: imports the private {part} of {home}")
             if target != name and not name.startswith(f"{target}."):
                 graph.setdefault(name, set()).add(target)
-    try:
-        TopologicalSorter(graph).prepare()
-    except CycleError as error:
-        found.append(f"a circle: {' -> '.join(error.args[1])}")
+            folders = (
+                name.rpartition(".")[0],
+                target if is_folder(target) else target.rpartition(".")[0],
+            )
+            if not any(f"{a}.".startswith(f"{b}.") for a, b in (folders, folders[::-1])):
+                rooms.setdefault(folders[0], set()).add(folders[1])
+    for edges in (graph, rooms):
+        try:
+            TopologicalSorter(edges).prepare()
+        except CycleError as error:
+            found.append(f"a circle: {' -> '.join(error.args[1])}")
     return found
 
 
@@ -121,6 +132,7 @@ def test_every_part_has_a_tier():
         ("vizlight.shading.engine", "    from vizlight.verify.oracle import light", "above"),
         ("vizlight.filters.fur", "from vizlight.mesh.records import _plain", "private _plain"),
         ("vizlight.model.frames", "from vizlight.model import reflection", "circle"),
+        ("vizlight.geometry.solids.primitives", "from vizlight.geometry import contours", "circle"),
         ("vizlight.mesh.cutting", "import vizlight", "whole package"),
     ],
 )

@@ -15,7 +15,7 @@ from vizlight import _check
 from vizlight.filters import lighting
 from vizlight.geometry.contours import banding, facets, refinement, spacing
 from vizlight.geometry.contours import isoluminance as closed
-from vizlight.geometry.solids import tessellation
+from vizlight.geometry.solids import exact_surfaces, tessellation, triangle_mesh
 from vizlight.geometry.solids.primitives import Frustum, Solid, Sphere
 from vizlight.mesh import hull, normals, point_arrays, records
 from vizlight.mesh.inputs import inputs_of
@@ -369,8 +369,8 @@ def _middles(bands: Bands, light: _Light) -> tuple[Array, Array]:
     middle, shape = bands.middles(), light.shape
     if shape is not None:
         patches = np.stack([bands.patch, bands.patch], axis=1)
-        places = refinement.onto(shape.surfaces, (middle - shape.shift) / shape.scale, patches)
-        return shape.world(places), refinement.normals_of(shape, places, bands.patch)
+        places = exact_surfaces.onto(shape.surfaces, (middle - shape.shift) / shape.scale, patches)
+        return shape.world(places), triangle_mesh.normals_of(shape, places, bands.patch)
     normals = unit_rows(middle[:, 3:]) if middle.shape[1] == 6 else bands.normals()
     return middle[:, :3], normals
 

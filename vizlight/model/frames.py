@@ -106,8 +106,8 @@ def split(direction: ArrayLike, frame: ArrayLike, /) -> tuple[Array, Array]:
     Notes
     -----
     Absolute error at most ``10 eps |x|`` (k up to 7, n up to 8), which includes the error of rows
-    that are orthonormal up to rounding, and also holds where x lies along the tangent: ``|x_N|`` is the
-    length of the residual, not ``sqrt(1 - cos^2)``.
+    that are orthonormal up to rounding, and also holds where x lies along the tangent: ``|x_N|`` is
+    the length of the residual, not ``sqrt(1 - cos^2)``.
     Source: Banks, section 2 (parts in T and N).
     """
     rows = layout.as_frame(frame)

@@ -111,7 +111,7 @@ def test_split_of_each_pattern(pattern):
     ends = [(0, 1), (1, 2), (2, 0)]
     middles = np.array([[3 + i if pattern >> i & 1 else -1 for i in range(3)]])
     points = np.concatenate([corners, [(corners[a] + corners[b]) / 2 for a, b in ends]])
-    made, owner = refinement.split(np.array([[0, 1, 2]]), middles)
+    made, owner = triangle_mesh.split(np.array([[0, 1, 2]]), middles)
     a, b, c = (points[made[:, i]] for i in range(3))
     area = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
     assert np.all(area > 0)

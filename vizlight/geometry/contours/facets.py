@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight.geometry.contours import banding, refinement
+from vizlight.geometry.solids import triangle_mesh
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -87,6 +88,6 @@ class Facets:
         a, b = np.divmod(marked, count)
         place = np.minimum(np.searchsorted(marked, codes), len(marked) - 1)
         number = np.where(marked[place] == codes, count + place, -1)
-        self.triangles, _ = refinement.split(self.triangles, number)
+        self.triangles, _ = triangle_mesh.split(self.triangles, number)
         self.points = np.concatenate([self.points, self.points[a] / 2 + self.points[b] / 2])
         self.lit = np.concatenate([self.lit, self.lit[a] & self.lit[b]])

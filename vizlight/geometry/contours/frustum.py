@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 import numpy as np
 
 from vizlight import _check
-from vizlight.geometry.contours import axial, refinement, spacing
+from vizlight.geometry import axial
+from vizlight.geometry.contours import refinement, spacing
 from vizlight.geometry.contours.banding import Bands, Laminae
 from vizlight.geometry.solids import primitives, triangle_mesh
 from vizlight.model import kernels

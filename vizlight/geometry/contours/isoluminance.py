@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 import numpy as np
 
 from vizlight import _check
-from vizlight.geometry.contours import axial, spacing
+from vizlight.geometry import axial
+from vizlight.geometry.contours import spacing
 from vizlight.geometry.contours.banding import Bands, Laminae
 from vizlight.geometry.contours.frustum import truncus
 

@@ -11,6 +11,7 @@ from scipy.sparse.csgraph import connected_components
 
 from vizlight import _check
 from vizlight.geometry.contours import banding, spacing
+from vizlight.geometry.solids import exact_surfaces, triangle_mesh
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     from vizlight._types import Array, Bools, Indices
     from vizlight.geometry.contours.banding import Bands
     from vizlight.geometry.contours.spacing import Levels, Steps
-    from vizlight.geometry.solids.exact_surfaces import Surface
     from vizlight.geometry.solids.triangle_mesh import Mesh
 
     Luminance = Callable[[Array, Array], Array]
@@ -180,7 +180,7 @@ class _Lit:
 
     def light(self, points: Array, patch: Indices) -> Array:
         """Return the luminance of points on given surfaces."""
-        found = normals_of(self.mesh, points, patch)
+        found = triangle_mesh.normals_of(self.mesh, points, patch)
         return np.asarray(self.luminance(self.mesh.world(points), found), dtype=np.float64)
 
     def corners(self) -> Array:
@@ -196,7 +196,9 @@ class _Lit:
         edge = np.searchsorted(self.codes, np.minimum(a, b) * self.size + np.maximum(a, b))
         points = self.mesh.points
         t = share[:, np.newaxis]
-        return onto(self.mesh.surfaces, points[a] * (1 - t) + points[b] * t, self.both[edge])
+        return exact_surfaces.onto(
+            self.mesh.surfaces, points[a] * (1 - t) + points[b] * t, self.both[edge]
+        )
 
     def at(self, a: Indices, b: Indices, share: Array, patch: Indices) -> Array:
         """Return the luminance at fractions of edges, with the normals of one side."""
@@ -217,7 +219,7 @@ class _Lit:
         new = self.place(a, b, np.full(len(a), 0.5))
         number = np.full(len(self.codes), -1)
         number[marked] = self.size + np.arange(len(a))
-        triangles, owner = split(self.mesh.triangles, number[self.edge])
+        triangles, owner = triangle_mesh.split(self.mesh.triangles, number[self.edge])
         self._set(
             self.mesh.replace(
                 points=np.concatenate([self.mesh.points, new]),
@@ -239,7 +241,12 @@ class _Lit:
         found = np.zeros(len(triangles), np.bool_)
         for row in grid():
             places = np.einsum("i,tij->tj", row, self.mesh.points[triangles])
-            found |= self.light(onto(self.mesh.surfaces, places, patch[:, None], 2), patch) > top
+            found |= (
+                self.light(
+                    exact_surfaces.onto(self.mesh.surfaces, places, patch[:, None], 2), patch
+                )
+                > top
+            )
         return np.flatnonzero(found)
 
     def measure(self, bands: Bands, triangle: Indices) -> Array:
@@ -247,7 +254,7 @@ class _Lit:
         worst = np.zeros(len(bands.values))
         for places, of in within(bands):
             patch = bands.patch[of]
-            on = onto(self.mesh.surfaces, places, patch[:, np.newaxis])
+            on = exact_surfaces.onto(self.mesh.surfaces, places, patch[:, np.newaxis])
             miss = np.abs(self.light(on, patch) - bands.values[of])
             worst = np.maximum(worst, largest(bands, miss))
         worst[slivers(bands, triangle, len(self.mesh.triangles))] = 0
@@ -356,93 +363,3 @@ def _close_apexes(bands: Bands, mesh: Mesh) -> Bands:
             clusters[near] = first[which]
             points[first] = apex
     return banding.weld(bands, clusters)
-
-
-def split(triangles: Indices, middles: Indices) -> tuple[Indices, Indices]:
-    """Return triangles with some edges halved, and the original triangle of each.
-
-    ``middles`` holds the index of the midpoint of the edge that begins at each corner, or -1.
-    """
-    count = np.count_nonzero(middles >= 0, axis=1)
-    rows = np.arange(len(triangles))
-    # Rotate each triangle so that a single marked edge is first, or a single unmarked one last.
-    first = np.where(count == 1, np.argmax(middles >= 0, axis=1), 0)
-    first = np.where(count == 2, (np.argmax(middles < 0, axis=1) + 1) % 3, first)
-    turn = (first[:, np.newaxis] + np.arange(3)) % 3
-    a, b, c = triangles[rows[:, np.newaxis], turn].T
-    p, q, r = middles[rows[:, np.newaxis], turn].T
-    parts = [
-        (0, (a, b, c)),
-        (1, (a, p, c)), (1, (p, b, c)),
-        (2, (p, b, q)), (2, (a, p, q)), (2, (a, q, c)),
-        (3, (a, p, r)), (3, (p, b, q)), (3, (r, q, c)), (3, (p, q, r)),
-    ]  # fmt: skip
-    made = [np.stack([corner[count == n] for corner in corners], 1) for n, corners in parts]
-    owner = [rows[count == n] for n, _ in parts]
-    return np.concatenate(made), np.concatenate(owner)
-
-
-def normals_of(mesh: Mesh, points: Array, patch: Indices) -> Array:
-    """Return the outward normals of the solid at points on its surfaces."""
-    normals = np.empty_like(points)
-    for i, surface in enumerate(mesh.surfaces):
-        on = patch == i
-        if np.any(on):
-            normals[on] = mesh.signs[i] * surface.normal(points[on])
-    return normals
-
-
-def onto(surfaces: tuple[Surface, ...], points: Array, both: Indices, rounds: int = 4) -> Array:
-    """Return nearby points that are on all the surfaces that each row of ``both`` names.
-
-    The method is Newton's with the shortest step; each round squares the error. Where surfaces
-    touch, the step is bounded so that no point moves far away.
-    """
-    points = points.copy()
-    single = np.all(both == both[:, :1], axis=1)
-    for i in np.unique(both[single, 0]):
-        on = np.flatnonzero(single & (both[:, 0] == i))
-        points[on] = _onto_one(surfaces[i], points[on], rounds)
-    on = np.flatnonzero(~single)
-    if len(on):
-        points[on] = _onto_all(surfaces, points[on], both[on], rounds)
-    return points
-
-
-def _onto_one(surface: Surface, points: Array, rounds: int) -> Array:
-    for _ in range(rounds):
-        distance = surface.distance(points)
-        if not np.abs(distance).max(initial=0) > 1e-15:
-            break
-        points = points - distance[:, np.newaxis] * surface.normal(points)
-    return points
-
-
-def _onto_all(surfaces: tuple[Surface, ...], points: Array, which: Indices, rounds: int) -> Array:
-    count = which.shape[1]
-    used = np.unique(which)
-    on = [(j, i, np.flatnonzero(which[:, j] == i)) for j in range(count) for i in used]
-    pairs = [(j, k) for j in range(count) for k in range(j)]
-    same = [(j, which[:, j] == which[:, k]) for j, k in pairs]
-    for _ in range(rounds):
-        distance = np.zeros(which.shape)
-        normal = np.zeros((*which.shape, 3))
-        for j, i, rows in on:
-            if len(rows):
-                distance[rows, j] = surfaces[i].distance(points[rows])
-                normal[rows, j] = surfaces[i].normal(points[rows])
-        for j, rows in same:
-            distance[rows, j] = 0
-            normal[rows, j] = 0
-        gram = normal @ normal.transpose(0, 2, 1)
-        gram += 1e-14 * np.eye(count)
-        gram += np.eye(count) * (np.einsum("nii->ni", gram) < 0.5)[:, :, np.newaxis]
-        weight = np.linalg.solve(gram, distance[:, :, np.newaxis])
-        step = np.einsum("nji,nj->ni", normal, weight[:, :, 0])
-        size = np.sqrt(np.einsum("ij,ij->i", step, step))
-        limit = 4 * np.abs(distance).sum(axis=1)
-        step *= np.minimum(1, limit / np.where(size > 0, size, 1))[:, np.newaxis]
-        points = points - step
-        if not np.abs(distance).max(initial=0) > 1e-15:
-            break
-    return points

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from vizlight._types import Array
+    from vizlight._types import Array, Indices
 
 
 @dataclass(frozen=True)
@@ -99,3 +99,59 @@ def _sizes(vectors: Array) -> Array:
 def _unit_rows(vectors: Array) -> Array:
     size = _sizes(vectors)[:, np.newaxis]
     return np.asarray(vectors / np.where(size > 0, size, 1))
+
+
+def onto(surfaces: tuple[Surface, ...], points: Array, both: Indices, rounds: int = 4) -> Array:
+    """Return nearby points that are on all the surfaces that each row of ``both`` names.
+
+    The method is Newton's with the shortest step; each round squares the error. Where surfaces
+    touch, the step is bounded so that no point moves far away.
+    """
+    points = points.copy()
+    single = np.all(both == both[:, :1], axis=1)
+    for i in np.unique(both[single, 0]):
+        on = np.flatnonzero(single & (both[:, 0] == i))
+        points[on] = _onto_one(surfaces[i], points[on], rounds)
+    on = np.flatnonzero(~single)
+    if len(on):
+        points[on] = _onto_all(surfaces, points[on], both[on], rounds)
+    return points
+
+
+def _onto_one(surface: Surface, points: Array, rounds: int) -> Array:
+    for _ in range(rounds):
+        distance = surface.distance(points)
+        if not np.abs(distance).max(initial=0) > 1e-15:
+            break
+        points = points - distance[:, np.newaxis] * surface.normal(points)
+    return points
+
+
+def _onto_all(surfaces: tuple[Surface, ...], points: Array, which: Indices, rounds: int) -> Array:
+    count = which.shape[1]
+    used = np.unique(which)
+    on = [(j, i, np.flatnonzero(which[:, j] == i)) for j in range(count) for i in used]
+    pairs = [(j, k) for j in range(count) for k in range(j)]
+    same = [(j, which[:, j] == which[:, k]) for j, k in pairs]
+    for _ in range(rounds):
+        distance = np.zeros(which.shape)
+        normal = np.zeros((*which.shape, 3))
+        for j, i, rows in on:
+            if len(rows):
+                distance[rows, j] = surfaces[i].distance(points[rows])
+                normal[rows, j] = surfaces[i].normal(points[rows])
+        for j, rows in same:
+            distance[rows, j] = 0
+            normal[rows, j] = 0
+        gram = normal @ normal.transpose(0, 2, 1)
+        gram += 1e-14 * np.eye(count)
+        gram += np.eye(count) * (np.einsum("nii->ni", gram) < 0.5)[:, :, np.newaxis]
+        weight = np.linalg.solve(gram, distance[:, :, np.newaxis])
+        step = np.einsum("nji,nj->ni", normal, weight[:, :, 0])
+        size = np.sqrt(np.einsum("ij,ij->i", step, step))
+        limit = 4 * np.abs(distance).sum(axis=1)
+        step *= np.minimum(1, limit / np.where(size > 0, size, 1))[:, np.newaxis]
+        points = points - step
+        if not np.abs(distance).max(initial=0) > 1e-15:
+            break
+    return points

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vizlight.geometry.contours import refinement
-from vizlight.geometry.solids.exact_surfaces import Plane
+from vizlight.geometry.solids import triangle_mesh
+from vizlight.geometry.solids.exact_surfaces import Plane, onto
 
 if TYPE_CHECKING:
     from vizlight._types import Bools, Indices
@@ -47,12 +47,12 @@ def place(mesh: Mesh, tolerance: float) -> Mesh:
         of curved surfaces are halved.
     """
     which, fixed = _meeting(mesh)
-    points = refinement.onto(mesh.surfaces, mesh.points, which, 8)
+    points = onto(mesh.surfaces, mesh.points, which, 8)
     moved = points - mesh.points
     far = np.einsum("ij,ij->i", moved, moved) > (REACH * tolerance) ** 2
     which[far] = which[far][:, :1]
     fixed |= far
-    points[far] = refinement.onto(mesh.surfaces, mesh.points[far], which[far], 8)
+    points[far] = onto(mesh.surfaces, mesh.points[far], which[far], 8)
     for surface in mesh.surfaces:
         apex = getattr(surface, "apex", None)
         if apex is not None:
@@ -76,7 +76,7 @@ def _meeting(mesh: Mesh) -> tuple[Indices, Bools]:
     for k in range(several.max(initial=0)):
         rows = np.flatnonzero((several > k) & (found < 3))
         patch = pairs[start[rows] + k, 1]
-        normal = refinement.normals_of(mesh, mesh.points[rows], patch)
+        normal = triangle_mesh.normals_of(mesh, mesh.points[rows], patch)
         along = np.einsum("nij,nj->ni", basis[rows], normal)
         rest = normal - np.einsum("ni,nij->nj", along, basis[rows])
         size = np.sqrt(np.einsum("ij,ij->i", rest, rest))
@@ -97,7 +97,7 @@ def flipped(mesh: Mesh) -> Bools:
     """Return the triangles whose normal points into the solid."""
     corners = mesh.points[mesh.triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normal = refinement.normals_of(mesh, corners.mean(axis=1), mesh.patch)
+    normal = triangle_mesh.normals_of(mesh, corners.mean(axis=1), mesh.patch)
     return np.asarray(np.einsum("ij,ij->i", across, normal) < 0)
 
 
@@ -125,7 +125,7 @@ def _upright(mesh: Mesh, which: Indices, fixed: Bools) -> Mesh:
         total = [np.bincount(start, x, count)[moving] for x in mesh.points[stop].T]
         middle = np.stack(total, axis=1) / neighbours[moving][:, np.newaxis]
         points = mesh.points.copy()
-        points[moving] = refinement.onto(mesh.surfaces, middle, which[moving], 8)
+        points[moving] = onto(mesh.surfaces, middle, which[moving], 8)
         mesh = mesh.replace(points, mesh.triangles, mesh.patch)
     return best
 
@@ -178,8 +178,8 @@ def _shorten(mesh: Mesh, longest: float) -> Mesh:
             break
         place = np.minimum(np.searchsorted(marked, code), len(marked) - 1)
         number = np.where(marked[place] == code, count + place, -1)
-        triangles, of = refinement.split(mesh.triangles, number)
+        triangles, of = triangle_mesh.split(mesh.triangles, number)
         patch = mesh.patch[row[on][first]][:, np.newaxis]
-        new = refinement.onto(mesh.surfaces, middle[on][first], patch)
+        new = onto(mesh.surfaces, middle[on][first], patch)
         mesh = mesh.replace(np.concatenate([mesh.points, new]), triangles, mesh.patch[of])
     return mesh

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from vizlight import _check
-from vizlight.geometry.contours import axial
+from vizlight.geometry import axial
 from vizlight.geometry.solids.exact_surfaces import Ball, Cone, Plane
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vizlight.geometry.contours import axial
+from vizlight.geometry import axial
 from vizlight.geometry.solids.exact_surfaces import Plane, fibonacci
 from vizlight.geometry.solids.primitives import Block, Frustum, Sphere
 
@@ -176,3 +176,37 @@ def _block(unit: Block) -> tuple[Array, Indices, Indices]:
     elif np.any(unit.size == 0):
         there = np.repeat(unit.size == 0, 4)
     return points, np.array(cells, np.intp)[there], patch[there]
+
+
+def split(triangles: Indices, middles: Indices) -> tuple[Indices, Indices]:
+    """Return triangles with some edges halved, and the original triangle of each.
+
+    ``middles`` holds the index of the midpoint of the edge that begins at each corner, or -1.
+    """
+    count = np.count_nonzero(middles >= 0, axis=1)
+    rows = np.arange(len(triangles))
+    # Rotate each triangle so that a single marked edge is first, or a single unmarked one last.
+    first = np.where(count == 1, np.argmax(middles >= 0, axis=1), 0)
+    first = np.where(count == 2, (np.argmax(middles < 0, axis=1) + 1) % 3, first)
+    turn = (first[:, np.newaxis] + np.arange(3)) % 3
+    a, b, c = triangles[rows[:, np.newaxis], turn].T
+    p, q, r = middles[rows[:, np.newaxis], turn].T
+    parts = [
+        (0, (a, b, c)),
+        (1, (a, p, c)), (1, (p, b, c)),
+        (2, (p, b, q)), (2, (a, p, q)), (2, (a, q, c)),
+        (3, (a, p, r)), (3, (p, b, q)), (3, (r, q, c)), (3, (p, q, r)),
+    ]  # fmt: skip
+    made = [np.stack([corner[count == n] for corner in corners], 1) for n, corners in parts]
+    owner = [rows[count == n] for n, _ in parts]
+    return np.concatenate(made), np.concatenate(owner)
+
+
+def normals_of(mesh: Mesh, points: Array, patch: Indices) -> Array:
+    """Return the outward normals of the solid at points on its surfaces."""
+    normals = np.empty_like(points)
+    for i, surface in enumerate(mesh.surfaces):
+        on = patch == i
+        if np.any(on):
+            normals[on] = mesh.signs[i] * surface.normal(points[on])
+    return normals
