@@ -287,6 +287,15 @@ def write_mesh(mesh: pv.DataSet, path: str | Path, /) -> Path:
     return replace_file(path, mesh.save)
 
 
+def make_folder(name: str, path: Path, /) -> None:
+    """Make a folder and those above it; ``name`` is the argument in the error message."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        expected = "a folder that can be made"
+        raise FileError(_check.message(name, expected, f"'{path}' ({error.strerror})")) from error
+
+
 def replace_file(path: Path, write: Callable[[str], object]) -> Path:
     """Write a file in a temporary folder and move it to its path, so that no partial file is left.
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import App, CycloptsError, Parameter
 
-from vizlight import _check, _console
+from vizlight import _console
 from vizlight._version import __version__
 from vizlight.cli import arguments
 from vizlight.cli.arguments import Backend  # noqa: TC001 - cyclopts reads the annotations
@@ -80,12 +80,7 @@ def demo(
     from vizlight import demo, files, render
 
     pixels = arguments.pixels(size)
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise files.FileError(
-            _check.message("out", "a folder that can be made", f"'{out}' ({error.strerror})")
-        ) from error
+    files.make_folder("out", out)
     lit, camera, rows, explained = demo.light_flow()
     mesh = files.write_mesh(lit, out / "flow.vtp")
     table = Table(title="Isosurface Temp = 600 of the rotating disk")
@@ -203,12 +198,7 @@ def study(
         studies.print_list({known: studies.load(known) for known in studies.names()})
         return OK
     chosen = studies.load(name)
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise files.FileError(
-            _check.message("out", "a folder that can be made", f"'{out}' ({error.strerror})")
-        ) from error
+    files.make_folder("out", out)
     result = studies.run(name, chosen, quick=quick, progress_bar=True)
     studies.print_result(result)
     say(f"table    {result.write_csv(out / f'{name}.csv')}")
