@@ -174,7 +174,7 @@ def test_points_that_cannot_be_lit_are_told_and_no_error(volume, capfd):
         (["light", "flow.vti", "--level", "3"], "--level: expected --contour with it"),
         (["light", "flow.vti", "--warp-factor", "3"], "--warp-factor: expected --warp with it"),
         (["light", "flow.vti", "--background", "nocolor"], "background: expected a colour's name"),
-        (["light", "flow.vti", "--line-width", "-1"], "line_width: expected a number from 0.1"),
+        (["light", "flow.vti", "--line-width", "-1"], "--line-width: expected a number from 0.1"),
         (
             ["light", "flow.vti", "--size", "9000x100"],
             "size: expected at most 8192 pixels per side",

@@ -22,6 +22,8 @@ def say(text: str) -> None:
 def one_line(error: object) -> str:
     """Return an error on one line, with the library's options named as on the command line."""
     text = " ".join(str(error).split())
+    # A name of two words at the start is an option; one of one word may be an array or a file.
+    text = re.sub(r"^([a-z]+(?:_[a-z]+)+)(?=:)", _option, text)
     return re.sub(r"(?<![\w.(])([a-z]+(?:_[a-z]+)*)=(?:True)?(?=[ ,;.)]|$)", _option, text)
 
 
