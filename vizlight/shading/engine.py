@@ -242,7 +242,7 @@ def run(
         As :func:`shade`.
     """
     _check.instance("scene", scene, Scene)
-    inputs = inputs.checked(sum(light.intensity > 0 for light in scene.lights))
+    inputs.check(sum(light.intensity > 0 for light in scene.lights))
     if inputs.origin is not None:
         scene = scene.moved([-x for x in inputs.origin])
     if options.precision is None and not options.tolerance:

@@ -123,8 +123,8 @@ class ShadingInputs:
         given = [rows.dtype for rows in (self.tangents, self.normals) if rows is not None]
         return bool(given) and all(kind in (np.float16, np.float32) for kind in given)
 
-    def checked(self, lights: int) -> ShadingInputs:
-        """Return the inputs after a check of all shapes, for a number of lights.
+    def check(self, lights: int) -> None:
+        """Check all shapes against each other, for a number of lights.
 
         Raises
         ------
@@ -162,7 +162,6 @@ class ShadingInputs:
             if got != f"shape {(count, lights)}":
                 expected_shadow = f"shape ({count}, {lights}), normals"
                 raise ValueError(_check.message("shadow", expected_shadow, got))
-        return self
 
 
 def array_source(name: str, value: ArrayLike | ArraySource) -> ArraySource:
