@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from vizlight.filters.isoluminance import isoluminance
     from vizlight.filters.manifold import manifold
     from vizlight.filters.project import project
+    from vizlight.filters.refine import refine
     from vizlight.filters.relief_day import relief_day
     from vizlight.filters.relief_shadow import relief_shadow
     from vizlight.filters.satin import satin
@@ -53,6 +54,7 @@ _HOMES = {
     "manifold": "vizlight.filters",
     "project": "vizlight.filters",
     "provenance": "vizlight.filters",
+    "refine": "vizlight.filters",
     "relief_day": "vizlight.filters",
     "relief_from_mesh": "vizlight.filters",
     "relief_shadow": "vizlight.filters",
@@ -85,6 +87,7 @@ __all__ = [
     "manifold",
     "project",
     "provenance",
+    "refine",
     "relief_day",
     "relief_shadow",
     "report",

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import pyvista as pv
 
 from vizlight import _check
 from vizlight.filters import lighting
-from vizlight.mesh import blocks
+from vizlight.mesh import blocks, refining
 from vizlight.mesh.inputs import inputs_of
 from vizlight.scene import Scene
 from vizlight.shading.options import LightOptions, accepts
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from typing_extensions import Unpack
 
     from vizlight.mesh.blocks import MeshT
@@ -57,7 +59,8 @@ def illuminate(
     pyvista.DataSet or pyvista.MultiBlock
         The mesh with the point array ``luminance`` (active scalars); ``rgb`` where the scene
         has a colour; ``luminance_valid`` where some point could not be lit; and the field array
-        ``luminance_provenance``, which :func:`vizlight.provenance` reads.
+        ``luminance_provenance``, which :func:`vizlight.provenance` reads. With ``refine`` it
+        consists of triangles or polylines with more points, as :func:`vizlight.refine` returns it.
 
     Raises
     ------
@@ -87,13 +90,12 @@ def illuminate(
     >>> lit.active_scalars_name
     'luminance'
     """
+    asked = LightOptions(**options)
+    if asked.refine and _check.boolean("inplace", inplace):
+        expected, remedy = "False for a mesh that gets new points", "leave it out"
+        raise ValueError(_check.message("inplace", expected, inplace, remedy))
     return light_mesh(
-        mesh,
-        scene,
-        LightOptions(**options),
-        threads=threads,
-        inplace=inplace,
-        progress_bar=progress_bar,
+        mesh, scene, asked, threads=threads, inplace=inplace, progress_bar=progress_bar
     )
 
 
@@ -105,8 +107,12 @@ def light_mesh(
     threads: int | None = None,
     inplace: bool = False,
     progress_bar: bool = False,
+    max_points: int | None = None,
 ) -> MeshT:
-    """Light a mesh by options that are checked; see :func:`illuminate`."""
+    """Light a mesh by options that are checked; see :func:`illuminate`.
+
+    With ``options.refine`` the result is a new mesh, also with ``inplace``.
+    """
     _check.instance("scene", scene, Scene)
     blocks.check(mesh)
     out = mesh if _check.boolean("inplace", inplace) else shallow_copy(mesh)
@@ -115,11 +121,36 @@ def light_mesh(
         named, options.name, components=options.components, colored=scene.colored
     )
     parts = [(inputs_of(block, path, scene, options), options) for block, path in named]
+    rest: list[refining.Left] = []
+    if options.refine:
+        fitted = lighting.fit_depth_cue(scene, [inputs for inputs, _ in parts])
+        refined = [
+            refining.refined(block, path, inputs, fitted, options, max_points, threads)
+            for (block, path), (inputs, _) in zip(named, parts, strict=True)
+        ]
+        refining.warn_of_rest(refined, options.refine)
+        out = _replaced(out, iter([mesh for mesh, _, _ in refined]))
+        named = list(blocks.named_blocks(out))
+        parts = [(inputs, options) for _, inputs, _ in refined]
+        rest = [left for _, _, left in refined]
     results, fitted = lighting.light(parts, scene, threads=threads, progress_bar=progress_bar)
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
     meshes = [block for block, _ in named]
     lighting.finish(meshes, results, "illuminate", fitted, options, options.name)
+    for (block, _), left in zip(named, rest, strict=False):
+        block.field_data[f"{options.name}_error"] = [left.error, left.share]
     return out
+
+
+def _replaced(mesh: MeshT, made: Iterator[pv.DataSet]) -> MeshT:
+    """Return the next of some datasets for a dataset, a MultiBlock of them for a MultiBlock."""
+    if not isinstance(mesh, pv.MultiBlock):
+        return cast("MeshT", next(made))
+    for i in range(mesh.n_blocks):
+        block = mesh[i]
+        if block is not None:
+            mesh.replace(i, _replaced(block, made))
+    return mesh
 
 
 def shallow_copy(mesh: MeshT) -> MeshT:

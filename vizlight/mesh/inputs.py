@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vizlight import _check
-from vizlight.mesh import polylines
+from vizlight.mesh import polylines, splitting
 from vizlight.mesh.normals import normals_of, onlooker
 from vizlight.mesh.point_arrays import points_of, tangents_of
 from vizlight.shading.decide import not_a_line
@@ -49,7 +49,13 @@ def inputs_of(mesh: pv.DataSet, path: str, scene: Scene, options: LightOptions) 
         if not path:
             raise
         raise type(error)(f"block {path}: {error}") from error
-    return ShadingInputs(points=points, tangents=tangents, normals=normals, base_tangents=base)
+    return ShadingInputs(
+        points=points,
+        tangents=tangents,
+        normals=normals,
+        base_tangents=base,
+        cells=lambda: splitting.simplices(mesh),
+    )
 
 
 def _tangents(mesh: pv.DataSet, n: int, options: LightOptions) -> Array | None:

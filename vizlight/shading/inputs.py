@@ -10,9 +10,11 @@ import numpy as np
 from vizlight import _check
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike, NDArray
 
-    from vizlight._types import Vector
+    from vizlight._types import Indices, Vector
 
 
 class ArraySource(Protocol):
@@ -85,6 +87,9 @@ class ShadingInputs:
         What was subtracted from the points, where differences would lose digits.
     generated : bool, default: False
         Whether the points exist only once they are lit.
+    cells : callable, optional
+        Function that returns the segments or triangles between whose points the light is
+        interpolated, shape (C, 2) or (C, 3).
     """
 
     points: ArraySource
@@ -98,6 +103,7 @@ class ShadingInputs:
     block: int | None = None
     origin: Vector | None = None
     generated: bool = False
+    cells: Callable[[], Indices] | None = None
 
     @property
     def count(self) -> int:
