@@ -15,7 +15,7 @@ ROOT = Path(vizlight.__file__).parent
 #: Each tier imports only those before it and itself; a folder or a file at the top stands for all
 #: that it holds.
 TIERS = [
-    {"_aliases", "_check", "_console", "_pool", "_progress", "_types", "_version"},
+    {"_aliases", "_check", "_compiled", "_console", "_pool", "_progress", "_types", "_version"},
     {"model"},
     {"geometry"},
     {"scene"},
