@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
-from vizlight import _check
+from vizlight import _check, _supervise
 from vizlight.mesh import hull
 
 if TYPE_CHECKING:
@@ -65,7 +65,9 @@ def read_mesh(path: str | Path, /) -> pv.DataSet:
         raise FileError(_check.message("file", "a readable file", f"'{path}'"))
     reason = "no points"
     mesh: pv.DataSet | None = None
-    with _captured_errors() as errors, warnings.catch_warnings():
+    limit = _supervise.read_limit(path.stat().st_size)
+    reading = _supervise.stage("read", path, seconds=limit)
+    with reading, _captured_errors() as errors, warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
             read = pv.read(path)
@@ -296,7 +298,9 @@ def make_folder(name: str, path: Path, /) -> None:
         raise FileError(_check.message(name, expected, f"'{path}' ({error.strerror})")) from error
 
 
-def replace_file(path: Path, write: Callable[[str], object]) -> Path:
+def replace_file(
+    path: Path, write: Callable[[str], object], *, doing: _supervise.Doing = "write"
+) -> Path:
     """Write a file in a temporary folder and move it to its path, so that no partial file is left.
 
     Parameters
@@ -305,6 +309,8 @@ def replace_file(path: Path, write: Callable[[str], object]) -> Path:
         Path of the file. An existing file is replaced.
     write : callable
         Function that writes the file to a path given as a string.
+    doing : {"write", "draw"}
+        What the function does, for the message if it ends the process.
 
     Returns
     -------
@@ -319,7 +325,8 @@ def replace_file(path: Path, write: Callable[[str], object]) -> Path:
     try:
         with tempfile.TemporaryDirectory(prefix=".vizlight-", dir=path.parent) as folder:
             draft = Path(folder) / f"{path.stem}{path.suffix.lower()}"
-            write(str(draft))
+            with _supervise.stage(doing, path, temporary=folder):
+                write(str(draft))
             draft.replace(path)
     except OSError as error:
         raise FileError(
