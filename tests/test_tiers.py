@@ -16,9 +16,16 @@ ROOT = Path(vizlight.__file__).parent
 #: that it holds.
 TIERS = [
     {
-        "_aliases", "_check", "_compiled", "_console", "_pool", "_progress", "_supervise", "_types",
+        "_aliases",
+        "_check",
+        "_compiled",
+        "_console",
+        "_pool",
+        "_progress",
+        "_supervise",
+        "_types",
         "_version",
-    },  # fmt: skip
+    },
     {"model"},
     {"geometry"},
     {"scene"},
