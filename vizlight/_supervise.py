@@ -133,6 +133,7 @@ def run(main: Callable[[], int]) -> int:
     global _channel  # noqa: PLW0603 - a process has one parent
     if not sys.platform.startswith("linux") or len([*Path("/proc/self/task").iterdir()]) > 1:
         return main()
+    _open_standard_streams()
     reader, writer = os.pipe()
     sys.stdout.flush()
     sys.stderr.flush()
@@ -147,6 +148,19 @@ def run(main: Callable[[], int]) -> int:
     _end_with(parent)
     _limit_memory()
     return main()
+
+
+def _open_standard_streams() -> None:
+    """Open the null device in place of closed standard streams, whose numbers files would take."""
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)
+    if sys.stdout is None:
+        sys.stdout = open(1, "w", closefd=False)  # noqa: SIM115 - as long as the process
+    if sys.stderr is None:
+        sys.stderr = open(2, "w", closefd=False)  # noqa: SIM115
 
 
 def _end_with(parent: int) -> None:
