@@ -41,7 +41,11 @@ REASONS = {
     "tomli": "read above on Python 3.10 only",
 }
 #: Extras whose packages the files of a folder may import, besides the dependencies.
-ALLOWED = {"vizlight": ["movie", "rays", "solids", "test"], "tests": ["test"], "gallery": ["docs"]}
+ALLOWED = {
+    "vizlight": ["fast", "movie", "rays", "solids", "test"],
+    "tests": ["test"],
+    "gallery": ["docs"],
+}
 
 
 def declared(*extras):
