@@ -123,6 +123,8 @@ def arguments_of(
             continue
         default = parameter.default
         option = Parameter(
+            # What a newer option replaces still works.
+            show=name not in getattr(filter_, "replaced", ()),
             help=first_clause(_text(name, texts)),
             negative=() if default is False or name in READ_LISTS else None,
             show_default=bool(default) and not isinstance(default, bool),

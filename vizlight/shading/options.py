@@ -157,7 +157,8 @@ class LightOptions(ShadingOptions):
         stay with the result as ``vizlight_normals``.
     facing : {"auto", "eye", "outward", "as given"}
         Side of the surface that is lit. ``"auto"``: each connected piece that is closed faces
-        outward, any other faces the eye at every point. ``"eye"``: every point faces the eye,
+        outward, any other faces the eye at every point (with ``normals`` that are given the mesh
+        counts as one piece). ``"eye"``: every point faces the eye,
         whatever piece it belongs to; with ``normals`` from data a surface in parts is then lit
         as the whole. ``"outward"``: each piece faces outward as a whole, an open one away from its
         centroid. ``"as given"``: normals as they are, those of the surface by the order of the
@@ -295,6 +296,7 @@ def accepts(
         listed = signature.replace(parameters=[*own, *added])
         entries = "\n".join(filter(None, texts.values()))
         text = re.sub(r"^\*\*options.*(\n    .*)*", lambda _: entries, _doc(function), flags=re.M)
+        method.__dict__["replaced"] = set(getattr(kind, "REPLACED", {}))
         method.__signature__ = listed  # type: ignore[attr-defined]
         method.__doc__ = text
         return method
