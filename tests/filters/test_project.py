@@ -81,7 +81,8 @@ def test_light_after_is_the_light_in_three_space(torus):
     placed = project(torus, rotation=TURN, distance=3.0)
     frame = frames(placed, "projected_frame", 3)
     placed["N"] = np.cross(frame[:, 0], frame[:, 1])
-    expected = illuminate(placed, SCENE3, normals="N", two_sided=True)
+    with pytest.warns(DeprecationWarning, match="two_sided= is replaced"):
+        expected = illuminate(placed, SCENE3, normals="N", two_sided=True)
     np.testing.assert_allclose(lit["luminance"], expected["luminance"], atol=1e-12)
     assert (
         np.abs(lit["luminance"] - project(torus, rotation=TURN, scene=SCENE4)["luminance"]).max()
@@ -364,8 +365,8 @@ def test_a_field_on_a_surface_in_four_space(torus):
     torus["short"] = torus["frame"][:, :6]
     with pytest.raises(ValueError, match="conditioned: expected a point array of 4 or 8"):
         illuminate(torus, matte, conditioned="short", **options)
-    with pytest.raises(ValueError, match="two_sided: expected no two_sided beside tangents"):
-        illuminate(torus, matte, conditioned="frame", two_sided=True, **options)
+    with pytest.raises(ValueError, match="facing: expected no facing beside tangents"):
+        illuminate(torus, matte, conditioned="frame", facing="eye", **options)
 
 
 def test_provenance(torus):

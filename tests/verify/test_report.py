@@ -60,7 +60,7 @@ SCENE_4 = Scene(lights=Light(direction=(0.7, 0.6, 0.38, 0)), view=View(direction
 SUN = PLAIN.replace(lights=Light(direction=(1, 0.5, 1)))
 FILTERS = {
     "surface": lambda s: illuminate(s, SCENE),
-    "two-sided": lambda s: illuminate(s, SCENE, two_sided=True, model="blinn"),
+    "facing the eye": lambda s: illuminate(s, SCENE, facing="eye", model="blinn"),
     "terminator": lambda s: illuminate(s, SCENE, terminator=0.3),
     "conditioned": lambda s: illuminate(s, SCENE, tangents="V", conditioned=True, components=True),
     "uncompensated": lambda s: illuminate(s, SCENE, tangents="V", compensate=False),

@@ -20,6 +20,10 @@ if TYPE_CHECKING:
     from vizlight.shading.options import LightOptions
 
 
+#: Angle in degrees above which edges are sharp in a picture, unless another is given.
+FEATURE_ANGLE = 30.0
+
+
 # Places in n-space need lights and an eye in n-space, which scripts have.
 @options.takes(vizlight.illuminate, "Shading", without=("positions",))
 def light(
@@ -47,11 +51,14 @@ def light(
     scenes.check_color(color)
     look = scenes.Look(common)
     given = options.keywords(how)
+    taken = target.surface or target.contour is not None or target.slice is not None
+    if taken:
+        # In a picture a sharp edge is seen as one.
+        given = {"feature_angle": FEATURE_ANGLE} | given
     asked = LightOptions(**given)
 
     def job(path: Path) -> Job:
         mesh = data = scenes.data(path, target, average_cells=asked.average_cells)
-        taken = target.surface or target.contour is not None or target.slice is not None
         if taken:
             mesh = scenes.surface(data, target)
         camera = look.camera(mesh)

@@ -19,9 +19,10 @@ if TYPE_CHECKING:
     import pyvista as pv
 
     from vizlight._types import Array, Bools, Indices
+    from vizlight.mesh.inputs import Part
     from vizlight.scene import Scene
     from vizlight.shading.engine import Shading
-    from vizlight.shading.inputs import ArraySource, ShadingInputs
+    from vizlight.shading.inputs import ArraySource
     from vizlight.shading.options import LightOptions
 
 #: Number of points that a refined mesh may have by default, if it has not half of them already.
@@ -64,21 +65,15 @@ class Left(NamedTuple):
 
 
 class Refined(NamedTuple):
-    """A refined mesh, what is lit of it, and the error that is left."""
+    """A refined mesh, what it is lit by, and the error that is left."""
 
     mesh: pv.PolyData
-    inputs: ShadingInputs
+    part: Part
     left: Left
 
 
 def refined(
-    mesh: pv.DataSet,
-    path: str,
-    inputs: ShadingInputs,
-    scene: Scene,
-    options: LightOptions,
-    most: int | None,
-    threads: int | None,
+    mesh: pv.DataSet, path: str, part: Part, scene: Scene, most: int | None, threads: int | None
 ) -> Refined:
     """Return a mesh with its segments or triangles split where light bends.
 
@@ -88,12 +83,10 @@ def refined(
         Mesh of faces or lines; not changed.
     path : str
         Path of the mesh in a MultiBlock, for an error.
-    inputs : ShadingInputs
-        What is lit of the mesh.
+    part : Part
+        What it is lit by, with the allowed error, ``refine``, in the options.
     scene : Scene
         Scene whose depth cue, if it has one, has both ends.
-    options : LightOptions
-        Options with the allowed error, ``refine``.
     most : int, optional
         Largest number of points.
     threads : int, optional
@@ -110,35 +103,67 @@ def refined(
         if not path:
             raise
         raise ValueError(f"block {path}: {error}") from error
+    origin: Indices | None = None
     if blocks.has_faces(flat):
         parents, origin = splitting.triangles(flat)
     else:
-        parents, origin = inputs.cells() if inputs.cells else splitting.simplices(flat), None
+        parents = splitting.simplices(flat)
+    inputs, options, count = part.inputs, part.options, mesh.n_points
     with engine.observed(None):
         shading = engine.run(inputs, scene, options, threads=threads)
     between = Between(inputs, scene, options, threads)
-    count = mesh.n_points
-    parts, left = refine(
-        between, shading, parents, options.refine, max(MANY, 2 * count) if most is None else most
-    )
-    rows = {
-        name: between.scales.get(name, 1.0) * found[count:].reshape(-1, found[0].size)
-        for name, found in between.vectors.items()
-    }
-    own: dict[str, ArraySource] = {
-        name: _joined(getattr(inputs, name), rows[name]) for name in rows
-    }
-    own["points"] = _joined(inputs.points, between.points[count:])
-    lit = dataclasses.replace(inputs, **own, cells=lambda: parts.corners)  # type: ignore[arg-type]
+    most = max(MANY, 2 * count) if most is None else most
+    cells, left = refine(between, shading, parents, options.refine, most)
+    found = splitting.rebuilt(flat, cells, origin, _named(flat, between, options))
+    return Refined(found, _extended(part, between, cells.corners), left)
+
+
+def _named(mesh: pv.PolyData, between: Between, options: LightOptions) -> dict[str, Array]:
+    """Return the vectors of new points by the names of the point arrays that they belong to."""
     named = {
-        "normals": options.normals or flat.point_data.active_normals_name,
+        "normals": options.normals or mesh.point_data.active_normals_name,
         "tangents": options.tangents,
         "base_tangents": options.conditioned,
     }
-    given = {
-        key: rows[name] for name, key in named.items() if name in rows and isinstance(key, str)
-    }
-    return Refined(splitting.rebuilt(flat, parts, origin, given), lit, left)
+    found = {}
+    for name, key in named.items():
+        if name in between.vectors and isinstance(key, str) and key in mesh.point_data:
+            rows = between.vectors[name].reshape(len(between.points), -1)
+            rows = between.scales.get(name, 1.0) * rows
+            known = np.asarray(mesh.point_data[key], dtype=np.float64)
+            if name == "normals" and np.nansum(rows[: len(known)] * known) < 0:
+                # Outward normals of a mesh whose own point inward.
+                rows = -rows
+            found[key] = rows[len(known) :]
+    return found
+
+
+def _extended(part: Part, between: Between, corners: Indices) -> Part:
+    """Return what a mesh is lit by, with the new points."""
+    inputs, sided = part.inputs, part.sided
+    count = inputs.count
+    own: dict[str, ArraySource] = {"points": _joined(inputs.points, between.points[count:])}
+    for name, rows in between.vectors.items():
+        added = rows[count:].reshape(len(rows) - count, -1)
+        if name == "normals":
+            added = between.turned(added, between.facts[count:], between.points[count:])
+        own[name] = _joined(getattr(inputs, name), between.scales.get(name, 1.0) * added)
+    sides = inputs.sides and inputs.sides()
+    if sided is not None and sides is not None:
+        facts = between.facts
+        vectors = _joined(sided.vectors, between.vectors["normals"][count:, 0])
+        sides = sides._replace(normals=vectors, facts=facts)
+        lean = None if sided.lean is None else facts[:, 0].astype(np.float32)
+        sided = dataclasses.replace(
+            sided, vectors=vectors, lean=lean, open=facts[:, 1] > 0.5, kept=False
+        )
+    made = dataclasses.replace(
+        inputs,
+        **own,  # type: ignore[arg-type]
+        cells=lambda: corners,
+        sides=None if sides is None else lambda: sides,
+    )
+    return part._replace(inputs=made, sided=sided)
 
 
 def _joined(rows: ArraySource, added: Array) -> Array:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from vizlight._types import Indices, Vector
+    from vizlight._types import Array, Indices, Vector
 
 
 class ArraySource(Protocol):
@@ -59,6 +59,24 @@ class Layout(NamedTuple):
     fur: float = 0.0
 
 
+class Sides(NamedTuple):
+    """Normals before they are turned to the side of the surface that is seen.
+
+    Attributes
+    ----------
+    normals : ndarray, shape (M, n)
+        Normals that agree with each other on a side.
+    facts : ndarray, shape (M, j)
+        Numbers of each point on which the side depends.
+    turned : callable
+        Function of normals, facts and points at the same places that returns the normals turned.
+    """
+
+    normals: Array
+    facts: Array
+    turned: Callable[[Array, Array, Array], Array]
+
+
 @dataclass(frozen=True, kw_only=True)
 class ShadingInputs:
     """The rows that are lit; normals, base tangents and perhaps tangents serve ``repeat`` points.
@@ -90,6 +108,8 @@ class ShadingInputs:
     cells : callable, optional
         Function that returns the segments or triangles between whose points the light is
         interpolated, shape (C, 2) or (C, 3).
+    sides : callable, optional
+        Function that returns the normals as they are interpolated between the points.
     """
 
     points: ArraySource
@@ -104,6 +124,7 @@ class ShadingInputs:
     origin: Vector | None = None
     generated: bool = False
     cells: Callable[[], Indices] | None = None
+    sides: Callable[[], Sides] | None = None
 
     @property
     def count(self) -> int:

@@ -92,32 +92,42 @@ class Between:
         n = int(inputs.points.shape[1])
         self.points = _rows(inputs.points)
         self.vectors: dict[str, Array] = {}
+        self._sides = None if inputs.sides is None else inputs.sides()
+        self.facts: Array = np.empty((len(self.points), 0))
         if inputs.normals is not None:
-            self.vectors["normals"] = unit_rows(_rows(inputs.normals))[:, np.newaxis]
+            given: ArraySource = inputs.normals
+            if self._sides is not None:
+                given, self.facts = self._sides.normals, self._sides.facts
+            self.vectors["normals"] = unit_rows(_rows(given))[:, np.newaxis]
         self._unit = set(self.vectors)
         self.scales: dict[str, float] = {}
         for name in ("tangents", "base_tangents"):
-            given: ArraySource | None = getattr(inputs, name)
-            if given is not None:
-                frames, self.scales[name] = _frames(given, n)
+            rows: ArraySource | None = getattr(inputs, name)
+            if rows is not None:
+                frames, self.scales[name] = _frames(rows, n)
                 self.vectors[name] = frames
                 if frames.shape[1] == 1 and are_unit(frames[:, 0]):
                     self._unit.add(name)
 
-    def at(self, places: Places) -> tuple[Array, dict[str, Array]]:
-        """Return the points and the vectors at places."""
+    def at(self, places: Places) -> tuple[Array, dict[str, Array], Array]:
+        """Return the points, the vectors and the facts on which sides depend, at places."""
         found: dict[str, Array] = {}
         for name, rows in self.vectors.items():
             mean = interpolated if name == "normals" else mean_spaces
             found[name] = mean(rows, places)
             if name in self._unit:
                 found[name] = unit_rows(found[name][:, 0])[:, np.newaxis]
-        return interpolated(self.points, places), found
+        return interpolated(self.points, places), found, interpolated(self.facts, places)
+
+    def turned(self, normals: Array, facts: Array, points: Array) -> Array:
+        """Return normals, shape (M, n), turned to the side of the surface that is seen."""
+        return normals if self._sides is None else self._sides.turned(normals, facts, points)
 
     def extend(self, places: Places) -> None:
         """Make points of places, after those that there are."""
-        points, vectors = self.at(places)
+        points, vectors, facts = self.at(places)
         self.points = np.concatenate([self.points, points])
+        self.facts = np.concatenate([self.facts, facts])
         for name, rows in vectors.items():
             self.vectors[name] = np.concatenate([self.vectors[name], rows])
 
@@ -126,10 +136,12 @@ class Between:
         count = len(places.weights)
         found = np.empty((count, 4 if self.scene.colored else 1))
         for block in _pool.blocks(count, BLOCK):
-            points, vectors = self.at(Places(places.corners[block], places.weights[block]))
+            points, vectors, facts = self.at(Places(places.corners[block], places.weights[block]))
             own: dict[str, ArraySource] = {
                 name: rows.reshape(len(rows), -1) for name, rows in vectors.items()
             }
+            if "normals" in vectors:
+                own["normals"] = self.turned(vectors["normals"][:, 0], facts, points)
             own["points"] = points
             inputs = dataclasses.replace(self.inputs, **own)  # type: ignore[arg-type]
             with engine.observed(None):
@@ -158,7 +170,12 @@ class Between:
         moved = self.inputs.origin
         scene = self.scene if moved is None else self.scene.moved([-x for x in moved])
         rows = self.points[cells]
-        given = self.vectors["tangents" if lines else "normals"][cells, 0]
+        if lines:
+            given = self.vectors["tangents"][cells, 0]
+        else:
+            at = cells.ravel()
+            normals = self.vectors["normals"][at, 0]
+            given = self.turned(normals, self.facts[at], self.points[at]).reshape(rows.shape)
         solve = _across if lines else _toward_half
         found = []
         for light in scene.lights:
