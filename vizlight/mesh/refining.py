@@ -52,9 +52,9 @@ class Left(NamedTuple):
     Attributes
     ----------
     error : float
-        Largest error that was measured between the points.
+        Largest error at 4,096 random places between the points, uniform in area or length.
     share : float
-        Share of random places, uniform in area or length, with more than the error allowed.
+        Share of those places with more than the error allowed.
     enough : bool
         Whether the point budget was sufficient.
     """
@@ -144,7 +144,7 @@ def _extended(part: Part, between: Between, corners: Indices) -> Part:
     count = inputs.count
     own: dict[str, ArraySource] = {"points": _joined(inputs.points, between.points[count:])}
     for name, rows in between.vectors.items():
-        added = rows[count:].reshape(len(rows) - count, -1)
+        added = rows[count:].reshape(len(rows) - count, rows[0].size if count else 0)
         if name == "normals":
             added = between.turned(added, between.facts[count:], between.points[count:])
         own[name] = _joined(getattr(inputs, name), between.scales.get(name, 1.0) * added)
@@ -241,9 +241,10 @@ class _Refinement:
         self.shortest = (
             SHORTEST * float(np.linalg.norm(np.ptp(extent, axis=0))) if len(extent) else 0.0
         )
-        #: Whether the budget was sufficient, and whether some edge is too short to be split.
-        self.enough, self.limited = True, False
-        self.checked: Array = np.empty(0)
+        #: Whether the budget was sufficient.
+        self.enough = True
+        #: Errors at random places of the present parts.
+        self.checked: Array | None = None
         self.random = np.random.default_rng(0)
 
     def round(self, fresh: Indices) -> Indices:
@@ -260,11 +261,12 @@ class _Refinement:
         codes, share, wrong = self._with_inside(codes, share, wrong, fresh[bad], inside[bad])
         room = max(self.most - len(self.between.points), 0)
         if len(codes) > room:
-            self.enough, self.checked = False, np.empty(0)
+            self.enough = False
             worst = np.sort(np.argsort(-wrong, kind="stable")[:room])
             codes, share = codes[worst], share[worst]
         if not len(codes):
             return codes
+        self.checked = None
         made = self.cells.split(codes, share)
         added = self.cells.steps[-1]
         self.light = np.concatenate([self.light, self.between.light(added)])
@@ -273,19 +275,9 @@ class _Refinement:
 
     def left(self) -> Left:
         """Return what is left."""
-        wrong = self.checked if len(self.checked) and self.enough else self._at_random()[1]
+        wrong = self._at_random()[1] if self.checked is None else self.checked
         share = float(np.mean(wrong > self.error)) if len(wrong) else 0.0
-        worst = float(wrong.max(initial=0))
-        if not self.enough or self.limited:
-            every = np.arange(len(self.cells.corners))
-            worst = max(
-                worst,
-                *(
-                    float(miss.max(initial=0))
-                    for miss in (self._edges(every)[-1], self._worst_inside(every))
-                ),
-            )
-        return Left(worst, share, self.enough)
+        return Left(float(wrong.max(initial=0)), share, self.enough)
 
     def _miss(self, cells: Indices, weights: Array) -> Array:
         """Return the error at one place of each part."""
@@ -296,9 +288,7 @@ class _Refinement:
     def _worst_edges(self, fresh: Indices) -> tuple[Indices, Array, Array]:
         """Return the edges of parts to be split, where, and the error there."""
         codes, share, long, worst = self._edges(fresh)
-        over = worst > KEPT * self.error
-        self.limited |= bool((over & ~long).any())
-        chosen = over & long
+        chosen = (worst > KEPT * self.error) & long
         return codes[chosen], share[chosen], worst[chosen]
 
     def _edges(self, fresh: Indices) -> tuple[Indices, Array, Bools, Array]:
@@ -361,12 +351,12 @@ class _Refinement:
         """Add the edges of parts that are wrong within and have no edge that is."""
         own, _ = self.cells.edges(cells)
         free = ~np.isin(own, codes).any(axis=1)
+        free &= self._seen(cells)
         cells, own, inside = cells[free], own[free], inside[free]
         if not len(cells):
             return codes, share, wrong
         sides = own.shape[1]
         long = self._long(np.repeat(cells, sides), np.tile(np.arange(sides), len(cells)))
-        self.limited |= not bool(long.reshape(-1, sides).any(axis=1).all())
         added, place = np.unique(own.ravel()[long], return_inverse=True)
         most = np.zeros(len(added))
         np.maximum.at(most, place.reshape(-1), np.repeat(inside, sides)[long])
@@ -379,8 +369,7 @@ class _Refinement:
 
     def _at_random(self) -> tuple[Indices, Array]:
         """Return the parts at random places, and the error there."""
-        cells = np.arange(len(self.cells.corners))
-        cells = cells[self._seen(cells)]
+        cells = np.flatnonzero(self.measured[self.cells.parent])
         corners = self.cells.corners[cells]
         places, cell = random_places(self.between.points, corners, CHECKS, self.random)
         self.checked = self._miss(cells[cell], places.weights)

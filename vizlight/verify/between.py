@@ -10,11 +10,10 @@ import dataclasses
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.sparse import csr_array
 
 from vizlight import _pool
-from vizlight.geometry.nspace import slices
 from vizlight.model import kernels
+from vizlight.model.frames import orthonormalize
 from vizlight.shading import engine
 
 if TYPE_CHECKING:
@@ -202,12 +201,14 @@ def mean_spaces(frames: Array, places: Places) -> Array:
     """Return the spaces that frames span, interpolated at places, as frames.
 
     Of one vector neither the sign nor that of its neighbours matters: signs are chosen so that the
-    mean is as long as possible. Where they agree this is the plain mean.
+    mean is as long as possible. Where they agree this is the plain mean. Of several the mean of the
+    projections on the spaces is taken, and of that the space of its k largest eigenvalues, which
+    depends on no basis.
 
     Parameters
     ----------
     frames : ndarray, shape (N, k, n)
-        Vectors at the points. One vector may have any length, several are orthonormalised.
+        Vectors at the points: one of any length, or several orthonormal ones.
     places : Places
 
     Returns
@@ -219,15 +220,10 @@ def mean_spaces(frames: Array, places: Places) -> Array:
     if k > 1:
         found = np.empty((m, k, n))
         for block in _pool.blocks(m, BLOCK >> 2):
-            corners, weights = places.corners[block], places.weights[block]
-            used, column = np.unique(corners, return_inverse=True)
-            ends = np.arange(0, corners.size + 1, s)
-            shape = (len(corners), len(used))
-            given = np.asarray(weights.ravel(), dtype=np.float64)
-            shares: csr_array = csr_array((given, column.reshape(-1), ends), shape=shape)
-            shares.sum_duplicates()
-            shares.eliminate_zeros()
-            found[block] = slices.mean_frame(frames[used], shares)
+            rows = frames[places.corners[block]]
+            square = np.einsum("ms,mskn,mskl->mnl", places.weights[block], rows, rows)
+            # The eigenvectors of the k largest eigenvalues, which stand last.
+            found[block] = np.linalg.eigh(square)[1][:, :, n - k :].swapaxes(1, 2)
         return found
     parts = [places.weights[:, i : i + 1] * frames[places.corners[:, i], 0] for i in range(s)]
     if s == 2:
@@ -394,9 +390,11 @@ def _rows(rows: ArraySource) -> Array:
 
 
 def _frames(rows: ArraySource, n: int) -> tuple[Array, float]:
-    """Return frames divided by a scale, so that squares neither overflow nor underflow."""
+    """Return frames: of one vector divided by a scale, orthonormal ones of several."""
     found = _rows(rows)
     found = found.reshape(len(found), -1, n)
+    if found.shape[1] > 1:
+        return orthonormalize(found)[0], 1.0
     largest = float(np.abs(found).max(initial=0, where=np.isfinite(found))) or 1.0
     # The lengths of unit vectors are kept to rounding.
     scale = 1.0 if 0.5 < largest < 2 else largest
