@@ -211,6 +211,22 @@ def test_polylines_are_split_along_themselves(given):
         assert np.abs(shown - true).max() < 1.1 * PIXEL
 
 
+def test_refined_lines_keep_their_tangents_until_they_are_moved():
+    fine = refine(arc(9), SCENE)
+    again = illuminate(fine, SCENE, name="again")
+    np.testing.assert_array_equal(again["again"], fine["luminance"])
+    moved = fine.copy()
+    moved.points *= [1, 2, 1]
+    bare = moved.copy()
+    bare.clear_data()
+    np.testing.assert_array_equal(
+        illuminate(moved, SCENE)["luminance"], illuminate(bare, SCENE)["luminance"]
+    )
+    own = arc(9)
+    own["vizlight_tangents"] = np.ones(9)
+    assert refine(own, SCENE)["vizlight_tangents"].shape == (fine.n_points,)
+
+
 def test_signs_of_a_line_field_do_not_matter(random):
     plain, signed = refine(arc(9), SCENE, tangents="t"), refine(arc(9, random), SCENE, tangents="t")
     assert plain.n_points == signed.n_points
@@ -299,7 +315,9 @@ def test_strips_and_polygons_and_grids_are_refined():
 
 def test_a_budget_ends_the_refinement_with_a_warning():
     mesh = ball()
-    with pytest.warns(UserWarning, match=r"refined to \d+ points, where the budget ends: .* max_p"):
+    with pytest.warns(
+        UserWarning, match=r"refined to \d+ points, where the budget ends: .* max_points"
+    ):
         fine = refine(mesh, SCENE, error=1e-3, max_points=mesh.n_points + 50)
     assert fine.n_points == mesh.n_points + 50
     assert is_conforming(fine)

@@ -87,6 +87,7 @@ def _hyperplane(name: str, text: str) -> object:
 #: Options whose text is read in a way of its own, and its description.
 READ: Mapping[str, tuple[Callable[[str, str], object], str]] = {
     "tolerance": (fraction, "Largest error that is accepted for speed, such as 1/255."),
+    "refine": (fraction, "Largest error between points; cells are split where it is more: 1/255."),
     "levels": (_levels, "Number of steps (8), largest error (0.02) or values (0.2,0.4,0.6)."),
     "facing": (_facing, "Side that is lit: auto, eye, outward or as-given."),
     "toward": (_name_or_vector, "Direction x,y,z to which fibres bend, or name of an array."),

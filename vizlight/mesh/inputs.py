@@ -115,7 +115,8 @@ def _tangents(mesh: pv.DataSet, n: int, options: LightOptions) -> Array | None:
     if options.tangents is not None:
         return tangents_of(mesh, options.tangents, n, average_cells=options.average_cells)
     if n == 3 and polylines.has_lines_only(mesh):
-        return polylines.line_tangents(mesh)
+        kept = splitting.kept_tangents(mesh)
+        return polylines.line_tangents(mesh) if kept is None else kept
     return None
 
 

@@ -468,7 +468,7 @@ def split_edges(mesh: pv.PolyData, angle: float) -> pv.PolyData:
 def fingerprint(mesh: pv.DataSet) -> str | None:
     """Return a digest of the points and cells of a mesh, None for a kind that keeps no normals."""
     if isinstance(mesh, pv.PolyData):
-        cells = [mesh.GetPolys(), mesh.GetStrips()]
+        cells = [mesh.GetLines(), mesh.GetPolys(), mesh.GetStrips()]
     elif isinstance(mesh, pv.UnstructuredGrid):
         cells = [mesh.GetCells()]
     else:

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 #: Number of points that a refined mesh may have by default, if it has not half of them already.
 MANY = 1_000_000
 #: Share of the places with too large an error above which a warning is given.
-WARNED = 1e-3
+WARNED = 5e-3
 
 #: Shares of an edge, and weights of the corners of a triangle, at which the error is measured.
 ALONG = (0.25, 0.5, 0.75)
@@ -115,7 +115,10 @@ def refined(
     most = max(MANY, 2 * count) if most is None else most
     cells, left = refine(between, shading, parents, options.refine, most)
     found = splitting.rebuilt(flat, cells, origin, _named(flat, between, options))
-    return Refined(found, _extended(part, between, cells.corners), left)
+    made = _extended(part, between, cells.corners)
+    if origin is None and options.tangents is None and made.inputs.tangents is not None:
+        splitting.keep_tangents(found, np.asarray(made.inputs.tangents[:]))
+    return Refined(found, made, left)
 
 
 def _named(mesh: pv.PolyData, between: Between, options: LightOptions) -> dict[str, Array]:
@@ -175,7 +178,7 @@ def _joined(rows: ArraySource, added: Array) -> Array:
 
 
 def warn_of_rest(made: Sequence[Refined], error: float) -> None:
-    """Warn once if errors are left at more than 0.1 % of the places, or the budget is spent."""
+    """Warn once if errors are left at more than 0.5 % of the places, or the budget is spent."""
     worst = max((one.left.error for one in made), default=0.0)
     share = max((one.left.share for one in made), default=0.0)
     what = (
@@ -183,7 +186,7 @@ def warn_of_rest(made: Sequence[Refined], error: float) -> None:
     )
     if not all(one.left.enough for one in made):
         used = max(one.mesh.n_points for one in made if not one.left.enough)
-        remedy = "allow a larger error, or more points by max_points= of vizlight.refine"
+        remedy = "allow a larger error, or call vizlight.refine with a larger max_points"
         _check.warn(f"refined to {used} points, where the budget ends: {what}; {remedy}")
     elif share > WARNED:
         _check.warn(

@@ -10,7 +10,8 @@ from scipy.sparse import csr_array, vstack
 
 from vizlight import _check
 from vizlight.geometry.solids import triangle_mesh
-from vizlight.mesh import blocks, hull, point_arrays, polylines
+from vizlight._version import __version__
+from vizlight.mesh import blocks, hull, normals, point_arrays, polylines, records
 from vizlight.verify.between import Places, are_unit, unit_rows
 
 if TYPE_CHECKING:
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 HALF = 31
 #: Name of a temporary cell array, chosen not to clash with a user's array.
 CELLS = "vizlight cells"
+#: Name of the point array in which the tangents of refined lines stay with a result.
+TANGENTS = "vizlight_tangents"
 
 
 def simplices(mesh: pv.DataSet) -> Indices:
@@ -311,6 +314,32 @@ def _interpolated(rows: NDArray[np.generic], shares: csr_array) -> NDArray[np.ge
             found = unit_rows(found)
     found = np.rint(found) if colour else found
     return np.asarray(found.reshape(-1, *rows.shape[1:]).astype(rows.dtype))
+
+
+def keep_tangents(mesh: pv.PolyData, tangents: Array) -> None:
+    """Attach the tangents of lines, with a digest of the points and lines that they belong to.
+
+    New points lie on the segments of a line, whose direction is not that of the line there. Where
+    the user has an array of that name nothing is attached.
+    """
+    ours = TANGENTS in records.made(mesh, TANGENTS)
+    if TANGENTS in mesh.point_data and not ours:
+        return
+    point_arrays.attach_rows(mesh, TANGENTS, tangents)
+    record: records.Record = {
+        "vizlight": __version__, "filter": "refine", "source": normals.fingerprint(mesh),
+        "arrays": [TANGENTS],
+    }  # fmt: skip
+    records.write(mesh, TANGENTS, record)
+
+
+def kept_tangents(mesh: pv.DataSet) -> Array | None:
+    """Return the tangents that were kept of lines, if the mesh has not changed since."""
+    rows = mesh.point_data.get(TANGENTS)
+    record = None if rows is None else records.read(mesh, TANGENTS)
+    if rows is None or record is None or np.shape(rows) != (mesh.n_points, 3):
+        return None
+    return np.asarray(rows) if record.get("source") == normals.fingerprint(mesh) else None
 
 
 def triangles(mesh: pv.PolyData) -> tuple[Indices, Indices]:

@@ -313,33 +313,48 @@ def measure(
         so that the error at these places is within the one allowed; None where the largest factor
         is not enough.
     """
-    own = columns(shading)
     good = shading.valid & np.isfinite(between.points).all(axis=1)
     cells = cells[good[cells].all(axis=1)]
     random = np.random.default_rng(seed)
     places, _ = random_places(between.points, cells, count, random)
     if not len(places.weights):
         return Measured(np.empty(0), 1)
-    there = between.light(places)
-    error = np.abs(there - interpolated(own, places)).max(axis=1)
+    error = error_between(between, shading, places)
     bad: Bools = error > allowed
     finer: int | None = 1
     for factor in FINER if bad.any() else ():
-        small = Places(places.corners[bad], places.weights[bad])
-        within, share = sub_cells(small.weights, factor)
-        light = np.stack(
-            [between.light(Places(small.corners, within[:, i])) for i in range(within.shape[1])],
-            axis=1,
-        )
-        left = np.abs(there[bad] - np.einsum("ms,msc->mc", share, light)).max(axis=1)
+        left = Places(places.corners[bad], places.weights[bad])
         # The places that are left decide on the next factor.
-        bad[bad] = left > allowed
+        bad[bad] = error_between(between, shading, left, factor) > allowed
+        finer = factor
         if not bad.any():
-            finer = factor
             break
     else:
         finer = None if bad.any() else 1
     return Measured(error, finer)
+
+
+def error_between(between: Between, shading: Shading, places: Places, parts: int = 1) -> Array:
+    """Return the error of interpolated light at places, shape (M,).
+
+    Parameters
+    ----------
+    between : Between
+    shading : Shading
+        Light of the points.
+    places : Places
+    parts : int, default: 1
+        Number of equal parts of the sides of all cells, with light at the points between them.
+    """
+    true = between.light(places)
+    if parts == 1:
+        shown = interpolated(columns(shading), places)
+    else:
+        within, share = sub_cells(places.weights, parts)
+        shown = np.zeros_like(true)
+        for i in range(share.shape[1]):
+            shown += share[:, i : i + 1] * between.light(Places(places.corners, within[:, i]))
+    return np.asarray(np.abs(true - shown).max(axis=1, initial=0))
 
 
 def sub_cells(weights: Array, factor: int) -> tuple[Array, Array]:

@@ -194,11 +194,10 @@ def _lines(run: Run) -> list[str]:
             f"{run.places} random places; {_confident(unseen(run.places))} of the places are worse"
         )
         if run.visible:
+            text += f"; {_percent(run.visible)} are off by more than 1/255"
+        if run.visible > unseen(run.places):
             shorter = f"cells 1/{run.finer} as long" if run.finer else "no cells 1/128 as long"
-            text += (
-                f"; {_percent(run.visible)} are off by more than 1/255: {shorter}, or "
-                "refine=1/255, would do"
-            )
+            text += f": {shorter}, or refine=1/255, would do"
         found.append(text)
     return found
 
