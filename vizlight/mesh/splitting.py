@@ -9,8 +9,8 @@ import pyvista as pv
 from scipy.sparse import csr_array, vstack
 
 from vizlight import _check
-from vizlight.geometry.solids import triangle_mesh
 from vizlight._version import __version__
+from vizlight.geometry.solids import triangle_mesh
 from vizlight.mesh import blocks, hull, normals, point_arrays, polylines, records
 from vizlight.verify.between import Places, are_unit, unit_rows
 
