@@ -18,14 +18,14 @@ import pyvista as pv
 from vtkmodules import vtkIOXML
 
 from vizlight import _check, _supervise
-from vizlight.mesh import hull
+from vizlight.mesh import foreign_files, hull
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
-__all__ = ["FileError", "read_mesh", "surface_of", "warped", "write_mesh"]
+__all__ = ["FileError", "read", "read_mesh", "surface_of", "warped", "write_mesh"]
 
 #: File formats that keep point and field arrays, by type of mesh.
 FORMATS: dict[str, tuple[str, ...]] = {
@@ -52,22 +52,30 @@ class FileError(ValueError):
     """A file cannot be read or written."""
 
 
-def read_mesh(path: str | Path, /) -> pv.DataSet:
-    """Read a mesh from any file that PyVista reads; several blocks become one grid.
+def read(path: str | Path, /) -> pv.DataSet:
+    """Read a mesh from a file: any that PyVista reads, tractograms and netCDF grids.
 
     Parameters
     ----------
     path : path
-        Path of the file.
+        Path of the file. Tractograms (.trk, .tck, .trx) need the extra ``tracts``; netCDF files
+        (.nc, .cdf) and those that PyVista reads by meshio, such as .off, .mesh and .msh, need the
+        extra ``formats``.
 
     Returns
     -------
     pyvista.DataSet
+        Several blocks become one grid. A tractogram is a mesh of polylines in the space of its
+        header (RAS, in mm), with the data per point and, as cell data, those per streamline; a
+        group is a cell array of 0 and 1. A netCDF file is the grid of its largest variable, whose
+        last axis is x: an image, or a rectilinear grid where its steps are unequal. Of the
+        time, and of any axis before the last three, the first value is taken.
 
     Raises
     ------
     FileError
-        If the file does not exist, PyVista cannot read it, or it has no points.
+        If the file does not exist or cannot be read, the package that reads it is not installed,
+        or it has no points.
     """
     path = Path(path)
     if not path.is_file():
@@ -82,15 +90,22 @@ def read_mesh(path: str | Path, /) -> pv.DataSet:
     with reading, _captured_errors() as errors, warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
-            read = pv.read(path)
-            mesh = _one_grid(read) if isinstance(read, pv.MultiBlock) else read
+            found = foreign_files.read(path)
+            if found is None:
+                found = pv.read(path)
+            mesh = _one_grid(found) if isinstance(found, pv.MultiBlock) else found
         except Exception as error:  # noqa: BLE001 - readers raise exceptions of any type
             reason = f"{type(error).__name__}: {_first_line(error)}"
     if not isinstance(mesh, pv.DataSet) or mesh.n_points == 0:
         if errors and reason == "no points":
             reason = f"no points: {errors[0]}"
-        raise FileError(_check.message("file", "a mesh that PyVista reads", f"'{path}' ({reason})"))
+        got, remedy = f"'{path}' ({reason})", foreign_files.missing(path)
+        raise FileError(_check.message("file", "a mesh that PyVista reads", got, remedy))
     return mesh
+
+
+#: Older name of :func:`read`.
+read_mesh = read
 
 
 def _first_line(error: Exception) -> str:
