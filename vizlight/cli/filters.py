@@ -80,7 +80,8 @@ def relief(
         Height field, or closed surface; of several each is lit by itself.
     """
     scenes.check_target(shape)
-    look = scenes.Look(common)
+    # The shadow is that of one light.
+    look = scenes.Look(common, fill=False)
     given = options.keywords(how)
     asked = ReliefOptions(**given)
 
