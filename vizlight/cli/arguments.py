@@ -97,7 +97,7 @@ class Lights:
     Parameters
     ----------
     light
-        Direction x,y,z to a far light, or azimuth,altitude in degrees. Default: a key and a fill.
+        Direction x,y,z to a far light, or azimuth,altitude in degrees.
     light_position
         Position x,y,z of a light.
     headlight

@@ -154,7 +154,8 @@ def contours(
     """
     scenes.check_target(shape)
     look = scenes.Look(common)
-    given = options.keywords(how)
+    # In a picture a crease is seen as one.
+    given = {"feature_angle": "auto"} | options.keywords(how)
     asked = ContourOptions(**given)
 
     def job(path: Path) -> Job:
