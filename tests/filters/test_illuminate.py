@@ -356,7 +356,7 @@ def test_result_does_not_hold_the_input_in_memory_twice():
         ({"facing": "me"}, ValueError, "facing: expected .*as given.*, got 'me'"),
         ({"facing": "eye", "two_sided": True}, ValueError, "two_sided: expected facing= alone"),
         ({"feature_angle": -1}, ValueError, "feature_angle: expected"),
-        ({"feature_angle": "30"}, TypeError, "feature_angle: expected"),
+        ({"feature_angle": "30"}, ValueError, "feature_angle: expected .*'auto' or None, got '30'"),
         ({"tangents": "V", "name": ""}, ValueError, "name: expected a name"),
         ({"tangents": "V", "precision": "f4"}, ValueError, "precision: expected"),
         (

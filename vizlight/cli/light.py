@@ -20,10 +20,6 @@ if TYPE_CHECKING:
     from vizlight.shading.options import LightOptions
 
 
-#: Angle in degrees above which edges are sharp in a picture, unless another is given.
-FEATURE_ANGLE = 30.0
-
-
 # Places in n-space need lights and an eye in n-space, which scripts have.
 @options.takes(vizlight.illuminate, "Shading", without=("positions",))
 def light(
@@ -53,8 +49,8 @@ def light(
     given = options.keywords(how)
     taken = target.surface or target.contour is not None or target.slice is not None
     if taken:
-        # In a picture a sharp edge is seen as one.
-        given = {"feature_angle": FEATURE_ANGLE} | given
+        # In a picture a crease is seen as one.
+        given = {"feature_angle": "auto"} | given
     asked = LightOptions(**given)
 
     def job(path: Path) -> Job:

@@ -62,6 +62,10 @@ def _facing(_: str, text: str) -> object:
     return text.replace("-", " ")
 
 
+def _angle(name: str, text: str) -> object:
+    return text if text == "auto" else fraction(name, text)
+
+
 def _rotations(name: str, texts: list[str]) -> object:
     """Return turns PLANE:ANGLE as pairs."""
     found = []
@@ -89,6 +93,10 @@ READ: Mapping[str, tuple[Callable[[str, str], object], str]] = {
     "tolerance": (fraction, "Largest error that is accepted for speed, such as 1/255."),
     "refine": (fraction, "Largest error between points; cells are split where it is more: 1/255."),
     "levels": (_levels, "Number of steps (8), largest error (0.02) or values (0.2,0.4,0.6)."),
+    "feature_angle": (
+        _angle,
+        "Angle in degrees above which edges are sharp, auto for creases.",
+    ),
     "facing": (_facing, "Side that is lit: auto, eye, outward or as-given."),
     "toward": (_name_or_vector, "Direction x,y,z to which fibres bend, or name of an array."),
     "hyperplane": (_hyperplane, "Hyperplane NORMAL:OFFSET that cuts the mesh: 0,0,0,1:0.2."),

@@ -126,9 +126,9 @@ def light_mesh(
     lighting.refuse_overwriting(
         named, options.name, components=options.components, colored=scene.colored
     )
-    meshes = [_split(block, path, options) for block, path in named]
+    taken = [_split(block, path, options) for block, path in named]
     parts = [
-        part_of(mesh, path, scene, options) for mesh, (_, path) in zip(meshes, named, strict=True)
+        part_of(own, path, scene, options) for own, (_, path) in zip(taken, named, strict=True)
     ]
     rest: list[refining.Left] = []
     if options.refine:
@@ -150,9 +150,9 @@ def light_mesh(
     )
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
     sides = [part.sided for part in parts]
-    for (block, _), mesh, sided in zip(named, meshes, sides, strict=True):
-        if mesh is not block:
-            block.ShallowCopy(mesh)
+    for (block, _), own, sided in zip(named, taken, sides, strict=True):
+        if own is not block:
+            block.ShallowCopy(own)
         if sided is not None:
             normals.keep(block, sided)
     inside = sum(sided.inside for sided in sides if sided is not None)

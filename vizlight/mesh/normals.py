@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 import pyvista as pv
@@ -32,6 +32,10 @@ if TYPE_CHECKING:
 NEARLY_CLOSED = 0.2
 #: Angle in degrees between the normals of two faces above which their common edge is sharp.
 SHARP = 30.0
+#: Name under which a user's array keeps out of the way of VTK's.
+_OWN = "vizlight own"
+#: Sharp edges are creases if at most this many times as many edges are half as sharp or more.
+STAND_APART = 0.5
 #: Name of the point array in which normals that had to be computed stay with a result: three
 #: components of the normal, its lean, and 1 on an open piece.
 KEPT = "vizlight_normals"
@@ -52,7 +56,7 @@ class Sided:
     open : ndarray of bool, shape (n_points,), or bool
         Points of pieces with a border, of which either side may be seen.
     sharp : float
-        Share of edges sharper than 30 degrees across which normals were averaged.
+        Share of edges that are creases, across which normals were averaged.
     kept : bool
         Whether the normals come from an earlier result.
     computed : bool
@@ -280,7 +284,7 @@ def computed_normals(
         if mesh.GetMaxSpatialDimension() == 3:
             inside = mesh.n_points - int(np.count_nonzero(origin >= 0))
         vectors = scattered(vectors, origin, mesh.n_points)
-        border = scattered(border, origin, mesh.n_points)
+        border = scattered(border.astype(np.float32), origin, mesh.n_points) > 0
         lean = None if lean is None else scattered(lean, origin, mesh.n_points)
     return Sided(vectors, lean, border, sharp, computed=True, inside=inside)
 
@@ -331,7 +335,8 @@ class _Shape:
         a, b, c = (self.away[self.triangles[:, i]] / self.scale for i in range(3))
         self.across: Array = np.cross(b - a, c - a)
         self.owner: Indices = self.piece[self.triangles[:, 0]]
-        self.volume: Array = np.bincount(self.owner, _dots(self.across, a), self.count)
+        volume = np.bincount(self.owner, _dots(self.across, a), self.count)
+        self.volume: Array = volume.astype(np.float64)
 
     def orient(self, normals: Array, view: View | None) -> None:
         """Flip the normals of each piece that point inward, or away from the eye.
@@ -376,7 +381,11 @@ class _Shape:
         return found.astype(np.float32)
 
     def sharp(self) -> float:
-        """Return the share of edges between two faces whose normals differ by over 30 degrees."""
+        """Return the share of sharp edges where these are creases, else 0.
+
+        Creases stand apart: few edges are nearly as sharp. On a coarse mesh of a smooth shape there
+        are more of those, and no edge is meant to be seen.
+        """
         faces = unit_rows(self.across)
         rows = self.triangles
         keys = _edges(rows, len(self.points))
@@ -386,7 +395,11 @@ class _Shape:
         if not len(twice):
             return 0.0
         one, other = (faces[order[twice + i] // 3] for i in (0, 1))
-        return float(np.mean(_dots(one, other) < np.cos(np.radians(SHARP))))
+        cosine = _dots(one, other)
+        least, nearly = np.cos(np.radians([SHARP, SHARP / 2]))
+        share = float(np.mean(cosine < least))
+        below = float(np.mean((cosine >= least) & (cosine < nearly)))
+        return share if below <= STAND_APART * share else 0.0
 
 
 def _edges(triangles: Indices, count: int) -> Indices:
@@ -427,7 +440,7 @@ def _pieces(surface: pv.PolyData) -> _Pieces:
     same[order] = order[np.maximum.accumulate(np.where(new, np.arange(n), 0))] if n else order
     follows = np.flatnonzero(~last)
     a, b = same[corners[follows]], same[corners[follows + 1]]
-    graph = coo_array((np.ones(len(a), np.bool_), (a, b)), shape=(n, n))
+    graph = coo_array((np.ones(len(a), np.float32), (a, b)), shape=(surface.n_points,) * 2)
     _, piece = connected_components(graph, directed=False)
     return _Pieces(same, np.asarray(piece, dtype=np.intp)[same])
 
@@ -444,14 +457,22 @@ def _corners(surface: pv.PolyData) -> tuple[Indices, Bools]:
     return np.concatenate(corners), np.concatenate(last)
 
 
-def split_edges(mesh: pv.PolyData, angle: float) -> pv.PolyData:
+def split_edges(mesh: pv.PolyData, angle: float | Literal["auto"]) -> pv.PolyData:
     """Return a surface with points split where faces meet at more than an angle in degrees.
 
-    All arrays go with the points; the mesh itself is not changed.
+    ``"auto"`` is 30 degrees on a surface whose sharp edges are creases. All arrays go with the
+    points; the mesh itself is not changed.
     """
     if not has_faces(mesh) or not mesh.n_points:
         return mesh
-    found = mesh.compute_normals(
+    if angle == "auto":
+        if not (_kept(mesh) or computed_normals(mesh)).sharp:
+            return mesh
+        angle = SHARP
+    own = mesh.copy(deep=False)
+    if "Normals" in own.point_data:
+        own.point_data[_OWN] = own.point_data.pop("Normals")
+    found: pv.PolyData = own.compute_normals(
         cell_normals=False,
         split_vertices=True,
         feature_angle=angle,
@@ -462,6 +483,9 @@ def split_edges(mesh: pv.PolyData, angle: float) -> pv.PolyData:
     if found.n_points == mesh.n_points:
         return mesh
     del found.point_data["Normals"]
+    if _OWN in found.point_data:
+        found.point_data["Normals"] = found.point_data.pop(_OWN)
+        found.point_data.active_normals_name = None
     return found
 
 
@@ -510,11 +534,10 @@ def keep(mesh: pv.DataSet, normals: Sided) -> None:
 
 def _kept(mesh: pv.DataSet) -> Sided | None:
     """Return the normals that an earlier result kept, if the mesh has not changed since."""
-    rows = mesh.point_data.get(KEPT)
-    record = records.read(mesh, KEPT) if rows is not None else None
-    if rows is None or record is None or KEPT not in records.made(mesh, KEPT):
+    record = records.read(mesh, KEPT) if KEPT in mesh.point_data else None
+    if record is None or KEPT not in records.made(mesh, KEPT):
         return None
-    rows = np.asarray(rows)
+    rows = np.asarray(mesh.point_data[KEPT])
     if rows.shape != (mesh.n_points, 5) or rows.dtype != np.float32:
         return None
     if record.get("source") != fingerprint(mesh):

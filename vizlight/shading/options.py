@@ -8,7 +8,7 @@ import functools
 import inspect
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Literal, TypedDict, get_args
+from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias, TypedDict, get_args
 
 from vizlight import _check
 
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 Model = Literal["phong", "blinn", "cylinder"]
 Precision = Literal["float32", "float64"]
+FeatureAngle: TypeAlias = float | Literal["auto"] | None
 Facing = Literal["auto", "eye", "outward", "as given"]
 
 
@@ -51,7 +52,7 @@ class LightKeywords(ShadingKeywords, total=False):
     positions: str | None
     normals: str | ArrayLike | None
     facing: Facing
-    feature_angle: float | None
+    feature_angle: FeatureAngle
     flip_normals: bool
     average_cells: bool
     refine: float
@@ -168,10 +169,11 @@ class LightOptions(ShadingOptions):
         as the whole. ``"outward"``: each piece faces outward as a whole, an open one away from its
         centroid. ``"as given"``: normals as they are, those of the surface by the order of the
         corners of its faces. Without a view both sides are lit alike where the eye would choose.
-    feature_angle : float, optional
+    feature_angle : float or "auto", optional
         Angle in degrees between two faces above which points on their common edge are split, so
-        that light does not bend across it; only for normals that are computed. Default: none is
-        split.
+        that light does not bend across it; only for normals that are computed. ``"auto"``: 30 if
+        the sharp edges are creases, which stand apart from the others, else none is split.
+        Default: none is split.
     conditioned : bool or str, default: False
         Whether tangents inherit the self-shadow of the surface: diffuse and specular term of each
         light times ``max(0, N . wi)`` (Banks 6). A surface of codimension 2 or more has no sides
@@ -198,7 +200,7 @@ class LightOptions(ShadingOptions):
     positions: str | None = None
     normals: str | ArrayLike | None = None
     facing: Facing = "auto"
-    feature_angle: float | None = None
+    feature_angle: FeatureAngle = None
     conditioned: bool | str | None = False
     flip_normals: bool = False
     average_cells: bool = False
@@ -229,7 +231,10 @@ def check_sides(facing: object, feature_angle: object) -> None:
         If a value does not fit.
     """
     _check.choice("facing", facing, get_args(Facing))
-    if feature_angle is not None:
+    if feature_angle is not None and feature_angle != "auto":
+        expected = "a number of degrees from 0 to 180, 'auto' or None"
+        if isinstance(feature_angle, str):
+            raise ValueError(_check.message("feature_angle", expected, repr(feature_angle)))
         _check.number("feature_angle", feature_angle, low=0.0, high=180.0)
 
 
