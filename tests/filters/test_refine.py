@@ -107,6 +107,13 @@ def test_the_points_of_the_mesh_come_first_and_keep_their_light():
     np.testing.assert_allclose(again["luminance"], fine["luminance"], atol=1e-6)
 
 
+def test_other_light_does_not_keep_the_error():
+    fine = refine(ball(), SCENE)
+    other = illuminate(fine, SCENE.replace(lights=Light(direction=(0, 0, 1))))
+    assert "luminance_error" not in other.field_data
+    assert "luminance_error" in fine.field_data
+
+
 def test_a_refined_mesh_needs_no_refinement():
     fine = refine(ball(), SCENE, normals="normal")
     again = refine(fine, SCENE, normals="normal", name="again")

@@ -134,13 +134,13 @@ def light_mesh(
     if options.refine:
         fitted = lighting.fit_depth_cue(scene, [part.inputs for part in parts])
         refined = [
-            refining.refined(mesh, path, part, fitted, max_points, threads)
-            for mesh, (_, path), part in zip(meshes, named, parts, strict=True)
+            refining.refined(own, path, part, fitted, max_points, threads)
+            for own, (_, path), part in zip(taken, named, parts, strict=True)
         ]
         refining.warn_of_rest(refined, options.refine)
         out = _replaced(out, iter([one.mesh for one in refined]))
         named = list(blocks.named_blocks(out))
-        meshes = [block for block, _ in named]
+        taken = [block for block, _ in named]
         parts, rest = [one.part for one in refined], [one.left for one in refined]
     results, fitted = lighting.light(
         [(part.inputs, part.options) for part in parts],
@@ -155,12 +155,14 @@ def light_mesh(
             block.ShallowCopy(own)
         if sided is not None:
             normals.keep(block, sided)
+    for block, _ in named:
+        refining.forget(block, options.name)
     inside = sum(sided.inside for sided in sides if sided is not None)
     blocks_lit = [block for block, _ in named]
     lighting.finish(blocks_lit, results, "illuminate", fitted, options, options.name, inside=inside)
     _warn_of_edges(blocks_lit, sides, options)
     for block, left in zip(blocks_lit, rest, strict=False):
-        block.field_data[f"{options.name}_error"] = [left.error, left.share]
+        block.field_data[f"{options.name}{refining.LEFT}"] = [left.error, left.share]
     return out
 
 

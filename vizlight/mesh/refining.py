@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from vizlight import _check
-from vizlight.mesh import blocks, splitting
+from vizlight.mesh import blocks, records, splitting
 from vizlight.mesh.splitting import Cells
 from vizlight.shading import engine
 from vizlight.verify.between import Between, Places, columns, interpolated, random_places
@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 #: Number of points that a refined mesh may have by default, if it has not half of them already.
 MANY = 1_000_000
+#: End of the name of the field array with the error that is left.
+LEFT = "_error"
 #: Share of the places with too large an error above which a warning is given.
 WARNED = 5e-3
 
@@ -175,6 +177,12 @@ def _joined(rows: ArraySource, added: Array) -> Array:
     known = known.reshape(len(known), -1)
     kind = known.dtype if known.dtype.kind == "f" else np.dtype(np.float64)
     return np.concatenate([known.astype(kind), added.astype(kind)])
+
+
+def forget(mesh: pv.DataSet, name: str) -> None:
+    """Remove the error of an earlier refinement, which new light does not have."""
+    if name + LEFT in mesh.field_data and records.read(mesh, name) is not None:
+        del mesh.field_data[name + LEFT]
 
 
 def warn_of_rest(made: Sequence[Refined], error: float) -> None:

@@ -65,7 +65,8 @@ def _file(name: str) -> pv.PolyData:
     mesh = pv.read(getattr(examples, name))
     assert isinstance(mesh, pv.PolyData)
     # Coincident points of a texture or of separate parts have one normal.
-    return mesh.clean().triangulate()
+    triangles: pv.PolyData = mesh.clean().triangulate()
+    return triangles
 
 
 SAMPLES: dict[str, Callable[[], Sample]] = {
@@ -161,8 +162,8 @@ def share(rows: Sequence[Row], name: str) -> float:
         if after.error <= fine.error:
             low, high = math.log(before.error), math.log(after.error)
             t = (low - math.log(fine.error)) / (low - high) if low > high else 1.0
-            points = before.cost * (after.cost / before.cost) ** min(max(t, 0.0), 1.0)
-            return fine.cost / points
+            grown = math.log(after.cost / before.cost) * min(max(t, 0.0), 1.0)
+            return fine.cost / (before.cost * math.exp(grown))
     return math.nan
 
 
