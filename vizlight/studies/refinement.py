@@ -24,7 +24,7 @@ from vizlight.scene import Light, Scene, View
 from vizlight.shading import engine
 from vizlight.shading.options import LightOptions
 from vizlight.studies._framework import PIXEL, Curve, Row, Study, span, words
-from vizlight.verify.between import Between, error_between, random_places
+from vizlight.verify.between import Between, columns, error_between, random_places
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -106,9 +106,9 @@ def measure(name: str, errors: Sequence[float], parts: Sequence[int]) -> list[Ro
     between, cells = Between(inputs, SCENE, options), splitting.simplices(mesh)
     cells = cells[shading.valid[cells].all(axis=1)]
     places, _ = random_places(between.points, cells, PLACES, np.random.default_rng(0))
-    rows = []
+    light, rows = columns(shading), []
     for count in parts:
-        off = error_between(between, shading, places, count)
+        off = error_between(between, light, places, count)
         rows.append(_row(name, UNIFORM, count, off, uniform_size(cells, count)))
         if off.max() < min(errors) / 2:
             break
@@ -122,7 +122,7 @@ def measure(name: str, errors: Sequence[float], parts: Sequence[int]) -> list[Ro
         own, field = splitting.simplices(fine), Between(new, SCENE, options)
         own = own[lit.valid[own].all(axis=1)]
         places, _ = random_places(field.points, own, PLACES, np.random.default_rng(1))
-        off = error_between(field, lit, places)
+        off = error_between(field, columns(lit), places)
         rows.append(_row(name, ADAPTIVE, error, off, len(np.unique(own))))
     return rows
 

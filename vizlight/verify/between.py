@@ -239,10 +239,10 @@ def mean_spaces(frames: Array, places: Places) -> Array:
     return np.asarray(total)[:, np.newaxis]
 
 
-def columns(shading: Shading) -> Array:
+def columns(shading: Shading, rows: Indices | slice = slice(None)) -> Array:
     """Return luminance and colour of points, shape (N, 1) or (N, 4)."""
-    light = shading.luminance[:, np.newaxis]
-    found = light if shading.rgb is None else np.hstack([light, shading.rgb])
+    light = shading.luminance[rows, np.newaxis]
+    found = light if shading.rgb is None else np.hstack([light, shading.rgb[rows]])
     return np.asarray(found, dtype=np.float64)
 
 
@@ -290,13 +290,22 @@ class Measured(NamedTuple):
 
 
 def measure(
-    between: Between, shading: Shading, cells: Indices, count: int, seed: int, allowed: float
+    inputs: ShadingInputs,
+    scene: Scene,
+    options: ShadingOptions,
+    shading: Shading,
+    cells: Indices,
+    *,
+    count: int,
+    seed: int,
+    allowed: float,
 ) -> Measured:
     """Return the error at random places, and how much shorter cells must be for an error.
 
     Parameters
     ----------
-    between : Between
+    inputs, scene, options
+        What is lit, as for :class:`Between`.
     shading : Shading
         Light of the points.
     cells : ndarray of int, shape (M, s)
@@ -313,19 +322,25 @@ def measure(
         so that the error at these places is within the one allowed; None where the largest factor
         is not enough.
     """
-    good = shading.valid & np.isfinite(between.points).all(axis=1)
-    cells = cells[good[cells].all(axis=1)]
-    random = np.random.default_rng(seed)
-    places, _ = random_places(between.points, cells, count, random)
+    points = np.asarray(inputs.points[:])
+    good = shading.valid & np.isfinite(points).all(axis=1)
+    if not good.all():
+        cells = cells[good[cells].all(axis=1)]
+    places, _ = random_places(points, cells, count, np.random.default_rng(seed))
     if not len(places.weights):
         return Measured(np.empty(0), 1)
-    error = error_between(between, shading, places)
+    # Only the corners of the cells that were drawn are looked at.
+    used, corner = np.unique(places.corners, return_inverse=True)
+    places = Places(corner.reshape(places.corners.shape), places.weights)
+    between = Between(_taken(inputs, used), scene, options)
+    light = columns(shading, used)
+    error = error_between(between, light, places)
     bad: Bools = error > allowed
     finer: int | None = 1
     for factor in FINER if bad.any() else ():
         left = Places(places.corners[bad], places.weights[bad])
         # The places that are left decide on the next factor.
-        bad[bad] = error_between(between, shading, left, factor) > allowed
+        bad[bad] = error_between(between, light, left, factor) > allowed
         finer = factor
         if not bad.any():
             break
@@ -334,21 +349,38 @@ def measure(
     return Measured(error, finer)
 
 
-def error_between(between: Between, shading: Shading, places: Places, parts: int = 1) -> Array:
+def _taken(inputs: ShadingInputs, rows: Indices) -> ShadingInputs:
+    """Return the inputs of some points."""
+    own: dict[str, ArraySource] = {}
+    for name in ("points", "normals", "tangents", "base_tangents"):
+        given: ArraySource | None = getattr(inputs, name)
+        if given is not None:
+            own[name] = np.asarray(given[:])[rows]
+    sides = inputs.sides and inputs.sides()
+    if sides is not None:
+        sides = sides._replace(normals=sides.normals[rows], facts=sides.facts[rows])
+    return dataclasses.replace(
+        inputs,
+        **own,  # type: ignore[arg-type]
+        sides=None if sides is None else lambda: sides,
+    )
+
+
+def error_between(between: Between, light: Array, places: Places, parts: int = 1) -> Array:
     """Return the error of interpolated light at places, shape (M,).
 
     Parameters
     ----------
     between : Between
-    shading : Shading
-        Light of the points.
+    light : ndarray, shape (N, c)
+        Luminance and colour of the points.
     places : Places
     parts : int, default: 1
         Number of equal parts of the sides of all cells, with light at the points between them.
     """
     true = between.light(places)
     if parts == 1:
-        shown = interpolated(columns(shading), places)
+        shown = interpolated(light, places)
     else:
         within, share = sub_cells(places.weights, parts)
         shown = np.zeros_like(true)
