@@ -148,7 +148,7 @@ OF_NUMBERS = {
         "np.where(off <= 1e-5 * np.abs(surface.points).max(initial=0), ids, -1)", "ids",
     ),
     "between: tangents added whatever their signs": (
-        "verify/between.py", "best = np.argmax(scores, axis=0)", "best = 0 * np.argmax(scores, axis=0)",
+        "verify/between.py", "best = np.argmax(scores, axis=0)", "best = np.zeros(m, int)",
     ),
     "between: no random places in the second half of a cell": (
         "verify/between.py", "turned = (rest.sum(axis=1) > 1.5)", "turned = (rest.sum(axis=1) > 9)",
