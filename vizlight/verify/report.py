@@ -255,7 +255,7 @@ def report(*, sample: int = 4096, seed: int = 0) -> Iterator[Report]:
     and triangles, against the light of normals and tangents that are interpolated and normalised,
     as a fragment shader computes it. It is computed by the engine in float64, in some 4 ms for
     4,096 places and 0.1 µs for each cell. It is not measured for fur, for cast shadows, and for
-    points without cells.
+    points without cells. Filters that other threads call are not recorded.
 
     Examples
     --------
