@@ -187,69 +187,6 @@ def _triangles(surface: pv.PolyData) -> Indices:
     return np.asarray(faces.regular_faces, dtype=np.intp).reshape(-1, 3)
 
 
-def are_computed(mesh: pv.DataSet, options: LightOptions) -> bool:
-    """Return whether the normals of a mesh are those of its surface, not an array."""
-    return options.normals is None and mesh.point_data.active_normals is None
-
-
-def _is_closed(surface: pv.PolyData) -> bool:
-    """Return whether each edge of a surface has an even number of faces; places make an edge.
-
-    The numbers of the edges, made from the coordinates of their ends, cancel by pairs.
-    """
-    with np.errstate(all="ignore"):
-        # The sum with 0 makes one of the two zeros.
-        places = np.ascontiguousarray(np.asarray(surface.points, dtype=np.float64) + 0.0)
-        words = places.view(np.uint64)
-        number = np.zeros(len(words), dtype=np.uint64)
-        for axis, factor in zip(words.T, _FACTORS, strict=True):
-            number = _mixed(number ^ (axis * factor))
-        rows = _triangles(surface)
-        a, b = number[rows.ravel()], number[rows[:, [1, 2, 0]].ravel()]
-        edges = _mixed((a + b) ^ _mixed(a ^ b))
-        return not np.bitwise_xor.reduce(np.where(a == b, np.uint64(0), edges))
-
-
-#: Odd numbers of 64 bits, and those of the finaliser of splitmix64.
-_FACTORS = tuple(np.uint64(x) for x in (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9))
-_MIX = tuple(np.uint64(x) for x in (0xBF58476D1CE4E5B9, 0x94D049BB133111EB))
-
-
-def _mixed(x: NDArray[np.uint64]) -> NDArray[np.uint64]:
-    """Return numbers of 64 bits in which each bit of the given ones changes half of the others."""
-    x = (x ^ (x >> np.uint64(30))) * _MIX[0]
-    x = (x ^ (x >> np.uint64(27))) * _MIX[1]
-    mixed: NDArray[np.uint64] = x ^ (x >> np.uint64(31))
-    return mixed
-
-
-def _is_inward(surface: pv.PolyData, normals: Array) -> bool:
-    """Return whether normals of a closed surface point to its inside, at its outermost points."""
-    points = np.asarray(surface.points)
-    used = np.unique(_corners(surface)[0])
-    used = used[np.isfinite(points[used]).all(axis=1) & np.isfinite(normals[used]).all(axis=1)]
-    if not len(used):
-        return False
-    outward = 0.0
-    for axis in range(3):
-        along = points[used, axis]
-        outward += float(normals[used[along.argmax()], axis])
-        outward -= float(normals[used[along.argmin()], axis])
-    return outward < 0
-
-
-def _triangles(surface: pv.PolyData) -> Indices:
-    """Return the corners of the triangles of a surface."""
-    faces = surface if surface.is_all_triangles else surface.triangulate()
-    return np.asarray(faces.regular_faces, dtype=np.intp).reshape(-1, 3)
-
-
-def is_open(mesh: pv.DataSet) -> bool:
-    """Return whether a connected piece of the surface of a mesh has a border."""
-    surface, _ = _skin(mesh)
-    return surface is not None and not _is_closed(surface)
-
-
 def _given(mesh: pv.DataSet, value: object, n: int) -> Array | None:
     """Return the normals in ``value`` or the active ones of the mesh, None if they are computed."""
     if value is not None:
