@@ -13,7 +13,7 @@ from vizlight import _check
 from vizlight.filters.illuminate import light_mesh
 from vizlight.geometry.lines import fur
 from vizlight.mesh import blocks, point_arrays, polylines, records, surfaces
-from vizlight.mesh.normals import is_open, onlooker
+from vizlight.mesh.normals import onlooker
 from vizlight.mesh.records import all_made
 from vizlight.model import kernels
 from vizlight.scene import Scene
@@ -164,11 +164,7 @@ def light_lines(
     lines = _traced(mesh, scene, made)
     conditioned = made.surface is not None if made.conditioned is None else made.conditioned
     normals = "Normals" if conditioned is True and made.normals is None else made.normals
-    facing = made.facing
-    if conditioned is True and made.surface is not None and made.normals is None:
-        # The lines have no faces that tell whether their surface is open.
-        facing = "eye" if facing == "auto" and is_open(made.surface) else facing
-    light = dataclasses.replace(made, conditioned=conditioned, normals=normals, facing=facing)
+    light = dataclasses.replace(made, conditioned=conditioned, normals=normals)
     lit = light_mesh(lines, scene, light, threads=threads, inplace=True, progress_bar=progress_bar)
     recorded = dataclasses.replace(options, vectors=made.vectors)
     records.amend(lit, options.name, "streamlines", recorded)

@@ -193,12 +193,6 @@ def _triangles(surface: pv.PolyData) -> Indices:
     return np.asarray(faces.regular_faces, dtype=np.intp).reshape(-1, 3)
 
 
-def is_open(mesh: pv.DataSet) -> bool:
-    """Return whether a connected piece of the surface of a mesh has a border."""
-    surface, _ = _skin(mesh)
-    return surface is not None and not _is_closed(surface)
-
-
 def _given(mesh: pv.DataSet, value: object, n: int) -> Array | None:
     """Return the normals in ``value`` or the active ones of the mesh, None if they are computed."""
     if value is not None:
