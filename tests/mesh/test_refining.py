@@ -137,7 +137,7 @@ def test_the_error_may_be_chosen():
 
 
 @pytest.mark.parametrize("model", ["phong", "blinn"])
-@pytest.mark.parametrize("shininess", [2e3, 1e5])
+@pytest.mark.parametrize("shininess", [2e3, 1e7])
 def test_a_highlight_smaller_than_a_triangle_is_found(model, shininess):
     """No corner, edge or regular place of the triangle sees it."""
     half = unit(unit(LIGHT) + unit(EYE))
@@ -151,7 +151,8 @@ def test_a_highlight_smaller_than_a_triangle_is_found(model, shininess):
     scene = SCENE.replace(material=Material(shininess=shininess, ambient=0, diffuse=0, specular=1))
     assert illuminate(mesh, scene, normals="normal", model=model)["luminance"].max() < 1e-6
     fine = refine(mesh, scene, normals="normal", model=model)
-    assert fine["luminance"].max() > 0.9
+    # The narrowest is no wider than the shortest edge that is split.
+    assert fine["luminance"].max() > 0.5
     assert fine.n_points < 1000
 
 

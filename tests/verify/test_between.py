@@ -189,6 +189,7 @@ def test_a_mean_of_spaces_depends_on_no_basis(k, random):
     frames = np.linalg.qr(frames.swapaxes(1, 2))[0].swapaxes(1, 2)
     places = Places(random.integers(0, 40, (30, 3)), random.dirichlet(np.ones(3), 30))
     turned = np.linalg.qr(random.standard_normal((40, k, k)))[0] @ frames
+    turned *= random.choice([-1, 1], (40, 1, 1))
     a, b = (unit_space(between.mean_spaces(rows, places)) for rows in (frames, turned))
     np.testing.assert_allclose(a, b, atol=1e-10)
     corner = Places(np.array([[3, 4, 5]]), np.array([[0.0, 1, 0]]))
