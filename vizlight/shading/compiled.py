@@ -17,7 +17,7 @@ from vizlight import _compiled, _pool
 from vizlight.model import cylinder_kernels, frames, kernels
 from vizlight.scene.light import NO_ATTENUATION, WHITE
 from vizlight.shading.block import Output, shade_block
-from vizlight.shading.writer import HELPERS, Form, LightForm, write
+from vizlight.shading.writer import BITS, HELPERS, Form, LightForm, write
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -33,6 +33,10 @@ if TYPE_CHECKING:
 MOST_COMPONENTS, MOST_TANGENTS = 6, 3
 #: Seconds that compiled code saves per point: of the whole, and for each light.
 SAVED, SAVED_PER_LIGHT = 10e-9, 15e-9
+
+#: What a plan says of its code once compiled code has run, and before.
+IN_WORDS = "compiled for these terms and types (numba), unusual points by NumPy"
+WHERE_IT_PAYS = "where the number of points pays for its start-up (see vizlight doctor)"
 
 
 def why_not(plan: Plan) -> str:
@@ -64,7 +68,7 @@ class Compiled(NamedTuple):
         Lights in the order in which the kernel takes them.
     """
 
-    kernel: Callable[..., int]
+    kernel: Callable[..., None]
     form: Form
     numbers: Array
     wide: Array
@@ -81,27 +85,26 @@ class Compiled(NamedTuple):
         shadow = None if part.shadow is None else np.asarray(part.shadow[:])[:, self.order]
         whole = at.step is None
         light: Array = output.luminance[at] if whole else np.empty(count, kind)
-        valid: NDArray[np.uint8] = np.empty(count, np.uint8)
         terms = np.empty((2, count if form.components else 0), kind)
         color = np.empty(3 * count if form.colored else 0, kind)
-        odd = self.kernel(
+        self.kernel(
             _flat(part.points if form.points else None, form.points),
             _flat(part.tangents, form.tangents),
             _flat(part.normals, form.normals),
             _flat(part.base_tangents, form.base_tangents),
             _flat(shadow, form.work),
             _flat(part.fur_height if form.fur else None, form.work),
-            self.numbers, self.wide, self.table, light, valid, terms[0], terms[1], color,
+            self.numbers, self.wide, self.table, light, terms[0], terms[1], color,
         )  # fmt: skip
         if not whole:
             output.luminance[at] = light
-        output.valid[at] = valid == 1
+        output.valid[at] = True
         if output.diffuse is not None and output.specular is not None:
             output.diffuse[at], output.specular[at] = terms
         if output.rgb is not None:
             output.rgb[at] = color.reshape(-1, 3)
-        if odd:
-            _light_again(plan, at, np.flatnonzero(valid == 2), part, output)
+        if np.isnan(light.sum()):
+            _light_again(plan, at, np.flatnonzero(np.isnan(light)), part, output)
 
 
 def prepare(plan: Plan, inputs: ShadingInputs, threads: int | None) -> tuple[Compiled | None, str]:
@@ -156,7 +159,7 @@ def _beyond(plan: Plan) -> str:
 
 
 @lru_cache(maxsize=256)
-def _kernel(form: Form) -> _compiled.Kernel[..., int]:
+def _kernel(form: Form) -> _compiled.Kernel[..., None]:
     """Return the kernel of a form, which is not compiled before its first call."""
     scope = _compiled.generated(write(form).source, {}, "light")
     for name in HELPERS:
@@ -165,7 +168,7 @@ def _kernel(form: Form) -> _compiled.Kernel[..., int]:
             inline=True,
             rounding=_compiled.ROUNDING,
         )
-    light: Callable[..., int] = scope["light"]  # type: ignore[assignment]
+    light: Callable[..., None] = scope["light"]  # type: ignore[assignment]
     light.__globals__.update(scope)
     return _compiled.Kernel(light, rounding=_compiled.ROUNDING)
 
@@ -218,15 +221,22 @@ def _form(plan: Plan, inputs: ShadingInputs) -> tuple[Form, list[int]]:
 def _kind(light: Light, highlight: Highlight) -> LightForm:
     """Return the kind of a light."""
     near = light.position is not None
+    power = _power(highlight)
     return LightForm(
         near=near,
         faded=near and light.attenuation != NO_ATTENUATION,
         highlight=highlight.model if highlight.half is None else "half",
+        whole=highlight.model != "cylinder" and power == int(power) and power < 2**BITS,
     )
 
 
+def _power(highlight: Highlight) -> float:
+    """Return the power that is computed: Blinn's is one of squares."""
+    return highlight.shininess / (1 if highlight.model == "phong" else 2)
+
+
 def _given(
-    plan: Plan, form: Form, order: list[int], kernel: Callable[..., int]
+    plan: Plan, form: Form, order: list[int], kernel: Callable[..., None]
 ) -> Compiled:  # fmt: skip
     """Return a kernel with the numbers of a plan."""
     values = _scene_numbers(plan)
@@ -292,6 +302,10 @@ def _light_numbers(light: Light, highlight: Highlight) -> dict[str, float]:
     """Return the numbers of a kernel that belong to one light."""
     values = {"intensity": light.intensity, "shininess": highlight.shininess}
     values |= _vector("c", light.attenuation)
+    power = _power(highlight)
+    for bit in range(BITS):
+        taken = int(power) >> bit & 1
+        values |= {f"bit{bit}": taken, f"bit{bit}not": 1 - taken}
     values |= _vector("color", light.color or WHITE)
     values |= _toward("", light.position, light.direction, near=light.position is not None)
     if highlight.half is not None:

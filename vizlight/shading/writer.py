@@ -20,14 +20,20 @@ if TYPE_CHECKING:
 
 #: Up to this many lights are written out; more are grouped by kind, each kind in a loop.
 UNROLLED = 4
+#: Bits of the powers that are computed by multiplication.
+BITS = 6
 
 
 class LightForm(NamedTuple):
-    """Kind of a light: near or at infinity, with attenuation or not, and its highlight."""
+    """Kind of a light: near or at infinity, with attenuation or not, and its highlight.
+
+    ``whole`` says that the highlight is an integer power below 2^BITS.
+    """
 
     near: bool
     faded: bool
     highlight: str
+    whole: bool
 
 
 class Form(NamedTuple):
@@ -72,7 +78,7 @@ class Text(NamedTuple):
 #: Parameters of a kernel.
 ARRAYS = (
     "points", "tangents", "normals", "base_tangents", "shadow", "height", "numbers", "wide",
-    "table", "luminance", "valid", "diffuse", "specular", "rgb",
+    "table", "luminance", "diffuse", "specular", "rgb",
 )  # fmt: skip
 
 #: Elementary functions: exp of numbers of 0 or less, log of x where d = 1 - x is known, arctan2 of
@@ -200,7 +206,7 @@ LN2_HIGH, LN2_LOW = F(0.693359375), F({second!r})
 LEAST_f4 = np.finfo(np.float32).tiny / np.finfo(np.float32).eps
 LEAST_f8 = np.finfo(np.float64).tiny / np.finfo(np.float64).eps
 MOST_f4, MOST_f8 = np.finfo(np.float32).max, np.finfo(np.float64).max
-NONE, GOOD, TWO = np.uint8(0), np.uint8(1), np.uint8(2)
+LOST = F(np.nan)
 """
     return constants + PRELUDE.format(log=log, exp=exp, arctan=arctan)
 
@@ -227,6 +233,10 @@ class _Writer:
         self.numbers: list[str] = []
         self.wide: list[str] = []
         self.hoisted: dict[str, str] = {}
+        #: Squared lengths by their type, since they were last checked.
+        self.squares: dict[str, list[str]] = {}
+        #: First part of the names of a power's bits, where it is an integer.
+        self.whole = ""
         #: Numbers of the lights of the loop that is being written.
         self.looped: range | None = None
         self.constants: dict[float, str] = {}
@@ -302,6 +312,15 @@ class _Writer:
 
     def primitive(self, name: str, args: Sequence[str]) -> str:
         """Return a call of what the language gives, or a formula written out."""
+        if name == "power" and self.whole:
+            # Each bit of the power takes a factor in, or 1: one code for all integers.
+            x, value = args[0], ""
+            for bit in range(BITS):
+                x = self.name(f"{x} * {x}") if bit else x
+                given = f"{self.whole}{bit}"
+                factor = self.name(f"{self.number(given)} * {x} + {self.number(f'{given}not')}")
+                value = self.name(f"{value} * {factor}") if bit else factor
+            return value
         if name == "power":
             x, deficit, exponent = args
             zero, one = self.constant(0.0), self.constant(1.0)
@@ -324,22 +343,23 @@ class _Writer:
     def dot(self, a: Sequence[str], b: Sequence[str]) -> str:
         return self.name(" + ".join(f"{x} * {y}" for x, y in zip(a, b, strict=True)))
 
-    def unit(self, v: Sequence[str], kind: str, *, void: bool = False) -> tuple[list[str], str]:
-        """Return a unit vector in the type of its array and its length; mark what has none.
-
-        With ``void`` a vector of zeros is known to have none, and needs no second look.
-        """
+    def unit(self, v: Sequence[str], kind: str) -> tuple[list[str], str]:
+        """Return a unit vector in the type of its array and its length, and note its square."""
         kind = max(kind, self.form.work)
         square = self.dot(v, v)
-        good = self.name(f"({square} > LEAST_{kind}) & ({square} < MOST_{kind})")
-        if void:
-            whole = " + ".join(f"abs({x})" for x in v)
-            nothing = self.name(f"({whole}) == {self.constant(0.0)}")
-            self.lines.append(f"{self.indent}void = void | {nothing}")
-            good = self.name(f"{good} | {nothing}")
-        self.lines.append(f"{self.indent}odd = odd | (not {good})")
+        self.squares.setdefault(kind, []).append(square)
         inverse = self.name(f"{self.constant(1.0)} / sqrt({square})")
         return [self.name(f"{x} * {inverse}") for x in v], self.name(f"{square} * {inverse}")
+
+    def check(self) -> None:
+        """Mark the point if a square is out of range: least too small or sum too large."""
+        for kind, squares in self.squares.items():
+            least = squares[0]
+            for square in squares[1:]:
+                least = self.name(f"{least} if {least} < {square} else {square}")
+            good = f"({least} > LEAST_{kind}) & ({' + '.join(squares)} < MOST_{kind})"
+            self.lines.append(f"{self.indent}odd = odd | (not ({good}))")
+        self.squares = {}
 
     def cast(self, v: Iterable[str]) -> list[str]:
         """Return numbers in the type of the work."""
@@ -356,7 +376,7 @@ class _Writer:
         """Return orthonormal rows that span the tangents of row i."""
         n, rows = self.form.n, list[list[str]]()
         for a in range(k):
-            row, _ = self.unit(self.load(array, n, a * n, k * n), kind, void=k == 1)
+            row, _ = self.unit(self.load(array, n, a * n, k * n), kind)
             if a:
                 row = self.reject(row, rows)
                 row, size = self.unit(row, kind)
@@ -415,7 +435,7 @@ class _Body:
     def write(self) -> None:
         form, w = self.form, self.w
         if form.normals:
-            self.normal = w.cast(w.unit(w.load("normals", form.n), form.normals, void=True)[0])
+            self.normal = w.cast(w.unit(w.load("normals", form.n), form.normals)[0])
         if form.base_tangents:
             self.sheet = w.frame("base_tangents", form.base, form.base_tangents)
         if form.tangents:
@@ -444,9 +464,11 @@ class _Body:
         w, start = self.w, 0
         for kind, group in groupby(self.form.lights):
             w.looped = range(start, start + len(list(group)))
+            w.check()
             w.lines.append(f"{w.indent}for m in range({len(w.looped)}):")
             w.indent += "    "
             self.light(kind, "light.", sight, f"({start} + m)")
+            w.check()
             w.indent = w.indent[:-4]
             start = w.looped.stop
         w.looped = None
@@ -502,7 +524,9 @@ class _Body:
         if form.diffuse:
             self.add("d", w.name(f"{self.diffuse(split, met, passed)} * {scale}"), given)
         if form.specular:
+            w.whole = f"{given}bit" if kind.whole else ""
             value = self.specular(kind, split, sight, met, given)
+            w.whole = ""
             if form.surface:
                 value = self.cut(value, cosine, passed)
             self.add("s", w.name(f"{value} * {scale}"), given)
@@ -617,15 +641,13 @@ class _Body:
         form, w = self.form, self.w
         zero = w.constant(0.0)
         fade = self.fade() if form.cue else ""
-        w.lines.append(f"{w.indent}lost = odd | void")
-        for name in self.sums():
-            w.lines.append(f"{w.indent}{name} = {zero} if lost else {name}")
+        w.check()
         d, s = "d" if form.diffuse else zero, "s" if form.specular else zero
         kd, ks = w.number("kd"), w.number("ks")
         light = w.call("luminance", w.number("ambient"), kd, d, ks, s)
         if fade:
             light = w.call("depth_cue", light, fade, w.number("cue"))
-        put = [f"luminance[i] = {light}", "valid[i] = TWO if odd else (NONE if void else GOOD)"]
+        put = [f"luminance[i] = LOST if odd else {light}"]
         if form.components:
             put += [f"diffuse[i] = {kd} * {d}", f"specular[i] = {ks} * {s}"]
         if form.colored:
@@ -642,7 +664,7 @@ class _Body:
                 if fade:
                     color = w.call("depth_cue", color, fade, w.number(f"cue{c}"))
                 put.append(f"rgb[3 * i + {c}] = {color}")
-        w.lines += [f"{w.indent}{line}" for line in [*put, "count += 1 if odd else 0"]]
+        w.lines += [f"{w.indent}{line}" for line in put]
 
     def fade(self) -> str:
         """Return the scale of the depth cue, in float64 until it is known."""
@@ -657,8 +679,7 @@ class _Body:
         scale = w.call(
             "smooth_depth_scale" if form.cue == "smooth" else "depth_scale", depth, *ends
         )
-        one = w.constant(1.0)
-        return w.name(f"{one} if (odd | void) else F({scale})")
+        return w.name(f"F({scale})")
 
 
 @lru_cache(maxsize=256)
@@ -672,19 +693,19 @@ def write(form: Form) -> Text:
     Returns
     -------
     Text
-        Source of a function ``light`` of the arrays in ``ARRAYS``, which lights all points and
-        returns the number of those that NumPy must light; their ``valid`` is 2.
+        Source of a function ``light`` of the arrays in ``ARRAYS``. The luminance of points that
+        NumPy must light is NaN: a count would halve the number of points in a vector.
     """
     body = _Body(form)
     body.write()
     w = body.w
     lines = [f"{name} = F({value!r})" for value, name in w.constants.items()]
-    lines += ["", f"def light({', '.join(ARRAYS)}):", "    count = 0"]
+    lines += ["", f"def light({', '.join(ARRAYS)}):"]
     lines += [f"    {name} = {place}" for place, name in w.hoisted.items()]
     lines += [
         "    for i in range(luminance.shape[0]):",
         "        odd = False",
         "        void = False",
     ]
-    source = _prelude(form.work) + "\n".join([*lines, *w.lines, "    return count", ""])
+    source = _prelude(form.work) + "\n".join([*lines, *w.lines, ""])
     return Text(source, tuple(w.numbers), tuple(w.wide))
