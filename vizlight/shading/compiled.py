@@ -8,6 +8,7 @@ the range of their type, nearly dependent tangents, a light or an eye at the poi
 from __future__ import annotations
 
 import dataclasses
+import math
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -142,8 +143,10 @@ def given(plan: Plan, inputs: ShadingInputs, *, interpreted: bool = False) -> Co
     With ``interpreted`` the kernel's text runs as Python, point by point: a check of the text.
     """
     form, order = _form(plan, inputs)
-    kernel = _kernel(form)
-    return _given(plan, form, order, kernel.function if interpreted else kernel)
+    if not interpreted:
+        return _given(plan, form, order, _kernel(form))
+    function: Callable[..., None] = _functions(form, np.sqrt)["light"]  # type: ignore[assignment]
+    return _given(plan, form, order, function)
 
 
 def _beyond(plan: Plan) -> str:
@@ -161,7 +164,7 @@ def _beyond(plan: Plan) -> str:
 @lru_cache(maxsize=256)
 def _kernel(form: Form) -> _compiled.Kernel[..., None]:
     """Return the kernel of a form, which is not compiled before its first call."""
-    scope = _compiled.generated(write(form).source, {}, "light")
+    scope = _functions(form, math.sqrt)
     for name in HELPERS:
         scope[name] = _compiled.Kernel(
             scope[name],  # type: ignore[arg-type]
@@ -171,6 +174,11 @@ def _kernel(form: Form) -> _compiled.Kernel[..., None]:
     light: Callable[..., None] = scope["light"]  # type: ignore[assignment]
     light.__globals__.update(scope)
     return _compiled.Kernel(light, rounding=_compiled.ROUNDING)
+
+
+def _functions(form: Form, sqrt: Callable[[float], float]) -> dict[str, object]:
+    """Return the functions of a kernel's text, with a square root that keeps the type."""
+    return _compiled.generated(write(form).source, {"sqrt": sqrt}, "light")
 
 
 def _type(source: ArraySource | None, plan: Plan) -> str:

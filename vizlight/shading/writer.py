@@ -197,7 +197,6 @@ def _prelude(work: str) -> str:
         low, magic = -708.0, 6755399441055744.0
         second = -2.121944400546905827679e-4
     constants = f"""
-from math import sqrt
 import numpy as np
 {kinds}
 ROOT, MAGIC = F(0.7071067811865476).view(I), F({magic!r})
@@ -693,8 +692,9 @@ def write(form: Form) -> Text:
     Returns
     -------
     Text
-        Source of a function ``light`` of the arrays in ``ARRAYS``. The luminance of points that
-        NumPy must light is NaN: a count would halve the number of points in a vector.
+        Source of a function ``light`` of the arrays in ``ARRAYS``; it needs the name ``sqrt``. The
+        luminance of points that NumPy must light is NaN: a count would halve the number of points
+        in a vector.
     """
     body = _Body(form)
     body.write()
