@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from vizlight import DepthCue, Light, Material, Scene, View, _compiled, engine
-from vizlight.shading import compiled, writer
+from vizlight.shading import compiled, statements
 from vizlight.shading.writer import write
 
 LAMP = Light(position=(0.5, 4, 2), intensity=0.7)
@@ -73,8 +73,8 @@ def test_a_wrong_formula_is_found(name, old, new, monkeypatch):
     text = inspect.getsource(getattr(formulas, name))
     assert old in text
     broken = ast.parse(text.replace(old, new)).body[0]
-    functions = dict(writer._functions())
-    monkeypatch.setattr(writer, "_functions", lambda: functions | {name: broken})
+    functions = dict(statements.functions())
+    monkeypatch.setattr(statements, "functions", lambda: functions | {name: broken})
     write.cache_clear()
     try:
         worst = 0.0

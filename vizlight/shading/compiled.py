@@ -18,7 +18,9 @@ from vizlight import _compiled, _pool
 from vizlight.model import cylinder_kernels, frames, kernels
 from vizlight.scene.light import NO_ATTENUATION, WHITE
 from vizlight.shading.block import Output, shade_block
-from vizlight.shading.writer import BITS, HELPERS, Form, LightForm, write
+from vizlight.shading.elementary import HELPERS
+from vizlight.shading.form import BITS, Form, LightForm
+from vizlight.shading.writer import write
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
