@@ -27,6 +27,10 @@ class Ball:
         """Return outward unit normals."""
         return _unit_rows(points - self.center)
 
+    def key(self, sign: float) -> tuple[float, ...]:
+        """Return numbers that are equal for equal surfaces with equal normals times ``sign``."""
+        return (0, sign, *self.center, self.radius, 0, 0, 0, 0)
+
 
 @dataclass(frozen=True)
 class Plane:
@@ -42,6 +46,11 @@ class Plane:
     def normal(self, points: Array) -> Array:
         """Return the outward unit normal for each point."""
         return np.broadcast_to(self.outward, points.shape)
+
+    def key(self, sign: float) -> tuple[float, ...]:
+        """Return numbers that are equal for equal surfaces with equal normals times ``sign``."""
+        normal = sign * self.outward
+        return (1, *normal, float(normal @ self.center), 0, 0, 0, 0, 0)
 
 
 @dataclass(frozen=True)
@@ -78,6 +87,15 @@ class Cone:
         _, across, size, slope, cosine = self._parts(points)
         unit = across / np.where(size > 0, size, 1)[:, np.newaxis]
         return np.asarray(_unit_rows(cosine * (unit - slope * self.axis)))
+
+    def key(self, sign: float) -> tuple[float, ...]:
+        """Return numbers that are equal for equal surfaces with equal normals times ``sign``."""
+        up = math.copysign(1, self.axis[np.abs(self.axis).argmax()])
+        slope = (self.radii[0] - self.radii[1]) / self.height
+        along = float(self.center @ self.axis)
+        foot = self.center - along * self.axis
+        radius = sum(self.radii) / 2 - slope * along
+        return (2, sign, *(up * self.axis), *foot, radius, up * slope)
 
 
 Surface = Ball | Plane | Cone

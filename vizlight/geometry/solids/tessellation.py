@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     import manifold3d
 
-    from vizlight._types import Array
+    from vizlight._types import Array, Indices
     from vizlight.geometry.solids.primitives import Primitive
 
 
@@ -39,6 +39,8 @@ PATIENCE = 60_000
 FEWEST, ALIKE = 24, 1.25
 #: Grid of coordinates before a Boolean operation, so that equal places have equal coordinates.
 GRID = 2.0**36
+#: Inverse of the distance below which surfaces are one surface.
+EQUAL = 1e10
 #: Largest estimated share of the volume by which a mesh may differ from the exact solid, in units
 #: of the tolerance, and the divisor of the tolerance where it differs by more.
 SHARE, FINER = 8.0, 4.0
@@ -131,6 +133,11 @@ class _Tree:
         owned = [len(part.surfaces()) for part in self.parts]
         self.first = np.cumsum(owned) - owned
         self.signs = np.repeat(_signs(self.solid, 1.0), owned)
+        keys = [surface.key(sign) for surface, sign in zip(self.surfaces, self.signs, strict=True)]
+        rows = np.round(np.reshape(keys, (-1, 10)) * EQUAL)
+        _, first, which = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+        #: Index of the first surface that is equal to each.
+        self.equal = first[which.ravel()]
 
     def segments(self, tolerance: float) -> list[int]:
         """Return the number of segments of a circle of each primitive, a multiple of 4."""
@@ -158,7 +165,7 @@ class _Tree:
             if part.empty or not isinstance(part, Sphere | Frustum | Block):
                 leaves.append(Manifold())
                 continue
-            leaves.append(_leaf(part, count, int(first)))
+            leaves.append(_leaf(part, count, self.equal[first:]))
             bound += abs(part.volume - leaves[-1].volume())
         whole = _combine(self.solid, iter(leaves))
         if whole.is_empty():
@@ -223,7 +230,7 @@ def _points(part: Primitive, segments: int) -> float:
     return 0.38 * segments**2 if isinstance(part, Sphere) else 2 * segments
 
 
-def _leaf(part: Sphere | Frustum | Block, segments: int, first: int) -> manifold3d.Manifold:
+def _leaf(part: Sphere | Frustum | Block, segments: int, number: Indices) -> manifold3d.Manifold:
     """Return the mesh of a primitive, with the number of the surface of each triangle."""
     from manifold3d import Error, Manifold, Mesh64
 
@@ -234,7 +241,7 @@ def _leaf(part: Sphere | Frustum | Block, segments: int, first: int) -> manifold
         Mesh64(
             vert_properties=np.ascontiguousarray(points),
             tri_verts=np.ascontiguousarray(triangles.reshape(-1, 3), np.uint64),
-            face_id=np.ascontiguousarray(mesh.patch + first, np.uint64),
+            face_id=np.ascontiguousarray(number[mesh.patch], np.uint64),
         )
     )
     if leaf.status() != Error.NoError:
