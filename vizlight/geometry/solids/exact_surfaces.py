@@ -100,6 +100,13 @@ class Cone:
 
 Surface = Ball | Plane | Cone
 
+#: Sum of distances below which a point is on all its surfaces, and rounds of Newton's method where
+#: more than that remains.
+NEAR, MORE = 1e-10, 40
+#: Largest step of a point that is moved onto several surfaces, and largest distance that it is moved
+#: in all, in units of its distance from them.
+STEP, WIDE = 50, 200
+
 
 def fibonacci(count: int) -> Array:
     """Return ``count`` points spread evenly over the unit sphere."""
@@ -123,16 +130,25 @@ def onto(surfaces: tuple[Surface, ...], points: Array, both: Indices, rounds: in
     """Return nearby points that are on all the surfaces that each row of ``both`` names.
 
     The method is Newton's with the shortest step; each round squares the error. Where surfaces
-    touch, the step is bounded so that no point moves far away.
+    nearly touch it needs more rounds. A point is on the first surface only, if they do not meet
+    near it.
     """
     points = points.copy()
     single = np.all(both == both[:, :1], axis=1)
-    for i in np.unique(both[single, 0]):
-        on = np.flatnonzero(single & (both[:, 0] == i))
-        points[on] = _onto_one(surfaces[i], points[on], rounds)
     on = np.flatnonzero(~single)
     if len(on):
-        points[on] = _onto_all(surfaces, points[on], both[on], rounds)
+        _, before = _onto_all(surfaces, points[on], both[on], 0)
+        found, off = _onto_all(surfaces, points[on], both[on], rounds)
+        far = np.flatnonzero(off > NEAR)
+        if len(far):
+            found[far], off[far] = _onto_all(surfaces, found[far], both[on[far]], MORE)
+        moved = _sizes(found - points[on])
+        met = (off <= NEAR) & (moved <= WIDE * before)
+        points[on[met]] = found[met]
+        single[on] = ~met
+    for i in np.unique(both[single, 0]):
+        rows = np.flatnonzero(single & (both[:, 0] == i))
+        points[rows] = _onto_one(surfaces[i], points[rows], rounds)
     return points
 
 
@@ -145,31 +161,35 @@ def _onto_one(surface: Surface, points: Array, rounds: int) -> Array:
     return points
 
 
-def _onto_all(surfaces: tuple[Surface, ...], points: Array, which: Indices, rounds: int) -> Array:
+def _onto_all(
+    surfaces: tuple[Surface, ...], points: Array, which: Indices, rounds: int
+) -> tuple[Array, Array]:
+    """Return the points, and the sum of their distances from the surfaces."""
     count = which.shape[1]
     used = np.unique(which)
     on = [(j, i, np.flatnonzero(which[:, j] == i)) for j in range(count) for i in used]
     pairs = [(j, k) for j in range(count) for k in range(j)]
     same = [(j, which[:, j] == which[:, k]) for j, k in pairs]
-    for _ in range(rounds):
+    for last in (*[False] * rounds, True):
         distance = np.zeros(which.shape)
         normal = np.zeros((*which.shape, 3))
         for j, i, rows in on:
             if len(rows):
                 distance[rows, j] = surfaces[i].distance(points[rows])
-                normal[rows, j] = surfaces[i].normal(points[rows])
+                if not last:
+                    normal[rows, j] = surfaces[i].normal(points[rows])
         for j, rows in same:
             distance[rows, j] = 0
             normal[rows, j] = 0
+        if last or not np.abs(distance).max(initial=0) > 1e-15:
+            break
         gram = normal @ normal.transpose(0, 2, 1)
         gram += 1e-14 * np.eye(count)
         gram += np.eye(count) * (np.einsum("nii->ni", gram) < 0.5)[:, :, np.newaxis]
         weight = np.linalg.solve(gram, distance[:, :, np.newaxis])
         step = np.einsum("nji,nj->ni", normal, weight[:, :, 0])
-        size = np.sqrt(np.einsum("ij,ij->i", step, step))
-        limit = 4 * np.abs(distance).sum(axis=1)
+        size = _sizes(step)
+        limit = STEP * np.abs(distance).sum(axis=1)
         step *= np.minimum(1, limit / np.where(size > 0, size, 1))[:, np.newaxis]
         points = points - step
-        if not np.abs(distance).max(initial=0) > 1e-15:
-            break
-    return points
+    return points, np.abs(distance).sum(axis=1)

@@ -18,16 +18,10 @@ if TYPE_CHECKING:
 LEAN = 0.02
 #: Largest distance that a point is moved, in units of the tolerance.
 REACH = 20
-#: Rounds of Newton's method, and more of them where surfaces nearly touch.
-ROUNDS, MORE = 8, 40
+#: Rounds of Newton's method.
+ROUNDS = 8
 #: Distance below which neighbouring points are one point.
 SAME = 1e-9
-#: Distance from a surface above which a point has not converged.
-NEAR = 1e-13
-#: Longest edge of curved surfaces, in units of the square root of the tolerance.
-LONGEST = 2.5
-#: Largest number of times that an edge is halved.
-HALVINGS = 8
 
 
 def place(mesh: Mesh, tolerance: float) -> Mesh:
@@ -45,32 +39,18 @@ def place(mesh: Mesh, tolerance: float) -> Mesh:
     Mesh
         Mesh with each point on one surface, on two at a crease or on three at a corner, to
         rounding. Where two surfaces touch, a point is on one of them. Triangles that this would
-        flip are removed by changes of their edges. Long edges of curved surfaces are halved.
+        flip are removed by changes of their edges.
     """
     which = _meeting(mesh)
     points = onto(mesh.surfaces, mesh.points, which, ROUNDS)
-    off = np.flatnonzero(_residual(mesh, points, which) > NEAR)
-    points[off] = onto(mesh.surfaces, points[off], which[off], MORE)
     moved = points - mesh.points
     far = np.einsum("ij,ij->i", moved, moved) > (REACH * tolerance) ** 2
-    far[off] |= _residual(mesh, points[off], which[off]) > SAME
     points[far] = onto(mesh.surfaces, mesh.points[far], which[far][:, :1], ROUNDS)
     for surface in mesh.surfaces:
         apex = getattr(surface, "apex", None)
         if apex is not None:
             points[np.abs(points - apex).max(axis=1) < SAME] = apex
-    mesh = repair.upright(_merge(mesh.replace(points, mesh.triangles, mesh.patch)))
-    return _shorten(mesh, LONGEST * tolerance**0.5)
-
-
-def _residual(mesh: Mesh, points: Array, which: Indices) -> Array:
-    """Return the largest distance of points from the surfaces that each row names."""
-    found = np.zeros(len(points))
-    for i, surface in enumerate(mesh.surfaces):
-        on = np.flatnonzero(np.any(which == i, axis=1))
-        if len(on):
-            found[on] = np.maximum(found[on], np.abs(surface.distance(points[on])))
-    return found
+    return repair.upright(_merge(mesh.replace(points, mesh.triangles, mesh.patch)))
 
 
 def _meeting(mesh: Mesh) -> Indices:
@@ -125,33 +105,3 @@ def _merge(mesh: Mesh) -> Mesh:
         return mesh
     used, triangles = np.unique(triangles, return_inverse=True)
     return mesh.replace(mesh.points[used], triangles.reshape(-1, 3), mesh.patch[kept])
-
-
-def _shorten(mesh: Mesh, longest: float) -> Mesh:
-    """Halve the rulings of cones and cylinders that are longer than ``longest``.
-
-    The middle of a ruling is on the surface: the triangles keep their shape.
-    """
-    curved = np.array([not isinstance(surface, Plane) for surface in mesh.surfaces])
-    for _ in range(HALVINGS):
-        count = len(mesh.points)
-        start, stop = mesh.triangles, np.roll(mesh.triangles, -1, axis=1)
-        code = np.minimum(start, stop) * count + np.maximum(start, stop)
-        gap = mesh.points[start] - mesh.points[stop]
-        far = np.einsum("ijk,ijk->ij", gap, gap) > longest**2
-        row, slot = np.nonzero(far & curved[mesh.patch][:, np.newaxis])
-        middle = (mesh.points[start[row, slot]] + mesh.points[stop[row, slot]]) / 2
-        on = np.zeros(len(row), np.bool_)
-        for patch in np.unique(mesh.patch[row]):
-            mine = mesh.patch[row] == patch
-            on[mine] = np.abs(mesh.surfaces[patch].distance(middle[mine])) < SAME
-        marked, first = np.unique(code[row[on], slot[on]], return_index=True)
-        if not len(marked):
-            break
-        place = np.minimum(np.searchsorted(marked, code), len(marked) - 1)
-        number = np.where(marked[place] == code, count + place, -1)
-        triangles, of = triangle_mesh.split(mesh.triangles, number)
-        patch = mesh.patch[row[on][first]][:, np.newaxis]
-        new = onto(mesh.surfaces, middle[on][first], patch)
-        mesh = mesh.replace(np.concatenate([mesh.points, new]), triangles, mesh.patch[of])
-    return mesh

@@ -48,8 +48,10 @@ def upright(mesh: Mesh) -> Mesh:
     Returns
     -------
     Mesh
-        Closed mesh with the same creases and corners. An edge within a surface may be flipped, and
-        a point may be merged with a neighbour on all of its surfaces.
+        Closed mesh with the same surfaces. An edge within a surface is flipped, an edge between
+        surfaces is halved, or a point is moved along its surface or merged with a neighbour that is
+        on all of its surfaces. If nothing else helps, a point is moved off its surface, onto the
+        opposite edge of a flipped triangle.
     """
     bad = flipped(mesh)
     if not bad.any():
@@ -75,6 +77,8 @@ class _Editor:
         self.triangles: list[Triangle | None] = [(a, b, c) for a, b, c in mesh.triangles.tolist()]
         self.patch: list[int] = mesh.patch.tolist()
         self.points = list(mesh.points)
+        #: Points that are not on their surfaces.
+        self.loose: set[int] = set()
         self.star: list[set[int]] = [set() for _ in self.points]
         for t, corners in enumerate(mesh.triangles.tolist()):
             for v in corners:
@@ -99,14 +103,15 @@ class _Editor:
         for t in bad:
             if self.triangles[t] is None or self._flips([self._corners(t)], [self.patch[t]]) == 0:
                 continue
-            best: tuple[float, float] | None = None
+            best: tuple[float, ...] | None = None
             chosen: Change | None = None
             for change in self._changes(t):
                 gone, new, patch = change
                 before = self._flips([self._corners(i) for i in gone], [self.patch[i] for i in gone])
                 after = self._flips(new, patch)
                 if after < before:
-                    score = (after - before, self._longest(new))
+                    off = any(not self.loose.isdisjoint(corners) for corners in new)
+                    score = (off, after - before, self._longest(new))
                     if best is None or score < best:
                         best, chosen = score, change
             if chosen is not None:
@@ -183,8 +188,19 @@ class _Editor:
             if len(self._surfaces(v)) == 1:
                 middle = np.mean([self.points[u] for u in self._neighbours(v)], axis=0)
                 m = self._add(middle, [self.patch[t]])
-                moved = list(self.star[v])
-                yield moved, self._renamed(moved, v, m), [self.patch[i] for i in moved]
+                yield self._moved(v, m)
+        for i in range(3):
+            a, b, v = (self.points[corners[i - j]] for j in range(3))
+            share = float((v - a) @ (b - a)) / max(float((b - a) @ (b - a)), FLAT**2)
+            self.points.append(a + min(max(share, 0.0), 1.0) * (b - a))
+            self.star.append(set())
+            self.loose.add(len(self.points) - 1)
+            yield self._moved(corners[i - 2], len(self.points) - 1)
+
+    def _moved(self, old: int, new: int) -> Change:
+        """Return the change that puts one point in place of another."""
+        around = list(self.star[old])
+        return around, self._renamed(around, old, new), [self.patch[i] for i in around]
 
     def _renamed(self, triangles: list[int], old: int, new: int) -> list[Triangle]:
         """Return triangles with one point in place of another."""
