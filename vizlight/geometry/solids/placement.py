@@ -41,6 +41,7 @@ def place(mesh: Mesh, tolerance: float) -> Mesh:
         rounding. Where two surfaces touch, a point is on one of them. Triangles that this would
         flip are removed by changes of their edges.
     """
+    mesh = repair.straighten(mesh)
     which = _meeting(mesh)
     points = onto(mesh.surfaces, mesh.points, which, ROUNDS)
     moved = points - mesh.points

@@ -49,8 +49,9 @@ SHARE, FINER = 8.0, 4.0
 NEGLIGIBLE = 1e-3
 #: Number of times that the tolerance is divided for a solid that has less volume than its bound.
 TRIALS = 2
-#: Distance by which simplification may move a surface: well below the thinnest wall of 1e-4.
-SIMPLE = 1e-6
+#: Distance by which simplification may move a surface: some steps of the grid, above the rounding of
+#: points where surfaces cross and far below any wall that is refused.
+SIMPLE = 64 / GRID
 
 
 def tessellate(solid: Solid, /, *, tolerance: float = 3e-3) -> Mesh:
@@ -171,7 +172,7 @@ class _Tree:
         if whole.is_empty():
             return self._empty(), bound
         if not all(isinstance(surface, Plane) for surface in self.surfaces):
-            whole = whole.simplify(min(SIMPLE, tolerance))
+            whole = whole.simplify(SIMPLE)
         found = whole.to_mesh64()
         triangles = np.asarray(found.tri_verts, np.intp)
         points = np.asarray(found.vert_properties, np.float64)[:, :3]
