@@ -236,9 +236,10 @@ class _Editor:
                 yield self._moved(c, self._add(middle, [patch]))
             first, along = self.points[a], self.points[b] - self.points[a]
             share = float((self.points[c] - first) @ along) / max(float(along @ along), FLAT**2)
-            m = self._add(first + min(max(share, 0.0), 1.0) * along, [])
-            self.loose.add(m)
-            yield self._moved(c, m)
+            if 0 < share < 1:
+                m = self._add(first + share * along, [])
+                self.loose.add(m)
+                yield self._moved(c, m)
 
     def _merged(self, v: int, u: int) -> Change | None:
         """Return the change that merges a point with a neighbour on all of its surfaces.

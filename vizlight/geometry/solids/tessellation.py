@@ -15,7 +15,6 @@ import numpy as np
 
 from vizlight import _check
 from vizlight.geometry.solids import placement, triangle_mesh
-from vizlight.geometry.solids.exact_surfaces import Plane
 from vizlight.geometry.solids.primitives import EXPECTED, Block, Boolean, Frustum, Solid, Sphere
 from vizlight.geometry.solids.triangle_mesh import Mesh
 
@@ -49,9 +48,6 @@ SHARE, FINER = 8.0, 4.0
 NEGLIGIBLE = 1e-3
 #: Number of times that the tolerance is divided for a solid that has less volume than its bound.
 TRIALS = 2
-#: Distance by which simplification may move a surface: some steps of the grid, above the rounding of
-#: points where surfaces cross and far below any wall that is refused.
-SIMPLE = 64 / GRID
 
 
 def tessellate(solid: Solid, /, *, tolerance: float = 3e-3) -> Mesh:
@@ -171,8 +167,6 @@ class _Tree:
         whole = _combine(self.solid, iter(leaves))
         if whole.is_empty():
             return self._empty(), bound
-        if not all(isinstance(surface, Plane) for surface in self.surfaces):
-            whole = whole.simplify(SIMPLE)
         found = whole.to_mesh64()
         triangles = np.asarray(found.tri_verts, np.intp)
         points = np.asarray(found.vert_properties, np.float64)[:, :3]
