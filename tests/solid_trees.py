@@ -11,10 +11,10 @@ import time
 
 import banded
 import numpy as np
+from vizlight.geometry.primitives import Block, Frustum, Sphere
 
 from vizlight.geometry import solids
 from vizlight.geometry.contours import refinement
-from vizlight.geometry.primitives import Block, Frustum, Sphere
 from vizlight.geometry.solids import repair
 
 TOWARD = np.array([1.0, -0.6, 0.8]) / np.linalg.norm([1.0, -0.6, 0.8])
@@ -201,7 +201,7 @@ def sampled_volume(solid, random, count):
     return share * whole, np.sqrt(max(share * (1 - share), 1 / count) / count) * whole
 
 
-def problems(solid, *, tolerance=3e-3, count=100_000, levels=8, seed=0):
+def problems(solid, *, tolerance=3e-3, count=100_000, levels=8, seed=0, bounds=False):
     """Return what is wrong with the mesh and the bands of a solid, and the seconds it took."""
     random = np.random.default_rng(seed)
     found = []
@@ -216,6 +216,15 @@ def problems(solid, *, tolerance=3e-3, count=100_000, levels=8, seed=0):
     expected, sigma = sampled_volume(solid, random, count)
     if abs(volume - expected) > 4.5 * sigma + 1e-2 * volume:
         found.append(f"volume {volume:.6g}, sampled {expected:.6g} +- {sigma:.2g}")
+    error = mesh.volume_error * mesh.scale**3
+    if abs(volume - expected) > error + 4.5 * sigma:
+        found.append(f"bound {error:.3g}: volume {volume:.6g}, sampled {expected:.6g}")
+    if bounds:
+        low, high = solids.volume_bounds(solid, tolerance=tolerance)
+        if not low - 4.5 * sigma <= expected <= high + 4.5 * sigma:
+            found.append(f"bounds {low:.6g} to {high:.6g}, sampled {expected:.6g}")
+        if volume + error < low or volume - error > high:
+            found.append(f"bounds {low:.6g} to {high:.6g} without {volume:.6g} +- {error:.2g}")
     flips = int(np.count_nonzero(repair.flipped(mesh)))
     if flips:
         found.append(f"{flips} of {len(mesh.triangles)} flipped")
@@ -240,7 +249,7 @@ def main(arguments=None):
         for seed in range(asked.seeds):
             total += 1
             try:
-                found, seconds, _ = problems(tree(kind, seed, asked.series))
+                found, seconds, _ = problems(tree(kind, seed, asked.series), bounds=True)
             except (ValueError, ArithmeticError, IndexError) as error:
                 found, seconds = [f"{type(error).__name__}: {error}"], 0.0
             slowest = max(slowest, (seconds, f"{kind} {seed}"))

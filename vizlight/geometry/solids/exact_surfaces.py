@@ -103,8 +103,8 @@ Surface = Ball | Plane | Cone
 #: Sum of distances below which a point is on all its surfaces, and rounds of Newton's method where
 #: more than that remains.
 NEAR, MORE = 1e-10, 40
-#: Largest step of a point that is moved onto several surfaces, and largest distance that it is moved
-#: in all, in units of its distance from them.
+#: Largest step of a point that is moved onto several surfaces, and largest distance in all, in units
+#: of its distance from them.
 STEP, WIDE = 50, 200
 
 

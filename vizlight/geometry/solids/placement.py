@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight.geometry.solids import repair, triangle_mesh
-from vizlight.geometry.solids.exact_surfaces import Plane, onto
+from vizlight.geometry.solids.exact_surfaces import onto
 
 if TYPE_CHECKING:
-    from vizlight._types import Array, Indices
+    from vizlight._types import Indices
     from vizlight.geometry.solids.triangle_mesh import Mesh
 
 #: Length of the part of a normal that is independent of other normals at a point: below it two

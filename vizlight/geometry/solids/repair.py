@@ -139,7 +139,9 @@ class _Editor:
             chosen: Change | None = None
             for change in self._changes(t):
                 gone, new, patch = change
-                before = self._flips([self._corners(i) for i in gone], [self.patch[i] for i in gone])
+                before = self._flips(
+                    [self._corners(i) for i in gone], [self.patch[i] for i in gone]
+                )
                 after = self._flips(new, patch)
                 if after < before:
                     off = any(not self.loose.isdisjoint(corners) for corners in new)
@@ -248,7 +250,7 @@ class _Editor:
         """
         own, sides = self._surfaces(v), self._star(v) & self._star(u)
         across = {self.patch[t] for t in sides}
-        if own - self._surfaces(u) or len(own) > 2 or own != across and len(own) > 1:
+        if own - self._surfaces(u) or len(own) > 2 or (own != across and len(own) > 1):
             return None
         opposite = {w for t in sides for w in self._corners(t)} - {u, v}
         if len(sides) != 2 or self._neighbours(v) & self._neighbours(u) != opposite:

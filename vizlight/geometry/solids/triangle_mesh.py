@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,7 @@ import numpy as np
 
 from vizlight.geometry import axial
 from vizlight.geometry.solids.exact_surfaces import Plane, fibonacci
-from vizlight.geometry.solids.primitives import Block, Frustum, Sphere
+from vizlight.geometry.solids.primitives import Block, Frustum, Primitive, Sphere
 
 if TYPE_CHECKING:
     from vizlight._types import Array, Indices
@@ -37,6 +38,8 @@ class Mesh:
         Origin of the normalised points, in the unit of the solid.
     scale : float
         Length of one normalised unit.
+    volume_error : float
+        Bound of the difference of the volume from that of the exact solid, in normalised lengths.
     """
 
     points: Array
@@ -46,6 +49,7 @@ class Mesh:
     signs: Array
     shift: Array
     scale: float
+    volume_error: float = 0.0
 
     def world(self, points: Array) -> Array:
         """Return points in the unit of the solid."""
@@ -58,8 +62,8 @@ class Mesh:
         return float(np.linalg.det(corners).sum()) / 6
 
     @property
-    def volume_error(self) -> float:
-        """The volume between triangles and exact surfaces, in normalised lengths.
+    def volume_missing(self) -> float:
+        """The estimated volume between triangles and exact surfaces, in normalised lengths.
 
         The height of the surface over a triangle is averaged over the middles of its edges, which
         is exact for a quadratic height.
@@ -67,11 +71,11 @@ class Mesh:
         corners = self.points[self.triangles]
         across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         height = np.zeros(len(across))
-        for i, surface in enumerate(self.surfaces):
+        for i in np.unique(self.patch):
             on = self.patch == i
             for j in range(3):
                 middle = (corners[on, j] + corners[on, (j + 1) % 3]) / 2
-                height[on] -= self.signs[i] * surface.distance(middle) / 3
+                height[on] -= self.signs[i] * self.surfaces[i].distance(middle) / 3
         area = np.sqrt(np.einsum("ij,ij->i", across, across)) / 2
         return abs(float(area @ height))
 
@@ -101,7 +105,22 @@ def mesh(solid: Sphere | Frustum | Block, segments: int) -> Mesh:
         found: tuple[Surface, ...] = (Plane(unit.center, up * unit.axis), *ends)
     else:
         found = unit.surfaces()
-    return Mesh(points, triangles, patch, found, np.ones(len(found)), np.asarray(shift), scale)
+    made = Mesh(points, triangles, patch, found, np.ones(len(found)), np.asarray(shift), scale)
+    return dataclasses.replace(made, volume_error=abs(unit.volume - made.volume) + 1e-14)
+
+
+def around(solid: Primitive, segments: int) -> Primitive:
+    """Return a larger primitive whose mesh contains the exact primitive."""
+    if isinstance(solid, Sphere):
+        points, triangles, _ = _ball(Sphere(), segments)
+        a, b, c = (points[triangles[:, i]] for i in range(3))
+        across = np.cross(b - a, c - a)
+        height = np.einsum("ij,ij->i", a, across) / np.linalg.norm(across, axis=1)
+        return Sphere(solid.center, solid.radius / height.min())
+    if isinstance(solid, Frustum):
+        wide = np.array(solid.radii) / math.cos(math.pi / segments)
+        return Frustum(solid.center, solid.axis, wide, height=solid.height)
+    return solid
 
 
 def _ball(unit: Sphere, segments: int) -> tuple[Array, Indices, Indices]:
@@ -205,8 +224,7 @@ def split(triangles: Indices, middles: Indices) -> tuple[Indices, Indices]:
 def normals_of(mesh: Mesh, points: Array, patch: Indices) -> Array:
     """Return the outward normals of the solid at points on its surfaces."""
     normals = np.empty_like(points)
-    for i, surface in enumerate(mesh.surfaces):
+    for i in np.unique(patch):
         on = patch == i
-        if np.any(on):
-            normals[on] = mesh.signs[i] * surface.normal(points[on])
+        normals[on] = mesh.signs[i] * mesh.surfaces[i].normal(points[on])
     return normals
