@@ -255,8 +255,8 @@ def main(arguments=None):
             slowest = max(slowest, (seconds, f"{kind} {seed}"))
             if found:
                 failed += 1
-                print(f"{kind} {seed}: {'; '.join(found)}", flush=True)
-    print(f"{total} trees, {failed} failed; the slowest took {slowest[0]:.2f} s ({slowest[1]})")
+                sys.stdout.write(f"{kind} {seed}: {'; '.join(found)}" + "\n")
+    sys.stdout.write(f"{total} trees, {failed} failed; the slowest took {slowest[0]:.2f} s ({slowest[1]})\n")
     return int(failed > 0)
 
 

@@ -16,14 +16,10 @@ import numpy as np
 
 from vizlight import _check
 from vizlight.geometry.solids import placement, triangle_mesh
-from vizlight.geometry.solids.primitives import (
-    EXPECTED,
-    Boolean,
-    Frustum,
-    Primitive,
-    Solid,
-    Sphere,
-)
+from vizlight.geometry.solids.base import EXPECTED, Boolean, Primitive, Solid
+from vizlight.geometry.solids.exact_surfaces import Surfaces
+from vizlight.geometry.solids.polyhedra import HalfSpace, Polyhedron
+from vizlight.geometry.solids.primitives import Sphere, Torus
 from vizlight.geometry.solids.triangle_mesh import Mesh
 
 if TYPE_CHECKING:
@@ -55,8 +51,8 @@ EQUAL = 1e10
 #: the tolerance: a ball of radius r misses the share 3 / r of the distance of its facets, and a
 #: primitive may be smaller than the whole. The divisor of the tolerance where more is missing.
 SHARE, FINER = 8.0, 4.0
-#: Missing volume, in units of the tolerance, that never needs a finer one: the scaled solid is about
-#: as large as the unit ball.
+#: Missing volume, in units of the tolerance, that never needs a finer one: the scaled solid is
+#: about as large as the unit ball.
 NEGLIGIBLE = 1e-3
 
 
@@ -96,6 +92,9 @@ def tessellate(solid: Solid, /, *, tolerance: float = 3e-3) -> Mesh:
     Work.
     """
     tolerance = _checked(solid, tolerance)
+    if isinstance(solid, HalfSpace):
+        expected, remedy = "a bounded solid", "intersect it with a bounded one"
+        raise ValueError(_check.message("solid", expected, solid, remedy))
     if isinstance(solid, Primitive):
         segments = max(FEWEST, math.ceil(math.pi / math.acos(1 - tolerance)))
         return triangle_mesh.mesh(solid, segments)
@@ -181,7 +180,7 @@ class _Tree:
         given = list(self.solid.primitives())
         self.shift, self.scale = _frame(given)
         self.parts = [part if part.empty else part.moved(self.shift, self.scale) for part in given]
-        self.surfaces = tuple(s for part in self.parts for s in part.surfaces())
+        self.surfaces = Surfaces(s for part in self.parts for s in part.surfaces())
         owned = [len(part.surfaces()) for part in self.parts]
         self.first = np.cumsum(owned) - owned
         self.signs = np.repeat(_signs(self.solid, 1.0), owned)
@@ -193,7 +192,7 @@ class _Tree:
 
     def segments(self, tolerance: float) -> list[int]:
         """Return the number of segments of a circle of each primitive, a multiple of 4."""
-        radius = np.array([_radius(part) for part in self.parts])
+        radius = np.array([part.roundness for part in self.parts])
         order = np.argsort(radius)
         with np.errstate(divide="ignore", invalid="ignore"):
             jump = radius[order][1:] > ALIKE * radius[order][:-1]
@@ -210,7 +209,12 @@ class _Tree:
     def points(self, segments: list[int]) -> float:
         """Return the approximate number of points of all primitives."""
         pairs = zip(self.parts, segments, strict=True)
-        return sum(0.38 * n**2 if isinstance(p, Sphere) else 2 * n for p, n in pairs)
+        return sum(
+            0.38 * n**2 if isinstance(p, Sphere)
+            else len(p.points) if isinstance(p, Polyhedron)
+            else n**2 if isinstance(p, Torus) else 2 * n
+            for p, n in pairs
+        )  # fmt: skip
 
     def finer(self, segments: list[int]) -> list[int]:
         """Return the segments that keep the facets of a primitive clear of balls inside it.
@@ -221,7 +225,7 @@ class _Tree:
         found = list(segments)
         balls = [(k, p) for k, p in enumerate(self.parts) if isinstance(p, Sphere) and not p.empty]
         for i, part in enumerate(self.parts):
-            radius = _radius(part)
+            radius = part.roundness
             if part.empty or radius == 0:
                 continue
             side = part.surfaces()[0]
@@ -251,10 +255,13 @@ class _Tree:
             if part.empty:
                 leaves.append(Manifold())
                 continue
-            wide = triangle_mesh.around(part, count) if side * sign > 0 else part
-            leaves.append(_leaf(wide, count, self.equal[first:]))
+            used = triangle_mesh.around(part, count, side * sign) if side else part
+            leaves.append(Manifold() if used.empty else _leaf(used, count, self.equal[first:]))
             area = leaves[-1].surface_area()
-            total += area if side else abs(part.volume - leaves[-1].volume()) + ROUNDING * area
+            if not side:
+                total += triangle_mesh.missed(part, count, leaves[-1].volume()) + ROUNDING * area
+            else:
+                total += area
         return _combine(self.solid, iter(leaves)), total
 
     def mesh(self, segments: list[int], tolerance: float) -> Mesh:
@@ -268,10 +275,12 @@ class _Tree:
         same = np.arange(len(points))
         same[np.asarray(found.merge_from_vert, np.intp)] = found.merge_to_vert
         used, triangles = np.unique(same[triangles], return_inverse=True)
+        patch = np.asarray(found.face_id, np.intp)
+        self._check_bounded(patch)
         mesh = Mesh(
             points[used],
             triangles.reshape(-1, 3).astype(np.intp),
-            np.asarray(found.face_id, np.intp),
+            patch,
             self.surfaces,
             self.signs,
             self.shift,
@@ -282,6 +291,15 @@ class _Tree:
         bound += abs(placed.volume - whole.volume())
         return dataclasses.replace(placed, volume_error=bound)
 
+    def _check_bounded(self, patch: Indices) -> None:
+        """Raise an error if the solid reaches the end of the block in place of a half-space."""
+        for part, first in zip(self.parts, self.first, strict=True):
+            ends = self.equal[first + 1 : first + 6]
+            if isinstance(part, HalfSpace) and np.any(np.isin(patch, ends)):
+                expected = "a bounded combination of a half-space with others"
+                remedy = "intersect it with a bounded solid, or subtract it from one"
+                raise ValueError(_check.message("solid", expected, part, remedy))
+
     def _empty(self) -> Mesh:
         none = np.empty((0, 3), np.intp)
         return Mesh(
@@ -291,7 +309,7 @@ class _Tree:
 
 def _frame(parts: list[Primitive]) -> tuple[Array, float]:
     """Return the centre of all primitives and the length that becomes the unit."""
-    boxes = [part.box() for part in parts if not part.empty]
+    boxes = [part.box() for part in parts if not (part.empty or isinstance(part, HalfSpace))]
     if not boxes:
         return np.asarray(parts[0].box()[0]), 1.0
     low = np.min([center - radius for center, radius in boxes], axis=0)
@@ -309,13 +327,6 @@ def _signs(solid: Solid, sign: float) -> list[float]:
         return [sign]
     second = -sign if solid.operation == "difference" else sign
     return _signs(solid.first, sign) + _signs(solid.second, second)
-
-
-def _radius(part: Primitive) -> float:
-    """Return the largest radius of a primitive's curved surfaces, 0 without any."""
-    if isinstance(part, Sphere):
-        return part.radius
-    return max(part.radii) if isinstance(part, Frustum) else 0.0
 
 
 def _leaf(part: Primitive, segments: int, number: Indices) -> manifold3d.Manifold:
