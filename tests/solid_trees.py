@@ -256,7 +256,9 @@ def main(arguments=None):
             if found:
                 failed += 1
                 sys.stdout.write(f"{kind} {seed}: {'; '.join(found)}" + "\n")
-    sys.stdout.write(f"{total} trees, {failed} failed; the slowest took {slowest[0]:.2f} s ({slowest[1]})\n")
+    sys.stdout.write(
+        f"{total} trees, {failed} failed; the slowest took {slowest[0]:.2f} s ({slowest[1]})\n"
+    )
     return int(failed > 0)
 
 

@@ -95,7 +95,7 @@ class Solid:
         axis = axial.unit("vector", vector)
         angle = math.radians(_check.number("angle", angle))
         cross = np.cross(np.eye(3), axis)
-        turn = np.eye(3) + math.sin(angle) * cross.T + 2 * math.sin(angle / 2) ** 2 * cross @ cross
+        turn = np.eye(3) + math.sin(angle) * cross + 2 * math.sin(angle / 2) ** 2 * cross @ cross
         middle = axial.triple("point", point)
         return self.moved(middle, 1.0, turn).moved(-middle, 1.0)
 

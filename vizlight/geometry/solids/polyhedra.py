@@ -267,6 +267,9 @@ class Prism(Polyhedron):
             given = f"{len(corners)} corners and a height of {height:g}"
             expected = "3 corners or more, and a height above 0"
             raise ValueError(_check.message("outline", expected, given))
+        if _crosses(corners):
+            remedy = "remove repeated corners and crossings"
+            raise ValueError(_check.message("outline", "a simple polygon", "another", remedy))
         if _area(corners) < 0:
             corners = corners[::-1]
         cap = _ears(corners)
@@ -284,6 +287,16 @@ def _area(corners: Array) -> float:
     """Return twice the signed area of a polygon."""
     x, y = (corners - corners.mean(axis=0)).T
     return float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
+
+
+def _crosses(corners: Array) -> bool:
+    """Return whether edges of a polygon cross each other, or a corner is repeated."""
+    after = np.roll(corners, -1, axis=0)
+    side = [np.array([np.sign(_left(a, b, p)) for a, b in zip(corners, after, strict=True)])
+            for p in (corners, after)]  # fmt: skip
+    apart = side[0] * side[1] < 0
+    repeated = len(np.unique(corners, axis=0)) < len(corners)
+    return repeated or bool(np.any(apart & apart.T))
 
 
 def _ears(corners: Array) -> Indices:
@@ -304,8 +317,8 @@ def _ears(corners: Array) -> Indices:
                 del ring[i]
                 break
         else:
-            remedy = "remove repeated corners and crossings"
-            raise ValueError(_check.message("outline", "a simple polygon", "another", remedy))
+            remedy = "remove corners in the middle of straight edges"
+            raise ValueError(_check.message("outline", "a polygon with an area", "none", remedy))
     return np.array([*found, tuple(ring)], np.intp)
 
 
