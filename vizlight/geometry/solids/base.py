@@ -203,7 +203,8 @@ class Boolean(Solid):
         if self.operation not in ("union", "intersection", "difference"):
             expected = "'union', 'intersection' or 'difference'"
             raise ValueError(_check.message("operation", expected, repr(self.operation)))
-        for name, solid in (("first", self.first), ("second", self.second)):
+        given: tuple[tuple[str, object], ...] = (("first", self.first), ("second", self.second))
+        for name, solid in given:
             if not isinstance(solid, Solid):
                 remedy = "make a solid of a closed mesh by vizlight.Polyhedron(mesh)"
                 raise TypeError(_check.message(name, EXPECTED, _check.describe(solid), remedy))

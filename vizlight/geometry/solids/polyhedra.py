@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Protocol, cast
 
 import numpy as np
 
@@ -127,7 +127,7 @@ class Polyhedron(Primitive):
         self, points: ArrayLike | _Triangles, triangles: ArrayLike | None = None, /
     ) -> None:
         if triangles is None and hasattr(points, "regular_faces"):
-            mesh: _Triangles = points.triangulate()
+            mesh = cast("_Triangles", points).triangulate()
             points, triangles = mesh.points, mesh.regular_faces
         elif triangles is None:
             expected = "a pyvista.PolyData, or an array of points and one of triangles"

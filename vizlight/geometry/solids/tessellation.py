@@ -99,8 +99,7 @@ def tessellate(solid: Solid, /, *, tolerance: float = 3e-3) -> Mesh:
         segments = max(FEWEST, math.ceil(math.pi / math.acos(1 - tolerance)))
         return triangle_mesh.mesh(solid, segments)
     tree = _Tree(solid)
-    fine = tolerance
-    most = MOST
+    fine, most = tolerance, float(MOST)
     while True:
         chosen = tree.segments(fine)
         count = tree.points(chosen)

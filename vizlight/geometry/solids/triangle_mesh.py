@@ -135,8 +135,8 @@ def around(solid: Primitive, segments: int, side: float) -> Primitive:
     ``side`` is 1 or -1 for the one and the other.
     """
     if isinstance(solid, Torus):
-        wide = solid.tube_radius + side * 1.5 * ring_error(solid, segments)
-        return Torus(solid.center, solid.axis, solid.ring_radius, max(wide, 0.0))
+        tube = solid.tube_radius + side * 1.5 * ring_error(solid, segments)
+        return Torus(solid.center, solid.axis, solid.ring_radius, max(tube, 0.0))
     if side < 0:
         return solid
     if isinstance(solid, Sphere):
