@@ -11,6 +11,7 @@ from vizlight.filters.refine import refine
 from vizlight.filters.relief_day import relief_day
 from vizlight.filters.relief_shadow import relief_shadow
 from vizlight.filters.satin import satin
+from vizlight.filters.solids import to_polydata
 from vizlight.filters.streamlines import streamlines
 from vizlight.mesh.records import provenance
 
@@ -27,4 +28,5 @@ __all__ = [
     "relief_shadow",
     "satin",
     "streamlines",
+    "to_polydata",
 ]
