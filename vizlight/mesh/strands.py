@@ -41,6 +41,7 @@ class Strands:
     """Fibres as rows for the engine, which reads one block after the other and each block once.
 
     The vectors of a block are kept while a thread works on it; only points are kept for all.
+    ``unit`` is the length in which the heights of fur are counted.
     """
 
     def __init__(
@@ -52,9 +53,10 @@ class Strands:
         *,
         straight: bool,
         threads: int | None,
+        unit: float = 1.0,
     ) -> None:
         self._grow, self._straight, self._threads = grow, straight, threads
-        self._block = threading.local()
+        self._block, self._unit = threading.local(), np.float32(unit)
         self.points = np.empty((count, m, 3), kind)
         self.inside = np.zeros(count, np.bool_)
 
@@ -137,15 +139,16 @@ class Strands:
         return result
 
     def _heights(self, rows: slice) -> Array:
-        """Return the height above each point of the highest point of its fibre."""
+        """Return the height above each point of the highest point of its fibre, in units."""
         block, j = self._at(rows)
         last = self.m - 1
         if self._straight:
             tip = np.einsum("ib,ib->b", block.offsets[last], block.normals)
+            tip /= self._unit
             height: Array = np.maximum(tip, 0) - np.float32(j / last) * tip
         else:
             heights = np.einsum("jib,ib->jb", block.offsets, block.normals)
-            height = heights.max(axis=0) - heights[j]
+            height = (heights.max(axis=0) - heights[j]) / self._unit
         return height
 
     def drop(self, shading: engine.Shading) -> engine.Shading:
