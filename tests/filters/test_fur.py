@@ -435,7 +435,7 @@ def test_fur_looks_the_same_on_a_mesh_of_any_size(scale):
         np.testing.assert_allclose(found[part]["luminance"], expected[part]["luminance"], atol=2e-4)
     tips = [strands(coat)[:, -1] - strands(coat)[:, 0] for coat in (expected, found)]
     length = [np.linalg.norm(tip, axis=1).mean() for tip in tips]
-    assert length[0] == pytest.approx(0.04 * mesh.length, rel=1e-5)
+    assert length[0] == pytest.approx(0.03 * mesh.length, rel=1e-5)
     assert length[1] == pytest.approx(scale * length[0], rel=1e-4)
 
 

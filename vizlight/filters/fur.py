@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 Inward = Literal["keep", "flip", "drop"]
 #: Default absorption, and length of fibres as a share of the diagonal of the mesh.
-ABSORPTION, LENGTH = 0.5, 0.04
+ABSORPTION, LENGTH = 0.5, 0.03
 #: Largest length of a fibre: differences of longer ones leave the range of float32.
 LONGEST = 1e30
 
@@ -73,7 +73,7 @@ class FurOptions:
         Number of fibres, uniform in area, jittered, the same for the same seed.
     length : float, str or array_like, optional
         Length of a fibre, in the unit of the mesh, 0 or more: one for all, or a point array of
-        one component, interpolated. Default: 0.04 of the diagonal of the mesh.
+        one component, interpolated. Default: 0.03 of the diagonal of the mesh.
     segments : int, default: 3
         Number of segments of a fibre, of equal lengths.
     vectors : str, optional
@@ -86,7 +86,8 @@ class FurOptions:
     bend : float, default: 0.0
         Share of ``toward`` in the direction at the tip.
     curl, turns : float
-        Sideways share of the direction, and number of its turns from root to tip.
+        Sideways share of the direction, 0.3 for soft fur, and number of its turns from root to
+        tip.
     seed : int, default: 0
         Seed of the random numbers.
     conditioned : bool, default: True

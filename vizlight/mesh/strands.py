@@ -103,6 +103,7 @@ class Strands:
             if block.inside is not None:
                 self.inside[fibres] = block.inside
             self._block.fibres, self._block.grown = fibres, block
+            self._block.heights = None
         grown: Grown = self._block.grown
         return grown, rows.start % step
 
@@ -142,14 +143,16 @@ class Strands:
         """Return the height above each point of the highest point of its fibre, in units."""
         block, j = self._at(rows)
         last = self.m - 1
+        heights: Array | None = self._block.heights
+        if heights is None:
+            # Of a straight fibre the tip is enough.
+            offsets = block.offsets[last:] if self._straight else block.offsets
+            heights = np.einsum("jib,ib->jb", offsets, block.normals) / self._unit
+            self._block.heights = heights
         if self._straight:
-            tip = np.einsum("ib,ib->b", block.offsets[last], block.normals)
-            tip /= self._unit
-            height: Array = np.maximum(tip, 0) - np.float32(j / last) * tip
-        else:
-            heights = np.einsum("jib,ib->jb", block.offsets, block.normals)
-            height = (heights.max(axis=0) - heights[j]) / self._unit
-        return height
+            tip: Array = heights[0]
+            return np.asarray(np.maximum(tip, 0) - np.float32(j / last) * tip)
+        return np.asarray(heights.max(axis=0) - heights[j])
 
     def drop(self, shading: engine.Shading) -> engine.Shading:
         """Drop the fibres that point inward, and return the light of the others."""
