@@ -331,19 +331,6 @@ def follow(
         out[ray] = length
 
 
-@_compiled.kernel()
-def below(
-    x: Array, y: Array, heights: Array, normal: Array, depth: float, nodes: Indices, out: Array
-) -> None:
-    """Write the positions (3, N) at a depth below nodes against their normals."""
-    width = len(x)
-    for k in range(len(nodes)):
-        j, i = nodes[k] // width, nodes[k] % width
-        out[0, k] = x[i] - depth * normal[j, i, 0]
-        out[1, k] = y[j] - depth * normal[j, i, 1]
-        out[2, k] = heights[j, i] - depth * normal[j, i, 2]
-
-
 class Strips:
     """A field along the azimuth of one light, for rays that start at a distance ``below`` from it.
 

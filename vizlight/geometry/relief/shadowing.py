@@ -239,16 +239,12 @@ def ratio(
     limit = depth <= LEAST_DEPTH * size
     inset = 0.0 if limit else depth
     shape = field.heights.shape
-    fast = compiled.below.pays(compiled.SAVED * field.heights.size)
+    normals, heights = normal.reshape(-1, 3), field.heights.ravel()
 
     def start(rays: Indices) -> Array:
-        if fast:
-            places = np.empty((3, len(rays)))
-            compiled.below(field.x, field.y, field.heights, normal, inset, rays, places)
-            return places
-        row, column = np.unravel_index(rays, shape)
-        place = np.stack([field.x[column], field.y[row], field.heights[row, column]])
-        return np.asarray(place - inset * normal[row, column].T)
+        row, column = np.divmod(rays, shape[1])
+        place = np.stack([field.x.take(column), field.y.take(row), heights.take(rays)])
+        return np.asarray(place - inset * normals.take(rays, axis=0).T)
 
     t = lengths(field, start, normal.shape[0] * normal.shape[1], ray, method, threads, inset)
     if limit:
