@@ -116,9 +116,8 @@ class Caster(Protocol):
 
 def caster(mesh: pv.DataSet, scene: Scene, options: CasterOptions, threads: int | None) -> Caster:
     """Return the shadow caster of a mesh."""
-    if options.raster is not None and not isinstance(mesh, Grid | pv.PolyData):
-        raise _no_caster(mesh)
-    if isinstance(mesh, Grid) or options.raster is not None:
+    sampled = options.raster is not None
+    if isinstance(mesh, Grid) or (sampled and isinstance(mesh, pv.PolyData)):
         for option in ("thickness", "occluders"):
             value = getattr(options, option)
             if value:
@@ -134,13 +133,9 @@ def caster(mesh: pv.DataSet, scene: Scene, options: CasterOptions, threads: int 
                 remedy = "leave it out, or pass a grid"
                 raise ValueError(_check.message(option, "none on a surface", repr(given), remedy))
         return _SolidCaster(mesh, scene, options)
-    raise _no_caster(mesh)
-
-
-def _no_caster(mesh: object) -> TypeError:
     expected = "a height field (ImageData, RectilinearGrid, StructuredGrid) or a closed PolyData"
     remedy = "take the mesh's extract_surface()"
-    return TypeError(_check.message("mesh", expected, type(mesh).__name__, remedy))
+    raise TypeError(_check.message("mesh", expected, type(mesh).__name__, remedy))
 
 
 class _FieldCaster:

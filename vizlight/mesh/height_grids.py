@@ -143,7 +143,7 @@ def _sampled(
     mesh: Grid | pv.PolyData, elevation: str | None, factor: float, spacing: float
 ) -> Raster:
     """Return the height field of a surface, sampled from above on an even grid."""
-    points = np.asarray(point_arrays.points_of(mesh, None)[:], dtype=np.float64)
+    points: Array = np.asarray(point_arrays.points_of(mesh, None)[:], dtype=np.float64)
     if elevation is None and isinstance(mesh, pv.StructuredGrid | pv.PolyData):
         z = points[:, 2]
     else:
@@ -182,7 +182,9 @@ def _skin(grid: Grid) -> pv.PolyData:
         raise ValueError(_check.message("mesh", "a grid of one layer, nx x ny x 1", got))
     at = np.arange(nx * ny).reshape(ny, nx)
     faces = np.stack([at[:-1, :-1], at[:-1, 1:], at[1:, 1:], at[1:, :-1]], axis=-1).reshape(-1, 4)
-    return pv.PolyData.from_regular_faces(np.asarray(point_arrays.points_of(grid, None)[:]), faces)
+    points = np.asarray(point_arrays.points_of(grid, None)[:])
+    skin: pv.PolyData = pv.PolyData.from_regular_faces(points, faces)
+    return skin
 
 
 def _nodes(grid: Grid) -> tuple[Array, float]:

@@ -120,7 +120,7 @@ def hilbert(cell: Indices, bits: int) -> Indices:
     for bit in range(bits - 1, 0, -1):
         turned ^= ((1 << bit) - 1) & -(x[2] >> bit & 1)
     x ^= turned
-    index = np.zeros_like(turned)
+    index: Indices = np.zeros_like(turned)
     for bit in range(bits - 1, -1, -1):
         for i in range(3):
             index = index << 1 | (x[i] >> bit & 1)

@@ -128,7 +128,8 @@ def crossing(edges: Array, cell: int, level: int, start: float, way: float) -> f
     if way == 0:
         return math.inf
     out = min((cell + (1 if way > 0 else 0)) << level, len(edges) - 1)
-    return (edges[out] - start) / way
+    distance: float = (edges[out] - start) / way
+    return distance
 
 
 @_compiled.kernel(inline=True)
