@@ -110,8 +110,8 @@ def fur(
     files: list[Path],
     /,
     *,
-    how: object,
     shape: Annotated[Shape, LIT] = Shape(),  # noqa: B008
+    how: object = None,
     common: Annotated[Common, COMMON] = Common(),  # noqa: B008
 ) -> int:
     """Cover a surface with fibres, and light them and the skin below.
