@@ -152,7 +152,7 @@ def isoluminance(
     Notes
     -----
     A solid is lit at its exact points and normals. A mesh is lit with its normals, interpolated
-    over each triangle and normalised. Contour points are found by halving edges, so that the
+    over each triangle and normalised. Contour points are found by bracketing, so that the
     terminator is not restricted to corners, and triangles are split where the luminance is not
     linear. With tangents the luminance itself is interpolated. An empty mesh has no bands. A
     sphere or a frustum under one light without a highlight has closed forms.
@@ -288,11 +288,10 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
         found = normals.normals_of(surface, asked.normals, 3, normals.onlooker(scene))
         unit = unit_rows(np.asarray(found, dtype=np.float64))
         rows = np.concatenate([points, unit], axis=1)
-
-        def luminance(places: Array, directions: Array) -> Array:
-            return light(places, unit_rows(directions))
-
-        bands = refinement.refine(facets.Facets(rows, triangles, luminance, lit.valid), levels)
+        near = any(lamp.position is not None for lamp in scene.lights)
+        near |= scene.view is not None and scene.view.position is not None
+        placed = near or scene.depth_cue is not None
+        bands = refinement.refine(facets.Facets(rows, triangles, light, lit.valid, placed), levels)
     else:
         values = np.asarray(lit.luminance[triangles], dtype=np.float64)
         steps = spacing.steps(levels, float(values.min()), float(values.max()), exact=True)
