@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypedDict
 import numpy as np
 import pyvista as pv
 
-from vizlight import _check
+from vizlight import _check, _progress
 from vizlight.filters import lighting
 from vizlight.geometry.contours import banding, facets, refinement, spacing
 from vizlight.geometry.contours import isoluminance as closed
@@ -26,6 +26,8 @@ from vizlight.shading.options import LightOptions, accepts
 from vizlight.verify import report
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike
     from typing_extensions import Unpack
 
@@ -108,6 +110,7 @@ def isoluminance(
     scene: Scene,
     *,
     threads: int | None = None,
+    progress_bar: bool = False,
     **options: Unpack[ContourKeywords],
 ) -> pv.MultiBlock:
     """Return contours of equal luminance, and the bands between them with one value per band.
@@ -125,6 +128,8 @@ def isoluminance(
         Fields of ContourOptions.
     threads : int, optional
         Number of threads.
+    progress_bar : bool, default: False
+        Whether the share of triangles that keep the allowed error is shown on standard error.
 
     Returns
     -------
@@ -160,8 +165,11 @@ def isoluminance(
     """
     asked = ContourOptions(**options)
     start = time.perf_counter()
-    with report.paused():
-        made, bands, light = _make(mesh, scene, asked, threads)
+    with report.paused(), _progress.progress("contours", 100, show=progress_bar) as show:
+        made, bands, light = _make(
+            mesh, scene, asked, threads, lambda share: show(int(100 * share))
+        )
+        show(100)
     seconds = time.perf_counter() - start
     _note(bands, light, seconds, 1024 * made.actual_memory_size, sampled=asked.tangents is None)
     return made
@@ -172,10 +180,11 @@ def _make(
     scene: Scene,
     options: ContourOptions,
     threads: int | None,
+    progress: Callable[[float], None],
 ) -> tuple[pv.MultiBlock, Bands, _Light]:
     """Return bands and contours as meshes, the bands as arrays, and their luminance."""
     _check.instance("scene", scene, Scene)
-    light = _Light(scene, options, threads)
+    light = _Light(scene, options, threads, progress)
     if isinstance(mesh, Solid):
         for option in ("normals", "tangents"):
             if getattr(options, option) is not None:
@@ -202,8 +211,16 @@ def _make(
 class _Light:
     """The luminance of points with normals, and its record."""
 
-    def __init__(self, scene: Scene, options: ContourOptions, threads: int | None) -> None:
+    def __init__(
+        self,
+        scene: Scene,
+        options: ContourOptions,
+        threads: int | None,
+        progress: Callable[[float], None],
+    ) -> None:
         self.scene, self.options, self.threads = scene, options, threads
+        #: Function that is called with the share of the refinement that is done.
+        self.progress = progress
         self.last: Shading | None = None
         #: Mesh on the exact surfaces of a solid.
         self.shape: Mesh | None = None
@@ -255,7 +272,9 @@ def _of_solid(solid: Solid, light: _Light) -> Bands:
     if isinstance(found, banding.Bands):
         return found
     light.shape = tessellation.tessellate(solid, tolerance=asked.tolerance)
-    return refinement.draw(light.shape, light, asked.levels, low=low if dull else None)
+    return refinement.draw(
+        light.shape, light, asked.levels, low=low if dull else None, progress=light.progress
+    )
 
 
 def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Light]:
@@ -291,7 +310,8 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
         near = any(lamp.position is not None for lamp in scene.lights)
         near |= scene.view is not None and scene.view.position is not None
         placed = near or scene.depth_cue is not None
-        bands = refinement.refine(facets.Facets(rows, triangles, light, lit.valid, placed), levels)
+        lit_facets = facets.Facets(rows, triangles, light, lit.valid, placed)
+        bands = refinement.refine(lit_facets, levels, progress=light.progress)
     else:
         values = np.asarray(lit.luminance[triangles], dtype=np.float64)
         steps = spacing.steps(levels, float(values.min()), float(values.max()), exact=True)

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from vizlight.geometry.solids.triangle_mesh import Mesh
 
     Luminance = Callable[[Array, Array], Array]
+    Progress = Callable[[float], None]
 
 #: Largest number of rounds of refinement, and numbers of triangles and polygons that end it.
 ROUNDS, ENOUGH, MANY = 20, 1_500_000, 300_000
@@ -47,7 +48,10 @@ STILL = 1e-2
 APEX = 1e-7
 
 
-def draw(mesh: Mesh, luminance: Luminance, levels: Levels, /, *, low: float | None = None) -> Bands:
+def draw(
+    mesh: Mesh, luminance: Luminance, levels: Levels, /, *, low: float | None = None,
+    progress: Progress | None = None,
+) -> Bands:  # fmt: skip
     """Return the bands of a luminance on the surfaces of a solid.
 
     Parameters
@@ -61,6 +65,8 @@ def draw(mesh: Mesh, luminance: Luminance, levels: Levels, /, *, low: float | No
         Steps of luminance, as for :func:`vizlight.geometry.contours.spacing.steps`.
     low : float, optional
         Luminance of points without light. Default: the lowest luminance found.
+    progress : callable, optional
+        Function that is called after each round with the share of triangles that keep the error.
 
     Returns
     -------
@@ -84,7 +90,7 @@ def draw(mesh: Mesh, luminance: Luminance, levels: Levels, /, *, low: float | No
         none = spacing.steps(levels, low or 0.0, low or 0.0)
         empty, _ = banding.cut(mesh.points[:0], mesh.triangles, np.empty((0, 3)), none)
         return dataclasses.replace(empty, error=0.0)
-    made = refine(_Lit(open_apexes(mesh), luminance), levels, low=low)
+    made = refine(_Lit(open_apexes(mesh), luminance), levels, low=low, progress=progress)
     made = _close_apexes(made, mesh)
     return dataclasses.replace(made, points=mesh.world(made.points))
 
@@ -120,7 +126,10 @@ class LitTriangles(Protocol):
         """
 
 
-def refine(surface: LitTriangles, levels: Levels, /, *, low: float | None = None) -> Bands:
+def refine(
+    surface: LitTriangles, levels: Levels, /, *, low: float | None = None,
+    progress: Progress | None = None,
+) -> Bands:  # fmt: skip
     """Return the bands of a lit surface, refined until they keep the allowed error.
 
     Parameters
@@ -128,8 +137,9 @@ def refine(surface: LitTriangles, levels: Levels, /, *, low: float | None = None
     surface : LitTriangles
         Lit triangles of a solid, or :class:`vizlight.geometry.contours.facets.Facets`. They are
         split in place.
-    levels, low
-        Steps of luminance and the luminance without light, as for :func:`draw`.
+    levels, low, progress
+        Steps of luminance, luminance without light, and function of the progress, as for
+        :func:`draw`.
 
     Returns
     -------
@@ -147,6 +157,8 @@ def refine(surface: LitTriangles, levels: Levels, /, *, low: float | None = None
         np.maximum.at(error, triangle, surface.measure(bands, triangle))
         error[:known], pieces[:known] = keep.error, keep.pieces
         chosen = np.flatnonzero(error > _allowed(levels, steps))
+        if progress is not None:
+            progress(1 - len(chosen) / count)
         if not len(chosen) or turn == ROUNDS or count > ENOUGH or pieces.sum() > MANY:
             break
         keep = dataclasses.replace(keep, error=error, pieces=pieces).of(surface.split(chosen))
