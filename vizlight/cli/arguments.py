@@ -47,12 +47,15 @@ class Part:
         Point array of which an isosurface is taken.
     level
         Value of the isosurface. Default: the middle of the range.
+    salvage
+        Use what could be read of a damaged file.
     """
 
     clip: Texts | None = None
     threshold: Texts | None = None
     contour: str | None = None
     level: float | None = None
+    salvage: Flag = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -172,7 +175,7 @@ class Output:
     background
         Colour behind the mesh. Default: white, or black behind lines.
     line_width
-        Width of lines, in pixels of twice the picture's size.
+        Width of lines in pixels.
     backend
         Library that draws. Default: egl.
     report
@@ -200,7 +203,7 @@ class Color:
     Parameters
     ----------
     scalars
-        Point array that colours the picture, times the light.
+        Array that colours the picture, times the light; or direction, for lines.
     cmap
         Name of the colour map of --scalars.
     """
