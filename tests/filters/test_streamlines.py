@@ -211,8 +211,10 @@ def test_far_from_the_origin():
     sphere = ball()
     moved = sphere.copy()
     moved.points = np.asarray(sphere.points, float) + offset
-    here = streamlines(sphere, SCENE, vectors="V", seeds=sphere.points[100:106])
-    there = streamlines(moved, SCENE, vectors="V", seeds=np.asarray(moved.points)[100:106])
+    # Within triangles: on an edge rounding decides in which one a line begins.
+    seeds = np.asarray(sphere.cell_centers().points, float)[1000:1006]
+    here = streamlines(sphere, SCENE, vectors="V", seeds=seeds)
+    there = streamlines(moved, SCENE, vectors="V", seeds=seeds + offset)
     assert there.field_data["drift"][0] < 1e-6
     drawn = streamlines(moved, SCENE, vectors="V", seeds=15)
     assert drawn.n_lines == streamlines(sphere, SCENE, vectors="V", seeds=15).n_lines
@@ -282,7 +284,7 @@ def test_carotid_artery():
         pytest.skip("PYVISTA_DATA names no folder with carotid.vtk")
     flow = pv.examples.download_carotid()
     lines = streamlines(flow, SCENE, vectors="vectors", seeds=60)
-    assert lines.n_lines > 60
+    assert lines.n_lines == 60
     assert "luminance_valid" not in lines.point_data
     wall = flow.contour([150.0], scalars="scalars")
     lines = streamlines(flow, SCENE, vectors="vectors", surface=wall, confined=True, seeds=30)

@@ -139,6 +139,37 @@ def before_turning_back(mesh: pv.PolyData) -> pv.PolyData:
     return out
 
 
+def joined_at_seeds(mesh: pv.PolyData) -> pv.PolyData:
+    """Return one line for each seed: VTK's tracer gives one forward and one backward from it.
+
+    The mesh has VTK's cell array SeedIds and point array IntegrationTime, negative backward.
+    """
+    if not mesh.n_lines:
+        return mesh
+    ids, offsets = _cells(mesh.GetLines())
+    seed = np.asarray(mesh.cell_data["SeedIds"])
+    time = np.asarray(mesh.point_data["IntegrationTime"])[ids]
+    back = np.minimum.reduceat(time, offsets[:-1]) < 0
+    runs: dict[int, Indices] = {}
+    first: dict[int, int] = {}
+    # Those that run backward come first, reversed.
+    for line in np.lexsort((~back, seed)).tolist():
+        run, key = ids[offsets[line] : offsets[line + 1]], int(seed[line])
+        run = run[::-1] if back[line] else run
+        runs[key] = np.concatenate([runs[key], run[1:]]) if key in runs else run
+        first[key] = line
+    rows = np.concatenate([*runs.values()])
+    out = pv.PolyData()
+    out.points = np.asarray(mesh.points)[rows]
+    ends = np.concatenate([[0], np.cumsum([len(run) for run in runs.values()])])
+    out.SetLines(pv.CellArray.from_arrays(ends, np.asarray(np.arange(len(rows)), dtype=int)))
+    for name, array in mesh.point_data.items():
+        out.point_data[name] = np.asarray(array)[rows]
+    for name, array in mesh.cell_data.items():
+        out.cell_data[name] = np.asarray(array)[[*first.values()]]
+    return out
+
+
 def _cells(cells: vtkCellArray) -> tuple[Indices, Indices]:
     """Return the points of all cells, and the offset of each cell in them."""
     return (
