@@ -79,7 +79,7 @@ class StreamlineOptions(LightOptions):
     separation : float, default: 0.5
         Share of the spacing at which a line ends before another.
     shortest : float, default: 2.0
-        Length of the shortest line that is kept, in spacings.
+        Length of the shortest line that is kept, in spacings, where other lines cut it short.
     step : float, default: 0.3
         Largest step of the integration, in cell lengths.
     max_length : float, optional

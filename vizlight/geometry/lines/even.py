@@ -52,7 +52,8 @@ class Samples:
         self._old: cKDTree | None = None
         self._new: cKDTree | None = None
         self._rows: Indices = np.empty(0, dtype=np.intp)
-        self._whole = self._seen = 0
+        self._recent = self._rows
+        self._whole, self._seen, self._stale = 0, 0, 0
 
     def add(self, walkers: Walkers, points: Array, embedded: Array) -> None:
         """Add where ends are now."""
@@ -87,7 +88,10 @@ class Samples:
 
     def drop(self, curve: int) -> None:
         """Forget the samples of a curve."""
-        self._used[: self._size][self.curve[: self._size] == curve] = False
+        rows = np.flatnonzero(self.curve[: self._size] == curve)
+        self._used[rows] = False
+        self._seen = -1
+        self._stale += int(np.count_nonzero(rows < self._whole))
 
     def of(self, curve: int) -> tuple[Places, Array]:
         """Return the places of a curve's samples, and its directions there."""
@@ -96,16 +100,17 @@ class Samples:
 
     def near(self, embedded: Array, radius: float, count: int) -> tuple[Array, Indices]:
         """Return distances and rows of samples within a radius, shape (N, K); infinity for none."""
-        if self._size - self._whole > RECENT:
+        if self._size - self._whole > RECENT or self._stale > RECENT:
             self._rows = np.flatnonzero(self._used[: self._size])
             self._old = cKDTree(self._embedded[self._rows], balanced_tree=False)
-            self._whole = self._size
-        start = self._whole
-        if self._size > start and (self._new is None or self._seen != self._size):
-            self._new = cKDTree(self._embedded[start : self._size], balanced_tree=False)
+            self._whole, self._seen, self._stale = self._size, -1, 0
+            self._recent, self._new = self._rows[:0], None
+        if self._seen != self._size:
+            self._recent = self._whole + np.flatnonzero(self._used[self._whole : self._size])
+            self._new = cKDTree(self._embedded[self._recent], balanced_tree=False)
             self._seen = self._size
         parts = []
-        for tree, rows in ((self._old, self._rows), (self._new, np.arange(start, self._size))):
+        for tree, rows in ((self._old, self._rows), (self._new, self._recent)):
             if tree is None or not len(rows):
                 continue
             distance, place = tree.query(embedded, k=count, distance_upper_bound=radius)
@@ -130,7 +135,7 @@ class Spacing:
     separation : float
         Share of the spacing at which a curve stops before another.
     shortest : float
-        Length, in spacings, of the shortest curve that is kept.
+        Length, in spacings, of the shortest curve that is kept where others cut it short.
     step : float
         Largest length of a step, in extents of its cell.
     max_length, max_steps : float, int
@@ -157,6 +162,8 @@ class Growth:
         self.last: dict[tuple[int, int], int] = {}
         self.closed: set[int] = set()
         self.dropped: set[int] = set()
+        #: Curves that were stopped by another or by themselves.
+        self.cut: set[int] = set()
         #: Number of ends that grow, and length of those that have stopped, by curve.
         self.growing: dict[int, int] = {}
         self.lengths: dict[int, float] = {}
@@ -234,6 +241,8 @@ class Growth:
         began = np.where(self.returning < 0, walkers.number, self.returning)
         for row in np.flatnonzero(~going & ~lost).tolist():
             # What runs beside the curve itself is taken back, unless that closes it.
+            if blocked[row]:
+                self.cut.add(int(ahead.curve[row]))
             if self.returning[row] >= 0:
                 key = int(ahead.curve[row]), int(ahead.sign[row])
                 self.last.setdefault(key, int(self.returning[row]))
@@ -251,7 +260,7 @@ class Growth:
         """
         samples, spacing = self.samples, self.asked.spacing
         d = self.asked.separation * spacing
-        distance, row = samples.near(embedded, d, 12)
+        distance, row = samples.near(embedded, d, 16)
         sign = ahead.sign[:, np.newaxis]
         own = samples.curve[row] == ahead.curve[:, np.newaxis]
         between = np.abs(
@@ -271,8 +280,9 @@ class Growth:
         facing = np.einsum("nkj,nj->nk", samples.along[row], ahead.along)
         # Along an orbit the other end of the curve comes the opposite way.
         opposite = np.where(seed, np.abs(facing), -facing) > 0.8
-        orbit = hit & own & (seed | (samples.sign[row] != sign))
-        orbit &= opposite & (lateral < 0.3 * spacing)
+        orbit = own & (seed | (samples.sign[row] != sign)) & np.isfinite(distance)
+        # Also a small circle, all of which is near, as soon as the other end is ahead.
+        orbit &= opposite & (lateral < 0.3 * spacing) & (hit | (along > 0))
         # Of the samples of the other end the outermost is reached first.
         place = np.where(orbit, -samples.length[row], np.inf).argmin(axis=1)
         each = np.arange(len(place))
@@ -297,7 +307,8 @@ class Growth:
         if self.growing[curve]:
             return
         del self.growing[curve]
-        if self.lengths[curve] < self.asked.shortest * self.asked.spacing:
+        short = self.lengths[curve] < self.asked.shortest * self.asked.spacing
+        if short and curve in self.cut:
             self.dropped.add(curve)
             self.samples.drop(curve)
         else:
@@ -379,7 +390,8 @@ def evenly_spaced(
     """
     random = np.random.default_rng(seed)
     pool = places_of(flow, asked.spacing, random)
-    pool = pool[random.permutation(len(pool.cell))]
+    # Parts that are too small for a random place have one of their own.
+    pool = pool[random.permutation(len(pool.cell))].joined(flow.mesh.one_each())
     growth = Growth(flow, normals, asked, random)
     total, covered = len(pool.cell), 0
     if seeds is not None:

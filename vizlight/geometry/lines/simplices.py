@@ -6,6 +6,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 if TYPE_CHECKING:
     from vizlight._types import Array, Bools, Indices
@@ -131,6 +133,20 @@ class Simplices:
     def extent(self) -> float:
         """Area or volume of all cells."""
         return float(self.measures.sum())
+
+    def one_each(self) -> Places:
+        """Return the middle of the largest cell of each connected part."""
+        cells = np.flatnonzero(self.good)
+        beyond = self.neighbours[cells]
+        own = np.repeat(cells, self.k + 1)[beyond.ravel() >= 0]
+        pairs = own, beyond.ravel()[beyond.ravel() >= 0]
+        count = len(self.cells)
+        graph = coo_array((np.ones(len(own), np.bool_), pairs), shape=(count, count))
+        part = connected_components(graph, directed=False)[1][cells]
+        order = np.lexsort((-self.measures[cells], part))
+        first = np.unique(part[order], return_index=True)[1]
+        share = np.full((len(first), self.k + 1), 1 / (self.k + 1))
+        return Places(cells[order[first]], share)
 
     def positions(self, places: Places) -> Array:
         """Return the positions of places, shape (N, 3)."""
