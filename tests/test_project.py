@@ -44,7 +44,7 @@ REASONS = {
 }
 #: Extras whose packages the files of a folder may import, besides the dependencies.
 ALLOWED = {
-    "vizlight": ["movie", "rays", "solids", "tracts", "formats", "test"],
+    "vizlight": ["fast", "formats", "movie", "rays", "solids", "tracts", "test"],
     "tests": ["test", "tracts", "formats"],
     "gallery": ["docs"],
 }

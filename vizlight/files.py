@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import re
 import shutil
+import signal
+import subprocess
 import sys
 import tempfile
 import warnings
@@ -14,9 +17,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
+from vtkmodules import vtkIOXML
 
-from vizlight import _check
-from vizlight.mesh import foreign_files, hull
+from vizlight import _check, _supervise
+from vizlight.mesh import foreign_files, hull, short_files
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -36,11 +40,28 @@ FORMATS: dict[str, tuple[str, ...]] = {
 SUFFIXES = tuple(dict.fromkeys(suffix for kind in FORMATS.values() for suffix in kind))
 
 
+#: Readers of VTK's XML formats.
+READERS = {
+    ".vtp": vtkIOXML.vtkXMLPolyDataReader,
+    ".vtu": vtkIOXML.vtkXMLUnstructuredGridReader,
+    ".vts": vtkIOXML.vtkXMLStructuredGridReader,
+    ".vtr": vtkIOXML.vtkXMLRectilinearGridReader,
+    ".vti": vtkIOXML.vtkXMLImageDataReader,
+}
+
+
+#: What VTK says of an error, and of a warning that tells of damage.
+_DAMAGE = re.compile(
+    r"(?:ERR\|.*\(0x[0-9a-f]+\): |WARN\| (?:.*\(0x[0-9a-f]+\): )?(?=.*(?i:error|cannot|premature|"
+    r"unexpected|truncat|corrupt|end of file|not enough|invalid|mismatch)))([^\x1b\n]+)"
+)
+
+
 class FileError(ValueError):
     """A file cannot be read or written."""
 
 
-def read(path: str | Path, /) -> pv.DataSet:
+def read(path: str | Path, /, *, salvage: bool = False, isolated: bool = False) -> pv.DataSet:
     """Read a mesh from a file: any that PyVista reads, tractograms and netCDF grids.
 
     Parameters
@@ -49,6 +70,13 @@ def read(path: str | Path, /) -> pv.DataSet:
         Path of the file. Tractograms (.trk, .tck, .trx) need the extra ``tracts``; netCDF files
         (.nc, .cdf) and those that PyVista reads by meshio, such as .off, .mesh and .msh, need the
         extra ``formats``.
+    salvage : bool, default: False
+        Whether a file that its reader finds damaged is used as far as it was read, with a warning
+        that has the reader's words.
+    isolated : bool, default: False
+        Whether the file is first read in a process of its own, so that a reader that crashes, or
+        does not end within a minute and one second for each megabyte, is an error. It takes as
+        long as starting Python and reading the file once more.
 
     Returns
     -------
@@ -62,8 +90,13 @@ def read(path: str | Path, /) -> pv.DataSet:
     Raises
     ------
     FileError
-        If the file does not exist or cannot be read, the package that reads it is not installed,
-        or it has no points.
+        If the file does not exist, cannot be read or is damaged, the package that reads it is not
+        installed, or it has no points.
+
+    Warns
+    -----
+    UserWarning
+        If a damaged file is used with ``salvage``.
     """
     path = Path(path)
     if not path.is_file():
@@ -73,7 +106,14 @@ def read(path: str | Path, /) -> pv.DataSet:
         raise FileError(_check.message("file", "a readable file", f"'{path}'"))
     reason = "no points"
     mesh: pv.DataSet | None = None
-    with _captured_errors() as errors, warnings.catch_warnings():
+    limit = _supervise.read_limit(path.stat().st_size)
+    short = short_files.missing_part(path)
+    if short and not salvage:
+        raise _damaged(path, short)
+    if isolated:
+        _try_to_read(path, limit)
+    reading = _supervise.stage("read", path, seconds=limit)
+    with reading, _captured_errors() as errors, warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
             found = foreign_files.read(path)
@@ -87,7 +127,33 @@ def read(path: str | Path, /) -> pv.DataSet:
             reason = f"no points: {errors[0]}"
         got, remedy = f"'{path}' ({reason})", foreign_files.missing(path)
         raise FileError(_check.message("file", "a mesh that PyVista reads", got, remedy))
+    fault = errors[0] if errors else short
+    if fault and not salvage:
+        raise _damaged(path, fault)
+    if fault:
+        _check.warn(f"file: '{path}' is damaged, what was read of it is used ({fault})")
     return mesh
+
+
+def _damaged(path: Path, reason: str) -> FileError:
+    got, remedy = f"'{path}' ({reason})", "salvage= uses what could be read"
+    return FileError(_check.message("file", "a file that is not damaged", got, remedy))
+
+
+def _try_to_read(path: Path, limit: float) -> None:
+    """Read a file in a process of its own, and raise an error if it crashes or does not end."""
+    code = "import sys, vizlight.files as f; f.read(sys.argv[1], salvage=True)"
+    try:
+        run = subprocess.run(
+            [sys.executable, "-c", code, str(path)], capture_output=True, timeout=limit, check=False
+        )
+    except subprocess.TimeoutExpired:
+        reason = f"not read within {limit:.0f} s"
+    else:
+        if run.returncode >= 0:  # what the reader says is said by the second reading
+            return
+        reason = f"its reader was ended by {signal.Signals(-run.returncode).name}"
+    raise FileError(_check.message("file", "a file that can be read", f"'{path}' ({reason})"))
 
 
 #: Older name of :func:`read`.
@@ -134,7 +200,7 @@ def _captured_errors() -> Iterator[list[str]]:
             os.close(kept)
             sink.seek(0)
             text = sink.read().decode(errors="replace")
-            errors += re.findall(r"ERR\|.*\(0x[0-9a-f]+\): ([^\x1b\n]+)", text)
+            errors += _DAMAGE.findall(text)
 
 
 def surface_of(
@@ -292,14 +358,71 @@ def write_mesh(mesh: pv.DataSet, path: str | Path, /) -> Path:
         If the format does not support the type of mesh, or the file cannot be written.
     """
     path = check_format(mesh, path)
-    # VTK's writers terminate the process if the disk is full.
-    needed, free = mesh.actual_memory_size * 1024, shutil.disk_usage(path.parent).free
-    if needed > free:
-        got = f"{free / 1e6:.1f} MB in '{path.parent}'"
-        raise FileError(_check.message("output", f"{needed / 1e6:.1f} MB of free disk", got))
+    if path.suffix.lower() != ".vtk":
+        _check_names(mesh)
     if path.suffix.lower() == ".vtu" and isinstance(mesh, pv.PolyData):
         mesh = mesh.cast_to_unstructured_grid()
-    return replace_file(path, mesh.save)
+
+    def save(draft: str) -> None:
+        # Text of base64 has 4 bytes for 3.
+        _reserve(Path(draft), mesh.actual_memory_size * 1024 * 4 // 3 + 65536)
+        with _captured_errors() as errors:
+            mesh.save(draft)
+        _check_draft(Path(draft), mesh, errors)
+
+    return replace_file(path, save)
+
+
+def _check_names(mesh: pv.DataSet) -> None:
+    """Check that XML can hold the names of the arrays; VTK's writers do not escape them."""
+    for data in (mesh.point_data, mesh.cell_data, mesh.field_data):
+        for name in data:
+            if re.search(r"[<&\"\x00-\x1f]", name):
+                expected = "array names without <, &, quotation marks and control characters"
+                remedy = "rename the array, or write a .vtk file"
+                raise FileError(_check.message("output", expected, repr(name), remedy))
+
+
+def _reserve(draft: Path, size: int) -> None:
+    """Check that the disk, a quota and the limit of file sizes leave room for a file.
+
+    VTK's writers end the process where they do not. Space that is reserved and released tells of
+    all three.
+    """
+    if hasattr(os, "posix_fallocate"):
+        with draft.open("wb") as file:
+            try:
+                os.posix_fallocate(file.fileno(), 0, size)
+            except OSError as error:
+                if error.errno not in (errno.EINVAL, errno.EOPNOTSUPP, errno.ENOSYS):
+                    expected = f"{size / 1e6:.1f} MB of free disk"
+                    got = f"'{draft.parent.parent}' ({error.strerror})"
+                    raise FileError(_check.message("output", expected, got)) from error
+        draft.unlink()
+    free = shutil.disk_usage(draft.parent).free
+    if size > free:
+        got = f"{free / 1e6:.1f} MB in '{draft.parent.parent}'"
+        raise FileError(_check.message("output", f"{size / 1e6:.1f} MB of free disk", got))
+
+
+def _check_draft(draft: Path, mesh: pv.DataSet, errors: list[str]) -> None:
+    """Check that a file that was written is whole, by what the writer said and by its reader."""
+    reason = errors[0] if errors else ""
+    if not reason and not draft.is_file():
+        reason = "nothing was written"
+    if not reason and draft.suffix != ".vtk":
+        reader = READERS[draft.suffix]()
+        reader.SetFileName(str(draft))
+        with _captured_errors() as errors:
+            reader.UpdateInformation()
+        seen = {reader.GetPointArrayName(i) for i in range(reader.GetNumberOfPointArrays())}
+        with draft.open("rb") as file:
+            file.seek(-min(64, draft.stat().st_size), os.SEEK_END)
+            ended = file.read().rstrip().endswith(b"</VTKFile>")
+        if errors or not ended or seen != set(mesh.point_data):
+            reason = errors[0] if errors else "the file is not whole"
+    if reason:
+        raise FileError(_check.message("output", "a file that can be written", reason))
 
 
 def make_folder(name: str, path: Path, /) -> None:
@@ -311,7 +434,9 @@ def make_folder(name: str, path: Path, /) -> None:
         raise FileError(_check.message(name, expected, f"'{path}' ({error.strerror})")) from error
 
 
-def replace_file(path: Path, write: Callable[[str], object]) -> Path:
+def replace_file(
+    path: Path, write: Callable[[str], object], *, doing: _supervise.Doing = "write"
+) -> Path:
     """Write a file in a temporary folder and move it to its path, so that no partial file is left.
 
     Parameters
@@ -320,6 +445,8 @@ def replace_file(path: Path, write: Callable[[str], object]) -> Path:
         Path of the file. An existing file is replaced.
     write : callable
         Function that writes the file to a path given as a string.
+    doing : {"write", "draw"}
+        What the function does, for the message if it ends the process.
 
     Returns
     -------
@@ -331,11 +458,15 @@ def replace_file(path: Path, write: Callable[[str], object]) -> Path:
     FileError
         If the file cannot be written.
     """
+    target = path.resolve()  # a symbolic link stays, and what it points to is replaced
     try:
-        with tempfile.TemporaryDirectory(prefix=".vizlight-", dir=path.parent) as folder:
+        with tempfile.TemporaryDirectory(prefix=".vizlight-", dir=target.parent) as folder:
             draft = Path(folder) / f"{path.stem}{path.suffix.lower()}"
-            write(str(draft))
-            draft.replace(path)
+            with _supervise.stage(doing, path, temporary=folder):
+                write(str(draft))
+            if target.exists():
+                draft.chmod(target.stat().st_mode)
+            draft.replace(target)
     except OSError as error:
         raise FileError(
             _check.message("output", "a file that can be written", f"'{path}' ({error.strerror})")

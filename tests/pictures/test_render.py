@@ -17,6 +17,7 @@ import pyvista as pv
 import vizlight
 from vizlight import Light, Material, Scene, View, demo, render
 from vizlight.mesh import polylines
+from vizlight.pictures import backends
 
 pytestmark = pytest.mark.opengl
 
@@ -240,6 +241,14 @@ def test_no_opengl_is_an_error_with_the_apt_line(no_gl, tmp_path):
     with pytest.raises(render.BackendError):
         render.save_png(lit, tmp_path / "x.png")
     assert not (tmp_path / "x.png").exists()
+
+
+@pytest.mark.parametrize("window", ["vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow", "nonsense"])
+def test_a_window_class_that_the_environment_names_is_probed(no_gl, monkeypatch, window):
+    monkeypatch.setenv("VTK_DEFAULT_OPENGL_WINDOW", f"{window}")
+    backends._check_variable.cache_clear()
+    with pytest.raises(render.BackendError, match=f"WINDOW={window} is not available .try: unset"):
+        render.choose_backend()
 
 
 def test_the_environment_may_choose(monkeypatch):

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista as pv
+from vtkmodules.vtkCommonCore import vtkCommand
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 from vtkmodules.vtkFiltersFlowPaths import vtkStreamTracer
 
@@ -73,7 +74,7 @@ def in_space(
     tracer.SetTerminalSpeed(1e-6)
     tracer.SetMaximumError(1e-6)
     tracer.SetComputeVorticity(False)
-    tracer.AddObserver("ProgressEvent", lambda *_: report(int(100 * tracer.GetProgress())))
+    tracer.AddObserver(vtkCommand.ProgressEvent, lambda *_: report(int(100 * tracer.GetProgress())))
     tracer.Update()
     lines: Any = pv.wrap(tracer.GetOutput())
     return polylines.joined_at_seeds(polylines.before_turning_back(lines))
@@ -92,12 +93,15 @@ class CellTracer:
         Whether the vectors have no sign.
     """
 
-    def __init__(self, mesh: pv.DataSet, normals: str | None, *, line_field: bool) -> None:
+    def __init__(
+        self, mesh: pv.PolyData | pv.UnstructuredGrid, normals: str | None, *, line_field: bool
+    ) -> None:
         self.mesh = mesh
-        if isinstance(mesh, pv.PolyData):
-            cells = np.asarray(mesh.regular_faces)
+        if isinstance(mesh, pv.UnstructuredGrid):
+            ids = mesh.cells_dict.get(np.uint8(pv.CellType.TETRA))
+            cells = np.empty((0, 4), dtype=int) if ids is None else np.asarray(ids)
         else:
-            cells = np.asarray(mesh.cells_dict.get(pv.CellType.TETRA, np.empty((0, 4), int)))  # type: ignore[attr-defined]
+            cells = np.asarray(mesh.regular_faces)
         points = np.asarray(mesh.points, dtype=np.float64)
         self.cells = Simplices(points, cells)
         self.flow = Flow(self.cells, np.asarray(mesh.point_data[TRACED]), line_field=line_field)
@@ -178,10 +182,7 @@ class CellTracer:
 
     def lines(self, curves: Curves) -> pv.PolyData:
         """Return curves as polylines with the interpolated point arrays of the mesh."""
-        lines = pv.PolyData()
-        lines.points = self.cells.positions(curves.places)
-        count = len(lines.points)
-        lines.SetLines(pv.CellArray.from_arrays(curves.offsets, np.arange(count)))
+        lines = polylines.polydata(self.cells.positions(curves.places), curves.offsets)
         for name, array in self.mesh.point_data.items():
             rows = self.cells.interpolated(np.asarray(array), curves.places)
             kind = array.dtype if array.dtype.kind == "f" else np.float64

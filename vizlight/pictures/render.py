@@ -270,7 +270,7 @@ def save_png(
     path = check_output(path, (".png",))
     plotter = make_plotter(panels, **options)
     try:
-        return replace_file(path, plotter.screenshot)
+        return replace_file(path, plotter.screenshot, doing="draw")
     finally:
         plotter.close()
 

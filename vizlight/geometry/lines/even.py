@@ -39,14 +39,16 @@ class Samples:
     """Samples of the curves, found by distance."""
 
     def __init__(self) -> None:
-        self.points = np.empty((0, 3))
+        self.points: Array = np.empty((0, 3))
+        self.along: Array = np.empty((0, 3))
+        self.sign: Array = np.empty(0)
+        self.length: Array = np.empty(0)
         self.curve: Indices = np.empty(0, dtype=np.intp)
-        self.sign, self.along = np.empty(0), np.empty((0, 3))
-        self.length, self.number = np.empty(0), np.empty(0, dtype=np.intp)
+        self.number: Indices = np.empty(0, dtype=np.intp)
         self._cell: Indices = np.empty(0, dtype=np.intp)
-        self._weights = np.empty((0, 3))
-        self._embedded = np.empty((0, 3))
-        self._used: Array = np.empty(0, dtype=np.bool_)
+        self._weights: Array = np.empty((0, 3))
+        self._embedded: Array = np.empty((0, 3))
+        self._used: Bools = np.empty(0, dtype=np.bool_)
         self._size = 0
         # Most samples are in a tree that is seldom made again, the rest in one that often is.
         self._old: cKDTree | None = None
@@ -66,7 +68,7 @@ class Samples:
         self.curve[rows], self.sign[rows] = walkers.curve, walkers.sign
         self.along[rows] = walkers.along
         self.length[rows], self.number[rows] = walkers.length, walkers.number
-        self._cell[rows], self._weights[rows] = walkers.places
+        self._cell[rows], self._weights[rows] = walkers.places.cell, walkers.places.weights
         self._used[rows] = True
         self._size += count
 
@@ -74,17 +76,23 @@ class Samples:
         """Make room for more samples."""
 
         def larger(array: Array, *columns: int) -> Array:
-            made = np.zeros((room, *columns), dtype=array.dtype)
+            made = np.zeros((room, *columns))
             if self._size:
                 made[: self._size] = array[: self._size]
             return made
 
+        def longer(numbers: Indices) -> Indices:
+            return np.resize(numbers, room) if len(numbers) else np.zeros(room, dtype=np.intp)
+
         self.points, self.along = larger(self.points, 3), larger(self.along, 3)
         self._embedded = larger(self._embedded, dimension)
         self._weights = larger(self._weights, corners)
-        self.curve, self.sign = larger(self.curve), larger(self.sign)
-        self.length, self.number = larger(self.length), larger(self.number)
-        self._cell, self._used = larger(self._cell), larger(self._used)
+        self.sign, self.length = larger(self.sign), larger(self.length)
+        self.curve, self.number = longer(self.curve), longer(self.number)
+        self._cell = longer(self._cell)
+        used = np.zeros(room, dtype=np.bool_)
+        used[: self._size] = self._used[: self._size]
+        self._used = used
 
     def drop(self, curve: int) -> None:
         """Forget the samples of a curve."""
@@ -109,19 +117,20 @@ class Samples:
             self._recent = self._whole + np.flatnonzero(self._used[self._whole : self._size])
             self._new = cKDTree(self._embedded[self._recent], balanced_tree=False)
             self._seen = self._size
-        parts = []
+        distances: list[Array] = []
+        numbers: list[Indices] = []
         for tree, rows in ((self._old, self._rows), (self._new, self._recent)):
             if tree is None or not len(rows):
                 continue
-            distance, place = tree.query(embedded, k=count, distance_upper_bound=radius)
-            distance, place = distance.reshape(-1, count), place.reshape(-1, count)
-            row = rows[np.minimum(place, len(rows) - 1)]
-            parts.append((np.where(self._used[row], distance, np.inf), row))
-        if not parts:
+            found = tree.query(embedded, k=count, distance_upper_bound=radius)
+            distance = np.asarray(found[0]).reshape(-1, count)
+            row = rows[np.minimum(np.asarray(found[1]).reshape(-1, count), len(rows) - 1)]
+            distances.append(np.where(self._used[row], distance, np.inf))
+            numbers.append(row)
+        if not distances:
             empty = np.zeros((len(embedded), 1))
             return empty + np.inf, empty.astype(np.intp)
-        distance, row = zip(*parts, strict=True)
-        return np.concatenate(distance, axis=1), np.concatenate(row, axis=1)
+        return np.concatenate(distances, axis=1), np.concatenate(numbers, axis=1)
 
 
 @dataclass(frozen=True)
@@ -318,11 +327,11 @@ class Growth:
         """Queue places a spacing beside a curve."""
         places, along = self.samples.of(curve)
         if self.normals is not None:
-            side = np.cross(self.flow.mesh.interpolated(self.normals, places), along)
-            sides = [side, -side]
+            u: Array = np.cross(self.flow.mesh.interpolated(self.normals, places), along)
+            sides = [u, -u]
         else:
             u = np.cross(along, self.random.normal(size=along.shape))
-            v = np.cross(along, u)
+            v: Array = np.cross(along, u)
             sides = [u, -u, v, -v]
         for side in sides:
             size = np.linalg.norm(side, axis=1, keepdims=True)
@@ -442,7 +451,7 @@ def gaps(
     places = places[flow.directions(places, None, np.ones(len(places.cell)))[1]]
     there = growth.embedded(curves.places, flow.mesh.positions(curves.places))
     tree = cKDTree(there)
-    gap = tree.query(growth.embedded(places, flow.mesh.positions(places)))[0]
+    gap = np.asarray(tree.query(growth.embedded(places, flow.mesh.positions(places)))[0])
     own = np.repeat(np.arange(len(curves.offsets) - 1), np.diff(curves.offsets))
     picked = random.choice(len(there), min(len(there), 4000), replace=False)
     nearest = np.full(len(picked), np.inf)
@@ -462,9 +471,10 @@ def gaps(
 
 def _apart(embedded: Array, distance: float, most: int) -> Indices:
     """Return at most so many rows, the first ones first, at least a distance apart."""
-    left, chosen = np.arange(len(embedded)), []
+    chosen: list[int] = []
+    left = np.arange(len(embedded))
     while len(left) and len(chosen) < most:
-        chosen.append(left[0])
+        chosen.append(int(left[0]))
         gap = embedded[left] - embedded[left[0]]
         left = left[np.einsum("ij,ij->i", gap, gap) >= distance**2]
         if left.size and left[0] == chosen[-1]:

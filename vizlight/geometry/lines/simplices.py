@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -16,7 +17,8 @@ if TYPE_CHECKING:
 MOST_CROSSINGS = 300
 
 
-class Places(NamedTuple):
+@dataclass(frozen=True)
+class Places:
     """Places in cells.
 
     Attributes
@@ -30,9 +32,9 @@ class Places(NamedTuple):
     cell: Indices
     weights: Array
 
-    def __getitem__(self, rows: object) -> Places:  # type: ignore[override]
+    def __getitem__(self, rows: Indices | Bools | slice) -> Places:
         """Return some of the places."""
-        return Places(self.cell[rows], self.weights[rows])  # type: ignore[index]
+        return Places(self.cell[rows], self.weights[rows])
 
     def joined(self, other: Places) -> Places:
         """Return these places and then others."""
@@ -141,7 +143,7 @@ class Simplices:
         own = np.repeat(cells, self.k + 1)[beyond.ravel() >= 0]
         pairs = own, beyond.ravel()[beyond.ravel() >= 0]
         count = len(self.cells)
-        graph = coo_array((np.ones(len(own), np.bool_), pairs), shape=(count, count))
+        graph = coo_array((np.ones(len(own), dtype=np.int8), pairs), shape=(count, count))
         part = connected_components(graph, directed=False)[1][cells]
         order = np.lexsort((-self.measures[cells], part))
         first = np.unique(part[order], return_index=True)[1]
