@@ -11,7 +11,7 @@ import pyvista as pv
 
 from vizlight import _check, _progress
 from vizlight.filters.illuminate import light_mesh
-from vizlight.mesh import blocks, hull, point_arrays, records, surfaces, tracers
+from vizlight.mesh import blocks, hull, point_arrays, polylines, records, surfaces, tracers
 from vizlight.mesh.normals import onlooker
 from vizlight.mesh.records import all_made
 from vizlight.mesh.tracers import TRACED
@@ -291,7 +291,12 @@ def _traced(
         if key in lines.point_data:
             del lines.point_data[key]
     name = TANGENTS if TANGENTS not in mesh.point_data else "vizlight tangents"
-    lines.point_data[name] = point_arrays.unit_rows(tangents).astype(np.float32)
+    tangents = point_arrays.unit_rows(tangents)
+    resting = ~np.any(tangents, axis=1)
+    if resting.any():
+        # Where a line comes to rest it has the direction in which it came.
+        tangents[resting] = polylines.line_tangents(lines)[resting]
+    lines.point_data[name] = tangents.astype(np.float32)
     far = np.any(origin) or not 1e-30 < size < 1e30
     exact = size * places + origin
     lines.points = exact.astype(np.float64 if far else np.float32)

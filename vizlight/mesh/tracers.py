@@ -181,12 +181,14 @@ class CellTracer:
         return curves, {"largest_gap": gap, "nearest": near, "closed": closed}
 
     def lines(self, curves: Curves) -> pv.PolyData:
-        """Return curves as polylines with the interpolated point arrays of the mesh."""
+        """Return curves as polylines with the point arrays of the mesh, TRACED of length 1."""
         lines = polylines.polydata(self.cells.positions(curves.places), curves.offsets)
         for name, array in self.mesh.point_data.items():
             rows = self.cells.interpolated(np.asarray(array), curves.places)
             kind = array.dtype if array.dtype.kind == "f" else np.float64
             lines.point_data[name] = rows.astype(kind)
+        # Interpolated without a regard to signs they would cancel in a line field.
+        lines.point_data[TRACED] = curves.along
         return lines
 
 
