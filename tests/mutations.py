@@ -131,10 +131,6 @@ OF_NUMBERS = {
         "filters/streamlines.py", "replace(light, tangents=tangents)",
         "replace(light, tangents=None)",
     ),
-    "even spacing: an earlier curve gives way": (
-        "geometry/lines/even.py", "later = samples.curve[row] > ahead",
-        "later = samples.curve[row] < ahead",
-    ),
     "line fields: vertices are not aligned": (
         "geometry/lines/tracing.py", "np.where(turned[:, :, np.newaxis], -corners, corners)",
         "corners",

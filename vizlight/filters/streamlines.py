@@ -321,9 +321,9 @@ def _lines(
     count, places = _seeds(options.seeds, origin, size)
     if not (options.confined or options.line_field or options.spacing is not None):
         return _in_space(mesh, how, count, places, report)
-    cells: pv.PolyData | pv.UnstructuredGrid
-    whole = isinstance(mesh, pv.PolyData) and mesh.is_all_triangles
-    cells = mesh if whole else mesh.triangulate()
+    cells: pv.PolyData | pv.UnstructuredGrid = (
+        mesh if isinstance(mesh, pv.PolyData) and mesh.is_all_triangles else mesh.triangulate()
+    )
     normals = surfaces.NORMALS if options.confined else None
     tracer = tracers.CellTracer(cells, normals, line_field=options.line_field)
     given = None if places is None else tracer.located(places)
