@@ -84,7 +84,8 @@ def relief(
         Height field, or closed surface; of several each is lit by itself.
     """
     scenes.check_target(shape)
-    look = scenes.Look(common)
+    # The shadow is that of one light.
+    look = scenes.Look(common, fill=False)
     given = options.keywords(how)
     asked = ReliefOptions(**given)
 
@@ -113,8 +114,8 @@ def fur(
     files: list[Path],
     /,
     *,
-    how: object,
     shape: Annotated[Shape, LIT] = Shape(),  # noqa: B008
+    how: object = None,
     common: Annotated[Common, COMMON] = Common(),  # noqa: B008
 ) -> int:
     """Cover a surface with fibres, and light them and the skin below.
@@ -157,7 +158,8 @@ def contours(
     """
     scenes.check_target(shape)
     look = scenes.Look(common)
-    given = options.keywords(how)
+    # In a picture a crease is seen as one.
+    given = {"feature_angle": "auto"} | options.keywords(how)
     asked = ContourOptions(**given)
 
     def job(path: Path) -> Job:

@@ -47,17 +47,21 @@ def light(
     scenes.check_color(color)
     look = scenes.Look(common)
     given = options.keywords(how)
+    taken = target.surface or target.contour is not None or target.slice is not None
+    if taken:
+        # In a picture a crease is seen as one.
+        given = {"feature_angle": "auto"} | given
     asked = LightOptions(**given)
 
     def job(path: Path) -> Job:
         mesh = data = scenes.data(path, target, average_cells=asked.average_cells)
-        taken = target.surface or target.contour is not None or target.slice is not None
         if taken:
             mesh = scenes.surface(data, target)
         camera = look.camera(mesh)
         progress = {"progress_bar": True} if common.out.progress else {}
         lit = Step("lit", "vizlight.illuminate", mesh, look.scene(camera), **given, **progress)
-        made = Job(lit, asked.name, look, camera, before=mesh, suffix=".vtp" if taken else "")
+        made = Job(lit, asked.name, look, camera, suffix=".vtp" if taken or asked.refine else "")
+        made.before = None if asked.refine else mesh
         made.tint(scenes.tinted(lit, asked.name, data, color))
         if not (target.contour or target.warp or target.slice):
             made.hint = lambda: _hint(data.run(), surface=target.surface)

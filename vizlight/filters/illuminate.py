@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import pyvista as pv
 
 from vizlight import _check
 from vizlight.filters import lighting
-from vizlight.mesh import blocks
-from vizlight.mesh.inputs import inputs_of
+from vizlight.mesh import blocks, normals, refining
+from vizlight.mesh.inputs import part_of, uses_normals
 from vizlight.scene import Scene
 from vizlight.shading.options import LightOptions, accepts
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
     from typing_extensions import Unpack
 
     from vizlight.mesh.blocks import MeshT
     from vizlight.shading.options import LightKeywords
+
+#: Share of sharp edges, of all edges of a mesh, from which a warning names the remedy.
+MANY_SHARP = 0.02
 
 
 @accepts(LightOptions)
@@ -57,7 +62,10 @@ def illuminate(
     pyvista.DataSet or pyvista.MultiBlock
         The mesh with the point array ``luminance`` (active scalars); ``rgb`` where the scene
         has a colour; ``luminance_valid`` where some point could not be lit; and the field array
-        ``luminance_provenance``, which :func:`vizlight.provenance` reads.
+        ``luminance_provenance``, which :func:`vizlight.provenance` reads. Normals that had to be
+        computed stay as ``vizlight_normals``, so that the result is lit again in a fraction of the
+        time; they are used as long as points and cells have not changed. With ``refine`` it
+        consists of triangles or polylines with more points, as :func:`vizlight.refine` returns it.
 
     Raises
     ------
@@ -71,7 +79,8 @@ def illuminate(
     -----
     UserWarning
         Once, with the count, if points could not be lit: a zero, infinite or NaN vector,
-        dependent tangents, or no normal. They have the ambient light.
+        dependent tangents, or no normal. They have the ambient light. Points inside a volume
+        are not counted. Once, if many edges are sharp and normals are averaged across them.
 
     Notes
     -----
@@ -87,13 +96,12 @@ def illuminate(
     >>> lit.active_scalars_name
     'luminance'
     """
+    asked = LightOptions(**options)
+    if asked.refine and _check.boolean("inplace", inplace):
+        expected, remedy = "False for a mesh that gets new points", "leave it out"
+        raise ValueError(_check.message("inplace", expected, inplace, remedy))
     return light_mesh(
-        mesh,
-        scene,
-        LightOptions(**options),
-        threads=threads,
-        inplace=inplace,
-        progress_bar=progress_bar,
+        mesh, scene, asked, threads=threads, inplace=inplace, progress_bar=progress_bar
     )
 
 
@@ -105,8 +113,12 @@ def light_mesh(
     threads: int | None = None,
     inplace: bool = False,
     progress_bar: bool = False,
+    max_points: int | None = None,
 ) -> MeshT:
-    """Light a mesh by options that are checked; see :func:`illuminate`."""
+    """Light a mesh by options that are checked; see :func:`illuminate`.
+
+    With ``options.refine`` the result is a new mesh, also with ``inplace``.
+    """
     _check.instance("scene", scene, Scene)
     blocks.check(mesh)
     out = mesh if _check.boolean("inplace", inplace) else shallow_copy(mesh)
@@ -114,12 +126,89 @@ def light_mesh(
     lighting.refuse_overwriting(
         named, options.name, components=options.components, colored=scene.colored
     )
-    parts = [(inputs_of(block, path, scene, options), options) for block, path in named]
-    results, fitted = lighting.light(parts, scene, threads=threads, progress_bar=progress_bar)
+    taken = [_split(block, path, options) for block, path in named]
+    parts = [
+        part_of(own, path, scene, options) for own, (_, path) in zip(taken, named, strict=True)
+    ]
+    rest: list[refining.Left] = []
+    if options.refine:
+        fitted = lighting.fit_depth_cue(scene, [part.inputs for part in parts])
+        refined = [
+            refining.refined(own, path, part, fitted, max_points, threads)
+            for own, (_, path), part in zip(taken, named, parts, strict=True)
+        ]
+        refining.warn_of_rest(refined, options.refine)
+        out = _replaced(out, iter([one.mesh for one in refined]))
+        named = list(blocks.named_blocks(out))
+        taken = [block for block, _ in named]
+        parts, rest = [one.part for one in refined], [one.left for one in refined]
+    results, fitted = lighting.light(
+        [(part.inputs, part.options) for part in parts],
+        scene,
+        threads=threads,
+        progress_bar=progress_bar,
+    )
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
-    meshes = [block for block, _ in named]
-    lighting.finish(meshes, results, "illuminate", fitted, options, options.name)
+    sides = [part.sided for part in parts]
+    for (block, _), own, sided in zip(named, taken, sides, strict=True):
+        if own is not block:
+            block.ShallowCopy(own)
+        if sided is not None:
+            normals.keep(block, sided)
+    for block, _ in named:
+        refining.forget(block, options.name)
+    inside = sum(sided.inside for sided in sides if sided is not None)
+    blocks_lit = [block for block, _ in named]
+    lighting.finish(blocks_lit, results, "illuminate", fitted, options, options.name, inside=inside)
+    _warn_of_edges(blocks_lit, sides, options)
+    for block, left in zip(blocks_lit, rest, strict=False):
+        block.field_data[f"{options.name}{refining.LEFT}"] = [left.error, left.share]
     return out
+
+
+def _split(mesh: pv.DataSet, path: str, options: LightOptions) -> pv.DataSet:
+    """Return a mesh with points split at its sharp edges, if its normals will be computed."""
+    angle = options.feature_angle
+    if angle is None or not uses_normals(mesh, options) or not normals.are_computed(mesh, options):
+        return mesh
+    where = f"block {path}: " if path else ""
+    if not isinstance(mesh, pv.PolyData):
+        expected, got = "a pyvista.PolyData, whose points can be split", type(mesh).__name__
+        remedy = "take the mesh's extract_surface()"
+        raise ValueError(where + _check.message("feature_angle", expected, got, remedy))
+    given: object = options.tangents
+    if given is not None and not isinstance(given, str):
+        expected, remedy = "the name of a point array beside feature_angle=", "attach the array"
+        got = _check.describe(given)
+        raise TypeError(where + _check.message("tangents", expected, got, remedy))
+    return normals.split_edges(mesh, angle)
+
+
+def _warn_of_edges(
+    meshes: Sequence[pv.DataSet], sides: Sequence[normals.Sided | None], options: LightOptions
+) -> None:
+    """Warn if normals were averaged across many sharp edges."""
+    shares = [0.0 if sided is None else sided.sharp for sided in sides]
+    share = max(shares, default=0.0)
+    if options.feature_angle is not None or share <= MANY_SHARP:
+        return
+    others = any(not isinstance(mesh, pv.PolyData) for mesh in meshes)
+    _check.warn(
+        f"{share:.0%} of the edges are sharper than {normals.SHARP:g} degrees, and light is "
+        f"averaged across them; {'take the extract_surface() of the mesh and ' * others}pass "
+        f"feature_angle={normals.SHARP:g} to split the points there"
+    )
+
+
+def _replaced(mesh: MeshT, made: Iterator[pv.DataSet]) -> MeshT:
+    """Return the next of some datasets for a dataset, a MultiBlock of them for a MultiBlock."""
+    if not isinstance(mesh, pv.MultiBlock):
+        return cast("MeshT", next(made))
+    for i in range(mesh.n_blocks):
+        block = mesh[i]
+        if block is not None:
+            mesh.replace(i, _replaced(block, made))
+    return mesh
 
 
 def shallow_copy(mesh: MeshT) -> MeshT:

@@ -22,7 +22,7 @@ from vizlight.mesh.inputs import inputs_of
 from vizlight.mesh.point_arrays import unit_rows
 from vizlight.scene import Scene
 from vizlight.shading import engine
-from vizlight.shading.options import LightOptions, accepts
+from vizlight.shading.options import LightOptions, accepts, check_sides
 from vizlight.verify import report
 
 if TYPE_CHECKING:
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from vizlight.mesh.records import Record
     from vizlight.model.reflection import SpecularModel
     from vizlight.shading.engine import Shading
+    from vizlight.shading.options import FeatureAngle
 
 
 class ContourKeywords(TypedDict, total=False):
@@ -46,6 +47,7 @@ class ContourKeywords(TypedDict, total=False):
     model: SpecularModel
     two_sided: bool
     flip_normals: bool
+    feature_angle: FeatureAngle
     normals: str | ArrayLike | None
     tangents: str | ArrayLike | None
     conditioned: bool
@@ -68,7 +70,11 @@ class ContourOptions:
     model : {"phong", "blinn"}
         Reflection model of the highlight: ``R . E`` or ``N . H``. Both are drawn exactly.
     two_sided, flip_normals : bool, default: False
-        Treatment of back sides and normals, as for :func:`vizlight.illuminate`.
+        Treatment of back sides and normals, as for :func:`vizlight.illuminate`. An open mesh
+        faces the eye as a whole, because contours need normals that agree.
+    feature_angle : float or "auto", optional
+        Angle in degrees above which edges are sharp, as for :func:`vizlight.illuminate`; for a
+        mesh only. Default: none is.
     normals, tangents, conditioned, compensate
         Arrays and options as for :func:`vizlight.illuminate`, for a mesh only.
     name : str, default: "luminance"
@@ -80,6 +86,7 @@ class ContourOptions:
     model: SpecularModel = "phong"
     two_sided: bool = False
     flip_normals: bool = False
+    feature_angle: FeatureAngle = None
     normals: str | ArrayLike | None = None
     tangents: str | ArrayLike | None = None
     conditioned: bool = False
@@ -88,6 +95,7 @@ class ContourOptions:
 
     def __post_init__(self) -> None:
         spacing.check(self.levels)
+        check_sides("auto", self.feature_angle)
         _check.number("tolerance", self.tolerance, low=1e-6, high=0.1)
         name: object = self.name
         if not isinstance(name, str) or not name:
@@ -130,7 +138,8 @@ def isoluminance(
     -------
     pyvista.MultiBlock
         Block ``bands`` holds polygons with the cell arrays ``luminance`` and ``band``, for a solid
-        also ``patch``; it is closed if the surface is. Block ``contours`` holds lines with the
+        also ``patch``; it is closed if the surface is. Floating-point point data of a mesh are
+        interpolated over its triangles and kept. Block ``contours`` holds lines with the
         cell array ``luminance``. If the scene has a colour, the bands have ``rgb``: the colour at
         the centre of each polygon with the brightness of its band; with tangents the colour is
         interpolated like the luminance. Field data of the bands are ``luminance_error``, which is
@@ -261,8 +270,15 @@ def _of_solid(solid: Solid, light: _Light) -> Bands:
 def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Light]:
     """Return bands and contours of a mesh."""
     scene, options, levels = light.scene, light.options, light.options.levels
-    surface, triangles, used, ids = _surface(mesh)
     asked = options.light
+    angle = options.feature_angle
+    if angle is not None and normals.are_computed(mesh, asked) and mesh.n_points:
+        if not isinstance(options.tangents, str | None):
+            expected, got = "a name beside feature_angle=", _check.describe(options.tangents)
+            raise TypeError(_check.message("tangents", expected, got, "attach the array"))
+        whole = mesh if isinstance(mesh, pv.PolyData) else hull.outer_surface(mesh)[0]
+        mesh = normals.split_edges(whole, angle)
+    surface, triangles, used, ids = _surface(mesh)
     if ids is not None:
         asked = dataclasses.replace(
             asked,
@@ -279,15 +295,21 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
     if unlit:
         _check.warn(lighting.unlit(unlit, len(used)))
     points = np.array(surface.points, dtype=np.float64)
+    carried = {
+        str(name): np.asarray(value, dtype=np.float64).reshape(len(points), -1)
+        for name, value in surface.point_data.items()
+        if np.issubdtype(value.dtype, np.floating) and len(points)
+    }
     rgb: Array | None = None
     if not len(triangles):
         steps = spacing.steps(levels, 0.0, 0.0)
+        carried = {}
         bands, _ = banding.cut(np.empty((0, 3)), triangles, np.empty((0, 3)), steps)
         bands = dataclasses.replace(bands, error=0.0)
     elif options.tangents is None:
         found = normals.normals_of(surface, asked.normals, 3, normals.onlooker(scene))
         unit = unit_rows(np.asarray(found, dtype=np.float64))
-        rows = np.concatenate([points, unit], axis=1)
+        rows = np.concatenate([points, unit, *carried.values()], axis=1)
 
         def luminance(places: Array, directions: Array) -> Array:
             return light(places, unit_rows(directions))
@@ -298,15 +320,25 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
         steps = spacing.steps(levels, float(values.min()), float(values.max()), exact=True)
         # Colours are interpolated like the luminance.
         columns = [points, lit.luminance[:, np.newaxis], *([] if lit.rgb is None else [lit.rgb])]
-        cut, _ = banding.cut(np.concatenate(columns, axis=1), triangles, values, steps)
-        bands = dataclasses.replace(cut, points=cut.points[:, :3], error=steps.error)
+        rows = np.concatenate([*columns, *carried.values()], axis=1)
+        cut, _ = banding.cut(rows, triangles, values, steps)
+        bands = dataclasses.replace(cut, error=steps.error)
         if lit.rgb is not None:
             middles = cut.middles()
-            rgb = _as_bright(middles[:, 4:], middles[:, 3], bands)
+            rgb = _as_bright(middles[:, 4:7], middles[:, 3], bands)
     record = records.of_light(lit, "isoluminance", fitted, options)
     if scene.colored and options.tangents is None:
         rgb = _rgb(bands, light)
-    return _blocks(bands, options.name, record, rgb, patches=False), bands, light
+    blocks = _blocks(bands, options.name, record, rgb, patches=False)
+    # The carried values are the last columns of the points.
+    last = bands.points.shape[1]
+    for name, column in reversed(carried.items()):
+        last -= column.shape[1]
+        found = bands.points[:, last : last + column.shape[1]]
+        kind = surface.point_data[name].dtype
+        shape = (len(found), *surface.point_data[name].shape[1:])
+        blocks["bands"].point_data[name] = np.ascontiguousarray(found.reshape(shape), dtype=kind)
+    return blocks, bands, light
 
 
 def _on_surface(
@@ -371,7 +403,7 @@ def _middles(bands: Bands, light: _Light) -> tuple[Array, Array]:
         patches = np.stack([bands.patch, bands.patch], axis=1)
         places = exact_surfaces.onto(shape.surfaces, (middle - shape.shift) / shape.scale, patches)
         return shape.world(places), triangle_mesh.normals_of(shape, places, bands.patch)
-    normals = unit_rows(middle[:, 3:]) if middle.shape[1] == 6 else bands.normals()
+    normals = unit_rows(middle[:, 3:6]) if middle.shape[1] >= 6 else bands.normals()
     return middle[:, :3], normals
 
 

@@ -77,7 +77,7 @@ def closed(surface: object, name: str = "mesh") -> tuple[Array, Indices]:
     if len(opened):
         remedy = (
             "mesh.clean(tolerance=) joins seams and mesh.fill_holes(size) closes holes; "
-            "thickness= lights an open surface as a shell"
+            "thickness= lights an open surface as a shell, raster= as a terrain"
         )
         got = f"one with {len(opened)} open edges"
         raise ValueError(_check.message(name, "a closed surface", got, remedy))
