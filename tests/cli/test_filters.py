@@ -143,7 +143,14 @@ FILTERS = {
 #: Options that no text on the command line can give, or that a file has none of.
 IN_SCRIPTS = {
     "light": {"positions"},
-    "streamlines": {"positions", "tangents", "surface", "separation", "shortest"},
+    "streamlines": {
+        "positions",
+        "tangents",
+        "surface",
+        "separation",
+        "shortest",
+        "terminator",
+    },
     "relief": {"occluders", "sun"},
     "fur": set(),
     "contours": {"tolerance"},

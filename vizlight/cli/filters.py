@@ -28,7 +28,7 @@ RENAMED = {"light": "when"}
 @options.takes(
     vizlight.streamlines,
     "Streamlines",
-    without=("positions", "tangents", "separation", "shortest"),
+    without=("positions", "tangents", "separation", "shortest", "terminator"),
 )
 def streamlines(
     files: list[Path],
