@@ -330,6 +330,8 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
     if scene.colored and options.tangents is None:
         rgb = _rgb(bands, light)
     blocks = _blocks(bands, options.name, record, rgb, patches=False)
+    bands_block = blocks["bands"]
+    assert isinstance(bands_block, pv.PolyData)
     # The carried values are the last columns of the points.
     last = bands.points.shape[1]
     for name, column in reversed(carried.items()):
@@ -337,7 +339,7 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
         found = bands.points[:, last : last + column.shape[1]]
         kind = surface.point_data[name].dtype
         shape = (len(found), *surface.point_data[name].shape[1:])
-        blocks["bands"].point_data[name] = np.ascontiguousarray(found.reshape(shape), dtype=kind)
+        bands_block.point_data[name] = np.ascontiguousarray(found.reshape(shape), dtype=kind)
     return blocks, bands, light
 
 
