@@ -23,7 +23,7 @@ TIERS = [
     {"verify"},
     {"mesh", "data"},
     {"files", "filters"},
-    {"pictures"},
+    {"pictures", "plotting"},
     {"accessor", "demo", "doctor", "studies"},
     {"cli"},
 ]

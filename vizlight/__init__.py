@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from vizlight.filters.relief_shadow import relief_shadow
     from vizlight.filters.satin import satin
     from vizlight.filters.streamlines import streamlines
+    from vizlight.filters.tint import tint
+    from vizlight.filters.tint import unlit_colors as unlit_colors
     from vizlight.geometry.solids.primitives import Block, Frustum, Sphere, Truncus
     from vizlight.mesh.records import provenance
     from vizlight.scene import DepthCue, Light, Material, Scene, View
@@ -59,6 +61,8 @@ _HOMES = {
     "report": "vizlight.verify.report",
     "satin": "vizlight.filters",
     "streamlines": "vizlight.filters",
+    "tint": "vizlight.filters",
+    "unlit_colors": "vizlight.filters",
 }
 _MODULES = (
     "accessor", "engine", "filters", "geometry", "model", "movie", "render", "studies", "testing",
@@ -90,6 +94,7 @@ __all__ = [
     "report",
     "satin",
     "streamlines",
+    "tint",
 ]
 
 

@@ -11,6 +11,8 @@ from vizlight.filters.relief_day import relief_day
 from vizlight.filters.relief_shadow import relief_shadow
 from vizlight.filters.satin import satin
 from vizlight.filters.streamlines import streamlines
+from vizlight.filters.tint import tint
+from vizlight.filters.tint import unlit_colors as unlit_colors
 from vizlight.mesh.records import provenance
 
 __all__ = [
@@ -25,4 +27,5 @@ __all__ = [
     "relief_shadow",
     "satin",
     "streamlines",
+    "tint",
 ]
