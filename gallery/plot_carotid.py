@@ -45,6 +45,6 @@ luminance = np.asarray(lines["luminance"])[:, np.newaxis]
 lines["rgb"] = np.clip(colour * 1.6 * luminance, 0, 1)
 
 plotter = render.make_plotter(
-    render.Panel(lines, "rgb"), camera=camera, size=(1000, 800), line_width=2, background="black"
+    render.Panel(lines, "rgb"), camera=camera, size=(1000, 800), line_width=1, background="black"
 )
 plotter.show()

@@ -27,6 +27,6 @@ plotter = render.make_plotter(
     rows=2,
     size=(1800, 860),
     background="#203048",
-    line_width=1.6,
+    line_width=0.8,
 )
 plotter.show()

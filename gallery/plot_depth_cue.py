@@ -29,5 +29,5 @@ for title, cue in cues.items():
     lines = vizlight.streamlines(flow, scene, vectors="V", seeds=160, max_length=25)
     panels.append(render.Panel(lines, title=title))
 
-plotter = render.make_plotter(panels, camera=camera, size=(1500, 820), line_width=2)
+plotter = render.make_plotter(panels, camera=camera, size=(1500, 820), line_width=1)
 plotter.show()

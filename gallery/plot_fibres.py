@@ -29,7 +29,7 @@ plotter = render.make_plotter(
     [render.Panel(flat, title="one colour"), render.Panel(lit, title="lit, fading with depth")],
     camera=camera,
     size=(1500, 600),
-    line_width=2,
+    line_width=1,
 )
 plotter.show()
 
@@ -37,5 +37,5 @@ plotter.show()
 # The lit bundle as an interactive scene. The light is stored with the fibres as data, so it does
 # not change with the view.
 
-plotter = render.make_plotter(lit, camera=camera, size=(1000, 700), line_width=2)
+plotter = render.make_plotter(lit, camera=camera, size=(1000, 700), line_width=1)
 plotter.show()

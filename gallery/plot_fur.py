@@ -53,5 +53,6 @@ plotter = render.make_plotter(
     camera=camera,
     size=(1650, 560),
     background="#5a6570",
+    line_width=0.45,
 )
 plotter.show()

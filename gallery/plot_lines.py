@@ -32,7 +32,7 @@ plotter = render.make_plotter(
     [render.Panel(free, title="free"), render.Panel(confined, title="on Temp = 400")],
     camera=camera,
     size=(1500, 760),
-    line_width=2,
+    line_width=1,
 )
 plotter.subplot(0, 1)
 plotter.camera = near

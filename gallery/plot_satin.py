@@ -39,6 +39,6 @@ plotter = render.make_plotter(
     camera=camera,
     size=(1600, 440),
     background="#101010",
-    line_width=1.5,
+    line_width=0.75,
 )
 plotter.show()

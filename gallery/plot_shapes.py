@@ -55,6 +55,6 @@ plotter = render.make_plotter(
     camera=camera,
     size=(2000, 420),
     background="#203048",
-    line_width=1.5,
+    line_width=0.75,
 )
 plotter.show()

@@ -39,7 +39,7 @@ plotter = render.make_plotter(
     ],
     camera=camera,
     size=(1800, 560),
-    line_width=2,
+    line_width=1,
 )
 plotter.show()
 

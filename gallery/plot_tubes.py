@@ -41,6 +41,6 @@ plotter = render.make_plotter(
     camera=camera,
     size=(1800, 900),
     background="black",
-    line_width=1.5,
+    line_width=0.75,
 )
 plotter.show()

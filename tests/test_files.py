@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -156,3 +159,71 @@ def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path):
 def test_a_writer_that_writes_nothing_is_an_error(tmp_path):
     with pytest.raises(files.FileError, match="output: expected a file that can be written"):
         files.replace_file(tmp_path / "a.vtp", lambda draft: None)
+
+
+@pytest.mark.parametrize("name", ["a<b", "a&b", 'a"b', "a\nb", "\x01"])
+def test_names_that_xml_cannot_hold_are_refused(name, tmp_path):
+    for data in ("point_data", "cell_data"):
+        mesh = pv.Sphere()
+        size = mesh.n_points if data == "point_data" else mesh.n_cells
+        getattr(mesh, data)[name] = np.arange(float(size))
+        with pytest.raises(files.FileError, match="output: expected array names without <"):
+            files.write_mesh(mesh, tmp_path / "a.vtp")
+        assert list(tmp_path.iterdir()) == []
+        back = pv.read(files.write_mesh(mesh, tmp_path / "a.vtk"))
+        assert name in getattr(back, data)
+        (tmp_path / "a.vtk").unlink()
+
+
+def test_the_mode_of_a_file_that_is_replaced_is_kept(tmp_path):
+    path = files.write_mesh(pv.Sphere(), tmp_path / "a.vtp")
+    path.chmod(0o640)
+    files.write_mesh(pv.Cube(), path)
+    assert path.stat().st_mode & 0o777 == 0o640
+    assert pv.read(path).n_points == pv.Cube().n_points
+
+
+def test_a_symbolic_link_stays_and_its_file_is_replaced(tmp_path):
+    (tmp_path / "there").mkdir()
+    path = files.write_mesh(pv.Sphere(), tmp_path / "there" / "a.vtp")
+    link = tmp_path / "link.vtp"
+    link.symlink_to(path)
+    assert files.write_mesh(pv.Cube(), link) == link
+    assert link.is_symlink()
+    assert pv.read(path).n_points == pv.Cube().n_points
+    assert [p.name for p in path.parent.iterdir()] == ["a.vtp"]
+
+
+@pytest.mark.skipif(not hasattr(os, "posix_fallocate"), reason="space cannot be reserved")
+@pytest.mark.parametrize("suffix", [".vtp", ".vtk", ".vtu"])
+def test_the_limit_of_file_sizes_is_seen_before_writing(suffix, tmp_path):
+    code = f"""
+import resource, pyvista as pv
+from vizlight import files
+resource.setrlimit(resource.RLIMIT_FSIZE, (10_000, 10_000))
+try:
+    files.write_mesh(pv.Sphere(), {str(tmp_path / "a")!r} + {suffix!r})
+except files.FileError as error:
+    print(error)
+"""
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "output: expected" in run.stdout
+    assert "File too large" in run.stdout
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("suffix", [".vtp", ".vtu"])
+def test_a_draft_that_is_not_whole_does_not_replace_the_output(suffix, tmp_path, monkeypatch):
+    path = files.write_mesh(pv.Sphere(), tmp_path / f"a{suffix}")
+    old = path.read_bytes()
+    kind = type(pv.read(path))
+    save = kind.save
+
+    def cut(mesh, to, **options):
+        save(mesh, to, **options)
+        os.truncate(to, Path(to).stat().st_size // 2)
+
+    monkeypatch.setattr(kind, "save", cut)
+    with pytest.raises(files.FileError, match="output: expected a file that can be written"):
+        files.write_mesh(pv.Cube(), path)
+    assert path.read_bytes() == old

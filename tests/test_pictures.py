@@ -119,12 +119,12 @@ def flow_lines(**options):
 
 
 def streamlines():
-    return plot(*flow_lines(), line_width=2)
+    return plot(*flow_lines(), line_width=0.9)
 
 
 def depth_cue():
     both = [flow_lines(depth_cue=DepthCue(smooth=smooth))[0] for smooth in (False, True)]
-    return plot(both, flow_lines()[1], line_width=2)
+    return plot(both, flow_lines()[1], line_width=0.9)
 
 
 def exact_line_light():
@@ -132,7 +132,7 @@ def exact_line_light():
     sheen = Material(ambient=0, diffuse=0.5, specular=1.0, shininess=3)
     behind = {"model": "cylinder", "light": (-0.6, 1, 0.3)}
     panels = [flow_lines(**behind)[0], flow_lines(**behind, material=sheen)[0]]
-    return plot(panels, flow_lines()[1], line_width=2)
+    return plot(panels, flow_lines()[1], line_width=0.9)
 
 
 def confined_streamlines():
@@ -143,14 +143,14 @@ def confined_streamlines():
     lines = vizlight.streamlines(
         flow, scene, vectors="V", surface=surface, confined=True, seeds=80, max_length=20
     )
-    return plot(lines, camera, line_width=2)
+    return plot(lines, camera, line_width=0.9)
 
 
 def fibres():
     bundle = vizlight.load_example("fibre_bundle.vtp")
     camera = render.camera_on(bundle.bounds, (0.3, -1, 0.4), zoom=1.5)
     scene = Scene(lights=Light(direction=(-0.5, -1, 1)), view=View.from_camera(camera))
-    return plot(vizlight.illuminate(bundle, scene), camera, line_width=2)
+    return plot(vizlight.illuminate(bundle, scene), camera, line_width=0.9)
 
 
 def satin():
@@ -177,7 +177,7 @@ def fur():
     )
     # Few fibres, and black behind: the base of each is seen, where the fur takes most.
     coat = vizlight.fur(mesh, scene, density=0.7, fibres=8_000, length=0.3, compensate=False)
-    return plot(coat, camera, background="black")
+    return plot(coat, camera, background="black", line_width=0.45)
 
 
 def turning():

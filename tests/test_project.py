@@ -21,14 +21,16 @@ ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 EXTRAS = PROJECT["optional-dependencies"]
 #: Packages whose modules have another name.
-MODULES = {"pillow": {"PIL"}, "vtk": {"vtk", "vtkmodules"}}
+MODULES = {"pillow": {"PIL"}, "trx-python": {"trx"}, "vtk": {"vtk", "vtkmodules"}}
 #: Modules of packages that a declared package brings, and that package.
 BROUGHT = {"docutils": "sphinx", "trame_vtk": "pyvista[jupyter]"}
 #: Declared packages that no file imports, and what uses them.
 REASONS = {
     "check-jsonschema": "command: checks .github/workflows",
     "hatchling": "builds the wheel, which tests/test_data.py inspects in a second process",
+    "meshio": "PyVista reads files by it that VTK cannot",
     "mypy": "command",
+    "netcdf4": "xarray reads netCDF 4 by it",
     "nest-asyncio2": "pyvista imports it to export scenes of the pages",
     "numpydoc": "extension of Sphinx, named in gallery/pages/conf.py",
     "pre-commit": "command",
@@ -41,7 +43,11 @@ REASONS = {
     "tomli": "read above on Python 3.10 only",
 }
 #: Extras whose packages the files of a folder may import, besides the dependencies.
-ALLOWED = {"vizlight": ["movie", "rays", "solids", "test"], "tests": ["test"], "gallery": ["docs"]}
+ALLOWED = {
+    "vizlight": ["fast", "formats", "movie", "rays", "solids", "tracts", "test"],
+    "tests": ["test", "tracts", "formats"],
+    "gallery": ["docs"],
+}
 
 
 def declared(*extras):

@@ -15,7 +15,17 @@ ROOT = Path(vizlight.__file__).parent
 #: Each tier imports only those before it and itself; a folder or a file at the top stands for all
 #: that it holds.
 TIERS = [
-    {"_aliases", "_check", "_console", "_pool", "_progress", "_types", "_version"},
+    {
+        "_aliases",
+        "_check",
+        "_compiled",
+        "_console",
+        "_pool",
+        "_progress",
+        "_supervise",
+        "_types",
+        "_version",
+    },
     {"model"},
     {"geometry"},
     {"scene"},
@@ -26,6 +36,7 @@ TIERS = [
     {"pictures", "plotting"},
     {"accessor", "demo", "doctor", "studies"},
     {"cli"},
+    {"__main__"},
 ]
 #: Names that the package gives by itself are those of all tiers: only what stands last uses them.
 USES_ALL = {"accessor", "cli", "demo", "doctor", "studies"}

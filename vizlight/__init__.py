@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from vizlight import render as render
     from vizlight import testing as testing
     from vizlight.data import example_path, load_example
+    from vizlight.files import read
     from vizlight.filters.bas_relief import bas_relief
     from vizlight.filters.bas_relief import relief_from_mesh as relief_from_mesh
     from vizlight.filters.fur import fur
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from vizlight.filters.tint import tint
     from vizlight.filters.tint import unlit_colors as unlit_colors
     from vizlight.geometry.solids.primitives import Block, Frustum, Sphere, Truncus
+    from vizlight.mesh.polylines import direction_colors
     from vizlight.mesh.records import provenance
     from vizlight.scene import DepthCue, Light, Material, Scene, View
     from vizlight.verify.report import report
@@ -47,6 +49,7 @@ _HOMES = {
     "Truncus": "vizlight.geometry.solids.primitives",
     "View": "vizlight.scene",
     "bas_relief": "vizlight.filters",
+    "direction_colors": "vizlight.mesh.polylines",
     "example_path": "vizlight.data",
     "fur": "vizlight.filters",
     "illuminate": "vizlight.filters",
@@ -55,6 +58,7 @@ _HOMES = {
     "manifold": "vizlight.filters",
     "project": "vizlight.filters",
     "provenance": "vizlight.filters",
+    "read": "vizlight.files",
     "relief_day": "vizlight.filters",
     "relief_from_mesh": "vizlight.filters",
     "relief_shadow": "vizlight.filters",
@@ -81,6 +85,7 @@ __all__ = [
     "Truncus",
     "View",
     "bas_relief",
+    "direction_colors",
     "example_path",
     "fur",
     "illuminate",
@@ -89,6 +94,7 @@ __all__ = [
     "manifold",
     "project",
     "provenance",
+    "read",
     "relief_day",
     "relief_shadow",
     "report",

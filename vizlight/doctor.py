@@ -6,7 +6,7 @@ import platform
 from importlib.metadata import PackageNotFoundError, version
 from typing import get_args
 
-from vizlight import data
+from vizlight import _compiled, data
 from vizlight.pictures import render
 
 #: Packages that vizlight always needs.
@@ -20,6 +20,11 @@ OPTIONAL = (
     ("movies in MP4 files", "imageio-ffmpeg", "movie"),
     ("shadows of closed meshes ten times as fast", "embreex", "rays"),
     ("combined solids", "manifold3d", "solids"),
+    ("light of many points ten times as fast", "numba", "fast"),
+    ("tractograms in .trk and .tck files", "nibabel", "tracts"),
+    ("tractograms in .trx files", "trx-python", "tracts"),
+    ("meshes in .off, .mesh, .msh and other files", "meshio", "formats"),
+    ("grids in netCDF files", "xarray", "formats"),
     ("all tests", "pytest", "test"),
     ("tests of pictures", "pytest-pyvista", "test"),
     ("tests with searched inputs", "hypothesis", "test"),
@@ -38,7 +43,7 @@ def findings() -> list[tuple[str, str]]:
     -------
     list of tuple of str
         Version of Python; version of each package, or what it is needed for and the command that
-        installs it; path of the embedded data; what draws.
+        installs it; whether code is compiled; path of the embedded data; what draws.
     """
     rows = [("python", f"{platform.python_version()}, {platform.platform()}")]
     rows += [
@@ -48,6 +53,7 @@ def findings() -> list[tuple[str, str]]:
     for feature, package, extra in OPTIONAL:
         remedy = f"missing; needed for {feature} (try: pip install 'vizlight[{extra}]')"
         rows.append((f"{package} [{extra}]", _version(package) or remedy))
+    rows.append(("compiled code", _compiled.status()))
     rows.append(("data", str(data.example_path())))
     for backend in get_args(render.Backend):
         rows.append((f"draws by {backend}", render.probe(backend).detail))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import re
 import shutil
@@ -14,16 +15,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
+from vtkmodules import vtkIOXML
 
-from vizlight import _check
-from vizlight.mesh import hull
+from vizlight import _check, _supervise
+from vizlight.mesh import foreign_files, hull
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
-__all__ = ["FileError", "read_mesh", "surface_of", "warped", "write_mesh"]
+__all__ = ["FileError", "read", "read_mesh", "surface_of", "warped", "write_mesh"]
 
 #: File formats that keep point and field arrays, by type of mesh.
 FORMATS: dict[str, tuple[str, ...]] = {
@@ -36,26 +38,44 @@ FORMATS: dict[str, tuple[str, ...]] = {
 SUFFIXES = tuple(dict.fromkeys(suffix for kind in FORMATS.values() for suffix in kind))
 
 
+#: Readers of VTK's XML formats.
+READERS = {
+    ".vtp": vtkIOXML.vtkXMLPolyDataReader,
+    ".vtu": vtkIOXML.vtkXMLUnstructuredGridReader,
+    ".vts": vtkIOXML.vtkXMLStructuredGridReader,
+    ".vtr": vtkIOXML.vtkXMLRectilinearGridReader,
+    ".vti": vtkIOXML.vtkXMLImageDataReader,
+}
+
+
 class FileError(ValueError):
     """A file cannot be read or written."""
 
 
-def read_mesh(path: str | Path, /) -> pv.DataSet:
-    """Read a mesh from any file that PyVista reads; several blocks become one grid.
+def read(path: str | Path, /) -> pv.DataSet:
+    """Read a mesh from a file: any that PyVista reads, tractograms and netCDF grids.
 
     Parameters
     ----------
     path : path
-        Path of the file.
+        Path of the file. Tractograms (.trk, .tck, .trx) need the extra ``tracts``; netCDF files
+        (.nc, .cdf) and those that PyVista reads by meshio, such as .off, .mesh and .msh, need the
+        extra ``formats``.
 
     Returns
     -------
     pyvista.DataSet
+        Several blocks become one grid. A tractogram is a mesh of polylines in the space of its
+        header (RAS, in mm), with the data per point and, as cell data, those per streamline; a
+        group is a cell array of 0 and 1. A netCDF file is the grid of its largest variable, whose
+        last axis is x: an image, or a rectilinear grid where its steps are unequal. Of the
+        time, and of any axis before the last three, the first value is taken.
 
     Raises
     ------
     FileError
-        If the file does not exist, PyVista cannot read it, or it has no points.
+        If the file does not exist or cannot be read, the package that reads it is not installed,
+        or it has no points.
     """
     path = Path(path)
     if not path.is_file():
@@ -65,18 +85,27 @@ def read_mesh(path: str | Path, /) -> pv.DataSet:
         raise FileError(_check.message("file", "a readable file", f"'{path}'"))
     reason = "no points"
     mesh: pv.DataSet | None = None
-    with _captured_errors() as errors, warnings.catch_warnings():
+    limit = _supervise.read_limit(path.stat().st_size)
+    reading = _supervise.stage("read", path, seconds=limit)
+    with reading, _captured_errors() as errors, warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
-            read = pv.read(path)
-            mesh = _one_grid(read) if isinstance(read, pv.MultiBlock) else read
+            found = foreign_files.read(path)
+            if found is None:
+                found = pv.read(path)
+            mesh = _one_grid(found) if isinstance(found, pv.MultiBlock) else found
         except Exception as error:  # noqa: BLE001 - readers raise exceptions of any type
             reason = f"{type(error).__name__}: {_first_line(error)}"
     if not isinstance(mesh, pv.DataSet) or mesh.n_points == 0:
         if errors and reason == "no points":
             reason = f"no points: {errors[0]}"
-        raise FileError(_check.message("file", "a mesh that PyVista reads", f"'{path}' ({reason})"))
+        got, remedy = f"'{path}' ({reason})", foreign_files.missing(path)
+        raise FileError(_check.message("file", "a mesh that PyVista reads", got, remedy))
     return mesh
+
+
+#: Older name of :func:`read`.
+read_mesh = read
 
 
 def _first_line(error: Exception) -> str:
@@ -277,14 +306,71 @@ def write_mesh(mesh: pv.DataSet, path: str | Path, /) -> Path:
         If the format does not support the type of mesh, or the file cannot be written.
     """
     path = check_format(mesh, path)
-    # VTK's writers terminate the process if the disk is full.
-    needed, free = mesh.actual_memory_size * 1024, shutil.disk_usage(path.parent).free
-    if needed > free:
-        got = f"{free / 1e6:.1f} MB in '{path.parent}'"
-        raise FileError(_check.message("output", f"{needed / 1e6:.1f} MB of free disk", got))
+    if path.suffix.lower() != ".vtk":
+        _check_names(mesh)
     if path.suffix.lower() == ".vtu" and isinstance(mesh, pv.PolyData):
         mesh = mesh.cast_to_unstructured_grid()
-    return replace_file(path, mesh.save)
+
+    def save(draft: str) -> None:
+        # Text of base64 has 4 bytes for 3.
+        _reserve(Path(draft), mesh.actual_memory_size * 1024 * 4 // 3 + 65536)
+        with _captured_errors() as errors:
+            mesh.save(draft)
+        _check_draft(Path(draft), mesh, errors)
+
+    return replace_file(path, save)
+
+
+def _check_names(mesh: pv.DataSet) -> None:
+    """Check that XML can hold the names of the arrays; VTK's writers do not escape them."""
+    for data in (mesh.point_data, mesh.cell_data, mesh.field_data):
+        for name in data:
+            if re.search(r"[<&\"\x00-\x1f]", name):
+                expected = "array names without <, &, quotation marks and control characters"
+                remedy = "rename the array, or write a .vtk file"
+                raise FileError(_check.message("output", expected, repr(name), remedy))
+
+
+def _reserve(draft: Path, size: int) -> None:
+    """Check that the disk, a quota and the limit of file sizes leave room for a file.
+
+    VTK's writers end the process where they do not. Space that is reserved and released tells of
+    all three.
+    """
+    if hasattr(os, "posix_fallocate"):
+        with draft.open("wb") as file:
+            try:
+                os.posix_fallocate(file.fileno(), 0, size)
+            except OSError as error:
+                if error.errno not in (errno.EINVAL, errno.EOPNOTSUPP, errno.ENOSYS):
+                    expected = f"{size / 1e6:.1f} MB of free disk"
+                    got = f"'{draft.parent.parent}' ({error.strerror})"
+                    raise FileError(_check.message("output", expected, got)) from error
+        draft.unlink()
+    free = shutil.disk_usage(draft.parent).free
+    if size > free:
+        got = f"{free / 1e6:.1f} MB in '{draft.parent.parent}'"
+        raise FileError(_check.message("output", f"{size / 1e6:.1f} MB of free disk", got))
+
+
+def _check_draft(draft: Path, mesh: pv.DataSet, errors: list[str]) -> None:
+    """Check that a file that was written is whole, by what the writer said and by its reader."""
+    reason = errors[0] if errors else ""
+    if not reason and not draft.is_file():
+        reason = "nothing was written"
+    if not reason and draft.suffix != ".vtk":
+        reader = READERS[draft.suffix]()
+        reader.SetFileName(str(draft))
+        with _captured_errors() as errors:
+            reader.UpdateInformation()
+        seen = {reader.GetPointArrayName(i) for i in range(reader.GetNumberOfPointArrays())}
+        with draft.open("rb") as file:
+            file.seek(-min(64, draft.stat().st_size), os.SEEK_END)
+            ended = file.read().rstrip().endswith(b"</VTKFile>")
+        if errors or not ended or seen != set(mesh.point_data):
+            reason = errors[0] if errors else "the file is not whole"
+    if reason:
+        raise FileError(_check.message("output", "a file that can be written", reason))
 
 
 def make_folder(name: str, path: Path, /) -> None:
@@ -296,7 +382,9 @@ def make_folder(name: str, path: Path, /) -> None:
         raise FileError(_check.message(name, expected, f"'{path}' ({error.strerror})")) from error
 
 
-def replace_file(path: Path, write: Callable[[str], object]) -> Path:
+def replace_file(
+    path: Path, write: Callable[[str], object], *, doing: _supervise.Doing = "write"
+) -> Path:
     """Write a file in a temporary folder and move it to its path, so that no partial file is left.
 
     Parameters
@@ -305,6 +393,8 @@ def replace_file(path: Path, write: Callable[[str], object]) -> Path:
         Path of the file. An existing file is replaced.
     write : callable
         Function that writes the file to a path given as a string.
+    doing : {"write", "draw"}
+        What the function does, for the message if it ends the process.
 
     Returns
     -------
@@ -316,11 +406,15 @@ def replace_file(path: Path, write: Callable[[str], object]) -> Path:
     FileError
         If the file cannot be written.
     """
+    target = path.resolve()  # a symbolic link stays, and what it points to is replaced
     try:
-        with tempfile.TemporaryDirectory(prefix=".vizlight-", dir=path.parent) as folder:
+        with tempfile.TemporaryDirectory(prefix=".vizlight-", dir=target.parent) as folder:
             draft = Path(folder) / f"{path.stem}{path.suffix.lower()}"
-            write(str(draft))
-            draft.replace(path)
+            with _supervise.stage(doing, path, temporary=folder):
+                write(str(draft))
+            if target.exists():
+                draft.chmod(target.stat().st_mode)
+            draft.replace(target)
     except OSError as error:
         raise FileError(
             _check.message("output", "a file that can be written", f"'{path}' ({error.strerror})")

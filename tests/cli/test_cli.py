@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
 import sys
 
 import numpy as np
@@ -295,3 +297,35 @@ def test_explain_tells_of_averaged_tangents(volume, capfd):
     code, out, err = run(capfd, "light", volume, *options)
     assert (code, err) == (0, "")
     assert "1 orthonormal tangent" in out
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="streams of a POSIX shell")
+@pytest.mark.parametrize(
+    "streams", [">&-", "2>&-", "<&- >&- 2>&-", ">/dev/full", "2>/dev/full", "| true"]
+)
+def test_the_work_is_done_where_nobody_reads_what_is_said(streams, tmp_path):
+    pv.Sphere(theta_resolution=4, phi_resolution=4).save(tmp_path / "ball.vtp")
+    command = f"{sys.executable} -m vizlight light ball.vtp --specular 0 -o lit.vtp {streams}"
+    run = subprocess.run(
+        command, shell=True, cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert run.returncode == 0
+    assert run.stderr == ""
+    assert "luminance" in pv.read(tmp_path / "lit.vtp").point_data
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="Linux starts a child")
+def test_a_reader_that_crashes_is_one_line(tmp_path):
+    pv.Sphere().save(tmp_path / "ball.ply", binary=True)
+    os.truncate(tmp_path / "ball.ply", (tmp_path / "ball.ply").stat().st_size * 7 // 10)
+    run = subprocess.run(
+        [sys.executable, "-m", "vizlight", "light", "ball.ply", "--specular", "0", "-o", "a.vtp"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert run.returncode == 2
+    assert run.stderr.count("\n") == 1
+    assert "vizlight: file: expected a" in run.stderr
+    assert [p.name for p in tmp_path.iterdir()] == ["ball.ply"]

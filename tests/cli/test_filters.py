@@ -36,6 +36,10 @@ def folder(tmp_path, monkeypatch):
     terrain = pv.ImageData(dimensions=(20, 16, 1))
     terrain["height"] = 3 * np.sin(terrain.points[:, 0] / 3) * np.cos(terrain.points[:, 1] / 4)
     terrain.save("terrain.vti")
+    tract = pv.Line((0, 0, 0), (3, 4, 0), resolution=4)
+    tract = tract + pv.Line((0, 0, 1), (2, 0, 3), resolution=3)
+    tract.cell_data["bundle"] = np.arange(float(tract.n_cells))
+    tract.save("tract.vtp")
     vizlight.manifold(manifolds.torus(1.5, 0.75, resolution=12)).save("torus.vtp")
     return home
 
@@ -76,6 +80,8 @@ COMMANDS = {
     "streamlines": "streamlines flow.vti --vectors V --seeds 12 --model cylinder --max-steps 90",
     "colour of data": "light flow.vti --slice z:4 --scalars r --diffuse 0.9",
     "streamlines by data": "streamlines flow.vti --vectors V --seeds 9 --scalars r --cmap plasma",
+    "lines by direction": "light tract.vtp --scalars direction --line-width 3",
+    "lines by their bundle": "light tract.vtp --scalars bundle",
     "streamlines on a surface": "streamlines flow.vti --vectors V --contour r --confined --seeds 9",
     "relief": "relief terrain.vti --light 315,20 --depth 0.5 --border wall",
     "relief, lit": "relief terrain.vti --lit --color white --factor 2 --elevation height",
@@ -308,7 +314,7 @@ def test_report_stands_in_the_script_too(folder, capfd):
         ("light flow.vti --threshold r:3:1", "--threshold: expected NAME:LOW:HIGH"),
         ("light flow.vti --threshold q:3:4", "--threshold: expected the name of an array, one of"),
         ("light flow.vti --threshold r:99:", "--threshold: expected a value that leaves"),
-        ("light flow.vti --scalars V", "--scalars: expected a point array of one component, one"),
+        ("light flow.vti --scalars V", "--scalars: expected an array of one component, one"),
         ("light flow.vti --scalars r --cmap no", "--cmap: expected the name of a colour map"),
         ("light flow.vti --scene no.json", "--scene: expected a JSON file, got 'no.json' (No such"),
         ("light flow.vti --scene flow.vti", "--scene: expected a JSON file"),

@@ -16,6 +16,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight import Light, Material, Scene, View, demo, render
+from vizlight.pictures import backends
 
 pytestmark = pytest.mark.opengl
 
@@ -241,6 +242,14 @@ def test_no_opengl_is_an_error_with_the_apt_line(no_gl, tmp_path):
     assert not (tmp_path / "x.png").exists()
 
 
+@pytest.mark.parametrize("window", ["vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow", "nonsense"])
+def test_a_window_class_that_the_environment_names_is_probed(no_gl, monkeypatch, window):
+    monkeypatch.setenv("VTK_DEFAULT_OPENGL_WINDOW", f"{window}")
+    backends._check_variable.cache_clear()
+    with pytest.raises(render.BackendError, match=f"WINDOW={window} is not available .try: unset"):
+        render.choose_backend()
+
+
 def test_the_environment_may_choose(monkeypatch):
     monkeypatch.setenv("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
     assert render.choose_backend() is None
@@ -345,3 +354,20 @@ def test_picture_of_a_furry_ball(verify_image_cache):
     scene = Scene(lights=Light(direction=(1, -1, 0.8)), view=View.from_camera(camera))
     coat = vizlight.fur(mesh, scene, density=0.9, fibres=20_000, length=0.25)
     render.make_plotter(coat, camera=camera, size=(300, 300), background="white").show()
+
+
+@pytest.mark.parametrize("anti_aliasing", ["ssaa", "msaa", None])
+@pytest.mark.parametrize("width", [2, 5, 11])
+def test_lines_are_as_wide_as_asked_in_pixels_of_the_picture(width, anti_aliasing):
+    """Drivers round the widths of lines to whole pixels of what they draw: half a pixel."""
+    line = pv.Line((-1, 0, 0), (1, 0, 0))
+    line["luminance"] = np.ones(2)
+    camera = pv.Camera()
+    camera.position, camera.focal_point, camera.up = (0, 0, 5), (0, 0.003, 0), (0, 1, 0)
+    camera.view_angle = 10.0
+    plotter = render.make_plotter(
+        line, camera=camera, size=(80, 60), line_width=width, anti_aliasing=anti_aliasing
+    )
+    picture = np.asarray(plotter.screenshot(return_img=True), dtype=float)
+    plotter.close()
+    assert picture[:, :, 0].sum() / 255 / 80 == pytest.approx(width, abs=0.55)

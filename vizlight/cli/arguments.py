@@ -172,7 +172,7 @@ class Output:
     background
         Colour behind the mesh. Default: white, or black behind lines.
     line_width
-        Width of lines, in pixels of twice the picture's size.
+        Width of lines in pixels.
     backend
         Library that draws. Default: egl.
     report
@@ -200,7 +200,7 @@ class Color:
     Parameters
     ----------
     scalars
-        Point array that colours the picture, times the light.
+        Array that colours the picture, times the light; or direction, for lines.
     cmap
         Name of the colour map of --scalars.
     """

@@ -2,21 +2,37 @@
 
 from __future__ import annotations
 
+import os
 import re
 import sys
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, TextIO
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from pathlib import Path
 
 #: Exit codes: success; no picture or a machine that lacks something; bad input.
 OK, LACKING, BAD_INPUT = 0, 1, 2
 
 
 def say(text: str) -> None:
-    """Write a line to standard output."""
-    sys.stdout.write(f"{text}\n")
+    """Write a line to standard output.
+
+    Work goes on where nobody reads it: a closed stream, a pipe that was closed, a full disk.
+    """
+    _put(sys.stdout, f"{text}\n")
+
+
+def _put(stream: TextIO | None, text: str) -> None:
+    if stream is None:
+        return
+    try:
+        stream.write(text)
+        stream.flush()
+    except OSError:
+        # What is left in the buffer must not fail once more when the process ends.
+        with Path(os.devnull).open("wb") as nothing:
+            os.dup2(nothing.fileno(), stream.fileno())
 
 
 def one_line(error: object) -> str:
@@ -33,7 +49,7 @@ def _option(found: re.Match[str]) -> str:
 
 def complain(text: object) -> None:
     """Write a line to standard error."""
-    sys.stderr.write(f"vizlight: {text}\n")
+    _put(sys.stderr, f"vizlight: {text}\n")
 
 
 def draw(picture: Callable[[], Path]) -> int:

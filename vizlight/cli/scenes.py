@@ -29,6 +29,8 @@ VIEW, MAP = (1.0, 1.0, 1.0), (0.0, 0.0, 1.0)
 BOX = (-1, 1, -1, 1, -1, 1)
 #: Name of the array of colours times light.
 TINT = "tint"
+#: Name that stands for the direction of lines among the arrays that colour a picture.
+DIRECTION = "direction"
 #: Angle of view, in degrees.
 ANGLE = 30.0
 
@@ -58,7 +60,7 @@ def check_color(color: Color) -> None:
 
 def data(file: Path, target: Part, *, average_cells: bool = False) -> Step:
     """Return the step that reads a file, after those that raise and cut what is in it."""
-    mesh = Step("data", "files.read_mesh", file)
+    mesh = Step("data", "vizlight.read", file)
     warp = target.warp if isinstance(target, Shape) else None
     wanted = {target.contour, warp} - {None}
     if average_cells and wanted and not wanted <= {*mesh.run().point_data}:
@@ -117,16 +119,27 @@ def tinted(lit: Step, name: str, data: Step, color: Color) -> Step | None:
     """Return the step that colours a lit mesh by an array, the colour times the light."""
     if color.scalars is None:
         return None
-    values = data.run().point_data.get(color.scalars)
-    if values is None or values.ndim != 1:
-        there = [key for key, array in data.run().point_data.items() if array.ndim == 1]
-        expected = f"a point array of one component, {_check.one_of(there)}"
-        raise ValueError(_check.message("--scalars", expected, repr(color.scalars)))
-    values = Step("", "[]", lit, color.scalars)
-    ends = Step("", ".get_data_range", lit, color.scalars)
-    table = Step("colors", "pyvista.LookupTable", color.cmap, scalar_range=ends)
-    rgb = Step("", "numpy.delete", Step("", "()", table, values), 3, axis=1)
+    found = data.run()
     light = Step("", "numpy.expand_dims", Step("", "[]", lit, name), 1)
+    there = [
+        key
+        for part in (found.point_data, found.cell_data)
+        for key, array in part.items()
+        if array.ndim == 1
+    ]
+    if color.scalars in there:
+        # Data of cells are put at their points: the light is there.
+        of_points = color.scalars in found.point_data
+        source = lit if of_points else Step("", ".cell_data_to_point_data", lit)
+        values = Step("values", "[]", source, color.scalars)
+        ends = Step("", ".get_data_range", lit, color.scalars)
+        table = Step("colors", "pyvista.LookupTable", color.cmap, scalar_range=ends)
+        rgb = Step("", "numpy.delete", Step("", "()", table, values), 3, axis=1)
+    elif color.scalars == DIRECTION:
+        rgb = Step("", "vizlight.direction_colors", lit)
+    else:
+        expected = f"an array of one component, {_check.one_of(there)}, or {DIRECTION!r} for lines"
+        raise ValueError(_check.message("--scalars", expected, repr(color.scalars)))
     shown = Step("shown", ".copy", lit, deep=False)
     shown.items = {TINT: Step("", "numpy.multiply", rgb, light)}
     return shown

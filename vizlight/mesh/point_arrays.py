@@ -8,10 +8,10 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.model import kernels
+from vizlight.model import kernels, line_fields
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Collection
 
     from numpy.typing import NDArray
 
@@ -56,22 +56,27 @@ def points_of(mesh: pv.DataSet, positions: str | None) -> ArraySource:
 
 
 def array_of(
-    mesh: pv.DataSet, name: str, value: object, *, average_cells: bool | None = None
+    mesh: pv.DataSet,
+    name: str,
+    value: object,
+    *,
+    average_cells: bool | None = None,
+    sizes: Collection[int] = (),
 ) -> Array:
     """Return a point array of real numbers, from its name or from an array with those values.
 
-    A cell array is averaged to the points if ``average_cells`` is true, else it is an error; None
-    stands for a filter without that option.
+    A cell array is an error; ``average_cells`` is None for a filter without that option. Errors
+    name the arrays whose number of components is among ``sizes``, if there are any.
 
     Raises
     ------
     TypeError
         If the array does not hold real numbers.
     ValueError
-        If there is no such array, its shape is wrong, or it is a cell array that is not averaged.
+        If there is no such array, its shape is wrong, or it is a cell array.
     """
     if isinstance(value, str):
-        array = _named(mesh, name, value, average_cells=average_cells)
+        array = _named(mesh, name, value, average_cells, sizes)
         what = f"{value!r} with "
     else:
         array, what = _check.floats(name, value), ""
@@ -80,6 +85,11 @@ def array_of(
         if array.ndim == 0 or len(array) != mesh.n_points:
             expected = f"{mesh.n_points} rows, one per point"
             raise ValueError(_check.message(name, expected, _check.describe(array)))
+    return _real_rows(name, array, what)
+
+
+def _real_rows(name: str, array: Array, what: str) -> Array:
+    """Return an array if it holds rows of real numbers; ``what`` names it in an error."""
     if array.dtype.kind not in "iubf":
         raise TypeError(_check.message(name, "real numbers", f"{what}type {array.dtype}"))
     if array.ndim != 2:
@@ -89,20 +99,22 @@ def array_of(
     return array
 
 
-def _named(mesh: pv.DataSet, name: str, value: str, *, average_cells: bool | None) -> Array:
+def _named(
+    mesh: pv.DataSet, name: str, value: str, average_cells: bool | None, sizes: Collection[int]
+) -> Array:
     if value in mesh.point_data:
         return np.asarray(mesh.point_data[value])
     if value in mesh.cell_data:
-        if average_cells:
-            only = mesh.copy(deep=False)
-            only.clear_data()
-            only.cell_data[value] = np.asarray(mesh.cell_data[value])
-            return np.asarray(only.cell_data_to_point_data().point_data[value])
         remedy = "call mesh.cell_data_to_point_data()"
         if average_cells is not None:
             remedy = f"pass average_cells=True or {remedy}"
         raise ValueError(_check.message(name, "a point array", f"the cell array {value!r}", remedy))
-    there = ", ".join(repr(key) for key in mesh.point_data) or "none"
+    fitting = [
+        repr(key)
+        for key, array in mesh.point_data.items()
+        if np.ndim(array) == 2 and (not sizes or np.shape(array)[1] in sizes)
+    ]
+    there = ", ".join(fitting) or "none"
     raise ValueError(_check.message(name, f"the name of a point array ({there})", repr(value)))
 
 
@@ -116,7 +128,7 @@ def refuse_unnamed(name: str, value: object) -> None:
 
 def vectors_of(mesh: pv.DataSet, name: str, value: object, n: int) -> Array:
     """Return a point array of n components, from its name or an array."""
-    array = array_of(mesh, name, value)
+    array = array_of(mesh, name, value, sizes=(n,))
     if array.shape[1] != n:
         got = _components(value, array)
         raise ValueError(_check.message(name, f"{n} components", got, "pass another array"))
@@ -147,7 +159,28 @@ def tangents_of(
     mesh: pv.DataSet, value: object, n: int, *, average_cells: bool, argument: str = "tangents"
 ) -> Array:
     """Return k tangents per point as an array of shape (n_points, k n), 0 < k < n."""
-    array = array_of(mesh, argument, value, average_cells=average_cells)
+    of_cells = isinstance(value, str) and value not in mesh.point_data and value in mesh.cell_data
+    if average_cells and of_cells:
+        return _averaged_tangents(mesh, argument, str(value), n)
+    array = array_of(mesh, argument, value, average_cells=False, sizes=range(n, n * n, n))
+    return _checked_tangents(argument, value, array, n)
+
+
+def _averaged_tangents(mesh: pv.DataSet, argument: str, value: str, n: int) -> Array:
+    """Return tangents of cells at the points: means of outer products, which have no sign."""
+    rows = _real_rows(argument, np.asarray(mesh.cell_data[value]), f"{value!r} with ")
+    k = _checked_tangents(argument, value, rows, n).shape[1] // n
+    only = mesh.copy(deep=False)
+    only.clear_data()
+    only.cell_data[value] = line_fields.outer(rows.reshape(-1, k, n)).reshape(-1, n * n)
+    products = np.asarray(only.cell_data_to_point_data().point_data[value])
+    found, _ = line_fields.principal(products.reshape(-1, n, n), k)
+    kind = rows.dtype if rows.dtype in (np.float32, np.float64) else np.float64
+    return found.reshape(-1, k * n).astype(kind)
+
+
+def _checked_tangents(argument: str, value: object, array: Array, n: int) -> Array:
+    """Return an array of k tangents per point, 0 < k < n."""
     if array.shape[1] % n or not 0 < array.shape[1] // n < n:
         allowed = " or ".join(str(k * n) for k in range(1, min(n, 5)))
         expected = f"a point array of {allowed} components, rows of {n}"

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
+from vizlight import _check
 from vizlight.geometry.lines.curves import polyline_tangents
 from vizlight.mesh import blocks, hull
 
@@ -54,6 +55,40 @@ def line_tangents(mesh: pv.DataSet) -> Array:
         ids, offsets = _cells(bare.strip(join=True, max_length=mesh.n_points + 1).GetLines())
     found: Array = polyline_tangents(np.asarray(mesh.points), connectivity=ids, offsets=offsets)
     return found
+
+
+def direction_colors(mesh: pv.DataSet, /) -> Array:
+    """Return colours of lines by direction: ``(|x|, |y|, |z|)`` of the unit tangent as r, g, b.
+
+    This is the convention of tractography: in the space of a scanner left and right is red, front
+    and back green, up and down blue. It does not depend on the sign of a direction.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh of lines, such as a tractogram or the result of :func:`vizlight.streamlines`.
+
+    Returns
+    -------
+    ndarray, shape (n_points, 3)
+        Channels from 0 to 1, zero at points that no line uses.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If it is not a mesh of lines.
+
+    Notes
+    -----
+    Source: Pajevic and Pierpaoli, Magnetic Resonance in Medicine 42 (1999), the absolute-value
+    scheme.
+    """
+    if not isinstance(mesh, pv.DataSet):
+        raise TypeError(_check.message("mesh", "a PyVista mesh of lines", type(mesh).__name__))
+    if not has_lines_only(mesh):
+        remedy = "take its streamlines, or its edges by extract_all_edges()"
+        raise ValueError(_check.message("mesh", "a mesh of lines", type(mesh).__name__, remedy))
+    return np.abs(line_tangents(mesh))
 
 
 def segments(lines: vtkCellArray) -> Indices:

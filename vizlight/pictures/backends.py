@@ -74,20 +74,33 @@ def probe(backend: Backend) -> Probe:
     """
     if backend not in get_args(Backend):
         raise ValueError(_check.message("backend", "'egl' or 'osmesa'", repr(backend)))
+    return _probe_window(backend, _WINDOWS[backend], f"try: {_INSTALL[backend]}")
+
+
+def _probe_window(name: str, window: str, remedy: str) -> Probe:
+    """Test whether VTK can draw with a window class."""
     try:
         run = subprocess.run(
             [sys.executable, "-c", _PROBE],
-            env={**os.environ, _VARIABLE: _WINDOWS[backend]},
+            env={**os.environ, _VARIABLE: window},
             capture_output=True,
             text=True,
             timeout=60,
             check=False,
         )
     except subprocess.TimeoutExpired:
-        return Probe(backend, works=False, detail="no answer within 60 s")
+        return Probe(name, works=False, detail="no answer within 60 s")
     if run.returncode == 0:
-        return Probe(backend, works=True, detail=run.stdout.strip().replace("\t", ", "))
-    return Probe(backend, works=False, detail=f"not available (try: {_INSTALL[backend]})")
+        return Probe(name, works=True, detail=run.stdout.strip().replace("\t", ", "))
+    return Probe(name, works=False, detail=f"not available ({remedy})")
+
+
+@functools.cache
+def _check_variable(window: str) -> None:
+    """Check that VTK can draw with the window class that the environment names."""
+    found = _probe_window(_VARIABLE, window, f"try: unset {_VARIABLE}")
+    if not found.works:
+        raise BackendError(f"no picture: {_VARIABLE}={window} is {found.detail}")
 
 
 def choose_backend(backend: Backend | None = None) -> Backend | None:
@@ -102,14 +115,17 @@ def choose_backend(backend: Backend | None = None) -> Backend | None:
     -------
     {"egl", "osmesa"} or None
         None leaves the choice to VTK: on a platform other than Linux, or if the environment
-        variable ``VTK_DEFAULT_OPENGL_WINDOW`` names a window class.
+        variable ``VTK_DEFAULT_OPENGL_WINDOW`` names a window class, with which VTK can draw.
 
     Raises
     ------
     BackendError
-        If no backend can draw.
+        If no backend can draw, or the class that the variable names cannot.
     """
-    if backend is None and (not sys.platform.startswith("linux") or os.environ.get(_VARIABLE)):
+    if backend is None and (window := os.environ.get(_VARIABLE)):
+        _check_variable(window)
+        return None
+    if backend is None and not sys.platform.startswith("linux"):
         return None
     candidates: tuple[Backend, ...] = ("egl", "osmesa") if backend is None else (backend,)
     for name in candidates:

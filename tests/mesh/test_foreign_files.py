@@ -1,0 +1,194 @@
+"""Tractograms and grids that other packages read."""
+
+from __future__ import annotations
+
+import sys
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight import files
+from vizlight.mesh import polylines
+
+VIEW = vizlight.View(direction=(0, 0, 1))
+
+
+def tract(name):
+    """Return the path of a file that nibabel carries for its own tests."""
+    nibabel = pytest.importorskip("nibabel")
+    path = Path(nibabel.__file__).parent / "tests" / "data" / name
+    if not path.is_file():
+        pytest.skip("nibabel is installed without its tests")
+    return path
+
+
+def lines_of(mesh):
+    return [np.asarray(mesh.get_cell(i).points) for i in range(mesh.n_cells)]
+
+
+@pytest.mark.parametrize("name", ["complex.trk", "complex_big_endian.trk"])
+def test_a_tractogram_has_its_data_per_point_and_per_line(name):
+    """The numbers are those of nibabel's own description of its test data."""
+    mesh = vizlight.read(tract(name))
+    assert [len(line) for line in lines_of(mesh)] == [1, 2, 5]
+    np.testing.assert_allclose(mesh.points, np.concatenate(
+        [np.arange(3.0 * n).reshape(n, 3) for n in (1, 2, 5)]
+    ))  # fmt: skip
+    np.testing.assert_allclose(
+        mesh.point_data["fa"], [0.2, 0.3, 0.4, 0.5, 0.6, 0.6, 0.7, 0.8], rtol=1e-6
+    )
+    np.testing.assert_array_equal(
+        mesh.point_data["colors"], np.repeat([[1, 0, 0], [0, 1, 0], [0, 0, 1]], [1, 2, 5], axis=0)
+    )
+    np.testing.assert_allclose(mesh.cell_data["mean_curvature"], [1.11, 2.11, 3.11])
+    assert mesh.cell_data["mean_colors"].shape == (3, 3)
+    assert all(array.dtype.isnative for array in mesh.point_data.values())
+
+
+def test_the_formats_agree_about_the_space():
+    """The same lines in TrackVis's two orders of axes and in MRtrix's file."""
+    expected = vizlight.read(tract("standard.trk"))
+    assert expected.n_cells == 120
+    for name in ("standard.LPS.trk", "standard.tck"):
+        np.testing.assert_allclose(vizlight.read(tract(name)).points, expected.points, atol=1e-5)
+
+
+def test_trx_has_the_lines_the_data_and_the_groups(tmp_path):
+    trx = pytest.importorskip("trx.trx_file_memmap")
+    import nibabel
+
+    source = nibabel.streamlines.load(tract("complex.trk")).tractogram
+    with warnings.catch_warnings():
+        # Its writer leaves a folder to the garbage collector.
+        warnings.simplefilter("ignore", ResourceWarning)
+        made = trx.TrxFile.from_tractogram(
+            source, reference=nibabel.Nifti1Image(np.zeros((20, 20, 20), np.uint8), np.eye(4))
+        )
+        made.groups["left"] = np.array([0, 2], np.uint32)
+        trx.save(made, str(tmp_path / "a.trx"))
+        made.close()
+    mesh = vizlight.read(tmp_path / "a.trx")
+    expected = vizlight.read(tract("complex.trk"))
+    assert [len(line) for line in lines_of(mesh)] == [1, 2, 5]
+    np.testing.assert_allclose(mesh.points, expected.points, atol=1e-2)  # half precision
+    np.testing.assert_allclose(mesh.point_data["fa"], expected.point_data["fa"], rtol=1e-3)
+    np.testing.assert_allclose(
+        mesh.cell_data["mean_curvature"], expected.cell_data["mean_curvature"], rtol=1e-3
+    )
+    assert mesh.cell_data["left"].tolist() == [1, 0, 1]
+
+
+def test_a_tractogram_is_lit_and_kept(tmp_path):
+    mesh = vizlight.read(tract("standard.trk"))
+    lit = vizlight.illuminate(mesh, vizlight.Scene(view=VIEW))
+    assert lit["luminance"].min() > 0.2  # 0.1 of it is ambient
+    files.write_mesh(lit, tmp_path / "lit.vtp")
+    np.testing.assert_array_equal(
+        vizlight.read(tmp_path / "lit.vtp")["luminance"], lit["luminance"]
+    )
+
+
+@pytest.mark.parametrize("name", ["empty.trk", "empty.tck", "no_header_end.tck"])
+def test_a_tractogram_without_lines_or_header(name):
+    with pytest.raises(files.FileError, match=rf"got '.*{name}' \((no points|HeaderError: Miss)"):
+        vizlight.read(tract(name))
+
+
+def test_a_tractogram_that_is_cut(tmp_path):
+    path = tmp_path / "a.trk"
+    path.write_bytes(tract("standard.trk").read_bytes()[:1100])
+    with pytest.raises(files.FileError, match=r"file: expected a mesh"):
+        vizlight.read(path)
+
+
+def test_a_tetrahedron_in_a_file_that_meshio_reads(tmp_path):
+    pytest.importorskip("meshio")
+    path = tmp_path / "a.off"
+    path.write_text("OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
+                    "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n")  # fmt: skip
+    mesh = vizlight.read(path)
+    assert mesh.n_cells == 4
+    lit = vizlight.illuminate(mesh, vizlight.Scene(lights=vizlight.Light(direction=(1, 1, 1)),
+                                                   view=VIEW))  # fmt: skip
+    # Lit from (1, 1, 1) the corner at the origin is the darkest.
+    assert int(np.argmin(lit["luminance"])) == 0
+
+
+@pytest.mark.parametrize(
+    ("name", "module", "words"),
+    [
+        ("a.trk", "nibabel", r".trk files are read by nibabel: .*'vizlight\[tracts\]'"),
+        ("a.trx", "trx", r".trx files are read by trx-python: .*'vizlight\[tracts\]'"),
+        ("a.off", "meshio", r".off files are read by meshio: .*'vizlight\[formats\]'"),
+        ("a.mesh", "meshio", r".mesh files are read by meshio: .*'vizlight\[formats\]'"),
+        ("a.NC", "xarray", r".nc files are read by xarray: .*'vizlight\[formats\]'"),
+    ],
+)
+def test_a_package_that_is_missing_is_named(name, module, words, tmp_path, monkeypatch):
+    for loaded in [key for key in sys.modules if key.partition(".")[0] == module]:
+        monkeypatch.delitem(sys.modules, loaded)
+    monkeypatch.setitem(sys.modules, module, None)
+    path = tmp_path / name
+    path.write_bytes(b"x")
+    with pytest.raises(files.FileError, match=words):
+        vizlight.read(path)
+
+
+def grid_file(path, lon, **variables):
+    xarray = pytest.importorskip("xarray")
+    lat = np.array([40.0, 30.0, 10.0]) if len(variables) > 1 else np.array([30.0, 20.0, 10.0])
+    axes = {"lat": lat, "lon": np.asarray(lon, dtype=float), "time": [5.0, 6.0]}
+    xarray.Dataset(
+        {key: (("time", "lat", "lon")[3 - np.ndim(v) :], v) for key, v in variables.items()},
+        coords=axes,
+    ).to_netcdf(path, engine="scipy")
+    return vizlight.read(path)
+
+
+def test_a_grid_of_degrees(tmp_path):
+    heights = np.arange(12.0).reshape(3, 4)
+    grid = grid_file(tmp_path / "a.nc", [1, 2, 3, 4], height=heights)
+    assert isinstance(grid, pv.ImageData)
+    assert grid.dimensions == (4, 3, 1)
+    for value, (x, y, _) in zip(grid["height"], grid.points, strict=True):
+        assert value == heights[[30.0, 20.0, 10.0].index(y), int(x) - 1]
+
+
+def test_unequal_axes_missing_values_and_the_first_time(tmp_path):
+    winds = np.arange(24.0).reshape(2, 3, 4)
+    winds[0, 1, 2] = np.nan
+    grid = grid_file(tmp_path / "a.nc", [1, 2, 4, 8], wind=winds, other=np.ones((3, 4)))
+    assert isinstance(grid, pv.RectilinearGrid)
+    assert grid.dimensions == (4, 3, 1)
+    assert np.isnan(grid["wind"]).sum() == 1
+    x, y, z = grid.points[np.argmax(np.isnan(grid["wind"]))]
+    assert (x, y, z) == (4.0, 30.0, 0.0)
+
+
+def test_a_file_of_no_grid(tmp_path):
+    with pytest.raises(files.FileError, match="no variable on a grid of two or three axes"):
+        grid_file(tmp_path / "a.nc", [1, 2, 3], series=np.ones(3))
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_colours_of_directions(dtype):
+    points = np.array([[0, 0, 0], [3, 0, 0], [3, -4, 0], [3, -4, 5], [9, 9, 9]], dtype)
+    mesh = pv.PolyData()
+    mesh.points = points
+    mesh.SetLines(pv.CellArray.from_arrays([0, 2, 4], [1, 0, 2, 3]))
+    colors = vizlight.direction_colors(mesh)
+    assert colors.dtype == dtype
+    np.testing.assert_allclose(
+        colors, [[1, 0, 0], [1, 0, 0], [0, 0, 1], [0, 0, 1], [0, 0, 0]], atol=1e-7
+    )
+
+
+def test_colours_of_directions_are_of_lines():
+    with pytest.raises(ValueError, match="mesh: expected a mesh of lines, got PolyData; take"):
+        polylines.direction_colors(pv.Sphere())
+    with pytest.raises(TypeError, match="mesh: expected a PyVista mesh of lines, got list"):
+        polylines.direction_colors([])

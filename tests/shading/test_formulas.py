@@ -1,0 +1,162 @@
+"""The scalar formulas: straight lines that other languages can be made from, equal to NumPy's."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import math
+
+import numpy as np
+import pytest
+
+from vizlight.model import cylinder_kernels, falloff, kernels
+from vizlight.shading import bounds, formulas
+
+EPS = float(np.finfo(float).eps)
+BODIES = {
+    node.name: node
+    for node in ast.parse(inspect.getsource(formulas)).body
+    if isinstance(node, ast.FunctionDef)
+}
+ALLOWED = (
+    ast.Add, ast.Sub, ast.Mult, ast.Div, ast.USub, ast.BinOp, ast.UnaryOp, ast.Name, ast.Load,
+    ast.Store, ast.Constant, ast.Assign, ast.Return,
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("name", [name for name in BODIES if name != "power"])
+def test_a_body_is_a_straight_line_of_arithmetic(name):
+    body = BODIES[name].body
+    assert isinstance(body[0], ast.Expr)
+    assert isinstance(body[-1], ast.Return)
+    known = {argument.arg for argument in BODIES[name].args.args}
+    for statement in body[1:]:
+        for node in ast.walk(statement):
+            if isinstance(node, ast.Call):
+                assert node.func.id in {*BODIES, *formulas.PRIMITIVES}
+                if node.func.id == "where":
+                    assert isinstance(node.args[0], ast.Compare)
+            elif isinstance(node, ast.Compare):
+                assert len(node.ops) == 1
+                assert isinstance(node.ops[0], ast.Gt | ast.Lt)
+            elif not isinstance(node, ast.Gt | ast.Lt):
+                assert isinstance(node, ALLOWED), ast.dump(node)
+            if isinstance(node, ast.Constant):
+                assert isinstance(node.value, float)
+            if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+                # Assigned once: a language without reassignment can hold it too.
+                assert node.id not in known
+                known.add(node.id)
+
+
+def test_a_function_calls_only_those_before_it():
+    order = list(BODIES)
+    for name, node in BODIES.items():
+        for inner in ast.walk(node):
+            if isinstance(inner, ast.Call) and inner.func.id in BODIES:
+                assert order.index(inner.func.id) < order.index(name)
+
+
+def unit(random, count):
+    rows = random.normal(size=(3, count))
+    return rows / np.linalg.norm(rows, axis=0)
+
+
+@pytest.fixture
+def scene(random):
+    """Directions, a tangent, and how they are split by it."""
+    wi, wo, t = (unit(random, 500) for _ in range(3))
+    along_i, rest_i, sine_i = cylinder_kernels.across(wi, t)
+    along_o, rest_o, sine_o = cylinder_kernels.across(wo, t)
+    return wi, wo, t, along_i, rest_i, sine_i, along_o, rest_o, sine_o
+
+
+def close(value, reference, eps=8):
+    assert np.abs(value - reference).max() <= eps * EPS
+
+
+@pytest.mark.parametrize("s", [0.0, 0.3, 1.0, 7.5, 20.0, 64.0, 100.5, 1e6])
+def test_reflection(scene, s):
+    wi, wo, _, along_i, _, sine_i, along_o, _, sine_o = scene
+    allowed = bounds.specular_bound(s, EPS) / EPS
+    along = (along_i + along_o) ** 2
+    with np.errstate(under="ignore"):
+        close(
+            formulas.diffuse(sine_i, along_i**2, s),
+            kernels.diffuse(sine_i, s, along_i[np.newaxis]),
+            bounds.diffuse_bound(s, EPS) / EPS,
+        )
+        near = formulas.phong(along, sine_i, sine_o, s)
+        close(near, kernels.phong(along, sine_i, sine_o, s), allowed)
+        tangential, normal = along, np.maximum(2 + 2 * kernels.dot(wi, wo) - along, 0)
+        close(formulas.blinn(tangential, normal, s), kernels.blinn(tangential, normal, s), allowed)
+        close(formulas.blinn_of_unit(along_i**2, s), kernels.blinn_of_unit(along_i**2, s), allowed)
+        cosine = np.abs(along_i)
+        close(formulas.surface_diffuse(cosine, s), kernels.power(cosine, s), allowed)
+
+
+@pytest.mark.parametrize("s", [8.0, 20.0, 333.0])
+def test_cylinder(scene, s):
+    _, _, t, along_i, rest_i, a, along_o, rest_o, b = scene
+    met = cylinder_kernels.meet(rest_i, a, rest_o, b, t)
+    least = 8 * EPS
+    close(formulas.cylinder_diffuse(a, b, met.dot, met.cross, least), cylinder_kernels.diffuse(met))
+    along = (along_i + along_o) ** 2
+    whole = rest_i + rest_o
+    normal = np.linalg.norm(whole, axis=0)
+    integral = cylinder_kernels.half_integral(s)
+    cos_b = formulas.cylinder_cosine(kernels.dot(rest_o, whole), b * normal)
+    cos_c = formulas.cylinder_cosine(kernels.dot(rest_i, whole), a * normal)
+    sin_b = formulas.cylinder_sine(met.cross, b * normal)
+    sin_c = formulas.cylinder_sine(met.cross, a * normal)
+    ends = formulas.cylinder_ends(sin_b, sin_c, s)
+    value = formulas.cylinder_specular(
+        formulas.blinn(along, normal**2, s), cos_b, integral(cos_b) + integral(cos_c), ends,
+        a, b, normal, least, cylinder_kernels.round_mean(s),
+    )  # fmt: skip
+    close(value, cylinder_kernels.specular(met, along, s), 16)
+
+
+def test_cylinder_end_on_and_dark():
+    least = 8 * EPS
+    assert formulas.cylinder_diffuse(1.0, 0.0, 0.0, 0.0, least) == pytest.approx(1 / math.pi)
+    common = (0.2, 0.1, 0.0)
+    assert formulas.cylinder_specular(1.0, *common, 0.0, 1.0, 1.0, least, 0.3) == 0
+    assert formulas.cylinder_specular(1.0, *common, 1.0, 0.0, 1.0, least, 0.3) == 0.3
+    assert formulas.cylinder_specular(1.0, *common, 1.0, 1.0, 0.0, least, 0.3) == 0
+
+
+def test_falloff(random):
+    d = np.concatenate([[0.0], random.uniform(0, 9, 99)])
+    for c in ((1, 0, 0), (0, 0.5, 0), (0.2, 0.3, 0.4)):
+        close(formulas.attenuation(d, *c), falloff.fading(d, c))
+    height = np.where(d > 4, d, 0)
+    sine = random.uniform(0, 1, 100)
+    sine[:3] = 0
+    with np.errstate(divide="ignore", invalid="ignore"):
+        path = formulas.fur_path(height, sine)
+    np.testing.assert_array_equal(path, falloff.fur_path(height, sine))
+    close(formulas.fur_passes(path, math.log1p(-0.2)), falloff.fur_passes(path, 0.2))
+    ends = {"front": 2.0, "back": 6.0, "front_scale": 0.9, "back_scale": 0.1}
+    for smooth, function in ((False, formulas.depth_scale), (True, formulas.smooth_depth_scale)):
+        close(function(d, **ends), falloff.depth_scale(d, **ends, smooth=smooth))
+    scale = formulas.depth_scale(d, **ends)
+    close(formulas.depth_cue(0.4, scale, 0.7), 0.4 * scale + 0.7 * (1 - scale))
+
+
+def test_highlights_of_a_surface():
+    cosine = np.array([-0.5, 0.0, 0.05, 0.1, 0.5])
+    np.testing.assert_array_equal(formulas.one_side(cosine), [0, 0, 0.05, 0.1, 0.5])
+    np.testing.assert_array_equal(formulas.both_sides(cosine), [0.5, 0, 0.05, 0.1, 0.5])
+    np.testing.assert_array_equal(formulas.lit_highlight(0.7, cosine), [0, 0, 0.7, 0.7, 0.7])
+    close(formulas.faded_highlight(1.0, cosine, 0.1), kernels.smooth_step(cosine / 0.1))
+    side = formulas.one_side(cosine)
+    close(formulas.shadowed_highlight(0.7, 0.25, side), [0, 0, 0.7, 0.7, 0.35])
+    assert formulas.luminance(0.1, 0.5, 1.0, 0.4, 0.5) == pytest.approx(0.8)
+
+
+def test_plain_numbers():
+    assert formulas.phong(0.0, 0.6, 0.6, 20.0) == 1
+    assert formulas.power(0.0, 1.0, 0.0) == 1
+    assert formulas.power(0.0, 1.0, 2.0) == 0
+    assert formulas.blinn(0.0, 0.0, 5.0) == 0

@@ -1,0 +1,156 @@
+"""Compiled functions: what they need, when they pay, and where they are kept."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from vizlight import _compiled
+
+#: A module with two kernels, one of which calls the other.
+MODULE = """
+from vizlight import _compiled
+
+@_compiled.kernel(inline=True)
+def twice(x):
+    return FACTOR * x
+
+@_compiled.kernel()
+def total(values):
+    found = 0.0
+    for i in range(values.shape[0]):
+        found += twice(values[i])
+    return found
+"""
+#: Loads that module and prints a sum, and whether it came from the disk.
+RUN = """
+import sys; sys.path.insert(0, {folder!r})
+import numpy as np, doubled
+before = doubled.total.start_up()
+print(doubled.total(np.arange(4.0)), before < 1, doubled.total.start_up())
+"""
+
+
+@pytest.fixture
+def home(tmp_path, monkeypatch):
+    """A folder for caches of its own, with compiled code where it pays."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.delenv("VIZLIGHT_FAST", raising=False)
+    pytest.importorskip("numba")
+    return tmp_path
+
+
+def module(folder, factor="2.0"):
+    (folder / "doubled.py").write_text(f"FACTOR = {factor}\n{MODULE}")
+
+
+def start(folder, **environment):
+    return subprocess.Popen(
+        [sys.executable, "-c", RUN.format(folder=str(folder))],
+        stdout=subprocess.PIPE,
+        text=True,
+        env=os.environ | environment,
+    )
+
+
+def outcome(process):
+    out, _ = process.communicate(timeout=120)
+    assert process.returncode == 0
+    return out.split()
+
+
+def test_a_kernel_is_kept_until_it_is_damaged_or_its_source_changes(home):
+    module(home)
+    assert outcome(start(home)) == ["12.0", "False", "0.0"]
+    assert outcome(start(home)) == ["12.0", "True", "0.0"]
+    for path in (home / "cache").rglob("*.nb?"):
+        path.write_bytes(path.read_bytes()[:-9])
+    assert outcome(start(home)) == ["12.0", "True", "0.0"]
+    module(home, "3.0")
+    assert outcome(start(home)) == ["18.0", "False", "0.0"]
+
+
+def test_two_processes_share_a_cache(home):
+    module(home)
+    both = [start(home), start(home)]
+    assert [outcome(process)[0] for process in both] == ["12.0", "12.0"]
+    assert outcome(start(home)) == ["12.0", "True", "0.0"]
+
+
+def test_a_cache_that_cannot_be_written_is_none(home):
+    module(home)
+    blocked = home / "file"
+    blocked.touch()
+    assert outcome(start(home, XDG_CACHE_HOME=str(blocked))) == ["12.0", "False", "0.0"]
+
+
+def triple(values):
+    return 3 * values[0]
+
+
+def test_a_kernel_pays_once_it_has_missed_its_start_up(home):
+    kernel = _compiled.Kernel(triple)
+    left = kernel.start_up()
+    assert left > 0.2
+    assert not kernel.pays(left / 2)
+    assert kernel.pays(left / 2)
+    assert kernel(np.array([2.0])) == 6
+    assert kernel.start_up() == 0
+    assert kernel.pays(0.0)
+
+
+def test_settings(home, monkeypatch):
+    kernel = _compiled.Kernel(triple)
+    monkeypatch.setenv("VIZLIGHT_FAST", "1")
+    assert kernel.pays(0.0)
+    assert _compiled.status().startswith("on (always)")
+    monkeypatch.setenv("VIZLIGHT_FAST", "0")
+    assert not kernel.pays(1e9)
+    assert "VIZLIGHT_FAST=0" in _compiled.status()
+    with pytest.raises(RuntimeError, match="triple: expected numba"):
+        kernel(np.array([2.0]))
+    monkeypatch.setenv("VIZLIGHT_FAST", "yes")
+    with pytest.raises(ValueError, match=r"VIZLIGHT_FAST: expected 0 \(off\), 1 .*, got 'yes'"):
+        _compiled.active()
+
+
+@pytest.mark.parametrize(
+    ("found", "words"), [("", "not installed"), ("0.58.1", "0.58.1 is older than 0.59")]
+)
+def test_a_missing_or_old_numba_is_named(monkeypatch, found, words):
+    def version(name):
+        if not found:
+            raise _compiled.PackageNotFoundError(name)
+        return found
+
+    monkeypatch.delenv("VIZLIGHT_FAST", raising=False)
+    monkeypatch.setattr(_compiled, "version", version)
+    _compiled._missing.cache_clear()
+    try:
+        assert words in _compiled.why_not()
+        assert "vizlight[fast]" in _compiled.why_not()
+        assert not _compiled.Kernel(triple).pays(1e9)
+    finally:
+        _compiled._missing.cache_clear()
+
+
+def test_a_numba_that_refuses_numpy_is_named(home, monkeypatch):
+    monkeypatch.setattr(_compiled, "_BROKEN", [])
+    monkeypatch.setitem(sys.modules, "numba", None)
+    assert not _compiled.Kernel(triple).pays(1e9)
+    assert _compiled.why_not().startswith("numba cannot be imported")
+
+
+def test_generated_code_is_kept(home):
+    names = {"offset": 1.0}
+    text = "def shifted(x):\n    return x + offset\n"
+    made = _compiled.Kernel(_compiled.generated(text, names, "shift")["shifted"])
+    assert made(2.0) == 3
+    files = sorted(path.suffix for path in (home / "cache").rglob("*.*"))
+    assert files == [".nbc", ".nbi", ".py"]
+    again = _compiled.Kernel(_compiled.generated(text, names, "shift")["shifted"])
+    assert again.start_up() <= _compiled.READ

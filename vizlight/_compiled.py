@@ -1,0 +1,355 @@
+"""Functions that numba compiles, where it is installed (extra ``fast``) and where it pays.
+
+A function is declared by :func:`kernel`, which imports nothing. The caller asks :meth:`Kernel.pays`
+with the seconds that the compiled function would save, and calls the kernel or else its own NumPy
+code. The first call imports numba and compiles the function, or reads it from the disk cache.
+
+The environment variable ``VIZLIGHT_FAST`` is read at each question: 0 switches compiled code off,
+1 uses it without regard to its start-up.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import pickle
+import platform
+import shutil
+import sys
+import tempfile
+import threading
+import types
+from functools import cache, lru_cache
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import TYPE_CHECKING, Generic, ParamSpec, TypeVar
+
+from vizlight import _check
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+#: Oldest release of numba that the kernels are made for.
+OLDEST = (0, 59)
+#: Rounding that a compiler may change where a bound of a few eps allows it: products and sums in
+#: one step, quotients as products, the sign of zero. Sums keep their order.
+ROUNDING = frozenset({"contract", "arcp", "nsz"})
+#: Seconds of processor time to import numba, to read a kernel from the disk, and to compile one.
+#: Measured with numba 0.59 to 0.68; a kernel of average size takes 1 to 3 seconds.
+IMPORT, READ, COMPILE = 0.4, 0.05, 2.0
+#: Share of the time to compile that one process must win back, as the disk keeps the result.
+SHARED = 1 / 3
+#: What a damaged file of the cache raises when numba reads it.
+_DAMAGED = (pickle.UnpicklingError, EOFError, ValueError, LookupError, AttributeError, ImportError)
+
+_LOCK = threading.RLock()
+_BROKEN: list[str] = []
+
+
+def wanted() -> str:
+    """Return the setting of VIZLIGHT_FAST: "0" off, "1" always, "" where it pays.
+
+    Raises
+    ------
+    ValueError
+        If the variable has another value.
+    """
+    value = os.environ.get("VIZLIGHT_FAST", "")
+    if value not in ("", "0", "1"):
+        expected = "0 (off), 1 (always) or nothing (where it pays)"
+        raise ValueError(_check.message("VIZLIGHT_FAST", expected, repr(value)))
+    return value
+
+
+def why_not() -> str:
+    """Return why nothing is compiled; an empty text where compiled code is available."""
+    if wanted() == "0":
+        return "VIZLIGHT_FAST=0 switches it off"
+    return _BROKEN[0] if _BROKEN else _missing()
+
+
+def active() -> bool:
+    """Return whether compiled code is available: numba is installed and not switched off."""
+    return not why_not()
+
+
+def status() -> str:
+    """Return whether compiled code is available and where it is kept, in words."""
+    reason = why_not()
+    if reason:
+        return f"off: {reason}"
+    folder = cache_folder()
+    kept = f"kept in {folder}" if folder else "compiled anew in each process: no folder to keep it"
+    when = "always" if wanted() == "1" else "where it pays"
+    return f"on ({when}), by numba {version('numba')}, {kept}"
+
+
+@cache
+def _missing() -> str:
+    """Return what is wrong with the installation of numba; an empty text if nothing is."""
+    remedy = "pip install 'vizlight[fast]'"
+    try:
+        found = version("numba")
+    except PackageNotFoundError:
+        found = ""
+    if not found:
+        return f"numba is not installed (try: {remedy})"
+    release = tuple(int(part) for part in found.split(".")[:2] if part.isdigit())
+    if release < OLDEST:
+        return f"numba {found} is older than {OLDEST[0]}.{OLDEST[1]} (try: {remedy})"
+    return ""
+
+
+def cache_folder() -> Path | None:
+    """Return the user's folder for compiled code, or None where none can be written.
+
+    It is ``vizlight/kernels`` in ``$XDG_CACHE_HOME``, or in the system's folder for caches.
+    """
+    home = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA", "")
+    if not home:
+        own = "Library/Caches" if sys.platform == "darwin" else ".cache"
+        home = str(Path.home() / own)
+    return _writable(Path(home, "vizlight", "kernels"))
+
+
+@lru_cache(maxsize=512)
+def _writable(folder: Path) -> Path | None:
+    """Return the folder, made if it was not there; None if no file can be written to it."""
+    if not folder.is_absolute():
+        return None
+    try:
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return folder
+    except OSError:
+        return None
+
+
+class Kernel(Generic[P, R]):
+    """A function of numbers and arrays that numba compiles at its first call.
+
+    Other kernels whose names it uses are compiled with it; mark small ones by ``inline=True``.
+
+    Parameters
+    ----------
+    function : callable
+        Function in the part of Python that numba compiles.
+    inline : bool
+        Whether the function becomes part of each function that calls it.
+    rounding : set of str
+        Changes of rounding that the compiler may make, such as ``ROUNDING``; none by default.
+    uses : iterable of str
+        Text of sources, beside the function's own file, of which the code is made: the disk cache
+        forgets it when one of them changes.
+    """
+
+    def __init__(
+        self,
+        function: Callable[P, R],
+        *,
+        inline: bool = False,
+        rounding: frozenset[str] = frozenset(),
+        uses: Iterable[str] = (),
+    ) -> None:
+        self.function, self.inline, self.rounding = function, inline, rounding
+        self.uses = tuple(uses)
+        self.missed = 0.0
+        self._compiled: Callable[P, R] | None = None
+        self._proven = False
+        self.__doc__ = function.__doc__
+
+    def pays(self, saved: float) -> bool:
+        """Return whether to call the kernel rather than NumPy code, and keep account of the answer.
+
+        Parameters
+        ----------
+        saved : float
+            Seconds that the kernel would save, its start-up apart.
+
+        Returns
+        -------
+        bool
+            True once the seconds saved by this call and missed by earlier ones exceed what is left
+            of the start-up: import of numba, then reading or compiling the function. What is
+            missed before is then at most what the start-up costs.
+        """
+        if not active():
+            return False
+        if not self._proven and wanted() != "1":
+            self.missed += saved
+            if self.missed < self.start_up():
+                return False
+        return self.ready()
+
+    def start_up(self) -> float:
+        """Return the seconds until the first call can run."""
+        if self._proven:
+            return 0.0
+        load = 0.0 if "numba" in sys.modules else IMPORT
+        folder = self._folder()
+        if folder is None:
+            return load + COMPILE
+        name = f"{self.function.__code__.co_name}-{self.function.__code__.co_firstlineno}.*.nbi"
+        return load + (READ if any(folder.rglob(f"*{name}")) else COMPILE * SHARED)
+
+    def ready(self) -> bool:
+        """Import numba and prepare the function; return whether that worked.
+
+        Where numba cannot be imported, :func:`why_not` says so from then on.
+        """
+        if not active():
+            return False
+        try:
+            self._dispatcher()
+        except ImportError as error:
+            # numba refuses a release of NumPy that it does not know.
+            _BROKEN.append(f"numba cannot be imported: {error}")
+        return active()
+
+    def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
+        """Call the compiled function.
+
+        Raises
+        ------
+        RuntimeError
+            If compiled code is not available.
+        """
+        if self._proven and self._compiled is not None:
+            return self._compiled(*args, **kwargs)
+        if not self.ready():
+            expected = "numba, see Kernel.pays"
+            raise RuntimeError(_check.message(self.function.__name__, expected, why_not()))
+        with _LOCK:
+            try:
+                result = self._dispatcher()(*args, **kwargs)
+            except _DAMAGED:
+                # A file of the cache is damaged, or the function itself fails, which it does again.
+                if (folder := self._folder()) is not None:
+                    shutil.rmtree(folder, ignore_errors=True)
+                self._compiled = None
+                result = self._dispatcher()(*args, **kwargs)
+            self._proven = True
+        return result
+
+    def _dispatcher(self) -> Callable[P, R]:
+        """Return numba's own function."""
+        with _LOCK:
+            if self._compiled is None:
+                self._compiled = self._compile(self._folder())
+            return self._compiled
+
+    def _compile(self, folder: Path | None) -> Callable[P, R]:
+        """Return numba's own function, kept in a folder; None keeps it in memory alone."""
+        import numba
+
+        own = self.function
+        names = own.__globals__ | {name: k._dispatcher() for name, k in self._helpers().items()}
+        # numba reads names from the globals of the function, where kernels are not yet compiled.
+        copy = types.FunctionType(
+            own.__code__, names, own.__name__, own.__defaults__, own.__closure__
+        )
+        copy.__module__, copy.__qualname__ = own.__module__, own.__qualname__
+        options = {
+            "nogil": True,
+            "error_model": "numpy",
+            "fastmath": set(self.rounding),
+            "forceinline": self.inline,
+            "cache": folder is not None and not self.inline,
+        }
+        before = numba.config.CACHE_DIR
+        numba.config.CACHE_DIR = "" if folder is None else str(folder)
+        try:
+            result: Callable[P, R] = numba.njit(**options)(copy)
+        finally:
+            numba.config.CACHE_DIR = before
+        return result
+
+    def _helpers(self) -> dict[str, Kernel[..., object]]:
+        """Return the kernels that the function calls, by name."""
+        own = self.function
+        found = {name: own.__globals__.get(name) for name in own.__code__.co_names}
+        return {name: k for name, k in found.items() if isinstance(k, Kernel)}
+
+    def _folder(self) -> Path | None:
+        """Return the folder of this function's code as it stands, or None where none is kept."""
+        home = cache_folder()
+        if home is None or not Path(self.function.__code__.co_filename).is_file():
+            return None
+        return _writable(home / _key(self._sources()))
+
+    def _sources(self) -> tuple[str, ...]:
+        """Return the texts of which the code is made: its own file and those of its helpers."""
+        texts = [_text(self.function.__code__.co_filename), *self.uses, str(sorted(self.rounding))]
+        for helper in self._helpers().values():
+            texts += helper._sources()
+        return tuple(dict.fromkeys(texts))
+
+
+def kernel(
+    *, inline: bool = False, rounding: frozenset[str] = frozenset(), uses: Iterable[str] = ()
+) -> Callable[[Callable[P, R]], Kernel[P, R]]:
+    """Return a decorator that makes a :class:`Kernel` of a function; see there."""
+
+    def decorate(function: Callable[P, R]) -> Kernel[P, R]:
+        return Kernel(function, inline=inline, rounding=rounding, uses=uses)
+
+    return decorate
+
+
+def generated(text: str, names: Mapping[str, object], stem: str) -> dict[str, object]:
+    """Return what a text of Python defines, as if it stood in a file of the cache.
+
+    Parameters
+    ----------
+    text : str
+        Text of functions.
+    names : mapping of str to object
+        Names that the text uses.
+    stem : str
+        First part of the file's name.
+
+    Returns
+    -------
+    dict
+        Names of the text and their values. The file is written where a folder can be written; it
+        is never read, but numba keeps no code of a function without one.
+    """
+    home = cache_folder()
+    path = Path(f"<{stem}>")
+    if home is not None:
+        path = home / f"{stem}_{hashlib.sha256(text.encode()).hexdigest()[:16]}.py"
+        # Without the file the code is compiled anew in each process.
+        with contextlib.suppress(OSError):
+            _write(path, text)
+    scope: dict[str, object] = {**names, "__name__": __name__}
+    exec(compile(text, str(path), "exec"), scope)
+    return scope
+
+
+def _write(path: Path, text: str) -> None:
+    """Write a file whole, so that another process sees all of it or nothing."""
+    if path.is_file() and path.read_text(encoding="utf-8") == text:
+        return
+    handle, name = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
+    with os.fdopen(handle, "w", encoding="utf-8") as file:
+        file.write(text)
+    # The time of the file is part of numba's key: the same whichever process writes it.
+    os.utime(name, (0, 0))
+    Path(name).replace(path)
+
+
+@lru_cache(maxsize=64)
+def _text(path: str) -> str:
+    """Return the text of a file."""
+    return Path(path).read_text(encoding="utf-8")
+
+
+@lru_cache(maxsize=64)
+def _key(texts: tuple[str, ...]) -> str:
+    """Return a name for code made of some texts, on this release of Python and numba."""
+    about = [platform.python_version(), version("numba"), version("llvmlite"), *texts]
+    return hashlib.sha256("\0".join(about).encode()).hexdigest()[:16]

@@ -1,0 +1,191 @@
+"""Files that other packages read: tractograms by nibabel and trx-python, netCDF by xarray."""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyvista as pv
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from vizlight._types import Array
+
+#: Package that reads the files of a suffix, and the extra that installs it.
+PACKAGES = {
+    ".trk": ("nibabel", "tracts"),
+    ".tck": ("nibabel", "tracts"),
+    ".trx": ("trx-python", "tracts"),
+    ".nc": ("xarray", "formats"),
+    ".cdf": ("xarray", "formats"),
+} | dict.fromkeys(
+    (
+        ".avs", ".bdf", ".ele", ".f3grid", ".fem", ".h5m", ".mdpa", ".med", ".mesh", ".meshb",
+        ".msh", ".nas", ".node", ".off", ".post", ".su2", ".tec", ".ugrid", ".vol", ".wkt", ".xmf",
+    ),
+    ("meshio", "formats"),
+)  # fmt: skip
+#: Name under which a package is imported, where that is another.
+MODULES = {"trx-python": "trx.trx_file_memmap"}
+#: Largest deviation from equal steps, as a share of a step, of the axes of an image.
+EQUAL = 1e-4
+
+
+def missing(path: Path) -> str:
+    """Return the remedy for a file whose package is not installed, else an empty text."""
+    package, extra = PACKAGES.get(path.suffix.lower(), ("", ""))
+    if not package:
+        return ""
+    try:
+        importlib.import_module(MODULES.get(package, package))
+    except ImportError:
+        return (
+            f"{path.suffix.lower()} files are read by {package}: "
+            f"run pip install 'vizlight[{extra}]'"
+        )
+    return ""
+
+
+def read(path: Path) -> pv.DataSet | None:
+    """Return the mesh of a file that PyVista cannot read; None where it is left to PyVista."""
+    suffix = path.suffix.lower()
+    if suffix in (".trk", ".tck"):
+        return _tracts(path)
+    if suffix == ".trx":
+        return _tracts_of_trx(path)
+    if suffix in (".nc", ".cdf"):
+        return _grid(path)
+    return None
+
+
+def _tracts(path: Path) -> pv.PolyData:
+    import nibabel
+
+    tracts: Any = nibabel.streamlines.load(path).tractogram
+    lines = tracts.streamlines
+    return _polylines(
+        lines.get_data(),
+        lines._offsets,
+        lines._lengths,
+        {name: rows.get_data() for name, rows in tracts.data_per_point.items()},
+        dict(tracts.data_per_streamline.items()),
+    )
+
+
+def _tracts_of_trx(path: Path) -> pv.PolyData:
+    from trx import trx_file_memmap
+
+    tracts: Any = trx_file_memmap.load(str(path))
+    try:
+        lines = tracts.streamlines
+        of_lines = dict(tracts.data_per_streamline)
+        for name, members in tracts.groups.items():
+            of_lines[name] = np.isin(np.arange(len(lines)), members).astype(np.uint8)
+        return _polylines(
+            lines._data,
+            lines._offsets,
+            lines._lengths,
+            {name: rows._data for name, rows in tracts.data_per_vertex.items()},
+            of_lines,
+        )
+    finally:
+        tracts.close()
+
+
+def _polylines(
+    points: Array,
+    starts: NDArray[np.integer[Any]],
+    lengths: NDArray[np.integer[Any]],
+    of_points: Mapping[str, NDArray[np.generic]],
+    of_lines: Mapping[str, NDArray[np.generic]],
+) -> pv.PolyData:
+    """Return a mesh with one polyline for each line that has points; arrays are copied."""
+    lengths = np.asarray(lengths, dtype=np.intp)
+    starts = np.asarray(starts, dtype=np.intp)[lengths > 0]
+    ends = np.concatenate([[0], np.cumsum(lengths[lengths > 0])])
+    rows = np.arange(ends[-1]) + np.repeat(starts - ends[:-1], np.diff(ends))
+    mesh = pv.PolyData()
+    if not len(rows):
+        return mesh
+    # Half precision, which TRX files have, is none of VTK's types.
+    mesh.points = np.array(points[rows], dtype=np.result_type(points.dtype, np.float32))
+    mesh.SetLines(pv.CellArray.from_arrays(ends, np.arange(len(rows))))
+    for name, array in of_points.items():
+        _attach(mesh.point_data, name, np.asarray(array)[rows])
+    for name, array in of_lines.items():
+        _attach(mesh.cell_data, name, np.asarray(array)[lengths > 0])
+    return mesh
+
+
+def _attach(data: pv.DataSetAttributes, name: object, array: NDArray[np.generic]) -> None:
+    """Attach numbers as rows, of which those of one component are flat."""
+    if array.dtype.kind not in "biuf":
+        return
+    native = np.float32 if array.dtype == np.float16 else array.dtype.newbyteorder("=")
+    rows = array.reshape(len(array), -1)
+    data[str(name)] = np.array(rows[:, 0] if rows.shape[1] == 1 else rows, dtype=native)
+
+
+def _grid(path: Path) -> pv.ImageData | pv.RectilinearGrid:
+    """Return the variables of a netCDF file on the axes of its largest variable.
+
+    An axis is x, y or z: the last of a variable is x. Of the time, and of any axis before the last
+    three, the first value is taken. Points are at the coordinates, or at the indices of
+    an axis without coordinates.
+    """
+    import xarray
+
+    with xarray.open_dataset(path, decode_times=False) as file:
+        fields: dict[str, Any] = {}
+        for name, variable in file.data_vars.items():
+            if variable.dtype.kind in "biuf" and variable.ndim >= 2 and variable.size:
+                times = [dim for dim in variable.dims if _is_time(file, dim)]
+                rest = [dim for dim in variable.dims if dim not in times]
+                first = dict.fromkeys((*times, *rest[:-3]), 0)
+                fields[str(name)] = variable.isel(first).squeeze(drop=True)
+        fields = {name: field for name, field in fields.items() if field.ndim in (2, 3)}
+        if not fields:
+            raise ValueError("no variable on a grid of two or three axes")
+        dims = max(fields.values(), key=lambda field: int(field.size)).dims
+        axes, backward = [], []
+        for dim in dims:
+            ticks = np.asarray(
+                file[dim].values if dim in file.coords else np.arange(file.sizes[dim])
+            )
+            ticks = ticks.astype(np.float64)
+            steps = np.diff(ticks)
+            if not (np.all(steps > 0) or np.all(steps < 0)):
+                raise ValueError(f"the axis {dim!r} does not rise or fall throughout")
+            backward.append(bool(steps[0] < 0))
+            axes.append(np.sort(ticks))
+        grid = _of_axes([*reversed(axes)])
+        turned = tuple(i for i, back in enumerate(backward) if back)
+        for name, field in fields.items():
+            if field.dims == dims:
+                grid.point_data[name] = np.flip(field.values, turned).ravel()
+        return grid
+
+
+def _is_time(file: Any, dim: object) -> bool:
+    """Return whether an axis is the time: by its name, or by a unit such as days since a date."""
+    units = str(file[dim].attrs.get("units", "")) if dim in file.coords else ""
+    return str(dim).lower() in ("time", "t") or " since " in units
+
+
+def _of_axes(axes: list[Array]) -> pv.ImageData | pv.RectilinearGrid:
+    """Return a grid on axes x, y and perhaps z; an image where their steps are equal."""
+    axes += [np.zeros(1)] * (3 - len(axes))
+    steps = [(axis[-1] - axis[0]) / max(len(axis) - 1, 1) or 1.0 for axis in axes]
+    if all(_even(axis, step) for axis, step in zip(axes, steps, strict=True)):
+        counts = tuple(len(axis) for axis in axes)
+        return pv.ImageData(dimensions=counts, spacing=steps, origin=[axis[0] for axis in axes])
+    return pv.RectilinearGrid(*axes)
+
+
+def _even(axis: Iterable[float], step: float) -> bool:
+    return bool(np.all(np.abs(np.diff(np.asarray(axis)) - step) <= EQUAL * step))

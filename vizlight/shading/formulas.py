@@ -1,0 +1,201 @@
+"""The light of one point as straight lines of arithmetic, of which other languages are made.
+
+Each function takes numbers, assigns names and returns one number. The bodies hold nothing but
+arithmetic, comparisons as the first argument of ``where``, calls of each other, and calls of the
+names in ``PRIMITIVES``; so they can be written as compiled code and as GLSL from their syntax
+trees. As they stand they run on plain numbers and on NumPy arrays. What is vector algebra, that is
+dot products, unit vectors and the part of a vector across a frame, is left to each language.
+
+Squared lengths and lengths are those of residuals: ``sine`` is the length of wi less its tangential
+part, never ``sqrt(1 - along^2)``. The engine's NumPy kernels (:mod:`vizlight.model.kernels`,
+:mod:`vizlight.model.falloff`, :mod:`vizlight.model.cylinder_kernels`) are the reference; equations
+and error bounds stand there.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from numpy import absolute, arctan2, exp, log, log1p, maximum, minimum, where
+
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    from vizlight._types import Array
+
+    Number: TypeAlias = float | Array
+
+#: Names that each language gives: ``power`` is one of them, see below.
+PRIMITIVES = ("absolute", "arctan2", "exp", "maximum", "minimum", "power", "where")
+
+
+def power(x: Number, deficit: Number, exponent: Number) -> Number:
+    """Return x to a power of 0 or more for x in [0, 1], with 0^0 = 1; the deficit is 1 - x.
+
+    It is the one function here that other languages replace by their own.
+    """
+    near = log1p(-minimum(deficit, 0.5))
+    raised = exp(exponent * where(deficit < 0.5, near, log(where(x > 0.0, x, 1.0))))
+    return where(x > 0.0, raised, where(exponent > 0.0, 0.0, 1.0))
+
+
+def clamp(x: Number, low: Number, high: Number) -> Number:
+    """Return x within [low, high]."""
+    return minimum(maximum(x, low), high)
+
+
+def smooth_step(t: Number) -> Number:
+    """Return t^2 (3 - 2 t), where t is clamped to [0, 1]."""
+    u = clamp(t, 0.0, 1.0)
+    return u * u * (3.0 - 2.0 * u)
+
+
+def one_side(cosine: Number) -> Number:
+    """Return the cosine N . wi of a surface that is lit on its outer side."""
+    return maximum(cosine, 0.0)
+
+
+def both_sides(cosine: Number) -> Number:
+    """Return the cosine N . wi of a surface that is lit on both sides."""
+    return absolute(cosine)
+
+
+def surface_diffuse(side: Number, exponent: Number) -> Number:
+    """Return the diffuse factor of a surface from the cosine of its lit side."""
+    return power(side, 1.0 - side, exponent)
+
+
+def diffuse(sine: Number, along: Number, exponent: Number) -> Number:
+    """Return |wi_N|^p from |wi_N| and |wi_T|^2 (Banks 1, 5)."""
+    return power(sine * sine, along, 0.5 * exponent)
+
+
+def phong(along: Number, sine_i: Number, sine_o: Number, shininess: Number) -> Number:
+    """Return max(0, V.R)^s from |wi_T + wo_T|^2, |wi_N| and |wo_N| (Banks 2, 3).
+
+    On a surface the sines are the cosines to the normal.
+    """
+    apart = sine_i - sine_o
+    deficit = 0.5 * (along + apart * apart)
+    return power(maximum(1.0 - deficit, 0.0), deficit, shininess)
+
+
+def blinn(along: Number, across: Number, shininess: Number) -> Number:
+    """Return |h_N|^s from the squared parts of wi + wo; 0 where there is no half vector."""
+    whole = along + across
+    scale = 1.0 / where(whole > 0.0, whole, 1.0)
+    value = power(across * scale, along * scale, 0.5 * shininess)
+    return where(whole > 0.0, value, 0.0)
+
+
+def blinn_of_unit(along: Number, shininess: Number) -> Number:
+    """Return |h_N|^s for s of 2 or more from |h_T|^2 of a unit half vector."""
+    return power(maximum(1.0 - along, 0.0), along, 0.5 * shininess)
+
+
+def lit_highlight(value: Number, cosine: Number) -> Number:
+    """Return the highlight of a surface where the light reaches its outer side, else 0."""
+    return where(cosine > 0.0, value, 0.0)
+
+
+def faded_highlight(value: Number, cosine: Number, terminator: Number) -> Number:
+    """Return the highlight of a surface, which fades between N.wi = 0 and the terminator."""
+    return value * smooth_step(cosine / terminator)
+
+
+def shadowed_highlight(value: Number, passed: Number, side: Number) -> Number:
+    """Return the highlight of a surface under t of a cos-theta shadow: min(1, t / cosine) of it."""
+    share = passed / where(side > 0.0, side, 1.0)
+    return value * where(side > 0.0, minimum(share, 1.0), 0.0)
+
+
+def attenuation(distance: Number, constant: Number, linear: Number, quadratic: Number) -> Number:
+    """Return min(1, 1 / (c1 + c2 d + c3 d^2)) (Lecture)."""
+    return 1.0 / maximum(constant + distance * (linear + distance * quadratic), 1.0)
+
+
+def fur_path(height: Number, sine: Number) -> Number:
+    """Return the path h / sin(a) of Banks (7); 0 without fur, also at grazing light."""
+    return where(height > 0.0, height / sine, 0.0)
+
+
+def fur_passes(path: Number, rate: Number) -> Number:
+    """Return (1 - rho)^d of Banks (8) from the rate log(1 - rho), which is finite."""
+    return exp(maximum(path * rate, -700.0))
+
+
+def depth_scale(
+    depth: Number, front: Number, back: Number, front_scale: Number, back_scale: Number
+) -> Number:
+    """Return the scale S of the linear depth cue (Lecture)."""
+    t = clamp((depth - back) / (front - back), 0.0, 1.0)
+    return back_scale + (front_scale - back_scale) * t
+
+
+def smooth_depth_scale(
+    depth: Number, front: Number, back: Number, front_scale: Number, back_scale: Number
+) -> Number:
+    """Return the scale S of the depth cue as a smooth step."""
+    t = smooth_step((depth - back) / (front - back))
+    return back_scale + (front_scale - back_scale) * t
+
+
+def depth_cue(value: Number, scale: Number, cue: Number) -> Number:
+    """Return S I + (1 - S) Icue (Lecture)."""
+    return scale * value + (1.0 - scale) * cue
+
+
+def cylinder_diffuse(a: Number, b: Number, dot: Number, cross: Number, least: Number) -> Number:
+    """Return Lambert's mean over the visible half of a thin cylinder.
+
+    ``a`` and ``b`` are |wi_N| and |wo_N|, ``dot`` and ``cross`` are wi_N . wo_N and
+    |wi_N x wo_N|. A cylinder with ``b`` up to ``least`` (8 eps) is seen end on.
+    """
+    mean = (arctan2(cross, -dot) * dot + cross) / (4.0 * where(b > least, b, 1.0))
+    return where(b > least, mean, a * 0.3183098861837907)
+
+
+def cylinder_cosine(product: Number, size: Number) -> Number:
+    """Return a cosine from a dot product and the product of two lengths."""
+    return clamp(product / where(size > 0.0, size, 1.0), -1.0, 1.0)
+
+
+def cylinder_sine(cross: Number, size: Number) -> Number:
+    """Return a sine from the length of a cross product and the product of two lengths."""
+    return minimum(cross / where(size > 0.0, size, 1.0), 1.0)
+
+
+def cylinder_ends(sin_b: Number, sin_c: Number, shininess: Number) -> Number:
+    """Return sin(b) (sin(b)^(s+1) - sin(c)^(s+1)) / (s + 1)."""
+    e = shininess + 1.0
+    return sin_b * (power(sin_b, 1.0 - sin_b, e) - power(sin_c, 1.0 - sin_c, e)) / e
+
+
+def cylinder_specular(
+    value: Number,
+    cos_b: Number,
+    integrals: Number,
+    ends: Number,
+    a: Number,
+    b: Number,
+    normal: Number,
+    least: Number,
+    end_on: Number,
+) -> Number:
+    """Return Blinn's mean over the visible half of a thin cylinder.
+
+    ``value`` is :func:`blinn` of the line, ``integrals`` is G(cos b) + G(cos c), ``ends`` is
+    :func:`cylinder_ends`, ``normal`` is |wi_N + wo_N|, and ``end_on`` the mean of a cylinder that
+    is seen end on. The mean is 0 where the light comes along the line.
+    """
+    mean = clamp(0.5 * (cos_b * integrals + ends), 0.0, 1.0)
+    seen = where(b > least, mean, end_on)
+    met = where(normal > 0.0, seen, 0.0)
+    return value * where(a > least, where(b > least, met, seen), 0.0)
+
+
+def luminance(
+    ambient: Number, kd: Number, diffuse_light: Number, ks: Number, specular_light: Number
+) -> Number:
+    """Return the ambient term and the two others, each summed over the lights."""
+    return ambient + (kd * diffuse_light + ks * specular_light)
