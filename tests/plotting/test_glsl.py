@@ -96,7 +96,7 @@ def test_only_what_the_plan_needs_is_written():
         view=View(direction=(0, 0, 1)),
     )
     made = plan(scene, normals=True)
-    declarations, body = glsl.fragment(made, positional=(False,))
+    declarations, body = glsl.fragment(made)
     assert "attenuation" not in declarations
     assert "vizFade" not in body
     assert "vizSpecular +=" not in body

@@ -8,21 +8,25 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 
+from vizlight import _check
 from vizlight.filters import lighting
 from vizlight.mesh import point_arrays
 from vizlight.mesh.point_arrays import unit_rows
 from vizlight.plotting import glsl
 from vizlight.plotting.live import NORMALS, TANGENTS
-from vizlight.scene.light import WHITE
+from vizlight.scene.light import NO_ATTENUATION, WHITE
 from vizlight.scene.vtk import LARGEST_POWER
 from vizlight.shading.decide import decide
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
     from vizlight._types import Array, Indices, Vector
+    from vizlight.filters.relight import Source
     from vizlight.plotting.live import Live
-    from vizlight.scene import Scene
+    from vizlight.scene import Light, Scene
     from vizlight.shading.inputs import ArraySource, ShadingInputs
     from vizlight.shading.options import ShadingOptions
     from vizlight.shading.plan import Plan
@@ -120,7 +124,8 @@ class Fragments:
     light = "fragments"
 
     def __init__(self) -> None:
-        self._code = ""
+        self._key: object = None
+        self._plan: Plan | None = None
         self._tallest = 0.0
 
     def attach(self, live: Live) -> None:
@@ -169,20 +174,16 @@ class Fragments:
     def paint(self, live: Live, scene: Scene, renderer: vtkRenderer, actor: vtkActor) -> None:
         """Write the shader of a scene if it is another one, and set its uniforms."""
         scene = lighting.fit_depth_cue(scene, [live.placed(actor)])
-        options = dataclasses.replace(
-            live.source.options, tolerance=0.0, highlight_error=0.0, components=False
-        )
-        plan = decide(scene, live.source.inputs.layout, options)
-        if len(plan.scene.lights) > MOST_LIGHTS:
-            raise ValueError(
-                f"lights: expected at most {MOST_LIGHTS}, got {len(plan.scene.lights)}"
-            )
-        positional = tuple(light.position is not None for light in plan.scene.lights)
-        functions, body = glsl.fragment(plan, positional=positional)
-        if functions + body != self._code:
-            self._code = functions + body
-            _replace(actor, functions, body, plan)
-        self._set_uniforms(plan, renderer, actor)
+        lights = [light.seen_from(scene.view) for light in scene.lights if light.intensity > 0]
+        if len(lights) > MOST_LIGHTS:
+            got = str(len(lights))
+            raise ValueError(_check.message("lights", f"at most {MOST_LIGHTS} lights", got))
+        key = _structure(scene, lights, live.source)
+        if key != self._key or self._plan is None:
+            self._plan = _plan(scene, live.source)
+            _replace(actor, *glsl.fragment(self._plan), self._plan)
+            self._key = key
+        self._set_uniforms(self._plan, scene.replace(lights=lights), renderer, actor)
 
     def explain(self, live: Live, scene: Scene) -> str:
         """Return what is computed in each fragment."""
@@ -190,16 +191,18 @@ class Fragments:
         plan = decide(fitted, live.source.inputs.layout, live.source.options)
         return f"light in each fragment\n{plan.explain()}"
 
-    def _set_uniforms(self, plan: Plan, renderer: vtkRenderer, actor: vtkActor) -> None:
+    def _set_uniforms(
+        self, plan: Plan, scene: Scene, renderer: vtkRenderer, actor: vtkActor
+    ) -> None:
         """Set what the shader does not hold as a constant."""
-        scene, prop, space = plan.scene, actor.GetProperty(), _ViewSpace(renderer)
+        prop, space = actor.GetProperty(), _ViewSpace(renderer)
         uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
         for i, light in enumerate(scene.lights):
             if light.position is not None:
-                uniforms.SetUniform4f(f"vizLight{i}", [*space.position(light.position), 1.0])
+                uniforms.SetUniform3f(f"vizLight{i}", space.position(light.position))
                 uniforms.SetUniform3f(f"vizFade{i}", list(light.attenuation))
             elif light.direction is not None:
-                uniforms.SetUniform4f(f"vizLight{i}", [*space.direction(light.direction), 0.0])
+                uniforms.SetUniform3f(f"vizLight{i}", space.direction(light.direction))
             color = [light.intensity * c for c in light.color or WHITE]
             uniforms.SetUniform3f(f"vizColor{i}", color)
         view = scene.view
@@ -233,6 +236,25 @@ class Fragments:
         ends = [cue.front, cue.back, cue.front_scale, cue.back_scale]
         uniforms.SetUniform4f("vizCueEnds", ends)
         uniforms.SetUniform3f("vizCue", [cue.cue * c for c in cue.color or WHITE])
+
+
+def _plan(scene: Scene, source: Source) -> Plan:
+    """Return the plan of a source in its exact form."""
+    options = dataclasses.replace(
+        source.options, tolerance=0.0, highlight_error=0.0, components=False
+    )
+    return decide(scene, source.inputs.layout, options)
+
+
+def _structure(scene: Scene, lights: Sequence[Light], source: Source) -> tuple[object, ...]:
+    """Return what a shader holds as constants, in a form that can be compared."""
+    material, cue = scene.material, scene.depth_cue
+    return (
+        [(light.position is None, light.attenuation == NO_ATTENUATION) for light in lights],
+        material.diffuse > 0, material.specular > 0, material.shininess,
+        None if cue is None else cue.smooth,
+        source.inputs.layout, source.options,
+    )  # fmt: skip
 
 
 def _ratio(wanted: float, shown: float) -> float:

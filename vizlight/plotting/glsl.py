@@ -7,12 +7,13 @@ import functools
 import inspect
 from typing import TYPE_CHECKING
 
+from vizlight.scene.light import NO_ATTENUATION
 from vizlight.shading import formulas
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from vizlight.shading.plan import Highlight, Plan
+    from vizlight.shading.plan import Plan
 
 #: Prefix of all names, so that none is one of VTK's or of the language.
 PREFIX = "viz_"
@@ -23,6 +24,11 @@ _OPERATORS: dict[type[ast.AST], str] = {
 _CALLS = {
     "absolute": "abs", "arctan2": "atan", "exp": "exp", "maximum": "max", "minimum": "min",
 }  # fmt: skip
+#: Largest power for which the rounding of 1 - deficit to float32 does not show.
+LARGEST_PLAIN = 1e4
+_PLAIN_POWER = f"""float {PREFIX}power(float x, float deficit, float exponent) {{
+  return pow(max(x, 0.0), exponent);
+}}"""
 #: The power of a number in [0, 1] from its deficit; near 1 by a series, because GLSL has no log1p.
 _POWER = f"""float {PREFIX}power(float x, float deficit, float exponent) {{
   if (x <= 0.0) return exponent > 0.0 ? 0.0 : 1.0;
@@ -32,13 +38,15 @@ _POWER = f"""float {PREFIX}power(float x, float deficit, float exponent) {{
 }}"""
 
 
-def functions(names: Iterable[str]) -> str:
+def functions(names: Iterable[str], *, plain: bool = False) -> str:
     """Return formulas as GLSL, with those that they call before them.
 
     Parameters
     ----------
     names : iterable of str
         Names of functions of :mod:`vizlight.shading.formulas`.
+    plain : bool, default: False
+        Whether all powers are above 0 and not large, so that the power of GLSL serves.
 
     Returns
     -------
@@ -55,7 +63,7 @@ def functions(names: Iterable[str]) -> str:
         if name in made:
             return
         if name == "power":
-            made[name] = _POWER
+            made[name] = _PLAIN_POWER if plain else _POWER
             return
         text, called = _function(name)
         for other in called:
@@ -138,15 +146,13 @@ class _Writer:
         return f"{PREFIX}{name}({', '.join(arguments)})"
 
 
-def fragment(plan: Plan, *, positional: tuple[bool, ...]) -> tuple[str, str]:
+def fragment(plan: Plan) -> tuple[str, str]:
     """Return the functions and the body of a fragment shader for the light of a plan.
 
     Parameters
     ----------
     plan : Plan
         Plan of a surface or of one tangent per point in 3-space.
-    positional : tuple of bool
-        For each light whether it has a position.
 
     Returns
     -------
@@ -163,9 +169,9 @@ def fragment(plan: Plan, *, positional: tuple[bool, ...]) -> tuple[str, str]:
     if not plan.surface:
         w.add("float vizOt = dot(vizWo, vizT);")
         w.add("float vizOn = length(vizWo - vizOt * vizT);")
-    for i, (highlight, near) in enumerate(zip(plan.highlights, positional, strict=True)):
+    for i in range(len(plan.scene.lights)):
         w.add("{")
-        _light(w, plan, i, highlight, near=near)
+        _light(w, plan, i)
         w.add("}")
     w.add("if (!vizGood) { vizDiffuse = vec3(0.0); vizSpecular = vec3(0.0); }")
     w.add(
@@ -173,15 +179,20 @@ def fragment(plan: Plan, *, positional: tuple[bool, ...]) -> tuple[str, str]:
     )
     w.add("  + vizTermGain.y * specularColor * vizSpecular;")
     _cue(w, plan)
-    return functions(w.used), "\n".join(w.lines)
+    plain = all(0 < h.shininess <= LARGEST_PLAIN for h in plan.highlights)
+    return functions(w.used, plain=plain and plan.exponent > 0), "\n".join(w.lines)
 
 
-def _light(w: _Writer, plan: Plan, i: int, highlight: Highlight, *, near: bool) -> None:
+def _light(w: _Writer, plan: Plan, i: int) -> None:
     """Add the diffuse and the specular light of one light."""
-    w.add(f"vec3 ray = vizLight{i}.xyz - vizLight{i}.w * vizP;")
-    w.add("float distance = length(ray); vec3 wi = ray / max(distance, 1e-30);")
+    light, highlight = plan.scene.lights[i], plan.highlights[i]
+    if light.position is None:
+        w.add(f"vec3 wi = vizLight{i};")
+    else:
+        w.add(f"vec3 ray = vizLight{i} - vizP;")
+        w.add("float distance = length(ray); vec3 wi = ray / max(distance, 1e-30);")
     w.add("float scale = 1.0;")
-    if near:
+    if light.attenuation != NO_ATTENUATION:
         fade = [f"vizFade{i}.{axis}" for axis in "xyz"]
         w.add(f"scale = {w.call('attenuation', 'distance', *fade)};")
     side = "both_sides" if plan.two_sided else "one_side"
@@ -195,12 +206,14 @@ def _light(w: _Writer, plan: Plan, i: int, highlight: Highlight, *, near: bool) 
     shininess, exponent = number(highlight.shininess), number(plan.exponent)
     if plan.surface:
         lit = w.call(side, "cosine")
-        w.add(f"float kept = {w.call('surface_diffuse', lit, exponent)};")
+        kept = lit if plan.exponent == 1 else w.call("surface_diffuse", lit, exponent)
+        w.add(f"float kept = {kept};")
         w.add("vec3 h = wi + vizWo; float up = dot(h, vizN); h -= up * vizN;")
         w.add(f"float shine = {_surface_highlight(w, plan, highlight.model, side, shininess)};")
     else:
         w.add("float along = dot(wi, vizT); float across = length(wi - along * vizT);")
-        w.add(f"float kept = {w.call('diffuse', 'across', 'along * along', exponent)};")
+        sine = ("across", "along * along", exponent)
+        w.add(f"float kept = {'across' if plan.exponent == 1 else w.call('diffuse', *sine)};")
         if highlight.model == "phong":
             w.add("float both = along + vizOt;")
             value = w.call("phong", "both * both", "across", "vizOn", shininess)
