@@ -418,7 +418,7 @@ def plot(
             plotter.background_color = _check.color("background", background)
         plotter.vizlight.add_mesh(mesh, scene=scene, light=light, scalars=scalars, **options)
         if camera is not None:
-            plotter.camera = camera.copy()
+            plotter.camera = camera.copy()  # type: ignore[no-untyped-call]
     except BaseException:
         plotter.close()
         raise

@@ -101,7 +101,7 @@ class _ViewSpace:
 
     def __init__(self, renderer: vtkRenderer) -> None:
         matrix = renderer.GetActiveCamera().GetViewTransformMatrix()
-        self._matrix: Array = pv.array_from_vtkmatrix(matrix)
+        self._matrix = pv.array_from_vtkmatrix(matrix)
 
     def direction(self, vector: Vector) -> list[float]:
         """Return a unit direction."""

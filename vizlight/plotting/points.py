@@ -115,7 +115,7 @@ def _write(mesh: pv.DataSet, name: str, values: NDArray[np.generic]) -> None:
         array = mesh.point_data[name]
         if array.shape == values.shape and array.dtype == values.dtype:
             np.copyto(array, values)
-            array.VTKObject.Modified()
+            mesh.GetPointData().GetAbstractArray(name).Modified()
             mesh.Modified()
             return
     point_arrays.attach_rows(mesh, name, values)
