@@ -227,3 +227,75 @@ def test_a_draft_that_is_not_whole_does_not_replace_the_output(suffix, tmp_path,
     with pytest.raises(files.FileError, match="output: expected a file that can be written"):
         files.write_mesh(pv.Cube(), path)
     assert path.read_bytes() == old
+
+
+def cut(path, share):
+    os.truncate(path, int(path.stat().st_size * share))
+    return path
+
+
+@pytest.mark.parametrize("share", [0.3, 0.6, 0.9])
+@pytest.mark.parametrize(
+    ("name", "binary"),
+    [("a.vtk", True), ("a.vtk", False), ("a.vti", True), ("a.vti", False)],
+)
+def test_what_is_missing_of_a_cut_grid_is_never_invented(name, binary, share, tmp_path):
+    path = tmp_path / name
+    volume().save(path, binary=binary)
+    files.read(path)
+    with pytest.raises(files.FileError, match="file: expected a (file that is not damaged|mesh)"):
+        files.read(cut(path, share))
+
+
+@pytest.mark.parametrize("share", [0.02, 0.3, 0.6, 0.9, 0.99])
+@pytest.mark.parametrize("binary", [True, False])
+def test_a_cut_ply_file_is_refused_before_vtk_crashes(binary, share, tmp_path):
+    path = tmp_path / "a.ply"
+    pv.Sphere().save(path, binary=binary)
+    files.read(path)
+    with pytest.raises(files.FileError, match="damaged; salvage=|damaged, got .*salvage="):
+        files.read(cut(path, share))
+
+
+def test_a_damaged_file_is_used_with_a_warning_on_request(tmp_path):
+    path = tmp_path / "a.vtk"
+    volume().save(path, binary=False)
+    cut(path, 0.9)
+    with pytest.warns(
+        UserWarning, match=r"is damaged, what was read of it is used \(\d+ of \d+ nu"
+    ):
+        assert files.read(path, salvage=True).n_points == volume().n_points
+
+
+@pytest.mark.parametrize("kind", ["unstructured", "structured", "rectilinear", "poly"])
+def test_whole_legacy_files_of_all_kinds_are_read(kind, tmp_path):
+    mesh = volume()
+    mesh.cell_data["C"] = np.ones((mesh.n_cells, 3))
+    mesh.point_data["bad"] = np.full(mesh.n_points, np.nan)
+    mesh.add_field_data(["some words"], "note")
+    mesh = pv.Sphere() if kind == "poly" else getattr(mesh, f"cast_to_{kind}_grid")()
+    mesh.save(tmp_path / "a.vtk", binary=False)
+    assert files.read(tmp_path / "a.vtk").n_points == mesh.n_points
+
+
+def test_a_file_read_by_itself_is_the_same(tmp_path):
+    path = files.write_mesh(pv.Sphere(), tmp_path / "a.vtp")
+    assert files.read(path, isolated=True) == files.read(path)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+def test_a_reader_that_crashes_or_never_ends_is_an_error(tmp_path, monkeypatch):
+    path = files.write_mesh(pv.Sphere(), tmp_path / "a.vtp")
+    real = subprocess.run
+
+    def run(command, **options):
+        return real([sys.executable, "-c", code], **options)
+
+    monkeypatch.setattr(subprocess, "run", run)
+    code = "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"
+    with pytest.raises(files.FileError, match="its reader was ended by SIGSEGV"):
+        files.read(path, isolated=True)
+    code = "import time; time.sleep(50)"
+    monkeypatch.setenv("VIZLIGHT_READ_SECONDS", "0.2")
+    with pytest.raises(files.FileError, match="not read within 0 s"):
+        files.read(path, isolated=True)

@@ -7,6 +7,8 @@ import errno
 import os
 import re
 import shutil
+import signal
+import subprocess
 import sys
 import tempfile
 import warnings
@@ -18,7 +20,7 @@ import pyvista as pv
 from vtkmodules import vtkIOXML
 
 from vizlight import _check, _supervise
-from vizlight.mesh import foreign_files, hull
+from vizlight.mesh import foreign_files, hull, short_files
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -48,11 +50,18 @@ READERS = {
 }
 
 
+#: What VTK says of an error, and of a warning that tells of damage.
+_DAMAGE = re.compile(
+    r"(?:ERR\|.*\(0x[0-9a-f]+\): |WARN\| (?:.*\(0x[0-9a-f]+\): )?(?=.*(?i:error|cannot|premature|"
+    r"unexpected|truncat|corrupt|end of file|not enough|invalid|mismatch)))([^\x1b\n]+)"
+)
+
+
 class FileError(ValueError):
     """A file cannot be read or written."""
 
 
-def read(path: str | Path, /) -> pv.DataSet:
+def read(path: str | Path, /, *, salvage: bool = False, isolated: bool = False) -> pv.DataSet:
     """Read a mesh from a file: any that PyVista reads, tractograms and netCDF grids.
 
     Parameters
@@ -61,6 +70,13 @@ def read(path: str | Path, /) -> pv.DataSet:
         Path of the file. Tractograms (.trk, .tck, .trx) need the extra ``tracts``; netCDF files
         (.nc, .cdf) and those that PyVista reads by meshio, such as .off, .mesh and .msh, need the
         extra ``formats``.
+    salvage : bool, default: False
+        Whether a file that its reader finds damaged is used as far as it was read, with a warning
+        that has the reader's words.
+    isolated : bool, default: False
+        Whether the file is first read in a process of its own, so that a reader that crashes, or
+        does not end within a minute and one second for each megabyte, is an error. It takes as
+        long as starting Python and reading the file once more.
 
     Returns
     -------
@@ -74,8 +90,13 @@ def read(path: str | Path, /) -> pv.DataSet:
     Raises
     ------
     FileError
-        If the file does not exist or cannot be read, the package that reads it is not installed,
-        or it has no points.
+        If the file does not exist, cannot be read or is damaged, the package that reads it is not
+        installed, or it has no points.
+
+    Warns
+    -----
+    UserWarning
+        If a damaged file is used with ``salvage``.
     """
     path = Path(path)
     if not path.is_file():
@@ -86,6 +107,11 @@ def read(path: str | Path, /) -> pv.DataSet:
     reason = "no points"
     mesh: pv.DataSet | None = None
     limit = _supervise.read_limit(path.stat().st_size)
+    short = short_files.missing_part(path)
+    if short and not salvage:
+        raise _damaged(path, short)
+    if isolated:
+        _try_to_read(path, limit)
     reading = _supervise.stage("read", path, seconds=limit)
     with reading, _captured_errors() as errors, warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -101,7 +127,33 @@ def read(path: str | Path, /) -> pv.DataSet:
             reason = f"no points: {errors[0]}"
         got, remedy = f"'{path}' ({reason})", foreign_files.missing(path)
         raise FileError(_check.message("file", "a mesh that PyVista reads", got, remedy))
+    fault = errors[0] if errors else short
+    if fault and not salvage:
+        raise _damaged(path, fault)
+    if fault:
+        _check.warn(f"file: '{path}' is damaged, what was read of it is used ({fault})")
     return mesh
+
+
+def _damaged(path: Path, reason: str) -> FileError:
+    got, remedy = f"'{path}' ({reason})", "salvage= uses what could be read"
+    return FileError(_check.message("file", "a file that is not damaged", got, remedy))
+
+
+def _try_to_read(path: Path, limit: float) -> None:
+    """Read a file in a process of its own, and raise an error if it crashes or does not end."""
+    code = "import sys, vizlight.files as f; f.read(sys.argv[1], salvage=True)"
+    try:
+        run = subprocess.run(
+            [sys.executable, "-c", code, str(path)], capture_output=True, timeout=limit, check=False
+        )
+    except subprocess.TimeoutExpired:
+        reason = f"not read within {limit:.0f} s"
+    else:
+        if run.returncode >= 0:  # what the reader says is said by the second reading
+            return
+        reason = f"its reader was ended by {signal.Signals(-run.returncode).name}"
+    raise FileError(_check.message("file", "a file that can be read", f"'{path}' ({reason})"))
 
 
 #: Older name of :func:`read`.
@@ -148,7 +200,7 @@ def _captured_errors() -> Iterator[list[str]]:
             os.close(kept)
             sink.seek(0)
             text = sink.read().decode(errors="replace")
-            errors += re.findall(r"ERR\|.*\(0x[0-9a-f]+\): ([^\x1b\n]+)", text)
+            errors += _DAMAGE.findall(text)
 
 
 def surface_of(

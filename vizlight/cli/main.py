@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import functools
+import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, TextIO
 
 from cyclopts import App, CycloptsError, Parameter
 
@@ -34,19 +35,34 @@ def main(arguments: Sequence[str] | None = None) -> int:
         Words after ``vizlight``. Default: those of the process.
     """
     try:
-        result = app(
-            None if arguments is None else list(arguments),
-            exit_on_error=False,
-            print_error=False,
-            help_on_error=False,
-        )
+        with warnings.catch_warnings():
+            warnings.showwarning = _complain
+            result = app(
+                None if arguments is None else list(arguments),
+                exit_on_error=False,
+                print_error=False,
+                help_on_error=False,
+            )
     except CycloptsError as error:
         return _fail(str(error).replace("Unused Tokens", "arguments that belong to no option"))
     except (TypeError, ValueError, OSError) as error:
         return _fail(error)
+    except MemoryError:
+        return _fail("not enough memory")
     except KeyboardInterrupt:
         return _fail("interrupted")
     return result if isinstance(result, int) else OK
+
+
+def _complain(
+    message: Warning | str,
+    category: type[Warning],  # noqa: ARG001 - the signature of warnings.showwarning
+    filename: str,  # noqa: ARG001
+    lineno: int,  # noqa: ARG001
+    file: TextIO | None = None,  # noqa: ARG001
+    line: str | None = None,  # noqa: ARG001
+) -> None:
+    complain(message)
 
 
 def _fail(error: object) -> int:

@@ -60,7 +60,7 @@ def check_color(color: Color) -> None:
 
 def data(file: Path, target: Part, *, average_cells: bool = False) -> Step:
     """Return the step that reads a file, after those that raise and cut what is in it."""
-    mesh = Step("data", "vizlight.read", file)
+    mesh = Step("data", "vizlight.read", file, **({"salvage": True} if target.salvage else {}))
     warp = target.warp if isinstance(target, Shape) else None
     wanted = {target.contour, warp} - {None}
     if average_cells and wanted and not wanted <= {*mesh.run().point_data}:
