@@ -14,7 +14,7 @@ from vizlight.filters import lighting, relight
 from vizlight.filters.tint import RGB, unlit_colors
 from vizlight.mesh import blocks, records
 from vizlight.plotting.fragments import Fragments, unfit
-from vizlight.plotting.live import Live, headlight_scene, items, lifted
+from vizlight.plotting.live import Live, colorless, headlight_scene, items, lifted
 from vizlight.plotting.notebook import guard
 from vizlight.plotting.points import Points
 from vizlight.scene import Scene
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from vizlight._types import ColorLike
     from vizlight.filters.relight import Source
 
-__all__ = ["Component", "LightAt", "plot"]
+__all__ = ["Component", "LightAt", "add_recorded", "plot"]
 
 LightAt = Literal["auto", "points", "fragments"]
 
@@ -226,7 +226,7 @@ class Component:
         except (TypeError, ValueError):
             plotter.remove_actor(actor, render=False)
             raise
-        invalid = live.invalid()
+        invalid = live.invalid() if follow else 0
         if invalid:
             _check.warn(lighting.unlit(invalid, source.inputs.count))
         self._keep(plotter, live, actor)
@@ -355,6 +355,43 @@ def _reason(source: Source, drawing: dict[str, Any]) -> str:
     if drawing.get("render_points_as_spheres") or drawing.get("render_lines_as_tubes"):
         return "VTK shades spheres and tubes by normals of their own"
     return unfit(source.inputs, source.options, source.mesh)
+
+
+def add_recorded(
+    plotter: pv.BasePlotter, mesh: pv.DataSet, name: str, **drawing: Any
+) -> pv.Actor | None:
+    """Add a mesh with the light of its record, as its own view sees it, in each fragment.
+
+    Parameters
+    ----------
+    plotter : pyvista.Plotter
+        Plotter.
+    mesh : pyvista.DataSet
+        Mesh with the light of a filter; not changed.
+    name : str
+        Name of the light, or ``"rgb"`` for its colours.
+    **drawing
+        Keywords of ``pyvista.Plotter.add_mesh``.
+
+    Returns
+    -------
+    pyvista.Actor or None
+        None, and nothing is added, if the mesh has no such light, the record does not suffice, or
+        the light cannot be computed in each fragment.
+    """
+    light = lighting.DEFAULT_NAME if name == RGB else name
+    if not relight.is_lit(mesh, light) or name not in records.made(mesh, light):
+        return None
+    try:
+        (source,), scene = relight.from_record(mesh, name=light)
+    except (TypeError, ValueError):
+        # The array says more than the record.
+        return None
+    if _reason(source, {}):
+        return None
+    used = scene if name == RGB else colorless(scene)
+    own: Component = plotter.vizlight
+    return own._add(plotter, source, used, "auto", None, drawing, follow=False)
 
 
 def plot(

@@ -300,3 +300,14 @@ def headlight_scene(n: int) -> Scene:
     """Return a scene by which a source can be checked before there is a frame."""
     view = View(direction=(0.0, 0.0, 1.0))
     return lifted(Scene(lights=Light(direction=(0.0, 0.0, 1.0)), view=view), n)
+
+
+def colorless(scene: Scene) -> Scene:
+    """Return a scene without colours, whose light is luminance alone."""
+    cue, material = scene.depth_cue, scene.material
+    return scene.replace(
+        lights=tuple(dataclasses.replace(light, color=None) for light in scene.lights),
+        material=dataclasses.replace(material, color=None, specular_color=None),
+        ambient_color=None,
+        depth_cue=None if cue is None else dataclasses.replace(cue, color=None),
+    )
