@@ -25,7 +25,9 @@ CUE = DepthCue(back_scale=0.3, cue=0.1, color=(0.3, 0.4, 1.0))
 
 def torus():
     """Return a fine surface with a tangent field that has no singular point."""
-    u, v = np.meshgrid(*[np.linspace(0, 2 * np.pi, 240)] * 2, indexing="ij")
+    angles = np.linspace(0, 2 * np.pi, 240)
+    angles[-1] = 0.0
+    u, v = np.meshgrid(angles, angles, indexing="ij")
     ring = 1 + 0.4 * np.cos(v)
     grid = pv.StructuredGrid(ring * np.cos(u), ring * np.sin(u), 0.4 * np.sin(v))
     mesh = grid.extract_surface(algorithm=None)
@@ -131,6 +133,17 @@ def test_grids_have_their_light_too():
     np.testing.assert_array_equal(a, b)
 
 
+@pytest.mark.filterwarnings("ignore:.* of the edges are sharper")
+def test_open_surface_faces_the_eye_in_each_fragment():
+    half = torus().clip(normal="x", origin=(0.2, 0, 0)).extract_surface(algorithm=None)
+    half.point_data.clear()
+    for facing in ("auto", "eye"):
+        fragments, points = pictures(half, SCENES["near"], facing=facing)
+        assert points.std() > 5
+        # Where it turns away, light at the points is a mean of that on both sides.
+        assert np.quantile(np.abs(fragments - points), 0.99) <= 4
+
+
 def test_coarse_lines_are_right_between_their_points():
     scene = Scene(lights=Light(direction=(1, 0.9, 0.5)), material=Material(shininess=60))
     coarse, coarse_points = pictures(helix(73), scene, line_width=3)
@@ -170,16 +183,30 @@ def test_camera_light_and_moved_actor_are_followed():
 def test_lights_of_the_plotter_may_come_and_go():
     plotter = pv.Plotter(off_screen=True, window_size=(120, 100))
     plotter.background_color = "black"
-    plotter.vizlight.add_mesh(torus(), light="fragments", color="white")
+    plotter.render_window.SetMultiSamples(0)
+    plotter.vizlight.add_mesh(torus(), light="fragments", color="white", ambient=0.2)
     lit = shot(plotter)
     plotter.remove_all_lights()
-    plotter.render()
     dark = shot(plotter, plotter.camera)
     assert lit.max() > 100
-    assert dark.max() <= 1
+    assert set(np.unique(dark)) == {0, 51}
     plotter.add_light(pv.Light(position=(5, 5, 5), light_type="scene light", positional=True))
     assert shot(plotter, plotter.camera).max() > 100
     plotter.close()
+
+
+@pytest.mark.parametrize("open_", [False, True])
+def test_lights_of_a_scene_do_not_need_those_of_the_plotter(open_):
+    mesh = pv.Plane(i_resolution=9, j_resolution=9) if open_ else torus()
+    plotter = pv.Plotter(off_screen=True, window_size=(120, 100))
+    plotter.background_color = "black"
+    plotter.vizlight.add_mesh(mesh, scene=SCENES["far"], light="fragments")
+    lit = shot(plotter)
+    plotter.remove_all_lights()
+    without = shot(plotter, plotter.camera)
+    plotter.close()
+    assert lit.max() > 40
+    np.testing.assert_array_equal(without, lit)
 
 
 def reversing():

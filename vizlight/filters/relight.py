@@ -14,7 +14,7 @@ from vizlight.filters.fur import FurOptions, fur
 from vizlight.filters.project import ProjectOptions
 from vizlight.filters.relief_shadow import ReliefOptions, relief_shadow
 from vizlight.mesh import blocks, records
-from vizlight.mesh.inputs import inputs_of
+from vizlight.mesh.inputs import part_of, shown_side
 from vizlight.mesh.nspace import PROJECTED
 from vizlight.scene import Scene
 from vizlight.shading import engine
@@ -24,8 +24,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from vizlight._types import Array
+    from vizlight.mesh.normals import Sided
+    from vizlight.scene import View
     from vizlight.shading.inputs import ArraySource, ShadingInputs
-    from vizlight.shading.options import ShadingOptions
+    from vizlight.shading.options import Facing, ShadingOptions
 
 #: Share of the points whose light may differ from the record, such as those on the rim of a cut.
 CHANGED = 0.05
@@ -37,23 +39,55 @@ class Source(NamedTuple):
     """One mesh, the inputs of its light, and how it is lit.
 
     ``named`` are options of a filter, from which the inputs are read again after the mesh has
-    changed; None where that takes the filter itself.
+    changed; None where that takes the filter itself. Where normals are turned to the eye,
+    ``inputs`` has them as they are and ``sided`` turns them. ``inside`` is the number of points of
+    a volume that are not on its surface.
     """
 
     mesh: pv.DataSet
     inputs: ShadingInputs
     options: ShadingOptions
     named: LightOptions | None
+    sided: Sided | None = None
+    inside: int = 0
+
+    @property
+    def facing(self) -> Facing:
+        """Side of the surface that is lit."""
+        return "as given" if self.named is None else shown_side(self.named)
+
+    def seen_from(self, view: View | None, inputs: ShadingInputs) -> ShadingInputs:
+        """Return inputs with the normals turned to an eye."""
+        if self.sided is None or inputs.normals is None:
+            return inputs
+        sided = dataclasses.replace(self.sided, vectors=np.asarray(inputs.normals[:]))
+        return dataclasses.replace(inputs, normals=sided.facing(self.facing, inputs.points, view))
 
 
 def from_options(
     mesh: pv.DataSet | pv.MultiBlock, scene: Scene, options: LightOptions
 ) -> list[Source]:
     """Return what :func:`vizlight.illuminate` lights on a mesh, one source for each block."""
-    return [
-        Source(block, inputs_of(block, path, scene, options), options, options)
-        for block, path in blocks.named_blocks(mesh)
-    ]
+    return [read(block, path, scene, options) for block, path in blocks.named_blocks(mesh)]
+
+
+def read(mesh: pv.DataSet, path: str, scene: Scene, options: LightOptions) -> Source:
+    """Return what is lit on one mesh by options of :func:`vizlight.illuminate`."""
+    if options.feature_angle is not None:
+        expected, remedy = "None for light that follows", "light a mesh with split points"
+        got = repr(options.feature_angle)
+        raise ValueError(_check.message("feature_angle", expected, got, remedy))
+    part = part_of(mesh, path, scene, options)
+    inputs, sided = part.inputs, part.sided
+    inside = 0 if sided is None else sided.inside
+    source = Source(mesh, inputs, part.options, options, None, inside)
+    turned = sided is not None and (
+        source.facing == "eye" or (source.facing == "auto" and sided.any_open)
+    )
+    if scene.view is None or sided is None or not turned:
+        return source
+    inputs = dataclasses.replace(inputs, normals=sided.vectors)
+    return source._replace(inputs=inputs, sided=sided)
 
 
 def is_lit(mesh: pv.DataSet | pv.MultiBlock, name: str = lighting.DEFAULT_NAME) -> bool:
@@ -127,7 +161,8 @@ def _of_block(mesh: pv.DataSet, path: str, record: Mapping[str, Any], scene: Sce
         remedy = "draw its arrays by plotter.add_mesh"
         raise ValueError(_check.message("mesh", expected, f"that of {made}", remedy))
     light = readers[made](mesh, options)
-    return Source(mesh, inputs_of(mesh, path, scene, light), light, light)
+    # The points of the result are split already.
+    return read(mesh, path, scene, dataclasses.replace(light, feature_angle=None))
 
 
 def _refuse_described(made: str, options: Mapping[str, object]) -> None:
@@ -248,7 +283,7 @@ def _stored(inputs: ShadingInputs) -> ShadingInputs:
 
 def _check_light(sources: list[Source], scene: Scene, name: str) -> None:
     """Check that the light of the record is the light that the meshes have."""
-    parts = [(source.inputs, source.options) for source in sources]
+    parts = [(source.seen_from(scene.view, source.inputs), source.options) for source in sources]
     results, _ = lighting.light(parts, scene, threads=None, progress_bar=False)
     for source, shading in zip(sources, results, strict=True):
         stored = np.asarray(source.mesh.point_data[name])

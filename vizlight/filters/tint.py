@@ -283,7 +283,7 @@ def light_factors(
     """
     material = scene.material
     bare = dataclasses.replace(material, color=None, specular=0.0)
-    parts = [(source.inputs, source.options) for source in sources]
+    parts = [(source.seen_from(scene.view, source.inputs), source.options) for source in sources]
     dark = scene.depth_cue if scene.depth_cue is None else _dark(scene.depth_cue)
     first = scene.replace(material=bare, depth_cue=dark)
     shaded, _ = lighting.light(parts, first, threads=threads, progress_bar=False)

@@ -313,6 +313,9 @@ def _sources(
     }
     n = max(spaces, default=3)
     provisional = headlight_scene(n) if scene is None else lifted(scene, n)
+    if provisional.view is None and provisional.n in (None, n):
+        # Which side of an open surface is lit is then the camera's to say.
+        provisional = provisional.replace(view=headlight_scene(n).view)
     return relight.from_options(mesh, provisional, asked), scene
 
 

@@ -143,6 +143,8 @@ class Fragments:
             height = np.asarray(inputs.fur_height[:], dtype=np.float64)
             self._tallest = float(np.max(height, initial=0.0)) or 1.0
             normals = normals * (1 + height[:, np.newaxis] / self._tallest)
+        elif live.source.sided is not None:
+            normals = normals * _lean_lengths(live.source, len(normals))[:, np.newaxis]
         if normals is not None:
             point_arrays.attach_rows(live.drawn, NORMALS, normals.astype(np.float32))
             data.SetActiveNormals(NORMALS)
@@ -181,7 +183,9 @@ class Fragments:
         key = _structure(scene, lights, live.source)
         if key != self._key or self._plan is None:
             self._plan = _plan(scene, live.source)
-            _replace(actor, *glsl.fragment(self._plan), self._plan)
+            turned = live.source.sided is not None
+            code = glsl.fragment(self._plan, turned=turned)
+            _replace(actor, *code, self._plan, turned=turned)
             self._key = key
         self._set_uniforms(self._plan, scene.replace(lights=lights), renderer, actor)
 
@@ -216,11 +220,11 @@ class Fragments:
         ambient = scene.ambient_intensity * _ratio(material.ambient, prop.GetAmbient())
         color = [ambient * c for c in scene.ambient_color or WHITE]
         uniforms.SetUniform3f("vizAmbientGain", color)
-        gains = [
-            _ratio(material.diffuse, prop.GetDiffuse()),
-            _ratio(material.specular, prop.GetSpecular()),
-        ]
-        uniforms.SetUniform2f("vizTermGain", gains)
+        diffuse = _ratio(material.diffuse, prop.GetDiffuse())
+        uniforms.SetUniformf("vizDiffuseGain", diffuse)
+        # VTK has a specular colour only where it has lights of its own.
+        shine = [material.specular * c for c in prop.GetSpecularColor()]
+        uniforms.SetUniform3f("vizSpecularGain", shine)
         if plan.fur:
             # Fur of density 1 lets through what is less than any float.
             uniforms.SetUniformf("vizFurRate", float(np.log1p(-min(plan.fur, 1 - 1e-12))))
@@ -253,7 +257,7 @@ def _structure(scene: Scene, lights: Sequence[Light], source: Source) -> tuple[o
         [(light.position is None, light.attenuation == NO_ATTENUATION) for light in lights],
         material.diffuse > 0, material.specular > 0, material.shininess,
         None if cue is None else cue.smooth,
-        source.inputs.layout, source.options,
+        source.inputs.layout, source.options, source.sided is None,
     )  # fmt: skip
 
 
@@ -271,7 +275,21 @@ def _rows(inputs: ShadingInputs, rows: ArraySource | None) -> Array | None:
     return unit if len(unit) == inputs.count else np.repeat(unit, inputs.repeat, axis=0)
 
 
-def _replace(actor: vtkActor, functions: str, body: str, plan: Plan) -> None:
+def _lean_lengths(source: Source, count: int) -> Array:
+    """Return lengths of normals, which carry from 1 to 2 the lean from -1 to 1.
+
+    A lean of 1 stands for points that no eye turns.
+    """
+    sided = source.sided
+    assert sided is not None
+    lean = np.zeros(count) if sided.lean is None else np.asarray(sided.lean, dtype=np.float64)
+    turned = np.ones(count, dtype=np.bool_) & (True if source.facing == "eye" else sided.open)
+    return np.where(turned, 1.5 + 0.5 * np.clip(lean, -1.0, 0.98), 2.0)
+
+
+def _replace(
+    actor: vtkActor, functions: str, body: str, plan: Plan, *, turned: bool = False
+) -> None:
     """Put the light of a plan in place of VTK's, in every shader of the pipeline."""
     names = [("vizP", "vec3", "(MCVCMatrix * vertexMC).xyz")]
     normal = plan.surface or plan.conditioned or bool(plan.fur)
@@ -279,7 +297,7 @@ def _replace(actor: vtkActor, functions: str, body: str, plan: Plan) -> None:
     if normal:
         attributes += "in vec3 normalMC;\n"
         names.append(("vizN", "vec3", "normalMatrix * normalMC"))
-    if plan.fur:
+    if plan.fur or turned:
         names.append(("vizH", "float", "length(normalMC) - 1.0"))
     if not plan.surface:
         attributes += "in vec3 tangentMC;\n"
@@ -312,6 +330,8 @@ def _replace(actor: vtkActor, functions: str, body: str, plan: Plan) -> None:
                 f"  vizGood = vizGood && {name}Size > 1e-6;\n"
                 f"  vec3 {name} = {name}VSOutput / max({name}Size, 1e-6);\n"
             )
+    if turned:
+        read += "  float vizLean = 2.0 * vizHVSOutput - 1.0;\n"
     if plan.fur:
         read += "  float vizHeight = vizTallest * max(vizHVSOutput, 0.0);\n"
     pixel = {

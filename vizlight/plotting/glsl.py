@@ -146,23 +146,27 @@ class _Writer:
         return f"{PREFIX}{name}({', '.join(arguments)})"
 
 
-def fragment(plan: Plan) -> tuple[str, str]:
+def fragment(plan: Plan, *, turned: bool = False) -> tuple[str, str]:
     """Return the functions and the body of a fragment shader for the light of a plan.
 
     Parameters
     ----------
     plan : Plan
         Plan of a surface or of one tangent per point in 3-space.
+    turned : bool, default: False
+        Whether the normal is turned to the eye, unless it leans away by ``vizLean`` at most.
 
     Returns
     -------
     declarations, body : str
         The body sets ``vizColor`` from ``vizT``, ``vizN``, ``vizP`` and ``vizHeight`` in view
-        coordinates, VTK's ``ambientColor``, ``diffuseColor`` and ``specularColor``, and uniforms.
+        coordinates, VTK's ``ambientColor`` and ``diffuseColor``, and uniforms.
     """
     w = _Writer()
     w.add("vec3 vizToEye = vizEye.xyz - vizEye.w * vizP;")
     w.add("vec3 vizWo = vizToEye * inversesqrt(max(dot(vizToEye, vizToEye), 1e-30));")
+    if turned:
+        w.add("if (dot(vizN, vizWo) < -vizLean) vizN = -vizN;")
     w.add("vec3 vizDiffuse = vec3(0.0); vec3 vizSpecular = vec3(0.0);")
     if plan.surface or plan.conditioned or plan.fur:
         w.add("float vizNo = dot(vizN, vizWo);")
@@ -174,10 +178,8 @@ def fragment(plan: Plan) -> tuple[str, str]:
         _light(w, plan, i)
         w.add("}")
     w.add("if (!vizGood) { vizDiffuse = vec3(0.0); vizSpecular = vec3(0.0); }")
-    w.add(
-        "vec3 vizColor = vizAmbientGain * ambientColor + vizTermGain.x * diffuseColor * vizDiffuse"
-    )
-    w.add("  + vizTermGain.y * specularColor * vizSpecular;")
+    w.add("vec3 vizColor = vizAmbientGain * ambientColor + vizSpecularGain * vizSpecular;")
+    w.add("vizColor += vizDiffuseGain * diffuseColor * vizDiffuse;")
     _cue(w, plan)
     plain = all(0 < h.shininess <= LARGEST_PLAIN for h in plan.highlights)
     return functions(w.used, plain=plain and plan.exponent > 0), "\n".join(w.lines)

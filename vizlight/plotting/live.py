@@ -7,23 +7,22 @@ import warnings
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
-import pyvista as pv
 
 from vizlight import _check
+from vizlight.filters import relight
 from vizlight.filters.tint import values_of
 from vizlight.mesh import point_arrays
-from vizlight.mesh.inputs import inputs_of
 from vizlight.scene import Light, Material, Scene, View
 from vizlight.scene.vtk import lights_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    import pyvista as pv
     from vtkmodules.vtkCommonCore import vtkCollection
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
     from vizlight._types import Array, Vector
-    from vizlight.filters import relight
     from vizlight.shading.inputs import ShadingInputs
 
 #: Names of the arrays that the drawn copy of a mesh has beside those of the mesh.
@@ -84,7 +83,6 @@ class Live:
         self._changed = source.mesh.GetMTime()
         self._state: tuple[object, ...] = ()
         self._placed: tuple[tuple[float, ...], ShadingInputs] | None = None
-        self._faces_view = _faces_view(source)
         self._warned = False
 
     @property
@@ -132,7 +130,8 @@ class Live:
             if rows is not None and rows.shape[0] == len(good):
                 vectors = np.asarray(rows[:]).reshape(len(good), -1)
                 good &= np.any(vectors, axis=1) & np.all(np.isfinite(vectors), axis=1)
-        return int(np.count_nonzero(~good)) * self.source.inputs.repeat
+        unlit = int(np.count_nonzero(~good)) - self.source.inside
+        return max(unlit, 0) * self.source.inputs.repeat
 
     def update(self, renderer: vtkRenderer, actor: vtkActor) -> None:
         """Light the mesh anew if anything has changed since; called before a frame is drawn.
@@ -172,22 +171,18 @@ class Live:
         return tuple(state)
 
     def _read(self, renderer: vtkRenderer, actor: vtkActor) -> None:
-        """Read the mesh again after it has changed, and normals that face another eye."""
+        """Read the mesh again after it has changed."""
         mesh, named = self.source.mesh, self.source.named
-        changed = mesh.GetMTime() != self._changed
-        if changed:
-            self.drawn.shallow_copy(mesh)
-            self._changed = mesh.GetMTime()
-        if named is not None and (changed or self._faces_view):
-            scene = self.scene_of(renderer, actor)
-            inputs = inputs_of(mesh, "", scene, named)
-            self.source = self.source._replace(inputs=inputs)
+        if mesh.GetMTime() == self._changed:
+            return
+        self.drawn.shallow_copy(mesh)
+        self._changed = mesh.GetMTime()
+        if named is not None:
+            self.source = relight.read(mesh, "", self.scene_of(renderer, actor), named)
             self._placed = None
-        if changed:
-            if self._given is not None and not self._of_cells:
-                self._color(self._given)
-            self._faces_view = _faces_view(self.source)
-        if (changed or self._faces_view) and self.painter is not None:
+        if self._given is not None and not self._of_cells:
+            self._color(self._given)
+        if self.painter is not None:
             self.painter.attach(self)
 
     def scene_of(self, renderer: vtkRenderer, actor: vtkActor) -> Scene:
@@ -283,17 +278,6 @@ def _transformed(inputs: ShadingInputs, matrix: Array) -> ShadingInputs:
         rows = np.asarray(inputs.normals[:])
         normals = (rows @ np.linalg.inv(linear)).astype(rows.dtype)
     return dataclasses.replace(inputs, points=points, tangents=tangents, normals=normals)
-
-
-def _faces_view(source: relight.Source) -> bool:
-    """Return whether the normals of a source are those of an open surface, which face the eye."""
-    named, mesh = source.named, source.mesh
-    if named is None or source.inputs.normals is None or named.normals is not None:
-        return False
-    if mesh.point_data.active_normals is not None:
-        return False
-    surface = mesh if isinstance(mesh, pv.PolyData) else mesh.extract_surface(algorithm=None)
-    return bool(surface.n_open_edges)
 
 
 def headlight_scene(n: int) -> Scene:

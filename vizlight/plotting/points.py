@@ -75,7 +75,8 @@ class Points:
 
     def paint(self, live: Live, scene: Scene, renderer: vtkRenderer, actor: vtkActor) -> None:  # noqa: ARG002
         """Light the points and draw them with the result."""
-        source = live.source._replace(inputs=live.placed(actor))
+        inputs = live.source.seen_from(scene.view, live.placed(actor))
+        source = live.source._replace(inputs=inputs, sided=None)
         if live.scalars is not None:
             (factors,) = light_factors([source], scene)
             colors = _colors(live, actor)
