@@ -153,6 +153,7 @@ def _of_block(mesh: pv.DataSet, path: str, record: Mapping[str, Any], scene: Sce
         return _of_relief(mesh, options, scene)
     readers: dict[str, Callable[[pv.DataSet, dict[str, Any]], LightOptions]] = {
         "illuminate": lambda _, options: LightOptions(**options),
+        "refine": lambda _, options: LightOptions(**_own(LightOptions, options)),
         "streamlines": _of_lines,
         "project": _of_projection,
     }

@@ -114,7 +114,8 @@ def _polylines(
         return mesh
     # Half precision, which TRX files have, is none of VTK's types.
     mesh.points = np.array(points[rows], dtype=np.result_type(points.dtype, np.float32))
-    mesh.SetLines(pv.CellArray.from_arrays(ends, np.arange(len(rows))))
+    numbers = np.asarray(np.arange(len(rows)), dtype=int)
+    mesh.SetLines(pv.CellArray.from_arrays(np.asarray(ends, dtype=int), numbers))
     for name, array in of_points.items():
         _attach(mesh.point_data, name, np.asarray(array)[rows])
     for name, array in of_lines.items():

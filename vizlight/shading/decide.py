@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,7 @@ import numpy as np
 from vizlight import _check
 from vizlight.model import brightness
 from vizlight.scene import Scene
-from vizlight.shading import bounds, highlight
+from vizlight.shading import bounds, compiled, highlight
 from vizlight.shading.inputs import Layout
 from vizlight.shading.options import ShadingOptions, accepts
 from vizlight.shading.plan import Plan
@@ -77,16 +78,25 @@ def plan(
     if base_tangents is not None:
         base_tangents = _check.integer("base_tangents", base_tangents, low=1)
     layout = Layout(n, k, bool(normals), base_tangents or 0, bool(shadowed), fur)
-    return decide(scene, layout, ShadingOptions(**options), dtype)
+    made = decide(scene, layout, ShadingOptions(**options), dtype)
+    return dataclasses.replace(made, code=compiled.why_not(made) or compiled.WHERE_IT_PAYS)
 
 
 def decide(
-    scene: Scene, layout: Layout, options: ShadingOptions, dtype: DTypeLike | None = None
+    scene: Scene,
+    layout: Layout,
+    options: ShadingOptions,
+    dtype: DTypeLike | None = None,
+    *,
+    narrow: bool = False,
 ) -> Plan:
-    """Return the plan for inputs of a layout; see :func:`plan`."""
+    """Return the plan for inputs of a layout; see :func:`plan`.
+
+    Inputs that are ``narrow`` have no more digits than float32.
+    """
     _check.instance("scene", scene, Scene)
     dtype = options.precision if dtype is None else dtype
-    kind = _precision(np.float64 if dtype is None else dtype)
+    kind = _precision((np.float32 if narrow else np.float64) if dtype is None else dtype)
     _check_layout(layout, options)
     _check_scene(scene, layout.n)
     n, surface = layout.n, layout.k is None
@@ -120,7 +130,7 @@ def decide(
     )
     if not options.tolerance:
         return exact
-    return relax(exact, options.tolerance, any_precision=dtype is None)
+    return relax(exact, options.tolerance, asked=dtype is not None)
 
 
 def _needed(scene: Scene, layout: Layout, options: ShadingOptions) -> tuple[Scene, bool, bool]:

@@ -60,12 +60,15 @@ class Choice:
         rounding has no bound within the tolerance that holds for all data.
     notes, rejected : tuple of str
         What was chosen and what was not, in words.
+    cheaper : bool
+        Whether anything cheaper than the exact forms was chosen.
     """
 
     tolerance: float = 0.0
     bound: float = math.inf
     notes: tuple[str, ...] = ()
     rejected: tuple[str, ...] = ()
+    cheaper: bool = False
 
 
 EXACT = Choice()
@@ -111,6 +114,10 @@ class Plan:
         multiple of its own.
     choice : Choice
         What was chosen within ``tolerance=``, and its bound.
+    compiled : bool
+        Whether compiled code has lit the points (extra ``fast``).
+    code : str
+        What runs the plan, or why it is not compiled code, in words.
     """
 
     n: int
@@ -131,6 +138,8 @@ class Plan:
     specular: bool
     factors: tuple[float, float] = (1.0, 1.0)
     choice: Choice = EXACT
+    compiled: bool = False
+    code: str = ""
 
     @property
     def two_sided(self) -> bool:
@@ -210,7 +219,8 @@ class Plan:
     def explain(self) -> str:
         """Return what is computed, what is skipped and why, one line each."""
         words = _Words()
-        for part in (_manifold, _diffuse, _specular, _lights, _factors, _results, _choice):
+        parts = (_manifold, _diffuse, _specular, _lights, _factors, _results, _choice, _code)
+        for part in parts:
             part(self, words)
         return "\n".join(
             [f"compute  {line}" for line in words.computed]
@@ -376,4 +386,12 @@ def _choice(plan: Plan, words: _Words) -> None:
         if math.isfinite(choice.bound)
         else "rounding has no bound within it here"
     )
-    words.add(f"tolerance: {choice.tolerance:.3g} of luminance, {bound}")
+    exact = "" if choice.cheaper else "nothing is cheaper than the exact forms, "
+    words.add(f"tolerance: {choice.tolerance:.3g} of luminance, {exact}{bound}")
+
+
+def _code(plan: Plan, words: _Words) -> None:
+    if plan.compiled:
+        words.add(f"code: {plan.code}")
+    elif plan.code:
+        words.add(None, f"compiled code: {plan.code}")
