@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 NEARLY_CLOSED = 0.2
 #: Angle in degrees between the normals of two faces above which their common edge is sharp.
 SHARP = 30.0
+#: Least height of a triangle that has a direction, as a share of its longest side.
+NARROWEST = 1e-5
 #: Name under which a user's array keeps out of the way of VTK's.
 _OWN = "vizlight own"
 #: Sharp edges are creases if at most this many times as many edges are half as sharp or more.
@@ -378,10 +380,15 @@ class _Shape:
         """Return the share of sharp edges where these are creases, else 0.
 
         Creases stand apart: few edges are nearly as sharp. On a coarse mesh of a smooth shape there
-        are more of those, and no edge is meant to be seen.
+        are more of those, and no edge is meant to be seen. Faces without area, which many meshes
+        have at a pole, have no direction and no sharp edges.
         """
-        faces = unit_rows(self.across)
-        rows = self.triangles
+        corners = self.away[self.triangles] / self.scale
+        sides = corners - np.roll(corners, -1, axis=1)
+        longest = np.einsum("ijk,ijk->ij", sides, sides).max(axis=1, initial=0.0)
+        full = np.linalg.norm(self.across, axis=1) > NARROWEST * longest
+        faces = unit_rows(self.across[full])
+        rows = self.triangles[full]
         keys = _edges(rows, len(self.points))
         order = np.argsort(keys)
         keys = keys[order]

@@ -206,8 +206,13 @@ def _lines(run: Run) -> list[str]:
         if run.visible:
             text += f"; {_percent(run.visible)} are off by more than 1/255"
         if run.visible > unseen(run.places):
-            shorter = f"cells 1/{run.finer} as long" if run.finer else "no cells 1/128 as long"
-            text += f": {shorter}, or refine=1/255, would do"
+            if run.finer:
+                text += f": cells 1/{run.finer} as long, or refine=1/255, would do"
+            else:
+                text += (
+                    ": cells 1/128 as long would not do; "
+                    "refine=1/255 leaves only places where the light jumps"
+                )
         found.append(text)
     return found
 
