@@ -103,7 +103,10 @@ class Compiled(NamedTuple):
             _flat(shadow, form.work),
             _flat(part.fur_height if form.fur else None, form.work),
         ]
-        self._run(given, [light, terms[0], terms[1], color], count)
+        try:
+            self._run(given, [light, terms[0], terms[1], color], count)
+        except _compiled.FailedError:
+            light[...] = np.nan
         if not whole:
             output.luminance[at] = light
         output.valid[at] = True

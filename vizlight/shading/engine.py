@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vizlight import _check, _pool
+from vizlight import _check, _compiled, _pool
 from vizlight.scene import Scene
 from vizlight.shading import compiled
 from vizlight.shading.block import Output, columns, shade_block, view_depth
@@ -269,6 +269,8 @@ def run(
     for done in _pool.run(work, _pool.blocks(inputs.rows, step), threads):
         if progress is not None:
             progress(done, count)
+    if code is not None and (reason := _compiled.why_not()):
+        made = dataclasses.replace(made, compiled=False, code=reason)
     shading = Shading(
         luminance=output.luminance,
         valid=output.valid,

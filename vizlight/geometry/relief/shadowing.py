@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
@@ -276,6 +277,21 @@ def lengths(
     the surface at which rays start; for None it is found from all of them.
     """
     _check.choice("method", method, get_args(Method))
+    with contextlib.suppress(_compiled.FailedError):
+        return _lengths(field, start, count, ray, method, threads, below)
+    # Compiled code is off from here on.
+    return _lengths(field, start, count, ray, method, threads, below)
+
+
+def _lengths(
+    field: Field,
+    start: Callable[[Indices], Array],
+    count: int,
+    ray: Ray,
+    method: Method,
+    threads: int | None,
+    below: float | None,
+) -> Array:
     length = np.empty(count)
     endless = field.border == "extend" and field.base == -np.inf
     if ray.direction is not None and ray.direction[2] < 0 and endless:
