@@ -189,14 +189,14 @@ def walk(
         out[ray] = length if length < 0.5 * FAR else math.inf
 
 
-def levels(field: Field) -> Levels:
+def levels(bounds: list[tuple[Array, Array]]) -> Levels:
     """Return the bounds of a field as one array each, with the offset and row length of levels."""
-    sizes = np.array([largest.size for largest, _ in field.bounds])
+    sizes = np.array([largest.size for largest, _ in bounds])
     return (
-        np.concatenate([largest.ravel() for largest, _ in field.bounds]),
-        np.concatenate([least.ravel() for _, least in field.bounds]),
+        np.concatenate([largest.ravel() for largest, _ in bounds]),
+        np.concatenate([least.ravel() for _, least in bounds]),
         np.cumsum(sizes) - sizes,
-        np.array([largest.shape[1] for largest, _ in field.bounds]),
+        np.array([largest.shape[1] for largest, _ in bounds]),
     )
 
 
@@ -349,6 +349,10 @@ def follow(
 
 class Strips:
     """A field along the azimuth of one light, for rays that start at a distance ``below`` from it.
+
+    On rough hills, whose number of crossings per ray grows with the resolution, the processor time
+    grows by 4.2 and 4.4 for a doubling of the side from 512 and from 1024 nodes with a sun 20
+    degrees high; a single run with 4096 nodes took 5.2 times as long as with 2048.
 
     Positions are (along the light's main axis, along the other one, height). Bands and indices of
     strips are those of :class:`sweeping.Profiles`, in whose place this stands.
