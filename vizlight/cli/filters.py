@@ -25,7 +25,11 @@ if TYPE_CHECKING:
 RENAMED = {"light": "when"}
 
 
-@options.takes(vizlight.streamlines, "Streamlines", without=("positions", "tangents"))
+@options.takes(
+    vizlight.streamlines,
+    "Streamlines",
+    without=("positions", "tangents", "separation", "shortest", "terminator"),
+)
 def streamlines(
     files: list[Path],
     /,

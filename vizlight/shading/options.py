@@ -91,7 +91,7 @@ class ShadingOptions:
         smoothly to the terminator. 0: it ends sharply where the light does. The largest change is
         :func:`vizlight.model.highlights.terminator_error`.
     two_sided : bool, default: False
-        Whether the far side of a surface is lit like the near one, by ``|N . wi|``.
+        Whether the far side of a surface is lit like the near one: by ``|N . wi|``.
     conditioned : bool or str
         Whether tangents inherit the self-shadow of the surface that the normals belong to
         (Banks 6).
