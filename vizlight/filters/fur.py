@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import threading
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, TypedDict, get_args
 
 import numpy as np
 import pyvista as pv
 
-from vizlight import _check
+from vizlight import _check, _pool
 from vizlight.filters import lighting
+from vizlight.geometry.lines import compiled
 from vizlight.geometry.lines import fur as geometry
 from vizlight.mesh import blocks, point_arrays, surfaces
 from vizlight.mesh.normals import onlooker
 from vizlight.mesh.point_arrays import unit_rows
-from vizlight.mesh.strands import Grown, Strands
+from vizlight.mesh.strands import Grown, Room, Strands
 from vizlight.model import kernels
 from vizlight.scene import Scene
 from vizlight.shading.inputs import ShadingInputs
@@ -31,6 +33,8 @@ if TYPE_CHECKING:
 Inward = Literal["keep", "flip", "drop"]
 #: Default absorption, and length of fibres as a share of the diagonal of the mesh.
 ABSORPTION, LENGTH = 0.5, 0.03
+#: Number of blocks of random numbers that are kept for threads that work on parts of them.
+KEPT = 8
 #: Largest length of a fibre: differences of longer ones leave the range of float32.
 LONGEST = 1e30
 
@@ -231,7 +235,9 @@ def _grow(
     skin = surfaces.with_normals(surface, onlooker(scene))
     name = options.name
     lighting.refuse_overwriting([(surface, "")], name, components=False, colored=scene.colored)
-    coat = _Coat(surface, skin, options)
+    points = options.fibres * (options.segments + 1)
+    fast = compiled.grow.pays(compiled.SAVED * points / _pool.workers(threads))
+    coat = _Coat(surface, skin, options, fast=fast)
     if options.fibres and not (len(coat.total) and coat.total[-1] > 0):
         raise ValueError(_check.message("surface", "faces of some area", "none"))
     far = any(coat.origin)
@@ -243,6 +249,7 @@ def _grow(
         straight=options.straight,
         threads=threads,
         unit=coat.unit,
+        fill=coat.fill if fast else None,
     )
     through = options.lost
     fibres = strands.inputs(
@@ -276,7 +283,9 @@ class _Coat:
     Points are less ``origin``, which is not 0 where the surface is far from there.
     """
 
-    def __init__(self, surface: pv.PolyData, skin: pv.PolyData, options: FurOptions) -> None:
+    def __init__(
+        self, surface: pv.PolyData, skin: pv.PolyData, options: FurOptions, *, fast: bool
+    ) -> None:
         self.options = options
         self.origin = blocks.near_origin(skin)
         size = float(skin.length)
@@ -284,7 +293,10 @@ class _Coat:
             remedy = "scale the mesh"
             raise ValueError(_check.message("surface", "a size from 1e-30 to 1e30", size, remedy))
         faces: Indices = np.asarray(skin.regular_faces, dtype=np.intp)
-        self.faces = faces[geometry.along_curve(np.asarray(skin.points), faces)]
+        order, self.total = geometry.laid(np.asarray(skin.points), faces, fast=fast)
+        self.faces = faces.take(order, axis=0)
+        self._drawn: dict[int, geometry.Draws] = {}
+        self._lock = threading.Lock()
         self.normals = np.asarray(skin.point_data[surfaces.NORMALS], dtype=np.float32)
         self.vectors: Array | None = None
         if options.vectors is not None:
@@ -301,7 +313,6 @@ class _Coat:
         # The unit of the heights of fur, in which light is lost.
         mean = float(np.mean(self.length)) if np.size(self.length) else 0.0
         self.unit = mean if options.density is None and mean > 0 else 1.0
-        self.total = geometry.areas(np.asarray(skin.points), self.faces)
         # All that is interpolated stands in one table, so that it is looked up once.
         with np.errstate(invalid="ignore"):
             local = np.asarray(skin.points) - np.array(self.origin)
@@ -319,9 +330,7 @@ class _Coat:
         """Return some of the fibres."""
         start = block.start // geometry.SEED_BLOCK * geometry.SEED_BLOCK
         part = slice(block.start - start, block.stop - start)
-        face, weights = geometry.seed_block(
-            self.total, start, self.options.fibres, self.options.seed
-        )
+        face, weights = geometry.seed_block(self.total, self._draws(start))
         face, weights = face[part], weights[part]
         corners = self.faces.take(face, axis=0)
         found: Array = self._table.take(corners[:, 0], axis=0)
@@ -337,12 +346,50 @@ class _Coat:
         if toward is not None and toward.shape[1] > 1:
             toward = kernels.unit(next(columns))[0]
         length = next(columns)[0] if isinstance(self.length, np.ndarray) else self.length
-        phase = None
-        if self.options.curl:
-            random = np.random.default_rng([self.options.seed, start, 1])
-            phase = random.random(part.stop)[part] * 2 * np.pi
+        phase = self._phases(start, part)
         offsets = self._strands(way, length, toward, phase)
         return Grown(root, offsets, way, normal, inside)
+
+    def fill(self, block: slice, room: Room) -> None:
+        """Write some of the fibres, by compiled code."""
+        start = block.start // geometry.SEED_BLOCK * geometry.SEED_BLOCK
+        part = slice(block.start - start, block.stop - start)
+        draws, phase = self._draws(start), self._phases(start, part)
+        options = self.options
+        whole = not isinstance(self.length, np.ndarray)
+        given = [self.vectors is not None, self.toward is not None and len(self.toward) > 1]
+        columns = np.cumsum([6, *(3 * there for there in given)])
+        at = [there * column for there, column in zip([*given, not whole], columns, strict=True)]
+        bend = 0.0 if self.toward is None else options.bend
+        length = self.length if whole else 0.0
+        compiled.grow(
+            self.total, draws.place[part], draws.number[part], draws.jitter[part], draws.starts,
+            draws.first, draws.mean, self.faces.reshape(-1), self._table.reshape(-1),
+            np.array([self._table.shape[1], *at]),
+            np.zeros(3, np.float32) if self.toward is None else self.toward[0],
+            np.empty(0) if phase is None else phase,
+            np.array([length, bend, options.curl, options.turns, self.unit], np.float64),
+            options.segments, options.inward == "flip", *room,
+        )  # fmt: skip
+
+    def _draws(self, start: int) -> geometry.Draws:
+        """Return the random numbers of the block of seeds at ``start``, drawn once."""
+        with self._lock:
+            drawn = self._drawn.get(start)
+            if drawn is None:
+                options = self.options
+                drawn = geometry.draw(self.total, start, options.fibres, options.seed)
+                self._drawn[start] = drawn
+                if len(self._drawn) > KEPT:
+                    del self._drawn[next(iter(self._drawn))]
+            return drawn
+
+    def _phases(self, start: int, part: slice) -> Array | None:
+        """Return the angles at which the curl starts of a part of the block at ``start``."""
+        if not self.options.curl:
+            return None
+        random = np.random.default_rng([self.options.seed, start, 1])
+        return np.asarray(random.random(part.stop)[part] * 2 * np.pi)
 
     def _ways(self, normal: Array, vector: Array | None) -> tuple[Array, Bools | None]:
         """Return unit directions at the root, and which of the vectors point into the surface."""

@@ -305,7 +305,9 @@ def _lengths(
             _by_profile(profiles, start, length, threads)
             return length
     fast = compiled.walk.pays(compiled.SAVED * count)
-    bounds = compiled.levels(field) if fast else None
+    # Asked for once, before threads need them.
+    pyramid = field.bounds
+    bounds = compiled.levels(pyramid) if fast else None
 
     def work(rows: slice) -> int:
         places = start(np.arange(rows.start, rows.stop))
