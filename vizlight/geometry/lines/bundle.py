@@ -156,7 +156,9 @@ class Medium:
                 held = np.flatnonzero((side * middles[:, axis] > 0) & (gone < reach))
                 depth = side * middles[held, axis]
                 place = middles[held][:, others].T / depth
-                inside = ((place > low[:, None] + width / 100) & (place < high[:, None])).all(axis=0)
+                inside = ((place > low[:, None] + width / 100) & (place < high[:, None])).all(
+                    axis=0
+                )
                 held, depth, place = held[inside], depth[inside], place[:, inside]
                 steps = np.array([*((high - low) / width), reach / self.voxel])
                 area = (width * depth) ** 2 * depth / gone[held]
