@@ -10,6 +10,7 @@ import numpy as np
 from vizlight import files
 from vizlight.data import load_example
 from vizlight.filters import illuminate
+from vizlight.mesh.normals import sided_normals
 from vizlight.pictures import render
 from vizlight.scene import Light, Scene, View
 from vizlight.shading import engine
@@ -69,7 +70,9 @@ def light_flow() -> tuple[pv.PolyData, pv.Camera, list[Row], str]:
     """Return the lit surface, its camera, the table, and the explained plan of the flow's light."""
     surface = flow_surface()
     scene, camera = flow_scene(surface.bounds)
-    points, normals = np.asarray(surface.points), np.asarray(surface["Normals"])
+    points = np.asarray(surface.points)
+    # The surface is open: its normals are turned to the eye.
+    normals = sided_normals(surface, None, 3, "auto").facing("auto", points, scene.view)
     rows = []
     for title, name, tangents in (
         ("as a surface", "surface_light", None),

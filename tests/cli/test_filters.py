@@ -73,7 +73,7 @@ COMMANDS = {
     "--tolerance 1/255 --components --background black --line-width 2 --up 0,1,0 --view 1,0,1",
     "section": "light flow.vti --slice 0,1,1:8 --tangents V",
     "points of a volume": "light flow.vti --no-surface --tangents V",
-    "raised": "light terrain.vti --warp height --warp-factor 2 --two-sided",
+    "raised": "light terrain.vti --warp height --warp-factor 2 --facing as-given",
     "scene of a file": "light flow.vti --contour r --scene scene.json --specular 0.1",
     "view of a scene": "light flow.vti --contour r --scene view.json",
     "saved camera": "light flow.vti --contour r --view camera.json --zoom 2 --parallel",
@@ -163,7 +163,7 @@ def test_every_option_of_a_filter_is_one_of_its_command(name, capfd, monkeypatch
     own = {p.name for p in parameters if p.kind is p.KEYWORD_ONLY} - {*options.NOT_OPTIONS}
     given = set(inspect.signature(options.arguments_of(FILTERS[name])).parameters)
     assert own - given <= IN_SCRIPTS[name]
-    for option in own - IN_SCRIPTS[name]:
+    for option in own - IN_SCRIPTS[name] - getattr(FILTERS[name], "replaced", set()):
         text = {"light": "when"}.get(option, option) if name == "project" else option
         assert f"--{text.replace('_', '-')} " in out
 
@@ -419,7 +419,8 @@ def test_lights_and_eye_of_n_space_are_filled_up_with_zeros(folder, capfd):
     assert scene["lights"][0]["direction"] == [1, 0, 0, 0]
     assert scene["lights"][1]["position"] == [1, 2, 3, 4]
     assert run(capfd, *arguments)[0] == 0
-    (light,) = vizlight.provenance(pv.read("lit.vtk"))["scene"]["lights"]
+    light, fill = vizlight.provenance(pv.read("lit.vtk"))["scene"]["lights"]
+    assert fill["follows_view"]
     assert len(light["direction"]) == 4
     assert light["direction"][0] < 0 < light["direction"][2]
 

@@ -67,8 +67,10 @@ def test_normals_decide_without_tangents():
 def test_flip_and_two_sides():
     plane = pv.Plane(i_resolution=2, j_resolution=2)
     front = illuminate(plane, SCENE)["luminance"]
-    back = illuminate(plane, SCENE, flip_normals=True)["luminance"]
-    both = illuminate(plane, SCENE, flip_normals=True, two_sided=True)["luminance"]
+    with pytest.warns(DeprecationWarning, match="flip_normals= is replaced by facing="):
+        back = illuminate(plane, SCENE, flip_normals=True)["luminance"]
+    with pytest.warns(DeprecationWarning, match="two_sided= is replaced by facing='eye'"):
+        both = illuminate(plane, SCENE, two_sided=True)["luminance"]
     np.testing.assert_allclose(back, 0.1)
     np.testing.assert_allclose(both, front, rtol=1e-6)
     assert front.min() > 0.3
@@ -77,15 +79,18 @@ def test_flip_and_two_sides():
 def test_named_normals_win():
     plane = pv.Plane(i_resolution=2, j_resolution=2)
     plane["down"] = np.tile([0, 0, -1.0], (plane.n_points, 1))
-    np.testing.assert_allclose(illuminate(plane, SCENE, normals="down")["luminance"], 0.1)
+    lit = illuminate(plane, SCENE, normals="down", facing="as given")
+    np.testing.assert_allclose(lit["luminance"], 0.1)
     given = illuminate(plane, SCENE, normals=-np.asarray(plane["down"]))
     assert given["luminance"].min() > 0.3
 
 
 def test_a_volume_is_lit_on_its_outside():
     grid = pv.ImageData(dimensions=(4, 4, 4))
-    with pytest.warns(UserWarning, match="8 of 64 points could not be lit"):
+    words = r"of the edges are sharper than 30 degrees.*extract_surface\(\)"
+    with pytest.warns(UserWarning, match=words) as caught:
         lit = illuminate(grid, SCENE)
+    assert len(caught) == 1
     inside = np.all((grid.points > 0) & (grid.points < 3), axis=1)
     np.testing.assert_array_equal(lit["luminance_valid"].astype(bool), ~inside)
     np.testing.assert_allclose(lit["luminance"][inside], 0.1)
@@ -109,7 +114,7 @@ def test_a_frame_of_two_vectors_is_a_surface():
     plane = pv.Plane(i_resolution=3, j_resolution=3)
     plane["frame"] = np.tile([2.0, 0, 0, 1, 3, 0], (plane.n_points, 1))
     by_frame = illuminate(plane, SCENE, tangents="frame", components=True)
-    by_normal = illuminate(plane, SCENE, two_sided=True, components=True)
+    by_normal = illuminate(plane, SCENE, facing="eye", components=True)
     for term in ("ambient", "diffuse", "specular", "luminance"):
         np.testing.assert_allclose(by_frame[term], by_normal[term], atol=1e-6)
 
@@ -347,6 +352,11 @@ def test_result_does_not_hold_the_input_in_memory_twice():
             "two_sided: expected no two_sided beside",
         ),
         ({"tangents": "V", "flip_normals": True}, ValueError, "flip_normals: expected no"),
+        ({"tangents": "V", "facing": "eye"}, ValueError, "facing: expected no facing beside tang"),
+        ({"facing": "me"}, ValueError, "facing: expected .*as given.*, got 'me'"),
+        ({"facing": "eye", "two_sided": True}, ValueError, "two_sided: expected facing= alone"),
+        ({"feature_angle": -1}, ValueError, "feature_angle: expected"),
+        ({"feature_angle": "30"}, ValueError, "feature_angle: expected .*'auto' or None, got '30'"),
         ({"tangents": "V", "name": ""}, ValueError, "name: expected a name"),
         ({"tangents": "V", "precision": "f4"}, ValueError, "precision: expected"),
         (
@@ -372,8 +382,10 @@ def test_bad_options(options, error, words):
     )
     plane["words"] = np.array(["a"] * 42)
     before = plane.copy()
-    with pytest.raises(error, match=words):
-        illuminate(plane, SCENE, **options)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)
+        with pytest.raises(error, match=words):
+            illuminate(plane, SCENE, **options)
     assert plane == before
 
 
@@ -395,8 +407,10 @@ def test_bad_meshes_and_scenes():
 def test_integer_normals_are_turned_over_as_numbers():
     mesh = pv.PolyData(np.eye(3), [3, 0, 1, 2])
     mesh["N"] = np.full((3, 3), 255, np.uint8)
-    turned = illuminate(mesh, SCENE, normals="N", flip_normals=True)
-    expected = illuminate(mesh, SCENE, normals=-mesh["N"].astype(float))
+    away = SCENE.replace(view=View(direction=(-0.3, -0.2, -1)))
+    turned = illuminate(mesh, away, normals="N", facing="eye")
+    given = -mesh["N"].astype(float)
+    expected = illuminate(mesh, away, normals=given, facing="as given")
     np.testing.assert_array_equal(turned["luminance"], expected["luminance"])
 
 
@@ -419,6 +433,7 @@ def test_curved_cells_are_lit_at_their_nodes():
     np.testing.assert_allclose(illuminate(mesh, scene)["luminance"], expected, rtol=1e-6)
 
 
+@pytest.mark.filterwarnings("ignore:.*of the edges are sharper")
 @pytest.mark.parametrize("cell", ["QuadraticTetrahedron", "QuadraticHexahedron", "QuadraticWedge"])
 def test_nodes_of_curved_volumes_have_the_light_of_their_place(cell, random):
     """However the points are numbered, and however many cells there are."""

@@ -374,3 +374,23 @@ def test_nothing_of_a_solid_is_left(color):
     scene = Scene(lights=Light(direction=(0, 0, 1)), material=Material(specular=0, color=color))
     nothing = isoluminance(Sphere() - Sphere(radius=2), scene)
     assert [block.n_cells for block in nothing] == [0, 0]
+
+
+@pytest.mark.parametrize("grid", [False, True])
+def test_a_box_has_one_band_per_face(grid):
+    cube = pv.Cube().triangulate()
+    cube.clear_data()
+    cube = cube.clean()
+    mesh = pv.ImageData(dimensions=(2, 2, 2)) if grid else cube
+    scene = vizlight.Scene(
+        lights=vizlight.Light(direction=(1, 2, 3)), material=vizlight.Material(specular=0)
+    )
+    for angle in (30, "auto"):
+        bands = vizlight.isoluminance(mesh, scene, levels=[0.2, 0.35, 0.5], feature_angle=angle)[
+            "bands"
+        ]
+        areas = bands.compute_cell_sizes()["Area"]
+        inside = [areas[bands["band"] == i].sum() for i in np.unique(bands["band"])]
+        np.testing.assert_allclose(inside, [3, 1, 1, 1], atol=1e-6)
+    with pytest.raises(ValueError, match="feature_angle: expected"):
+        vizlight.isoluminance(mesh, scene, feature_angle=200)

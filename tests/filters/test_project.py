@@ -8,7 +8,7 @@ import pyvista as pv
 from scipy.stats import special_ortho_group
 
 import vizlight
-from vizlight import Light, Material, Scene, View, illuminate, project
+from vizlight import Light, Material, Scene, View, engine, illuminate, project
 from vizlight.geometry import manifolds, projection
 
 TURN = special_ortho_group.rvs(4, random_state=3)
@@ -81,7 +81,8 @@ def test_light_after_is_the_light_in_three_space(torus):
     placed = project(torus, rotation=TURN, distance=3.0)
     frame = frames(placed, "projected_frame", 3)
     placed["N"] = np.cross(frame[:, 0], frame[:, 1])
-    expected = illuminate(placed, SCENE3, normals="N", two_sided=True)
+    with pytest.warns(DeprecationWarning, match="two_sided= is replaced"):
+        expected = illuminate(placed, SCENE3, normals="N", two_sided=True)
     np.testing.assert_allclose(lit["luminance"], expected["luminance"], atol=1e-12)
     assert (
         np.abs(lit["luminance"] - project(torus, rotation=TURN, scene=SCENE4)["luminance"]).max()
@@ -212,10 +213,49 @@ def test_silhouettes_are_found_beyond_rounding():
     np.testing.assert_array_equal(out["projected_frame"], 0)
     np.testing.assert_array_equal(out["luminance"], 0.1)
     shape = manifolds.torus(1.5, 0.75, resolution=64)
-    with pytest.warns(UserWarning, match="128 of 4096 points could not be lit"):
-        out = vizlight.manifold(shape, scene=SCENE3, light="after")
+    out = vizlight.manifold(shape, scene=SCENE3, light="after")
     edge = np.linalg.svd(shape.frame[..., :3], compute_uv=False)[:, 1] < 1e-15
-    np.testing.assert_array_equal(np.asarray(out["luminance_valid"]) == 0, edge)
+    lost = ~np.any(frames(out, "projected_frame", 3)[:, 1], axis=1)
+    np.testing.assert_array_equal(lost, edge)
+    assert edge.sum() == 128
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_a_fold_is_lit_by_the_limit_of_the_light(dtype):
+    """The projected torus is a cylinder, lit as one up to the circles where it is folded."""
+    shape = manifolds.torus(1.5, 0.75, resolution=64)
+    mesh = vizlight.manifold(shape)
+    for name in ("position", "frame"):
+        mesh[name] = np.asarray(mesh[name]).astype(dtype)
+    out = project(mesh, scene=SCENE3, light="after", components=True)
+    edge = np.linalg.svd(shape.frame[..., :3], compute_uv=False)[:, 1] < 1e-15
+    assert edge.sum() == 128
+    outward = np.asarray(out.points, dtype=float) * (1, 1, 0)
+    expected = engine.shade(
+        out.points, None, SCENE3, normals=outward, two_sided=True, components=True
+    )
+    for name in ("diffuse", "specular", "luminance"):
+        error = np.abs(out[name] - getattr(expected, name))
+        assert error.max() < (2e-5 if dtype == np.float32 else 1e-12)
+    assert "luminance_valid" not in out.point_data
+    assert out["luminance"][edge].max() > 0.2
+
+
+def test_a_pinch_point_has_no_limit():
+    """Whitney's umbrella (u v, u, v^2): tangent planes turn around its pinch point."""
+    u, v = np.meshgrid(np.linspace(-1, 1, 21), np.linspace(-1, 1, 21))
+    u, v = u.ravel(), v.ravel()
+    none = np.zeros_like(u)
+    grid = pv.Plane(i_resolution=20, j_resolution=20)
+    grid.clear_data()
+    grid["position"] = np.stack([u * v, u, v * v, v], axis=1)
+    tangents = [np.stack([v, none + 1, none, none], 1), np.stack([u, none, 2 * v, none + 1], 1)]
+    grid["frame"] = np.concatenate(tangents, axis=1)
+    with pytest.warns(UserWarning, match="1 of 441 points could not be lit"):
+        out = project(grid, scene=SCENE3, light="after")
+    (dark,) = np.flatnonzero(np.asarray(out["luminance_valid"]) == 0)
+    assert (u[dark], v[dark]) == (0, 0)
+    assert out["luminance"][dark] == pytest.approx(0.1)
 
 
 def test_silhouettes_in_float32(random):
@@ -364,8 +404,8 @@ def test_a_field_on_a_surface_in_four_space(torus):
     torus["short"] = torus["frame"][:, :6]
     with pytest.raises(ValueError, match="conditioned: expected a point array of 4 or 8"):
         illuminate(torus, matte, conditioned="short", **options)
-    with pytest.raises(ValueError, match="two_sided: expected no two_sided beside tangents"):
-        illuminate(torus, matte, conditioned="frame", two_sided=True, **options)
+    with pytest.raises(ValueError, match="facing: expected no facing beside tangents"):
+        illuminate(torus, matte, conditioned="frame", facing="eye", **options)
 
 
 def test_provenance(torus):

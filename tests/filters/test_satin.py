@@ -26,7 +26,7 @@ def made():
     sphere["Normals"] = normals
     sphere.point_data.active_normals_name = "Normals"
     sphere["V"] = np.array([0, 0, 1.0]) - normals[:, 2:] * normals
-    return sphere, vizlight.satin(sphere, SCENE, tangents="V", seeds=80)
+    return sphere, vizlight.satin(sphere, SCENE, tangents="V", seeds=80, facing="outward")
 
 
 def test_four_panels(made):
@@ -95,7 +95,8 @@ def test_options_go_to_the_panels_that_they_fit():
     ball["way"] = np.array([0, 0, 1.0]) - 4 * ball.points[:, 2:] * ball.points
     options = {"flip_normals": True, "components": True, "max_length": 0.5, "name": "x"}
     options["terminator"] = 0.1
-    panels = vizlight.satin(ball, SCENE, tangents="way", seeds=5, **options)
+    with pytest.warns(DeprecationWarning, match="flip_normals= is replaced"):
+        panels = vizlight.satin(ball, SCENE, tangents="way", seeds=5, **options)
     for panel in panels:
         assert "x_diffuse" in panel.point_data
     away = np.asarray(ball.points) @ (1, -1, 0.8) < -0.1

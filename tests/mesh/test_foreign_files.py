@@ -105,6 +105,7 @@ def test_a_tractogram_that_is_cut(tmp_path):
         vizlight.read(path)
 
 
+@pytest.mark.filterwarnings("ignore:.*of the edges are sharper")
 def test_a_tetrahedron_in_a_file_that_meshio_reads(tmp_path):
     pytest.importorskip("meshio")
     path = tmp_path / "a.off"

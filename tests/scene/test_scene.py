@@ -8,8 +8,9 @@ import json
 import numpy as np
 import pytest
 import pyvista as pv
+from scipy.ndimage import binary_erosion
 
-from vizlight import DepthCue, Light, Material, Scene, View, engine
+from vizlight import DepthCue, Light, Material, Scene, View, engine, illuminate
 from vizlight.scene import scene as scene_module
 
 
@@ -93,6 +94,74 @@ def test_scene_from_plotter_with_the_default_light_kit():
     plotter.close()
 
 
+def test_lights_and_cameras_of_pyvista_are_taken_as_they_are():
+    camera = pv.Camera()
+    camera.position, camera.focal_point = (0, 0, 4), (0, 0, 0)
+    sun = pv.Light(position=(1, 2, 3), light_type="scene light", intensity=0.5)
+    off = pv.Light(position=(1, 2, 3), light_type="scene light")
+    off.on = False
+    beside = pv.Light(position=(1, 0, 1), light_type="camera light")
+    scene = Scene(lights=[sun, off, Light.headlight(), beside], view=camera)
+    assert scene.view == View.from_camera(camera)
+    assert [light.intensity for light in scene.lights] == [0.5, 1.0, 1.0]
+    assert scene.lights[0] == Light(direction=(1, 2, 3), intensity=0.5)
+    toward = np.asarray(scene.lights[2].direction)
+    np.testing.assert_allclose(toward / toward.max(), (1, 0, 1), atol=1e-12)
+    assert scene.replace(lights=sun).lights == scene.lights[:1]
+    assert Scene(lights=pv.Light(light_type="headlight")).lights[0].follows_view
+    made = Material(specular=0).to_property(lights=sun, view=camera)
+    assert made.diffuse == 0.5
+
+
+@pytest.mark.opengl
+@pytest.mark.parametrize("lighting", ["light kit", "scene"])
+def test_the_material_of_an_actor_gives_the_picture_of_vtk(lighting):
+    """Within 3 of 255 under perspective, off the silhouette."""
+    ball = pv.Sphere(theta_resolution=300, phi_resolution=300)
+
+    def plotter(mesh, **options):
+        made = pv.Plotter(
+            off_screen=True,
+            window_size=(300, 240),
+            lighting="light kit" if lighting == "light kit" else "none",
+        )
+        made.background_color = "black"
+        actor = made.add_mesh(mesh, **options)
+        made.camera_position = [(2.5, 1.5, 1), (0, 0, 0), (0, 0, 1)]
+        return made, actor
+
+    look = {"ambient": 0.15, "diffuse": 0.6, "specular": 0.3, "specular_power": 18}
+    theirs, actor = plotter(ball, color="tan", smooth_shading=True, **look)
+    if lighting == "scene":
+        theirs.add_light(pv.Light(position=(3, 2, 4), light_type="scene light", intensity=0.7))
+        theirs.add_light(pv.Light(light_type="headlight", intensity=0.3))
+    expected = np.array(theirs.screenshot(return_img=True)).astype(int)
+    scene = Scene.from_plotter(theirs, actor=actor)
+    with pytest.raises(ValueError, match="material: expected an actor alone, got both"):
+        Scene.from_plotter(theirs, actor=actor, material=Material())
+    with pytest.raises(TypeError, match=r"actor: expected a pyvista.Actor"):
+        Scene.from_plotter(theirs, actor=ball)
+    theirs.close()
+    lit = illuminate(ball, scene)
+    ours, _ = plotter(lit, scalars=np.clip(lit["rgb"], 0, 1), rgb=True, lighting=False)
+    got = np.array(ours.screenshot(return_img=True)).astype(int)
+    ours.close()
+    inside = binary_erosion(expected.max(axis=2) > 0, iterations=4)
+    assert inside.sum() > 5000
+    assert np.abs(got - expected)[inside].max() <= 3
+
+
+@pytest.mark.opengl
+def test_an_actor_coloured_by_data_gives_no_colour():
+    plotter = pv.Plotter(off_screen=True)
+    ball = pv.Sphere()
+    actor = plotter.add_mesh(ball, scalars=ball.points[:, 2], diffuse=0.7, ambient=0.2)
+    material = Scene.from_plotter(plotter, actor=actor).material
+    plotter.close()
+    assert material.color is None
+    assert (material.diffuse, material.ambient) == (0.7, 0.2)
+
+
 @pytest.mark.parametrize(
     ("make", "error", "words"),
     [
@@ -119,7 +188,16 @@ def test_scene_from_plotter_with_the_default_light_kit():
             TypeError,
             "camera: expected .*; pass its .camera",
         ),
-        (lambda: Scene(view=pv.Camera()), TypeError, r"view: .*; View.from_camera\(camera\) makes"),
+        (
+            lambda: Scene(lights=pv.Light(light_type="camera light")),
+            ValueError,
+            r"lights: expected a pyvista.Camera as view= .*from_plotter\(plotter\)",
+        ),
+        (
+            lambda: Scene(view=pv.Plotter(off_screen=True)),
+            TypeError,
+            "view: expected .*; pass its .camera",
+        ),
         (
             lambda: Scene(lights=(1, 1, 1)),
             TypeError,
@@ -129,7 +207,7 @@ def test_scene_from_plotter_with_the_default_light_kit():
         (
             lambda: Scene(lights=3),
             TypeError,
-            "lights: expected a vizlight.Light or a sequence of them, got 3",
+            "lights: expected a vizlight.Light, a pyvista.Light or a sequence of them, got 3",
         ),
         (lambda: Scene(view=(0, 0, 1)), TypeError, "view: expected a vizlight.View or None"),
         (lambda: Scene(material=0.5), TypeError, "material: expected a vizlight.Material"),

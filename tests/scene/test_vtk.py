@@ -213,12 +213,12 @@ def test_warnings_tell_what_vtk_cannot():
         (
             lambda: Material().to_property(lights=3),
             TypeError,
-            "lights: expected a vizlight.Light or",
+            "lights: expected a vizlight.Light, a pyvista.Light or",
         ),
         (
             lambda: Material().to_property(lights="sun"),
             TypeError,
-            "lights: expected a vizlight.Light or",
+            "lights: expected a vizlight.Light, a pyvista.Light or",
         ),
         (lambda: Material().to_property(view=(0, 0, 1)), TypeError, "view: expected a vizlight.Vi"),
         (lambda: Material().to_property(lights=["sun"]), TypeError, "lights: expected a vizlight"),

@@ -60,7 +60,7 @@ SCENE_4 = Scene(lights=Light(direction=(0.7, 0.6, 0.38, 0)), view=View(direction
 SUN = PLAIN.replace(lights=Light(direction=(1, 0.5, 1)))
 FILTERS = {
     "surface": lambda s: illuminate(s, SCENE),
-    "two-sided": lambda s: illuminate(s, SCENE, two_sided=True, model="blinn"),
+    "facing the eye": lambda s: illuminate(s, SCENE, facing="eye", model="blinn"),
     "terminator": lambda s: illuminate(s, SCENE, terminator=0.3),
     "conditioned": lambda s: illuminate(s, SCENE, tangents="V", conditioned=True, components=True),
     "uncompensated": lambda s: illuminate(s, SCENE, tangents="V", compensate=False),
@@ -318,3 +318,19 @@ def test_command_line(tmp_path, monkeypatch, capfd):
     assert "tolerance: 0.00392 of luminance, the bound of all is" in said
     assert cli.main(["light", "ball.vtp", "-o", "lit.vtp", "--tolerance", "much"]) == 2
     assert "--tolerance: expected a number or a fraction such as 1/255" in capfd.readouterr().err
+
+
+def test_light_above_one_is_counted():
+    sphere = pv.Sphere(theta_resolution=40, phi_resolution=40)
+    bright = SCENE.replace(material=Material(ambient=0.4, diffuse=0.7, specular=0.4))
+    red = SCENE.replace(
+        material=Material(ambient=0.3, specular=0), lights=Light(direction=(1, 0, 0))
+    )
+    with vizlight.report() as found:
+        lit = illuminate(sphere, bright)
+        illuminate(sphere, red)
+    above = int(np.count_nonzero(lit["luminance"] > 1))
+    assert 0 < above < sphere.n_points
+    assert [run.bright for run in found.runs] == [above, 0]
+    assert found.bright == above
+    assert f"{above} points are brighter than 1, which a picture shows as 1" in str(found)

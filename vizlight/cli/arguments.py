@@ -122,11 +122,11 @@ class Finish:
     Parameters
     ----------
     ambient
-        Coefficient of the ambient term. Default: 0.1.
+        Coefficient of the ambient term. Default: 0.12.
     diffuse
-        Coefficient of the diffuse term. Default: 0.5.
+        Coefficient of the diffuse term. Default: 0.6.
     specular
-        Coefficient of the specular term. Default: 0.4.
+        Coefficient of the specular term. Default: 0.2.
     shininess
         Power of the specular term. Default: 20.
     color

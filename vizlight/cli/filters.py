@@ -80,7 +80,8 @@ def relief(
         Height field, or closed surface; of several each is lit by itself.
     """
     scenes.check_target(shape)
-    look = scenes.Look(common)
+    # The shadow is that of one light.
+    look = scenes.Look(common, fill=False)
     given = options.keywords(how)
     asked = ReliefOptions(**given)
 
@@ -153,7 +154,8 @@ def contours(
     """
     scenes.check_target(shape)
     look = scenes.Look(common)
-    given = options.keywords(how)
+    # In a picture a crease is seen as one.
+    given = {"feature_angle": "auto"} | options.keywords(how)
     asked = ContourOptions(**given)
 
     def job(path: Path) -> Job:

@@ -47,11 +47,14 @@ def light(
     scenes.check_color(color)
     look = scenes.Look(common)
     given = options.keywords(how)
+    taken = target.surface or target.contour is not None or target.slice is not None
+    if taken:
+        # In a picture a crease is seen as one.
+        given = {"feature_angle": "auto"} | given
     asked = LightOptions(**given)
 
     def job(path: Path) -> Job:
         mesh = data = scenes.data(path, target, average_cells=asked.average_cells)
-        taken = target.surface or target.contour is not None or target.slice is not None
         if taken:
             mesh = scenes.surface(data, target)
         camera = look.camera(mesh)

@@ -58,6 +58,14 @@ def _name_or_vector(_: str, text: str) -> object:
     return numbers(text) or text
 
 
+def _facing(_: str, text: str) -> object:
+    return text.replace("-", " ")
+
+
+def _angle(name: str, text: str) -> object:
+    return text if text == "auto" else fraction(name, text)
+
+
 def _rotations(name: str, texts: list[str]) -> object:
     """Return turns PLANE:ANGLE as pairs."""
     found = []
@@ -84,6 +92,11 @@ def _hyperplane(name: str, text: str) -> object:
 READ: Mapping[str, tuple[Callable[[str, str], object], str]] = {
     "tolerance": (fraction, "Largest error that is accepted for speed, such as 1/255."),
     "levels": (_levels, "Number of steps (8), largest error (0.02) or values (0.2,0.4,0.6)."),
+    "feature_angle": (
+        _angle,
+        "Angle in degrees above which edges are sharp, auto for creases.",
+    ),
+    "facing": (_facing, "Side that is lit: auto, eye, outward or as-given."),
     "toward": (_name_or_vector, "Direction x,y,z to which fibres bend, or name of an array."),
     "hyperplane": (_hyperplane, "Hyperplane NORMAL:OFFSET that cuts the mesh: 0,0,0,1:0.2."),
 }
@@ -118,6 +131,8 @@ def arguments_of(
             continue
         default = parameter.default
         option = Parameter(
+            # What a newer option replaces still works.
+            show=name not in getattr(filter_, "replaced", ()),
             help=first_clause(_text(name, texts)),
             negative=() if default is False or name in READ_LISTS else None,
             show_default=bool(default) and not isinstance(default, bool),
@@ -159,7 +174,7 @@ def _type(name: str, annotation: str) -> object | None:
     if name in READ_LISTS:
         return list[str] | None
     if name in READ:
-        return str | None
+        return str if annotation == "Facing" else str | None
     parts = [TYPES[part] for part in annotation.split(" | ") if part in TYPES]
     if bool in parts:
         # A flag; the name of an array in its place is left to scripts.

@@ -29,6 +29,10 @@ VIEW, MAP = (1.0, 1.0, 1.0), (0.0, 0.0, 1.0)
 BOX = (-1, 1, -1, 1, -1, 1)
 #: Name of the array of colours times light.
 TINT = "tint"
+#: Look where no scene is given: a material that stays below 1 under a key light and a fill, which
+#: comes from the eye and keeps faces legible that the key light does not reach.
+MATERIAL = {"ambient": 0.12, "diffuse": 0.6, "specular": 0.2}
+KEY, FILL = 0.78, 0.32
 #: Name that stands for the direction of lines among the arrays that colour a picture.
 DIRECTION = "direction"
 #: Angle of view, in degrees.
@@ -148,7 +152,8 @@ def tinted(lit: Step, name: str, data: Step, color: Color) -> Step | None:
 class Look:
     """Camera and scene as the options describe them; what needs no mesh is checked first."""
 
-    def __init__(self, common: Common) -> None:
+    def __init__(self, common: Common, *, fill: bool = True) -> None:
+        self._fill = fill
         self._lights, self._eye = common.lights, common.eye
         self.size = arguments.pixels(common.out.size)
         file = common.lights.scene
@@ -156,8 +161,10 @@ class Look:
         base = vizlight.Scene() if self._file is None else self._file
         changes = _given(vars(common.finish))
         self._material: Step | None = None
-        if changes:
-            kept = {} if self._file is None else _given(vars(base.material))
+        kept: dict[str, object] = dict(MATERIAL) if fill else {}
+        if self._file is not None:
+            kept = _given(vars(base.material)) if changes else {}
+        if kept or changes:
             self._material = Step("", "vizlight.Material", **(kept | changes))
             base = base.replace(material=self._material.run())
         #: Whether the light has a colour.
@@ -241,6 +248,11 @@ class Look:
             lights.append(Step("", "vizlight.Light.headlight"))
         if not lights and self._file is None:
             lights = [Step("", "vizlight.Light", direction=shoulder)]
+            if self._fill:
+                lights = [
+                    Step("", "vizlight.Light", direction=shoulder, intensity=KEY),
+                    Step("", "vizlight.Light.headlight", intensity=FILL),
+                ]
         cue = Step("", "vizlight.DepthCue", back_scale=0.5) if asked.depth_cue else None
         values = _given(
             {

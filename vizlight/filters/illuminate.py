@@ -8,16 +8,21 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.filters import lighting
-from vizlight.mesh import blocks
-from vizlight.mesh.inputs import inputs_of
+from vizlight.mesh import blocks, normals
+from vizlight.mesh.inputs import part_of, uses_normals
 from vizlight.scene import Scene
 from vizlight.shading.options import LightOptions, accepts
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from typing_extensions import Unpack
 
     from vizlight.mesh.blocks import MeshT
     from vizlight.shading.options import LightKeywords
+
+#: Share of sharp edges, of all edges of a mesh, from which a warning names the remedy.
+MANY_SHARP = 0.02
 
 
 @accepts(LightOptions)
@@ -57,7 +62,9 @@ def illuminate(
     pyvista.DataSet or pyvista.MultiBlock
         The mesh with the point array ``luminance`` (active scalars); ``rgb`` where the scene
         has a colour; ``luminance_valid`` where some point could not be lit; and the field array
-        ``luminance_provenance``, which :func:`vizlight.provenance` reads.
+        ``luminance_provenance``, which :func:`vizlight.provenance` reads. Normals that had to be
+        computed stay as ``vizlight_normals``, so that the result is lit again in a fraction of the
+        time; they are used as long as points and cells have not changed.
 
     Raises
     ------
@@ -71,7 +78,8 @@ def illuminate(
     -----
     UserWarning
         Once, with the count, if points could not be lit: a zero, infinite or NaN vector,
-        dependent tangents, or no normal. They have the ambient light.
+        dependent tangents, or no normal. They have the ambient light. Points inside a volume
+        are not counted. Once, if many edges are sharp and normals are averaged across them.
 
     Notes
     -----
@@ -114,12 +122,62 @@ def light_mesh(
     lighting.refuse_overwriting(
         named, options.name, components=options.components, colored=scene.colored
     )
-    parts = [(inputs_of(block, path, scene, options), options) for block, path in named]
-    results, fitted = lighting.light(parts, scene, threads=threads, progress_bar=progress_bar)
+    taken = [_split(block, path, options) for block, path in named]
+    parts = [
+        part_of(own, path, scene, options) for own, (_, path) in zip(taken, named, strict=True)
+    ]
+    results, fitted = lighting.light(
+        [(part.inputs, part.options) for part in parts],
+        scene,
+        threads=threads,
+        progress_bar=progress_bar,
+    )
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
-    meshes = [block for block, _ in named]
-    lighting.finish(meshes, results, "illuminate", fitted, options, options.name)
+    sides = [part.sided for part in parts]
+    for (block, _), own, sided in zip(named, taken, sides, strict=True):
+        if own is not block:
+            block.ShallowCopy(own)
+        if sided is not None:
+            normals.keep(block, sided)
+    inside = sum(sided.inside for sided in sides if sided is not None)
+    blocks_lit = [block for block, _ in named]
+    lighting.finish(blocks_lit, results, "illuminate", fitted, options, options.name, inside=inside)
+    _warn_of_edges(blocks_lit, sides, options)
     return out
+
+
+def _split(mesh: pv.DataSet, path: str, options: LightOptions) -> pv.DataSet:
+    """Return a mesh with points split at its sharp edges, if its normals will be computed."""
+    angle = options.feature_angle
+    if angle is None or not uses_normals(mesh, options) or not normals.are_computed(mesh, options):
+        return mesh
+    where = f"block {path}: " if path else ""
+    if not isinstance(mesh, pv.PolyData):
+        expected, got = "a pyvista.PolyData, whose points can be split", type(mesh).__name__
+        remedy = "take the mesh's extract_surface()"
+        raise ValueError(where + _check.message("feature_angle", expected, got, remedy))
+    given: object = options.tangents
+    if given is not None and not isinstance(given, str):
+        expected, remedy = "the name of a point array beside feature_angle=", "attach the array"
+        got = _check.describe(given)
+        raise TypeError(where + _check.message("tangents", expected, got, remedy))
+    return normals.split_edges(mesh, angle)
+
+
+def _warn_of_edges(
+    meshes: Sequence[pv.DataSet], sides: Sequence[normals.Sided | None], options: LightOptions
+) -> None:
+    """Warn if normals were averaged across many sharp edges."""
+    shares = [0.0 if sided is None else sided.sharp for sided in sides]
+    share = max(shares, default=0.0)
+    if options.feature_angle is not None or share <= MANY_SHARP:
+        return
+    others = any(not isinstance(mesh, pv.PolyData) for mesh in meshes)
+    _check.warn(
+        f"{share:.0%} of the edges are sharper than {normals.SHARP:g} degrees, and light is "
+        f"averaged across them; {'take the extract_surface() of the mesh and ' * others}pass "
+        f"feature_angle={normals.SHARP:g} to split the points there"
+    )
 
 
 def shallow_copy(mesh: MeshT) -> MeshT:

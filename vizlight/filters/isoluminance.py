@@ -22,7 +22,7 @@ from vizlight.mesh.inputs import inputs_of
 from vizlight.mesh.point_arrays import unit_rows
 from vizlight.scene import Scene
 from vizlight.shading import engine
-from vizlight.shading.options import LightOptions, accepts
+from vizlight.shading.options import LightOptions, accepts, check_sides
 from vizlight.verify import report
 
 if TYPE_CHECKING:
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from vizlight.mesh.records import Record
     from vizlight.model.reflection import SpecularModel
     from vizlight.shading.engine import Shading
+    from vizlight.shading.options import FeatureAngle
 
 
 class ContourKeywords(TypedDict, total=False):
@@ -46,6 +47,7 @@ class ContourKeywords(TypedDict, total=False):
     model: SpecularModel
     two_sided: bool
     flip_normals: bool
+    feature_angle: FeatureAngle
     normals: str | ArrayLike | None
     tangents: str | ArrayLike | None
     conditioned: bool
@@ -68,7 +70,11 @@ class ContourOptions:
     model : {"phong", "blinn"}
         Reflection model of the highlight: ``R . E`` or ``N . H``. Both are drawn exactly.
     two_sided, flip_normals : bool, default: False
-        Treatment of back sides and normals, as for :func:`vizlight.illuminate`.
+        Treatment of back sides and normals, as for :func:`vizlight.illuminate`. An open mesh
+        faces the eye as a whole, because contours need normals that agree.
+    feature_angle : float or "auto", optional
+        Angle in degrees above which edges are sharp, as for :func:`vizlight.illuminate`; for a
+        mesh only. Default: none is.
     normals, tangents, conditioned, compensate
         Arrays and options as for :func:`vizlight.illuminate`, for a mesh only.
     name : str, default: "luminance"
@@ -80,6 +86,7 @@ class ContourOptions:
     model: SpecularModel = "phong"
     two_sided: bool = False
     flip_normals: bool = False
+    feature_angle: FeatureAngle = None
     normals: str | ArrayLike | None = None
     tangents: str | ArrayLike | None = None
     conditioned: bool = False
@@ -88,6 +95,7 @@ class ContourOptions:
 
     def __post_init__(self) -> None:
         spacing.check(self.levels)
+        check_sides("auto", self.feature_angle)
         _check.number("tolerance", self.tolerance, low=1e-6, high=0.1)
         name: object = self.name
         if not isinstance(name, str) or not name:
@@ -261,8 +269,15 @@ def _of_solid(solid: Solid, light: _Light) -> Bands:
 def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Light]:
     """Return bands and contours of a mesh."""
     scene, options, levels = light.scene, light.options, light.options.levels
-    surface, triangles, used, ids = _surface(mesh)
     asked = options.light
+    angle = options.feature_angle
+    if angle is not None and normals.are_computed(mesh, asked) and mesh.n_points:
+        if not isinstance(options.tangents, str | None):
+            expected, got = "a name beside feature_angle=", _check.describe(options.tangents)
+            raise TypeError(_check.message("tangents", expected, got, "attach the array"))
+        whole = mesh if isinstance(mesh, pv.PolyData) else hull.outer_surface(mesh)[0]
+        mesh = normals.split_edges(whole, angle)
+    surface, triangles, used, ids = _surface(mesh)
     if ids is not None:
         asked = dataclasses.replace(
             asked,

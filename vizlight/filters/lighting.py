@@ -99,13 +99,18 @@ def finish(
     scene: Scene,
     options: object,
     name: str,
+    *,
+    inside: int = 0,
 ) -> None:
-    """Attach the light to the meshes with its record; warn once if points could not be lit."""
+    """Attach the light to the meshes with its record; warn once if points could not be lit.
+
+    Points inside volumes, of which there are ``inside``, have no normal and are not counted.
+    """
     for mesh, shading in zip(meshes, results, strict=True):
         attach(mesh, shading, name, records.of_light(shading, filter_name, scene, options))
-    invalid = sum(shading.invalid for shading in results)
-    if invalid:
-        total = sum(shading.luminance.size for shading in results)
+    invalid = sum(shading.invalid for shading in results) - inside
+    if invalid > 0:
+        total = sum(shading.luminance.size for shading in results) - inside
         _check.warn(f"{unlit(invalid, total)}; the point array {name + VALID!r} marks them")
 
 

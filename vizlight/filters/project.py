@@ -6,13 +6,14 @@ import dataclasses
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, get_args
 
+import numpy as np
 import pyvista as pv
 
 from vizlight import _check, _progress
 from vizlight.filters.illuminate import light_mesh
 from vizlight.geometry.nspace import projection
-from vizlight.mesh import blocks, records
-from vizlight.mesh.nspace import FRAME, POSITION, PROJECTED, Counter, Turning
+from vizlight.mesh import blocks, point_arrays, records
+from vizlight.mesh.nspace import FRAME, POSITION, PROJECTED, Counter, Turning, continued
 from vizlight.scene import Scene
 from vizlight.shading.options import LightKeywords, LightOptions, accepts
 
@@ -169,8 +170,11 @@ def project(
     -----
     Where the projection flattens the tangent space (at a silhouette) ``projected_frame`` has rows
     of zero past its rank, which is what is left of unit tangents beyond rounding (see
-    :func:`vizlight.geometry.projection.push_frame`). Light after the projection is there the
-    ambient one, and ``luminance_valid`` marks the points; light before it knows of no silhouette.
+    :func:`vizlight.geometry.projection.push_frame`). Light after the projection is there that of
+    the limit of the tangent spaces along the surface, taken from the points around with an error of
+    second order in their distance. Where there is none (a pinch point, or points around that
+    have lost their rank too) it is the ambient one, and ``luminance_valid`` marks the points; light
+    before the projection knows of no silhouette.
     A frame on a cut is a mean of those at the points around, of second order in their distance,
     and zero where one of them lacks tangents.
     Error bounds: :func:`vizlight.geometry.projection.turn` and ``perspective``. Work is done in
@@ -201,7 +205,19 @@ def project(
         _check_tangents(shown, job, asked, prefix)
         _check_space(shown, scene, when, job.positions)
         frame = None if asked.frame is None else f"{prefix}{asked.frame}"
-        return light_mesh(shown, scene, asked.by(frame, positions), threads=threads)
+        if when == "before" or frame is None or asked.tangents is not None:
+            return light_mesh(shown, scene, asked.by(frame, positions), threads=threads)
+        # Folds are lit by the limit of the tangents, which the result does not keep.
+        named = list(blocks.all_blocks(shown))
+        found = [np.asarray(block.point_data[frame]) for block in named]
+        for block in named:
+            limit = continued(block, frame)
+            if limit is not None:
+                point_arrays.attach_rows(block, frame, limit)
+        made = light_mesh(shown, scene, asked.by(frame, positions), threads=threads)
+        for block, rows in zip(blocks.all_blocks(made), found, strict=True):
+            point_arrays.attach_rows(block, frame, rows)
+        return made
 
     total = 2 * sum(block.n_points for block in blocks.all_blocks(mesh))
     with _progress.progress("project", total, show=progress_bar) as report:

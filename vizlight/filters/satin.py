@@ -85,7 +85,9 @@ def satin(
         "surface": dataclasses.replace(
             field, tangents=None, model=field.for_surface().model, terminator=asked.terminator
         ),
-        "field": dataclasses.replace(field, normals=None, two_sided=False, flip_normals=False),
+        "field": dataclasses.replace(
+            field, normals=None, two_sided=False, flip_normals=False, facing="auto"
+        ),
         "conditioned": dataclasses.replace(field, conditioned=True),
     }
     lines = dataclasses.replace(
@@ -97,6 +99,7 @@ def satin(
         normals=None,
         two_sided=False,
         flip_normals=False,
+        facing="auto",
     )
     curves = light_lines(surface, scene, lines, threads=threads, progress_bar=progress_bar)
     made = {

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import dataclasses
+from typing import TYPE_CHECKING, NamedTuple
 
 from vizlight import _check
 from vizlight.mesh import polylines
-from vizlight.mesh.normals import normals_of, onlooker
+from vizlight.mesh.normals import Sided, sided_normals
 from vizlight.mesh.point_arrays import points_of, tangents_of
 from vizlight.shading.decide import not_a_line
 from vizlight.shading.inputs import ShadingInputs
@@ -16,11 +17,34 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array
     from vizlight.scene import Scene
-    from vizlight.shading.options import LightOptions
+    from vizlight.shading.options import Facing, LightOptions
+
+
+class Part(NamedTuple):
+    """What one mesh is lit by: inputs of the engine, options, and its normals, None without."""
+
+    inputs: ShadingInputs
+    options: LightOptions
+    sided: Sided | None
 
 
 def inputs_of(mesh: pv.DataSet, path: str, scene: Scene, options: LightOptions) -> ShadingInputs:
-    """Return the inputs of the engine from one mesh; an error names the path of its block.
+    """Return the inputs of the engine from one mesh; see :func:`part_of`."""
+    return part_of(mesh, path, scene, options).inputs
+
+
+def uses_normals(mesh: pv.DataSet, options: LightOptions) -> bool:
+    """Return whether light depends on the normals of the surface."""
+    if isinstance(options.conditioned, str):
+        return False
+    lines = options.positions is None and polylines.has_lines_only(mesh)
+    return (options.tangents is None and not lines) or bool(options.conditioned)
+
+
+def part_of(mesh: pv.DataSet, path: str, scene: Scene, options: LightOptions) -> Part:
+    """Return what one mesh is lit by; an error names the path of its block.
+
+    Without a view both sides of an open surface are lit alike, by ``two_sided`` in the options.
 
     Raises
     ------
@@ -32,7 +56,7 @@ def inputs_of(mesh: pv.DataSet, path: str, scene: Scene, options: LightOptions) 
         n = int(points.shape[1])
         tangents = _tangents(mesh, n, options)
         _check_options(tangents, n, options)
-        base = normals = None
+        base = normals = sided = None
         if isinstance(options.conditioned, str):
             base = tangents_of(
                 mesh,
@@ -42,14 +66,29 @@ def inputs_of(mesh: pv.DataSet, path: str, scene: Scene, options: LightOptions) 
                 argument="conditioned",
             )
         elif tangents is None or options.conditioned:
-            normals = normals_of(mesh, options.normals, n, onlooker(scene))
+            sided = sided_normals(mesh, options.normals, n, _kind(options))
+            normals = sided.facing(_kind(options), points, scene.view)
             if options.flip_normals:
-                normals = -_check.floats("normals", normals)
+                normals = -normals
+            if scene.view is None and _alike(sided, options.facing):
+                options = dataclasses.replace(options, facing="auto", two_sided=True)
     except (TypeError, ValueError) as error:
         if not path:
             raise
         raise type(error)(f"block {path}: {error}") from error
-    return ShadingInputs(points=points, tangents=tangents, normals=normals, base_tangents=base)
+    inputs = ShadingInputs(points=points, tangents=tangents, normals=normals, base_tangents=base)
+    return Part(inputs, options, sided)
+
+
+def _kind(options: LightOptions) -> Facing:
+    """Return the side that normals show; the older switches take the place of the eye."""
+    old = options.two_sided or options.flip_normals
+    return "outward" if old and options.facing == "auto" else options.facing
+
+
+def _alike(sided: Sided, facing: Facing) -> bool:
+    """Return whether both sides of a surface are lit alike where no eye sees one of them."""
+    return facing == "eye" or (facing == "auto" and sided.any_open)
 
 
 def _tangents(mesh: pv.DataSet, n: int, options: LightOptions) -> Array | None:
@@ -77,9 +116,9 @@ def _check_options(tangents: Array | None, n: int, options: LightOptions) -> Non
 
 def _refuse_sides(options: LightOptions) -> None:
     """Raise ValueError if an option fits only a surface, which has two sides."""
-    for name in ("normals", "two_sided", "flip_normals"):
+    for name in ("normals", "two_sided", "flip_normals", "facing"):
         value = getattr(options, name)
-        if value is not None and value is not False:
+        if value is not None and value is not False and value != "auto":
             remedy = "pass conditioned=True, or leave one of them out"
             expected = f"no {name} beside tangents, which have no sides"
             raise ValueError(_check.message(name, expected, "both", remedy))

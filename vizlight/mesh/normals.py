@@ -1,8 +1,10 @@
-"""Outward normals of a mesh: an array that it carries, or the normals of its surface."""
+"""Normals of a mesh: an array that it has or those of its surface, and the side that is seen."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import hashlib
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 import pyvista as pv
@@ -10,22 +12,183 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from vizlight import _check
+from vizlight._version import __version__
+from vizlight.mesh import point_arrays, records
 from vizlight.mesh.blocks import has_faces
 from vizlight.mesh.hull import outer_surface, scattered
 from vizlight.mesh.point_arrays import unit_rows, vectors_of
 from vizlight.scene import View
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from vizlight._types import Array, Bools, Indices
     from vizlight.scene import Scene
+    from vizlight.shading.inputs import ArraySource
+    from vizlight.shading.options import Facing, LightOptions
 
 #: A piece counts as nearly closed if the sum of the area vectors of its faces is shorter than this
 #: share of its area.
 NEARLY_CLOSED = 0.2
+#: Angle in degrees between the normals of two faces above which their common edge is sharp.
+SHARP = 30.0
+#: Name under which a user's array keeps out of the way of VTK's.
+_OWN = "vizlight own"
+#: Sharp edges are creases if at most this many times as many edges are half as sharp or more.
+STAND_APART = 0.5
+#: Name of the point array in which normals that had to be computed stay with a result: three
+#: components of the normal, its lean, and 1 on an open piece.
+KEPT = "vizlight_normals"
 
 
-def normals_of(mesh: pv.DataSet, value: object, n: int, view: View | None) -> Array:
-    """Return outward normals: those in ``value``, else those of the mesh or of its surface."""
+@dataclass(frozen=True)
+class Sided:
+    """Normals of the points of a mesh, and what tells which side of them is seen.
+
+    Attributes
+    ----------
+    vectors : ndarray, shape (n_points, n)
+        Normals: outward on closed pieces, in agreement with each other on others.
+    lean : ndarray of float32, shape (n_points,), or None
+        Sine by which a normal may lean away from the eye while its own side is seen: faces around
+        a point are seen until the last of them is averted where the surface is convex, and no
+        longer than the first where it is concave (negative). None: 0 everywhere.
+    open : ndarray of bool, shape (n_points,), or bool
+        Points of pieces with a border, of which either side may be seen.
+    sharp : float
+        Share of edges that are creases, across which normals were averaged.
+    kept : bool
+        Whether the normals come from an earlier result.
+    computed : bool
+        Whether they are those of the surface, not an array of the user.
+    inside : int
+        Number of points of a volume that are not on its surface.
+    """
+
+    vectors: Array
+    lean: Array | None = None
+    open: Bools | bool = False
+    sharp: float = 0.0
+    kept: bool = False
+    computed: bool = False
+    inside: int = 0
+
+    @property
+    def any_open(self) -> bool:
+        """Whether a piece has a border."""
+        return bool(np.any(self.open))
+
+    def facing(self, facing: Facing, points: ArraySource, view: View | None) -> Array:
+        """Return the normals turned to a side; the normals themselves are not changed."""
+        if facing not in ("auto", "eye") or view is None or len(self.vectors) == 0:
+            return self.vectors
+        if facing == "auto" and not self.any_open:
+            return self.vectors
+        averted = _averted(self.vectors, points, view, self.lean)
+        if facing == "auto":
+            averted &= self.open
+        turned: Array = np.where(averted[:, np.newaxis], -self.vectors, self.vectors)
+        return turned
+
+
+def _averted(vectors: Array, points: ArraySource, view: View, lean: Array | None) -> Bools:
+    """Return the points whose normals point away from the eye, by more than they lean."""
+    if view.parallel:
+        toward = np.asarray(view.direction, dtype=np.float64)
+        cosine = vectors @ toward / np.linalg.norm(toward)
+        least: Array | float = 0.0 if lean is None else -lean
+        return np.asarray(cosine < least, dtype=np.bool_)
+    away = np.asarray(view.position) - np.asarray(points[slice(None)], dtype=np.float64)
+    cosine = np.einsum("ij,ij->i", vectors, away)
+    least = 0.0 if lean is None else -lean * np.sqrt(np.einsum("ij,ij->i", away, away))
+    return np.asarray(cosine < least, dtype=np.bool_)
+
+
+def sided_normals(mesh: pv.DataSet, value: object, n: int, facing: Facing) -> Sided:
+    """Return normals with their sides: those in ``value``, of the mesh, or of its surface.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If there are none, or an array does not fit.
+    """
+    given = _given(mesh, value, n)
+    if given is None:
+        if facing == "as given":
+            return computed_normals(mesh, as_wound=True, sides=False)
+        return _kept(mesh) or computed_normals(mesh)
+    if given.dtype.kind != "f":
+        given = given.astype(np.float64)
+    if facing in ("eye", "as given") or n != 3:
+        return Sided(given)
+    surface, origin = _skin(mesh)
+    if surface is None:
+        return Sided(given)
+    if not _is_closed(surface):
+        return Sided(given, open=True)
+    own = given if origin is None else np.where(origin[:, np.newaxis] < 0, 0, given[origin])
+    return Sided(-given if _is_inward(surface, own) else given)
+
+
+def are_computed(mesh: pv.DataSet, options: LightOptions) -> bool:
+    """Return whether the normals of a mesh are those of its surface, not an array."""
+    return options.normals is None and mesh.point_data.active_normals is None
+
+
+def _is_closed(surface: pv.PolyData) -> bool:
+    """Return whether each edge of a surface has an even number of faces; places make an edge.
+
+    The numbers of the edges, made from the coordinates of their ends, cancel by pairs.
+    """
+    with np.errstate(all="ignore"):
+        # The sum with 0 makes one of the two zeros.
+        places = np.ascontiguousarray(np.asarray(surface.points, dtype=np.float64) + 0.0)
+        words = places.view(np.uint64)
+        number = np.zeros(len(words), dtype=np.uint64)
+        for axis, factor in zip(words.T, _FACTORS, strict=True):
+            number = _mixed(number ^ (axis * factor))
+        rows = _triangles(surface)
+        a, b = number[rows.ravel()], number[rows[:, [1, 2, 0]].ravel()]
+        edges = _mixed((a + b) ^ _mixed(a ^ b))
+        return not np.bitwise_xor.reduce(np.where(a == b, np.uint64(0), edges))
+
+
+#: Odd numbers of 64 bits, and those of the finaliser of splitmix64.
+_FACTORS = tuple(np.uint64(x) for x in (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9))
+_MIX = tuple(np.uint64(x) for x in (0xBF58476D1CE4E5B9, 0x94D049BB133111EB))
+
+
+def _mixed(x: NDArray[np.uint64]) -> NDArray[np.uint64]:
+    """Return numbers of 64 bits in which each bit of the given ones changes half of the others."""
+    x = (x ^ (x >> np.uint64(30))) * _MIX[0]
+    x = (x ^ (x >> np.uint64(27))) * _MIX[1]
+    mixed: NDArray[np.uint64] = x ^ (x >> np.uint64(31))
+    return mixed
+
+
+def _is_inward(surface: pv.PolyData, normals: Array) -> bool:
+    """Return whether normals of a closed surface point to its inside, at its outermost points."""
+    points = np.asarray(surface.points)
+    used = np.unique(_corners(surface)[0])
+    used = used[np.isfinite(points[used]).all(axis=1) & np.isfinite(normals[used]).all(axis=1)]
+    if not len(used):
+        return False
+    outward = 0.0
+    for axis in range(3):
+        along = points[used, axis]
+        outward += float(normals[used[along.argmax()], axis])
+        outward -= float(normals[used[along.argmin()], axis])
+    return outward < 0
+
+
+def _triangles(surface: pv.PolyData) -> Indices:
+    """Return the corners of the triangles of a surface."""
+    faces = surface if surface.is_all_triangles else surface.triangulate()
+    return np.asarray(faces.regular_faces, dtype=np.intp).reshape(-1, 3)
+
+
+def _given(mesh: pv.DataSet, value: object, n: int) -> Array | None:
+    """Return the normals in ``value`` or the active ones of the mesh, None if they are computed."""
     if value is not None:
         return vectors_of(mesh, "normals", value, n)
     if n != 3:
@@ -33,9 +196,17 @@ def normals_of(mesh: pv.DataSet, value: object, n: int, view: View | None) -> Ar
         remedy = "without one pass tangents=, conditioned by the name of the surface's tangents"
         raise ValueError(_check.message("normals", expected, None, remedy))
     carried = mesh.point_data.active_normals
-    if carried is not None:
-        return np.asarray(carried)
-    return surface_normals(mesh, view)
+    return None if carried is None else np.asarray(carried)
+
+
+def normals_of(mesh: pv.DataSet, value: object, n: int, view: View | None) -> Array:
+    """Return normals that agree on a side: those in ``value``, of the mesh, or of its surface.
+
+    Those of the surface point outward on closed and nearly closed pieces, else as a whole to the
+    eye and away from the centroid.
+    """
+    given = _given(mesh, value, n)
+    return surface_normals(mesh, view) if given is None else given
 
 
 def surface_normals(mesh: pv.DataSet, view: View | None) -> Array:
@@ -51,75 +222,179 @@ def surface_normals(mesh: pv.DataSet, view: View | None) -> Array:
     ValueError
         If the mesh has no surface.
     """
+    return computed_normals(mesh, view=view, sides=False).vectors
+
+
+def computed_normals(
+    mesh: pv.DataSet, *, view: View | None = None, as_wound: bool = False, sides: bool = True
+) -> Sided:
+    """Return the normals of a mesh's outer surface; see :func:`surface_normals`.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh with a surface.
+    view : View, optional
+        Eye to which open pieces are turned as a whole.
+    as_wound : bool
+        Whether the normals have the sides that the order of the corners of each face gives them.
+    sides : bool
+        Whether lean and share of sharp edges are found.
+    """
     if mesh.n_points == 0:
-        return np.zeros((0, 3), dtype=np.float32)
+        return Sided(np.zeros((0, 3), dtype=np.float32), computed=True)
+    surface, origin = _skin(mesh)
+    if surface is None:
+        expected, got = "a surface, whose normals are lit", f"a {type(mesh).__name__} without faces"
+        remedy = "name its tangent vectors by tangents="
+        raise ValueError(_check.message("mesh", expected, got, remedy))
+    bare = pv.PolyData()
+    bare.copy_structure(surface)
+    found = bare.compute_normals(
+        cell_normals=False,
+        split_vertices=False,
+        consistent_normals=not as_wound,
+        auto_orient_normals=False,
+        non_manifold_traversal=False,
+    )
+    vectors = np.array(found.point_data["Normals"])
+    used = np.zeros(len(vectors), dtype=np.bool_)
+    used[_corners(bare)[0]] = True
+    vectors[~used] = 0
+    shape = _Shape(found)
+    if not as_wound:
+        shape.orient(vectors, view)
+    lean, border, sharp, inside = None, shape.open[shape.piece], 0.0, 0
+    if sides:
+        lean = shape.lean(vectors)
+        sharp = shape.sharp()
+    if origin is not None:
+        if mesh.GetMaxSpatialDimension() == 3:
+            inside = mesh.n_points - int(np.count_nonzero(origin >= 0))
+        vectors = scattered(vectors, origin, mesh.n_points)
+        border = scattered(border.astype(np.float32), origin, mesh.n_points) > 0
+        lean = None if lean is None else scattered(lean, origin, mesh.n_points)
+    return Sided(vectors, lean, border, sharp, computed=True, inside=inside)
+
+
+def _skin(mesh: pv.DataSet) -> tuple[pv.PolyData | None, Indices | None]:
+    """Return the outer surface of a mesh and its points' indices, None where it has no faces."""
     if isinstance(mesh, pv.PointSet):
         mesh = mesh.cast_to_polydata(deep=False)
     if isinstance(mesh, pv.PolyData):
         surface, origin = mesh, None
     else:
         surface, origin = outer_surface(mesh)
-    if not has_faces(surface):
-        expected, got = "a surface, whose normals are lit", f"a {type(mesh).__name__} without faces"
-        remedy = "name its tangent vectors by tangents="
-        raise ValueError(_check.message("mesh", expected, got, remedy))
-    bare = pv.PolyData()
-    bare.copy_structure(surface)
-    closed = bare.n_open_edges == 0
-    found = bare.compute_normals(
-        cell_normals=False,
-        split_vertices=False,
-        consistent_normals=True,
-        auto_orient_normals=closed,
-        non_manifold_traversal=False,
-    )
-    computed = np.array(found.point_data["Normals"])
-    used = np.zeros(len(computed), dtype=np.bool_)
-    used[_corners(bare)[0]] = True
-    computed[~used] = 0
-    if not closed:
-        _orient_open(computed, found, view)
-    if origin is None:
-        return computed
-    return scattered(computed, origin, mesh.n_points)
+    return (surface if has_faces(surface) else None), origin
 
 
-def _orient_open(normals: Array, surface: pv.PolyData, view: View | None) -> None:
-    """Flip the normals of each connected piece that point inward, or away from the eye.
+class _Shape:
+    """The triangles of a surface, its connected pieces, and which of those have a border.
 
-    A piece is nearly closed if the area vectors of its faces almost cancel; then the sign of the
-    enclosed volume decides. For a sheet or a bowl the sign of a sum over its points decides, of
-    three times the cosine between N and the direction toward the eye plus the cosine between N and
-    the direction away from the centroid of the piece. Points that are not finite are ignored.
+    Coincident points are connected, so that triangles that share no point can form one piece.
     """
-    points = np.asarray(surface.points, dtype=np.float64)
-    piece = _pieces(surface)
-    good = np.all(np.isfinite(points), axis=1) & np.all(np.isfinite(normals), axis=1)
-    points = np.where(good[:, np.newaxis], points, 0)
-    size = np.maximum(np.bincount(piece, good), 1)
-    centroids = np.stack([np.bincount(piece, axis * good) / size for axis in points.T], axis=1)
-    away = points - centroids[piece]
-    score = _dots(normals, unit_rows(away))
-    if view is not None and len(view.position or view.direction or ()) == 3:
-        toward = (
-            np.broadcast_to(np.asarray(view.direction), points.shape)
-            if view.parallel
-            else np.asarray(view.position) - points
-        )
-        score += 3 * _dots(normals, unit_rows(toward))
-    flipped = np.bincount(piece, np.where(good, score, 0)) < 0
 
-    faces = surface if surface.is_all_triangles else surface.triangulate()
-    corners = np.asarray(faces.regular_faces, dtype=np.intp)
-    corners = corners[good[corners].all(axis=1)]
-    # Lengths are scaled, because products of tiny ones underflow and of huge ones overflow.
-    a, b, c = (away[corners[:, i]] / (np.abs(away).max() or 1.0) for i in range(3))
-    across, owner = np.cross(b - a, c - a), piece[corners[:, 0]]
-    total = np.stack([np.bincount(owner, axis, len(size)) for axis in across.T], axis=1)
-    area = np.bincount(owner, np.linalg.norm(across, axis=1), len(size))
-    volume = np.bincount(owner, _dots(across, a), len(size))
-    around = np.linalg.norm(total, axis=1) < NEARLY_CLOSED * area
-    normals[np.where(around, volume < 0, flipped)[piece]] *= -1
+    def __init__(self, surface: pv.PolyData) -> None:
+        self.points = np.asarray(surface.points, dtype=np.float64)
+        self.finite: Bools = np.all(np.isfinite(self.points), axis=1)
+        self._same, self.piece = _pieces(surface)
+        self.count = int(self.piece.max(initial=-1)) + 1
+        rows = _triangles(surface)
+        keys = np.sort(_edges(self._same[rows], len(self.points)))
+        single = np.ones(len(keys), dtype=np.bool_)
+        repeats = keys[1:] == keys[:-1]
+        single[1:] &= ~repeats
+        single[:-1] &= ~repeats
+        single &= keys >= 0
+        #: Whether each piece has an edge of one face only.
+        self.open: Bools = np.zeros(self.count, dtype=np.bool_)
+        self.open[self.piece[(keys[single] // max(len(self.points), 1)).astype(np.intp)]] = True
+        self.triangles: Indices = rows[self.finite[rows].all(axis=1)]
+        self._measure()
+
+    def _measure(self) -> None:
+        """Find the area vectors of the triangles, and area and volume of the pieces."""
+        size = np.maximum(np.bincount(self.piece, self.finite, self.count), 1)
+        points = np.where(self.finite[:, np.newaxis], self.points, 0)
+        sums = [np.bincount(self.piece, axis * self.finite, self.count) for axis in points.T]
+        self.away: Array = points - (np.stack(sums, axis=1) / size[:, np.newaxis])[self.piece]
+        # Lengths are scaled, because products of tiny ones underflow and of huge ones overflow.
+        self.scale = np.abs(self.away).max(initial=0.0) or 1.0
+        a, b, c = (self.away[self.triangles[:, i]] / self.scale for i in range(3))
+        self.across: Array = np.cross(b - a, c - a)
+        self.owner: Indices = self.piece[self.triangles[:, 0]]
+        volume = np.bincount(self.owner, _dots(self.across, a), self.count)
+        self.volume: Array = volume.astype(np.float64)
+
+    def orient(self, normals: Array, view: View | None) -> None:
+        """Flip the normals of each piece that point inward, or away from the eye.
+
+        A piece is nearly closed if the area vectors of its faces almost cancel; then the sign of
+        the enclosed volume decides. For a sheet or a bowl the sign of a sum over its points
+        decides, of three times the cosine between N and the direction toward the eye plus the
+        cosine between N and the direction away from the centroid of the piece. Points that are
+        not finite are ignored.
+        """
+        good = self.finite & np.all(np.isfinite(normals), axis=1)
+        score = _dots(normals, unit_rows(self.away))
+        if view is not None and len(view.position or view.direction or ()) == 3:
+            toward = (
+                np.broadcast_to(np.asarray(view.direction), self.points.shape)
+                if view.parallel
+                else np.asarray(view.position) - self.points
+            )
+            score += 3 * _dots(normals, unit_rows(toward))
+        flipped = np.bincount(self.piece, np.where(good, score, 0), self.count) < 0
+        total = np.stack([np.bincount(self.owner, x, self.count) for x in self.across.T], axis=1)
+        area = np.bincount(self.owner, np.linalg.norm(self.across, axis=1), self.count)
+        around = ~self.open | (np.linalg.norm(total, axis=1) < NEARLY_CLOSED * area)
+        turned = np.where(around, self.volume < 0, flipped)
+        normals[turned[self.piece]] *= -1
+        self.across = np.where(turned[self.owner][:, np.newaxis], -self.across, self.across)
+
+    def lean(self, normals: Array) -> Array:
+        """Return how far the normal of each point may lean away from the eye; see Sided."""
+        faces = unit_rows(self.across)
+        n = len(self.points)
+        middle = sum(self.away[self.triangles[:, i]] for i in range(3))
+        middle = np.asarray(middle) / 3
+        bend, least = np.zeros(n), np.ones(n)
+        for i in range(3):
+            at = self.triangles[:, i]
+            own = normals[at].astype(np.float64)
+            np.minimum.at(least, at, _dots(own, faces))
+            bend += np.bincount(at, _dots(own, middle - self.away[at]), n)
+        sine = np.sqrt(np.clip(1 - least * least, 0, 1))
+        found: Array = np.where(np.isfinite(bend), -np.sign(bend) * sine, 0)
+        return found.astype(np.float32)
+
+    def sharp(self) -> float:
+        """Return the share of sharp edges where these are creases, else 0.
+
+        Creases stand apart: few edges are nearly as sharp. On a coarse mesh of a smooth shape there
+        are more of those, and no edge is meant to be seen.
+        """
+        faces = unit_rows(self.across)
+        rows = self.triangles
+        keys = _edges(rows, len(self.points))
+        order = np.argsort(keys)
+        keys = keys[order]
+        twice = np.flatnonzero((keys[1:] == keys[:-1]) & (keys[1:] >= 0))
+        if not len(twice):
+            return 0.0
+        one, other = (faces[order[twice + i] // 3] for i in (0, 1))
+        cosine = _dots(one, other)
+        least, nearly = np.cos(np.radians([SHARP, SHARP / 2]))
+        share = float(np.mean(cosine < least))
+        below = float(np.mean((cosine >= least) & (cosine < nearly)))
+        return share if below <= STAND_APART * share else 0.0
+
+
+def _edges(triangles: Indices, count: int) -> Indices:
+    """Return a number for each of the three edges of triangles, -1 for edges of no length."""
+    a, b = triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
+    keys = np.minimum(a, b).astype(np.int64) * count + np.maximum(a, b)
+    return np.where(a == b, -1, keys)
 
 
 def _dots(a: Array, b: Array) -> Array:
@@ -136,21 +411,26 @@ def onlooker(scene: Scene) -> View | None:
     return View(position=light.position, direction=light.direction)
 
 
-def _pieces(surface: pv.PolyData) -> Indices:
-    """Return for each point the number of its connected piece.
+class _Pieces(NamedTuple):
+    same: Indices
+    piece: Indices
 
-    Coincident points are connected, so that triangles that share no point can form one piece.
-    """
+
+def _pieces(surface: pv.PolyData) -> _Pieces:
+    """Return for each point the first of those at its place, and the number of its piece."""
     corners, last = _corners(surface)
-    follows = np.flatnonzero(~last)
     points = np.asarray(surface.points)
+    n = len(points)
     order = np.lexsort(points.T)
-    same = np.flatnonzero(np.all(points[order[1:]] == points[order[:-1]], axis=1))
-    a = np.concatenate([corners[follows], order[same]])
-    b = np.concatenate([corners[follows + 1], order[same + 1]])
-    graph = coo_array((np.ones(len(a), np.bool_), (a, b)), shape=(surface.n_points,) * 2)
+    new = np.ones(n, dtype=np.bool_)
+    new[1:] = np.any(points[order[1:]] != points[order[:-1]], axis=1)
+    same = np.empty(n, dtype=np.intp)
+    same[order] = order[np.maximum.accumulate(np.where(new, np.arange(n), 0))] if n else order
+    follows = np.flatnonzero(~last)
+    a, b = same[corners[follows]], same[corners[follows + 1]]
+    graph = coo_array((np.ones(len(a), np.float32), (a, b)), shape=(surface.n_points,) * 2)
     _, piece = connected_components(graph, directed=False)
-    return np.asarray(piece, dtype=np.intp)
+    return _Pieces(same, np.asarray(piece, dtype=np.intp)[same])
 
 
 def _corners(surface: pv.PolyData) -> tuple[Indices, Bools]:
@@ -163,3 +443,100 @@ def _corners(surface: pv.PolyData) -> tuple[Indices, Bools]:
         corners.append(ids)
         last.append(ends)
     return np.concatenate(corners), np.concatenate(last)
+
+
+def split_edges(mesh: pv.PolyData, angle: float | Literal["auto"]) -> pv.PolyData:
+    """Return a surface with points split where faces meet at more than an angle in degrees.
+
+    ``"auto"`` is 30 degrees on a surface whose sharp edges are creases. All arrays go with the
+    points; the mesh itself is not changed.
+    """
+    if not has_faces(mesh) or not mesh.n_points:
+        return mesh
+    if angle == "auto":
+        if not (_kept(mesh) or computed_normals(mesh)).sharp:
+            return mesh
+        angle = SHARP
+    own = mesh.copy(deep=False)
+    if "Normals" in own.point_data:
+        own.point_data[_OWN] = own.point_data.pop("Normals")
+    found: pv.PolyData = own.compute_normals(
+        cell_normals=False,
+        split_vertices=True,
+        feature_angle=angle,
+        consistent_normals=True,
+        auto_orient_normals=False,
+        non_manifold_traversal=False,
+    )
+    if found.n_points == mesh.n_points:
+        return mesh
+    del found.point_data["Normals"]
+    if _OWN in found.point_data:
+        found.point_data["Normals"] = found.point_data.pop(_OWN)
+        found.point_data.active_normals_name = None
+    return found
+
+
+def fingerprint(mesh: pv.DataSet) -> str | None:
+    """Return a digest of the points and cells of a mesh, None for a kind that keeps no normals."""
+    if isinstance(mesh, pv.PolyData):
+        cells = [mesh.GetPolys(), mesh.GetStrips()]
+    elif isinstance(mesh, pv.UnstructuredGrid):
+        cells = [mesh.GetCells()]
+    else:
+        return None
+    digest = hashlib.sha256()
+    arrays = [np.asarray(mesh.points)]
+    for cell in cells:
+        arrays += [
+            np.asarray(pv.convert_array(cell.GetConnectivityArray())),
+            np.asarray(pv.convert_array(cell.GetOffsetsArray())),
+        ]
+    for array in arrays:
+        digest.update(f"{array.dtype}{array.shape}".encode())
+        digest.update(np.ascontiguousarray(array).data)
+    return digest.hexdigest()
+
+
+def keep(mesh: pv.DataSet, normals: Sided) -> None:
+    """Attach normals that were computed to a mesh, with a digest of what they were computed from.
+
+    Where the user has an array of that name nothing is attached.
+    """
+    if not normals.computed or normals.kept or normals.lean is None or not mesh.n_points:
+        return
+    if KEPT in mesh.point_data and KEPT not in records.made(mesh, KEPT):
+        return
+    source = fingerprint(mesh)
+    if source is None:
+        return
+    border = np.broadcast_to(normals.open, len(normals.vectors))[:, np.newaxis]
+    rows = np.concatenate([normals.vectors, normals.lean[:, np.newaxis], border], axis=1)
+    point_arrays.attach_rows(mesh, KEPT, rows.astype(np.float32))
+    record: records.Record = {
+        "vizlight": __version__, "filter": "normals", "source": source, "sharp": normals.sharp,
+        "inside": normals.inside, "arrays": [KEPT],
+    }  # fmt: skip
+    records.write(mesh, KEPT, record)
+
+
+def _kept(mesh: pv.DataSet) -> Sided | None:
+    """Return the normals that an earlier result kept, if the mesh has not changed since."""
+    record = records.read(mesh, KEPT) if KEPT in mesh.point_data else None
+    if record is None or KEPT not in records.made(mesh, KEPT):
+        return None
+    rows = np.asarray(mesh.point_data[KEPT])
+    if rows.shape != (mesh.n_points, 5) or rows.dtype != np.float32:
+        return None
+    if record.get("source") != fingerprint(mesh):
+        return None
+    sharp, inside = record.get("sharp"), record.get("inside")
+    return Sided(
+        np.ascontiguousarray(rows[:, :3]),
+        rows[:, 3],
+        rows[:, 4] > 0,
+        float(sharp) if isinstance(sharp, int | float) else 0.0,
+        kept=True,
+        computed=True,
+        inside=inside if isinstance(inside, int) else 0,
+    )

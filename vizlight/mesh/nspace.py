@@ -19,9 +19,12 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vizlight._types import Array, Bools, VectorLike
+    from vizlight._types import Array, Bools, Indices, VectorLike
 
 POSITION, FRAME, PROJECTED, RECORD = "position", "frame", "projected_", "projection"
+#: Least gap of the eigenvalues of a mean of projections onto tangent spaces, from 0 to 1, at which
+#: the spaces have a limit.
+AGREEMENT = 0.8
 #: Number of rows that are processed at once, in float64.
 BLOCK = 1 << 15
 
@@ -213,6 +216,68 @@ class Turning:
             return found
 
         return _blocks(work, vectors, rows, 3, position)
+
+
+def continued(mesh: pv.DataSet, name: str) -> Array | None:
+    """Return tangents in 3-space with the limit along the surface where their rank is lost.
+
+    At a fold of the projection the image of a tangent vanishes, but the spaces that the tangents
+    span at the points around usually have a limit. It is found as their mean, of second order in
+    the distance of points that lie on both sides of the fold. Where the spaces around differ by
+    much, as at a pinch point, there is no limit and the rows stay as they are.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Projected mesh.
+    name : str
+        Name of the point array of 3 k components, orthonormal rows, zero past their rank.
+
+    Returns
+    -------
+    ndarray, shape (n_points, 3 k), or None
+        None if no rank is lost.
+    """
+    rows = np.asarray(mesh.point_data[name])
+    frame = rows.reshape(len(rows), -1, 3).astype(np.float64)
+    lost = ~np.all(np.any(frame != 0, axis=2), axis=1)
+    if not lost.any() or lost.all():
+        return None
+    at, around = _neighbours(mesh)
+    used = lost[at] & ~lost[around]
+    at, around = at[used], around[used]
+    spaces = np.einsum("ika,ikb->iab", frame[around], frame[around]).reshape(-1, 9)
+    count = np.bincount(at, minlength=len(rows))
+    total = np.stack([np.bincount(at, column, len(rows)) for column in spaces.T], axis=1)
+    chosen = np.flatnonzero(count)
+    mean = (total[chosen] / count[chosen, np.newaxis]).reshape(-1, 3, 3)
+    values, vectors = np.linalg.eigh(mean)
+    k = frame.shape[1]
+    agree = values[:, 3 - k] - values[:, 2 - k] > AGREEMENT
+    frame[chosen[agree]] = vectors[agree][:, :, 3 - k :].transpose(0, 2, 1)
+    return frame.reshape(rows.shape).astype(rows.dtype)
+
+
+def _neighbours(mesh: pv.DataSet) -> tuple[Indices, Indices]:
+    """Return the pairs of points that follow each other in a cell, each pair both ways."""
+    if isinstance(mesh, pv.PolyData):
+        kinds = [mesh.GetLines(), mesh.GetPolys(), mesh.GetStrips()]
+    else:
+        kinds = [pv.UnstructuredGrid(mesh).GetCells()]
+    pairs = []
+    for cells in kinds:
+        ids = np.asarray(pv.convert_array(cells.GetConnectivityArray())).astype(np.intp)
+        ends = np.asarray(pv.convert_array(cells.GetOffsetsArray()))
+        after = np.roll(ids, -1)
+        filled = np.diff(ends) > 0
+        after[ends[1:][filled] - 1] = ids[ends[:-1][filled]]
+        # The first and the last point of a line are no neighbours.
+        inner = np.ones(len(ids), dtype=np.bool_)
+        if isinstance(mesh, pv.PolyData) and cells is kinds[0]:
+            inner[ends[1:][filled] - 1] = False
+        pairs += [(ids[inner], after[inner]), (after[inner], ids[inner])]
+    a, b = (np.concatenate(part) for part in zip(*pairs, strict=True))
+    return a, b
 
 
 def _blocks(

@@ -157,7 +157,7 @@ class Light:
         )
 
 
-def as_lights(lights: Light | Iterable[Light]) -> tuple[Light, ...]:
+def as_lights(lights: object) -> tuple[Light, ...]:
     """Return one light or several lights as a tuple.
 
     Raises
@@ -168,7 +168,9 @@ def as_lights(lights: Light | Iterable[Light]) -> tuple[Light, ...]:
     if isinstance(lights, str) or not isinstance(lights, Light | Iterable):
         raise TypeError(
             _check.message(
-                "lights", "a vizlight.Light or a sequence of them", _check.describe(lights)
+                "lights",
+                "a vizlight.Light, a pyvista.Light or a sequence of them",
+                _check.describe(lights),
             )
         )
     several = (lights,) if isinstance(lights, Light) else tuple(lights)

@@ -9,14 +9,10 @@ from vizlight import _check
 from vizlight.scene import vtk
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     import pyvista as pv
     from vtkmodules.vtkRenderingCore import vtkProperty
 
     from vizlight._types import Color, ColorLike
-    from vizlight.scene.light import Light
-    from vizlight.scene.view import View
 
 __all__ = ["Material"]
 
@@ -73,8 +69,8 @@ class Material:
     def to_property(
         self,
         *,
-        lights: Light | Iterable[Light] | None = None,
-        view: View | None = None,
+        lights: vtk.Lights = None,
+        view: vtk.AnyView = None,
         model: str = "phong",
     ) -> pv.Property:
         """Return the ``pyvista.Property`` with which VTK shows the highlight of this material.
@@ -130,8 +126,8 @@ class Material:
         source: vtkProperty,
         /,
         *,
-        lights: Light | Iterable[Light] | None = None,
-        view: View | None = None,
+        lights: vtk.Lights = None,
+        view: vtk.AnyView = None,
         model: str = "phong",
     ) -> Material:
         """Return the material of a VTK property; the inverse of :meth:`to_property`.

@@ -11,9 +11,9 @@ import numpy as np
 
 from vizlight import _check
 from vizlight.scene import vtk
-from vizlight.scene.light import Light, as_lights
+from vizlight.scene.light import Light
 from vizlight.scene.material import Material
-from vizlight.scene.view import DepthCue, View, is_camera
+from vizlight.scene.view import DepthCue, View, as_view
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -27,9 +27,9 @@ __all__ = ["Scene"]
 class SceneKeywords(TypedDict, total=False):
     """The fields of a scene, as its keyword arguments."""
 
-    lights: Light | Iterable[Light] | None
+    lights: vtk.Lights
     material: Material | None
-    view: View | None
+    view: vtk.AnyView
     ambient_intensity: float
     ambient_color: ColorLike | None
     depth_cue: DepthCue | None
@@ -42,10 +42,11 @@ class Scene:
     Parameters
     ----------
     lights : Light or sequence of Light, optional
-        Lights of the scene. Default: one headlight.
+        Lights of the scene. Default: one headlight. A ``pyvista.Light`` is taken as a Light; one
+        that moves with the camera needs that camera as ``view``.
     material : Material, optional
         Material of the lit manifold. Default: ``Material()``.
-    view : View, optional
+    view : View or pyvista.Camera, optional
         View of the scene, required for the specular term, a headlight and a depth cue.
     ambient_intensity : float, default: 1.0
         Intensity Ia of the ambient light (Lecture), unitless, from 0 to 1e9.
@@ -70,17 +71,15 @@ class Scene:
     def __init__(
         self,
         *,
-        lights: Light | Iterable[Light] | None = None,
+        lights: vtk.Lights = None,
         material: Material | None = None,
-        view: View | None = None,
+        view: vtk.AnyView = None,
         ambient_intensity: float = 1.0,
         ambient_color: ColorLike | None = None,
         depth_cue: DepthCue | None = None,
     ) -> None:
-        lights = as_lights(Light.headlight() if lights is None else lights)
+        lights, view = vtk.all_lights(lights, view), as_view(view)
         _check.instance("material", material, Material, optional=True)
-        remedy = "View.from_camera(camera) makes one from a camera" if is_camera(view) else ""
-        _check.instance("view", view, View, optional=True, remedy=remedy)
         _check.instance("depth_cue", depth_cue, DepthCue, optional=True)
         _check.set_fields(
             self,
@@ -181,7 +180,14 @@ class Scene:
         return cls(**parts)
 
     @classmethod
-    def from_plotter(cls, plotter: pv.Plotter, **fields: Unpack[SceneKeywords]) -> Scene:
+    def from_plotter(
+        cls,
+        plotter: pv.Plotter,
+        *,
+        actor: pv.Actor | None = None,
+        model: str = "phong",
+        **fields: Unpack[SceneKeywords],
+    ) -> Scene:
         """Return the scene of a PyVista plotter: its camera and the lights that are switched on.
 
         A headlight at infinity continues to follow the view. Other lights that move with the
@@ -193,6 +199,12 @@ class Scene:
         plotter : pyvista.Plotter
             Plotter, whose active renderer is read. If its camera is not set yet, it is set as
             ``show`` would set it.
+        actor : pyvista.Actor, optional
+            Actor of the plotter, whose material the scene takes. An actor that is coloured by data
+            gives no colour of the material. Its light matches that of VTK under perspective.
+        model : {"phong", "blinn"}, default: "phong"
+            Reflection model by which the actor's mesh will be lit; VTK's is Blinn's with a single
+            headlight, else Phong's, see :meth:`Material.to_property`.
         **fields
             Further fields of the scene, such as ``material=``.
 
@@ -202,8 +214,9 @@ class Scene:
 
         Raises
         ------
-        TypeError
-            If the argument is not a plotter.
+        TypeError, ValueError
+            If the argument is not a plotter, the actor has no property, or both actor and material
+            are given.
         """
         renderer = getattr(plotter, "renderer", None)
         if renderer is None or not hasattr(renderer, "GetLights"):
@@ -213,7 +226,27 @@ class Scene:
         camera = plotter.camera
         fields.setdefault("view", View.from_camera(camera))
         fields.setdefault("lights", list(vtk.lights_of(renderer.GetLights(), camera)))
+        if actor is not None:
+            if "material" in fields:
+                raise ValueError(_check.message("material", "an actor alone", "both"))
+            lights, view = fields["lights"], fields["view"]
+            fields["material"] = _of_actor(actor, lights, view, model)
         return cls(**fields)
+
+
+def _of_actor(actor: pv.Actor, lights: vtk.Lights, view: vtk.AnyView, model: str) -> Material:
+    """Return the material of an actor; where data colour it, without a colour of its own."""
+    mapper = actor.GetMapper() if hasattr(actor, "GetMapper") else None
+    if mapper is None or not hasattr(actor, "GetProperty"):
+        raise TypeError(_check.message("actor", "a pyvista.Actor", _check.describe(actor)))
+    own = actor.GetProperty()
+    if not mapper.GetScalarVisibility():
+        return Material.from_property(own, lights=lights, view=view, model=model)
+    plain = type(own)()
+    plain.DeepCopy(own)
+    plain.SetColor(1.0, 1.0, 1.0)
+    plain.SetSpecularColor(*own.GetSpecularColor())
+    return Material.from_property(plain, lights=lights, view=view, model=model)
 
 
 def _fields(

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 from vizlight import _check
 
 if TYPE_CHECKING:
+    from typing import TypeGuard
+
     from vtkmodules.vtkRenderingCore import vtkCamera
 
     from vizlight._types import Color, ColorLike, Vector, VectorLike
@@ -161,7 +163,24 @@ class DepthCue:
             raise ValueError(_check.message("front", "a depth other than back", self.front))
 
 
-def is_camera(value: object) -> bool:
+def as_view(view: View | vtkCamera | None) -> View | None:
+    """Return a view, that of a camera, or None as it is.
+
+    Raises
+    ------
+    TypeError
+        If the argument is none of these.
+    """
+    if view is None or isinstance(view, View):
+        return view
+    if is_camera(view):
+        return View.from_camera(view)
+    remedy = "pass its .camera" if is_camera(getattr(view, "camera", None)) else ""
+    _check.instance("view", view, View, optional=True, remedy=remedy)
+    return None
+
+
+def is_camera(value: object) -> TypeGuard[vtkCamera]:
     """Return whether a value has the methods of a VTK camera that a view needs."""
     names = ("GetPosition", "GetDirectionOfProjection", "GetParallelProjection")
     return all(hasattr(value, name) for name in names)

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Literal, TypedDict
 
 import numpy as np
 
 from vizlight import _check
 from vizlight.scene.light import WHITE, Light, as_lights
-from vizlight.scene.view import View
+from vizlight.scene.view import View, as_view, is_camera
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterator, Sequence
+    from typing import TypeAlias, TypeGuard
 
     import pyvista as pv
     from vtkmodules.vtkCommonMath import vtkMatrix4x4
@@ -19,7 +21,9 @@ if TYPE_CHECKING:
 
     from vizlight._types import Color, Vector
 
-    Lights = Light | Iterable[Light] | None
+    AnyLight: TypeAlias = Light | vtkLight
+    Lights: TypeAlias = AnyLight | Iterable[AnyLight] | None
+    AnyView: TypeAlias = View | vtkCamera | None
 
 ReflectionModel = Literal["phong", "blinn"]
 #: Upper limit of the specular power in VTK.
@@ -51,13 +55,12 @@ def vtk_model(lights: Sequence[Light]) -> ReflectionModel:
 
 
 def to_property(
-    values: MaterialValues, *, lights: Lights, view: View | None, model: str
+    values: MaterialValues, *, lights: Lights, view: AnyView, model: str
 ) -> pv.Property:
     """Return the ``pyvista.Property`` of a material; see :meth:`vizlight.Material.to_property`."""
     import pyvista as pv
 
-    given = _check_lights(lights)
-    _check.instance("view", view, View, optional=True)
+    given, view = _check_lights(lights, view), as_view(view)
     coefficients = {
         "ambient": values["ambient"], "diffuse": values["diffuse"], "specular": values["specular"],
     }  # fmt: skip
@@ -84,15 +87,14 @@ def to_property(
 
 
 def property_values(
-    source: vtkProperty, *, lights: Lights, view: View | None, model: str
+    source: vtkProperty, *, lights: Lights, view: AnyView, model: str
 ) -> MaterialValues:
     """Return the fields of a property's material; see :meth:`vizlight.Material.from_property`."""
     if not hasattr(source, "GetSpecularPower"):
         raise TypeError(
             _check.message("source", "a pyvista.Property or vtkProperty", _check.describe(source))
         )
-    given = _check_lights(lights)
-    _check.instance("view", view, View, optional=True)
+    given, view = _check_lights(lights, view), as_view(view)
     power = float(source.GetSpecularPower())
     if _check_model(model) != vtk_model(given):
         power = _converted(power, _angle(given, view), "phong" if model == "blinn" else "blinn")
@@ -117,9 +119,45 @@ def _color(channels: Sequence[float]) -> Color | None:
     return None if (r, g, b) == WHITE else (r, g, b)
 
 
-def _check_lights(lights: Lights) -> tuple[Light, ...]:
+def all_lights(lights: Lights, view: AnyView) -> tuple[Light, ...]:
+    """Return lights, by default one headlight; those of VTK and PyVista are converted.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If something is no light, or a light moves with a camera and the view is not one.
+    """
+    if lights is None:
+        return (Light.headlight(),)
+    if _is_vtk(lights):
+        return _fixed(lights, view)
+    if isinstance(lights, Light | str) or not isinstance(lights, Iterable):
+        return as_lights(lights)
+    found: list[Light] = []
+    for light in lights:
+        found += _fixed(light, view) if _is_vtk(light) else as_lights([light])
+    return tuple(found)
+
+
+def _fixed(light: vtkLight, view: AnyView) -> tuple[Light, ...]:
+    """Return a light of VTK as one of this package, none if it is switched off."""
+    at_camera = bool(light.LightTypeIsCameraLight())
+    at_camera |= bool(light.LightTypeIsHeadlight() and light.GetPositional())
+    if at_camera and not is_camera(view):
+        expected, got = "a pyvista.Camera as view= beside a light that moves with it", view
+        remedy = "or take both by Scene.from_plotter(plotter)"
+        raise ValueError(_check.message("lights", expected, got, remedy))
+    return tuple(lights_of([light], view if is_camera(view) else None))
+
+
+def _is_vtk(light: object) -> TypeGuard[vtkLight]:
+    """Return whether something is a light of VTK, such as a pyvista.Light."""
+    return hasattr(light, "LightTypeIsHeadlight") and hasattr(light, "GetSwitch")
+
+
+def _check_lights(lights: Lights, view: AnyView) -> tuple[Light, ...]:
     """Return the lights, by default one headlight, after checking that they are in 3-space."""
-    given = as_lights(Light.headlight() if lights is None else lights)
+    given = all_lights(lights, view)
     for light in given:
         n = len(light.direction or light.position or ()) or 3
         if n != 3:
@@ -201,7 +239,7 @@ def _warn_of_error(
     )
 
 
-def lights_of(lights: Iterable[vtkLight], camera: vtkCamera) -> Iterator[Light]:
+def lights_of(lights: Iterable[vtkLight], camera: vtkCamera | None) -> Iterator[Light]:
     """Yield the VTK lights that are switched on.
 
     A headlight at infinity continues to follow the view. Other lights that move with the camera
@@ -237,11 +275,11 @@ def lights_of(lights: Iterable[vtkLight], camera: vtkCamera) -> Iterator[Light]:
             )
 
 
-def _position_and_target(light: vtkLight, camera: vtkCamera) -> tuple[Vector, Vector]:
+def _position_and_target(light: vtkLight, camera: vtkCamera | None) -> tuple[Vector, Vector]:
     """Return the position and the focal point of a light in the coordinates of the scene."""
-    if light.LightTypeIsHeadlight():
+    if camera is not None and light.LightTypeIsHeadlight():
         return tuple(camera.GetPosition()), tuple(camera.GetFocalPoint())
-    if light.LightTypeIsCameraLight():
+    if camera is not None and light.LightTypeIsCameraLight():
         matrix = camera.GetCameraLightTransformMatrix()
         return (
             _transform(matrix, light.GetPosition()),

@@ -8,7 +8,7 @@ import functools
 import inspect
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, TypedDict, get_args
+from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias, TypedDict, get_args
 
 from vizlight import _check
 
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 Model = Literal["phong", "blinn", "cylinder"]
 Precision = Literal["float32", "float64"]
+FeatureAngle: TypeAlias = float | Literal["auto"] | None
+Facing = Literal["auto", "eye", "outward", "as given"]
 
 
 class ShadingKeywords(TypedDict, total=False):
@@ -45,6 +47,8 @@ class LightKeywords(ShadingKeywords, total=False):
     tangents: str | ArrayLike | None
     positions: str | None
     normals: str | ArrayLike | None
+    facing: Facing
+    feature_angle: FeatureAngle
     flip_normals: bool
     average_cells: bool
     name: str
@@ -149,26 +153,45 @@ class LightOptions(ShadingOptions):
         Name of a point array of n components with the places of the points in n-space. Default:
         the points of the mesh.
     normals : str or array_like, optional
-        Name of a point array of n components with outward normals, or its values. Default: the
-        active normals of the mesh as they are (clear them after moving points), else those of its
-        surface. A closed surface faces outward. Each piece of an open one is oriented as a whole,
-        toward the eye and away from its own centroid.
+        Name of a point array of n components with normals, or its values. Default: the active
+        normals of the mesh (clear them after moving points), else those of its surface, which
+        stay with the result as ``vizlight_normals``.
+    facing : {"auto", "eye", "outward", "as given"}
+        Side of the surface that is lit. ``"auto"``: each connected piece that is closed faces
+        outward, any other faces the eye at every point (with ``normals`` that are given the mesh
+        counts as one piece). ``"eye"``: every point faces the eye,
+        whatever piece it belongs to; with ``normals`` from data a surface in parts is then lit
+        as the whole. ``"outward"``: each piece faces outward as a whole, an open one away from its
+        centroid. ``"as given"``: normals as they are, those of the surface by the order of the
+        corners of its faces. Without a view both sides are lit alike where the eye would choose.
+    feature_angle : float or "auto", optional
+        Angle in degrees between two faces above which points on their common edge are split, so
+        that light does not bend across it; only for normals that are computed. ``"auto"``: 30 if
+        the sharp edges are creases, which stand apart from the others, else none is split.
+        Default: none is split.
     conditioned : bool or str, default: False
         Whether tangents inherit the self-shadow of the surface: diffuse and specular term of each
         light times ``max(0, N . wi)`` (Banks 6). A surface of codimension 2 or more has no sides
         and no such shadow: name the point array of its j tangents, such as ``"frame"``, and its
         own brightness ``sin(a)^p(j, n)`` is the factor. In codimension 1 that is ``|N . wi|``.
     flip_normals : bool, default: False
-        Whether the normals are reversed.
+        Whether the normals are reversed; replaced by ``facing``, as is ``two_sided`` of a mesh.
     average_cells : bool, default: False
         Whether cell data may serve as tangents, averaged to the points.
     name : str, default: "luminance"
         Name of the result. Under another name the further arrays are ``<name>_diffuse`` and so on.
     """
 
+    #: Older switches, and what replaces them.
+    REPLACED: ClassVar[dict[str, str]] = {
+        "two_sided": "facing='eye'", "flip_normals": "facing='outward' or 'as given'",
+    }  # fmt: skip
+
     tangents: str | ArrayLike | None = None
     positions: str | None = None
     normals: str | ArrayLike | None = None
+    facing: Facing = "auto"
+    feature_angle: FeatureAngle = None
     conditioned: bool | str | None = False
     flip_normals: bool = False
     average_cells: bool = False
@@ -178,6 +201,27 @@ class LightOptions(ShadingOptions):
         super().__post_init__()
         for name in ("flip_normals", "average_cells"):
             _check.set_fields(self, **{name: _check.boolean(name, getattr(self, name))})
+        check_sides(self.facing, self.feature_angle)
+        for name in ("two_sided", "flip_normals"):
+            if getattr(self, name) and self.facing != "auto":
+                expected = f"facing= alone, which replaces {name}="
+                raise ValueError(_check.message(name, expected, "both", "leave it out"))
+
+
+def check_sides(facing: object, feature_angle: object) -> None:
+    """Check the options of the side of a surface that is lit, and of its edges.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a value does not fit.
+    """
+    _check.choice("facing", facing, get_args(Facing))
+    if feature_angle is not None and feature_angle != "auto":
+        expected = "a number of degrees from 0 to 180, 'auto' or None"
+        if isinstance(feature_angle, str):
+            raise ValueError(_check.message("feature_angle", expected, repr(feature_angle)))
+        _check.number("feature_angle", feature_angle, low=0.0, high=180.0)
 
 
 def documented(kind: type) -> dict[str, str]:
@@ -235,6 +279,9 @@ def accepts(
                     raise TypeError(_check.message(old, f"{new}= alone", "both", remedy))
                 _check.warn(f"{old}= is now called {new}=", DeprecationWarning)
                 keywords[new] = keywords.pop(old)
+            for old, new in getattr(kind, "REPLACED", {}).items():
+                if keywords.get(old) is True:
+                    _check.warn(f"{old}= is replaced by {new}", DeprecationWarning)
             for name in keywords:
                 if name not in known:
                     raise TypeError(_unknown(function.__name__, name, known))
@@ -254,6 +301,7 @@ def accepts(
         listed = signature.replace(parameters=[*own, *added])
         entries = "\n".join(filter(None, texts.values()))
         text = re.sub(r"^\*\*options.*(\n    .*)*", lambda _: entries, _doc(function), flags=re.M)
+        method.__dict__["replaced"] = set(getattr(kind, "REPLACED", {}))
         method.__signature__ = listed  # type: ignore[attr-defined]
         method.__doc__ = text
         return method

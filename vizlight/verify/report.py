@@ -57,6 +57,8 @@ class Run:
         without a sample.
     invalid : int
         Number of points that could not be lit.
+    bright : int
+        Number of points whose luminance, or a channel of whose colour, is above 1.
     disagreed : int
         Number of points of the sample that only one of the two implementations could light.
     bound : float
@@ -72,6 +74,7 @@ class Run:
     error: float
     rms: float
     invalid: int
+    bright: int = 0
     disagreed: int = 0
     bound: float = math.nan
 
@@ -102,6 +105,11 @@ class Report:
         return sum(run.invalid for run in self.runs)
 
     @property
+    def bright(self) -> int:
+        """Number of points with light above 1, which a picture shows as 1."""
+        return sum(run.bright for run in self.runs)
+
+    @property
     def bytes(self) -> int:
         """Size of all results in bytes."""
         return sum(run.bytes for run in self.runs)
@@ -121,6 +129,8 @@ class Report:
             f"{self.points} points lit in {len(self.runs)} run(s), {self.seconds:.3f} s in all, "
             f"{self.bytes / 1e6:.3g} MB of light"
         ]
+        if self.bright:
+            lines.append(f"{self.bright} points are brighter than 1, which a picture shows as 1")
         for run in self.runs:
             lines.append(
                 f"{run.points} points, {run.precision}: {' + '.join(run.terms)}; "
@@ -227,6 +237,7 @@ def note(given: ShadingInputs, scene: Scene, shading: Shading, options: ShadingO
     active.runs.append(
         Run(
             points=count,
+            bright=_bright(shading),
             terms=shading.plan.terms,
             precision=shading.plan.dtype.name,
             seconds=shading.seconds,
@@ -239,6 +250,14 @@ def note(given: ShadingInputs, scene: Scene, shading: Shading, options: ShadingO
             bound=choice.bound if choice.tolerance else math.nan,
         )
     )
+
+
+def _bright(shading: Shading) -> int:
+    """Return the number of points whose light is above 1."""
+    above = shading.luminance > 1
+    if shading.rgb is not None:
+        above = above | np.any(shading.rgb > 1, axis=1)
+    return int(np.count_nonzero(above))
 
 
 def note_ratio(

@@ -1,0 +1,305 @@
+"""The side of a surface that is lit, its sharp edges, and normals that stay with a result."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight import Light, Material, Scene, View, illuminate
+from vizlight.mesh import normals
+
+HEAD = Scene(lights=Light.headlight(), view=View(position=(2.0, 3.0, 4.0)))
+MATTE = Material(specular=0)
+
+
+@pytest.fixture(scope="module")
+def isosurface():
+    """An open isosurface of real flow, without normals and with those of the field."""
+    flow = vizlight.load_example()
+    level = float(np.quantile(flow["Temp"], 0.3))
+    bare = flow.contour([level], scalars="Temp")
+    given = flow.contour([level], scalars="Temp", compute_normals=True)
+    bare.clear_data()
+    return bare, given
+
+
+def dots(a, b):
+    return np.einsum("ij,ij->i", np.asarray(a, float), np.asarray(b, float))
+
+
+@pytest.mark.opengl
+def test_what_is_seen_of_an_open_surface_is_lit(isosurface, random):
+    """At most 1 in 100 of the pixels has the ambient light only; it was half of them."""
+    for surface in isosurface:
+        for toward in [*random.standard_normal((3, 3)), (-1, 0.4, 0.3)]:
+            camera = vizlight.render.camera_on(surface, toward)
+            scene = HEAD.replace(view=View.from_camera(camera), material=MATTE)
+            picture = {}
+            for facing in ("auto", "outward"):
+                lit = illuminate(surface, scene, facing=facing)
+                options = {"size": (200, 200), "anti_aliasing": None, "background": "white"}
+                (picture[facing],) = vizlight.render.pictures([lit], camera=camera, **options)
+            seen = picture["auto"][..., 0] < 200
+            assert seen.sum() > 3000
+            assert np.mean(picture["auto"][..., 0][seen] <= 27) < 0.01
+
+
+@pytest.mark.parametrize("position", [(0.2, 0.1, 3), (0.2, 0.1, -3)])
+def test_an_open_surface_faces_the_eye_point_by_point(position):
+    wave = pv.Plane(i_resolution=40, j_resolution=40, i_size=6, j_size=6)
+    x, y = np.array(wave.points)[:, :2].T
+    wave.points = np.stack([x, y, np.sin(2 * x) * np.cos(y)], axis=1)
+    wave.clear_data()
+    scene = HEAD.replace(view=View(position=position), material=MATTE)
+    lit = illuminate(wave, scene)
+    toward = np.asarray(position) - wave.points
+    toward /= np.linalg.norm(toward, axis=1, keepdims=True)
+    slope = np.stack([-2 * np.cos(2 * x) * np.cos(y), np.sin(2 * x) * np.sin(y), 1 + 0 * x], axis=1)
+    exact = np.abs(dots(slope / np.linalg.norm(slope, axis=1, keepdims=True), toward))
+    inner = np.abs(wave.points[:, :2]).max(axis=1) < 2.9
+    seen = inner & (exact > 0.4)
+    error = np.abs(lit["luminance"] - 0.1 - 0.5 * exact)[seen]
+    assert seen.sum() > 400
+    assert error.max() < 0.03
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("carried", [True, False])
+def test_closed_surfaces_face_outward_whatever_their_normals(sign, carried):
+    ball = pv.Sphere()
+    outward = np.asarray(ball.points) / 0.5
+    if carried:
+        ball.point_data.active_normals = sign * outward
+    else:
+        ball = pv.PolyData.from_regular_faces(ball.points, ball.regular_faces[:, ::sign])
+    scene = Scene(lights=Light(direction=(1, 2, 3)), view=View(direction=(0, 0, 1)), material=MATTE)
+    lit = illuminate(ball, scene)
+    expected = 0.1 + 0.5 * np.maximum(outward @ (1, 2, 3) / 14**0.5, 0)
+    np.testing.assert_allclose(lit["luminance"], expected, atol=0.01)
+    if carried:
+        turned = illuminate(ball, scene, facing="as given")["luminance"]
+        expected = 0.1 + 0.5 * np.maximum(sign * (outward @ (1, 2, 3)) / 14**0.5, 0)
+        np.testing.assert_allclose(turned, expected, atol=0.01)
+
+
+def test_normals_as_given_follow_the_corners_of_the_faces():
+    sheet = pv.Plane(i_resolution=2, j_resolution=2)
+    sheet.clear_data()
+    scene = Scene(lights=Light(direction=(0, 0, 1)), material=MATTE)
+    up = illuminate(sheet, scene, facing="as given")["luminance"]
+    down = illuminate(sheet.flip_faces(), scene, facing="as given")["luminance"]
+    np.testing.assert_allclose(up, 0.6, rtol=1e-6)
+    np.testing.assert_allclose(down, 0.1, rtol=1e-6)
+
+
+def test_without_a_view_both_sides_are_lit_alike():
+    sheet = pv.Plane(i_resolution=3, j_resolution=3)
+    sheet.clear_data()
+    lights = [Light(direction=(0, 0.6, 0.8)), Light(direction=(0, 0, -1), intensity=0.5)]
+    scene = Scene(lights=lights, material=MATTE)
+    for mesh in (sheet, sheet.flip_faces()):
+        for facing in ("auto", "eye"):
+            lit = illuminate(mesh, scene, facing=facing)["luminance"]
+            np.testing.assert_allclose(lit, 0.1 + 0.5 * (0.8 + 0.5), rtol=1e-6)
+    ball = illuminate(pv.Sphere(), scene.replace(lights=lights[1]))
+    assert ball["luminance"][np.asarray(ball.points)[:, 2] > 0.1].max() == np.float32(0.1)
+
+
+def pieces(mesh, way, random):
+    """Cut a mesh in 12 pieces, and return them with the indices of their points."""
+    centres = mesh.cell_centers().points
+    order = {
+        "at random": lambda: random.integers(0, 12, mesh.n_cells),
+        "in slabs": lambda: np.argsort(np.argsort(centres[:, 0])) * 12 // mesh.n_cells,
+        "in runs of cells": lambda: np.arange(mesh.n_cells) * 12 // mesh.n_cells,
+        "in turns": lambda: np.arange(mesh.n_cells) % 12,
+        "by angle": lambda: np.digitize(
+            np.arctan2(*(centres - centres.mean(axis=0))[:, :2].T), np.linspace(-3.1, 3.1, 11)
+        ),
+    }[way]()
+    faces = mesh.regular_faces
+    for number in range(12):
+        used, corners = np.unique(faces[order == number], return_inverse=True)
+        if len(used):
+            piece = pv.PolyData.from_regular_faces(mesh.points[used], corners.reshape(-1, 3))
+            piece["N"] = np.asarray(mesh["N"])[used]
+            yield piece, used
+
+
+@pytest.mark.parametrize("kind", ["open", "closed"])
+@pytest.mark.parametrize(
+    "way", ["at random", "in slabs", "in runs of cells", "in turns", "by angle"]
+)
+def test_light_in_pieces_is_that_of_the_whole(way, kind, isosurface, random):
+    if kind == "open":
+        mesh = isosurface[1].triangulate()
+        mesh["N"] = np.asarray(mesh.point_data.active_normals)
+    else:
+        mesh = pv.Sphere()
+        mesh["N"] = np.asarray(mesh.points)
+    mesh.point_data.active_normals_name = None
+    scene = Scene(
+        lights=[Light(direction=(1, -2, 1)), Light.headlight(intensity=0.4)],
+        view=View(position=tuple(5 * mesh.length * np.array([0.4, 0.5, 0.7]))),
+    )
+    facings = ("auto", "eye") if kind == "open" else ("eye", "as given")
+    for facing in facings:
+        whole = illuminate(mesh, scene, normals="N", facing=facing)["luminance"]
+        count = 0
+        for piece, used in pieces(mesh, way, random):
+            lit = illuminate(piece, scene, normals="N", facing=facing)["luminance"]
+            np.testing.assert_allclose(lit, whole[used], atol=1e-6)
+            count += 1
+        assert count == 12 or way == "by angle"
+
+
+def test_lines_on_an_open_surface_are_lit_on_the_side_that_is_seen():
+    sheet = pv.Plane(i_resolution=10, j_resolution=10)
+    sheet["V"] = np.tile([1.0, 0.3, 0], (sheet.n_points, 1))
+    for side in (1, -1):
+        scene = HEAD.replace(view=View(position=(0.1, 0.2, 3 * side)))
+        lines = vizlight.streamlines(sheet, scene, vectors="V", seeds=5, facing="eye")
+        assert lines["luminance"].min() > 0.3
+
+
+# ------------------------------------------------------------------ edges
+
+
+def box():
+    cube = pv.Cube()
+    cube.clear_data()
+    return cube.triangulate().clean().subdivide(3)
+
+
+def test_no_highlight_on_the_edges_of_a_box():
+    scene = Scene(lights=Light(direction=(1, 2, 3)), view=View(direction=(3, 2, 1.5)))
+    plain = box()
+    plain["x"] = np.asarray(plain.points)[:, 0].copy()
+    with pytest.warns(UserWarning, match=r"% of the edges are sharper than 30 .*feature_angle=30"):
+        bent = illuminate(plain, scene)
+    assert bent.n_points == plain.n_points
+    for angle in (30, "auto", 89.0):
+        lit = illuminate(plain, scene, feature_angle=angle)
+        np.testing.assert_array_equal(lit["x"], np.asarray(lit.points)[:, 0])
+        faces = np.asarray(lit["luminance"])[lit.regular_faces]
+        # Each face has one value: directions toward eye and light are the same everywhere.
+        assert np.ptp(faces, axis=1).max() < 1e-6
+        assert len(np.unique(faces[:, 0].round(5))) <= 6
+        assert lit.n_points == 6 * 81
+    assert np.ptp(np.asarray(bent["luminance"])[bent.regular_faces], axis=1).max() > 0.1
+    kept = illuminate(plain, scene, feature_angle=91)
+    assert kept.n_points == plain.n_points
+
+
+@pytest.mark.parametrize("inplace", [True, False])
+def test_points_are_split_in_the_mesh_itself_only_if_asked(inplace):
+    mesh = pv.MultiBlock({"box": box(), "ball": pv.Sphere()})
+    before = mesh.copy()
+    lit = illuminate(mesh, HEAD, feature_angle=30, inplace=inplace)
+    assert lit["box"].n_points > before["box"].n_points
+    assert (lit is mesh) == inplace
+    if not inplace:
+        assert mesh["box"] == before["box"]
+
+
+def test_a_smooth_shape_of_coarse_triangles_has_no_creases():
+    ball = pv.Icosphere(nsub=1)
+    ball.clear_data()
+    assert illuminate(ball, HEAD, feature_angle="auto").n_points == ball.n_points
+    tube = pv.Cylinder(resolution=24).triangulate().clean()
+    tube.clear_data()
+    assert illuminate(tube, HEAD, feature_angle="auto").n_points == tube.n_points + 48
+
+
+def test_arrays_of_the_user_outlive_the_split():
+    mesh = box()
+    mesh["Normals"] = np.arange(mesh.n_points)
+    mesh.cell_data["c"] = np.arange(mesh.n_cells)
+    lit = illuminate(mesh, HEAD, feature_angle=30)
+    rows = np.asarray(lit["Normals"])
+    np.testing.assert_array_equal(np.asarray(mesh.points)[rows], lit.points)
+    np.testing.assert_allclose(
+        lit.cell_centers().points, mesh.cell_centers().points[lit.cell_data["c"]], atol=1e-6
+    )
+
+
+def test_bad_feature_angles():
+    grid = pv.ImageData(dimensions=(3, 3, 3))
+    with pytest.raises(ValueError, match=r"feature_angle: expected a pyvista.PolyData.*extract_su"):
+        illuminate(grid, HEAD, feature_angle=30)
+    mesh = box()
+    with pytest.raises(TypeError, match="tangents: expected the name of a point array beside feat"):
+        illuminate(
+            mesh, HEAD, tangents=np.ones((mesh.n_points, 3)), conditioned=True, feature_angle=30
+        )
+
+
+# ------------------------------------------------------------------ normals that stay
+
+
+def fresh(mesh):
+    bare = mesh.copy()
+    bare.clear_data()
+    return bare
+
+
+@pytest.mark.parametrize("kind", ["polydata", "grid", "blocks"])
+def test_light_again_takes_the_normals_that_stayed(kind, monkeypatch, tmp_path):
+    mesh = pv.Sphere(end_phi=130)
+    mesh.clear_data()
+    if kind == "grid":
+        mesh = mesh.cast_to_unstructured_grid()
+    elif kind == "blocks":
+        mesh = pv.MultiBlock([mesh, pv.Plane()])
+        mesh[1].clear_data()
+    lit = illuminate(mesh, HEAD)
+    suffix = {"polydata": "vtp", "grid": "vtu", "blocks": "vtm"}[kind]
+    lit.save(tmp_path / f"lit.{suffix}")
+    again = pv.read(tmp_path / f"lit.{suffix}")
+    other = HEAD.replace(view=View(position=(-3, 1, -4)))
+    expected = illuminate(mesh, other)
+    monkeypatch.setattr(normals, "computed_normals", None)
+    for start in (lit, again):
+        found = illuminate(start, other)
+        for block, own in zip(
+            vizlight.mesh.blocks.all_blocks(found),
+            vizlight.mesh.blocks.all_blocks(expected),
+            strict=True,
+        ):
+            np.testing.assert_array_equal(block["luminance"], own["luminance"])
+
+
+@pytest.mark.filterwarnings("ignore:1 of 133 points could not be lit")
+@pytest.mark.parametrize("change", ["points", "one point", "cells", "turned", "rows"])
+def test_a_changed_mesh_is_noticed(change):
+    mesh = pv.Sphere(end_phi=130, theta_resolution=12, phi_resolution=12)
+    mesh.clear_data()
+    lit = illuminate(mesh, HEAD).copy()
+    if change == "points":
+        lit.points = np.asarray(lit.points) * (1, 1, 3)
+    elif change == "one point":
+        lit.points[7] += (0, 0, 0.2)
+    elif change == "cells":
+        lit.faces = np.insert(lit.regular_faces[20:], 0, 3, axis=1).ravel()
+    elif change == "turned":
+        lit = lit.rotate_x(80)
+    else:
+        lit[normals.KEPT] = np.zeros((lit.n_points, 3))
+    again = illuminate(lit, HEAD)
+    expected = illuminate(fresh(lit), HEAD)
+    np.testing.assert_allclose(again["luminance"], expected["luminance"], atol=1e-6)
+
+
+def test_an_array_of_the_user_is_not_replaced():
+    mesh = pv.Plane()
+    mesh.clear_data()
+    mesh[normals.KEPT] = np.arange(mesh.n_points)
+    lit = illuminate(mesh, HEAD)
+    np.testing.assert_array_equal(lit[normals.KEPT], np.arange(mesh.n_points))
+    assert lit["luminance"].min() > 0.2
+
+
+def test_normals_of_the_user_do_not_stay_a_second_time():
+    assert normals.KEPT not in illuminate(pv.Sphere(), HEAD).point_data
