@@ -147,6 +147,19 @@ OF_NUMBERS = {
         "mesh/hull.py",
         "np.where(off <= 1e-5 * np.abs(surface.points).max(initial=0), ids, -1)", "ids",
     ),
+    "between: tangents added whatever their signs": (
+        "verify/between.py", "best = np.argmax(scores, axis=0)", "best = np.zeros(m, int)",
+    ),
+    "between: no random places in the second half of a cell": (
+        "verify/between.py", "turned = (rest.sum(axis=1) > 1.5)", "turned = (rest.sum(axis=1) > 9)",
+    ),
+    "refinement: no place where a highlight peaks in a triangle": (
+        "mesh/refining.py", "tried += self.between.peaks(self.cells.corners[cells])", "pass",
+    ),
+    "refinement: twins get numbers of their own": (
+        "mesh/splitting.py", "_, twin = np.unique(edge[first], return_inverse=True)",
+        "twin = np.arange(len(first))",
+    ),
     "report: no time": ("verify/report.py", "made.seconds += time.perf_counter() - start", "pass"),
     "report: the check counted as time": (
         "verify/report.py", "active.seconds -= time.perf_counter() - start", "pass",

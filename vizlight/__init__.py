@@ -26,11 +26,14 @@ if TYPE_CHECKING:
     from vizlight.filters.isoluminance import isoluminance
     from vizlight.filters.manifold import manifold
     from vizlight.filters.project import project
+    from vizlight.filters.refine import refine
     from vizlight.filters.relief_day import relief_day
     from vizlight.filters.relief_shadow import relief_shadow
     from vizlight.filters.satin import satin
+    from vizlight.filters.solids import to_polydata
     from vizlight.filters.streamlines import streamlines
-    from vizlight.geometry.solids.primitives import Block, Frustum, Sphere, Truncus
+    from vizlight.geometry.solids.polyhedra import HalfSpace, Polyhedron, Prism
+    from vizlight.geometry.solids.primitives import Block, Frustum, Sphere, Torus, Truncus
     from vizlight.mesh.polylines import direction_colors
     from vizlight.mesh.records import provenance
     from vizlight.scene import DepthCue, Light, Material, Scene, View
@@ -40,10 +43,14 @@ _HOMES = {
     "Block": "vizlight.geometry.solids.primitives",
     "DepthCue": "vizlight.scene",
     "Frustum": "vizlight.geometry.solids.primitives",
+    "HalfSpace": "vizlight.geometry.solids.polyhedra",
     "Light": "vizlight.scene",
     "Material": "vizlight.scene",
+    "Polyhedron": "vizlight.geometry.solids.polyhedra",
+    "Prism": "vizlight.geometry.solids.polyhedra",
     "Scene": "vizlight.scene",
     "Sphere": "vizlight.geometry.solids.primitives",
+    "Torus": "vizlight.geometry.solids.primitives",
     "Truncus": "vizlight.geometry.solids.primitives",
     "View": "vizlight.scene",
     "bas_relief": "vizlight.filters",
@@ -57,12 +64,14 @@ _HOMES = {
     "project": "vizlight.filters",
     "provenance": "vizlight.filters",
     "read": "vizlight.files",
+    "refine": "vizlight.filters",
     "relief_day": "vizlight.filters",
     "relief_from_mesh": "vizlight.filters",
     "relief_shadow": "vizlight.filters",
     "report": "vizlight.verify.report",
     "satin": "vizlight.filters",
     "streamlines": "vizlight.filters",
+    "to_polydata": "vizlight.filters",
 }
 _MODULES = (
     "accessor", "engine", "filters", "geometry", "model", "movie", "render", "studies", "testing",
@@ -74,10 +83,14 @@ __all__ = [
     "Block",
     "DepthCue",
     "Frustum",
+    "HalfSpace",
     "Light",
     "Material",
+    "Polyhedron",
+    "Prism",
     "Scene",
     "Sphere",
+    "Torus",
     "Truncus",
     "View",
     "bas_relief",
@@ -91,11 +104,13 @@ __all__ = [
     "project",
     "provenance",
     "read",
+    "refine",
     "relief_day",
     "relief_shadow",
     "report",
     "satin",
     "streamlines",
+    "to_polydata",
 ]
 
 

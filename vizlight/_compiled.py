@@ -11,6 +11,7 @@ The environment variable ``VIZLIGHT_FAST`` is read at each question: 0 switches 
 from __future__ import annotations
 
 import contextlib
+import contextvars
 import hashlib
 import os
 import pickle
@@ -28,7 +29,7 @@ from typing import TYPE_CHECKING, Generic, ParamSpec, TypeVar
 from vizlight import _check
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -38,14 +39,15 @@ OLDEST = (0, 59)
 #: Rounding that a compiler may change where a bound of a few eps allows it: products and sums in
 #: one step, quotients as products, the sign of zero. Sums keep their order.
 ROUNDING = frozenset({"contract", "arcp", "nsz"})
-#: Seconds of processor time to import numba, to read a kernel from the disk, and to compile one.
-#: Measured with numba 0.59 to 0.68; a kernel of average size takes 1 to 3 seconds.
-IMPORT, READ, COMPILE = 0.4, 0.05, 2.0
+#: Seconds of processor time to import numba, to read a kernel from the disk, and to compile one, as
+#: measured with numba 0.68 for a kernel of the engine.
+IMPORT, READ, COMPILE = 0.35, 0.15, 1.2
 #: Share of the time to compile that one process must win back, as the disk keeps the result.
 SHARED = 1 / 3
 #: What a damaged file of the cache raises when numba reads it.
 _DAMAGED = (pickle.UnpicklingError, EOFError, ValueError, LookupError, AttributeError, ImportError)
 
+_SETTING: contextvars.ContextVar[str | None] = contextvars.ContextVar("fast", default=None)
 _LOCK = threading.RLock()
 _BROKEN: list[str] = []
 
@@ -58,18 +60,29 @@ def wanted() -> str:
     ValueError
         If the variable has another value.
     """
-    value = os.environ.get("VIZLIGHT_FAST", "")
+    set_here = _SETTING.get()
+    value = os.environ.get("VIZLIGHT_FAST", "") if set_here is None else set_here
     if value not in ("", "0", "1"):
         expected = "0 (off), 1 (always) or nothing (where it pays)"
         raise ValueError(_check.message("VIZLIGHT_FAST", expected, repr(value)))
     return value
 
 
+@contextlib.contextmanager
+def setting(value: str) -> Iterator[None]:
+    """Take a value in place of that of VIZLIGHT_FAST while this context is entered."""
+    token = _SETTING.set(value)
+    try:
+        yield
+    finally:
+        _SETTING.reset(token)
+
+
 def why_not() -> str:
     """Return why nothing is compiled; an empty text where compiled code is available."""
     if wanted() == "0":
         return "VIZLIGHT_FAST=0 switches it off"
-    return _BROKEN[0] if _BROKEN else _missing()
+    return _unusable()
 
 
 def active() -> bool:
@@ -86,6 +99,16 @@ def status() -> str:
     kept = f"kept in {folder}" if folder else "compiled anew in each process: no folder to keep it"
     when = "always" if wanted() == "1" else "where it pays"
     return f"on ({when}), by numba {version('numba')}, {kept}"
+
+
+def could_pay(saved: float) -> bool:
+    """Return whether some kernel could pay for its start-up by the seconds it saves."""
+    return wanted() == "1" or saved >= READ + (0.0 if "numba" in sys.modules else IMPORT)
+
+
+def _unusable() -> str:
+    """Return why numba cannot be used, whatever the setting; an empty text if it can."""
+    return _BROKEN[0] if _BROKEN else _missing()
 
 
 @cache
@@ -216,13 +239,13 @@ class Kernel(Generic[P, R]):
         Raises
         ------
         RuntimeError
-            If compiled code is not available.
+            If numba is not installed.
         """
         if self._proven and self._compiled is not None:
             return self._compiled(*args, **kwargs)
-        if not self.ready():
+        if _unusable():
             expected = "numba, see Kernel.pays"
-            raise RuntimeError(_check.message(self.function.__name__, expected, why_not()))
+            raise RuntimeError(_check.message(self.function.__name__, expected, _unusable()))
         with _LOCK:
             try:
                 result = self._dispatcher()(*args, **kwargs)

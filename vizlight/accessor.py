@@ -51,6 +51,7 @@ class Accessor:
     isoluminance = _method(filters.isoluminance)
     project = _method(filters.project)
     provenance = _method(filters.provenance)
+    refine = _method(filters.refine)
     relief_day = _method(filters.relief_day)
     relief_from_mesh = _method(filters.relief_from_mesh)
     relief_shadow = _method(filters.relief_shadow)

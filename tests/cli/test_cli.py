@@ -329,3 +329,32 @@ def test_a_reader_that_crashes_is_one_line(tmp_path):
     assert run.stderr.count("\n") == 1
     assert "vizlight: file: expected a" in run.stderr
     assert [p.name for p in tmp_path.iterdir()] == ["ball.ply"]
+
+
+def test_a_mesh_is_refined_and_the_script_does_the_same(tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    pv.Sphere().save("ball.vtp")
+    for arguments in (("light", "ball.vtp"), ("light", "ball.vtp", "--no-surface")):
+        code, out, _ = run(capfd, *arguments, "-o", "fine.vtp", "--refine", "1/255", "--report")
+        assert code == 0
+        assert "error between points" in out
+        assert "would do" not in out
+        fine = pv.read("fine.vtp")
+        assert fine.n_points > 842
+        assert fine.field_data["luminance_error"][0] <= 1 / 255
+    code, script, _ = run(
+        capfd, "light", "ball.vtp", "-o", "again.vtp", "--refine", "1/255", "--script"
+    )
+    assert code == 0
+    exec(compile(script, "script", "exec"), {})
+    assert pv.read("again.vtp").n_points == fine.n_points
+    code, _, error = run(capfd, "light", "ball.vtp", "-o", "no.vtp", "--refine", "1e-9")
+    assert code == 2
+    assert error.startswith("vizlight: refine: expected 0 or 1e-05 at least")
+    grid = pv.ImageData(dimensions=(3, 3, 3))
+    grid.save("grid.vti")
+    code, _, error = run(
+        capfd, "light", "grid.vti", "-o", "no.vtp", "--no-surface", "--refine", "0.01"
+    )
+    assert code == 2
+    assert "expected faces or lines to refine" in error

@@ -60,7 +60,8 @@ def light(
         camera = look.camera(mesh)
         progress = {"progress_bar": True} if common.out.progress else {}
         lit = Step("lit", "vizlight.illuminate", mesh, look.scene(camera), **given, **progress)
-        made = Job(lit, asked.name, look, camera, before=mesh, suffix=".vtp" if taken else "")
+        made = Job(lit, asked.name, look, camera, suffix=".vtp" if taken or asked.refine else "")
+        made.before = None if asked.refine else mesh
         made.tint(scenes.tinted(lit, asked.name, data, color))
         if not (target.contour or target.warp or target.slice):
             made.hint = lambda: _hint(data.run(), surface=target.surface)

@@ -7,9 +7,11 @@ from vizlight.filters.illuminate import illuminate
 from vizlight.filters.isoluminance import isoluminance
 from vizlight.filters.manifold import manifold
 from vizlight.filters.project import project
+from vizlight.filters.refine import refine
 from vizlight.filters.relief_day import relief_day
 from vizlight.filters.relief_shadow import relief_shadow
 from vizlight.filters.satin import satin
+from vizlight.filters.solids import to_polydata
 from vizlight.filters.streamlines import streamlines
 from vizlight.mesh.records import provenance
 
@@ -21,8 +23,10 @@ __all__ = [
     "manifold",
     "project",
     "provenance",
+    "refine",
     "relief_day",
     "relief_shadow",
     "satin",
     "streamlines",
+    "to_polydata",
 ]

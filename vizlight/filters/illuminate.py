@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import pyvista as pv
 
 from vizlight import _check
 from vizlight.filters import lighting
-from vizlight.mesh import blocks, normals
+from vizlight.mesh import blocks, normals, refining
 from vizlight.mesh.inputs import part_of, uses_normals
 from vizlight.scene import Scene
 from vizlight.shading.options import LightOptions, accepts
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from typing_extensions import Unpack
 
@@ -64,7 +64,8 @@ def illuminate(
         has a colour; ``luminance_valid`` where some point could not be lit; and the field array
         ``luminance_provenance``, which :func:`vizlight.provenance` reads. Normals that had to be
         computed stay as ``vizlight_normals``, so that the result is lit again in a fraction of the
-        time; they are used as long as points and cells have not changed.
+        time; they are used as long as points and cells have not changed. With ``refine`` it
+        consists of triangles or polylines with more points, as :func:`vizlight.refine` returns it.
 
     Raises
     ------
@@ -95,13 +96,12 @@ def illuminate(
     >>> lit.active_scalars_name
     'luminance'
     """
+    asked = LightOptions(**options)
+    if asked.refine and _check.boolean("inplace", inplace):
+        expected, remedy = "False for a mesh that gets new points", "leave it out"
+        raise ValueError(_check.message("inplace", expected, inplace, remedy))
     return light_mesh(
-        mesh,
-        scene,
-        LightOptions(**options),
-        threads=threads,
-        inplace=inplace,
-        progress_bar=progress_bar,
+        mesh, scene, asked, threads=threads, inplace=inplace, progress_bar=progress_bar
     )
 
 
@@ -113,8 +113,12 @@ def light_mesh(
     threads: int | None = None,
     inplace: bool = False,
     progress_bar: bool = False,
+    max_points: int | None = None,
 ) -> MeshT:
-    """Light a mesh by options that are checked; see :func:`illuminate`."""
+    """Light a mesh by options that are checked; see :func:`illuminate`.
+
+    With ``options.refine`` the result is a new mesh, also with ``inplace``.
+    """
     _check.instance("scene", scene, Scene)
     blocks.check(mesh)
     out = mesh if _check.boolean("inplace", inplace) else shallow_copy(mesh)
@@ -126,6 +130,18 @@ def light_mesh(
     parts = [
         part_of(own, path, scene, options) for own, (_, path) in zip(taken, named, strict=True)
     ]
+    rest: list[refining.Left] = []
+    if options.refine:
+        fitted = lighting.fit_depth_cue(scene, [part.inputs for part in parts])
+        refined = [
+            refining.refined(own, path, part, fitted, max_points, threads)
+            for own, (_, path), part in zip(taken, named, parts, strict=True)
+        ]
+        refining.warn_of_rest(refined, options.refine)
+        out = _replaced(out, iter([one.mesh for one in refined]))
+        named = list(blocks.named_blocks(out))
+        taken = [block for block, _ in named]
+        parts, rest = [one.part for one in refined], [one.left for one in refined]
     results, fitted = lighting.light(
         [(part.inputs, part.options) for part in parts],
         scene,
@@ -139,10 +155,14 @@ def light_mesh(
             block.ShallowCopy(own)
         if sided is not None:
             normals.keep(block, sided)
+    for block, _ in named:
+        refining.forget(block, options.name)
     inside = sum(sided.inside for sided in sides if sided is not None)
     blocks_lit = [block for block, _ in named]
     lighting.finish(blocks_lit, results, "illuminate", fitted, options, options.name, inside=inside)
     _warn_of_edges(blocks_lit, sides, options)
+    for block, left in zip(blocks_lit, rest, strict=False):
+        block.field_data[f"{options.name}{refining.LEFT}"] = [left.error, left.share]
     return out
 
 
@@ -178,6 +198,17 @@ def _warn_of_edges(
         f"averaged across them; {'take the extract_surface() of the mesh and ' * others}pass "
         f"feature_angle={normals.SHARP:g} to split the points there"
     )
+
+
+def _replaced(mesh: MeshT, made: Iterator[pv.DataSet]) -> MeshT:
+    """Return the next of some datasets for a dataset, a MultiBlock of them for a MultiBlock."""
+    if not isinstance(mesh, pv.MultiBlock):
+        return cast("MeshT", next(made))
+    for i in range(mesh.n_blocks):
+        block = mesh[i]
+        if block is not None:
+            mesh.replace(i, _replaced(block, made))
+    return mesh
 
 
 def shallow_copy(mesh: MeshT) -> MeshT:

@@ -138,7 +138,8 @@ def isoluminance(
     -------
     pyvista.MultiBlock
         Block ``bands`` holds polygons with the cell arrays ``luminance`` and ``band``, for a solid
-        also ``patch``; it is closed if the surface is. Block ``contours`` holds lines with the
+        also ``patch``; it is closed if the surface is. Floating-point point data of a mesh are
+        interpolated over its triangles and kept. Block ``contours`` holds lines with the
         cell array ``luminance``. If the scene has a colour, the bands have ``rgb``: the colour at
         the centre of each polygon with the brightness of its band; with tangents the colour is
         interpolated like the luminance. Field data of the bands are ``luminance_error``, which is
@@ -294,15 +295,21 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
     if unlit:
         _check.warn(lighting.unlit(unlit, len(used)))
     points = np.array(surface.points, dtype=np.float64)
+    carried = {
+        str(name): np.asarray(value, dtype=np.float64).reshape(len(points), -1)
+        for name, value in surface.point_data.items()
+        if np.issubdtype(value.dtype, np.floating) and len(points)
+    }
     rgb: Array | None = None
     if not len(triangles):
         steps = spacing.steps(levels, 0.0, 0.0)
+        carried = {}
         bands, _ = banding.cut(np.empty((0, 3)), triangles, np.empty((0, 3)), steps)
         bands = dataclasses.replace(bands, error=0.0)
     elif options.tangents is None:
         found = normals.normals_of(surface, asked.normals, 3, normals.onlooker(scene))
         unit = unit_rows(np.asarray(found, dtype=np.float64))
-        rows = np.concatenate([points, unit], axis=1)
+        rows = np.concatenate([points, unit, *carried.values()], axis=1)
 
         def luminance(places: Array, directions: Array) -> Array:
             return light(places, unit_rows(directions))
@@ -313,15 +320,25 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
         steps = spacing.steps(levels, float(values.min()), float(values.max()), exact=True)
         # Colours are interpolated like the luminance.
         columns = [points, lit.luminance[:, np.newaxis], *([] if lit.rgb is None else [lit.rgb])]
-        cut, _ = banding.cut(np.concatenate(columns, axis=1), triangles, values, steps)
-        bands = dataclasses.replace(cut, points=cut.points[:, :3], error=steps.error)
+        rows = np.concatenate([*columns, *carried.values()], axis=1)
+        cut, _ = banding.cut(rows, triangles, values, steps)
+        bands = dataclasses.replace(cut, error=steps.error)
         if lit.rgb is not None:
             middles = cut.middles()
-            rgb = _as_bright(middles[:, 4:], middles[:, 3], bands)
+            rgb = _as_bright(middles[:, 4:7], middles[:, 3], bands)
     record = records.of_light(lit, "isoluminance", fitted, options)
     if scene.colored and options.tangents is None:
         rgb = _rgb(bands, light)
-    return _blocks(bands, options.name, record, rgb, patches=False), bands, light
+    blocks = _blocks(bands, options.name, record, rgb, patches=False)
+    # The carried values are the last columns of the points.
+    last = bands.points.shape[1]
+    for name, column in reversed(carried.items()):
+        last -= column.shape[1]
+        found = bands.points[:, last : last + column.shape[1]]
+        kind = surface.point_data[name].dtype
+        shape = (len(found), *surface.point_data[name].shape[1:])
+        blocks["bands"].point_data[name] = np.ascontiguousarray(found.reshape(shape), dtype=kind)
+    return blocks, bands, light
 
 
 def _on_surface(
@@ -386,7 +403,7 @@ def _middles(bands: Bands, light: _Light) -> tuple[Array, Array]:
         patches = np.stack([bands.patch, bands.patch], axis=1)
         places = exact_surfaces.onto(shape.surfaces, (middle - shape.shift) / shape.scale, patches)
         return shape.world(places), triangle_mesh.normals_of(shape, places, bands.patch)
-    normals = unit_rows(middle[:, 3:]) if middle.shape[1] == 6 else bands.normals()
+    normals = unit_rows(middle[:, 3:6]) if middle.shape[1] >= 6 else bands.normals()
     return middle[:, :3], normals
 
 

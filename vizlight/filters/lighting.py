@@ -44,7 +44,7 @@ def light(
     Scene
         Scene with both ends of its depth cue.
     """
-    fitted = _fit_depth_cue(scene, [inputs for inputs, _ in parts if not inputs.generated])
+    fitted = fit_depth_cue(scene, [inputs for inputs, _ in parts if not inputs.generated])
     results: list[engine.Shading] = []
     total = sum(inputs.count for inputs, _ in parts)
     with _progress.progress("light", total, show=progress_bar) as report:
@@ -59,7 +59,7 @@ def _after(done: int, report: Callable[[int], None]) -> Callable[[int, int], Non
     return lambda now, _: report(done + now)
 
 
-def _fit_depth_cue(scene: Scene, inputs: Sequence[ShadingInputs]) -> Scene:
+def fit_depth_cue(scene: Scene, inputs: Sequence[ShadingInputs]) -> Scene:
     """Return the scene with the ends of its depth cue, taken from the points where not given."""
     cue = scene.depth_cue
     if cue is None or scene.view is None or (cue.front is not None and cue.back is not None):

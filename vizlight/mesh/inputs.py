@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import dataclasses
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from vizlight import _check
-from vizlight.mesh import polylines
+from vizlight.mesh import polylines, splitting
 from vizlight.mesh.normals import Sided, sided_normals
 from vizlight.mesh.point_arrays import points_of, tangents_of
 from vizlight.shading.decide import not_a_line
-from vizlight.shading.inputs import ShadingInputs
+from vizlight.shading.inputs import ShadingInputs, Sides
 
 if TYPE_CHECKING:
     import pyvista as pv
 
     from vizlight._types import Array
-    from vizlight.scene import Scene
+    from vizlight.scene import Scene, View
     from vizlight.shading.options import Facing, LightOptions
 
 
@@ -76,8 +77,26 @@ def part_of(mesh: pv.DataSet, path: str, scene: Scene, options: LightOptions) ->
         if not path:
             raise
         raise type(error)(f"block {path}: {error}") from error
-    inputs = ShadingInputs(points=points, tangents=tangents, normals=normals, base_tangents=base)
+    inputs = ShadingInputs(
+        points=points,
+        tangents=tangents,
+        normals=normals,
+        base_tangents=base,
+        cells=lambda: splitting.simplices(mesh),
+        sides=None if sided is None else partial(_sides, sided, scene.view, options),
+    )
     return Part(inputs, options, sided)
+
+
+def _sides(sided: Sided, view: View | None, options: LightOptions) -> Sides:
+    """Return normals before they are turned to the side that is seen, and what turns them."""
+
+    def turned(normals: Array, facts: Array, points: Array) -> Array:
+        own = Sided(normals, lean=facts[:, 0], open=facts[:, 1] > 0.5)
+        found = own.facing(_kind(options), points, view)
+        return -found if options.flip_normals else found
+
+    return Sides(sided.vectors, sided.facts(), turned)
 
 
 def _kind(options: LightOptions) -> Facing:
@@ -96,7 +115,8 @@ def _tangents(mesh: pv.DataSet, n: int, options: LightOptions) -> Array | None:
     if options.tangents is not None:
         return tangents_of(mesh, options.tangents, n, average_cells=options.average_cells)
     if n == 3 and polylines.has_lines_only(mesh):
-        return polylines.line_tangents(mesh)
+        kept = splitting.kept_tangents(mesh)
+        return polylines.line_tangents(mesh) if kept is None else kept
     return None
 
 

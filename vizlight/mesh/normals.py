@@ -78,6 +78,12 @@ class Sided:
         """Whether a piece has a border."""
         return bool(np.any(self.open))
 
+    def facts(self) -> Array:
+        """Return for each point its lean, and 1 on a piece with a border."""
+        lean = np.zeros(len(self.vectors)) if self.lean is None else self.lean
+        border = np.broadcast_to(self.open, len(self.vectors))
+        return np.stack([lean, border], axis=1).astype(np.float64)
+
     def facing(self, facing: Facing, points: ArraySource, view: View | None) -> Array:
         """Return the normals turned to a side; the normals themselves are not changed."""
         if facing not in ("auto", "eye") or view is None or len(self.vectors) == 0:
@@ -480,7 +486,7 @@ def split_edges(mesh: pv.PolyData, angle: float | Literal["auto"]) -> pv.PolyDat
 def fingerprint(mesh: pv.DataSet) -> str | None:
     """Return a digest of the points and cells of a mesh, None for a kind that keeps no normals."""
     if isinstance(mesh, pv.PolyData):
-        cells = [mesh.GetPolys(), mesh.GetStrips()]
+        cells = [mesh.GetLines(), mesh.GetPolys(), mesh.GetStrips()]
     elif isinstance(mesh, pv.UnstructuredGrid):
         cells = [mesh.GetCells()]
     else:

@@ -150,7 +150,7 @@ def half_integral(shininess: float, dtype: DTypeLike = np.float64) -> Callable[[
             return value
 
         return exact
-    inverse, cells = _table(float(shininess))
+    inverse, cells = table(float(shininess))
     rows, last = cells.astype(dtype, copy=False), cells.shape[1] - 1
     scale = rows.dtype.type(inverse)
 
@@ -172,7 +172,7 @@ def half_integral(shininess: float, dtype: DTypeLike = np.float64) -> Callable[[
 
 
 @lru_cache(maxsize=16)
-def _table(shininess: float) -> tuple[float, Array]:
+def table(shininess: float) -> tuple[float, Array]:
     """Return the cells per unit of z and the coefficients of G in each cell, shape (degree + 1, M).
 
     The integrand is interpolated at the Chebyshev nodes of a cell and the polynomial is integrated.

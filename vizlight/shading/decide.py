@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,7 @@ import numpy as np
 from vizlight import _check
 from vizlight.model import brightness
 from vizlight.scene import Scene
-from vizlight.shading import bounds, highlight
+from vizlight.shading import bounds, compiled, highlight
 from vizlight.shading.inputs import Layout
 from vizlight.shading.options import ShadingOptions, accepts
 from vizlight.shading.plan import Plan
@@ -77,7 +78,8 @@ def plan(
     if base_tangents is not None:
         base_tangents = _check.integer("base_tangents", base_tangents, low=1)
     layout = Layout(n, k, bool(normals), base_tangents or 0, bool(shadowed), fur)
-    return decide(scene, layout, ShadingOptions(**options), dtype)
+    made = decide(scene, layout, ShadingOptions(**options), dtype)
+    return dataclasses.replace(made, code=compiled.why_not(made) or compiled.WHERE_IT_PAYS)
 
 
 def decide(

@@ -17,6 +17,7 @@ import numpy as np
 
 from vizlight import _check, _pool
 from vizlight.scene import Scene
+from vizlight.shading import compiled
 from vizlight.shading.block import Output, columns, shade_block, view_depth
 from vizlight.shading.decide import decide, plan
 from vizlight.shading.inputs import ArraySource, ShadingInputs, array_source
@@ -191,7 +192,9 @@ def shade(
     :func:`~vizlight.model.reflection.specular`. Places of points and lengths of vectors add
     nothing to it, but k tangents multiply it by 1 over the sine of the angle between them. For
     ``model="cylinder"`` see :mod:`vizlight.model.cylinder`.
-    Memory beyond the output: about 15 MB for each thread, whatever N.
+    With numba installed (extra ``fast``) compiled code lights the points where it pays for its
+    start-up, within the same bounds; it rounds otherwise than NumPy.
+    Memory beyond the output: about 15 MB for each thread, whatever N; 1 MB by compiled code.
     """
     inputs = ShadingInputs(
         points=array_source("points", points),
@@ -252,12 +255,15 @@ def run(
     start = time.perf_counter()
     count, repeat = inputs.count, inputs.repeat
     output = Output(made, count)
+    code, reason = compiled.prepare(made, inputs, threads)
+    made = dataclasses.replace(made, compiled=code is not None, code=reason or compiled.IN_WORDS)
+    light = shade_block if code is None else code.shade_block
     block = inputs.block if block is None else block
     step = made.block if block is None else _check.integer("block", block, low=1)
 
     def work(rows: slice) -> int:
         with np.errstate(all="ignore"):
-            shade_block(made, rows, inputs, output)
+            light(made, rows, inputs, output)
         return int(rows.stop) * repeat
 
     for done in _pool.run(work, _pool.blocks(inputs.rows, step), threads):

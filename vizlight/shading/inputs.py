@@ -10,9 +10,11 @@ import numpy as np
 from vizlight import _check
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike, NDArray
 
-    from vizlight._types import Vector
+    from vizlight._types import Array, Indices, Vector
 
 
 class ArraySource(Protocol):
@@ -57,6 +59,24 @@ class Layout(NamedTuple):
     fur: float = 0.0
 
 
+class Sides(NamedTuple):
+    """Normals before they are turned to the side of the surface that is seen.
+
+    Attributes
+    ----------
+    normals : ndarray, shape (M, n)
+        Normals that agree with each other on a side.
+    facts : ndarray, shape (M, j)
+        Numbers of each point on which the side depends.
+    turned : callable
+        Function of normals, facts and points at the same places that returns the normals turned.
+    """
+
+    normals: Array
+    facts: Array
+    turned: Callable[[Array, Array, Array], Array]
+
+
 @dataclass(frozen=True, kw_only=True)
 class ShadingInputs:
     """The rows that are lit; normals, base tangents and perhaps tangents serve ``repeat`` points.
@@ -85,6 +105,11 @@ class ShadingInputs:
         What was subtracted from the points, where differences would lose digits.
     generated : bool, default: False
         Whether the points exist only once they are lit.
+    cells : callable, optional
+        Function that returns the segments or triangles between whose points the light is
+        interpolated, shape (C, 2) or (C, 3).
+    sides : callable, optional
+        Function that returns the normals as they are interpolated between the points.
     """
 
     points: ArraySource
@@ -98,6 +123,8 @@ class ShadingInputs:
     block: int | None = None
     origin: Vector | None = None
     generated: bool = False
+    cells: Callable[[], Indices] | None = None
+    sides: Callable[[], Sides] | None = None
 
     @property
     def count(self) -> int:

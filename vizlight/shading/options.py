@@ -27,6 +27,10 @@ FeatureAngle: TypeAlias = float | Literal["auto"] | None
 Facing = Literal["auto", "eye", "outward", "as given"]
 
 
+#: Least error between points that light is refined to: rounding in float32 is about 1e-6.
+FINEST = 1e-5
+
+
 class ShadingKeywords(TypedDict, total=False):
     """The fields of :class:`ShadingOptions` as keyword arguments."""
 
@@ -51,6 +55,7 @@ class LightKeywords(ShadingKeywords, total=False):
     feature_angle: FeatureAngle
     flip_normals: bool
     average_cells: bool
+    refine: float
     name: str
 
 
@@ -178,6 +183,10 @@ class LightOptions(ShadingOptions):
         Whether the normals are reversed; replaced by ``facing``, as is ``two_sided`` of a mesh.
     average_cells : bool, default: False
         Whether cell data may serve as tangents, averaged to the points.
+    refine : float, default: 0.0
+        Largest error between the points, such as 1/255: segments and triangles are split where
+        interpolation of the light would be further off, see :func:`vizlight.refine`. 0: the mesh
+        stays as it is.
     name : str, default: "luminance"
         Name of the result. Under another name the further arrays are ``<name>_diffuse`` and so on.
     """
@@ -195,12 +204,17 @@ class LightOptions(ShadingOptions):
     conditioned: bool | str | None = False
     flip_normals: bool = False
     average_cells: bool = False
+    refine: float = 0.0
     name: str = "luminance"
 
     def __post_init__(self) -> None:
         super().__post_init__()
         for name in ("flip_normals", "average_cells"):
             _check.set_fields(self, **{name: _check.boolean(name, getattr(self, name))})
+        _check.set_fields(self, refine=_check.number("refine", self.refine, low=0.0))
+        if 0 < self.refine < FINEST:
+            expected, remedy = f"0 or {FINEST:g} at least", "a picture shows 1/255"
+            raise ValueError(_check.message("refine", expected, self.refine, remedy))
         check_sides(self.facing, self.feature_angle)
         for name in ("two_sided", "flip_normals"):
             if getattr(self, name) and self.facing != "auto":

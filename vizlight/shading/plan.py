@@ -111,6 +111,10 @@ class Plan:
         multiple of its own.
     choice : Choice
         What was chosen within ``tolerance=``, and its bound.
+    compiled : bool
+        Whether compiled code has lit the points (extra ``fast``).
+    code : str
+        What runs the plan, or why it is not compiled code, in words.
     """
 
     n: int
@@ -131,6 +135,8 @@ class Plan:
     specular: bool
     factors: tuple[float, float] = (1.0, 1.0)
     choice: Choice = EXACT
+    compiled: bool = False
+    code: str = ""
 
     @property
     def two_sided(self) -> bool:
@@ -210,7 +216,8 @@ class Plan:
     def explain(self) -> str:
         """Return what is computed, what is skipped and why, one line each."""
         words = _Words()
-        for part in (_manifold, _diffuse, _specular, _lights, _factors, _results, _choice):
+        parts = (_manifold, _diffuse, _specular, _lights, _factors, _results, _choice, _code)
+        for part in parts:
             part(self, words)
         return "\n".join(
             [f"compute  {line}" for line in words.computed]
@@ -377,3 +384,10 @@ def _choice(plan: Plan, words: _Words) -> None:
         else "rounding has no bound within it here"
     )
     words.add(f"tolerance: {choice.tolerance:.3g} of luminance, {bound}")
+
+
+def _code(plan: Plan, words: _Words) -> None:
+    if plan.compiled:
+        words.add(f"code: {plan.code}")
+    elif plan.code:
+        words.add(None, f"compiled code: {plan.code}")

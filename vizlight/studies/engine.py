@@ -1,23 +1,28 @@
-"""Time, error and memory of the engine compared with a plain NumPy script.
+"""Time, error and memory of the engine, compared with a plain NumPy script and with one pass.
 
-The scene is the most expensive of the common ones: lines, a light with a position, a perspective
-view, the compensated diffuse term and the Phong term. The script
-(:mod:`vizlight.studies.reference`) works on whole arrays. Script and engine are timed in turn, so a
-busy machine slows both.
+The scene is the most expensive of the common ones: lines on a surface, a light with a position, a
+perspective view, the compensated diffuse term, the Phong term and the self-shadow of the surface.
+The script (:mod:`vizlight.studies.reference`) works on whole arrays. The engine runs its NumPy code
+in blocks and, where numba is installed, compiled code. One pass is ``O = P + T; O += N`` into an
+output that is there already: the arrays are read once and little is computed. All are timed in
+turn, so a busy machine slows all of them.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import time
+from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vizlight import _compiled
 from vizlight.model import brightness
 from vizlight.scene import Light, Scene, View
 from vizlight.shading import engine
 from vizlight.studies import reference
 from vizlight.studies._framework import PIXEL, Row, Study, cheapest, words
-from vizlight.studies._measuring import peak_memory, take_turns
+from vizlight.studies._measuring import peak_memory
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -25,84 +30,134 @@ if TYPE_CHECKING:
     from vizlight._types import Array
 
 SCENE = Scene(lights=Light(position=(4.0, 5.0, 6.0)), view=View(position=(0.0, 1.0, 9.0)))
+KINDS: dict[str, type[np.float32] | type[np.float64]] = {
+    "float32": np.float32,
+    "float64": np.float64,
+}
 
 
-def lines(count: int) -> tuple[Array, Array]:
-    """Return reproducible random points and tangents of any length, in float32."""
+def lines(count: int) -> tuple[Array, Array, Array]:
+    """Return reproducible random points, tangents and normals of any length, in float32."""
     random = np.random.default_rng(20)
-    points, tangents = (random.standard_normal((count, 3)).astype(np.float32) for _ in range(2))
-    return points, tangents
+    points, tangents, normals = (
+        random.standard_normal((count, 3)).astype(np.float32) for _ in range(3)
+    )
+    return points, tangents, normals
 
 
 def measure(count: int, repeats: int = 5) -> list[Row]:
-    """Return the rows of the study: the script, then the engine with several settings."""
-    points, tangents = lines(count)
+    """Return the rows of the study: the script, one pass, and the engine with several settings."""
     exponent = brightness.exponent(1, 3)
+    single = lines(count)
     exact = np.concatenate(
         [
-            reference.light(
-                points[i : i + 100_000], tangents[i : i + 100_000], SCENE, exponent=exponent
-            )
+            reference.light(p, t, SCENE, normals=m, exponent=exponent)
             for i in range(0, count, 100_000)
+            for p, t, m in [tuple(array[i : i + 100_000] for array in single)]
         ]
     )
-
-    def script() -> Array:
-        return reference.light(points, tangents, SCENE, exponent=exponent, dtype=np.float32)
-
-    def run(**options: Any) -> Callable[[], Array]:
-        return lambda: engine.shade(points, tangents, SCENE, **options).luminance
-
-    whole, own = count, engine.plan(SCENE, k=1, dtype=np.float32).block
-    ways: dict[tuple[str, int], Callable[[], Array]] = {
-        ("NumPy script, float32", whole): script,
-        ("engine, float32", own): run(),
-        ("engine, float32, 1 thread", own): run(threads=1),
-        ("engine, float64", engine.plan(SCENE, k=1).block): run(precision="float64"),
-    }
-    for block in (1 << 10, 1 << 12, 1 << 15, 1 << 20):
-        ways["engine, float32, other blocks", block] = run(block=block)
-    seconds = take_turns(ways, repeats)
+    ways: dict[tuple[str, int], Callable[[], Array]] = {}
+    for name, kind in KINDS.items():
+        dtype: np.dtype[np.floating] = np.dtype(kind)
+        points, tangents, normals = (array.astype(dtype) for array in single)
+        ways[f"NumPy script, {name}", count] = partial(
+            reference.light, points, tangents, SCENE, normals=normals, exponent=exponent, dtype=kind
+        )
+        ways[f"one pass, {name}", count] = partial(
+            _pass, points, tangents, normals, np.empty_like(points)
+        )
+        light = partial(engine.shade, points, tangents, SCENE, normals=normals)
+        block = engine.plan(SCENE, k=1, dtype=dtype).block
+        for code, fast in (("NumPy blocks", "0"), ("compiled", "1")):
+            if fast == "1" and not _compiled.active():
+                continue
+            ways[f"{code}, {name}", block] = partial(_run, light, fast)
+            if name == "float32":
+                ways[f"{code}, {name}, 1 thread", block] = partial(_run, light, fast, threads=1)
+                for other in (1 << 12, 1 << 15, 1 << 20):
+                    way = f"{code}, {name}, other blocks"
+                    ways[way, other] = partial(_run, light, fast, block=other)
+    seconds = _take_turns(ways, repeats)
     rows = []
     for (way, block), work in ways.items():
-        result, taken = work(), seconds[way, block]
+        result, name = work(), way.split(", ")[1]
+        taken, processor = seconds[way, block]
+        passing = "one pass" in way
+        error = float("nan") if passing else float(np.abs(result - exact).max())
         more = {
-            "times as fast": seconds["NumPy script, float32", whole] / taken,
-            "extra MB": (peak_memory(work) - result.nbytes) / 1e6,
+            "processor ns": 1e9 * processor / count,
+            "script / this": seconds[f"NumPy script, {name}", count][1] / processor,
+            "this / pass": processor / seconds[f"one pass, {name}", count][1],
+            "extra MB": 0.0 if passing else (peak_memory(work) - result.nbytes) / 1e6,
         }
-        error = float(np.abs(result - exact).max())
         rows.append(Row(way, block, error, 1e9 * taken / count, more))
     return rows
 
 
+def _pass(points: Array, tangents: Array, normals: Array, output: Array) -> Array:
+    """Read three arrays once and write one."""
+    np.add(points, tangents, out=output)
+    output += normals
+    return output
+
+
+def _run(light: Callable[..., engine.Shading], fast: str, **options: int) -> Array:
+    """Return the luminance by compiled code ("1") or by NumPy ("0")."""
+    with _compiled.setting(fast):
+        return light(**options).luminance
+
+
+def _take_turns(
+    ways: dict[tuple[str, int], Callable[[], Array]], repeats: int
+) -> dict[tuple[str, int], tuple[float, float]]:
+    """Return the shortest wall time and processor time of each function, called in turn.
+
+    The scripts, which take most of the time, are called three times at most.
+    """
+    best = dict.fromkeys(ways, (float("inf"), float("inf")))
+    for i in range(repeats):
+        for way, work in ways.items():
+            if i < 3 or "script" not in way[0]:
+                start = time.perf_counter(), time.process_time()
+                work()
+                taken = time.perf_counter() - start[0], time.process_time() - start[1]
+                best[way] = min(best[way][0], taken[0]), min(best[way][1], taken[1])
+    return best
+
+
 def verdict(rows: Sequence[Row]) -> str:
-    """Return which precision and block size to use: the defaults unless they are clearly slower."""
-    own = next(row for row in rows if row.way == "engine, float32")
-    high = next(row for row in rows if row.way == "engine, float64")
-    best = cheapest(rows, usual=own)
+    """Return which code, precision and block size to use, by processor time.
+
+    The engine's defaults are kept unless another choice is clearly faster.
+    """
+    rows = [row._replace(cost=float(row.more["processor ns"])) for row in rows]
+    found = {row.way: row for row in rows if "other" not in row.way}
+    usual = found.get("compiled, float32", found["NumPy blocks, float32"])
+    high = found[usual.way.replace("float32", "float64")]
+    best = cheapest([row for row in rows if "one pass" not in row.way], usual=usual)
     if best is None:
         return f"no method is within 1/255; the error of float64 is {high.error:.1g}"
-    kept = "the engine's defaults, " if best is own else ""
-    other = min(
-        (row for row in rows if row.way.startswith("engine, float32") and row is not best),
-        key=lambda row: row.cost,
-    )
+    kept = "the engine's defaults, " if best is usual else ""
+    blocks = found["NumPy blocks, float32"]
     return (
         f"for an error of 1/255 use {kept}'{best.way}' with blocks of {best.parameter} points: "
-        f"{words(best.cost)} ns per point and an error of {best.error:.1g}, "
-        f"{PIXEL / best.error:.0f} times smaller than allowed; float64 costs "
-        f"{words(high.cost / best.cost)} times as much, with an error of {high.error:.1g}; the "
-        f"next method in float32, '{other.way}' with blocks of {other.parameter} points, costs "
-        f"{words(other.cost / best.cost)} times as much"
+        f"{words(best.cost)} ns of processor time per point and an error of {best.error:.1g}, "
+        f"{PIXEL / best.error:.0f} times smaller than allowed; that is "
+        f"{words(float(best.more['script / this']))} times as fast as the script and takes "
+        f"{words(float(best.more['this / pass']))} times as long as one pass over the arrays; "
+        f"NumPy blocks cost {words(blocks.cost / best.cost)} times as much; float64 costs "
+        f"{words(high.cost / best.cost)} times as much, with an error of {high.error:.1g}"
     )
 
 
 STUDY = Study(
-    approximates="light of lines: light with a position, perspective, compensated diffuse, Phong",
+    approximates=(
+        "light of lines on a surface: light and eye with positions, compensated diffuse, Phong"
+    ),
     reference="the formulas as a plain NumPy script in float64",
     parameter="points per block",
     error="largest error of luminance",
     cost="ns per point",
-    steps=lambda quick: [lambda: measure(500_000 if quick else 4_000_000, 9)],
+    steps=lambda quick: [lambda: measure(*(200_000, 4) if quick else (4_000_000, 9))],
     verdict=verdict,
 )

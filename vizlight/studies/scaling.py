@@ -1,6 +1,7 @@
 """Growth of time and memory with the number of points, up to 1e8 points from files on disk.
 
-The scene has lines, a light and an eye with positions, and float32 arrays. The largest run reads
+The scene has lines, a light and an eye with positions, and float32 arrays. The first call of a
+process also imports numba and compiles a kernel, or reads it from the disk. The largest run reads
 points and tangents block by block from memory-mapped files. It is skipped if the disk or the memory
 is too small.
 """
@@ -9,6 +10,8 @@ from __future__ import annotations
 
 import os
 import shutil
+import subprocess
+import sys
 import tempfile
 import time
 from functools import partial
@@ -17,6 +20,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vizlight import _compiled
 from vizlight.shading import engine
 from vizlight.studies import reference
 from vizlight.studies._framework import PIXEL, Row, Study, slope, words
@@ -34,6 +38,21 @@ CHUNK, CHECKED = 1_000_000, 10_000
 MOST = 5
 #: Bytes per point: points and tangents on disk, light and validity in memory.
 ON_DISK, IN_MEMORY = 24, 5
+#: Lights so many points in a process of its own; prints wall time, processor time and error.
+FIRST_CALL = """
+import sys, time
+import numpy as np
+from vizlight.shading import engine
+from vizlight.studies import reference
+from vizlight.studies.engine import SCENE
+random = np.random.default_rng(7)
+vectors = [random.standard_normal((int(sys.argv[1]), 3), dtype=np.float32) for _ in range(2)]
+start = time.perf_counter(), time.process_time()
+lit = engine.shade(*vectors, SCENE)
+print(time.perf_counter() - start[0], time.process_time() - start[1])
+exact = reference.light(*(v[:1000] for v in vectors), SCENE, exponent=lit.plan.exponent)
+print(abs(lit.luminance[:1000] - exact).max())
+"""
 
 
 def random_vectors(count: int, seed: int = 7) -> Array:
@@ -109,6 +128,35 @@ def from_disk(count: int) -> list[Row]:
     return rows
 
 
+def first_call(count: int, folder: str, way: str, fast: str) -> list[Row]:
+    """Return the row of a process's first call, with import and preparation of compiled code.
+
+    ``fast`` is the setting of VIZLIGHT_FAST; compiled code is kept in the folder.
+    """
+    script = Path(folder, "first_call.py")
+    script.write_text(FIRST_CALL, encoding="utf-8")
+    environment = {**os.environ, "VIZLIGHT_FAST": fast, "XDG_CACHE_HOME": folder}
+    run = subprocess.run(
+        [sys.executable, str(script), str(count)],
+        env=environment, capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    taken, processor, error = map(float, run.stdout.split())
+    more = {"s": taken, "processor s": processor}
+    return [Row(way, count, error, 1e9 * taken / count, more)]
+
+
+def first_calls(counts: Sequence[int]) -> list[Row]:
+    """Return the rows of first calls: by NumPy, and by compiled code made and read from disk."""
+    rows: list[Row] = []
+    for count in counts:
+        with tempfile.TemporaryDirectory(prefix="vizlight-") as folder:
+            rows += first_call(count, folder, "first call, NumPy", "0")
+            if _compiled.active():
+                rows += first_call(count, folder, "first call, compiled", "1")
+                rows += first_call(count, folder, "first call, compiled before", "1")
+    return rows
+
+
 def steps(quick: bool) -> list[Callable[[], list[Row]]]:
     """Return the steps: points in memory, then points on disk."""
     counts = [10_000, 100_000, 1_000_000, 2_000_000, 5_000_000, 10_000_000]
@@ -116,6 +164,7 @@ def steps(quick: bool) -> list[Callable[[], list[Row]]]:
         counts.append(20_000_000)
     return [
         partial(in_memory, counts, 9.0 if quick else 60.0),
+        partial(first_calls, [10_000] if quick else [10**i for i in range(3, 9)]),
         partial(from_disk, 2_000_000 if quick else 100_000_000),
     ]
 
@@ -133,7 +182,8 @@ def exponent(rows: Sequence[Row], least: float = 1e6) -> float:
 def verdict(rows: Sequence[Row]) -> str:
     """Return the exponent of the time, and the cost of the largest mesh."""
     largest = rows[-1]
-    extra = max(float(row.more["MB beyond the output"]) for row in rows)
+    lasting = [row for row in rows if "MB beyond the output" in row.more]
+    extra = max(float(row.more["MB beyond the output"]) for row in lasting)
     grows = exponent(rows)
     expect = "expect" if abs(grows - 1) <= 0.05 else "do not expect"
     right = "within" if max(row.error for row in rows) <= PIXEL else "not within"

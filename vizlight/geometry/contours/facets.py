@@ -24,8 +24,8 @@ class Facets:
 
     Parameters
     ----------
-    points : ndarray, shape (P, 6)
-        Positions and unit normals, both of which are interpolated linearly along edges.
+    points : ndarray, shape (P, 6) or (P, more)
+        Positions, unit normals and other values, all interpolated linearly along edges.
     triangles : ndarray of int, shape (T, 3)
         Indices of corners.
     luminance : callable
@@ -41,7 +41,7 @@ class Facets:
 
     def light(self, points: Array) -> Array:
         """Return the luminance of rows of positions and normals."""
-        return np.asarray(self._light(points[:, :3], points[:, 3:]), dtype=np.float64)
+        return np.asarray(self._light(points[:, :3], points[:, 3:6]), dtype=np.float64)
 
     def corners(self) -> Array:
         """Return the luminance at the corners of all triangles."""

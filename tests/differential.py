@@ -1,0 +1,341 @@
+"""Random plans and inputs, directed at the hard cases, lit by compiled code and by NumPy.
+
+``python tests/differential.py [COUNT]`` lights COUNT random plans (default 100,000), each at 32
+points, by kernels that numba compiles, and prints the largest difference in units of the bound for
+each kind of plan. A kernel serves all plans of its form; numbers, points and vectors are random for
+each plan. It takes some ten minutes; ``tests/shading/test_compiled.py`` runs a sample.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import sys
+from collections import defaultdict
+from typing import NamedTuple
+
+import numpy as np
+
+from vizlight import DepthCue, Light, Material, Scene, View
+from vizlight.scene.light import NO_ATTENUATION
+from vizlight.shading import bounds, compiled
+from vizlight.shading.block import Output, shade_block
+from vizlight.shading.decide import decide
+from vizlight.shading.inputs import ShadingInputs
+from vizlight.shading.options import ShadingOptions
+
+POINTS = 32
+KINDS = ("surface", "line", "frame", "conditioned", "free", "based", "fur", "shadow", "cylinder")
+POWERS = (0, 0.3, 1, 2, 7.5, 20, 20, 31, 63, 64, 100.5, 1e4, 1e6)
+
+
+class Case(NamedTuple):
+    """A scene, its inputs and options."""
+
+    kind: str
+    scene: Scene
+    inputs: ShadingInputs
+    options: ShadingOptions
+
+
+class Frame(NamedTuple):
+    """What of a case its form depends on."""
+
+    kind: str
+    n: int
+    k: int
+    base: int
+    types: tuple[type, ...]
+    lights: tuple[tuple[bool, bool, bool], ...]
+    near_eye: bool
+    cue: str
+    axis: bool
+    material_color: bool
+    whole: bool
+    repeat: int
+    options: ShadingOptions
+
+
+def frame(random) -> Frame:
+    """Return a random form."""
+    kind = str(random.choice(KINDS))
+    n = 3 if kind == "cylinder" or random.random() < 0.6 else int(random.integers(2, 7))
+    k = int(random.integers(1, min(3, n - 1) + 1)) if kind in ("frame", "based") else 1
+    base = int(random.integers(k, n)) if kind == "based" else 0
+    model = "cylinder" if kind == "cylinder" else str(random.choice(["phong", "blinn"]))
+    types = [np.float32, np.float32, np.float64]
+    sided = kind == "surface" and random.random() < 0.3
+    bare = kind in ("surface", "shadow", "fur") and not sided and random.random() < 0.3
+    count = int(random.choice([1, 1, 1, 2, 3, 7]))
+    lights = [tuple(map(bool, random.random(3) < (0.6, 0.4, 0.3))) for _ in range(count)]
+    return Frame(
+        kind=kind, n=n, k=k, base=base,
+        types=tuple(types[random.integers(3)] for _ in range(4)),
+        lights=tuple(lights),
+        near_eye=bool(random.random() < 0.6),
+        cue=str(random.choice(["", "", "linear", "smooth"])),
+        axis=bool(random.random() < 0.5),
+        material_color=bool(random.random() < 0.2),
+        whole=bool(random.random() < 0.5),
+        repeat=int(random.choice([1, 1, 1, 4])),
+        options=ShadingOptions(
+            model=model,
+            compensate=bool(random.random() < 0.8),
+            two_sided=sided,
+            conditioned=kind != "free",
+            terminator=float(random.choice([0.05, 0.3])) if bare and kind == "surface" else 0.0,
+            components=bool(random.random() < 0.3),
+            precision=str(random.choice(["float32", "float64"])),
+        ),
+    )  # fmt: skip
+
+
+def case(form: Frame, random) -> Case:
+    """Return a case of a form: random numbers, points and vectors, some of them hard."""
+    n = form.n
+    offset = random.normal(size=n) * float(random.choice([0, 0, 1, 5e6]))
+    size = float(random.choice([1, 1, 1e-3, 100]))
+
+    def near():
+        return tuple(offset + size * random.normal(size=n) * random.choice([1.5, 3]))
+
+    direction = View(direction=random.normal(size=n)).direction
+    view = View(position=near()) if form.near_eye else View(direction=direction)
+    if form.cue and form.axis and form.near_eye:
+        view = View(position=view.position, direction=direction)
+        if view.parallel:
+            view = View(position=near())
+    lights = [_light(kind, near, random, n, view) for kind in form.lights]
+    powers = [p for p in POWERS if (p in (1, 2, 20, 31, 63)) == form.whole]
+    if form.kind == "cylinder":
+        powers = [p for p in powers if p >= 8] or [20]
+    power = float(random.choice(powers))
+    if form.options.model == "blinn" and form.whole:
+        power *= 2
+    material = Material(
+        ambient=random.random(), diffuse=random.random(), specular=random.random(),
+        shininess=power, color=tuple(random.random(3)) if form.material_color else None,
+    )  # fmt: skip
+    cue = None
+    if form.cue:
+        front = float(random.normal() * size)
+        cue = DepthCue(
+            front=front, back=front + size * float(random.choice([-3, 1, 4])),
+            front_scale=random.random(), back_scale=random.random(), cue=random.random(),
+            smooth=form.cue == "smooth",
+        )  # fmt: skip
+    scene = Scene(lights=lights, material=material, view=view, depth_cue=cue)
+    return Case(form.kind, scene, _inputs(form, scene, offset, size, random), form.options)
+
+
+def _light(kind, near, random, n, view):
+    placed, faded, colored = kind
+    color = tuple(random.random(3)) if colored else None
+    intensity = float(random.choice([0.3, 1.0, 2.0]))
+    if not placed:
+        return Light(direction=random.normal(size=n), intensity=intensity, color=color)
+    attenuation = tuple(random.random(3) * (1, 1, 0.3)) if faded else NO_ATTENUATION
+    return Light(position=near(), intensity=intensity, color=color, attenuation=attenuation)
+
+
+def _inputs(form, scene, offset, size, random):
+    n, count, rows = form.n, POINTS, POINTS // form.repeat
+    types = form.types
+    points = (offset + size * random.normal(size=(count, n))).astype(types[0])
+    each = rows if form.repeat > 1 and form.types[3] == np.float64 else count
+    with np.errstate(over="ignore", under="ignore"):
+        tangents = _vectors(random, (each, form.k, n), types[1], scene)
+        normals = _vectors(random, (rows, n), types[2], scene)
+        base = _vectors(random, (rows, max(form.base, 1), n), types[3], scene)
+    light = scene.lights[0]
+    if light.position is not None and random.random() < 0.1:
+        points[0] = light.position
+    if random.random() < 0.1:
+        points[1] = np.nan
+    kind, given = form.kind, {}
+    if kind in ("conditioned", "fur", "surface", "shadow", "free"):
+        given["normals"] = normals
+    if kind not in ("surface", "shadow") or form.options.model == "cylinder":
+        given["tangents"] = tangents
+    if kind == "based":
+        given["base_tangents"] = base
+    if kind == "fur":
+        height = random.random(count) * 2
+        height[:3] = (0, 1e3, 1e-30)
+        given |= {"fur_height": height, "fur": float(random.choice([0.2, 0.9, 1.0]))}
+    if kind == "shadow":
+        shadow = random.random((count, len(scene.lights)))
+        shadow[0] = 0
+        given["shadow"] = shadow
+    return ShadingInputs(points=points, repeat=form.repeat, **given)
+
+
+def _vectors(random, shape, kind, scene):
+    """Return random vectors, the first of them hard cases."""
+    v = random.normal(size=shape)
+    if random.random() < 0.5:
+        return v.astype(kind)
+    first = scene.lights[0].direction
+    for i, change in enumerate(random.permutation(7)[:3]):
+        row = v[i]
+        if change == 0:
+            row[...] = 0
+        elif change == 1:
+            row *= 1e-30
+        elif change == 2:
+            row *= 1e30
+        elif change == 3 and first is not None:
+            row[..., :] = np.asarray(first) + 1e-7 * random.normal(size=row.shape)
+        elif change == 4:
+            row[..., 0] = random.choice([np.nan, np.inf])
+        elif change == 5:
+            row[..., :] = np.atleast_2d(row)[0] + 1e-7 * random.normal(size=row.shape)
+        else:
+            row *= float(random.choice([1e-150, 1e150]))
+    return v.astype(kind)
+
+
+def compare(made: Case, *, interpreted: bool) -> tuple[float, int]:
+    """Return the largest difference from NumPy in units of the bound, and the points that count.
+
+    Validity and the light of points without any must be the same. float32 is held against NumPy in
+    float64 by the bound, float64 against NumPy in float64 by twice the bound.
+    """
+    plan = decide(made.scene, made.inputs.layout, made.options, made.options.precision)
+    count, narrow = made.inputs.count, plan.dtype == np.float32
+    whole, rows = slice(0, made.inputs.rows), slice(0, made.inputs.rows)
+    mine, numpys, truth = Output(plan, count), Output(plan, count), None
+    with np.errstate(all="ignore"):
+        code = compiled.given(plan, made.inputs, interpreted=interpreted)
+        code.shade_block(plan, rows, made.inputs, mine)
+        shade_block(plan, rows, made.inputs, numpys)
+        truth = numpys
+        if narrow:
+            wide = dataclasses.replace(made.options, precision="float64")
+            exact = decide(made.scene, made.inputs.layout, wide, "float64")
+            truth = Output(exact, count)
+            shade_block(exact, whole, made.inputs, truth)
+        bound = _bound(plan, made.inputs)
+    np.testing.assert_array_equal(mine.valid, numpys.valid)
+    for name in ("luminance", "diffuse", "specular", "rgb"):
+        a, b = getattr(mine, name), getattr(numpys, name)
+        assert (a is None) == (b is None)
+        if a is not None:
+            assert np.isfinite(a).all()
+            np.testing.assert_array_equal(a[~mine.valid], b[~mine.valid])
+    same = mine.valid & truth.valid
+    if not same.any():
+        return 0.0, 0
+    worst = 0.0
+    for name in ("luminance", "diffuse", "specular", "rgb"):
+        a, b = getattr(mine, name), getattr(truth, name)
+        if a is not None and b is not None:
+            off = np.abs(a[same].astype(float) - b[same])
+            limit = bound[same] if off.ndim == 1 else bound[same, np.newaxis]
+            worst = max(worst, float((off / limit).max()))
+    return worst / (1 if narrow else 2), int(same.sum())
+
+
+def _unit(v):
+    largest = np.abs(v).max(axis=-1, keepdims=True)
+    v = v / np.where(largest > 0, largest, 1)
+    return v / np.linalg.norm(v, axis=-1, keepdims=True)
+
+
+def _dependence(v, n):
+    """Return 1 over the sine of the angle between tangents: what it multiplies errors by."""
+    v = _unit(np.asarray(v, float).reshape(len(v), -1, n))
+    if v.shape[1] == 1:
+        return np.ones(len(v)), v
+    v = np.where(np.isfinite(v), v, 0)
+    return 1 / np.maximum(np.linalg.svd(v, compute_uv=False)[:, -1], 1e-300), v
+
+
+def _bound(plan, inputs):
+    """Return the bound of the luminance's error at each point, from those of the docstrings."""
+    eps = float(np.finfo(plan.dtype).eps)
+    n, count = plan.n, inputs.count
+    scene, material = plan.scene, plan.scene.material
+
+    def each(v):
+        return np.repeat(v, count // len(v), axis=0)
+
+    points = np.asarray(inputs.points, float)
+    spread = np.ones(count)
+    if inputs.tangents is not None:
+        wide, t = _dependence(inputs.tangents, n)
+        spread, t = each(wide), each(t)
+    if inputs.base_tangents is not None:
+        spread = spread + each(_dependence(inputs.base_tangents, n)[0])
+    normal = None if inputs.normals is None else each(_unit(np.asarray(inputs.normals, float)))
+    wo = None
+    if scene.view is not None:
+        wo = _way(scene.view.position, scene.view.direction, points, far=scene.view.parallel)
+    total = np.full(count, 4 * eps * plan.ambient)
+    for light, highlight in zip(scene.lights, plan.highlights, strict=True):
+        wi = _way(light.position, light.direction, points, far=light.position is None)
+        factors = 8.0 * (2 + (light.attenuation != NO_ATTENUATION) + plan.conditioned)
+        if plan.base:
+            factors = factors + bounds.diffuse_bound(plan.base_exponent, eps) / eps * spread
+        if plan.options.terminator:
+            factors += 6 / plan.options.terminator
+        if plan.fur:
+            # (1 - rho)^d changes by at most 1/e of the relative change of d; and it is within 1.
+            sines = [np.abs(np.sum(normal * w, axis=1)) for w in (wi, wo)]
+            factors = factors + sum(4 / np.maximum(s, 1e-300) for s in sines) + 40
+        if plan.shadowed:
+            cosine = np.abs(np.sum(normal * wi, axis=1))
+            factors = factors + 4 / np.maximum(cosine, 1e-300)
+        d = (bounds.diffuse_bound(plan.exponent, eps) + factors * eps) * spread
+        s = bounds.specular_bound(highlight.shininess, eps)
+        if highlight.model == "blinn" and highlight.half is None:
+            near = np.linalg.norm(wi + wo, axis=1)
+            s = s / np.minimum(np.maximum(near, 1e-300), 1)
+        if plan.model == "cylinder":
+            rest = [w - np.sum(w * t[:, 0], axis=1, keepdims=True) * t[:, 0] for w in (wi, wo)]
+            a, b = (np.linalg.norm(r, axis=1) for r in rest)
+            least = np.minimum(np.minimum(a, b), np.linalg.norm(rest[0] + rest[1], axis=1))
+            d = 4 * eps / np.maximum(b, 1e-300) + factors * eps
+            s = 10 * eps / np.maximum(least, 1e-300)
+        s = (s + factors * eps) * spread
+        if plan.surface and not plan.two_sided and not plan.options.terminator:
+            # The highlight ends where the light does: at N.wi = 0 rounding decides.
+            cosine = np.abs(np.sum(normal * wi, axis=1))
+            s = np.where(cosine < 8 * eps, 1, s)
+        total += light.intensity * plan.factors[0] * material.diffuse * np.minimum(d, 1)
+        total += light.intensity * plan.factors[1] * material.specular * np.minimum(s, 1)
+        total += 4 * eps * light.intensity * (material.diffuse + material.specular)
+    cue = scene.depth_cue
+    if cue is not None:
+        weight = bounds.weight(plan, material.diffuse + material.specular)
+        total += 4 * eps * (cue.cue + plan.ambient + weight)
+        reach = np.abs(points).max(axis=1) + max(map(abs, scene.view.position or (0,)))
+        total += 32 * np.finfo(float).eps * reach / abs(cue.front - cue.back) * (cue.cue + weight)
+    return np.where(np.isfinite(total), total, math.inf)
+
+
+def _way(position, direction, points, *, far):
+    if far:
+        return np.broadcast_to(_unit(np.asarray(direction, float)), points.shape)
+    return _unit(np.asarray(position, float) - points)
+
+
+def main(count: int) -> None:
+    """Run all, print the worst of each kind."""
+    random = np.random.default_rng(14)
+    worst, cases, points = defaultdict(float), defaultdict(int), 0
+    for number in range(count // 500):
+        form = frame(np.random.default_rng(1000 + number))
+        for _ in range(500):
+            ratio, lit = compare(case(form, random), interpreted=False)
+            worst[form.kind] = max(worst[form.kind], ratio)
+            cases[form.kind] += 1
+            points += lit
+        print(number, form.kind, f"{worst[form.kind]:.3f}", flush=True)  # noqa: T201
+    for kind in cases:
+        print(f"{kind:<12}{cases[kind]:>8} plans, worst {worst[kind]:.3f} of the bound")  # noqa: T201
+    print(f"{sum(cases.values())} plans, {points} points")  # noqa: T201
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 100_000)

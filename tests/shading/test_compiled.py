@@ -1,0 +1,216 @@
+"""Compiled light and NumPy's are the same within the bounds of the docstrings.
+
+The text of kernels runs as Python for most plans, which takes milliseconds; a few are compiled.
+``python tests/differential.py`` compares 100,000 plans, all compiled.
+"""
+
+from __future__ import annotations
+
+import differential
+import numpy as np
+import pytest
+
+from vizlight import DepthCue, Light, Material, Scene, View, _compiled, engine
+from vizlight.shading import compiled, statements
+from vizlight.shading.writer import write
+
+LAMP = Light(position=(0.5, 4, 2), intensity=0.7)
+SUN = Light(direction=(1, 2, 0.5))
+NEAR = View(position=(0, 1, 6))
+SCENE = Scene(lights=LAMP, view=NEAR)
+
+
+@pytest.fixture(autouse=True, scope="module")
+def home(tmp_path_factory):
+    """A folder for caches of this module's own."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
+        patch.setenv("VIZLIGHT_FAST", "0")
+        yield
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_text_and_numpy_are_the_same_within_the_bounds(seed):
+    """Each seed stands for 25 forms."""
+    counted = 0
+    for number in range(25):
+        random = np.random.default_rng(10_000 + 25 * seed + number)
+        form = differential.frame(random)
+        ratio, points = differential.compare(differential.case(form, random), interpreted=True)
+        assert ratio <= 1, form
+        counted += points
+    assert counted > 25 * differential.POINTS * 0.8
+
+
+@pytest.mark.parametrize("seed", [1001, 1002])
+def test_compiled_and_numpy_are_the_same_within_the_bounds(seed):
+    pytest.importorskip("numba")
+    form = differential.frame(np.random.default_rng(seed))
+    random = np.random.default_rng(seed)
+    with _compiled.setting("1"):
+        for _ in range(150):
+            ratio, _ = differential.compare(differential.case(form, random), interpreted=False)
+            assert ratio <= 1
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new"),
+    [
+        ("phong", "sine_i - sine_o", "sine_i + sine_o"),
+        ("blinn", "0.5 * shininess", "0.25 * shininess"),
+        ("attenuation", "linear + distance", "linear - distance"),
+        ("smooth_step", "3.0 - 2.0 * u", "2.0 - u"),
+        ("fur_path", "height / sine", "height * sine"),
+    ],
+)
+def test_a_wrong_formula_is_found(name, old, new, monkeypatch):
+    """The comparison can fail: one term of one formula is broken."""
+    import ast
+    import inspect
+
+    from vizlight.shading import formulas
+
+    text = inspect.getsource(getattr(formulas, name))
+    assert old in text
+    broken = ast.parse(text.replace(old, new)).body[0]
+    functions = dict(statements.functions())
+    monkeypatch.setattr(statements, "functions", lambda: functions | {name: broken})
+    write.cache_clear()
+    try:
+        worst = 0.0
+        for seed in range(10_000, 10_030):
+            random = np.random.default_rng(seed)
+            made = differential.case(differential.frame(random), random)
+            worst = max(worst, differential.compare(made, interpreted=True)[0])
+    finally:
+        write.cache_clear()
+    assert worst > 1
+
+
+def cloud(random, count, dtype=np.float32):
+    return tuple(random.standard_normal((count, 3)).astype(dtype) for _ in range(3))
+
+
+@pytest.fixture
+def fast():
+    """Compiled code always."""
+    pytest.importorskip("numba")
+    with _compiled.setting("1"):
+        yield
+
+
+def test_engine_runs_compiled_code(fast, random):
+    points, tangents, normals = cloud(random, 1000)
+    tangents[100:200] = 0
+    points[300] = np.nan
+    seen, steps = [], []
+    with engine.observed(lambda inputs, scene, shading, options: seen.append(shading)):
+        lit = engine.shade(
+            points, tangents, SCENE, normals=normals, block=128, threads=2,
+            progress=lambda done, of: steps.append((done, of)),
+        )  # fmt: skip
+    assert seen == [lit]
+    assert steps[-1] == (1000, 1000)
+    assert lit.plan.compiled
+    assert "code: compiled" in lit.plan.explain()
+    with _compiled.setting("0"):
+        same = engine.shade(points, tangents, SCENE, normals=normals)
+    assert not same.plan.compiled
+    assert "skip     compiled code: VIZLIGHT_FAST=0" in same.plan.explain()
+    assert lit.invalid == same.invalid == 101
+    np.testing.assert_array_equal(lit.valid, same.valid)
+    np.testing.assert_allclose(lit.luminance, same.luminance, rtol=0, atol=20 * 1.2e-7)
+    # Arrays that are strided or read by slice.
+    wide = np.zeros((1000, 8), "f4")
+    wide[:, 1:7:2] = points
+
+    class Source:
+        shape, dtype = tangents.shape, tangents.dtype
+
+        def __getitem__(self, rows):
+            return tangents[rows]
+
+    other = engine.shade(wide[:, 1:7:2], Source(), SCENE, normals=normals.astype(np.float32))
+    assert other.plan.compiled
+    np.testing.assert_array_equal(other.luminance, lit.luminance)
+
+
+@pytest.mark.parametrize("block", [1, 7, 64, 100])
+def test_light_does_not_depend_on_blocks(fast, random, block):
+    points, tangents, normals = cloud(random, 331)
+    options = {"normals": normals, "components": True}
+    lit = engine.shade(points, tangents, SCENE, **options)
+    cut = engine.shade(points, tangents, SCENE, block=block, **options)
+    for name in ("luminance", "diffuse", "specular", "valid"):
+        np.testing.assert_array_equal(getattr(cut, name), getattr(lit, name))
+
+
+def test_where_it_does_not_pay_numpy_runs(random):
+    points, tangents, _ = cloud(random, 10)
+    with _compiled.setting(""):
+        lit = engine.shade(points, tangents, Scene(lights=SUN, view=NEAR), model="blinn")
+        words = "10 points do not pay" if _compiled.active() else "numba"
+    assert not lit.plan.compiled
+    assert words in lit.plan.explain()
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"n": 7, "k": 1}, "7 components, more than 6"),
+        ({"n": 6, "k": 4}, "4 tangents per point, more than 3"),
+        ({"k": 1, "model": "cylinder"}, "a shininess below 8"),
+    ],
+)
+def test_what_has_no_compiled_form_says_why(given, words):
+    n = given.get("n", 3)
+    scene = Scene(
+        lights=Light(direction=np.ones(n)),
+        view=View(direction=np.arange(n) + 1.0),
+        material=Material(shininess=5),
+    )
+    assert words in engine.plan(scene, **given).explain()
+    assert "code: where" in engine.plan(SCENE, k=1).explain()
+
+
+def test_ambient_light_alone_needs_none():
+    dark = Material(ambient=0.1, diffuse=0, specular=0)
+    words = engine.plan(Scene(material=dark), k=1).explain()
+    assert "the ambient term alone" in words
+    cue = Scene(material=dark, view=NEAR, depth_cue=DepthCue(front=1, back=2))
+    assert not compiled.why_not(engine.plan(cue, k=1))
+
+
+def test_a_text_has_the_terms_of_its_form_and_no_others(random):
+    points, _, normals = cloud(random, 4)
+    inputs = compiled_inputs(points, normals)
+    plain = engine.plan(Scene(lights=SUN, view=NEAR), normals=True)
+    form, order = compiled._form(plain, inputs)
+    text = write(form).source
+    body = text[text.index("def light(") :]
+    assert order == [0]
+    assert "tangents[" not in body
+    assert "shadow[" not in body
+    assert "rgb[" not in body
+    assert "exp_(" not in body
+    assert body.count("sqrt(") == 2
+
+
+def compiled_inputs(points, normals):
+    from vizlight.shading.inputs import ShadingInputs
+
+    return ShadingInputs(points=points, normals=normals)
+
+
+def test_seven_lights_of_two_kinds(fast, random):
+    points, _, normals = cloud(random, 500, float)
+    lamps = [Light(position=random.standard_normal(3) * 4, intensity=0.2) for _ in range(4)]
+    suns = [Light(direction=random.standard_normal(3), intensity=0.3) for _ in range(3)]
+    mixed = [lamps[0], suns[0], lamps[1], suns[1], lamps[2], suns[2], lamps[3]]
+    scene = Scene(lights=mixed, view=NEAR)
+    shadow = random.random((500, 7))
+    lit = engine.shade(points, None, scene, normals=normals, shadow=shadow)
+    assert lit.plan.compiled
+    with _compiled.setting("0"):
+        same = engine.shade(points, None, scene, normals=normals, shadow=shadow)
+    np.testing.assert_allclose(lit.luminance, same.luminance, rtol=0, atol=1e-13)

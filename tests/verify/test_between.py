@@ -1,0 +1,244 @@
+"""The error between points: its places, its reference, and the resolution that it takes."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight import Light, Material, Scene, View, engine, illuminate
+from vizlight.mesh.inputs import inputs_of
+from vizlight.shading.inputs import ShadingInputs
+from vizlight.shading.options import LightOptions, ShadingOptions
+from vizlight.verify import between
+from vizlight.verify.between import Between, Places
+from vizlight.verify.report import Run, unseen
+
+LIGHT, EYE = np.array([0.7, 0.6, 0.38]), np.array([0.1, 0.3, 0.9])
+SCENE = Scene(lights=Light(direction=LIGHT), view=View(direction=EYE))
+
+
+def unit(v):
+    return v / np.linalg.norm(v, axis=-1, keepdims=True)
+
+
+@pytest.fixture(scope="module")
+def ball():
+    mesh = pv.Sphere(theta_resolution=40, phi_resolution=40)
+    mesh.clear_data()
+    mesh["normal"] = unit(np.asarray(mesh.points, dtype=np.float64))
+    return mesh
+
+
+def report_of(work, **options):
+    with vizlight.report(**options) as found:
+        work()
+    return found
+
+
+def test_the_error_is_that_of_many_places(ball):
+    """Against the textbook's formula at 200 thousand places, drawn and weighted by other means."""
+    (run,) = report_of(lambda: illuminate(ball, SCENE, normals="normal")).runs
+    random = np.random.default_rng(5)
+    faces = ball.regular_faces
+    size = ball.compute_cell_sizes(length=False, volume=False)["Area"]
+    chosen = faces[random.choice(len(faces), 200_000, p=size / size.sum())]
+    weights = -np.log(random.random((len(chosen), 3)))
+    weights /= weights.sum(axis=1, keepdims=True)
+    n = unit(np.einsum("mc,mcn->mn", weights, ball["normal"][chosen]))
+    wi, wo = unit(LIGHT), unit(EYE)
+    cosine = n @ wi
+    mirror = np.maximum((2 * cosine[:, None] * n - wi) @ wo, 0) * (cosine > 0)
+    true = 0.1 + 0.5 * np.maximum(cosine, 0) + 0.4 * mirror**20
+    light = illuminate(ball, SCENE, normals="normal")["luminance"]
+    off = np.abs(true - np.einsum("mc,mc->m", weights, light[chosen]))
+    assert run.places == 4096
+    assert run.between_rms == pytest.approx(np.sqrt(np.mean(off * off)), rel=0.05)
+    assert run.visible == pytest.approx(np.mean(off > 1 / 255), abs=0.01)
+    assert 0.7 * off.max() < run.between <= off.max() * 1.01
+    assert np.mean(off > run.between) < unseen(run.places)
+
+
+@pytest.mark.parametrize("model", ["phong", "blinn"])
+def test_the_resolution_is_the_one_it_takes(ball, model):
+    """A mesh whose sides are divided by that factor has no visible error, one by less has."""
+    found = report_of(lambda: illuminate(ball, SCENE, normals="normal", model=model))
+    factor = found.runs[0].finer
+    assert factor in (2, 4, 8)
+    for times, enough in ((factor // 2, False), (factor, True)):
+        fine = ball.subdivide(int(np.log2(times)), "linear") if times > 1 else ball
+        fine["normal"] = unit(np.asarray(fine["normal"]))
+        (run,) = report_of(
+            lambda: illuminate(fine, SCENE, normals="normal", model=model)  # noqa: B023
+        ).runs
+        assert (run.visible < 1e-3) == enough
+
+
+def test_words(ball):
+    said = str(report_of(lambda: illuminate(ball, SCENE, normals="normal")))
+    assert "rounding error" in said
+    assert "all 1522 points computed again one by one in float64" in said
+    assert "at 4096 random places; 95 %: fewer than 0.08 % of the places are worse" in said
+    assert "are off by more than 1/255: cells 1/4 as long, or refine=1/255, would do" in said
+    fine = str(report_of(lambda: illuminate(ball, SCENE, normals="normal", refine=1 / 255)))
+    assert "would do" not in fine
+    part = str(report_of(lambda: illuminate(ball, SCENE, normals="normal"), sample=100))
+    assert "100 points computed again" in part
+    assert "95 %: fewer than 3 % of the points are worse" in part
+
+
+def test_a_resolution_that_is_not_enough_is_named():
+    """Light that jumps within a triangle is right at no resolution."""
+    normals = np.array([[0.0, 0, 1], [0, 0, 1], [0.1, 0, -1]])
+    mesh = pv.PolyData(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), [3, 0, 1, 2])
+    mesh["n"] = normals
+    scene = Scene(lights=Light(direction=(0, 0, 1)), view=View(direction=(0, 0, 1)))
+    found = report_of(lambda: illuminate(mesh, scene, normals="n", facing="as given"))
+    assert found.runs[0].finer is None
+    assert "no cells 1/128 as long, or refine=1/255, would do" in str(found)
+
+
+@pytest.mark.parametrize("count", [1, 10, 300, 4096])
+def test_the_confidence_is_95_percent(count):
+    """A fault in a share p of the points is missed by a sample with probability (1 - p)^n."""
+    assert (1 - unseen(count)) ** count == pytest.approx(0.05)
+    assert unseen(3000) < 1e-3 < unseen(2990)
+    assert unseen(0) == 1
+
+
+def test_a_fault_in_one_of_a_thousand_points_is_found(monkeypatch):
+    mesh = pv.Sphere(theta_resolution=200, phi_resolution=200)
+    right = engine.shade_block
+
+    def wrong(plan, rows, inputs, output):
+        right(plan, rows, inputs, output)
+        output.luminance[rows][7::1000] += 0.01
+
+    monkeypatch.setattr(engine, "shade_block", wrong)
+    for seed in range(3):
+        found = report_of(lambda: illuminate(mesh, SCENE), seed=seed)
+        assert found.error == pytest.approx(0.01, rel=1e-3)
+    run = found.runs[0]
+    assert (run.sample, run.missed) == (4096, unseen(4096))
+
+
+def test_lines_surfaces_and_volumes_have_an_error_and_clouds_have_none():
+    flow = vizlight.load_example()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        runs = report_of(
+            lambda: [
+                vizlight.streamlines(flow, SCENE, vectors="V", seeds=5),
+                illuminate(flow.contour([600.0], scalars="Temp"), SCENE, tangents="V"),
+                illuminate(flow, SCENE),
+                illuminate(pv.PolyData(np.eye(3)), SCENE, tangents=np.eye(3)),
+                vizlight.fur(pv.Sphere(), SCENE, density=0.3, fibres=20),
+            ]
+        ).runs
+    assert [run.places for run in runs] == [4096, 4096, 4096, 0, 0, 0]
+    assert all(0 < run.between < 1 for run in runs[:3])
+    assert np.isnan(runs[3].between)
+
+
+def test_no_sample_no_places(ball):
+    found = report_of(lambda: illuminate(ball, SCENE), sample=0)
+    assert found.runs[0].places == 0
+    assert np.isnan(found.between)
+    empty = Run(points=0, terms=(), precision="float32", seconds=0, bytes=0, sample=0, error=0,
+                rms=0, invalid=0)  # fmt: skip
+    assert empty.missed == 0
+
+
+def test_places_are_uniform_in_area(random):
+    points = np.array([[0.0, 0], [1, 0], [0, 1], [9, 0], [0, 9]])
+    cells = np.array([[0, 1, 2], [0, 3, 4]])
+    places, cell = between.random_places(points, cells, 5000, random)
+    assert np.mean(cell == 1) == pytest.approx(81 / 82, abs=0.001)
+    where = between.interpolated(points, places)[cell == 1]
+    np.testing.assert_allclose(where.mean(axis=0), 3, atol=0.1)
+    assert np.mean(where.sum(axis=1) < 4.5) == pytest.approx(0.25, abs=0.03)
+    np.testing.assert_allclose(places.weights.sum(axis=1), 1)
+    segments = np.array([[0, 1], [0, 3]])
+    _, cell = between.random_places(points, segments, 1000, random)
+    assert np.mean(cell) == pytest.approx(0.9, abs=0.002)
+    for none in (cells[:0], np.array([[1, 1, 1]])):
+        places, _ = between.random_places(points, none, 10, random)
+        assert len(places.weights) == 0
+
+
+@pytest.mark.parametrize("s", [2, 3])
+@pytest.mark.parametrize("factor", [1, 2, 5])
+def test_smaller_cells_hold_the_places(s, factor, random):
+    weights = random.dirichlet(np.ones(s), 500)
+    within, share = between.sub_cells(weights, factor)
+    assert np.min(share) > -1e-12
+    np.testing.assert_allclose(share.sum(axis=1), 1)
+    np.testing.assert_allclose(within.sum(axis=2), 1)
+    np.testing.assert_allclose(np.einsum("ms,msr->mr", share, within), weights)
+    np.testing.assert_allclose(within * factor, np.rint(within * factor), atol=1e-9)
+
+
+@pytest.mark.parametrize("k", [1, 2, 3])
+def test_a_mean_of_spaces_depends_on_no_basis(k, random):
+    n = 5
+    base = random.standard_normal((1, k, n))
+    frames = base + 0.3 * random.standard_normal((40, k, n))
+    frames = np.linalg.qr(frames.swapaxes(1, 2))[0].swapaxes(1, 2)
+    places = Places(random.integers(0, 40, (30, 3)), random.dirichlet(np.ones(3), 30))
+    turned = np.linalg.qr(random.standard_normal((40, k, k)))[0] @ frames
+    turned *= random.choice([-1, 1], (40, 1, 1))
+    a, b = (unit_space(between.mean_spaces(rows, places)) for rows in (frames, turned))
+    np.testing.assert_allclose(a, b, atol=1e-10)
+    corner = Places(np.array([[3, 4, 5]]), np.array([[0.0, 1, 0]]))
+    np.testing.assert_allclose(
+        unit_space(between.mean_spaces(frames, corner))[0], unit_space(frames[4:5])[0], atol=1e-10
+    )
+
+
+def unit_space(frames):
+    """Return the projections on the spaces of frames."""
+    rows = np.linalg.qr(frames.swapaxes(1, 2))[0]
+    return rows @ rows.swapaxes(1, 2)
+
+
+def test_the_mean_of_vectors_that_agree_is_linear(random):
+    vectors = np.array([1.0, 0.2, 0.1]) + 0.3 * random.standard_normal((3, 1, 3))
+    weights = random.dirichlet(np.ones(3), 20)
+    places = Places(np.tile([0, 1, 2], (20, 1)), weights)
+    found = between.mean_spaces(vectors, places)[:, 0]
+    np.testing.assert_allclose(found, weights @ vectors[:, 0], atol=1e-14)
+
+
+@pytest.mark.parametrize("near", [False, True])
+@pytest.mark.parametrize("lines", [False, True])
+def test_the_peak_of_a_highlight_is_found(lines, near, random):
+    """The best of many places in each cell is not brighter than the one in closed form."""
+    points = random.standard_normal((300, 3)) * 0.05
+    half = unit(unit(LIGHT) + unit(EYE))
+    aside = 0.2 * random.standard_normal((300, 3))
+    rows = unit(np.cross(half, aside) + 0.1 * aside) if lines else unit(half + aside)
+    material = Material(ambient=0, diffuse=0, specular=1, shininess=300)
+    ends = {"position": 9 * unit(LIGHT)} if near else {"direction": LIGHT}
+    eye = {"position": 9 * unit(EYE)} if near else {"direction": EYE}
+    scene = Scene(lights=Light(**ends), view=View(**eye), material=material)
+    given = {"tangents": rows} if lines else {"normals": rows}
+    field = Between(ShadingInputs(points=points, **given), scene, ShadingOptions(compensate=False))
+    cells = np.arange(300).reshape(-1, 2 if lines else 3)
+    (peak,) = field.peaks(cells)
+    best = field.light(Places(cells, peak))[:, 0]
+    assert np.mean(best > 0.99) > 0.2
+    for weights in random.dirichlet(np.ones(cells.shape[1]), 200):
+        other = field.light(Places(cells, np.tile(weights, (len(cells), 1))))[:, 0]
+        inside = best > 0.95
+        assert np.max(other[inside] - best[inside]) < 0.02
+
+
+def test_cells_of_what_a_filter_lights():
+    mesh = pv.Plane(i_resolution=2, j_resolution=1)
+    inputs = inputs_of(mesh, "", SCENE, LightOptions())
+    assert inputs.cells().shape == (4, 3)
+    line = pv.MultipleLines([[0, 0, 0], [1, 0, 0], [1, 1, 0]])
+    assert inputs_of(line, "", SCENE, LightOptions()).cells().tolist() == [[0, 1], [1, 2]]

@@ -1,0 +1,387 @@
+"""Segments and triangles split only where light bends, until interpolation is right enough."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from vizlight import _check
+from vizlight.mesh import blocks, records, splitting
+from vizlight.mesh.splitting import Cells
+from vizlight.shading import engine
+from vizlight.verify.between import Between, Places, columns, interpolated, random_places
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import pyvista as pv
+
+    from vizlight._types import Array, Bools, Indices
+    from vizlight.mesh.inputs import Part
+    from vizlight.scene import Scene
+    from vizlight.shading.engine import Shading
+    from vizlight.shading.inputs import ArraySource
+    from vizlight.shading.options import LightOptions
+
+#: Number of points that a refined mesh may have by default, if it has not half of them already.
+MANY = 1_000_000
+#: End of the name of the field array with the error that is left.
+LEFT = "_error"
+#: Share of the places with too large an error above which a warning is given.
+WARNED = 5e-3
+
+#: Shares of an edge, and weights of the corners of a triangle, at which the error is measured.
+ALONG = (0.25, 0.5, 0.75)
+WITHIN = np.array([[1 / 3, 1 / 3, 1 / 3], [0.6, 0.2, 0.2], [0.2, 0.6, 0.2], [0.2, 0.2, 0.6]])
+#: Number of random places at which the result is measured.
+CHECKS = 4096
+#: Largest number of rounds; each may halve every edge.
+ROUNDS = 40
+#: Share of the diagonal of the bounding box below which an edge is not split: that of a pixel of
+#: a large picture, to which a jump of the light is thus confined.
+SHORTEST = 1 / 4096
+#: Share of the allowed error that chosen places must keep: between them it may be larger.
+KEPT = 0.9
+#: Shares of an edge between which it is split.
+NEAREST = 0.2
+
+
+class Left(NamedTuple):
+    """What refinement leaves.
+
+    Attributes
+    ----------
+    error : float
+        Largest error at 4,096 random places between the points, uniform in area or length.
+    share : float
+        Share of those places with more than the error allowed.
+    enough : bool
+        Whether the point budget was sufficient.
+    """
+
+    error: float
+    share: float
+    enough: bool
+
+
+class Refined(NamedTuple):
+    """A refined mesh, what it is lit by, and the error that is left."""
+
+    mesh: pv.PolyData
+    part: Part
+    left: Left
+
+
+def refined(
+    mesh: pv.DataSet, path: str, part: Part, scene: Scene, most: int | None, threads: int | None
+) -> Refined:
+    """Return a mesh with its segments or triangles split where light bends.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh of faces or lines; not changed.
+    path : str
+        Path of the mesh in a MultiBlock, for an error.
+    part : Part
+        What it is lit by, with the allowed error, ``refine``, in the options.
+    scene : Scene
+        Scene whose depth cue, if it has one, has both ends.
+    most : int, optional
+        Largest number of points.
+    threads : int, optional
+        Number of threads.
+
+    Raises
+    ------
+    ValueError
+        If the mesh has cells that fill space, or neither faces nor lines.
+    """
+    try:
+        flat = splitting.as_polydata(mesh)
+    except ValueError as error:
+        if not path:
+            raise
+        raise ValueError(f"block {path}: {error}") from error
+    origin: Indices | None = None
+    if blocks.has_faces(flat):
+        parents, origin = splitting.triangles(flat)
+    else:
+        parents = splitting.simplices(flat)
+    inputs, options, count = part.inputs, part.options, mesh.n_points
+    with engine.observed(None):
+        shading = engine.run(inputs, scene, options, threads=threads)
+    between = Between(inputs, scene, options, threads)
+    most = max(MANY, 2 * count) if most is None else most
+    cells, left = refine(between, shading, parents, options.refine, most)
+    found = splitting.rebuilt(flat, cells, origin, _named(flat, between, options))
+    made = _extended(part, between, cells.corners)
+    if origin is None and options.tangents is None and made.inputs.tangents is not None:
+        splitting.keep_tangents(found, np.asarray(made.inputs.tangents[:]))
+    return Refined(found, made, left)
+
+
+def _named(mesh: pv.PolyData, between: Between, options: LightOptions) -> dict[str, Array]:
+    """Return the vectors of new points by the names of the point arrays that they belong to."""
+    named = {
+        "normals": options.normals or mesh.point_data.active_normals_name,
+        "tangents": options.tangents,
+        "base_tangents": options.conditioned,
+    }
+    found = {}
+    for name, key in named.items():
+        if name in between.vectors and isinstance(key, str) and key in mesh.point_data:
+            rows = between.vectors[name].reshape(len(between.points), -1)
+            rows = between.scales.get(name, 1.0) * rows
+            known = np.asarray(mesh.point_data[key], dtype=np.float64)
+            if name == "normals" and np.nansum(rows[: len(known)] * known) < 0:
+                # Outward normals of a mesh whose own point inward.
+                rows = -rows
+            found[key] = rows[len(known) :]
+    return found
+
+
+def _extended(part: Part, between: Between, corners: Indices) -> Part:
+    """Return what a mesh is lit by, with the new points."""
+    inputs, sided = part.inputs, part.sided
+    count = inputs.count
+    own: dict[str, ArraySource] = {"points": _joined(inputs.points, between.points[count:])}
+    for name, rows in between.vectors.items():
+        added = rows[count:].reshape(len(rows) - count, rows[0].size if count else 0)
+        if name == "normals":
+            added = between.turned(added, between.facts[count:], between.points[count:])
+        own[name] = _joined(getattr(inputs, name), between.scales.get(name, 1.0) * added)
+    sides = inputs.sides and inputs.sides()
+    if sided is not None and sides is not None:
+        facts = between.facts
+        vectors = _joined(sided.vectors, between.vectors["normals"][count:, 0])
+        sides = sides._replace(normals=vectors, facts=facts)
+        lean = None if sided.lean is None else facts[:, 0].astype(np.float32)
+        sided = dataclasses.replace(
+            sided, vectors=vectors, lean=lean, open=facts[:, 1] > 0.5, kept=False
+        )
+    made = dataclasses.replace(
+        inputs,
+        **own,  # type: ignore[arg-type]
+        cells=lambda: corners,
+        sides=None if sides is None else lambda: sides,
+    )
+    return part._replace(inputs=made, sided=sided)
+
+
+def _joined(rows: ArraySource, added: Array) -> Array:
+    """Return rows with further ones, in the type of the first."""
+    known = np.asarray(rows[:])
+    known = known.reshape(len(known), -1)
+    kind = known.dtype if known.dtype.kind == "f" else np.dtype(np.float64)
+    return np.concatenate([known.astype(kind), added.astype(kind)])
+
+
+def forget(mesh: pv.DataSet, name: str) -> None:
+    """Remove the error of an earlier refinement, which new light does not have."""
+    if name + LEFT in mesh.field_data and records.read(mesh, name) is not None:
+        del mesh.field_data[name + LEFT]
+
+
+def warn_of_rest(made: Sequence[Refined], error: float) -> None:
+    """Warn once if errors are left at more than 0.5 % of the places, or the budget is spent."""
+    worst = max((one.left.error for one in made), default=0.0)
+    share = max((one.left.share for one in made), default=0.0)
+    what = (
+        f"{100 * share:.2g} % of the places are off by more than {error:.3g}, by up to {worst:.3g}"
+    )
+    if not all(one.left.enough for one in made):
+        used = max(one.mesh.n_points for one in made if not one.left.enough)
+        remedy = "allow a larger error, or call vizlight.refine with a larger max_points"
+        _check.warn(f"refined to {used} points, where the budget ends: {what}; {remedy}")
+    elif share > WARNED:
+        _check.warn(
+            f"{what}: the light jumps there, and no edge shorter than 1/4096 of the mesh is split"
+        )
+
+
+def refine(
+    between: Between, shading: Shading, parents: Indices, error: float, most: int
+) -> tuple[Cells, Left]:
+    """Split cells until interpolated light is within an error of the light between the points.
+
+    Parameters
+    ----------
+    between : Between
+        What is lit at the points and between them.
+    shading : Shading
+        Light of the points.
+    parents : ndarray of int, shape (P, s)
+        Segments, s = 2, or triangles, s = 3.
+    error : float
+        Error allowed, above 0.
+    most : int
+        Largest number of points.
+
+    Returns
+    -------
+    Cells
+        Parts of the cells.
+    Left
+    """
+    work = _Refinement(between, shading, parents, error, most)
+    fresh = np.arange(len(parents))
+    with np.errstate(all="ignore"):
+        for _ in range(ROUNDS):
+            fresh = work.round(fresh)
+            if not len(fresh):
+                break
+    return work.cells, work.left()
+
+
+class _Refinement:
+    """Cells with the light of their corners, and the errors that were measured on their parts."""
+
+    def __init__(
+        self, between: Between, shading: Shading, parents: Indices, error: float, most: int
+    ) -> None:
+        self.between, self.error, self.most = between, error, most
+        self.cells, self.count = Cells(between.points, parents), len(between.points)
+        self.light = columns(shading)
+        good = shading.valid & np.isfinite(between.points).all(axis=1)
+        #: Cells of the mesh between whose points there is light to compare.
+        self.measured: Bools = np.asarray(good[parents].all(axis=1))
+        extent = between.points[good]
+        self.shortest = (
+            SHORTEST * float(np.linalg.norm(np.ptp(extent, axis=0))) if len(extent) else 0.0
+        )
+        #: Whether the budget was sufficient.
+        self.enough = True
+        #: Errors at random places of the present parts.
+        self.checked: Array | None = None
+        self.random = np.random.default_rng(0)
+
+    def round(self, fresh: Indices) -> Indices:
+        """Measure parts, split those that are not right enough, and return the new parts."""
+        codes, share, wrong = self._worst_edges(fresh)
+        inside = self._worst_inside(fresh)
+        bad = inside > KEPT * self.error
+        if not len(codes) and not bad.any():
+            cell, miss = self._at_random()
+            order = np.lexsort((-miss, cell))
+            fresh, first = np.unique(cell[order], return_index=True)
+            inside = miss[order][first]
+            bad = inside > self.error
+        codes, share, wrong = self._with_inside(codes, share, wrong, fresh[bad], inside[bad])
+        room = max(self.most - len(self.between.points), 0)
+        if len(codes) > room:
+            self.enough = False
+            worst = np.sort(np.argsort(-wrong, kind="stable")[:room])
+            codes, share = codes[worst], share[worst]
+        if not len(codes):
+            return codes
+        self.checked = None
+        made = self.cells.split(codes, share)
+        added = self.cells.steps[-1]
+        self.light = np.concatenate([self.light, self.between.light(added)])
+        self.between.extend(added)
+        return made if self.enough else made[:0]
+
+    def left(self) -> Left:
+        """Return what is left."""
+        wrong = self._at_random()[1] if self.checked is None else self.checked
+        share = float(np.mean(wrong > self.error)) if len(wrong) else 0.0
+        return Left(float(wrong.max(initial=0)), share, self.enough)
+
+    def _miss(self, cells: Indices, weights: Array) -> Array:
+        """Return the error at one place of each part."""
+        places = Places(self.cells.corners[cells], weights)
+        missed = np.abs(self.between.light(places) - interpolated(self.light, places))
+        return np.asarray(missed.max(axis=1, initial=0))
+
+    def _worst_edges(self, fresh: Indices) -> tuple[Indices, Array, Array]:
+        """Return the edges of parts to be split, where, and the error there."""
+        codes, share, long, worst = self._edges(fresh)
+        chosen = (worst > KEPT * self.error) & long
+        return codes[chosen], share[chosen], worst[chosen]
+
+    def _edges(self, fresh: Indices) -> tuple[Indices, Array, Bools, Array]:
+        """Return the edges of parts, where each has its largest error, and that error."""
+        size = self.cells.size
+        fresh = fresh[self._seen(fresh)]
+        codes, reverse = self.cells.edges(fresh)
+        edges, first = np.unique(codes, return_index=True)
+        cell, side = np.divmod(first, codes.shape[1])
+        cell, back = fresh[cell], reverse.ravel()[first]
+        rank, after = np.arange(len(edges)), (side + 1) % size
+        ends = np.zeros((len(edges), 2, size))
+        ends[rank, 0, side] = 1
+        ends[rank, 1, after] = 1
+        tried = [np.full(len(edges), t) for t in ALONG]
+        between = self.cells.corners[cell, side], self.cells.corners[cell, after]
+        tried += [weights[:, 1] for weights in self.between.peaks(np.stack(between, axis=1))]
+        best, worst = np.full(len(edges), 0.5), np.zeros(len(edges))
+        for t in tried:
+            weights = (1 - t)[:, np.newaxis] * ends[:, 0] + t[:, np.newaxis] * ends[:, 1]
+            miss = self._miss(cell, weights)
+            better = miss > worst
+            best, worst = np.where(better, t, best), np.where(better, miss, worst)
+        best = np.clip(best, NEAREST, 1 - NEAREST)
+        return edges, np.where(back, 1 - best, best), self._long(cell, side), worst
+
+    def _seen(self, cells: Indices) -> Bools:
+        """Return whether parts have light to compare, and are not narrower than any edge split."""
+        good = self.measured[self.cells.parent[cells]]
+        if self.cells.size == 2:
+            return good
+        a, b, c = (self.between.points[self.cells.corners[cells, i]] for i in range(3))
+        u, v, w = b - a, c - a, c - b
+        uu, vv, ww, uv = (np.einsum("ij,ij->i", x, y) for x, y in ((u, u), (v, v), (w, w), (u, v)))
+        height = (uu * vv - uv * uv) / np.maximum(np.maximum(uu, vv), ww)
+        return np.asarray(good & (height > self.shortest**2))
+
+    def _long(self, cell: Indices, side: Indices) -> Bools:
+        """Return whether edges are long enough to be split."""
+        after = (side + 1) % self.cells.size
+        a, b = (self.between.points[self.cells.corners[cell, at]] for at in (side, after))
+        return np.asarray(np.linalg.norm(a - b, axis=1) > self.shortest)
+
+    def _worst_inside(self, fresh: Indices) -> Array:
+        """Return the largest error within each part, 0 for segments."""
+        worst = np.zeros(len(fresh))
+        if self.cells.size == 2:
+            return worst
+        good = self._seen(fresh)
+        cells = fresh[good]
+        tried = [np.broadcast_to(w, (len(cells), 3)) for w in WITHIN]
+        tried += self.between.peaks(self.cells.corners[cells])
+        for weights in tried:
+            worst[good] = np.maximum(worst[good], self._miss(cells, weights))
+        return worst
+
+    def _with_inside(
+        self, codes: Indices, share: Array, wrong: Array, cells: Indices, inside: Array
+    ) -> tuple[Indices, Array, Array]:
+        """Add the edges of parts that are wrong within and have no edge that is."""
+        own, _ = self.cells.edges(cells)
+        free = ~np.isin(own, codes).any(axis=1)
+        free &= self._seen(cells)
+        cells, own, inside = cells[free], own[free], inside[free]
+        if not len(cells):
+            return codes, share, wrong
+        sides = own.shape[1]
+        long = self._long(np.repeat(cells, sides), np.tile(np.arange(sides), len(cells)))
+        added, place = np.unique(own.ravel()[long], return_inverse=True)
+        most = np.zeros(len(added))
+        np.maximum.at(most, place.reshape(-1), np.repeat(inside, sides)[long])
+        codes, share = (
+            np.concatenate([codes, added]),
+            np.concatenate([share, np.full(len(added), 0.5)]),
+        )
+        order = np.argsort(codes)
+        return codes[order], share[order], np.concatenate([wrong, most])[order]
+
+    def _at_random(self) -> tuple[Indices, Array]:
+        """Return the parts at random places, and the error there."""
+        cells = np.flatnonzero(self.measured[self.cells.parent])
+        corners = self.cells.corners[cells]
+        places, cell = random_places(self.between.points, corners, CHECKS, self.random)
+        self.checked = self._miss(cells[cell], places.weights)
+        return cells[cell], self.checked

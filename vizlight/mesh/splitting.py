@@ -1,0 +1,356 @@
+"""Segments and triangles of a mesh, split without T-junctions, and a mesh made of the parts."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pyvista as pv
+from scipy.sparse import csr_array, vstack
+
+from vizlight import _check
+from vizlight._version import __version__
+from vizlight.geometry.solids import triangle_mesh
+from vizlight.mesh import blocks, hull, normals, point_arrays, polylines, records
+from vizlight.verify.between import Places, are_unit, unit_rows
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+    from vtkmodules.vtkCommonDataModel import vtkCellArray
+
+    from vizlight._types import Array, Bools, Indices
+
+#: Number of bits of the smaller number of a pair.
+HALF = 31
+#: Name of a temporary cell array, chosen not to clash with a user's array.
+CELLS = "vizlight cells"
+#: Name of the point array in which the tangents of refined lines stay with a result.
+TANGENTS = "vizlight_tangents"
+
+
+def simplices(mesh: pv.DataSet) -> Indices:
+    """Return the triangles of the surface of a mesh, or its segments if it has only lines.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh of any cells. Polygons are taken as triangles; of volumes the outer surface is taken.
+
+    Returns
+    -------
+    ndarray of int, shape (M, 3) or (M, 2)
+        Points of the mesh; no rows if it has neither faces nor lines.
+    """
+    if not mesh.n_points or not mesh.n_cells:
+        return np.empty((0, 3), np.intp)
+    if isinstance(mesh, pv.PolyData):
+        surface, origin = mesh, None
+    else:
+        surface, origin = hull.outer_surface(mesh)
+    if blocks.has_faces(surface):
+        found, _ = triangles(surface)
+    else:
+        found = polylines.segments(surface.GetLines())
+    if origin is None:
+        return found
+    found = origin[found]
+    return found[(found >= 0).all(axis=1)]
+
+
+def as_polydata(mesh: pv.DataSet) -> pv.PolyData:
+    """Return a mesh of faces or lines as PolyData with the same points in the same order.
+
+    Raises
+    ------
+    ValueError
+        If the mesh has cells that fill space, or neither faces nor lines.
+    """
+    if mesh.GetMaxSpatialDimension() == 3:
+        remedy = "take the mesh's extract_surface() or a contour"
+        raise ValueError(
+            _check.message("mesh", "faces or lines to refine", "cells that fill space", remedy)
+        )
+    if isinstance(mesh, pv.PolyData):
+        found = mesh
+    else:
+        surface, origin = hull.outer_surface(mesh)
+        if (origin < 0).any():
+            remedy = "take the mesh's extract_surface()"
+            raise ValueError(_check.message("mesh", "flat cells", "curved cells", remedy))
+        found = pv.PolyData()
+        found.points = np.asarray(mesh.points)
+        for get, put in (
+            (surface.GetVerts, found.SetVerts),
+            (surface.GetLines, found.SetLines),
+            (surface.GetPolys, found.SetPolys),
+        ):
+            ids, offsets = polylines._cells(get())
+            if len(offsets) > 1:
+                put(
+                    pv.CellArray.from_arrays(
+                        np.asarray(offsets, dtype=int), np.asarray(origin[ids], dtype=int)
+                    )
+                )
+        for key, array in surface.cell_data.items():
+            found.cell_data[key] = np.asarray(array)
+        _copy(mesh, found)
+    if not (blocks.has_faces(found) or found.n_lines):
+        remedy = "between points alone there is no light to refine"
+        raise ValueError(_check.message("mesh", "faces or lines", "points alone", remedy))
+    return found
+
+
+def _copy(mesh: pv.DataSet, out: pv.PolyData) -> None:
+    """Copy the point and field arrays of a mesh, with what is active, to one of equal points."""
+    out.GetPointData().ShallowCopy(mesh.GetPointData())
+    out.GetFieldData().ShallowCopy(mesh.GetFieldData())
+
+
+class Cells:
+    """Segments or triangles that are split step by step.
+
+    Parameters
+    ----------
+    points : ndarray, shape (N, n)
+        Points of the mesh.
+    parents : ndarray of int, shape (P, s)
+        Segments, s = 2, or triangles, s = 3.
+
+    Attributes
+    ----------
+    corners : ndarray of int, shape (T, s)
+        Points of the parts: first those of the mesh, then new ones in the order of their making.
+    parent : ndarray of int, shape (T,)
+        Cell of the mesh that each part lies in.
+    twin : ndarray of int
+        Number of each point; points at equal positions share one.
+    steps : list of Places
+        New points of each step, on the edges between two earlier ones.
+    """
+
+    def __init__(self, points: Array, parents: Indices) -> None:
+        self.count, self.size = len(points), parents.shape[1]
+        self.parents = self.corners = parents
+        self.parent = np.arange(len(parents))
+        _, twin = np.unique(points, axis=0, return_inverse=True)
+        self.twin = np.asarray(twin.reshape(-1), dtype=np.intp)
+        self.steps: list[Places] = []
+
+    def edges(self, cells: Indices) -> tuple[Indices, Bools]:
+        """Return a number for each edge of parts, the same for twins, and its direction.
+
+        Returns
+        -------
+        ndarray of int, shape (M, 1) or (M, 3)
+            Number of the edge that begins at each corner.
+        ndarray of bool
+            Whether the edge runs from the twin of the larger number to that of the smaller.
+        """
+        start = self.twin[self.corners[cells]]
+        stop = np.roll(start, -1, axis=1)
+        if self.size == 2:
+            start, stop = start[:, :1], stop[:, :1]
+        return _pairs(start, stop), start > stop
+
+    def split(self, chosen: Indices, share: Array) -> Indices:
+        """Split edges, and all parts at them, and return the indices of the new parts.
+
+        Parameters
+        ----------
+        chosen : ndarray of int, shape (E,)
+            Numbers of edges, sorted; at least one.
+        share : ndarray, shape (E,)
+            Where each edge is split, from its end of the smaller number.
+        """
+        touched = np.zeros(self.twin.max() + 1, np.bool_)
+        touched[chosen >> HALF] = touched[chosen & ((1 << HALF) - 1)] = True
+        near = np.flatnonzero(np.count_nonzero(touched[self.twin[self.corners]], axis=1) > 1)
+        codes, reverse = self.edges(near)
+        at = np.minimum(np.searchsorted(chosen, codes), len(chosen) - 1)
+        marked = chosen[at] == codes
+        hit = marked.any(axis=1)
+        rows, marked, at, reverse = near[hit], marked[hit], at[hit], reverse[hit]
+        own, side = np.nonzero(marked)
+        edge = at[own, side]
+        ends = self.corners[rows[own], side], self.corners[rows[own], (side + 1) % self.size]
+        t = np.where(reverse[own, side], 1 - share[edge], share[edge])
+        # A point for each pair of ends, a twin for each edge.
+        _, first, point = np.unique(_pairs(*ends), return_index=True, return_inverse=True)
+        middles = np.full(marked.shape, -1)
+        middles[own, side] = len(self.twin) + point.reshape(-1)
+        self.steps.append(
+            Places(np.stack(ends, axis=1)[first], np.stack([1 - t, t], axis=1)[first])
+        )
+        _, twin = np.unique(edge[first], return_inverse=True)
+        self.twin = np.concatenate([self.twin, self.twin.max() + 1 + twin.reshape(-1)])
+        return self._replace(rows, middles)
+
+    def _replace(self, rows: Indices, middles: Indices) -> Indices:
+        """Replace parts by smaller ones, given new points on some edges."""
+        old = self.corners[rows]
+        if self.size == 2:
+            made = np.concatenate([
+                np.column_stack([old[:, 0], middles[:, 0]]),
+                np.column_stack([middles[:, 0], old[:, 1]]),
+            ])  # fmt: skip
+            owner = np.tile(np.arange(len(rows)), 2)
+        else:
+            made, owner = triangle_mesh.split(old, middles)
+        # One part takes the place of the old one, the others stand at the end.
+        _, first = np.unique(owner, return_index=True)
+        more = np.ones(len(made), np.bool_)
+        more[first] = False
+        before = len(self.corners)
+        self.corners = np.concatenate([self.corners, made[more]])
+        self.parent = np.concatenate([self.parent, self.parent[rows][owner[more]]])
+        self.corners[rows] = made[first]
+        return np.concatenate([rows, np.arange(before, len(self.corners))])
+
+    def shares(self) -> csr_array:
+        """Return the weights of the points of the mesh in all points, shape (N + new, N)."""
+        numbers = np.arange(self.count + 1)
+        found = csr_array((np.ones(self.count), numbers[:-1], numbers))
+        for step in self.steps:
+            weights = np.asarray(step.weights.ravel(), dtype=np.float64)
+            ends = np.arange(0, len(weights) + 1, 2)
+            size = len(step.corners), found.shape[0]
+            between = csr_array((weights, step.corners.ravel(), ends), shape=size)
+            found = csr_array(vstack([found, between @ found], format="csr"))
+        return found
+
+
+def _pairs(a: Indices, b: Indices) -> Indices:
+    """Return a number for each pair of numbers, whatever their order."""
+    return np.asarray((np.minimum(a, b).astype(np.int64) << HALF) + np.maximum(a, b))
+
+
+def rebuilt(
+    mesh: pv.PolyData, parts: Cells, origin: Indices | None, given: Mapping[str, Array]
+) -> pv.PolyData:
+    """Return a mesh whose segments or triangles are split, with its data.
+
+    Parameters
+    ----------
+    mesh : pyvista.PolyData
+        Mesh that the parts lie in; not changed.
+    parts : Cells
+        Parts of its segments or triangles, in their order.
+    origin : ndarray of int or None
+        Cell of the mesh that each triangle was taken from; None for segments.
+    given : mapping of str to ndarray
+        Point arrays by name, with the rows of the new points.
+
+    Returns
+    -------
+    pyvista.PolyData
+        The points of the mesh first, with their index. Other point arrays are interpolated; unit
+        vectors keep their length. Integers, which may be labels, booleans and words are taken from
+        the nearest corner. Cell arrays are carried to all parts of a cell.
+    """
+    out = pv.PolyData()
+    shares = parts.shares()
+    new = shares[parts.count :]
+    points = np.asarray(mesh.points)
+    out.points = np.concatenate([points, _interpolated(points, new)])
+    others = mesh.n_verts + mesh.n_lines
+    out.SetVerts(mesh.GetVerts())
+    if origin is None:
+        out.SetLines(_split_lines(mesh.GetLines(), parts, shares))
+        cells = np.arange(others)
+    else:
+        out.SetLines(mesh.GetLines())
+        order = np.argsort(parts.parent, kind="stable")
+        triangles = np.asarray(parts.corners[order], dtype=int)
+        out.SetPolys(pv.CellArray.from_regular_cells(triangles))
+        cells = np.concatenate([np.arange(others), origin[parts.parent[order]]])
+    for key, array in mesh.cell_data.items():
+        out.cell_data[key] = np.asarray(array)[cells]
+    for key, array in mesh.point_data.items():
+        rows = np.asarray(array)
+        added = given[key] if key in given else _interpolated(rows, new)
+        point_arrays.attach_rows(out, key, np.concatenate([rows, added.astype(rows.dtype)]))
+    out.GetFieldData().ShallowCopy(mesh.GetFieldData())
+    for attribute in ("Normals", "Vectors", "Scalars", "Tangents", "TCoords"):
+        active = getattr(mesh.GetPointData(), f"Get{attribute}")()
+        if active is not None:
+            getattr(out.GetPointData(), f"SetActive{attribute}")(active.GetName())
+    return out
+
+
+def _split_lines(lines: vtkCellArray, parts: Cells, shares: csr_array) -> pv.CellArray:
+    """Return polylines with the new points of their segments."""
+    ids, offsets = polylines._cells(lines)
+    # The segments of a line stand one after the other; its last point follows.
+    along = shares[parts.corners[:, 0], parts.parents[parts.parent, 1]]
+    order = np.lexsort((np.asarray(along).ravel(), parts.parent))
+    start = parts.corners[order, 0]
+    size = np.diff(offsets)
+    line = np.repeat(np.arange(len(size)), np.maximum(size - 1, 0))
+    owner = np.concatenate([line[parts.parent[order]], np.flatnonzero(size)])
+    points = np.concatenate([start, ids[offsets[1:][size > 0] - 1]])
+    last = np.arange(len(points)) >= len(start)
+    place = np.lexsort((last, owner))
+    ends = np.concatenate([[0], np.cumsum(np.bincount(owner, minlength=len(size)))])
+    return pv.CellArray.from_arrays(
+        np.asarray(ends, dtype=int), np.asarray(points[place], dtype=int)
+    )
+
+
+def _interpolated(rows: NDArray[np.generic], shares: csr_array) -> NDArray[np.generic]:
+    """Return values of a point array at new points, given the shares of those of the mesh."""
+    colour = rows.dtype == np.uint8 and rows.ndim == 2 and rows.shape[1] in (3, 4)
+    if rows.dtype.kind != "f" and not colour:
+        order = np.lexsort(
+            (shares.data, np.repeat(np.arange(shares.shape[0]), np.diff(shares.indptr)))
+        )
+        # With entries sorted by share, the last of each row is the nearest corner.
+        return np.asarray(rows[shares.indices[order][shares.indptr[1:] - 1]])
+    values = rows.reshape(len(rows), -1).astype(np.float64)
+    with np.errstate(all="ignore"):
+        found = np.asarray(shares @ values)
+        if are_unit(values):
+            found = unit_rows(found)
+    found = np.rint(found) if colour else found
+    return np.asarray(found.reshape(-1, *rows.shape[1:]).astype(rows.dtype))
+
+
+def keep_tangents(mesh: pv.PolyData, tangents: Array) -> None:
+    """Attach the tangents of lines, with a digest of the points and lines that they belong to.
+
+    New points lie on the segments of a line, whose direction is not that of the line there. Where
+    the user has an array of that name nothing is attached.
+    """
+    ours = TANGENTS in records.made(mesh, TANGENTS)
+    if TANGENTS in mesh.point_data and not ours:
+        return
+    point_arrays.attach_rows(mesh, TANGENTS, tangents)
+    record: records.Record = {
+        "vizlight": __version__, "filter": "refine", "source": normals.fingerprint(mesh),
+        "arrays": [TANGENTS],
+    }  # fmt: skip
+    records.write(mesh, TANGENTS, record)
+
+
+def kept_tangents(mesh: pv.DataSet) -> Array | None:
+    """Return the tangents that were kept of lines, if the mesh has not changed since."""
+    rows = mesh.point_data.get(TANGENTS)
+    record = None if rows is None else records.read(mesh, TANGENTS)
+    if rows is None or record is None or np.shape(rows) != (mesh.n_points, 3):
+        return None
+    return np.asarray(rows) if record.get("source") == normals.fingerprint(mesh) else None
+
+
+def triangles(mesh: pv.PolyData) -> tuple[Indices, Indices]:
+    """Return the triangles of polygons and strips, and the cell that each is taken from."""
+    bare = pv.PolyData()
+    bare.SetPoints(mesh.GetPoints())
+    bare.SetPolys(mesh.GetPolys())
+    bare.SetStrips(mesh.GetStrips())
+    before = mesh.n_verts + mesh.n_lines
+    bare.cell_data[CELLS] = np.arange(before, before + bare.n_cells)
+    if not bare.is_all_triangles:
+        bare = bare.triangulate()
+    found = np.asarray(bare.regular_faces, dtype=np.intp).reshape(-1, 3)
+    return found, np.asarray(bare.cell_data[CELLS], dtype=np.intp)

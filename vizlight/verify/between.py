@@ -1,0 +1,495 @@
+"""Light between the points of a mesh: what interpolation of the light at the points leaves out.
+
+The reference is the light of interpolated vectors, as a fragment shader computes it: normals and
+tangents are interpolated over a segment or a triangle, normalised and lit.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from vizlight import _pool
+from vizlight.model import kernels
+from vizlight.model.frames import orthonormalize
+from vizlight.shading import engine
+
+if TYPE_CHECKING:
+    from vizlight._types import Array, Bools, Indices
+    from vizlight.scene import Light, Scene, View
+    from vizlight.shading.engine import Shading
+    from vizlight.shading.inputs import ArraySource, ShadingInputs
+    from vizlight.shading.options import ShadingOptions
+
+#: Number of places that are lit at once.
+BLOCK = 1 << 17
+#: Largest deviation of the length of unit vectors from 1.
+UNIT = 1e-3
+#: Factors by which cells are tried shorter, to find the resolution that an error takes.
+FINER = (2, 4, 8, 16, 32, 64, 128)
+
+
+class Places(NamedTuple):
+    """Places on segments or triangles.
+
+    Attributes
+    ----------
+    corners : ndarray of int, shape (M, s)
+        Points at the ends of the segment, s = 2, or the corners of the triangle, s = 3.
+    weights : ndarray, shape (M, s)
+        Share of each corner in the place, 0 or more and with sum 1.
+    """
+
+    corners: Indices
+    weights: Array
+
+
+def measurable(inputs: ShadingInputs) -> bool:
+    """Return whether light between the points follows from what the inputs hold at the points."""
+    given = inputs.shadow is None and inputs.fur_height is None
+    return given and inputs.repeat == 1 and not inputs.generated
+
+
+class Between:
+    """Points and vectors of a mesh, to be interpolated and lit.
+
+    Parameters
+    ----------
+    inputs : ShadingInputs
+        Arrays of the mesh, for which :func:`measurable` holds.
+    scene : Scene
+        Scene whose depth cue, if it has one, has both ends.
+    options : ShadingOptions
+        How light is computed. ``tolerance`` and ``precision`` have no effect: places are lit in
+        float64.
+    threads : int, optional
+        Number of threads.
+
+    Attributes
+    ----------
+    points : ndarray, shape (N, n)
+        Points.
+    vectors : dict of str to ndarray, shape (N, k, n)
+        Those of unit ``normals``, ``tangents`` and ``base_tangents`` that the inputs have.
+    scales : dict of str to float
+        Factors by which tangents have been divided.
+    """
+
+    def __init__(
+        self,
+        inputs: ShadingInputs,
+        scene: Scene,
+        options: ShadingOptions,
+        threads: int | None = None,
+    ) -> None:
+        self.inputs, self.scene, self.threads = inputs, scene, threads
+        self.options = dataclasses.replace(
+            options, tolerance=0.0, precision="float64", components=False
+        )
+        n = int(inputs.points.shape[1])
+        self.points = _rows(inputs.points)
+        self.vectors: dict[str, Array] = {}
+        self._sides = None if inputs.sides is None else inputs.sides()
+        self.facts: Array = np.empty((len(self.points), 0))
+        if inputs.normals is not None:
+            given: ArraySource = inputs.normals
+            if self._sides is not None:
+                given, self.facts = self._sides.normals, self._sides.facts
+            self.vectors["normals"] = unit_rows(_rows(given))[:, np.newaxis]
+        self._unit = set(self.vectors)
+        self.scales: dict[str, float] = {}
+        for name in ("tangents", "base_tangents"):
+            rows: ArraySource | None = getattr(inputs, name)
+            if rows is not None:
+                frames, self.scales[name] = _frames(rows, n)
+                self.vectors[name] = frames
+                if frames.shape[1] == 1 and are_unit(frames[:, 0]):
+                    self._unit.add(name)
+
+    def at(self, places: Places) -> tuple[Array, dict[str, Array], Array]:
+        """Return the points, the vectors and the facts on which sides depend, at places."""
+        found: dict[str, Array] = {}
+        for name, rows in self.vectors.items():
+            mean = interpolated if name == "normals" else mean_spaces
+            found[name] = mean(rows, places)
+            if name in self._unit:
+                found[name] = unit_rows(found[name][:, 0])[:, np.newaxis]
+        return interpolated(self.points, places), found, interpolated(self.facts, places)
+
+    def turned(self, normals: Array, facts: Array, points: Array) -> Array:
+        """Return normals, shape (M, n), turned to the side of the surface that is seen."""
+        return normals if self._sides is None else self._sides.turned(normals, facts, points)
+
+    def extend(self, places: Places) -> None:
+        """Make points of places, after those that there are."""
+        points, vectors, facts = self.at(places)
+        self.points = np.concatenate([self.points, points])
+        self.facts = np.concatenate([self.facts, facts])
+        for name, rows in vectors.items():
+            self.vectors[name] = np.concatenate([self.vectors[name], rows])
+
+    def light(self, places: Places) -> Array:
+        """Return luminance and colour at places, shape (M, 1) or (M, 4)."""
+        count = len(places.weights)
+        found = np.empty((count, 4 if self.scene.colored else 1))
+        for block in _pool.blocks(count, BLOCK):
+            points, vectors, facts = self.at(Places(places.corners[block], places.weights[block]))
+            own: dict[str, ArraySource] = {
+                name: rows.reshape(len(rows), -1) for name, rows in vectors.items()
+            }
+            if "normals" in vectors:
+                own["normals"] = self.turned(vectors["normals"][:, 0], facts, points)
+            own["points"] = points
+            inputs = dataclasses.replace(self.inputs, **own)  # type: ignore[arg-type]
+            with engine.observed(None):
+                lit = engine.run(inputs, self.scene, self.options, threads=self.threads)
+            found[block] = columns(lit)
+        return found
+
+    def peaks(self, cells: Indices) -> list[Array]:
+        """Return where each light's highlight may peak in cells, as weights of their corners.
+
+        Parameters
+        ----------
+        cells : ndarray of int, shape (M, s)
+            Segments, s = 2, or triangles, s = 3.
+
+        Returns
+        -------
+        list of ndarray, shape (M, s)
+            Weights of one place per cell, for each light. Empty where no closed form gives them.
+        """
+        material, view = self.scene.material, self.scene.view
+        lines = "tangents" in self.vectors and self.vectors["tangents"].shape[1] == 1
+        surface = "tangents" not in self.vectors and self.points.shape[1] == 3
+        if not material.specular or view is None or not (lines or surface):
+            return []
+        moved = self.inputs.origin
+        scene = self.scene if moved is None else self.scene.moved([-x for x in moved])
+        rows = self.points[cells]
+        if lines:
+            given = self.vectors["tangents"][cells, 0]
+        else:
+            at = cells.ravel()
+            normals = self.vectors["normals"][at, 0]
+            given = self.turned(normals, self.facts[at], self.points[at]).reshape(rows.shape)
+        solve = _across if lines else _toward_half
+        found = []
+        for light in scene.lights:
+            if light.intensity > 0:
+                weights = np.full(cells.shape, 1 / cells.shape[1])
+                for _ in range(2):
+                    middle = np.einsum("ms,msn->mn", weights, rows)
+                    half = _toward(light.seen_from(view), middle) + _toward(view, middle)
+                    weights = solve(given, half)
+                found.append(weights)
+        return found
+
+
+def interpolated(rows: Array, places: Places) -> Array:
+    """Return weighted means of rows at places."""
+    weights = places.weights.reshape(*places.weights.shape, *[1] * (rows.ndim - 1))
+    total = weights[:, 0] * rows[places.corners[:, 0]]
+    for i in range(1, places.weights.shape[1]):
+        total += weights[:, i] * rows[places.corners[:, i]]
+    return np.asarray(total)
+
+
+def mean_spaces(frames: Array, places: Places) -> Array:
+    """Return the spaces that frames span, interpolated at places, as frames.
+
+    Of one vector neither the sign nor that of its neighbours matters: signs are chosen so that the
+    mean is as long as possible. Where they agree this is the plain mean. Of several the mean of the
+    projections on the spaces is taken, and of that the space of its k largest eigenvalues, which
+    depends on no basis.
+
+    Parameters
+    ----------
+    frames : ndarray, shape (N, k, n)
+        Vectors at the points: one of any length, or several orthonormal ones.
+    places : Places
+
+    Returns
+    -------
+    ndarray, shape (M, k, n)
+    """
+    _, k, n = frames.shape
+    m, s = places.weights.shape
+    if k > 1:
+        found = np.empty((m, k, n))
+        for block in _pool.blocks(m, BLOCK >> 2):
+            rows = frames[places.corners[block]]
+            square = np.einsum("ms,mskn,mskl->mnl", places.weights[block], rows, rows)
+            # The eigenvectors of the k largest eigenvalues, which stand last.
+            found[block] = np.linalg.eigh(square)[1][:, :, n - k :].swapaxes(1, 2)
+        return found
+    parts = [places.weights[:, i : i + 1] * frames[places.corners[:, i], 0] for i in range(s)]
+    if s == 2:
+        turned = [np.ones(m), np.where(_dots(*parts) < 0, -1.0, 1.0)]
+    else:
+        a, b, c = parts
+        ab, ac, bc = _dots(a, b), _dots(a, c), _dots(b, c)
+        scores = np.stack([ab + ac + bc, ab - ac - bc, ac - ab - bc, bc - ab - ac])
+        best = np.argmax(scores, axis=0)
+        signs = np.array([[1, 1, 1], [1, 1, -1], [1, -1, 1], [1, -1, -1]], dtype=np.float64)
+        turned = list(signs[best].T)
+    total = sum(part * sign[:, np.newaxis] for part, sign in zip(parts, turned, strict=True))
+    return np.asarray(total)[:, np.newaxis]
+
+
+def columns(shading: Shading, rows: Indices | slice = slice(None)) -> Array:
+    """Return luminance and colour of points, shape (N, 1) or (N, 4)."""
+    light = shading.luminance[rows, np.newaxis]
+    found = light if shading.rgb is None else np.hstack([light, shading.rgb[rows]])
+    return np.asarray(found, dtype=np.float64)
+
+
+def random_places(
+    points: Array, cells: Indices, count: int, random: np.random.Generator
+) -> tuple[Places, Indices]:
+    """Return places in cells, uniform in area or length, and the cell of each.
+
+    Parameters
+    ----------
+    points : ndarray, shape (N, n)
+    cells : ndarray of int, shape (M, s)
+        Segments, s = 2, or triangles, s = 3.
+    count : int
+        Number of places.
+    random : numpy.random.Generator
+
+    Returns
+    -------
+    Places
+        Empty if the cells have no area.
+    ndarray of int, shape (count,)
+    """
+    s = cells.shape[1]
+    unit = float(np.ptp(points, axis=0).max(initial=0)) or 1.0
+    sides = [(points[cells[:, i]] - points[cells[:, 0]]) / unit for i in range(1, s)]
+    square = _dots(sides[0], sides[0])
+    if s == 3:
+        square = square * _dots(sides[1], sides[1]) - _dots(*sides) ** 2
+    total = np.cumsum(np.sqrt(np.maximum(np.nan_to_num(square), 0)))
+    if not (len(total) and 0 < total[-1] < np.inf):
+        return Places(cells[:0], np.empty((0, s))), np.empty(0, np.intp)
+    # One place in each of as many equal parts of the area.
+    at = (np.arange(count) + random.random(count)) / count * total[-1]
+    cell = np.minimum(np.searchsorted(total, at, side="right"), len(cells) - 1)
+    weights = random.dirichlet(np.ones(s), count)
+    return Places(cells[cell], weights), cell
+
+
+class Measured(NamedTuple):
+    """Difference of interpolated light from the light of interpolated vectors, at places."""
+
+    error: Array
+    finer: int | None
+
+
+def measure(
+    inputs: ShadingInputs,
+    scene: Scene,
+    options: ShadingOptions,
+    shading: Shading,
+    cells: Indices,
+    *,
+    count: int,
+    seed: int,
+    allowed: float,
+) -> Measured:
+    """Return the error at random places, and how much shorter cells must be for an error.
+
+    Parameters
+    ----------
+    inputs, scene, options
+        What is lit, as for :class:`Between`.
+    shading : Shading
+        Light of the points.
+    cells : ndarray of int, shape (M, s)
+        Segments or triangles; those with a point that could not be lit are left out.
+    count, seed : int
+        Number of places and seed of the drawing.
+    allowed : float
+        Error to be met.
+
+    Returns
+    -------
+    Measured
+        Error of each place, and the factor, 1 or one of FINER, by which all cells must be shorter
+        so that the error at these places is within the one allowed; None where the largest factor
+        is not enough.
+    """
+    points = np.asarray(inputs.points[:])
+    good = shading.valid & np.isfinite(points).all(axis=1)
+    if not good.all():
+        cells = cells[good[cells].all(axis=1)]
+    places, _ = random_places(points, cells, count, np.random.default_rng(seed))
+    if not len(places.weights):
+        return Measured(np.empty(0), 1)
+    # Only the corners of the cells that were drawn are looked at.
+    used, corner = np.unique(places.corners, return_inverse=True)
+    places = Places(corner.reshape(places.corners.shape), places.weights)
+    between = Between(_taken(inputs, used), scene, options)
+    light = columns(shading, used)
+    error = error_between(between, light, places)
+    bad: Bools = error > allowed
+    finer: int | None = 1
+    for factor in FINER if bad.any() else ():
+        left = Places(places.corners[bad], places.weights[bad])
+        # The places that are left decide on the next factor.
+        bad[bad] = error_between(between, light, left, factor) > allowed
+        finer = factor
+        if not bad.any():
+            break
+    else:
+        finer = None if bad.any() else 1
+    return Measured(error, finer)
+
+
+def _taken(inputs: ShadingInputs, rows: Indices) -> ShadingInputs:
+    """Return the inputs of some points."""
+    own: dict[str, ArraySource] = {}
+    for name in ("points", "normals", "tangents", "base_tangents"):
+        given: ArraySource | None = getattr(inputs, name)
+        if given is not None:
+            own[name] = np.asarray(given[:])[rows]
+    sides = inputs.sides and inputs.sides()
+    if sides is not None:
+        sides = sides._replace(normals=sides.normals[rows], facts=sides.facts[rows])
+    return dataclasses.replace(
+        inputs,
+        **own,  # type: ignore[arg-type]
+        sides=None if sides is None else lambda: sides,
+    )
+
+
+def error_between(between: Between, light: Array, places: Places, parts: int = 1) -> Array:
+    """Return the error of interpolated light at places, shape (M,).
+
+    Parameters
+    ----------
+    between : Between
+    light : ndarray, shape (N, c)
+        Luminance and colour of the points.
+    places : Places
+    parts : int, default: 1
+        Number of equal parts of the sides of all cells, with light at the points between them.
+    """
+    true = between.light(places)
+    if parts == 1:
+        shown = interpolated(light, places)
+    else:
+        within, share = sub_cells(places.weights, parts)
+        shown = np.zeros_like(true)
+        for i in range(share.shape[1]):
+            shown += share[:, i : i + 1] * between.light(Places(places.corners, within[:, i]))
+    return np.asarray(np.abs(true - shown).max(axis=1, initial=0))
+
+
+def sub_cells(weights: Array, factor: int) -> tuple[Array, Array]:
+    """Return the cell around each place where the sides of all cells are divided evenly.
+
+    Parameters
+    ----------
+    weights : ndarray, shape (M, s)
+        Places by the shares of the corners of their cells.
+    factor : int
+        Number of parts of a side.
+
+    Returns
+    -------
+    ndarray, shape (M, s, s)
+        Weights of the corners of the smaller cells, one per row.
+    ndarray, shape (M, s)
+        Weights of those corners in the places.
+    """
+    s = weights.shape[1]
+    whole = np.minimum(np.floor(weights * factor), factor)
+    rest = weights * factor - whole
+    # Of a triangle's parts those that stand on a tip have shares that add up to 2.
+    turned = (rest.sum(axis=1) > 1.5)[:, np.newaxis] if s == 3 else np.zeros((1, 1), np.bool_)
+    steps = np.where(turned[..., np.newaxis], 1 - np.eye(s), np.eye(s))
+    share = np.where(turned, 1 - rest, rest)
+    return (whole[:, np.newaxis] + steps) / factor, share
+
+
+def unit_rows(rows: Array) -> Array:
+    """Return vectors as unit vectors, zero where there is no direction."""
+    with np.errstate(all="ignore"):
+        unit, _ = kernels.unit(np.ascontiguousarray(rows.T))
+    return np.nan_to_num(unit.T)
+
+
+def are_unit(rows: Array) -> bool:
+    """Return whether rows are unit vectors, but for some of length 0."""
+    if rows.ndim != 2 or rows.shape[1] < 2:
+        return False
+    length = kernels.length(np.ascontiguousarray(rows.T))
+    length = length[length > 0]
+    return bool(len(length)) and bool(np.all(np.abs(length - 1) < UNIT))
+
+
+def _rows(rows: ArraySource) -> Array:
+    return np.asarray(rows[:], dtype=np.float64)
+
+
+def _frames(rows: ArraySource, n: int) -> tuple[Array, float]:
+    """Return frames: of one vector divided by a scale, orthonormal ones of several."""
+    found = _rows(rows)
+    found = found.reshape(len(found), -1, n)
+    if found.shape[1] > 1:
+        return orthonormalize(found)[0], 1.0
+    largest = float(np.abs(found).max(initial=0, where=np.isfinite(found))) or 1.0
+    # The lengths of unit vectors are kept to rounding.
+    scale = 1.0 if 0.5 < largest < 2 else largest
+    return np.asarray(np.nan_to_num(found / scale, posinf=0.0, neginf=0.0)), scale
+
+
+def _dots(a: Array, b: Array) -> Array:
+    return np.asarray(np.einsum("ij,ij->i", a, b))
+
+
+def _toward(end: Light | View, points: Array) -> Array:
+    """Return unit directions from points to a light or an eye."""
+    if end.direction is not None and (end.position is None or getattr(end, "parallel", False)):
+        return unit_rows(np.array([end.direction], dtype=np.float64))
+    return unit_rows(np.asarray(end.position, dtype=np.float64) - points)
+
+
+def _across(lines: Array, half: Array) -> Array:
+    """Return weights where interpolated lines are normal to a half vector, or most nearly so."""
+    m, s, _ = lines.shape
+    along = np.einsum("msn,mn->ms", lines, np.broadcast_to(half, (m, lines.shape[2])))
+    # Signs of lines mean nothing: all are turned as the first.
+    with_first = np.einsum("msn,mn->ms", lines, lines[:, 0])
+    along = np.where(with_first < 0, -along, along)
+    low, high = along.argmin(axis=1), along.argmax(axis=1)
+    rows = np.arange(m)
+    gap = along[rows, high] - along[rows, low]
+    share = np.divide(-along[rows, low], gap, out=np.full(m, 0.5), where=gap > 0)
+    share = np.clip(share, 0, 1)
+    weights = np.zeros((m, s))
+    weights[rows, high] = share
+    weights[rows, low] += 1 - share
+    return weights
+
+
+def _toward_half(normals: Array, half: Array) -> Array:
+    """Return weights where interpolated normals point to a half vector, or most nearly so."""
+    m, s, n = normals.shape
+    half = np.broadcast_to(half, (m, n))
+    if s == 2:
+        a, b = normals[:, 0], normals[:, 1]
+        aa, ab, bb, ah, bh = _dots(a, a), _dots(a, b), _dots(b, b), _dots(a, half), _dots(b, half)
+        shares = np.stack([bb * ah - ab * bh, aa * bh - ab * ah], axis=1)
+    else:
+        a, b, c = (normals[:, i] for i in range(3))
+        sides = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], axis=1)
+        shares = np.einsum("msn,mn->ms", sides, half)
+        shares *= np.where(_dots(a, sides[:, 0]) < 0, -1.0, 1.0)[:, np.newaxis]
+    shares = np.maximum(shares, 0)
+    total = shares.sum(axis=1, keepdims=True)
+    return np.asarray(np.divide(shares, total, out=np.full_like(shares, 1 / s), where=total > 0))
