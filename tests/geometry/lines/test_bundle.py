@@ -18,6 +18,12 @@ def pieces(middles, tangents, length, voxel):
     )
 
 
+def depths(lines, places, toward):
+    """Return the depths per diameter in the unit of the points."""
+    found = lines.depths(lines.targets(places).places, toward)
+    return [depth / lines.voxel for depth in found]
+
+
 def filled(rng, side, low, high):
     """Return places that fill a box more evenly than at random: one in each cell."""
     cells = np.stack(np.meshgrid(*3 * [np.arange(side)], indexing="ij"), axis=-1).reshape(-1, 3)
@@ -44,12 +50,12 @@ def test_a_slab_of_lines_across_the_light_has_the_depth_of_its_lines():
     slab = pieces(middles, np.tile([1.0, 0, 0], (count, 1)), length, voxel=0.05)
     height = np.linspace(0.1, 0.9, 9)
     places = np.stack([np.full(9, 0.5), np.full(9, 0.5), height], axis=1)
-    forth, back = slab.depths(places, (0, 0, 2))
+    forth, back = depths(slab, places, (0, 0, 2))
     assert forth == pytest.approx(count * length * (1 - height), rel=0.02)
     assert back == pytest.approx(count * length * height, rel=0.02)
-    along, _ = slab.depths(places, (1, 0, 0))
+    along, _ = depths(slab, places, (1, 0, 0))
     assert along == pytest.approx(0, abs=1e-3 * count * length)
-    slanted, _ = slab.depths(places, (0, 0.6, 0.8))
+    slanted, _ = depths(slab, places, (0, 0.6, 0.8))
     middle = height > 0.4  # farther down the way leaves by the side of the slab
     expected = count * length * (1 - height) / 0.8
     assert slanted[middle] == pytest.approx(expected[middle], rel=0.03)
@@ -63,22 +69,26 @@ def test_a_ball_of_lines_in_all_directions():
     for toward in np.eye(3):
         along = places @ toward
         way = np.sqrt(1 - (places * places).sum(axis=1) + along**2)
-        for depth, sign in zip(ball.depths(places, toward), (-1, 1), strict=True):
+        for depth, sign in zip(depths(ball, places, toward), (-1, 1), strict=True):
             assert depth == pytest.approx(np.pi / 4 * density * (way + sign * along), rel=0.05)
 
 
 @pytest.mark.parametrize("lamp", [(0.3, -0.2, 0.1), (2.0, 1.5, -3.0)])
 def test_a_lamp_in_and_out_of_a_ball(lamp):
+    # So many pieces that those next to the lamp, few of which darken many points, do not matter.
     rng = np.random.default_rng(3)
-    ball, density = ball_of_lines(rng, 90, 0.01, 0.06)
-    places = unit(rng.normal(size=(60, 3))) * rng.uniform(0, 0.7, (60, 1))
+    ball, density = ball_of_lines(rng, 120, 0.01, 0.06)
+    places = unit(rng.normal(size=(600, 3))) * rng.uniform(0, 0.7, (600, 1))
     toward = np.asarray(lamp) - places
     distance = np.linalg.norm(toward, axis=1)
     along = (places * toward).sum(axis=1) / distance
     out = np.sqrt(1 - (places * places).sum(axis=1) + along**2) - along
     way = np.minimum(out, distance)
     keep = way > 0.2  # a lamp nearer than some voxels is shaded by single pieces
-    depth = ball.near_depth(places, lamp)
+    depth, _ = ball.near_depth(
+        ball.targets(places).places, (np.array(lamp) - ball.origin) / ball.voxel
+    )
+    depth = depth / ball.voxel
     ratio = depth[keep] / (np.pi / 4 * density * way[keep])
     assert ratio.mean() == pytest.approx(1, abs=0.02)
     assert ratio.std() < 0.1
@@ -121,14 +131,13 @@ def test_the_mean_light_among_real_tubes(kind):
         ],
         axis=0,
     )
-    voxel = 4 * diameter
-    lines = pieces(middles, tangents, length, voxel)
-    share = bundle.own_share(np.full(tries, length), tangents[own], toward, voxel)
-    left = bundle.attenuation(lines.depths(places, toward)[0], share, diameter, voxel)
+    lines = pieces(middles, tangents, length, 4 * diameter)
+    targets = lines.targets(places, tangents[own], np.full(tries, length))
+    left = lines.dimmed(targets, diameter, [(toward, False)], 0)[0][:, 0]
     difference = left - free
     assert abs(difference.mean()) < 3 * difference.std() / np.sqrt(tries)
     assert difference.std() / np.sqrt(tries) < 0.012
-    without = np.exp(-diameter * lines.depths(places, toward)[0])
+    without = np.exp(-diameter * depths(lines, places, toward)[0])
     assert abs(without - free).mean() > abs(difference).mean()
 
 
@@ -156,9 +165,15 @@ def test_lines_that_are_odd():
     found = bundle.medium(
         points, np.array([0, 1, 2, 3, 4, 4]), np.array([0, 3, 4, 4, 6]), voxel=0.25
     )
-    assert len(found.middles) == 5
+    assert found.middles.shape == (3, 5)
     assert np.isfinite(found.middles).all()
-    for depth in found.depths(points[:1], (0, 0, 1)):
-        assert np.isfinite(depth).all()
+    targets = found.targets(points)
+    left, sides = found.dimmed(targets, 0.1, [((0, 0, 1), False), ((0, 0, 1), True)], 4)
+    assert left[2].tolist() == [1, 1]
+    assert sides[2] == 1
+    assert ((left > 0) & (left <= 1)).all()
     empty = bundle.medium(points[:0], np.zeros(0, int), np.zeros(1, int), voxel=0.25)
-    assert len(empty.middles) == 0
+    assert empty.middles.shape == (3, 0)
+    left, sides = empty.dimmed(targets, 0.1, [((0, 0, 1), False), ((0, 0, 1), True)], 4)
+    assert (left == 1).all()
+    assert (sides == 1).all()
