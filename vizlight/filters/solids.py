@@ -49,7 +49,9 @@ def to_polydata(solid: Solid, /, *, tolerance: float = 3e-3) -> pv.PolyData:
     if not len(made.triangles):
         mesh = pv.PolyData()
     else:
-        mesh = pv.PolyData.from_regular_faces(made.world(made.points), made.triangles)
+        points = np.asarray(made.world(made.points), dtype=float)
+        triangles = np.asarray(made.triangles, dtype=int)
+        mesh = pv.PolyData.from_regular_faces(points, triangles)
         mesh.cell_data["patch"] = np.asarray(made.patch)
     mesh.field_data["volume_error"] = [made.volume_error * made.scale**3]
     return mesh
