@@ -340,9 +340,7 @@ def _fade(plan: Plan, points: Array | None, valid: Bools) -> Array | None:
     return fade
 
 
-def _rgb(
-    plan: Plan, sums: _Sums, fade: Array | None, count: int, occlusion: Array | None
-) -> Array:
+def _rgb(plan: Plan, sums: _Sums, fade: Array | None, count: int, occlusion: Array | None) -> Array:
     """Return the colour, channel by channel."""
     scene, material, cue = plan.scene, plan.scene.material, plan.scene.depth_cue
     colors = {

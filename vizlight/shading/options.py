@@ -126,6 +126,7 @@ class LightKeywords(ShadingKeywords, total=False):
     flip_normals: bool
     average_cells: bool
     refine: float
+    bundle: bool | Bundle
     name: str
 
 
@@ -282,10 +283,12 @@ class LightOptions(ShadingOptions):
     flip_normals: bool = False
     average_cells: bool = False
     refine: float = 0.0
+    bundle: bool | Bundle = False
     name: str = "luminance"
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        _check.set_fields(self, bundle=_bundle(self.bundle))
         for name in ("flip_normals", "average_cells"):
             _check.set_fields(self, **{name: _check.boolean(name, getattr(self, name))})
         _check.set_fields(self, refine=_check.number("refine", self.refine, low=0.0))

@@ -43,7 +43,11 @@ SAVED = 60e-9
 #: Largest coordinate in voxels of a place: farther points are as dark as those there.
 FARTHEST = 1e6
 #: Largest number of parts of a piece near a light.
-MOST_PARTS = 32
+MOST_PARTS = 64
+#: Largest number of parallel pieces of a piece near a light.
+MOST_ACROSS = 16
+#: Largest share of a voxel that a line takes from the light.
+WIDEST = 0.99
 #: Least width of a voxel near a light, and least distance from it, in voxels.
 NARROWEST = 1e-6
 
@@ -193,11 +197,14 @@ class Medium:
         cells = np.clip(at - low, 0, np.array(shape, np.float32)[:, np.newaxis] - 2)
         return _both(grid, _summed(grid), cells)
 
-    def near_depth(self, places: Array, lamp: VectorLike, /) -> tuple[Array, Array]:
+    def near_depth(
+        self, places: Array, lamp: VectorLike, thick: float = 0.0, /
+    ) -> tuple[Array, Array]:
         """Return the optical depth per diameter between points and a light nearby.
 
         The grid has the light in its centre: on each of the six faces of a cube around it, voxels
-        are cones whose width grows with the distance.
+        are cones whose width grows with the distance. Near the light they are narrower than a
+        line, which is then spread over its own width, and opaque where it covers a cone.
 
         Parameters
         ----------
@@ -205,6 +212,9 @@ class Medium:
             Places of :class:`Targets`.
         lamp : sequence of float, shape (3,)
             Place of the light, inside or outside the bundle, in voxels.
+        thick : float, default: 0.0
+            Diameter of the lines in voxels, of which the depth includes the factor for lines in
+            one another's shadow.
 
         Returns
         -------
@@ -214,20 +224,17 @@ class Medium:
             Width of the voxels at the points, in voxels of the medium.
         """
         centre = np.asarray(lamp, np.float64)[:, np.newaxis]
-        at, middles, vectors = places - centre, self.middles - centre, self.vectors
-        gone, far = (np.sqrt((rows * rows).sum(axis=0)) for rows in (middles, at))
+        at, middles = places - centre, self.middles - centre
+        gone, far = _size(middles), _size(at)
         out = np.zeros(at.shape[1], np.float32)
         widths = np.ones(at.shape[1], np.float32)
         if not gone.size:
             return out, widths
         width = 1 / max(float(np.median(gone)), 1.0)
-        # A piece near the light is cut again: it lies in the shadow of many cones.
-        size = np.sqrt((vectors * vectors).sum(axis=0))
-        parts = np.ceil(np.clip(size / (width * np.maximum(gone, NARROWEST)), 1, MOST_PARTS))
-        middles, vectors = _cut(middles, vectors, parts.astype(np.intp))
-        gone = np.sqrt((middles * middles).sum(axis=0))
-        across = np.cross(vectors, middles, axis=0)
-        across = np.sqrt((across * across).sum(axis=0)) / np.maximum(gone, 1e-30)
+        middles, vectors, share = _for_cones(middles, self.vectors, width, thick)
+        gone = _size(middles)
+        across = share * _size(np.cross(vectors, middles, axis=0)) / np.maximum(gone, NARROWEST)
+        across *= _crowding(thick / np.maximum(width * gone, NARROWEST))
         face = np.argmax(np.abs(at), axis=0)
         for axis in range(3):
             for side in (1, -1):
@@ -320,11 +327,12 @@ class Medium:
             left = _left(depth, targets.own(toward), thick)
         else:
             lamp = (np.asarray(place, np.float64) - self.origin) / self.voxel
-            depth, width = self.near_depth(targets.places, lamp)
+            depth, width = self.near_depth(targets.places, lamp, thick)
             way = lamp[:, np.newaxis] - targets.places
-            way /= np.maximum(np.sqrt((way * way).sum(axis=0)), NARROWEST)
+            way /= np.maximum(_size(way), NARROWEST)
             width = np.maximum(width, NARROWEST)
-            left = _left(depth, targets.own(way.astype(np.float32), width), thick, width)
+            own = targets.own(way.astype(np.float32), width) * _crowding(thick / width)
+            left = np.exp(np.minimum(-thick * (depth - own), 0))
         return left, left
 
     def _pair(self, targets: Targets, thick: float, toward: Array) -> tuple[Array, Array]:
@@ -457,12 +465,45 @@ def check_count(name: str, value: object, /) -> int:
     return count
 
 
-def _left(
-    depth: Array, own: Array | float, thick: float, width: Array | float = 1.0, /
-) -> Array:
+def _size(rows: Array) -> Array:
+    """Return the lengths of vectors in columns."""
+    size: Array = np.sqrt((rows * rows).sum(axis=0))
+    return size
+
+
+def _crowding(thick: Array) -> Array:
+    """Return the factor of the depth in voxels, from the diameter of the lines in voxels.
+
+    It is ``1 + d / 4`` where voxels are much wider than lines, as for a light at infinity: -log(1 -
+    d / 2) is the depth that leaves the light which a line of half the width leaves.
+    """
+    share = np.minimum(2 * CROWDING * thick, WIDEST)
+    factor: Array = -np.log1p(-share) / np.maximum(share, NARROWEST)
+    return np.where(share > NARROWEST, factor, 1)
+
+
+def _for_cones(
+    middles: Array, vectors: Array, width: float, thick: float
+) -> tuple[Array, Array, Array]:
+    """Return pieces cut again where cones from a light are narrower, and the share of each.
+
+    A piece is cut along its length, and into parallel pieces over the width of the line.
+    """
+    cone = np.maximum(width * _size(middles), NARROWEST)
+    parts = np.ceil(np.clip(_size(vectors) / cone, 1, MOST_PARTS)).astype(np.intp)
+    middles, vectors = _cut(middles, vectors, parts)
+    cone = np.maximum(width * _size(middles), NARROWEST)
+    across = np.cross(vectors, middles, axis=0)
+    across *= thick / np.maximum(_size(across), NARROWEST**2)
+    parts = np.ceil(np.clip(2 * thick / cone, 1, MOST_ACROSS)).astype(np.intp)
+    middles, across = _cut(middles, across, parts)
+    return middles, np.repeat(vectors, parts, axis=1), np.repeat(1 / parts, parts)
+
+
+def _left(depth: Array, own: Array | float, thick: float, /) -> Array:
     """Return the share of light that is left behind lines of a diameter, in voxels."""
     others = depth - own
-    others *= -thick * (1 + CROWDING * thick / width)
+    others *= -thick * (1 + CROWDING * thick)
     left: Array = np.exp(np.minimum(others, 0, out=others), out=others)
     return left
 
