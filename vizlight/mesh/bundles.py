@@ -143,7 +143,7 @@ class _Work:
         points = np.asarray(given.points[:])
         vectors = given.normals if given.tangents is None else given.tangents
         rows = None if vectors is None else np.asarray(vectors[:])
-        lengths = None
+        lengths: Array | None = None
         if given.tangents is not None:
             lengths = np.zeros(len(points))
             if self.bundle.lines is None and polylines.has_lines_only(mesh):

@@ -22,7 +22,7 @@ from vizlight.studies._framework import Row, Study, words
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from vizlight._types import Array
+    from vizlight._types import Array, Indices
 
 KINDS = ("isotropic", "aligned", "layered")
 #: Number of sides of a tube; its radius is such that its mean width is that of a cylinder.
@@ -41,7 +41,7 @@ class _Tubes(NamedTuple):
 
     middles: Array
     tangents: Array
-    own: Array
+    own: Indices
     places: Array
     corners: Array
 

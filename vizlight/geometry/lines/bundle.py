@@ -160,7 +160,7 @@ class Medium:
         Targets
         """
         places = (points.T.astype(np.float64) - self.origin[:, np.newaxis]) / self.voxel
-        known = np.isfinite(places).all(axis=0)
+        known: Bools = np.asarray(np.isfinite(places).all(axis=0))
         places = np.where(known, np.clip(places, -FARTHEST, FARTHEST), 0).astype(np.float32)
         unit = None
         if vectors is not None:
@@ -227,7 +227,7 @@ class Medium:
         at, middles = places - centre, self.middles - centre
         gone, far = _size(middles), _size(at)
         out = np.zeros(at.shape[1], np.float32)
-        widths = np.ones(at.shape[1], np.float32)
+        widths: Array = np.ones(at.shape[1], np.float32)
         if not gone.size:
             return out, widths
         width = 1 / max(float(np.median(gone)), 1.0)
@@ -290,7 +290,7 @@ class Medium:
         found: dict[int, tuple[Array, Array]] = {}
 
         def work(part: slice) -> int:
-            number = part.start
+            number = int(part.start)
             if number < len(lights):
                 found[number] = self._light(targets, thick, *lights[number])
             else:
@@ -408,9 +408,9 @@ def medium(points: Array, connectivity: Indices, offsets: Indices, /, *, voxel: 
     """
     first = segment_starts(connectivity, offsets)
     ends = points[connectivity].astype(np.float64)
-    finite = np.isfinite(ends).all(axis=1)
+    finite: Bools = np.asarray(np.isfinite(ends).all(axis=1))
     first = first[finite[first] & finite[first + 1]]
-    origin = np.zeros(3)
+    origin: Array = np.zeros(3)
     if finite.any():
         origin = ends[finite].min(axis=0) / 2 + ends[finite].max(axis=0) / 2
     start = (ends[first] - origin) / voxel
@@ -644,11 +644,8 @@ def _sum(grid: Array, total: Array, columns: int) -> None:
         run = np.float32(0)
         for at in range(row * columns, (row + 1) * columns):
             value = grid[at]
-            if value != 0:
-                grid[at] = run + half * value
-                run += value
-            else:
-                grid[at] = run
+            grid[at] = run + half * value
+            run += value
         total[row] = run
 
 
