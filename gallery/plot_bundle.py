@@ -35,8 +35,8 @@ plotter.show()
 
 # %%
 # The shares of light are point arrays: ``transmittance`` for each light and ``occlusion`` for light
-# from all sides, here on their own. They are computed again only where lines or lights have changed,
-# not where the eye has moved.
+# from all sides, here on their own. They are computed again only where lines or lights have
+# changed, not where the eye has moved.
 
 plotter = render.make_plotter(
     [

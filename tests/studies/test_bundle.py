@@ -11,7 +11,7 @@ from vizlight.studies import Row, bundle
 
 @pytest.mark.parametrize("kind", bundle.KINDS)
 def test_rays_among_tubes_and_the_medium_agree(kind):
-    """The means have a random error of 0.004; without its two corrections the depth is 0.05 off."""
+    """The means over the points have a random error of about 0.005."""
     pytest.importorskip("embreex")
     far, inside = bundle.measure(kind, 10_000, 96, 0)
     (sides,) = bundle.measure(kind, 10_000, 48, 16)

@@ -224,14 +224,14 @@ class Medium:
             Width of the voxels at the points, in voxels of the medium.
         """
         centre = np.asarray(lamp, np.float64)[:, np.newaxis]
-        at, middles = places - centre, self.middles - centre
-        gone, far = _size(middles), _size(at)
+        at = places - centre
+        gone, far = _size(self.middles - centre), _size(at)
         out = np.zeros(at.shape[1], np.float32)
         widths: Array = np.ones(at.shape[1], np.float32)
         if not gone.size:
             return out, widths
         width = 1 / max(float(np.median(gone)), 1.0)
-        middles, vectors, share = _for_cones(middles, self.vectors, width, thick)
+        middles, vectors, share = _for_cones(self.middles - centre, self.vectors, width, thick)
         gone = _size(middles)
         across = share * _size(np.cross(vectors, middles, axis=0)) / np.maximum(gone, NARROWEST)
         across *= _crowding(thick / np.maximum(width * gone, NARROWEST))
