@@ -10,9 +10,12 @@ import pyvista as pv
 
 import vizlight
 from vizlight import _compiled
+from vizlight.filters import relight
 from vizlight.geometry.lines import bundle as geometry
 from vizlight.mesh import bundles
+from vizlight.plotting import fragments
 from vizlight.shading import engine
+from vizlight.shading.options import LightOptions
 
 FAR = vizlight.Light(direction=(0, 0, 1))
 NEAR = vizlight.Light(position=(0.2, 0.1, 3.0), intensity=0.5)
@@ -263,3 +266,16 @@ def test_bad_input():
     assert bundles.OCCLUSION in mesh.point_data
     with pytest.raises(ValueError, match="transmittance: expected shape"):
         engine.shade(mesh.points, mesh.points, SCENE, transmittance=np.ones(mesh.n_points))
+
+
+def test_live_light_takes_the_shares_or_says_why_not():
+    mesh = lines(80)
+    scene = SCENE.replace(lights=[FAR])
+    lit = vizlight.illuminate(mesh, scene, bundle=QUICK)
+    sources, used = relight.from_record(lit)
+    again = engine.run(sources[0].inputs, used, sources[0].options)
+    np.testing.assert_allclose(again.luminance, lit["luminance"], atol=1e-6)
+    assert "bundle" in fragments.unfit(sources[0].inputs, sources[0].options, lit)
+    head = SCENE.replace(lights=[vizlight.Light.headlight()])
+    with pytest.raises(ValueError, match="bundle: expected no headlight"):
+        relight.from_options(mesh, head, LightOptions(bundle=QUICK))
