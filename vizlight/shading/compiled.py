@@ -55,6 +55,8 @@ def why_not(plan: Plan) -> str:
         return f"{plan.k} tangents per point, more than {MOST_TANGENTS}"
     if not (plan.diffuse or plan.specular or plan.scene.depth_cue):
         return "the ambient term alone needs none"
+    if plan.dimmed or plan.occluded:
+        return "shares of light, as inside a bundle, are multiplied in by NumPy"
     least = cylinder_kernels.TABLE_FROM
     if plan.model == "cylinder" and plan.specular and plan.scene.material.shininess < least:
         return f"a cylinder's highlight of a shininess below {least:g} is no table"

@@ -269,8 +269,9 @@ def report(*, sample: int = 4096, seed: int = 0) -> Iterator[Report]:
     The error between the points is that of the picture: light that is interpolated over segments
     and triangles, against the light of normals and tangents that are interpolated and normalised,
     as a fragment shader computes it. It is computed by the engine in float64, in some 4 ms for
-    4,096 places and 0.1 µs for each cell. It is not measured for fur, for cast shadows, and for
-    points without cells. Filters that other threads call are not recorded.
+    4,096 places and 0.1 µs for each cell. It is not measured for fur, for cast shadows, for
+    light inside a bundle, and for points without cells. Filters that other threads call are not
+    recorded.
 
     Examples
     --------
@@ -479,6 +480,8 @@ def _reference(
         base_tangents=vectors(given.base_tangents),
         fur_height=0.0 if given.fur_height is None else numbers(given.fur_height, own)[0],
         shadow=None if given.shadow is None else numbers(given.shadow, own),
+        transmittance=(None if given.transmittance is None else numbers(given.transmittance, own)),
+        occlusion=1.0 if given.occlusion is None else numbers(given.occlusion, own)[0],
         model=options.model,
         compensate=options.compensate,
         conditioned=bool(options.conditioned),
