@@ -95,10 +95,11 @@ def relief(
         if shape.contour is not None or shape.slice is not None or not _is_field(found):
             mesh = scenes.surface(mesh, shape)
             found = None
+        on = {} if found is not None or asked.raster is not None else {"feature_angle": "auto"}
         heights = None if found is None else _heights(found, asked)
         raised = mesh if heights is None else Step("raised", "files.warped", mesh, *heights)
         camera = look.camera(raised, is_map=found is not None)
-        lit = _step("shaded", "relief_shadow", mesh, look.scene(camera), given, common.out)
+        lit = _step("shaded", "relief_shadow", mesh, look.scene(camera), on | given, common.out)
         shown = None if heights is None else Step("shown", "files.warped", lit, *heights)
         made = Job(lit, asked.name, look, camera, shown=shown, scalars=asked.name, before=mesh)
         made.suffix = ".vtp" if found is None else _suffix(found)
@@ -127,7 +128,7 @@ def fur(
     """
     scenes.check_target(shape)
     look = scenes.Look(common)
-    given = options.keywords(how)
+    given = {"feature_angle": "auto"} | options.keywords(how)
     asked = FurOptions(**given)
 
     def job(path: Path) -> Job:

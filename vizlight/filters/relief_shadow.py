@@ -14,6 +14,7 @@ from vizlight.filters.lighting import DEFAULT_NAME, PARTS, VALID, attach, refuse
 from vizlight.geometry.relief import sun as sky
 from vizlight.mesh import point_arrays, records
 from vizlight.mesh.casters import CasterKeywords, CasterOptions, caster
+from vizlight.mesh.normals import split_where_computed
 from vizlight.scene import Light, Material, Scene
 from vizlight.shading import engine
 from vizlight.shading.options import accepts
@@ -148,7 +149,8 @@ def relief_shadow(
         _check.instance("scene", base, Scene)
         scene = base.replace(lights=[lit_by])
     scene, lights = _lights(scene)
-    shadow = caster(mesh, scene, asked, threads)
+    own = mesh if asked.raster is not None else split_where_computed(mesh, asked.feature_angle)
+    shadow = caster(own, scene, asked, threads)
     name = asked.name
     each = [f"{name}_{i}" for i in range(len(lights) if asked.components else 0)]
     refuse_overwriting([(mesh, "")], name, components=False, colored=False)
@@ -174,10 +176,12 @@ def relief_shadow(
 
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
     out = mesh if inplace else shallow_copy(mesh)
+    if own is not mesh:
+        out.ShallowCopy(own)
     if shading is not None:
         light = records.of_light(shading, "relief_shadow", scene, asked)
         attach(out, shading, DEFAULT_NAME, light)
-    arrays: dict[str, NDArray[np.generic]] = {own: t[:, i].copy() for i, own in enumerate(each)}
+    arrays: dict[str, NDArray[np.generic]] = {one: t[:, i].copy() for i, one in enumerate(each)}
     arrays[name] = t @ (weight / weight.sum())
     missing = int(np.count_nonzero(~shadow.valid))
     if missing:
