@@ -211,10 +211,16 @@ def _ratios(
     start = time.perf_counter()
     t = np.empty((len(shadow.points), len(lights)))
     discs = [_disc(light, options) for light in lights]
-    with _progress.progress("shadow", len(lights), show=progress_bar) as report:
+    count, done = len(t), 0
+    total = count * sum(map(len, discs))
+    with _progress.progress("shadow", total, show=progress_bar) as report:
         for i, disc in enumerate(discs):
-            t[:, i] = sum(shadow.of(one) for one in disc) / len(disc)
-            report(i + 1)
+            column = np.zeros(count)
+            for one in disc:
+                column += shadow.of(one, lambda share, before=done: report(before + share))
+                done += count
+                report(done)
+            t[:, i] = column / len(disc)
 
     def again(point: int, light: int) -> float:
         return float(np.mean([shadow.reference(point, one) for one in discs[light]]))

@@ -265,9 +265,7 @@ def _traced(
     surface, traced, own = None, mesh, all_made(mesh)
     if options.surface is not None:
         own |= all_made(options.surface)
-        surface = surfaces.with_normals(
-            options.surface, onlooker(scene), options.feature_angle
-        )
+        surface = surfaces.with_normals(options.surface, onlooker(scene), options.feature_angle)
     vectors = _field(mesh, surface if confined else None, options)
     if confined and surface is not None:
         traced = surface

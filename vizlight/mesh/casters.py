@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol, TypedDict
 
@@ -115,8 +115,8 @@ class Caster(Protocol):
     depth: float
     effort: int
 
-    def of(self, light: Light) -> Array:
-        """Return t at all points."""
+    def of(self, light: Light, report: Callable[[int], None]) -> Array:
+        """Return t at all points; ``report`` takes the number of rays followed so far."""
 
     def reference(self, point: int, light: Light) -> float:
         """Return t at one point by an independent method; NaN where that does not apply."""
@@ -171,15 +171,16 @@ class _FieldCaster:
         exact = not found.sampled and self.depth > shadowing.LEAST_DEPTH * size
         self.effort = rays.SAMPLES if exact else 0
 
-    def of(self, light: Light) -> Array:
+    def of(self, light: Light, report: Callable[[int], None]) -> Array:
         turn = np.eye(3) if self._turn is None else self._turn
         way, end = (
             None if v is None else turn @ np.array(v) for v in (light.direction, light.position)
         )
         ray = shadowing.toward(self._field, direction=way, position=end)
         t = shadowing.ratio(
-            self._field, self._normal, self.depth, ray, method=self._method, threads=self._threads
-        )
+            self._field, self._normal, self.depth, ray, method=self._method, threads=self._threads,
+            report=report,
+        )  # fmt: skip
         t[self._holes] = 0
         t = self._to_points(t)
         t[~self.valid] = 0
@@ -229,7 +230,7 @@ class _SolidCaster:
         self.effort = faces if self.depth / self._unit > shadowing.LEAST_DEPTH else 0
         self._corners: list[Array] | None = None
 
-    def of(self, light: Light) -> Array:
+    def of(self, light: Light, report: Callable[[int], None]) -> Array:
         good = self.valid
         depth = self.depth / self._unit
         limit = depth <= shadowing.LEAST_DEPTH
@@ -239,7 +240,7 @@ class _SolidCaster:
         normal = self.normals[good]
         start = place + inset * normal if limit else place - inset * normal
         way, reach = self._toward(light, start)
-        length = closed_meshes.inside_length(self._solids, start, way, reach)
+        length = closed_meshes.inside_length(self._solids, start, way, reach, report)
         t = np.zeros(len(good))
         if limit:
             cosine = np.clip(np.einsum("ij,ij->i", normal, way), 0, 1)
