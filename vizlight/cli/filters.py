@@ -10,7 +10,7 @@ from vizlight.cli import options, scenes
 from vizlight.cli.arguments import COMMON, LIT, OUTPUT, Color, Common, Part, Shape
 from vizlight.cli.job import Job, carry_out
 from vizlight.cli.script import Step
-from vizlight.filters.fur import FurOptions
+from vizlight.filters.fur import LENGTH, FurOptions
 from vizlight.filters.isoluminance import ContourOptions
 from vizlight.filters.project import ProjectOptions
 from vizlight.filters.relief_shadow import ReliefOptions
@@ -127,13 +127,13 @@ def fur(
         Surface, or a mesh with one; of several each is lit by itself.
     """
     scenes.check_target(shape)
-    look = scenes.Look(common)
+    look = scenes.Look(common, material=scenes.FUR)
     given = {"feature_angle": "auto"} | options.keywords(how)
     asked = FurOptions(**given)
 
     def job(path: Path) -> Job:
         mesh = scenes.surface(scenes.data(path, shape), shape)
-        camera = look.camera(mesh)
+        camera = look.camera(_tips(mesh, asked))
         lit = _step("furry", "fur", mesh, look.scene(camera), given, common.out)
         return Job(lit, asked.name, look, camera, parts=("fibres", "skin"))
 
@@ -219,6 +219,17 @@ def _step(
     progress = {"progress_bar": True} if out.progress else {}
     arguments = (mesh,) if scene is None else (mesh, scene)
     return Step(name, f"vizlight.{filter_}", *arguments, **given, **progress)
+
+
+def _tips(mesh: Step, asked: FurOptions) -> Step:
+    """Return the step that moves the points of a surface to where straight fur ends."""
+    found: pv.PolyData = mesh.run()
+    length = LENGTH * found.length if asked.length is None else asked.length
+    if isinstance(length, str):
+        known = length in found.point_data and found.n_points
+        length = float(found.point_data[length].max()) if known else 0.0
+    normals = Step("", ".compute_normals", mesh, auto_orient_normals=True, cell_normals=False)
+    return Step("tips", ".warp_by_vector", normals, "Normals", factor=length)
 
 
 def _heights(field: pv.DataSet, asked: ReliefOptions) -> tuple[str, float] | None:

@@ -162,8 +162,8 @@ def streamlines(
     Warns
     -----
     UserWarning
-        If fewer lines than the number in ``seeds`` could be traced. With the count, if tensors other
-        than zero have no first eigenvector.
+        If fewer lines than the number in ``seeds`` could be traced. With the
+        count, if tensors other than zero have no first eigenvector.
 
     Notes
     -----

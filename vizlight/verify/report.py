@@ -367,7 +367,7 @@ def _unmeasured(given: ShadingInputs, shading: Shading, places: int) -> str:
         return "fur, which light passes on a way of its own at each place"
     if not places:
         return "points without cells between them, or cells without light"
-    k = shading.plan.k
+    k = given.layout.k
     if k is not None and k > 1 and "specular" in shading.plan.terms:
         return (
             "the peaks of highlights, which have no closed form for several tangents per point: "
