@@ -234,7 +234,7 @@ def _grow(
     _check.instance("scene", scene, Scene)
     if scene.n not in (None, 3):
         raise ValueError(_check.message("scene", "vectors of 3 components", scene.n))
-    if options.feature_angle is not None and np.ndim(options.length):
+    if options.feature_angle is not None and np.asarray(options.length, dtype=object).ndim:
         expected, remedy = "the name of a point array beside feature_angle=", "attach the array"
         got = _check.describe(options.length)
         raise TypeError(_check.message("length", expected, got, remedy))

@@ -21,7 +21,7 @@ from vizlight.shading.options import accepts
 from vizlight.verify.report import note_ratio
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
     from typing_extensions import Unpack
@@ -217,7 +217,7 @@ def _ratios(
         for i, disc in enumerate(discs):
             column = np.zeros(count)
             for one in disc:
-                column += shadow.of(one, lambda share, before=done: report(before + share))
+                column += shadow.of(one, _further(done, report))
                 done += count
                 report(done)
             t[:, i] = column / len(disc)
@@ -229,6 +229,10 @@ def _ratios(
     effort = shadow.effort * max(map(len, discs))
     note_ratio(t, shadow.valid, time.perf_counter() - start, size, again, effort)
     return t
+
+
+def _further(before: int, report: Callable[[int], None]) -> Callable[[int], None]:
+    return lambda now: report(before + now)
 
 
 def sun_direction(sun: object, name: str = "sun") -> Array:

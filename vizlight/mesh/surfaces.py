@@ -34,13 +34,13 @@ def with_normals(
     ValueError
         If it has no faces.
     """
-    surface = normals.split_where_computed(blocks.surface(surface, name), angle)
+    own = normals.split_where_computed(blocks.surface(surface, name), angle)
     # Vertices and lines are left out, because every cell must be a triangle.
     triangles = pv.PolyData()
-    triangles.SetPoints(surface.GetPoints())
-    triangles.SetPolys(surface.GetPolys())
-    triangles.SetStrips(surface.GetStrips())
-    for key, array in surface.point_data.items():
+    triangles.SetPoints(own.GetPoints())
+    triangles.SetPolys(own.GetPolys())
+    triangles.SetStrips(own.GetStrips())
+    for key, array in own.point_data.items():
         if np.asarray(array).dtype.kind in "biuf":
             triangles.point_data[key] = np.asarray(array)
     triangles.point_data[NORMALS] = normals.normals_of(surface, None, 3, view, warn=angle is None)
