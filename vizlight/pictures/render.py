@@ -11,6 +11,8 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.files import check_output, replace_file
+from vizlight.filters.tint import unlit_colors
+from vizlight.mesh import records
 from vizlight.mesh.blocks import all_blocks
 from vizlight.mesh.polylines import has_lines_only
 from vizlight.pictures.backends import (
@@ -22,6 +24,7 @@ from vizlight.pictures.backends import (
     window_class,
 )
 from vizlight.pictures.cameras import Mesh, camera_on, common_bounds, over_shoulder
+from vizlight.plotting.component import add_recorded
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -48,6 +51,7 @@ __all__ = [
 ]
 
 AntiAliasing = Literal["ssaa", "msaa", "fxaa"]
+PictureLight = Literal["auto", "points"]
 
 #: Supersampling draws at twice the size, and drivers support at most 16384 pixels per side.
 LARGEST_SIDE, LARGEST_AREA = 8192, 33_000_000
@@ -82,6 +86,7 @@ class PlotterKeywords(TypedDict, total=False):
     line_width: float
     anti_aliasing: AntiAliasing | None
     backend: Backend | None
+    light: PictureLight
 
 
 def make_plotter(
@@ -99,6 +104,7 @@ def make_plotter(
     line_width: float = 1.0,
     anti_aliasing: AntiAliasing | None = "ssaa",
     backend: Backend | None = None,
+    light: PictureLight = "auto",
 ) -> pv.Plotter:
     """Return an offscreen plotter that shows lit meshes on a grid of panels with one camera.
 
@@ -132,6 +138,11 @@ def make_plotter(
         Method of anti-aliasing: supersampling, multisampling, FXAA, or none.
     backend : {"egl", "osmesa"}, optional
         OpenGL library; see :func:`choose_backend`.
+    light : {"auto", "points"}
+        What is drawn: "points", the array as it is, interpolated between the points. "auto", the
+        light of its record, computed in each fragment, where the array is a light of which that
+        is possible (in gray from 0 to 1, or ``rgb``): it is right between the points too. A scene
+        that is exported to a page needs "points", because the page has no such shaders.
 
     Returns
     -------
@@ -147,6 +158,8 @@ def make_plotter(
     """
     shown = _check_panels(panels, scalars)
     _check_options(camera, cmap, clim, anti_aliasing)
+    _check.choice("light", light, get_args(PictureLight))
+    plain = cmap == "gray" and tuple(clim) == (0.0, 1.0) and not bar
     pixels = pixels_of(size)
     rows = min(_check.integer("rows", rows, low=1), len(shown))
     columns = math.ceil(len(shown) / rows)
@@ -168,7 +181,9 @@ def make_plotter(
             # PyVista supersamples for FXAA too where the driver lacks that.
             drawn = plotter.renderer.GetPass()
             pixel = SUPERSAMPLED if drawn is not None and drawn.IsA("vtkSSAAPass") else 1.0
-            _draw(plotter, panel, cmap, clim, line_width * pixel, camera)
+            width = line_width * pixel
+            lit = light == "auto" and plain
+            _draw(plotter, panel, cmap, clim, width, camera, fragments=lit)
             if panel.title:
                 plotter.add_text(panel.title, position="upper_edge", font_size=10, color=ink)
             plotter.camera = camera.copy()  # type: ignore[no-untyped-call]
@@ -252,7 +267,7 @@ def save_png(
         Path of the picture, in an existing folder.
     **options
         Options of :func:`make_plotter`: camera, rows, size, scalars, cmap, clim, bar, background,
-        line_width, anti_aliasing, backend.
+        line_width, anti_aliasing, backend, light.
 
     Returns
     -------
@@ -326,28 +341,26 @@ def pixels_of(size: object) -> list[int]:
 
 
 def _draw(
-    plotter: pv.Plotter,
-    panel: Panel,
-    cmap: Any,
-    clim: tuple[float, float],
-    line_width: float,
-    camera: pv.Camera,
-) -> None:
+    plotter: pv.Plotter, panel: Panel, cmap: Any, clim: tuple[float, float], line_width: float,
+    camera: pv.Camera, *, fragments: bool,
+) -> None:  # fmt: skip
     blocks = [mesh for mesh in all_blocks(panel.mesh) if mesh.n_points]
     of_lines = [has_lines_only(mesh) for mesh in blocks]
     size = LIFT * max((mesh.length for mesh in blocks), default=0.0)
     for mesh, lines in zip(blocks, of_lines, strict=True):
-        of_points = panel.scalars in mesh.point_data
-        values = np.asarray((mesh.point_data if of_points else mesh.cell_data)[panel.scalars])
-        colour = values.ndim == 2
-        if colour:
-            # VTK wraps around above 1, so a bright highlight would turn black.
-            values = np.clip(values, 0, 1)
         shown = mesh.copy(deep=False)
         if lines and not all(of_lines):
             # Assigning to shown.points would move the points that it shares with the mesh.
             shown.SetPoints(pv.vtk_points(_lifted(np.asarray(mesh.points), camera, size)))
-        plotter.add_mesh(
+        if fragments and add_recorded(plotter, shown, panel.scalars, line_width=line_width):
+            continue
+        of_points = panel.scalars in mesh.point_data
+        values = np.asarray((mesh.point_data if of_points else mesh.cell_data)[panel.scalars])
+        colour = values.ndim == 2
+        if colour and values.dtype != np.uint8:
+            # VTK wraps around above 1, so a bright highlight would turn black.
+            values = np.clip(values, 0, 1)
+        actor = plotter.add_mesh(
             shown,
             scalars=values,
             preference="point" if of_points else "cell",
@@ -358,6 +371,9 @@ def _draw(
             line_width=line_width,
             show_scalar_bar=False,
         )
+        if (records.read(mesh, panel.scalars) or {}).get("filter") == "tint":
+            # The colours are drawn as they are; a scalar bar shows those before they were lit.
+            actor.mapper.lookup_table = unlit_colors(mesh, panel.scalars)
 
 
 def _lifted(points: NDArray[np.floating[Any]], camera: pv.Camera, by: float) -> Any:

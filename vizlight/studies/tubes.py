@@ -75,7 +75,9 @@ def measure(seeds: int = 300, repeats: int = 5) -> tuple[list[Row], list[pv.Poly
 
 def time_to_draw(mesh: pv.PolyData, camera: pv.Camera, repeats: int = 5) -> float:
     """Return the processor time in seconds of a frame of 800 x 800 pixels after the first one."""
-    plotter = render.make_plotter(mesh, camera=camera, size=(800, 800), anti_aliasing=None)
+    plotter = render.make_plotter(
+        mesh, camera=camera, size=(800, 800), anti_aliasing=None, light="points"
+    )
     try:
         plotter.show(auto_close=False)
 
