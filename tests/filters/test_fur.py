@@ -522,3 +522,25 @@ def test_compiled_fibres_do_not_depend_on_the_number_of_threads():
         again = fur(torus(24), SCENE, fibres=500, segments=3, curl=0.2, threads=1)
     np.testing.assert_array_equal(coat["fibres"].points, again["fibres"].points)
     np.testing.assert_array_equal(coat["fibres"]["luminance"], again["fibres"]["luminance"])
+
+
+def test_points_of_the_skin_are_split_at_sharp_edges():
+    box = pv.Cube().triangulate().subdivide(3).clean()
+    box.clear_data()
+    box["long"] = np.full(box.n_points, 0.1)
+    scene = Scene(lights=Light(direction=(1, 2, 3)), view=View(direction=(1, 1, 1)))
+    with pytest.warns(UserWarning, match="8% of the edges are sharper than 30 degrees"):
+        fur(box, scene, fibres=10)
+    found = fur(box, scene, fibres=600, feature_angle=30, length="long")
+    # Each face has its own points, and fibres stand square on it.
+    assert found["skin"].n_points == 6 * 81
+    assert box.n_points == 386
+    ends = np.asarray(found["fibres"].points).reshape(600, -1, 3)
+    ways = ends[:, -1] - ends[:, 0]
+    np.testing.assert_allclose(np.abs(ways).max(axis=1), 0.1, rtol=1e-5)
+    np.testing.assert_allclose(np.abs(ways).sum(axis=1), 0.1, rtol=1e-5)
+    assert np.all(np.abs(found["skin"].points).max(axis=1) > 0.4999)
+    with pytest.raises(TypeError, match="length: expected the name of a point array beside"):
+        fur(box, scene, feature_angle=30, length=np.full(box.n_points, 0.1))
+    with pytest.raises(ValueError, match="feature_angle: expected a number of degrees"):
+        fur(box, scene, feature_angle="sharp")

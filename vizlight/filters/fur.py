@@ -14,13 +14,13 @@ from vizlight.filters import lighting
 from vizlight.geometry.lines import compiled
 from vizlight.geometry.lines import fur as geometry
 from vizlight.mesh import blocks, point_arrays, surfaces
-from vizlight.mesh.normals import onlooker
+from vizlight.mesh.normals import onlooker, split_where_computed
 from vizlight.mesh.point_arrays import unit_rows
 from vizlight.mesh.strands import Grown, Room, Strands
 from vizlight.model import kernels
 from vizlight.scene import Scene
 from vizlight.shading.inputs import ShadingInputs
-from vizlight.shading.options import ShadingOptions, accepts
+from vizlight.shading.options import ShadingOptions, accepts, check_sides
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from vizlight._types import Array, Bools, Indices, VectorLike
-    from vizlight.shading.options import Model
+    from vizlight.shading.options import FeatureAngle, Model
 
 Inward = Literal["keep", "flip", "drop"]
 #: Default absorption, and length of fibres as a share of the diagonal of the mesh.
@@ -54,6 +54,7 @@ class FurKeywords(TypedDict, total=False):
     curl: float
     turns: float
     seed: int
+    feature_angle: FeatureAngle
     conditioned: bool
     attenuated: bool
     compensate: bool
@@ -94,6 +95,9 @@ class FurOptions:
         tip.
     seed : int, default: 0
         Seed of the random numbers.
+    feature_angle : float or "auto", optional
+        Angle in degrees above which edges are sharp, as for :func:`vizlight.illuminate`. Default:
+        none is.
     conditioned : bool, default: True
         Whether fibres inherit the self-shadow of the surface (Banks 6).
     attenuated : bool, default: True
@@ -116,6 +120,7 @@ class FurOptions:
     curl: float = 0.0
     turns: float = 1.0
     seed: int = 0
+    feature_angle: FeatureAngle = None
     conditioned: bool = True
     attenuated: bool = True
     compensate: bool = True
@@ -124,6 +129,7 @@ class FurOptions:
 
     def __post_init__(self) -> None:
         _check.choice("inward", self.inward, get_args(Inward))
+        check_sides("auto", self.feature_angle)
         for option in ("bend", "curl", "turns"):
             value = getattr(self, option)
             _check.number(option, value, low=-_check.LARGEST, high=_check.LARGEST)
@@ -232,7 +238,12 @@ def _grow(
     _check.instance("scene", scene, Scene)
     if scene.n not in (None, 3):
         raise ValueError(_check.message("scene", "vectors of 3 components", scene.n))
-    skin = surfaces.with_normals(surface, onlooker(scene))
+    if options.feature_angle is not None and np.asarray(options.length, dtype=object).ndim:
+        expected, remedy = "the name of a point array beside feature_angle=", "attach the array"
+        got = _check.describe(options.length)
+        raise TypeError(_check.message("length", expected, got, remedy))
+    surface = split_where_computed(surface, options.feature_angle)
+    skin = surfaces.with_normals(surface, onlooker(scene), options.feature_angle)
     name = options.name
     lighting.refuse_overwriting([(surface, "")], name, components=False, colored=scene.colored)
     points = options.fibres * (options.segments + 1)

@@ -23,9 +23,6 @@ if TYPE_CHECKING:
     from vizlight.shading.inputs import ShadingInputs
     from vizlight.shading.options import LightKeywords
 
-#: Share of sharp edges, of all edges of a mesh, from which a warning names the remedy.
-MANY_SHARP = 0.02
-
 
 @accepts(LightOptions)
 def illuminate(
@@ -226,15 +223,9 @@ def _warn_of_edges(
 ) -> None:
     """Warn if normals were averaged across many sharp edges."""
     shares = [0.0 if sided is None else sided.sharp for sided in sides]
-    share = max(shares, default=0.0)
-    if options.feature_angle is not None or share <= MANY_SHARP:
-        return
-    others = any(not isinstance(mesh, pv.PolyData) for mesh in meshes)
-    _check.warn(
-        f"{share:.0%} of the edges are sharper than {normals.SHARP:g} degrees, and light is "
-        f"averaged across them; {'take the extract_surface() of the mesh and ' * others}pass "
-        f"feature_angle={normals.SHARP:g} to split the points there"
-    )
+    if options.feature_angle is None:
+        splits = all(isinstance(mesh, pv.PolyData) for mesh in meshes)
+        normals.warn_of_edges(max(shares, default=0.0), splits)
 
 
 def _replaced(mesh: MeshT, made: Iterator[pv.DataSet]) -> MeshT:

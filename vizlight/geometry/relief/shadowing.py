@@ -232,8 +232,12 @@ def ratio(
     *,
     method: Method = "fast",
     threads: int | None = None,
+    report: Callable[[int], None] | None = None,
 ) -> Array:
-    """Return :func:`shadow` for a validated field and its normals."""
+    """Return :func:`shadow` for a validated field and its normals.
+
+    ``report`` takes the number of rays that are done.
+    """
     size = max(field.x[-1], field.y[-1], field.top)
     if depth * LEAST_DEPTH > size:
         expected = f"at most {size / LEAST_DEPTH:g}, 1e9 times the size of the field"
@@ -248,7 +252,8 @@ def ratio(
         place = np.stack([field.x.take(column), field.y.take(row), heights.take(rays)])
         return np.asarray(place - inset * normals.take(rays, axis=0).T)
 
-    t = lengths(field, start, normal.shape[0] * normal.shape[1], ray, method, threads, inset)
+    count = normal.shape[0] * normal.shape[1]
+    t = lengths(field, start, count, ray, method, threads, inset, report)
     if limit:
         step = min(np.diff(field.x).min(), np.diff(field.y).min())
         free = t <= 1e-6 * step
@@ -270,6 +275,7 @@ def lengths(
     method: Method,
     threads: int | None,
     below: float | None = None,
+    report: Callable[[int], None] | None = None,
 ) -> Array:
     """Return the lengths inside the solid of rays that begin at ``start(rays)``, shape (3, rays).
 
@@ -302,7 +308,7 @@ def _lengths(
             below = _largest_offset(field, start(np.arange(count)))
         profiles = _profiles(field, ray.direction, below, count, method)
         if profiles is not None:
-            _by_profile(profiles, start, length, threads)
+            _by_profile(profiles, start, length, threads, report)
             return length
     fast = compiled.walk.pays(compiled.SAVED * count)
     # Asked for once, before threads need them.
@@ -321,7 +327,7 @@ def _lengths(
             )  # fmt: skip
         return int(rows.stop)
 
-    _all(work, _pool.blocks(count, BLOCK), threads)
+    _all(work, _pool.blocks(count, BLOCK), threads, report)
     return length
 
 
@@ -340,6 +346,7 @@ def _by_profile(
     start: Callable[[Indices], Array],
     length: Array,
     threads: int | None,
+    report: Callable[[int], None] | None,
 ) -> None:
     """Fill in lengths, one band of profiles and its rays after the other."""
     count = len(length)
@@ -365,12 +372,18 @@ def _by_profile(
             length[some] = made.lengths(start(some))
         return int(part.stop)
 
-    _all(work, parts, threads)
+    _all(work, parts, threads, report)
 
 
-def _all(work: Callable[[slice], int], parts: list[slice], threads: int | None) -> None:
-    for _ in _pool.run(work, parts, threads):
-        pass
+def _all(
+    work: Callable[[slice], int],
+    parts: list[slice],
+    threads: int | None,
+    report: Callable[[int], None] | None = None,
+) -> None:
+    for done in _pool.run(work, parts, threads):
+        if report is not None:
+            report(done)
 
 
 def _largest_offset(field: Field, places: Array) -> float:
