@@ -527,3 +527,21 @@ def test_points_that_share_a_normal(kind, random):
         engine.shade(points, tangents, scene, normals=normals, repeat=7)
     with pytest.raises(ValueError, match=r"tangents: expected shape \(100 or 300, k, 3\)"):
         engine.shade(points, tangents[:50], scene, normals=normals, repeat=3)
+
+
+@pytest.mark.parametrize("role", ["tangents", "normals", "base_tangents", "points"])
+def test_masked_rows_are_invalid(role):
+    rng = np.random.default_rng(5)
+    scene = Scene(lights=Light(position=(1, 2, 3)), material=Material(specular=0))
+    arrays = {name: rng.normal(size=(9, 3)) for name in ("points", "tangents", role)}
+    arrays[role] = np.ma.array(arrays[role], mask=np.zeros((9, 3), bool))
+    arrays[role][2] = np.ma.masked
+    arrays[role][5, 1] = np.ma.masked
+    if role == "base_tangents":
+        rows = np.ma.concatenate([arrays[role], rng.normal(size=(9, 3))], axis=1)
+        arrays[role] = rows
+    points, tangents = arrays.pop("points"), arrays.pop("tangents")
+    options = {"conditioned": True} if role == "normals" else {}
+    lit = engine.shade(points, tangents, scene, **arrays, **options)
+    np.testing.assert_array_equal(np.flatnonzero(~lit.valid), [2, 5])
+    assert np.isfinite(lit.luminance).all()

@@ -117,6 +117,7 @@ def refined(
     most = max(MANY, 2 * count) if most is None else most
     cells, left = refine(between, shading, parents, options.refine, most)
     found = splitting.rebuilt(flat, cells, origin, _named(flat, between, options))
+    records.carry(mesh, found)
     made = _extended(part, between, cells.corners)
     if origin is None and options.tangents is None and made.inputs.tangents is not None:
         splitting.keep_tangents(found, np.asarray(made.inputs.tangents[:]))

@@ -328,9 +328,8 @@ def keep_tangents(mesh: pv.PolyData, tangents: Array) -> None:
     point_arrays.attach_rows(mesh, TANGENTS, tangents)
     record: records.Record = {
         "vizlight": __version__, "filter": "refine", "source": normals.fingerprint(mesh),
-        "arrays": [TANGENTS],
     }  # fmt: skip
-    records.write(mesh, TANGENTS, record)
+    records.write(mesh, TANGENTS, record, [TANGENTS])
 
 
 def kept_tangents(mesh: pv.DataSet) -> Array | None:
@@ -338,6 +337,8 @@ def kept_tangents(mesh: pv.DataSet) -> Array | None:
     rows = mesh.point_data.get(TANGENTS)
     record = None if rows is None else records.read(mesh, TANGENTS)
     if rows is None or record is None or np.shape(rows) != (mesh.n_points, 3):
+        return None
+    if TANGENTS not in records.made(mesh, TANGENTS):
         return None
     return np.asarray(rows) if record.get("source") == normals.fingerprint(mesh) else None
 
