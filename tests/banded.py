@@ -45,3 +45,12 @@ def places(bands, random, count=4):
     t, owner = t[size > 1e-9 * size.max()], owner[size > 1e-9 * size.max()]
     weight = random.dirichlet([1, 1, 1], (count, len(t)))
     return np.einsum("nti,tij->ntj", weight, t).reshape(-1, 3), np.tile(owner, count)
+
+
+def spread(bands, random, count):
+    """Return random places spread evenly over the area, and the polygon of each."""
+    t, owner = corners(bands)
+    size = np.linalg.norm(np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0]), axis=1)
+    chosen = random.choice(len(t), count, p=size / size.sum())
+    weight = random.dirichlet([1, 1, 1], count)
+    return np.einsum("ti,tij->tj", weight, t[chosen]), owner[chosen]

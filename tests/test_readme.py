@@ -168,6 +168,7 @@ def test_every_alias_that_the_architecture_page_names_is_one():
 def test_the_filters_that_readme_and_guide_name_are_all():
     """Names in lower case that the package gives are its filters and a few helpers."""
     helpers = {"direction_colors", "example_path", "load_example", "provenance", "read", "report"}
+    helpers |= {"to_polydata"}
     filters = {name for name in vizlight.__all__ if name.islower()} - helpers
     assert not [name for name in filters if f"`{name}" not in text_of(PAGES / "guide.rst")]
     assert not [name for name in filters if name not in text_of(README)]

@@ -30,8 +30,12 @@ if TYPE_CHECKING:
     from vizlight.filters.relief_day import relief_day
     from vizlight.filters.relief_shadow import relief_shadow
     from vizlight.filters.satin import satin
+    from vizlight.filters.solids import to_polydata
     from vizlight.filters.streamlines import streamlines
-    from vizlight.geometry.solids.primitives import Block, Frustum, Sphere, Truncus
+    from vizlight.filters.tint import tint
+    from vizlight.filters.tint import unlit_colors as unlit_colors
+    from vizlight.geometry.solids.polyhedra import HalfSpace, Polyhedron, Prism
+    from vizlight.geometry.solids.primitives import Block, Frustum, Sphere, Torus, Truncus
     from vizlight.mesh.polylines import direction_colors
     from vizlight.mesh.records import provenance
     from vizlight.scene import DepthCue, Light, Material, Scene, View
@@ -41,10 +45,14 @@ _HOMES = {
     "Block": "vizlight.geometry.solids.primitives",
     "DepthCue": "vizlight.scene",
     "Frustum": "vizlight.geometry.solids.primitives",
+    "HalfSpace": "vizlight.geometry.solids.polyhedra",
     "Light": "vizlight.scene",
     "Material": "vizlight.scene",
+    "Polyhedron": "vizlight.geometry.solids.polyhedra",
+    "Prism": "vizlight.geometry.solids.polyhedra",
     "Scene": "vizlight.scene",
     "Sphere": "vizlight.geometry.solids.primitives",
+    "Torus": "vizlight.geometry.solids.primitives",
     "Truncus": "vizlight.geometry.solids.primitives",
     "View": "vizlight.scene",
     "bas_relief": "vizlight.filters",
@@ -65,6 +73,9 @@ _HOMES = {
     "report": "vizlight.verify.report",
     "satin": "vizlight.filters",
     "streamlines": "vizlight.filters",
+    "tint": "vizlight.filters",
+    "unlit_colors": "vizlight.filters",
+    "to_polydata": "vizlight.filters",
 }
 _MODULES = (
     "accessor", "engine", "filters", "geometry", "model", "movie", "render", "studies", "testing",
@@ -76,10 +87,14 @@ __all__ = [
     "Block",
     "DepthCue",
     "Frustum",
+    "HalfSpace",
     "Light",
     "Material",
+    "Polyhedron",
+    "Prism",
     "Scene",
     "Sphere",
+    "Torus",
     "Truncus",
     "View",
     "bas_relief",
@@ -99,6 +114,8 @@ __all__ = [
     "report",
     "satin",
     "streamlines",
+    "tint",
+    "to_polydata",
 ]
 
 

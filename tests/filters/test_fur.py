@@ -422,3 +422,47 @@ def test_fur_of_thin_cylinders_stands_on_a_skin_of_blinns():
     np.testing.assert_allclose(coat["skin"]["luminance"], skin, atol=1e-6)
     by_phong = vizlight.illuminate(mesh, SCENE)["luminance"]
     assert np.abs(coat["skin"]["luminance"] - by_phong).max() > 0.01
+
+
+@pytest.mark.parametrize("scale", [1.0, 0.0385, 38.5])
+def test_fur_looks_the_same_on_a_mesh_of_any_size(scale):
+    """The defaults are in the mesh's own measure: light is the same, lengths are scaled."""
+    mesh = torus()
+    sized = mesh.copy()
+    sized.points = (np.asarray(mesh.points, dtype=float) * scale).astype(np.float32)
+    expected, found = fur(mesh, SCENE, fibres=2000), fur(sized, SCENE, fibres=2000)
+    for part in ("fibres", "skin"):
+        np.testing.assert_allclose(found[part]["luminance"], expected[part]["luminance"], atol=2e-4)
+    tips = [strands(coat)[:, -1] - strands(coat)[:, 0] for coat in (expected, found)]
+    length = [np.linalg.norm(tip, axis=1).mean() for tip in tips]
+    assert length[0] == pytest.approx(0.03 * mesh.length, rel=1e-5)
+    assert length[1] == pytest.approx(scale * length[0], rel=1e-4)
+
+
+@pytest.mark.parametrize("absorption", [0.0, 0.2, 0.9, 1.0])
+def test_absorption_is_the_share_lost_over_the_own_length(absorption):
+    """As the source's density per unit, where one can be expressed."""
+    mesh, length = torus(), 0.25
+    density = 1 - (1 - absorption) ** (1 / length)
+    for options in ({}, {"bend": 0.5, "toward": (0, 0, -1)}):
+        options = {"fibres": 1000, "length": length, **options}
+        one = fur(mesh, SCENE, absorption=absorption, **options)
+        other = fur(mesh, SCENE, density=density, **options)
+        for part in ("fibres", "skin"):
+            np.testing.assert_allclose(one[part]["luminance"], other[part]["luminance"], atol=2e-5)
+
+
+def test_absorption_where_lengths_vary_is_that_of_the_mean_length():
+    mesh = torus()
+    mesh["hair"] = np.linspace(0.1, 0.3, mesh.n_points)
+    density = 1 - (1 - 0.6) ** (1 / 0.2)
+    one = fur(mesh, SCENE, absorption=0.6, fibres=500, length="hair")
+    other = fur(mesh, SCENE, density=density, fibres=500, length="hair")
+    np.testing.assert_allclose(one["fibres"]["luminance"], other["fibres"]["luminance"], atol=2e-5)
+    assert np.all(np.isfinite(fur(mesh, SCENE, fibres=50, length=0.0)["skin"]["luminance"]))
+    for options, words in (
+        ({"absorption": 0.5, "density": 0.5}, "absorption, density: expected one of them"),
+        ({"absorption": 1.1}, "absorption: expected a number from 0 to 1"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            fur(mesh, SCENE, fibres=5, **options)

@@ -376,6 +376,15 @@ def test_nothing_of_a_solid_is_left(color):
     assert [block.n_cells for block in nothing] == [0, 0]
 
 
+def test_progress_is_shown_on_standard_error(capsys):
+    scene = Scene(lights=Light(direction=(1, 1, 1)), view=View(direction=(1, 0, 0.3)))
+    vizlight.isoluminance(pv.Sphere(), scene, progress_bar=True)
+    shown = capsys.readouterr()
+    assert "contours" in shown.err
+    assert "100%" in shown.err
+    assert shown.out == ""
+
+
 @pytest.mark.parametrize("grid", [False, True])
 def test_a_box_has_one_band_per_face(grid):
     cube = pv.Cube().triangulate()
@@ -394,3 +403,21 @@ def test_a_box_has_one_band_per_face(grid):
         np.testing.assert_allclose(inside, [3, 1, 1, 1], atol=1e-6)
     with pytest.raises(ValueError, match="feature_angle: expected"):
         vizlight.isoluminance(mesh, scene, feature_angle=200)
+
+
+@pytest.mark.parametrize("tangents", [None, "way"])
+def test_point_data_are_carried_onto_bands(tangents):
+    ball = pv.Sphere(theta_resolution=20, phi_resolution=20)
+    ball["height"] = ball.points[:, 2].astype(np.float32)
+    ball["place"] = ball.points.astype(np.float64)
+    ball["label"] = np.arange(ball.n_points)
+    ball["way"] = np.cross(ball.points, [0.3, 0.1, 1.0])
+    before = ball.copy()
+    scene = Scene(lights=Light(direction=(1, 0, 0.5)), material=Material(specular=0))
+    bands = isoluminance(ball, scene, levels=6, tangents=tangents)["bands"]
+    # Positions are interpolated like the points themselves.
+    np.testing.assert_allclose(bands["place"], bands.points, atol=1e-6)
+    np.testing.assert_allclose(bands["height"], bands.points[:, 2], atol=1e-6)
+    assert bands["height"].dtype == np.float32
+    assert "label" not in bands.point_data
+    assert ball == before

@@ -14,6 +14,7 @@ from scipy.interpolate import RegularGridInterpolator
 import vizlight
 from vizlight import Light, Material, Scene, relief_day, relief_shadow
 from vizlight.geometry import relief, sun
+from vizlight.studies.relief import hills
 
 TOWARD = np.array([0.6, -0.5, 0.4])
 SCENE = Scene(lights=Light(direction=TOWARD), material=Material(ambient=0.1, specular=0))
@@ -119,10 +120,73 @@ def test_factor_and_default_depth():
     np.testing.assert_allclose(
         relief_shadow(grid, SCENE, factor=3.0)["t"], relief_shadow(tall, SCENE)["t"]
     )
-    depth = 0.01 * np.hypot(4, 1.5)
-    np.testing.assert_array_equal(
-        relief_shadow(grid, SCENE)["t"], relief_shadow(grid, SCENE, depth=depth)["t"]
-    )
+    step = (np.abs(np.diff(Z, axis=0)).mean() + np.abs(np.diff(Z, axis=1)).mean()) / 2
+    for factor, depth in ((1.0, 0.25 / 8), (0.2, 0.1 * step)):
+        out = relief_shadow(grid, SCENE, factor=factor)
+        assert vizlight.provenance(out, "t")["depth"] == pytest.approx(depth, rel=1e-12)
+        given = relief_shadow(grid, SCENE, factor=factor, depth=depth)
+        np.testing.assert_allclose(out["t"], given["t"], atol=1e-12)
+
+
+def test_sun_in_degrees():
+    grid, _ = grids()["ImageData"]
+    for azimuth, altitude, way in (
+        (0, 30, (0, 3**0.5, 1)), (90, 45, (1, 0, 1)), (-90, 60, (-1, 0, 3**0.5)),
+        (225, 20, (-1, -1, np.sqrt(2) * np.tan(np.radians(20)))),
+    ):  # fmt: skip
+        scene = SCENE.replace(lights=Light(direction=way))
+        expected = relief_shadow(grid, scene, lit=True)
+        found = relief_shadow(grid, SCENE, sun=(azimuth, altitude), lit=True)
+        np.testing.assert_allclose(found["t"], expected["t"], atol=1e-12)
+        np.testing.assert_allclose(found["luminance"], expected["luminance"], atol=1e-12)
+        day = relief_day(grid, sun=[(azimuth, altitude), (10, -5)])
+        np.testing.assert_allclose(day["t"][:, 0], expected["t"], atol=1e-12)
+        assert not day["t"][:, 1].any()
+    with pytest.raises(ValueError, match="sun: expected two angles in degrees"):
+        relief_shadow(grid, sun=(1, 2, 3))
+    with pytest.raises(ValueError, match="altitude: expected degrees from -90 to 90"):
+        relief_shadow(grid, sun=(0, 91))
+    with pytest.raises(TypeError, match=r"scene: expected a .*or pass sun=\(azimuth, altitude\)"):
+        relief_shadow(grid)
+    with pytest.raises(ValueError, match="sun: expected pairs of azimuth and altitude"):
+        relief_day(grid, sun=[1, 2, 3])
+    with pytest.raises(ValueError, match="sun: expected sun alone"):
+        relief_day(grid, sun=[1, 2], directions=[(0, 0, 1)])
+
+
+def test_a_surface_is_sampled_on_request():
+    """The same terrain as a grid of even rows, as bent rows, and as triangles."""
+    x = np.linspace(-3, 3, 121)
+    u, v = np.meshgrid(x, x)
+    height = lambda x, y: np.exp(-(x**2) - y**2)  # noqa: E731
+    square = relief_shadow(pv.StructuredGrid(u, v, height(u, v)), sun=(70, 15), depth=0.05)
+    bent_u, bent_v = u + 0.3 * np.sin(v), v + 0.2 * np.sin(u)
+    bent = pv.StructuredGrid(bent_u, bent_v, height(bent_u, bent_v))
+    before = bent.copy()
+    tin = bent.extract_surface(algorithm="geometry").triangulate()
+    own = square.find_closest_point
+    for mesh in (bent, tin):
+        with pytest.raises(ValueError, match="raster="):
+            relief_shadow(mesh, sun=(70, 15), depth=0.05)
+        out = relief_shadow(mesh, sun=(70, 15), depth=0.05, raster=0.03, lit=True)
+        assert type(out) is type(mesh)
+        assert out.n_points == mesh.n_points
+        assert vizlight.provenance(out, "t")["options"]["raster"] == 0.03
+        inner = np.flatnonzero(np.abs(np.asarray(mesh.points)[:, :2]).max(axis=1) < 2.4)[::7]
+        nearest = [own(p) for p in np.asarray(mesh.points)[inner]]
+        error = np.abs(out["t"][inner] - square["t"][nearest])
+        # The nearest point of the other grid is up to half a cell of 0.05 away.
+        assert error.mean() < 0.02
+        assert out["t"].min() < 0.1
+        np.testing.assert_allclose(out["luminance"], 0.1 + 0.5 * out["t"], atol=1e-9)
+    assert bent == before
+    for raster in (-1, 7.0, np.nan):
+        with pytest.raises(ValueError, match="raster: expected"):
+            relief_shadow(bent, sun=(70, 15), raster=raster)
+    with pytest.raises(ValueError, match="raster: expected a raster of at most"):
+        relief_shadow(bent, sun=(70, 15), raster=1e-5)
+    with pytest.raises(TypeError, match="mesh: expected a height field"):
+        relief_shadow(pv.UnstructuredGrid(), sun=(70, 15), raster=0)
 
 
 def test_holes_are_marked():
@@ -170,6 +234,48 @@ def terrains():
         volcano = pv.read(path).extract_subset((20, 300, 20, 440, 0, 0), rate=(3, 3, 1))
         volcano["height"] = np.asarray(volcano["Elevation"], dtype=float)
         yield "volcano", volcano
+
+
+def shapes():
+    """Terrain as it is, exaggerated, flat and wide, coarse, curvilinear."""
+    x, z = np.linspace(0, 1, 120), hills(120)
+    flat = pv.ImageData(dimensions=(120, 120, 1), spacing=(1 / 119, 1 / 119, 1))
+    flat["h"] = z.ravel()
+    coarse = pv.ImageData(dimensions=(40, 40, 1), spacing=(3 / 119, 3 / 119, 1))
+    coarse["h"] = z[::3, ::3].ravel()
+    wide = pv.ImageData(dimensions=(600, 40, 1), spacing=(1 / 119, 1 / 119, 1))
+    wide["h"] = np.tile(z[40:80], 5).ravel()
+    u, v = np.meshgrid(x, x)
+    # Columns and rows that bend and widen.
+    bent = pv.StructuredGrid(u + 0.1 * v * v + 0.2 * u * u, v + 0.1 * np.sin(2 * u), z)
+    return {
+        "hills": (flat, {}),
+        "exaggerated": (flat, {"factor": 10.0}),
+        "flattened": (flat, {"factor": 0.4}),
+        "coarse": (coarse, {}),
+        "wide": (wide, {}),
+        "curvilinear": (bent, {"raster": 0}),
+        "TIN": (bent.extract_surface(algorithm="geometry").triangulate(), {"raster": 0}),
+        **{name: (grid, {"elevation": "height"}) for name, grid in terrains()},
+    }
+
+
+def dark_shares(grid, options, azimuth):
+    """Return the share of points below half the light of level ground: default depth, and hard."""
+    below = np.sin(np.radians(10)) / 2
+    sun = (azimuth, 10)
+    return [
+        np.mean(np.asarray(relief_shadow(grid, sun=sun, **options, **depth)["t"]) < below)
+        for depth in ({}, {"depth": 0})
+    ]
+
+
+@pytest.mark.parametrize("kind", shapes())
+def test_shadows_are_as_large_as_hard_ones(kind):
+    for azimuth in (50, 200):
+        soft, hard = dark_shares(*shapes()[kind], azimuth)
+        assert hard > 0.05
+        assert soft == pytest.approx(hard, rel=0.2)
 
 
 @pytest.mark.parametrize(("name", "terrain"), list(terrains()))

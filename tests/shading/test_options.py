@@ -109,8 +109,32 @@ def test_keywords_are_checked_by_name():
 
 
 def test_a_missing_option_is_named():
-    with pytest.raises(TypeError, match="density: expected a value for fur, got none"):
-        vizlight.fur(None, vizlight.Scene())
+    @dataclasses.dataclass(frozen=True)
+    class Options:
+        """Options.
+
+        Parameters
+        ----------
+        size : float
+            Size of it.
+        """
+
+        size: float
+
+    @accepts(Options)
+    def sized(mesh, /, **options):
+        """Return what came.
+
+        Parameters
+        ----------
+        **options
+            Fields of Options.
+        """
+        return options
+
+    assert sized(1, size=2) == {"size": 2}
+    with pytest.raises(TypeError, match="size: expected a value for sized, got none"):
+        sized(1)
 
 
 @pytest.mark.parametrize(

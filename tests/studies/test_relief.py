@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
+from vizlight import _compiled
 from vizlight.studies import Row, relief
 
 
 def test_error_and_memory_of_the_fast_method():
-    fast, exact = relief.measure(256, repeats=1)
+    fast, exact, *compiled = relief.measure(256, repeats=1)
     assert 0 < fast.error < 3e-2
     # What is worked on at a time has a fixed size; the rest grows with the field.
     assert fast.more["bytes per point"] * 256**2 < 50e6 + 100 * 256**2
     assert min(fast.cost, exact.cost) > 0
+    assert len(compiled) == _compiled.active()
+    assert all(row.error < 1e-12 for row in compiled)
 
 
 def test_hemisphere():

@@ -142,7 +142,7 @@ LIGHTING = {
     "fur": (
         "filters",
         "Cover a surface with fibres, and light them and the skin.",
-        "bunny.ply --density 0.2 --length 0.01",
+        "bunny.ply --absorption 0.7 --fibres 200000",
     ),
     "contours": (
         "filters",

@@ -23,12 +23,14 @@ from vizlight.shading.options import ShadingOptions, accepts
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from typing_extensions import Required, Unpack
+    from typing_extensions import Unpack
 
     from vizlight._types import Array, Bools, Indices, VectorLike
     from vizlight.shading.options import Model
 
 Inward = Literal["keep", "flip", "drop"]
+#: Default absorption, and length of fibres as a share of the diagonal of the mesh.
+ABSORPTION, LENGTH = 0.5, 0.03
 #: Largest length of a fibre: differences of longer ones leave the range of float32.
 LONGEST = 1e30
 
@@ -36,9 +38,10 @@ LONGEST = 1e30
 class FurKeywords(TypedDict, total=False):
     """The fields of :class:`FurOptions` as keyword arguments."""
 
-    density: Required[float]
+    absorption: float | None
+    density: float | None
     fibres: int
-    length: float | str | Sequence[float] | Array
+    length: float | str | Sequence[float] | Array | None
     segments: int
     vectors: str | None
     inward: Inward
@@ -60,13 +63,17 @@ class FurOptions:
 
     Parameters
     ----------
-    density : float
-        Share rho of light, in [0, 1], that fur absorbs over a unit of length.
+    absorption : float, optional
+        Share of light, in [0, 1], that is lost on the way through the fur's own length, its mean
+        over the points, along the normal. Default: 0.5, without ``density``.
+    density : float, optional
+        Share rho of light, in [0, 1], that fur absorbs over a unit of length, in place of
+        ``absorption``: that of fur of length L is ``1 - (1 - rho)^L``.
     fibres : int, default: 50_000
         Number of fibres, uniform in area, jittered, the same for the same seed.
-    length : float, str or array_like, default: 0.1
+    length : float, str or array_like, optional
         Length of a fibre, in the unit of the mesh, 0 or more: one for all, or a point array of
-        one component, interpolated.
+        one component, interpolated. Default: 0.03 of the diagonal of the mesh.
     segments : int, default: 3
         Number of segments of a fibre, of equal lengths.
     vectors : str, optional
@@ -79,7 +86,8 @@ class FurOptions:
     bend : float, default: 0.0
         Share of ``toward`` in the direction at the tip.
     curl, turns : float
-        Sideways share of the direction, and number of its turns from root to tip.
+        Sideways share of the direction, 0.3 for soft fur, and number of its turns from root to
+        tip.
     seed : int, default: 0
         Seed of the random numbers.
     conditioned : bool, default: True
@@ -92,9 +100,10 @@ class FurOptions:
         Blinn's.
     """
 
-    density: float
+    absorption: float | None = None
+    density: float | None = None
     fibres: int = 50_000
-    length: float | str | Sequence[float] | Array = 0.1
+    length: float | str | Sequence[float] | Array | None = None
     segments: int = 3
     vectors: str | None = None
     inward: Inward = "flip"
@@ -119,9 +128,15 @@ class FurOptions:
             raise ValueError(
                 _check.message("toward", "the direction of the bend, with bend=", None)
             )
+        for option in ("absorption", "density"):
+            share = getattr(self, option)
+            if share is not None:
+                _check.set_fields(self, **{option: _check.number(option, share, low=0.0, high=1.0)})
+        if self.absorption is not None and self.density is not None:
+            expected = "one of them: a share over the fur's length, or over a unit of length"
+            raise ValueError(_check.message("absorption, density", expected, "both"))
         _check.set_fields(
             self,
-            density=_check.number("density", self.density, low=0.0, high=1.0),
             fibres=_check.integer("fibres", self.fibres, low=0),
             segments=_check.integer("segments", self.segments, low=1),
             seed=_check.integer("seed", self.seed, low=0),
@@ -133,9 +148,13 @@ class FurOptions:
         return not (self.bend or self.curl)
 
     @property
-    def absorption(self) -> float:
-        """Density by which light is attenuated, 0 for none."""
-        return self.density if self.attenuated else 0.0
+    def lost(self) -> float:
+        """Share of light that is lost over a unit of height, or over the fur's own length."""
+        if not self.attenuated:
+            return 0.0
+        if self.density is not None:
+            return self.density
+        return ABSORPTION if self.absorption is None else self.absorption
 
     @property
     def shading(self) -> ShadingOptions:
@@ -180,7 +199,7 @@ def fur(
     Raises
     ------
     TypeError, ValueError
-        If an argument does not fit: a negative length, a density outside [0, 1], no faces.
+        If an argument does not fit: a negative length, a share outside [0, 1], no faces.
 
     Warns
     -----
@@ -190,8 +209,9 @@ def fur(
 
     Notes
     -----
-    The height of fur above a point is the distance, across the surface at the root, from the point
-    to the highest point of its fibre. Sources: Banks 4.2, 5, (7), (8).
+    Fibres stand evenly on any triangulation. The height of fur above a point is the distance,
+    across the surface at the root, from the point to the highest point of its fibre. Sources: Banks
+    4.2, 5, (7), (8).
     """
     return _grow(surface, scene, FurOptions(**options), threads, progress_bar=progress_bar)
 
@@ -222,8 +242,9 @@ def _grow(
         np.dtype(np.float64) if far else np.result_type(skin.points.dtype, np.float32),
         straight=options.straight,
         threads=threads,
+        unit=coat.unit,
     )
-    through = options.absorption
+    through = options.lost
     fibres = strands.inputs(
         normals=bool(options.conditioned or through), fur=through, origin=coat.origin
     )
@@ -262,7 +283,8 @@ class _Coat:
         if not 1e-30 <= size <= 1e30 and skin.n_points:
             remedy = "scale the mesh"
             raise ValueError(_check.message("surface", "a size from 1e-30 to 1e30", size, remedy))
-        self.faces: Indices = np.asarray(skin.regular_faces, dtype=np.intp)
+        faces: Indices = np.asarray(skin.regular_faces, dtype=np.intp)
+        self.faces = faces[geometry.along_curve(np.asarray(skin.points), faces)]
         self.normals = np.asarray(skin.point_data[surfaces.NORMALS], dtype=np.float32)
         self.vectors: Array | None = None
         if options.vectors is not None:
@@ -273,7 +295,12 @@ class _Coat:
                 _check.warn(f"{lost} of {len(given)} of {what}")
             self.vectors = unit_rows(given).astype(np.float32)
         self.toward = _toward(surface, options.toward)
-        self.length: Array | float = _lengths(surface, options.length)
+        self.length: Array | float = (
+            LENGTH * size if options.length is None else _lengths(surface, options.length)
+        )
+        # The unit of the heights of fur, in which light is lost.
+        mean = float(np.mean(self.length)) if np.size(self.length) else 0.0
+        self.unit = mean if options.density is None and mean > 0 else 1.0
         self.total = geometry.areas(np.asarray(skin.points), self.faces)
         # All that is interpolated stands in one table, so that it is looked up once.
         with np.errstate(invalid="ignore"):
@@ -350,6 +377,7 @@ class _Coat:
         toward = None if self.toward is None else self.toward.T
         offsets = self._strands(way, self.length, toward, None)
         height: Array = np.einsum("jib,ib->jb", offsets, normal).max(axis=0)
+        height /= np.float32(self.unit)
         if self.options.inward == "drop" and inside is not None:
             height[inside] = 0
         return height

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypedDict
 import numpy as np
 import pyvista as pv
 
-from vizlight import _check
+from vizlight import _check, _progress
 from vizlight.filters import lighting
 from vizlight.geometry.contours import banding, facets, refinement, spacing
 from vizlight.geometry.contours import isoluminance as closed
@@ -25,6 +25,8 @@ from vizlight.shading.options import LightOptions, accepts, check_sides
 from vizlight.verify import report
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike
     from typing_extensions import Unpack
 
@@ -115,6 +117,7 @@ def isoluminance(
     scene: Scene,
     *,
     threads: int | None = None,
+    progress_bar: bool = False,
     **options: Unpack[ContourKeywords],
 ) -> pv.MultiBlock:
     """Return contours of equal luminance, and the bands between them with one value per band.
@@ -132,12 +135,15 @@ def isoluminance(
         Fields of ContourOptions.
     threads : int, optional
         Number of threads.
+    progress_bar : bool, default: False
+        Whether the share of triangles that keep the allowed error is shown on standard error.
 
     Returns
     -------
     pyvista.MultiBlock
         Block ``bands`` holds polygons with the cell arrays ``luminance`` and ``band``, for a solid
-        also ``patch``; it is closed if the surface is. Block ``contours`` holds lines with the
+        also ``patch``; it is closed if the surface is. Floating-point point data of a mesh are
+        interpolated over its triangles and kept. Block ``contours`` holds lines with the
         cell array ``luminance``. If the scene has a colour, the bands have ``rgb``: the colour at
         the centre of each polygon with the brightness of its band; with tangents the colour is
         interpolated like the luminance. Field data of the bands are ``luminance_error``, which is
@@ -159,7 +165,7 @@ def isoluminance(
     Notes
     -----
     A solid is lit at its exact points and normals. A mesh is lit with its normals, interpolated
-    over each triangle and normalised. Contour points are found by halving edges, so that the
+    over each triangle and normalised. Contour points are found by bracketing, so that the
     terminator is not restricted to corners, and triangles are split where the luminance is not
     linear. With tangents the luminance itself is interpolated. An empty mesh has no bands. A
     sphere or a frustum under one light without a highlight has closed forms.
@@ -167,8 +173,11 @@ def isoluminance(
     """
     asked = ContourOptions(**options)
     start = time.perf_counter()
-    with report.paused():
-        made, bands, light = _make(mesh, scene, asked, threads)
+    with report.paused(), _progress.progress("contours", 100, show=progress_bar) as show:
+        made, bands, light = _make(
+            mesh, scene, asked, threads, lambda share: show(int(100 * share))
+        )
+        show(100)
     seconds = time.perf_counter() - start
     _note(bands, light, seconds, 1024 * made.actual_memory_size, sampled=asked.tangents is None)
     return made
@@ -179,10 +188,11 @@ def _make(
     scene: Scene,
     options: ContourOptions,
     threads: int | None,
+    progress: Callable[[float], None],
 ) -> tuple[pv.MultiBlock, Bands, _Light]:
     """Return bands and contours as meshes, the bands as arrays, and their luminance."""
     _check.instance("scene", scene, Scene)
-    light = _Light(scene, options, threads)
+    light = _Light(scene, options, threads, progress)
     if isinstance(mesh, Solid):
         for option in ("normals", "tangents"):
             if getattr(options, option) is not None:
@@ -209,8 +219,16 @@ def _make(
 class _Light:
     """The luminance of points with normals, and its record."""
 
-    def __init__(self, scene: Scene, options: ContourOptions, threads: int | None) -> None:
+    def __init__(
+        self,
+        scene: Scene,
+        options: ContourOptions,
+        threads: int | None,
+        progress: Callable[[float], None],
+    ) -> None:
         self.scene, self.options, self.threads = scene, options, threads
+        #: Function that is called with the share of the refinement that is done.
+        self.progress = progress
         self.last: Shading | None = None
         #: Mesh on the exact surfaces of a solid.
         self.shape: Mesh | None = None
@@ -262,7 +280,9 @@ def _of_solid(solid: Solid, light: _Light) -> Bands:
     if isinstance(found, banding.Bands):
         return found
     light.shape = tessellation.tessellate(solid, tolerance=asked.tolerance)
-    return refinement.draw(light.shape, light, asked.levels, low=low if dull else None)
+    return refinement.draw(
+        light.shape, light, asked.levels, low=low if dull else None, progress=light.progress
+    )
 
 
 def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Light]:
@@ -293,34 +313,52 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
     if unlit:
         _check.warn(lighting.unlit(unlit, len(used)))
     points = np.array(surface.points, dtype=np.float64)
+    carried = {
+        str(name): np.asarray(value, dtype=np.float64).reshape(len(points), -1)
+        for name, value in surface.point_data.items()
+        if np.issubdtype(value.dtype, np.floating) and len(points)
+    }
     rgb: Array | None = None
     if not len(triangles):
         steps = spacing.steps(levels, 0.0, 0.0)
+        carried = {}
         bands, _ = banding.cut(np.empty((0, 3)), triangles, np.empty((0, 3)), steps)
         bands = dataclasses.replace(bands, error=0.0)
     elif options.tangents is None:
         found = normals.normals_of(surface, asked.normals, 3, normals.onlooker(scene))
         unit = unit_rows(np.asarray(found, dtype=np.float64))
-        rows = np.concatenate([points, unit], axis=1)
-
-        def luminance(places: Array, directions: Array) -> Array:
-            return light(places, unit_rows(directions))
-
-        bands = refinement.refine(facets.Facets(rows, triangles, luminance, lit.valid), levels)
+        rows = np.concatenate([points, unit, *carried.values()], axis=1)
+        near = any(lamp.position is not None for lamp in scene.lights)
+        near |= scene.view is not None and scene.view.position is not None
+        placed = near or scene.depth_cue is not None
+        lit_facets = facets.Facets(rows, triangles, light, lit.valid, placed)
+        bands = refinement.refine(lit_facets, levels, progress=light.progress)
     else:
         values = np.asarray(lit.luminance[triangles], dtype=np.float64)
         steps = spacing.steps(levels, float(values.min()), float(values.max()), exact=True)
         # Colours are interpolated like the luminance.
         columns = [points, lit.luminance[:, np.newaxis], *([] if lit.rgb is None else [lit.rgb])]
-        cut, _ = banding.cut(np.concatenate(columns, axis=1), triangles, values, steps)
-        bands = dataclasses.replace(cut, points=cut.points[:, :3], error=steps.error)
+        rows = np.concatenate([*columns, *carried.values()], axis=1)
+        cut, _ = banding.cut(rows, triangles, values, steps)
+        bands = dataclasses.replace(cut, error=steps.error)
         if lit.rgb is not None:
             middles = cut.middles()
-            rgb = _as_bright(middles[:, 4:], middles[:, 3], bands)
+            rgb = _as_bright(middles[:, 4:7], middles[:, 3], bands)
     record = records.of_light(lit, "isoluminance", fitted, options)
     if scene.colored and options.tangents is None:
         rgb = _rgb(bands, light)
-    return _blocks(bands, options.name, record, rgb, patches=False), bands, light
+    blocks = _blocks(bands, options.name, record, rgb, patches=False)
+    bands_block = blocks["bands"]
+    assert isinstance(bands_block, pv.PolyData)
+    # The carried values are the last columns of the points.
+    last = bands.points.shape[1]
+    for name, column in reversed(carried.items()):
+        last -= column.shape[1]
+        found = bands.points[:, last : last + column.shape[1]]
+        kind = surface.point_data[name].dtype
+        shape = (len(found), *surface.point_data[name].shape[1:])
+        bands_block.point_data[name] = np.ascontiguousarray(found.reshape(shape), dtype=kind)
+    return blocks, bands, light
 
 
 def _on_surface(
@@ -385,7 +423,7 @@ def _middles(bands: Bands, light: _Light) -> tuple[Array, Array]:
         patches = np.stack([bands.patch, bands.patch], axis=1)
         places = exact_surfaces.onto(shape.surfaces, (middle - shape.shift) / shape.scale, patches)
         return shape.world(places), triangle_mesh.normals_of(shape, places, bands.patch)
-    normals = unit_rows(middle[:, 3:]) if middle.shape[1] == 6 else bands.normals()
+    normals = unit_rows(middle[:, 3:6]) if middle.shape[1] >= 6 else bands.normals()
     return middle[:, :3], normals
 
 

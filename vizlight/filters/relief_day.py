@@ -9,7 +9,7 @@ import numpy as np
 from vizlight import _check
 from vizlight.filters.lighting import VALID
 from vizlight.filters.relief_shadow import ReliefOptions, relief_shadow
-from vizlight.geometry.relief import sun
+from vizlight.geometry.relief import sun as sky
 from vizlight.mesh import point_arrays, records
 from vizlight.scene import Light, Material, Scene
 from vizlight.shading.options import accepts
@@ -32,6 +32,7 @@ def relief_day(
     day: float | None = None,
     hours: ArrayLike | None = None,
     directions: ArrayLike | None = None,
+    sun: ArrayLike | None = None,
     threads: int | None = None,
     progress_bar: bool = False,
     **options: Unpack[ReliefKeywords],
@@ -50,6 +51,8 @@ def relief_day(
         Hours of true solar time, 12 when the sun is highest. Default: each hour from 4 to 20.
     directions : array_like, shape (H, 3), optional
         Directions toward the sun, in place of latitude, day and hours.
+    sun : array_like, shape (H, 2), optional
+        Azimuth, clockwise from north, and altitude of the sun in degrees, in place of directions.
     **options
         Fields of ReliefOptions.
     threads, progress_bar
@@ -67,6 +70,8 @@ def relief_day(
     TypeError, ValueError
         As :func:`relief_shadow` and :func:`vizlight.geometry.sun.directions`.
     """
+    if sun is not None:
+        directions = _from_angles(sun, directions)
     own = {"latitude": latitude, "day": day, "hours": hours, "directions": directions}
     toward = _directions(latitude, day, hours, directions)
     up = [way for way in toward if way[2] > 0]
@@ -102,6 +107,17 @@ def relief_day(
     return found
 
 
+def _from_angles(sun: ArrayLike, directions: ArrayLike | None) -> Array:
+    """Return directions toward the sun from azimuths and altitudes in degrees."""
+    if directions is not None:
+        raise ValueError(_check.message("sun", "sun alone, without directions", "both"))
+    angles = np.atleast_2d(_check.floats("sun", sun))
+    if angles.ndim != 2 or angles.shape[1] != 2:
+        expected = "pairs of azimuth and altitude in degrees"
+        raise ValueError(_check.message("sun", expected, _check.describe(sun)))
+    return sky.toward(angles[:, 0], angles[:, 1])
+
+
 def _directions(
     latitude: float | None, day: float | None, hours: ArrayLike | None, directions: ArrayLike | None
 ) -> Array:
@@ -111,7 +127,7 @@ def _directions(
             expected = "both, or directions="
             raise ValueError(_check.message("latitude, day", expected, (latitude, day)))
         name, value = "hours", np.arange(4.0, 21.0) if hours is None else hours
-        toward: Array = np.atleast_2d(sun.directions(latitude, day, value))
+        toward: Array = np.atleast_2d(sky.directions(latitude, day, value))
     elif latitude is not None or day is not None or hours is not None:
         expected = "directions alone, or latitude, day and hours"
         raise ValueError(_check.message("directions", expected, "both"))

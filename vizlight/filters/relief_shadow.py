@@ -11,15 +11,17 @@ import numpy as np
 from vizlight import _check, _progress
 from vizlight.filters.illuminate import shallow_copy
 from vizlight.filters.lighting import DEFAULT_NAME, PARTS, VALID, attach, refuse_overwriting
-from vizlight.geometry.relief import sun
+from vizlight.geometry.relief import sun as sky
 from vizlight.mesh import point_arrays, records
 from vizlight.mesh.casters import CasterKeywords, CasterOptions, caster
-from vizlight.scene import Light, Scene
+from vizlight.scene import Light, Material, Scene
 from vizlight.shading import engine
 from vizlight.shading.options import accepts
 from vizlight.verify.report import note_ratio
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
     from typing_extensions import Unpack
 
@@ -79,8 +81,9 @@ class ReliefOptions(CasterOptions):
 def relief_shadow(
     mesh: MeshT,
     /,
-    scene: Scene,
+    scene: Scene | None = None,
     *,
+    sun: Sequence[float] | None = None,
     threads: int | None = None,
     inplace: bool = False,
     progress_bar: bool = False,
@@ -91,10 +94,14 @@ def relief_shadow(
     Parameters
     ----------
     mesh : pyvista.ImageData, RectilinearGrid, StructuredGrid or PolyData
-        A height field of one layer, its rows and columns straight and square to each other; or a
-        closed surface. Not changed, unless ``inplace``.
+        A height field of one layer, its rows and columns straight and square to each other, or
+        any surface with ``raster``; or a closed surface. Not changed, unless ``inplace``.
     scene : Scene
-        Scene whose lights cast the shadows, at infinity or near, in the unit of the mesh.
+        Scene whose lights cast the shadows, at infinity or near, in the unit of the mesh. It may
+        be left out with ``sun``.
+    sun : (azimuth, altitude), optional
+        Angles toward the sun in degrees, in place of the lights of the scene: azimuth clockwise
+        from north, the y axis, and altitude above the horizon.
     **options
         Fields of ReliefOptions.
     threads : int, optional
@@ -123,20 +130,24 @@ def relief_shadow(
     -----
     ``t = d / r``, r the length inside the solid of the segment from ``p' = p - d n`` to the
     light; 1 where r is less than d. A field of cells of size h errs by h^2 / d, in the mean
-    where shadows begin. A closed surface is followed by VTK's StaticCellLocator in float64.
+    where shadows begin. Rays through a closed surface are followed in float64.
     Source: cos-theta, section 3, which prints ``t = r/d`` once; it is d/r.
 
     Examples
     --------
     >>> import pyvista as pv, vizlight
-    >>> sun = vizlight.Scene(lights=vizlight.Light(direction=(0, 3, 4)))
     >>> flat = pv.ImageData(dimensions=(5, 5, 1))
     >>> flat["height"] = [0.0] * 25
-    >>> round(float(vizlight.relief_shadow(flat, sun)["t"][7]), 9)
-    0.8
+    >>> round(float(vizlight.relief_shadow(flat, sun=(315, 30))["t"][7]), 9)
+    0.5
     """
     asked = ReliefOptions(**options)
-    lights = _lights(scene)
+    if sun is not None:
+        lit_by = Light(direction=sun_direction(sun))
+        base = Scene(material=Material(specular=0.0)) if scene is None else scene
+        _check.instance("scene", base, Scene)
+        scene = base.replace(lights=[lit_by])
+    scene, lights = _lights(scene)
     shadow = caster(mesh, scene, asked, threads)
     name = asked.name
     each = [f"{name}_{i}" for i in range(len(lights) if asked.components else 0)]
@@ -210,15 +221,25 @@ def _ratios(
     return t
 
 
-def _lights(scene: Scene) -> list[Light]:
-    """Return the lights that give light, fixed where they are."""
-    _check.instance("scene", scene, Scene)
+def sun_direction(sun: object, name: str = "sun") -> Array:
+    """Return the direction toward the sun from its azimuth and altitude in degrees."""
+    angles = _check.floats(name, sun)
+    if angles.shape != (2,):
+        expected = "two angles in degrees, (azimuth, altitude)"
+        raise ValueError(_check.message(name, expected, _check.describe(sun)))
+    return sky.toward(angles[0], angles[1])
+
+
+def _lights(scene: Scene | None) -> tuple[Scene, list[Light]]:
+    """Return the scene and its lights that give light, fixed where they are."""
+    _check.instance("scene", scene, Scene, remedy="or pass sun=(azimuth, altitude)")
+    assert scene is not None
     lights = [light.seen_from(scene.view) for light in scene.lights if light.intensity > 0]
     if not lights:
         raise ValueError(_check.message("scene", "a light of intensity above 0", "none"))
     if scene.n != 3:
         raise ValueError(_check.message("scene", "vectors of 3 components", f"{scene.n}"))
-    return lights
+    return scene, lights
 
 
 def _disc(light: Light, options: ReliefOptions) -> list[Light]:
@@ -228,5 +249,5 @@ def _disc(light: Light, options: ReliefOptions) -> list[Light]:
         return [light]
     return [
         Light(direction=way, intensity=light.intensity)
-        for way in sun.disc(light.direction, diameter, samples)
+        for way in sky.disc(light.direction, diameter, samples)
     ]

@@ -23,13 +23,13 @@ if TYPE_CHECKING:
     from vizlight.geometry.relief.shadowing import Method
     from vizlight.scene import Light, Scene
 
-#: Default depth, as a share of the diagonal of the mesh.
+#: Default depth of a closed surface, as a share of the diagonal of the mesh.
 DEPTH = 0.01
 #: Largest distance of a light in sizes of the surface: a light farther away is moved there, so that
 #: squares do not overflow.
 FAR = 1e100
 #: Options that only height fields have.
-FIELD_ALONE = ("elevation", "factor", "base", "border", "method")
+FIELD_ALONE = ("elevation", "factor", "base", "border", "method", "raster")
 
 
 class CasterKeywords(TypedDict, total=False):
@@ -41,6 +41,7 @@ class CasterKeywords(TypedDict, total=False):
     base: float | None
     border: Border
     method: Method
+    raster: float | None
     thickness: float | None
     occluders: pv.PolyData | Sequence[pv.PolyData]
 
@@ -53,15 +54,20 @@ class CasterOptions:
     ----------
     depth : float, optional
         Depth d below the surface at which light is gathered, 0 or more, in the unit of the mesh:
-        a larger depth gives softer shadows. Default: 0.01 of the diagonal of the faces, or of that
-        of a height field in x and y.
+        a larger depth gives softer shadows, and fewer where it exceeds the relief. Default: for a
+        height field an eighth of a cell's width, but at most half the mean difference of heights
+        from node to node; for a closed surface 0.01 of the diagonal of its faces.
     elevation : str, optional
-        Name of a point array of heights. Default: z of a StructuredGrid, else the active scalars.
-        NaN is a hole.
+        Name of a point array of heights. Default: z of a StructuredGrid or of a surface that is
+        sampled, else the active scalars. NaN is a hole.
     factor : float, default: 1.0
         Factor of the heights; only for height fields.
     base, border, method
         As for :func:`vizlight.geometry.relief.inside_length`; only for height fields.
+    raster : float, optional
+        Spacing of an even grid on which a curvilinear grid or an open surface, such as a TIN, is
+        sampled from above; 0 for the root of the mean area per point. Shadows then end within a
+        cell of it; what it does not cover has the height of the nearest covered node.
     thickness : float, optional
         Thickness of the shell, measured against the normals, that stands for an open surface.
     occluders : pyvista.PolyData or sequence of pyvista.PolyData
@@ -74,6 +80,7 @@ class CasterOptions:
     base: float | None = None
     border: Border = "extend"
     method: Method = "fast"
+    raster: float | None = None
     thickness: float | None = None
     occluders: pv.PolyData | Sequence[pv.PolyData] = ()
 
@@ -109,7 +116,8 @@ class Caster(Protocol):
 
 def caster(mesh: pv.DataSet, scene: Scene, options: CasterOptions, threads: int | None) -> Caster:
     """Return the shadow caster of a mesh."""
-    if isinstance(mesh, Grid):
+    sampled = options.raster is not None
+    if isinstance(mesh, Grid) or (sampled and isinstance(mesh, pv.PolyData)):
         for option in ("thickness", "occluders"):
             value = getattr(options, option)
             if value:
@@ -133,8 +141,10 @@ def caster(mesh: pv.DataSet, scene: Scene, options: CasterOptions, threads: int 
 class _FieldCaster:
     """Shadows of a height field."""
 
-    def __init__(self, grid: Grid, options: CasterOptions, threads: int | None) -> None:
-        found = heights_of(grid, options.elevation, options.factor)
+    def __init__(
+        self, grid: Grid | pv.PolyData, options: CasterOptions, threads: int | None
+    ) -> None:
+        found = heights_of(grid, options.elevation, options.factor, options.raster)
         self._field = height_field.make(
             found.x, found.y, found.z, base=options.base, border=options.border
         )
@@ -142,15 +152,16 @@ class _FieldCaster:
         self._holes = np.isnan(found.z)
         self._to_points, self._method, self._threads = found.to_points, options.method, threads
         self._turn = found.turn
-        side = float(np.hypot(self._field.x[-1], self._field.y[-1]))
-        self.depth = _depth(options.depth, side)
+        self.depth = _depth(options.depth, height_field.default_depth(self._field))
         self.points = found.points()
         normals = self._normal if self._turn is None else self._normal @ self._turn
-        self.normals = found.to_points(np.where(self._holes[..., np.newaxis], 0, normals))
-        self.valid: Bools = found.to_points(~self._holes).astype(np.bool_)
+        upright = found.to_points(np.where(self._holes[..., np.newaxis], 0, normals))
+        self.normals = point_arrays.unit_rows(upright) if found.sampled else upright
+        self.valid: Bools = found.covered() & (found.to_points(~self._holes * 1.0) > 0)
         field = self._field
         size = max(field.x[-1], field.y[-1], field.top)
-        self.effort = rays.SAMPLES if self.depth > shadowing.LEAST_DEPTH * size else 0
+        exact = not found.sampled and self.depth > shadowing.LEAST_DEPTH * size
+        self.effort = rays.SAMPLES if exact else 0
 
     def of(self, light: Light) -> Array:
         turn = np.eye(3) if self._turn is None else self._turn
@@ -162,12 +173,14 @@ class _FieldCaster:
             self._field, self._normal, self.depth, ray, method=self._method, threads=self._threads
         )
         t[self._holes] = 0
-        return self._to_points(t)
+        t = self._to_points(t)
+        t[~self.valid] = 0
+        return t
 
     def reference(self, point: int, light: Light) -> float:
         field, turn = self._field, np.eye(3) if self._turn is None else self._turn
         way = None if light.direction is None else turn @ np.array(light.direction)
-        if way is not None and way[2] <= 0:
+        if not self.effort or (way is not None and way[2] <= 0):
             return math.nan
         return rays.relief_ratio(
             field.x, field.y, field.heights,
@@ -199,7 +212,7 @@ class _SolidCaster:
         self._origin = body[0].mean(axis=0)
         self._unit = float(np.linalg.norm(np.ptp(body[0], axis=0))) or 1.0
         self._solids = [closed_meshes.solid(*one, self._origin, self._unit) for one in bodies]
-        self.depth = _depth(options.depth, self._unit)
+        self.depth = _depth(options.depth, DEPTH * self._unit)
         self.points: Array = np.asarray(mesh.points, dtype=np.float64)
         self.valid = np.any(self.normals, axis=1) & np.all(np.isfinite(self.points), axis=1)
         faces = sum(len(body.triangles) for body in self._solids)
@@ -249,5 +262,5 @@ class _SolidCaster:
         return (place - start) / np.where(reach > 0, reach, 1)[:, np.newaxis], reach
 
 
-def _depth(depth: float | None, size: float) -> float:
-    return DEPTH * size if depth is None else _check.number("depth", depth, low=0.0)
+def _depth(depth: float | None, default: float) -> float:
+    return default if depth is None else _check.number("depth", depth, low=0.0)

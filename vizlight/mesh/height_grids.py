@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 import pyvista as pv
+from scipy.interpolate import RegularGridInterpolator
 
 from vizlight import _check
+from vizlight.geometry.relief import height_field
+from vizlight.geometry.relief.depth_map import depth_map
+from vizlight.mesh import blocks, point_arrays
 from vizlight.mesh.point_arrays import GridPoints
 
 if TYPE_CHECKING:
-    from vizlight._types import Array, Indices
+    from vizlight._types import Array, Bools, Indices
 
 Grid: TypeAlias = pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid
 #: Largest extent in z of a level grid, as a share of its size: the rounding of float32 directions.
 LEVEL = 1e-6
-REMEDY = "sample it on a pv.ImageData, or pass its surface with thickness="
+REMEDY = "pass raster=0 to sample it on an even grid, or its surface with thickness="
+#: Largest number of nodes of a raster.
+LARGEST = 1 << 28
 
 
 @dataclass(frozen=True)
@@ -41,6 +47,15 @@ class Heights:
     place: Indices
     turn: Array | None = None
 
+    @property
+    def sampled(self) -> bool:
+        """Whether the nodes are others than the points of the mesh."""
+        return False
+
+    def covered(self) -> Bools:
+        """Return a mask of the points over the grid."""
+        return np.ones(self.place.size, np.bool_)
+
     def to_points(self, values: Array) -> Array:
         """Return values at the nodes, shape (ny, nx, ...), in the order of the points."""
         result = np.empty((self.place.size, *values.shape[2:]), values.dtype)
@@ -54,8 +69,43 @@ class Heights:
         return found if self.turn is None else found @ self.turn
 
 
-def heights_of(grid: Grid, elevation: str | None, factor: float) -> Heights:
-    """Return the height field of a grid of one layer.
+@dataclass(frozen=True)
+class Raster(Heights):
+    """A height field that was sampled from a surface.
+
+    Attributes
+    ----------
+    own : ndarray, shape (N, 3)
+        Points of the surface.
+    """
+
+    own: Array = field(default_factory=lambda: np.empty((0, 3)))
+
+    @property
+    def sampled(self) -> bool:
+        """Whether the nodes are others than the points of the mesh."""
+        return True
+
+    def covered(self) -> Bools:
+        """Return a mask of the points that have a height."""
+        known: Bools = np.all(np.isfinite(self.own), axis=1)
+        return known
+
+    def to_points(self, values: Array) -> Array:
+        """Return values at the nodes interpolated to the points, bilinear."""
+        own = np.nan_to_num(self.own[:, 1::-1])
+        beside = np.clip(own, [self.y[0], self.x[0]], [self.y[-1], self.x[-1]])
+        return np.asarray(RegularGridInterpolator((self.y, self.x), values)(beside))
+
+    def points(self) -> Array:
+        """Return the points of the surface, shape (N, 3)."""
+        return self.own
+
+
+def heights_of(
+    grid: Grid | pv.PolyData, elevation: str | None, factor: float, raster: float | None = None
+) -> Heights:
+    """Return the height field of a grid of one layer, or of a surface sampled at a spacing.
 
     Raises
     ------
@@ -64,6 +114,10 @@ def heights_of(grid: Grid, elevation: str | None, factor: float) -> Heights:
         not those of straight rows and columns at right angles.
     """
     factor = _check.number("factor", factor)
+    if raster is not None:
+        return _sampled(grid, elevation, factor, _check.number("raster", raster, low=0.0))
+    if isinstance(grid, pv.PolyData):
+        raise ValueError(_check.message("raster", "the spacing of the nodes", None))
     nodes, rounding = _nodes(grid)
     if elevation is None and isinstance(grid, pv.StructuredGrid):
         z = nodes[..., 2]
@@ -83,6 +137,54 @@ def heights_of(grid: Grid, elevation: str | None, factor: float) -> Heights:
     if y[0] > y[-1]:
         y, z, place = y[::-1], z[::-1], place[::-1]
     return Heights(x, y, np.asarray(z, dtype=np.float64) * factor, place, turn)
+
+
+def _sampled(
+    mesh: Grid | pv.PolyData, elevation: str | None, factor: float, spacing: float
+) -> Raster:
+    """Return the height field of a surface, sampled from above on an even grid."""
+    points: Array = np.asarray(point_arrays.points_of(mesh, None)[:], dtype=np.float64)
+    if elevation is None and isinstance(mesh, pv.StructuredGrid | pv.PolyData):
+        z = points[:, 2]
+    else:
+        z = _elevation(mesh, elevation)
+    points = np.column_stack([points[:, :2], factor * np.asarray(z, dtype=np.float64)])
+    skin = blocks.surface(mesh if isinstance(mesh, pv.PolyData) else _skin(mesh), "mesh")
+    faces = skin if skin.is_all_triangles else skin.triangulate()
+    triangles = np.asarray(faces.regular_faces, dtype=np.intp)
+    known = np.all(np.isfinite(points), axis=1)
+    triangles = triangles[np.all(known[triangles], axis=1)]
+    if not len(triangles):
+        raise ValueError(_check.message("mesh", "faces with heights", "none"))
+    used = points[np.unique(triangles)]
+    low, sides = used.min(axis=0)[:2], np.ptp(used, axis=0)[:2]
+    step = spacing or float(np.sqrt(sides[0] * sides[1] / len(used)))
+    if not (step > 0 and step <= sides.min()):
+        expected = f"a spacing up to {sides.min():g}, the shorter side of the mesh"
+        raise ValueError(_check.message("raster", expected, step))
+    count = np.round(sides / step) + 1
+    if count[0] * count[1] > LARGEST:
+        got = f"{count[0]:g} x {count[1]:g} nodes"
+        raise ValueError(_check.message("raster", f"a raster of at most {LARGEST} nodes", got))
+    x, y = (np.linspace(low[a], low[a] + sides[a], int(count[a])) for a in (0, 1))
+    heights = depth_map(x, y, points, triangles)
+    if np.isnan(heights).all():
+        raise ValueError(_check.message("raster", "nodes that the mesh covers", "none"))
+    place = np.arange(heights.size).reshape(heights.shape)
+    return Raster(x, y, height_field.filled(heights), place, own=points)
+
+
+def _skin(grid: Grid) -> pv.PolyData:
+    """Return the cells of a grid of one layer as quadrangles of the same points."""
+    nx, ny, nz = grid.dimensions
+    if nz != 1:
+        got = f"{nx} x {ny} x {nz}"
+        raise ValueError(_check.message("mesh", "a grid of one layer, nx x ny x 1", got))
+    at = np.arange(nx * ny).reshape(ny, nx)
+    faces = np.stack([at[:-1, :-1], at[:-1, 1:], at[1:, 1:], at[1:, :-1]], axis=-1).reshape(-1, 4)
+    points = np.asarray(point_arrays.points_of(grid, None)[:])
+    skin: pv.PolyData = pv.PolyData.from_regular_faces(points, faces)
+    return skin
 
 
 def _nodes(grid: Grid) -> tuple[Array, float]:
@@ -136,7 +238,7 @@ def _turn(nodes: Array, rounding: float) -> Array | None:
     return np.asarray(np.array([[x, y, 0], [-y, x, 0], [0, 0, size]]) / size)
 
 
-def _elevation(grid: Grid, name: str | None) -> Array:
+def _elevation(grid: Grid | pv.PolyData, name: str | None) -> Array:
     """Return the heights in a point array: the array of that name, the active or the only one."""
     if name is None:
         name = grid.point_data.active_scalars_name

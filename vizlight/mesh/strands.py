@@ -41,6 +41,7 @@ class Strands:
     """Fibres as rows for the engine, which reads one block after the other and each block once.
 
     The vectors of a block are kept while a thread works on it; only points are kept for all.
+    ``unit`` is the length in which the heights of fur are counted.
     """
 
     def __init__(
@@ -52,9 +53,10 @@ class Strands:
         *,
         straight: bool,
         threads: int | None,
+        unit: float = 1.0,
     ) -> None:
         self._grow, self._straight, self._threads = grow, straight, threads
-        self._block = threading.local()
+        self._block, self._unit = threading.local(), np.float32(unit)
         self.points = np.empty((count, m, 3), kind)
         self.inside = np.zeros(count, np.bool_)
 
@@ -101,6 +103,7 @@ class Strands:
             if block.inside is not None:
                 self.inside[fibres] = block.inside
             self._block.fibres, self._block.grown = fibres, block
+            self._block.heights = None
         grown: Grown = self._block.grown
         return grown, rows.start % step
 
@@ -137,16 +140,19 @@ class Strands:
         return result
 
     def _heights(self, rows: slice) -> Array:
-        """Return the height above each point of the highest point of its fibre."""
+        """Return the height above each point of the highest point of its fibre, in units."""
         block, j = self._at(rows)
         last = self.m - 1
+        heights: Array | None = self._block.heights
+        if heights is None:
+            # Of a straight fibre the tip is enough.
+            offsets = block.offsets[last:] if self._straight else block.offsets
+            heights = np.einsum("jib,ib->jb", offsets, block.normals) / self._unit
+            self._block.heights = heights
         if self._straight:
-            tip = np.einsum("ib,ib->b", block.offsets[last], block.normals)
-            height: Array = np.maximum(tip, 0) - np.float32(j / last) * tip
-        else:
-            heights = np.einsum("jib,ib->jb", block.offsets, block.normals)
-            height = heights.max(axis=0) - heights[j]
-        return height
+            tip: Array = heights[0]
+            return np.asarray(np.maximum(tip, 0) - np.float32(j / last) * tip)
+        return np.asarray(heights.max(axis=0) - heights[j])
 
     def drop(self, shading: engine.Shading) -> engine.Shading:
         """Drop the fibres that point inward, and return the light of the others."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import pyvista as pv
 
 from vizlight.geometry import fur
 
@@ -90,7 +91,8 @@ def test_reproducible_by_seed():
 def test_more_than_a_block():
     points, faces = square(4)
     face, weights = fur.seeds(points, faces, fur.SEED_BLOCK + 100)
-    assert np.all(np.diff(face) >= 0)
+    # One triangle after the other, along the curve.
+    assert np.count_nonzero(np.diff(face)) == len(faces) - 1
     np.testing.assert_allclose(weights.sum(axis=1), 1, atol=1e-6)
 
 
@@ -165,3 +167,37 @@ def test_curl_turns_about_the_direction():
     angle = np.unwrap(np.arctan2(step[:, 1], step[:, 0]))
     assert abs(angle[-1] - angle[0]) == pytest.approx(2 * 2 * np.pi * 39 / 40)
     np.testing.assert_allclose(step[:, 2], step[0, 2])
+
+
+@pytest.mark.parametrize("bits", [1, 2, 4])
+def test_the_curve_visits_all_cells_from_neighbour_to_neighbour(bits):
+    side = range(1 << bits)
+    cells = np.stack(np.meshgrid(side, side, side, indexing="ij")).reshape(3, -1)
+    index = fur.hilbert(cells, bits)
+    assert np.array_equal(np.sort(index), np.arange(8**bits))
+    steps = np.abs(np.diff(cells[:, np.argsort(index)], axis=1)).sum(axis=0)
+    assert np.all(steps == 1)
+
+
+@pytest.mark.parametrize("size", [1e-20, 1.0, 1e6])
+def test_places_are_even_on_shuffled_triangles(size, random):
+    """Variance over mean of counts on patches of equal area: 320 thousand triangles of a sphere."""
+    sphere = pv.Icosphere(nsub=7, radius=1)
+    points = np.asarray(sphere.points, dtype=float)
+    faces = random.permutation(sphere.regular_faces)
+    for rows, per_patch in ((15, 30), (50, 40)):
+        face, weights = fur.seeds(size * points + size, faces, 2 * rows**2 * per_patch)
+        x, y, z = np.einsum("ij,ijk->ki", weights, points[faces[face]])
+        # Equal steps of z and of longitude have equal areas.
+        across = np.clip((z + 1) / 2 * rows, 0, rows - 1).astype(int)
+        around = ((np.arctan2(y, x) / np.pi + 1) * rows).astype(int) % (2 * rows)
+        counts = np.bincount(across * 2 * rows + around, minlength=2 * rows**2)
+        assert counts.var() < 0.25 * counts.mean()
+
+
+def test_the_curve_through_triangles_that_are_not_finite_or_in_one_place():
+    assert fur.along_curve(np.zeros((3, 3)), np.array([[0, 1, 2]] * 4)).tolist() == [0, 1, 2, 3]
+    assert fur.along_curve(np.empty((0, 3)), np.empty((0, 3), int)).shape == (0,)
+    points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [np.nan, 0, 0], [np.inf, 1, 0.0]])
+    faces = np.array([[0, 1, 2], [0, 1, 3], [0, 1, 4]])
+    assert sorted(fur.along_curve(points, faces)) == [0, 1, 2]

@@ -12,6 +12,8 @@ from scipy.interpolate import RegularGridInterpolator
 from vizlight.geometry import relief
 from vizlight.geometry.relief import height_field, marching
 
+pytestmark = pytest.mark.usefixtures("each_code")
+
 
 def quadrature(x, y, z, start, way, reach, step=4e-4, base=-np.inf, wall=False):
     """Return the length inside by sampling one ray: no cells, no roots."""

@@ -9,6 +9,8 @@ from fields import METHODS, hills, places, sun
 from vizlight.geometry import relief
 from vizlight.geometry.relief import height_field
 
+pytestmark = pytest.mark.usefixtures("each_code")
+
 
 def test_a_batch_is_a_loop_and_shapes_are_kept(random):
     x, y, z = hills(20)

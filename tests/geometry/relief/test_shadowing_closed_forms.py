@@ -9,6 +9,8 @@ from scipy.interpolate import RegularGridInterpolator
 
 from vizlight.geometry import relief
 
+pytestmark = pytest.mark.usefixtures("each_code")
+
 
 def between(lows, highs):
     """Return the length of a union of two intervals, empty where low > high."""

@@ -10,6 +10,12 @@ from vizlight.geometry import relief
 from vizlight.geometry.relief import height_field, sweeping
 
 
+@pytest.fixture(autouse=True)
+def _profiles(monkeypatch):
+    """With compiled code there are no profiles."""
+    monkeypatch.setenv("VIZLIGHT_FAST", "0")
+
+
 @pytest.mark.parametrize("border", ["extend", "wall"])
 def test_fast_rays_may_start_anywhere(border, random):
     """Far beside and below the field, above it, light at any height."""

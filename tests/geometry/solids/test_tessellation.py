@@ -8,6 +8,7 @@ import itertools
 import banded
 import numpy as np
 import pytest
+import solid_trees
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from vizlight.geometry.primitives import Block, Boolean, Frustum, Sphere
@@ -15,13 +16,10 @@ from vizlight.geometry.primitives import Block, Boolean, Frustum, Sphere
 import vizlight
 from vizlight.geometry import solids
 from vizlight.geometry.contours import refinement
+from vizlight.geometry.solids import repair
 
 PI = np.pi
-TOWARD = np.array([1.0, -0.6, 0.8]) / np.linalg.norm([1.0, -0.6, 0.8])
-
-
-def lambert(points, normals):
-    return 0.1 + 0.9 * np.maximum(normals @ TOWARD, 0)
+lambert = solid_trees.lambert
 
 
 # A mesh is never changed, so tests of the same solid share it.
@@ -79,7 +77,7 @@ def test_bands_are_right_on_the_exact_surface(name, random):
     solid, _, _ = CLOSED_FORMS[name]
     bands, mesh = bands_of(solid), mesh_of(solid)
     assert banded.is_closed(bands)
-    place, polygon = banded.places(bands, random, 3)
+    place, polygon = banded.spread(bands, random, 8000)
     # Independent of the mesh: the nearest of the surfaces of all primitives.
     best, normal = np.full(len(place), np.inf), np.zeros_like(place)
     second = best.copy()
@@ -396,61 +394,58 @@ def test_many_holes():
         plate, volume = plate - Frustum((x, y, 0), radii=(0.05, 0.05)), volume - PI * 0.05**2 * 0.1
     mesh = mesh_of(plate)
     assert mesh.volume * mesh.scale**3 == pytest.approx(volume, rel=1e-2)
-    assert abs(mesh.volume * mesh.scale**3 - volume) < 1.3 * mesh.volume_error * mesh.scale**3
+    assert abs(mesh.volume * mesh.scale**3 - volume) <= mesh.volume_error * mesh.scale**3
 
 
-def grid_part(random):
-    """Return a primitive with faces and axes on a grid of half units, some moved by 1e-6."""
-    center = random.integers(-2, 3, 3) / 2 + 1e-6 * random.integers(-1, 2, 3) * random.integers(2)
-    axis = np.eye(3)[random.integers(3)] * random.choice([-1, 1])
-    a, b = random.choice([0.5, 1.0], 2)
-    height = random.integers(1, 5) / 2
-    return (
-        Sphere(center, a), Block(center, random.integers(1, 4, 3) / 2),
-        Frustum(center, axis, (a, a), height=height),
-        Frustum(center, axis, (0, a), height=height),
-        Frustum(center, axis, (a, b), height=height),
-    )[random.integers(5)]  # fmt: skip
+@pytest.mark.parametrize("kind", solid_trees.KINDS)
+@pytest.mark.parametrize("seed", [0, 1, 11])
+def test_random_trees(kind, seed):
+    """A sample of ``python tests/solid_trees.py``, which tries more of them."""
+    found, _, _ = solid_trees.problems(solid_trees.tree(kind, seed, 2026), bounds=True)
+    # Where three equal cylinders cross in one point, some triangles at that point stay flipped.
+    assert not [x for x in found if kind != "crossing" or not x.endswith("flipped")]
 
 
-def free_part(random):
-    """Return a primitive of any position, size and orientation."""
-    center, axis = random.uniform(-1, 1, 3), random.standard_normal(3)
-    a, b = random.uniform(0.2, 0.9, 2)
-    turn = np.linalg.qr(random.standard_normal((3, 3)))[0]
-    return (
-        Sphere(center, a), Block(center, random.uniform(0.5, 1.6, 3), axes=turn),
-        Frustum(center, axis, (a, a), height=b), Frustum(center, axis, (0, a), height=2 * b),
-        Frustum(center, axis, (a, b), height=1),
-    )[random.integers(5)]  # fmt: skip
+def test_triangles_are_upright():
+    for kind, seed in (("coaxial", 0), ("grid", 10), ("deep", 0)):
+        mesh = solids.tessellate(solid_trees.tree(kind, seed))
+        assert not repair.flipped(mesh).any()
 
 
-@pytest.mark.parametrize("seed", range(0, 100, 3))
-def test_random_trees(seed):
-    """Closed and outward, with the volume that points inside say, degenerate positions or not."""
-    random = np.random.default_rng([1990, seed])
-    parts = [(grid_part if seed % 2 else free_part)(random) for _ in range(random.integers(2, 8))]
-    solid = parts[0]
-    for part in parts[1:]:
-        solid = (solid | part, solid & part, solid - part, part | solid)[random.integers(4)]
-    mesh = solids.tessellate(solid)
-    start, stop = mesh.triangles, np.roll(mesh.triangles, -1, axis=1)
-    forth = start * len(mesh.points) + stop
-    back = stop * len(mesh.points) + start
-    assert len(np.unique(forth)) == forth.size
-    np.testing.assert_array_equal(np.unique(forth), np.unique(back))
-    boxes = [part.box() for part in parts]
-    low = np.min([center - radius for center, radius in boxes], axis=0)
-    high = np.max([center + radius for center, radius in boxes], axis=0)
-    share = solid.contains(random.uniform(low, high, (100_000, 3))).mean()
-    whole = np.prod(high - low)
-    sigma = np.sqrt(max(share * (1 - share), 1e-5) / 100_000) * whole
-    found = mesh.volume * mesh.scale**3
-    assert abs(found - share * whole) < 4.5 * sigma + 1e-2 * found
-    if len(mesh.triangles) and seed % 4 < 2:
-        bands = refinement.draw(mesh, lambert, 8, low=0.1)
-        assert banded.is_closed(bands)
-        assert bands.error <= 1.1 * bands.steps.error
+@pytest.mark.parametrize("name", CLOSED_FORMS)
+@pytest.mark.parametrize("tolerance", [2e-2, 3e-3])
+def test_the_volume_keeps_its_bound(name, tolerance):
+    solid, volume, _ = CLOSED_FORMS[name]
+    mesh = mesh_of(solid, tolerance)
+    assert abs(mesh.volume * mesh.scale**3 - volume) <= mesh.volume_error * mesh.scale**3
+    low, high = solids.volume_bounds(solid, tolerance=tolerance)
+    assert low <= volume <= high
+    # Twice the number of segments quarters what the facets miss.
+    closer = solids.volume_bounds(solid, tolerance=tolerance / 4)
+    assert closer[1] - closer[0] < 0.6 * (high - low)
+
+
+def test_bounds_of_planar_solids_are_exact_to_rounding():
+    low, high = solids.volume_bounds(Block() - Block((0, 0, 0.5), (0.5, 0.5, 0.5)))
+    assert low <= 1 - 0.5**3 / 2 <= high
+    assert high - low < 1e-8
+
+
+def test_a_gap_below_the_facets_is_held_or_refused():
+    """The facets of a cylinder are not parallel to those of a ball inside it."""
+    tube = Frustum(axis=(0, 0, 3), radii=(1, 1))
+    for gap in (1e-2, 1e-4):
+        mesh = solids.tessellate(tube - Sphere(radius=1 - gap))
+        # Nothing of the ball is open to the outside: it has its own part of the surface.
+        links = (
+            np.ones(3 * len(mesh.triangles)),
+            (mesh.triangles.ravel(), mesh.triangles[:, [1, 2, 0]].ravel()),
+        )
+        count, _ = connected_components(coo_array(links), directed=False)
+        assert count == 2
+    inner = Sphere((0.4, 0, 0), 0.6 - 1e-6)
+    with pytest.raises(ValueError, match=r"at most 60000 points.*separate or join"):
+        solids.tessellate(Sphere() - inner)
 
 
 def test_combined_solids_need_an_extra(monkeypatch):

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
-from vizlight import _check, _pool
-from vizlight.geometry.relief import height_field, marching, sweeping
+from vizlight import _check, _compiled, _pool
+from vizlight.geometry.relief import compiled, height_field, marching, sweeping
 from vizlight.model import kernels
 
 if TYPE_CHECKING:
@@ -66,8 +66,9 @@ def inside_length(
         there in vertical walls, and likewise at each cell that lacks a corner.
     method : {"fast", "exact"}
         Method of following the rays. "exact": cells are crossed one by one, or 2^l x 2^l at once
-        where all of them are above or below the ray. "fast": the same for a light with a position;
-        for a light at infinity the field is resampled in profiles along the light's azimuth.
+        where all of them are above or below the ray. "fast": the same for a light with a position
+        and, with the extra ``fast``, for every light; without it the field is resampled, for a
+        light at infinity, in profiles along the light's azimuth.
     threads : int, optional
         Number of threads. Default: the number of processors that this process may use.
 
@@ -90,10 +91,12 @@ def inside_length(
     The surface is bilinear, not triangulated. It has no diagonals to choose, so a mirrored field
     has the mirrored shadow. Along a ray its height is a quadratic in each cell, whose roots are
     found in closed form. The error of "exact" is at most ``3 eps`` times the size of the field for
-    each time that a ray crosses the surface without grazing it. The error of "fast" decreases with
-    the square of the spacing, as does that of the bilinear surface for a smooth one. The cost of
-    "exact" is O(log N) squares for each time that a ray crosses the surface; that of "fast" is the
-    same along a profile. Source: cos-theta, section 2.
+    each time that a ray crosses the surface without grazing it. The error of profiles decreases
+    with the square of the spacing, as does that of the bilinear surface for a smooth one. The cost
+    is O(log N) squares, or steps of a profile, for each time that a ray crosses the surface. Per
+    ray, with a sun from 40 to 5 degrees high over 1024 x 1024 nodes, compiled code takes 0.3 to 1.3
+    microseconds of processor time, profiles 0.8 to 2, "exact" without the extra ``fast`` 4 to 20.
+    Source: cos-theta, section 2.
 
     Examples
     --------
@@ -236,11 +239,12 @@ def ratio(
     limit = depth <= LEAST_DEPTH * size
     inset = 0.0 if limit else depth
     shape = field.heights.shape
+    normals, heights = normal.reshape(-1, 3), field.heights.ravel()
 
     def start(rays: Indices) -> Array:
-        row, column = np.unravel_index(rays, shape)
-        place = np.stack([field.x[column], field.y[row], field.heights[row, column]])
-        return np.asarray(place - inset * normal[row, column].T)
+        row, column = np.divmod(rays, shape[1])
+        place = np.stack([field.x.take(column), field.y.take(row), heights.take(rays)])
+        return np.asarray(place - inset * normals.take(rays, axis=0).T)
 
     t = lengths(field, start, normal.shape[0] * normal.shape[1], ray, method, threads, inset)
     if limit:
@@ -276,26 +280,44 @@ def lengths(
     if ray.direction is not None and ray.direction[2] < 0 and endless:
         length[:] = np.inf
         return length
-    if method == "fast" and ray.direction is not None and count:
+    if ray.direction is not None and count:
         if below is None:
             below = _largest_offset(field, start(np.arange(count)))
-        profiles = sweeping.profiles(field, ray.direction, below)
+        profiles = _profiles(field, ray.direction, below, count, method)
         if profiles is not None:
             _by_profile(profiles, start, length, threads)
             return length
+    fast = compiled.walk.pays(compiled.SAVED * count)
+    bounds = compiled.levels(field) if fast else None
 
     def work(rows: slice) -> int:
         places = start(np.arange(rows.start, rows.stop))
         way, reach = ray.from_places(places)
-        length[rows] = marching.march(field, places, way, reach, coarse=True)
+        if bounds is None:
+            length[rows] = marching.march(field, places, way, reach, coarse=True)
+        else:
+            compiled.walk(
+                np.ascontiguousarray(places), np.ascontiguousarray(way), reach, *field.edges,
+                field.corners, bounds, float(field.base), float(field.top), length[rows],
+            )  # fmt: skip
         return int(rows.stop)
 
     _all(work, _pool.blocks(count, BLOCK), threads)
     return length
 
 
+def _profiles(
+    field: Field, way: Array, below: float, count: int, method: Method
+) -> sweeping.Profiles | compiled.Strips | None:
+    """Return the field along the azimuth of a light, or None to follow rays through its cells."""
+    if _compiled.active():
+        made = compiled.strips(field, way, below, count)
+        return made if made and compiled.follow.pays(compiled.SAVED * count) else None
+    return sweeping.profiles(field, way, below) if method == "fast" else None
+
+
 def _by_profile(
-    profiles: sweeping.Profiles,
+    profiles: sweeping.Profiles | compiled.Strips,
     start: Callable[[Indices], Array],
     length: Array,
     threads: int | None,

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, VectorLike
 
-__all__ = ["DIAMETER", "directions", "disc"]
+__all__ = ["DIAMETER", "directions", "disc", "toward"]
 
 #: Mean angular diameter of the sun, in radians.
 DIAMETER = np.radians(0.53)
@@ -65,6 +65,43 @@ def directions(latitude: float, day: float, hours: ArrayLike, /) -> Array:
     north = np.cos(latitude) * sine - np.sin(latitude) * cosine * np.cos(angle)
     up = np.sin(latitude) * sine + np.cos(latitude) * cosine * np.cos(angle)
     return np.stack(np.broadcast_arrays(east, north, up), axis=-1)
+
+
+def toward(azimuth: ArrayLike, altitude: ArrayLike, /) -> Array:
+    """Return unit directions toward the sun from its angles on a map.
+
+    Parameters
+    ----------
+    azimuth : array_like, shape (...)
+        Angles in degrees, clockwise from north: 90 is east.
+    altitude : array_like, shape (...)
+        Angles above the horizon in degrees, from -90 to 90.
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+        Components east (x), north (y) and up (z).
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an angle is not a finite number, or an altitude is outside [-90, 90].
+
+    Examples
+    --------
+    >>> toward(270, 30).round(3).tolist()
+    [-0.866, -0.0, 0.5]
+    """
+    around = _check.floats("azimuth", azimuth).astype(np.float64)
+    above = _check.floats("altitude", altitude).astype(np.float64)
+    if not np.all(np.isfinite(around)):
+        raise ValueError(_check.message("azimuth", "finite angles", _check.describe(azimuth)))
+    if not np.all(np.abs(above) <= 90):
+        expected = "degrees from -90 to 90"
+        raise ValueError(_check.message("altitude", expected, _check.describe(altitude)))
+    around, above = np.radians(around % 360), np.radians(above)
+    east, north = np.cos(above) * np.sin(around), np.cos(above) * np.cos(around)
+    return np.stack(np.broadcast_arrays(east, north, np.sin(above)), axis=-1)
 
 
 def disc(direction: VectorLike, diameter: float, count: int, /) -> Array:

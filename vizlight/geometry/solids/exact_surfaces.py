@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from vizlight._types import Array, Indices
+    from vizlight._types import Array, Bools, Indices
 
 
 @dataclass(frozen=True)
@@ -27,6 +28,10 @@ class Ball:
         """Return outward unit normals."""
         return _unit_rows(points - self.center)
 
+    def key(self, sign: float) -> tuple[float, ...]:
+        """Return numbers that are equal for equal surfaces with equal normals times ``sign``."""
+        return (0, sign, *self.center, self.radius, 0, 0, 0, 0)
+
 
 @dataclass(frozen=True)
 class Plane:
@@ -42,6 +47,11 @@ class Plane:
     def normal(self, points: Array) -> Array:
         """Return the outward unit normal for each point."""
         return np.broadcast_to(self.outward, points.shape)
+
+    def key(self, sign: float) -> tuple[float, ...]:
+        """Return numbers that are equal for equal surfaces with equal normals times ``sign``."""
+        normal = sign * self.outward
+        return (1, *normal, float(normal @ self.center), 0, 0, 0, 0, 0)
 
 
 @dataclass(frozen=True)
@@ -79,8 +89,90 @@ class Cone:
         unit = across / np.where(size > 0, size, 1)[:, np.newaxis]
         return np.asarray(_unit_rows(cosine * (unit - slope * self.axis)))
 
+    def key(self, sign: float) -> tuple[float, ...]:
+        """Return numbers that are equal for equal surfaces with equal normals times ``sign``."""
+        up = math.copysign(1, self.axis[np.abs(self.axis).argmax()])
+        slope = (self.radii[0] - self.radii[1]) / self.height
+        along = float(self.center @ self.axis)
+        foot = self.center - along * self.axis
+        radius = sum(self.radii) / 2 - slope * along
+        return (2, sign, *(up * self.axis), *foot, radius, up * slope)
 
-Surface = Ball | Plane | Cone
+
+@dataclass(frozen=True)
+class Ring:
+    """The surface of a torus."""
+
+    center: Array
+    axis: Array
+    ring: float
+    tube: float
+
+    def _parts(self, points: Array) -> tuple[Array, Array, Array]:
+        rel = points - self.center
+        along = rel @ self.axis
+        across = rel - along[:, np.newaxis] * self.axis
+        return along, across, _sizes(across)
+
+    def distance(self, points: Array) -> Array:
+        """Return signed distances, negative inside."""
+        along, _, size = self._parts(points)
+        return np.asarray(np.hypot(size - self.ring, along) - self.tube)
+
+    def normal(self, points: Array) -> Array:
+        """Return outward unit normals; on the axis the normal is parallel to it."""
+        along, across, size = self._parts(points)
+        unit = across / np.where(size > 0, size, 1)[:, np.newaxis]
+        out = (size - self.ring)[:, np.newaxis] * unit
+        return _unit_rows(out + along[:, np.newaxis] * self.axis)
+
+    def key(self, sign: float) -> tuple[float, ...]:
+        """Return numbers that are equal for equal surfaces with equal normals times ``sign``."""
+        up = math.copysign(1, self.axis[np.abs(self.axis).argmax()])
+        return (3, sign, *(up * self.axis), *self.center, self.ring, self.tube)
+
+
+Surface = Ball | Plane | Cone | Ring
+
+
+class Surfaces(tuple[Surface, ...]):
+    """Surfaces of a solid, with distances and normals of points on different ones."""
+
+    @functools.cached_property
+    def _planes(self) -> tuple[Bools, Array, Array]:
+        """Return which surfaces are planes, and their centres and normals."""
+        flat = np.array([isinstance(surface, Plane) for surface in self], np.bool_)
+        given = [(s.center, s.outward) if isinstance(s, Plane) else np.zeros((2, 3)) for s in self]
+        center, outward = np.array(given, np.float64).reshape(-1, 2, 3).transpose(1, 0, 2)
+        return flat, center, outward
+
+    def distance(self, points: Array, which: Indices) -> Array:
+        """Return the signed distance of each point from one surface, negative inside."""
+        flat, center, outward = self._planes
+        found = np.einsum("ij,ij->i", points - center[which], outward[which])
+        curved = ~flat[which]
+        for i in np.unique(which[curved]) if curved.any() else ():
+            rows = which == i
+            found[rows] = self[i].distance(points[rows])
+        return np.asarray(found)
+
+    def normal(self, points: Array, which: Indices) -> Array:
+        """Return the outward unit normal of one surface at each point."""
+        flat, _, outward = self._planes
+        found = outward[which]
+        curved = ~flat[which]
+        for i in np.unique(which[curved]) if curved.any() else ():
+            rows = which == i
+            found[rows] = self[i].normal(points[rows])
+        return np.asarray(found)
+
+
+#: Sum of distances below which a point is on all its surfaces, and rounds of Newton's method where
+#: more than that remains.
+NEAR, MORE = 1e-10, 40
+#: Largest step of a point that is moved onto several surfaces, and largest distance in all, in
+#: units of its distance from them.
+STEP, WIDE = 50, 200
 
 
 def fibonacci(count: int) -> Array:
@@ -101,57 +193,62 @@ def _unit_rows(vectors: Array) -> Array:
     return np.asarray(vectors / np.where(size > 0, size, 1))
 
 
-def onto(surfaces: tuple[Surface, ...], points: Array, both: Indices, rounds: int = 4) -> Array:
+def onto(surfaces: Surfaces, points: Array, both: Indices, rounds: int = 4) -> Array:
     """Return nearby points that are on all the surfaces that each row of ``both`` names.
 
     The method is Newton's with the shortest step; each round squares the error. Where surfaces
-    touch, the step is bounded so that no point moves far away.
+    nearly touch it needs more rounds. A point is on the first surface only, if they do not meet
+    near it.
     """
     points = points.copy()
     single = np.all(both == both[:, :1], axis=1)
-    for i in np.unique(both[single, 0]):
-        on = np.flatnonzero(single & (both[:, 0] == i))
-        points[on] = _onto_one(surfaces[i], points[on], rounds)
     on = np.flatnonzero(~single)
     if len(on):
-        points[on] = _onto_all(surfaces, points[on], both[on], rounds)
-    return points
-
-
-def _onto_one(surface: Surface, points: Array, rounds: int) -> Array:
-    for _ in range(rounds):
-        distance = surface.distance(points)
+        _, before = _onto_all(surfaces, points[on], both[on], 0)
+        found, off = _onto_all(surfaces, points[on], both[on], rounds)
+        far = np.flatnonzero(off > NEAR)
+        if len(far):
+            found[far], off[far] = _onto_all(surfaces, found[far], both[on[far]], MORE)
+        moved = _sizes(found - points[on])
+        met = (off <= NEAR) & (moved <= WIDE * before)
+        points[on[met]] = found[met]
+        single[on] = ~met
+    rows = np.flatnonzero(single)
+    for _ in range(rounds if len(rows) else 0):
+        distance = surfaces.distance(points[rows], both[rows, 0])
         if not np.abs(distance).max(initial=0) > 1e-15:
             break
-        points = points - distance[:, np.newaxis] * surface.normal(points)
+        normal = surfaces.normal(points[rows], both[rows, 0])
+        points[rows] -= distance[:, np.newaxis] * normal
     return points
 
 
-def _onto_all(surfaces: tuple[Surface, ...], points: Array, which: Indices, rounds: int) -> Array:
+def _onto_all(
+    surfaces: Surfaces, points: Array, which: Indices, rounds: int
+) -> tuple[Array, Array]:
+    """Return the points, and the sum of their distances from the surfaces."""
     count = which.shape[1]
-    used = np.unique(which)
-    on = [(j, i, np.flatnonzero(which[:, j] == i)) for j in range(count) for i in used]
     pairs = [(j, k) for j in range(count) for k in range(j)]
     same = [(j, which[:, j] == which[:, k]) for j, k in pairs]
-    for _ in range(rounds):
+    for last in (*[False] * rounds, True):
         distance = np.zeros(which.shape)
         normal = np.zeros((*which.shape, 3))
-        for j, i, rows in on:
-            if len(rows):
-                distance[rows, j] = surfaces[i].distance(points[rows])
-                normal[rows, j] = surfaces[i].normal(points[rows])
+        for j in range(count):
+            distance[:, j] = surfaces.distance(points, which[:, j])
+            if not last:
+                normal[:, j] = surfaces.normal(points, which[:, j])
         for j, rows in same:
             distance[rows, j] = 0
             normal[rows, j] = 0
+        if last or not np.abs(distance).max(initial=0) > 1e-15:
+            break
         gram = normal @ normal.transpose(0, 2, 1)
         gram += 1e-14 * np.eye(count)
         gram += np.eye(count) * (np.einsum("nii->ni", gram) < 0.5)[:, :, np.newaxis]
         weight = np.linalg.solve(gram, distance[:, :, np.newaxis])
         step = np.einsum("nji,nj->ni", normal, weight[:, :, 0])
-        size = np.sqrt(np.einsum("ij,ij->i", step, step))
-        limit = 4 * np.abs(distance).sum(axis=1)
+        size = _sizes(step)
+        limit = STEP * np.abs(distance).sum(axis=1)
         step *= np.minimum(1, limit / np.where(size > 0, size, 1))[:, np.newaxis]
         points = points - step
-        if not np.abs(distance).max(initial=0) > 1e-15:
-            break
-    return points
+    return points, np.abs(distance).sum(axis=1)

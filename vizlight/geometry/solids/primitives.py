@@ -1,165 +1,25 @@
-"""Solids: sphere, frustum and block, and their union, intersection and difference.
-
-A solid is the region inside all of its surfaces, or a combination of two solids.
-"""
+"""Solids with curved or plane surfaces in closed form: sphere, frustum, block and torus."""
 
 from __future__ import annotations
 
-import functools
 import math
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vizlight import _check
 from vizlight.geometry import axial
-from vizlight.geometry.solids.exact_surfaces import Ball, Cone, Plane
+from vizlight.geometry.solids.base import Boolean, Primitive, Solid, place
+from vizlight.geometry.solids.exact_surfaces import Ball, Cone, Plane, Ring
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Array, Bools, VectorLike
+    from vizlight._types import Array, VectorLike
     from vizlight.geometry.solids.exact_surfaces import Surface
 
 
-__all__ = ["Block", "Boolean", "Frustum", "Primitive", "Solid", "Sphere", "Truncus"]
-
-#: Description of a solid in error messages.
-EXPECTED = "a vizlight.Sphere, Frustum, Block or a combination of them"
-
-
-class Solid:
-    """Base class of solids, which combine by ``a | b``, ``a & b`` and ``a - b`` to any depth."""
-
-    def __or__(self, other: Solid) -> Boolean:
-        """Return the union."""
-        return Boolean("union", self, other)
-
-    def __and__(self, other: Solid) -> Boolean:
-        """Return the intersection."""
-        return Boolean("intersection", self, other)
-
-    def __sub__(self, other: Solid) -> Boolean:
-        """Return the difference."""
-        return Boolean("difference", self, other)
-
-    def primitives(self) -> Iterator[Primitive]:
-        """Yield the spheres, frusta and blocks from left to right."""
-        raise NotImplementedError
-
-    def combine(self, inside: Iterator[Bools]) -> Bools:
-        """Return which points are inside, given the same for each primitive in their order."""
-        raise NotImplementedError
-
-    def contains(self, points: ArrayLike, /) -> Bools:
-        """Return which points are inside the solid.
-
-        Parameters
-        ----------
-        points : array_like, shape (N, 3)
-            Positions, in the unit of the solid.
-
-        Returns
-        -------
-        ndarray of bool, shape (N,)
-            Results of analytic tests; for a point on a surface either value is possible.
-        """
-        places = np.asarray(_check.vectors("points", points, n=3), dtype=np.float64)
-        return self.combine(iter([solid.inside(places) for solid in self.primitives()]))
-
-
-class Primitive(Solid):
-    """A convex solid: the region inside all of its surfaces."""
-
-    def surfaces(self) -> tuple[Surface, ...]:
-        """Return the surfaces that bound the solid."""
-        raise NotImplementedError
-
-    @functools.cached_property
-    def _faces(self) -> tuple[Surface, ...]:
-        return self.surfaces()
-
-    def moved(self, shift: Array, scale: float) -> Primitive:
-        """Return the solid ``(x - shift) / scale``."""
-        raise NotImplementedError
-
-    def box(self) -> tuple[Array, float]:
-        """Return the centre of the solid and the radius of a ball around it that contains it."""
-        raise NotImplementedError
-
-    @property
-    def empty(self) -> bool:
-        """Whether the solid has no volume."""
-        raise NotImplementedError
-
-    @property
-    def volume(self) -> float:
-        """The volume."""
-        raise NotImplementedError
-
-    def primitives(self) -> Iterator[Primitive]:
-        """Yield the primitive itself."""
-        yield self
-
-    def combine(self, inside: Iterator[Bools]) -> Bools:
-        """Return the next item."""
-        return next(inside)
-
-    def inside(self, points: Array) -> Bools:
-        """Return which points are inside all surfaces."""
-        if self.empty:
-            return np.zeros(len(points), np.bool_)
-        found = np.ones(len(points), np.bool_)
-        for surface in self._faces:
-            found &= surface.distance(points) < 0
-        return found
-
-
-@dataclass(frozen=True)
-class Boolean(Solid):
-    """A combination of two solids.
-
-    Parameters
-    ----------
-    operation : {"union", "intersection", "difference"}
-        Set operation; a difference is the first solid without the second.
-    first, second : Solid
-        Solids to combine.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If an argument is not valid.
-    """
-
-    operation: Literal["union", "intersection", "difference"]
-    first: Solid
-    second: Solid
-
-    def __post_init__(self) -> None:
-        if self.operation not in ("union", "intersection", "difference"):
-            expected = "'union', 'intersection' or 'difference'"
-            raise ValueError(_check.message("operation", expected, repr(self.operation)))
-        for name, solid in (("first", self.first), ("second", self.second)):
-            if not isinstance(solid, Solid):
-                raise TypeError(_check.message(name, EXPECTED, _check.describe(solid)))
-
-    def primitives(self) -> Iterator[Primitive]:
-        """Yield the primitives of both solids."""
-        yield from self.first.primitives()
-        yield from self.second.primitives()
-
-    def combine(self, inside: Iterator[Bools]) -> Bools:
-        """Combine the results of both solids."""
-        first, second = self.first.combine(inside), self.second.combine(inside)
-        if self.operation == "union":
-            return first | second
-        if self.operation == "intersection":
-            return first & second
-        return first & ~second
+__all__ = ["Block", "Boolean", "Frustum", "Primitive", "Solid", "Sphere", "Torus", "Truncus"]
 
 
 class Sphere(Primitive):
@@ -180,7 +40,7 @@ class Sphere(Primitive):
 
     def __init__(self, center: VectorLike = (0.0, 0.0, 0.0), radius: float = 1.0) -> None:
         self.center = axial.triple("center", center)
-        self.radius = _check.number("radius", radius, low=0.0)
+        self.radius = self.roundness = _check.number("radius", radius, low=0.0)
 
     def __repr__(self) -> str:
         return f"Sphere({tuple(map(float, self.center))}, {self.radius:g})"
@@ -199,9 +59,9 @@ class Sphere(Primitive):
         """Return the surface of the ball."""
         return (Ball(self.center, self.radius),)
 
-    def moved(self, shift: Array, scale: float) -> Sphere:
-        """Return the solid ``(x - shift) / scale``."""
-        return Sphere((self.center - shift) / scale, self.radius / scale)
+    def moved(self, shift: Array, scale: float, turn: Array | None = None) -> Sphere:
+        """Return the solid ``turn @ (x - shift) / scale``, with an optional rotation matrix."""
+        return Sphere(place(self.center, shift, scale, turn), self.radius / scale)
 
     def box(self) -> tuple[Array, float]:
         """Return the centre and the radius."""
@@ -253,6 +113,7 @@ class Frustum(Primitive):
             raise ValueError(_check.message("radii", "two radii (R1, R2)", _check.describe(radii)))
         first, second = (_check.number("radii", float(x), low=0.0) for x in given)
         self.radii = (first, second)
+        self.roundness = max(self.radii)
 
     def __repr__(self) -> str:
         middle, axis = (tuple(map(float, v)) for v in (self.center, self.axis))
@@ -277,10 +138,12 @@ class Frustum(Primitive):
         )
         return (side, *ends)
 
-    def moved(self, shift: Array, scale: float) -> Frustum:
-        """Return the solid ``(x - shift) / scale``."""
+    def moved(self, shift: Array, scale: float, turn: Array | None = None) -> Frustum:
+        """Return the solid ``turn @ (x - shift) / scale``, with an optional rotation matrix."""
         radii = np.array(self.radii) / scale
-        return Frustum((self.center - shift) / scale, self.axis, radii, height=self.height / scale)
+        center = place(self.center, shift, scale, turn)
+        axis = self.axis if turn is None else turn @ self.axis
+        return Frustum(center, axis, radii, height=self.height / scale)
 
     def box(self) -> tuple[Array, float]:
         """Return the centre and the radius of the smallest ball around it."""
@@ -354,10 +217,76 @@ class Block(Primitive):
                 found.append(Plane(center, sign * self.axes[i]))
         return tuple(found)
 
-    def moved(self, shift: Array, scale: float) -> Block:
-        """Return the solid ``(x - shift) / scale``."""
-        return Block((self.center - shift) / scale, self.size / scale, axes=self.axes)
+    def moved(self, shift: Array, scale: float, turn: Array | None = None) -> Block:
+        """Return the solid ``turn @ (x - shift) / scale``, with an optional rotation matrix."""
+        axes = self.axes if turn is None else self.axes @ turn.T
+        return Block(place(self.center, shift, scale, turn), self.size / scale, axes=axes)
 
     def box(self) -> tuple[Array, float]:
         """Return the centre and the radius of the smallest ball around it."""
         return self.center, axial.length(self.size) / 2
+
+
+class Torus(Primitive):
+    """A ring with a circular cross-section.
+
+    Parameters
+    ----------
+    center : vector of 3 components, default: (0, 0, 0)
+        Centre.
+    axis : vector of 3 components, default: (0, 0, 1)
+        Direction of the axis of rotation.
+    ring_radius : float, default: 0.5
+        Distance of the centre of the cross-section from the axis.
+    tube_radius : float, default: 0.25
+        Radius of the cross-section, below ``ring_radius``; a torus of tube radius 0 is empty.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is not valid.
+    """
+
+    def __init__(
+        self,
+        center: VectorLike = (0.0, 0.0, 0.0),
+        axis: VectorLike = (0.0, 0.0, 1.0),
+        ring_radius: float = 0.5,
+        tube_radius: float = 0.25,
+    ) -> None:
+        self.center = axial.triple("center", center)
+        self.axis = axial.unit("axis", axis)
+        self.ring_radius = _check.number("ring_radius", ring_radius, low=0.0)
+        self.tube_radius = _check.number("tube_radius", tube_radius, low=0.0)
+        if self.tube_radius >= self.ring_radius:
+            expected = f"a radius below ring_radius={self.ring_radius:g}"
+            raise ValueError(_check.message("tube_radius", expected, self.tube_radius))
+        self.roundness = self.ring_radius + self.tube_radius
+
+    def __repr__(self) -> str:
+        middle, axis = (tuple(map(float, v)) for v in (self.center, self.axis))
+        return f"Torus({middle}, {axis}, {self.ring_radius:g}, {self.tube_radius:g})"
+
+    @property
+    def empty(self) -> bool:
+        """Whether the solid has no volume."""
+        return self.tube_radius == 0
+
+    @property
+    def volume(self) -> float:
+        """The volume."""
+        return 2 * math.pi**2 * self.ring_radius * self.tube_radius**2
+
+    def surfaces(self) -> tuple[Surface, ...]:
+        """Return the surface of the ring."""
+        return (Ring(self.center, self.axis, self.ring_radius, self.tube_radius),)
+
+    def moved(self, shift: Array, scale: float, turn: Array | None = None) -> Torus:
+        """Return the solid ``turn @ (x - shift) / scale``, with an optional rotation matrix."""
+        axis = self.axis if turn is None else turn @ self.axis
+        center = place(self.center, shift, scale, turn)
+        return Torus(center, axis, self.ring_radius / scale, self.tube_radius / scale)
+
+    def box(self) -> tuple[Array, float]:
+        """Return the centre and the radius of the smallest ball around it."""
+        return self.center, self.roundness

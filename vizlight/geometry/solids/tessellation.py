@@ -6,6 +6,7 @@ triangle came from. The points are then moved onto their exact surfaces.
 
 from __future__ import annotations
 
+import dataclasses
 import importlib.util
 import math
 from dataclasses import dataclass
@@ -15,8 +16,10 @@ import numpy as np
 
 from vizlight import _check
 from vizlight.geometry.solids import placement, triangle_mesh
-from vizlight.geometry.solids.exact_surfaces import Plane
-from vizlight.geometry.solids.primitives import EXPECTED, Block, Boolean, Frustum, Solid, Sphere
+from vizlight.geometry.solids.base import EXPECTED, Boolean, Primitive, Solid
+from vizlight.geometry.solids.exact_surfaces import Surfaces
+from vizlight.geometry.solids.polyhedra import HalfSpace, Polyhedron
+from vizlight.geometry.solids.primitives import Sphere, Torus
 from vizlight.geometry.solids.triangle_mesh import Mesh
 
 if TYPE_CHECKING:
@@ -24,31 +27,33 @@ if TYPE_CHECKING:
 
     import manifold3d
 
-    from vizlight._types import Array
-    from vizlight.geometry.solids.primitives import Primitive
+    from vizlight._types import Array, Indices
 
 
-__all__ = ["tessellate"]
+__all__ = ["tessellate", "volume_bounds"]
 
 #: Largest number of points of all primitives together.
 MOST = 400_000
-#: Largest number of points for a thin wall or a small solid.
+#: Thinnest wall or gap, as a share of the size, between surfaces that need fine facets to keep it.
+#: The number of points is that of a unit sphere whose facets are half as far from it.
+THINNEST = 1e-4
 PATIENCE = 60_000
 #: Fewest segments of a circle, and ratio of radii below which circles have equal segments: the
 #: facets of a thin wall between them are then parallel.
 FEWEST, ALIKE = 24, 1.25
 #: Grid of coordinates before a Boolean operation, so that equal places have equal coordinates.
 GRID = 2.0**36
-#: Largest estimated share of the volume by which a mesh may differ from the exact solid, in units
-#: of the tolerance, and the divisor of the tolerance where it differs by more.
+#: Distance by which coordinates are rounded, with a margin for the points where surfaces cross.
+ROUNDING = 4 / GRID
+#: Inverse of the distance below which surfaces are one surface.
+EQUAL = 1e10
+#: Largest share of the volume that may be missing between triangles and exact surfaces, in units of
+#: the tolerance: a ball of radius r misses the share 3 / r of the distance of its facets, and a
+#: primitive may be smaller than the whole. The divisor of the tolerance where more is missing.
 SHARE, FINER = 8.0, 4.0
-#: Error of the volume, in units of the tolerance, that never needs a finer tolerance. The scaled
-#: solid is about as large as the unit ball.
+#: Missing volume, in units of the tolerance, that never needs a finer one: the scaled solid is
+#: about as large as the unit ball.
 NEGLIGIBLE = 1e-3
-#: Number of times that the tolerance is divided for a solid that has less volume than its bound.
-TRIALS = 2
-#: Distance by which simplification may move a surface: well below the thinnest wall of 1e-4.
-SIMPLE = 1e-6
 
 
 def tessellate(solid: Solid, /, *, tolerance: float = 3e-3) -> Mesh:
@@ -86,35 +91,82 @@ def tessellate(solid: Solid, /, *, tolerance: float = 3e-3) -> Mesh:
     finer tolerance. Volume and area converge with the tolerance. Source: Isoluminance, Further
     Work.
     """
-    if not isinstance(solid, Solid):
-        raise TypeError(_check.message("solid", EXPECTED, _check.describe(solid)))
-    tolerance = _check.number("tolerance", tolerance, low=1e-6, high=0.1)
-    if isinstance(solid, Sphere | Frustum | Block):
+    tolerance = _checked(solid, tolerance)
+    if isinstance(solid, HalfSpace):
+        expected, remedy = "a bounded solid", "intersect it with a bounded one"
+        raise ValueError(_check.message("solid", expected, solid, remedy))
+    if isinstance(solid, Primitive):
         segments = max(FEWEST, math.ceil(math.pi / math.acos(1 - tolerance)))
         return triangle_mesh.mesh(solid, segments)
-    if importlib.util.find_spec("manifold3d") is None:
-        expected = "a single primitive, as the package manifold3d is not installed"
-        remedy = "run pip install 'vizlight[solids]'"
-        raise ImportError(_check.message("solid", expected, "a combined solid", remedy))
     tree = _Tree(solid)
-    fine, trial = tolerance, 0
-    made: Mesh | None = None
+    fine, most = tolerance, float(MOST)
     while True:
-        segments_of = tree.segments(fine)
-        count = sum(_points(part, n) for part, n in zip(tree.parts, segments_of, strict=True))
-        if count > (MOST if made is None else PATIENCE):
+        chosen = tree.segments(fine)
+        count = tree.points(chosen)
+        if fine == tolerance and count <= most:
+            thin = tree.finer(chosen)
+            if thin != chosen:
+                chosen, most = thin, max(PATIENCE, count)
+                count = tree.points(chosen)
+        if count > most:
             break
-        made, bound = tree.mesh(segments_of, fine)
-        thin = made.volume_error > tolerance * max(SHARE * made.volume, NEGLIGIBLE)
-        if not thin and (made.volume >= bound or trial == TRIALS):
+        made = tree.mesh(chosen, fine)
+        if made.volume_missing <= tolerance * max(SHARE * made.volume, NEGLIGIBLE):
             return made
-        fine, trial = fine / FINER, trial + 1
-    if made is not None and not thin:
-        return made
-    expected = f"a value that needs at most {MOST if made is None else PATIENCE} points"
+        fine, most = fine / FINER, PATIENCE
+    expected = f"a value that needs at most {most:.0f} points"
     given = f"{tolerance:g}, which needs {count:.0f}"
     remedy = "raise it, or separate or join surfaces that nearly touch"
     raise ValueError(_check.message("tolerance", expected, given, remedy))
+
+
+def volume_bounds(solid: Solid, /, *, tolerance: float = 3e-3) -> tuple[float, float]:
+    """Return a lower and an upper bound of the exact volume of a solid.
+
+    Parameters
+    ----------
+    solid : Solid
+        Primitive, or a combination of primitives.
+    tolerance : float, default: 3e-3
+        Largest distance of facets from surfaces, as for :func:`tessellate`.
+
+    Returns
+    -------
+    low, high : float
+        Bounds, in the cubed unit of the solid.
+
+    Raises
+    ------
+    ImportError, TypeError, ValueError
+        As for :func:`tessellate`.
+
+    Notes
+    -----
+    A Boolean combination without complements grows with each primitive that is added or common, and
+    shrinks with each that is subtracted. Facets inscribed in the former and circumscribed about the
+    latter bound it from below, and the reverse from above. Both combinations are computed, which
+    takes twice the time of one. The bounds include the rounding of coordinates.
+    """
+    tolerance = _checked(solid, tolerance)
+    tree = _Tree(solid)
+    segments = tree.segments(tolerance)
+    found = []
+    for side in (-1.0, 1.0):
+        whole, area = tree.combined(segments, side)
+        found.append((whole.volume() + side * ROUNDING * area) * tree.scale**3)
+    return max(found[0], 0.0), found[1]
+
+
+def _checked(solid: Solid, tolerance: float) -> float:
+    """Return the tolerance if both arguments are valid and the solid can be computed."""
+    if not isinstance(solid, Solid):
+        raise TypeError(_check.message("solid", EXPECTED, _check.describe(solid)))
+    tolerance = _check.number("tolerance", tolerance, low=1e-6, high=0.1)
+    if isinstance(solid, Boolean) and importlib.util.find_spec("manifold3d") is None:
+        expected = "a single primitive, as the package manifold3d is not installed"
+        remedy = "run pip install 'vizlight[solids]'"
+        raise ImportError(_check.message("solid", expected, "a combined solid", remedy))
+    return tolerance
 
 
 @dataclass
@@ -127,14 +179,19 @@ class _Tree:
         given = list(self.solid.primitives())
         self.shift, self.scale = _frame(given)
         self.parts = [part if part.empty else part.moved(self.shift, self.scale) for part in given]
-        self.surfaces = tuple(s for part in self.parts for s in part.surfaces())
+        self.surfaces = Surfaces(s for part in self.parts for s in part.surfaces())
         owned = [len(part.surfaces()) for part in self.parts]
         self.first = np.cumsum(owned) - owned
         self.signs = np.repeat(_signs(self.solid, 1.0), owned)
+        keys = [surface.key(sign) for surface, sign in zip(self.surfaces, self.signs, strict=True)]
+        rows = np.round(np.reshape(keys, (-1, 10)) * EQUAL)
+        _, first, which = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+        #: Index of the first surface that is equal to each.
+        self.equal = first[which.ravel()]
 
     def segments(self, tolerance: float) -> list[int]:
         """Return the number of segments of a circle of each primitive, a multiple of 4."""
-        radius = np.array([_radius(part) for part in self.parts])
+        radius = np.array([part.roundness for part in self.parts])
         order = np.argsort(radius)
         with np.errstate(divide="ignore", invalid="ignore"):
             jump = radius[order][1:] > ALIKE * radius[order][:-1]
@@ -148,39 +205,99 @@ class _Tree:
             for r in largest[group]
         ]  # fmt: skip
 
-    def mesh(self, segments: list[int], tolerance: float) -> tuple[Mesh, float]:
-        """Return the mesh, and a bound on the difference of its volume from the exact one."""
+    def points(self, segments: list[int]) -> float:
+        """Return the approximate number of points of all primitives."""
+        pairs = zip(self.parts, segments, strict=True)
+        return sum(
+            0.38 * n**2 if isinstance(p, Sphere)
+            else len(p.points) if isinstance(p, Polyhedron)
+            else n**2 if isinstance(p, Torus) else 2 * n
+            for p, n in pairs
+        )  # fmt: skip
+
+    def finer(self, segments: list[int]) -> list[int]:
+        """Return the segments that keep the facets of a primitive clear of balls inside it.
+
+        The gap to a ball of radius r about c inside a surface with the signed distance D is
+        ``-D(c) - r``. Between alike spheres the facets are parallel, and any gap is kept.
+        """
+        found = list(segments)
+        balls = [(k, p) for k, p in enumerate(self.parts) if isinstance(p, Sphere) and not p.empty]
+        for i, part in enumerate(self.parts):
+            radius = part.roundness
+            if part.empty or radius == 0:
+                continue
+            side = part.surfaces()[0]
+            for k, ball in balls:
+                gap = -float(side.distance(ball.center[np.newaxis])[0]) - ball.radius
+                alike = isinstance(part, Sphere) and segments[i] == segments[k]
+                sagitta = radius * (1 - math.cos(math.pi / segments[i]))
+                if 10 / EQUAL < gap < sagitta and not alike:
+                    fine = math.pi / math.acos(1 - gap / 2 / radius)
+                    found[i] = max(found[i], 4 * math.ceil(fine / 4))
+        return found
+
+    def combined(self, segments: list[int], side: float = 0.0) -> tuple[manifold3d.Manifold, float]:
+        """Return the combination of faceted primitives.
+
+        For a side of 0 all facets are inscribed, and the second number is a bound of the difference
+        of the volume from the exact one. For -1 or 1 the combination lies inside or outside of the
+        exact solid, and the second number is the area of all primitives.
+        """
         from manifold3d import Manifold
 
         leaves: list[manifold3d.Manifold] = []
-        bound = 0.0
-        for part, count, first in zip(self.parts, segments, self.first, strict=True):
-            if part.empty or not isinstance(part, Sphere | Frustum | Block):
+        total = 0.0
+        for part, sign, count, first in zip(
+            self.parts, _signs(self.solid, 1.0), segments, self.first, strict=True
+        ):
+            if part.empty:
                 leaves.append(Manifold())
                 continue
-            leaves.append(_leaf(part, count, int(first)))
-            bound += abs(part.volume - leaves[-1].volume())
-        whole = _combine(self.solid, iter(leaves))
+            used = triangle_mesh.around(part, count, side * sign) if side else part
+            leaves.append(Manifold() if used.empty else _leaf(used, count, self.equal[first:]))
+            area = leaves[-1].surface_area()
+            if not side:
+                total += triangle_mesh.missed(part, count, leaves[-1].volume()) + ROUNDING * area
+            else:
+                total += area
+        return _combine(self.solid, iter(leaves)), total
+
+    def mesh(self, segments: list[int], tolerance: float) -> Mesh:
+        """Return the mesh, with the bound of its volume."""
+        whole, bound = self.combined(segments)
         if whole.is_empty():
-            return self._empty(), bound
-        if not all(isinstance(surface, Plane) for surface in self.surfaces):
-            whole = whole.simplify(min(SIMPLE, tolerance))
+            return dataclasses.replace(self._empty(), volume_error=bound)
         found = whole.to_mesh64()
         triangles = np.asarray(found.tri_verts, np.intp)
         points = np.asarray(found.vert_properties, np.float64)[:, :3]
         same = np.arange(len(points))
         same[np.asarray(found.merge_from_vert, np.intp)] = found.merge_to_vert
         used, triangles = np.unique(same[triangles], return_inverse=True)
+        patch = np.asarray(found.face_id, np.intp)
+        self._check_bounded(patch)
         mesh = Mesh(
             points[used],
             triangles.reshape(-1, 3).astype(np.intp),
-            np.asarray(found.face_id, np.intp),
+            patch,
             self.surfaces,
             self.signs,
             self.shift,
             self.scale,
         )
-        return placement.place(mesh, tolerance), bound
+        placed = placement.place(mesh, tolerance)
+        # The facets are within the sum of what the primitives miss; moving the points adds to it.
+        bound += abs(placed.volume - whole.volume())
+        return dataclasses.replace(placed, volume_error=bound)
+
+    def _check_bounded(self, patch: Indices) -> None:
+        """Raise an error if the solid reaches the end of the block in place of a half-space."""
+        for part, first in zip(self.parts, self.first, strict=True):
+            ends = self.equal[first + 1 : first + 6]
+            if isinstance(part, HalfSpace) and np.any(np.isin(patch, ends)):
+                expected = "a bounded combination of a half-space with others"
+                remedy = "intersect it with a bounded solid, or subtract it from one"
+                raise ValueError(_check.message("solid", expected, part, remedy))
 
     def _empty(self) -> Mesh:
         none = np.empty((0, 3), np.intp)
@@ -191,7 +308,7 @@ class _Tree:
 
 def _frame(parts: list[Primitive]) -> tuple[Array, float]:
     """Return the centre of all primitives and the length that becomes the unit."""
-    boxes = [part.box() for part in parts if not part.empty]
+    boxes = [part.box() for part in parts if not (part.empty or isinstance(part, HalfSpace))]
     if not boxes:
         return np.asarray(parts[0].box()[0]), 1.0
     low = np.min([center - radius for center, radius in boxes], axis=0)
@@ -211,19 +328,7 @@ def _signs(solid: Solid, sign: float) -> list[float]:
     return _signs(solid.first, sign) + _signs(solid.second, second)
 
 
-def _radius(part: Primitive) -> float:
-    """Return the largest radius of a primitive's curved surfaces, 0 without any."""
-    if isinstance(part, Sphere):
-        return part.radius
-    return max(part.radii) if isinstance(part, Frustum) else 0.0
-
-
-def _points(part: Primitive, segments: int) -> float:
-    """Return the approximate number of points of a primitive's mesh."""
-    return 0.38 * segments**2 if isinstance(part, Sphere) else 2 * segments
-
-
-def _leaf(part: Sphere | Frustum | Block, segments: int, first: int) -> manifold3d.Manifold:
+def _leaf(part: Primitive, segments: int, number: Indices) -> manifold3d.Manifold:
     """Return the mesh of a primitive, with the number of the surface of each triangle."""
     from manifold3d import Error, Manifold, Mesh64
 
@@ -234,7 +339,7 @@ def _leaf(part: Sphere | Frustum | Block, segments: int, first: int) -> manifold
         Mesh64(
             vert_properties=np.ascontiguousarray(points),
             tri_verts=np.ascontiguousarray(triangles.reshape(-1, 3), np.uint64),
-            face_id=np.ascontiguousarray(mesh.patch + first, np.uint64),
+            face_id=np.ascontiguousarray(number[mesh.patch], np.uint64),
         )
     )
     if leaf.status() != Error.NoError:

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vizlight.geometry import axial
-from vizlight.geometry.solids.exact_surfaces import Plane, fibonacci
-from vizlight.geometry.solids.primitives import Block, Frustum, Sphere
+from vizlight.geometry.solids.exact_surfaces import Plane, Surfaces, fibonacci
+from vizlight.geometry.solids.polyhedra import HalfSpace, Polyhedron
+from vizlight.geometry.solids.primitives import Block, Frustum, Sphere, Torus
 
 if TYPE_CHECKING:
     from vizlight._types import Array, Indices
+    from vizlight.geometry.solids.base import Primitive
     from vizlight.geometry.solids.exact_surfaces import Surface
 
 
@@ -29,7 +32,7 @@ class Mesh:
         Indices of corners, counter-clockwise seen from outside.
     patch : ndarray of int, shape (T,)
         Index of the surface of each triangle.
-    surfaces : tuple of Surface
+    surfaces : Surfaces
         Exact surfaces, in normalised lengths.
     signs : ndarray, shape (number of surfaces,)
         -1 for a surface that the solid lies outside of, else 1.
@@ -37,15 +40,18 @@ class Mesh:
         Origin of the normalised points, in the unit of the solid.
     scale : float
         Length of one normalised unit.
+    volume_error : float
+        Bound of the difference of the volume from that of the exact solid, in normalised lengths.
     """
 
     points: Array
     triangles: Indices
     patch: Indices
-    surfaces: tuple[Surface, ...]
+    surfaces: Surfaces
     signs: Array
     shift: Array
     scale: float
+    volume_error: float = 0.0
 
     def world(self, points: Array) -> Array:
         """Return points in the unit of the solid."""
@@ -58,8 +64,8 @@ class Mesh:
         return float(np.linalg.det(corners).sum()) / 6
 
     @property
-    def volume_error(self) -> float:
-        """The volume between triangles and exact surfaces, in normalised lengths.
+    def volume_missing(self) -> float:
+        """The estimated volume between triangles and exact surfaces, in normalised lengths.
 
         The height of the surface over a triangle is averaged over the middles of its edges, which
         is exact for a quadratic height.
@@ -67,11 +73,9 @@ class Mesh:
         corners = self.points[self.triangles]
         across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         height = np.zeros(len(across))
-        for i, surface in enumerate(self.surfaces):
-            on = self.patch == i
-            for j in range(3):
-                middle = (corners[on, j] + corners[on, (j + 1) % 3]) / 2
-                height[on] -= self.signs[i] * surface.distance(middle) / 3
+        for j in range(3):
+            middle = (corners[:, j] + corners[:, (j + 1) % 3]) / 2
+            height -= self.signs[self.patch] * self.surfaces.distance(middle, self.patch) / 3
         area = np.sqrt(np.einsum("ij,ij->i", across, across)) / 2
         return abs(float(area @ height))
 
@@ -80,11 +84,13 @@ class Mesh:
         return dataclasses.replace(self, points=points, triangles=triangles, patch=patch)
 
 
-def mesh(solid: Sphere | Frustum | Block, segments: int) -> Mesh:
+def mesh(solid: Primitive, segments: int) -> Mesh:
     """Return a coarse closed mesh of one primitive, with at least ``segments`` per circle.
 
     A flat shape without volume consists of its two faces; a shape without area has no triangles.
     """
+    if isinstance(solid, HalfSpace):
+        solid = solid.block()
     shift, scale = solid.box()
     scale = scale or 1.0
     unit = solid.moved(shift, scale)
@@ -92,7 +98,12 @@ def mesh(solid: Sphere | Frustum | Block, segments: int) -> Mesh:
         points, triangles, patch = _ball(unit, segments)
     elif isinstance(unit, Frustum):
         points, triangles, patch = _frustum(unit, segments)
+    elif isinstance(unit, Torus):
+        points, triangles, patch = _torus(unit, segments)
+    elif isinstance(unit, Polyhedron):
+        points, triangles, patch = unit.points, unit.triangles, unit.patch
     else:
+        assert isinstance(unit, Block)
         points, triangles, patch = _block(unit)
     if isinstance(unit, Frustum) and unit.height == 0:
         # The side is a flat ring: a plane, or empty.
@@ -101,7 +112,79 @@ def mesh(solid: Sphere | Frustum | Block, segments: int) -> Mesh:
         found: tuple[Surface, ...] = (Plane(unit.center, up * unit.axis), *ends)
     else:
         found = unit.surfaces()
-    return Mesh(points, triangles, patch, found, np.ones(len(found)), np.asarray(shift), scale)
+    made = Mesh(
+        points, triangles, patch, Surfaces(found), np.ones(len(found)), np.asarray(shift), scale
+    )
+    return dataclasses.replace(made, volume_error=missed(unit, segments, made.volume))
+
+
+def missed(unit: Primitive, segments: int, volume: float) -> float:
+    """Return a bound of the volume between a primitive and its facets, of a given volume.
+
+    The facets of a torus are inside and outside of it, within a shell about its surface.
+    """
+    if isinstance(unit, Torus):
+        area = 4 * math.pi**2 * unit.ring_radius
+        return 2 * area * unit.tube_radius * ring_error(unit, segments)
+    return 1e-14 if isinstance(unit, Polyhedron | HalfSpace) else abs(unit.volume - volume) + 1e-14
+
+
+def around(solid: Primitive, segments: int, side: float) -> Primitive:
+    """Return a primitive whose mesh contains the exact primitive, or is inside of it.
+
+    ``side`` is 1 or -1 for the one and the other.
+    """
+    if isinstance(solid, Torus):
+        tube = solid.tube_radius + side * 1.5 * ring_error(solid, segments)
+        return Torus(solid.center, solid.axis, solid.ring_radius, max(tube, 0.0))
+    if side < 0:
+        return solid
+    if isinstance(solid, Sphere):
+        points, triangles, _ = _ball(Sphere(), segments)
+        a, b, c = (points[triangles[:, i]] for i in range(3))
+        across = np.cross(b - a, c - a)
+        height = np.einsum("ij,ij->i", a, across) / np.linalg.norm(across, axis=1)
+        return Sphere(solid.center, solid.radius / height.min())
+    if isinstance(solid, Frustum):
+        wide = np.array(solid.radii) / math.cos(math.pi / segments)
+        return Frustum(solid.center, solid.axis, wide, height=solid.height)
+    return solid
+
+
+def _across_segments(unit: Torus, segments: int) -> int:
+    """Return the number of segments of a torus's cross-section."""
+    return max(12, math.ceil(segments * math.sqrt(unit.tube_radius / unit.roundness)))
+
+
+def ring_error(unit: Torus, segments: int) -> float:
+    """Return a bound of the distance of a torus's triangles from its surface.
+
+    Linear interpolation of a function of two angles u and v misses at most
+    ``(u^2 |f_uu| + 2 u v |f_uv| + v^2 |f_vv|) / 8`` for steps u and v.
+    """
+    u, v = 2 * math.pi / segments, 2 * math.pi / _across_segments(unit, segments)
+    return (u * u * unit.roundness + (2 * u * v + v * v) * unit.tube_radius) / 8
+
+
+def _torus(unit: Torus, segments: int) -> tuple[Array, Indices, Indices]:
+    rows = _across_segments(unit, segments)
+    if unit.empty:
+        return np.empty((0, 3)), np.empty((0, 3), np.intp), np.empty(0, np.intp)
+    first, second = axial.frame(unit.axis)
+    u = 2 * np.pi * np.arange(segments)[:, np.newaxis] / segments
+    v = 2 * np.pi * np.arange(rows) / rows
+    out = unit.ring_radius + unit.tube_radius * np.cos(v)
+    parts = ((np.cos(u) * out, first), (np.sin(u) * out, second))
+    up = np.broadcast_to(unit.tube_radius * np.sin(v), (segments, rows))
+    points = sum((x[..., np.newaxis] * way for x, way in parts), up[..., np.newaxis] * unit.axis)
+    number = np.arange(segments * rows).reshape(segments, rows)
+    right, above = np.roll(number, -1, axis=0), np.roll(number, -1, axis=1)
+    both = np.roll(right, -1, axis=1)
+    cells = [
+        np.stack(x, axis=-1).reshape(-1, 3) for x in ((number, right, both), (number, both, above))
+    ]
+    triangles = np.concatenate(cells).astype(np.intp)
+    return unit.center + points.reshape(-1, 3), triangles, np.zeros(len(triangles), np.intp)
 
 
 def _ball(unit: Sphere, segments: int) -> tuple[Array, Indices, Indices]:
@@ -204,9 +287,4 @@ def split(triangles: Indices, middles: Indices) -> tuple[Indices, Indices]:
 
 def normals_of(mesh: Mesh, points: Array, patch: Indices) -> Array:
     """Return the outward normals of the solid at points on its surfaces."""
-    normals = np.empty_like(points)
-    for i, surface in enumerate(mesh.surfaces):
-        on = patch == i
-        if np.any(on):
-            normals[on] = mesh.signs[i] * surface.normal(points[on])
-    return normals
+    return np.asarray(mesh.signs[patch][:, np.newaxis] * mesh.surfaces.normal(points, patch))

@@ -1,0 +1,57 @@
+"""Meshes of solids for PyVista and its file formats."""
+
+from __future__ import annotations
+
+import numpy as np
+import pyvista as pv
+
+from vizlight import _check
+from vizlight.geometry.solids import tessellation
+from vizlight.geometry.solids.base import EXPECTED, Solid
+
+
+def to_polydata(solid: Solid, /, *, tolerance: float = 3e-3) -> pv.PolyData:
+    """Return the closed surface of a solid as a mesh of triangles.
+
+    Parameters
+    ----------
+    solid : Solid
+        :class:`vizlight.Sphere`, :class:`~vizlight.Frustum`, :class:`~vizlight.Block` or another
+        solid, or a combination of them by ``|``, ``&`` and ``-``.
+    tolerance : float, default: 3e-3
+        Largest distance of triangles from the curves and surfaces, as a share of the size of the
+        solid, from 1e-6 to 0.1.
+
+    Returns
+    -------
+    pyvista.PolyData
+        Triangles, counter-clockwise seen from outside, with the cell array ``patch``: the index of
+        the exact surface of each. Field data ``volume_error`` is a bound of the difference of the
+        volume from that of the exact solid, in the cubed unit of the solid.
+
+    Raises
+    ------
+    ImportError
+        If a combined solid is given and manifold3d is not installed.
+    TypeError, ValueError
+        If an argument is not valid, or as for
+        :func:`vizlight.geometry.solids.tessellate`.
+
+    Notes
+    -----
+    The mesh's own ``save`` writes STL, PLY, OBJ and VTK's formats. For 3MF, the package trimesh
+    writes ``trimesh.Trimesh(mesh.points, mesh.regular_faces).export("part.3mf")``; it needs the
+    packages lxml and networkx.
+    """
+    if not isinstance(solid, Solid):
+        raise TypeError(_check.message("solid", EXPECTED, _check.describe(solid)))
+    made = tessellation.tessellate(solid, tolerance=tolerance)
+    if not len(made.triangles):
+        mesh = pv.PolyData()
+    else:
+        points = np.asarray(made.world(made.points), dtype=float)
+        triangles = np.asarray(made.triangles, dtype=int)
+        mesh = pv.PolyData.from_regular_faces(points, triangles)
+        mesh.cell_data["patch"] = np.asarray(made.patch)
+    mesh.field_data["volume_error"] = [made.volume_error * made.scale**3]
+    return mesh

@@ -1,0 +1,328 @@
+"""Solids bounded by planes: half-space, prism, and any closed mesh of triangles."""
+
+from __future__ import annotations
+
+import functools
+from typing import TYPE_CHECKING, Protocol, cast
+
+import numpy as np
+
+from vizlight import _check
+from vizlight.geometry import axial
+from vizlight.geometry.solids.base import Primitive, place
+from vizlight.geometry.solids.exact_surfaces import Plane
+from vizlight.geometry.solids.primitives import Block
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from vizlight._types import Array, Bools, Indices, VectorLike
+    from vizlight.geometry.solids.exact_surfaces import Surface
+
+__all__ = ["HalfSpace", "Polyhedron", "Prism"]
+
+#: Share of the size below which two facets are on one plane.
+SAME_PLANE = 1e-10
+
+
+class _Triangles(Protocol):
+    """What is used of a PyVista mesh."""
+
+    points: Array
+
+    @property
+    def regular_faces(self) -> Array:
+        """Indices of the corners of triangles."""
+
+    def triangulate(self) -> _Triangles:
+        """Return the mesh with triangles only."""
+
+
+class HalfSpace(Primitive):
+    """All points behind a plane. A combination with it must be bounded.
+
+    Parameters
+    ----------
+    point : vector of 3 components, default: (0, 0, 0)
+        Point of the plane.
+    normal : vector of 3 components, default: (0, 0, 1)
+        Direction out of the solid.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is not valid.
+    """
+
+    #: Size of the block in place of the half-space, in units of the size of the other primitives.
+    REACH = 16.0
+
+    def __init__(
+        self, point: VectorLike = (0.0, 0.0, 0.0), normal: VectorLike = (0.0, 0.0, 1.0)
+    ) -> None:
+        self.point = axial.triple("point", point)
+        self.normal = axial.unit("normal", normal)
+
+    def __repr__(self) -> str:
+        point, normal = (tuple(map(float, v)) for v in (self.point, self.normal))
+        return f"HalfSpace({point}, {normal})"
+
+    @property
+    def empty(self) -> bool:
+        """Whether the solid has no volume."""
+        return False
+
+    @property
+    def volume(self) -> float:
+        """The volume, which is infinite."""
+        return float("inf")
+
+    def block(self) -> Block:
+        """Return a large block about the origin, one of whose faces is in the plane."""
+        away = float(self.point @ self.normal)
+        size = self.REACH + 2 * abs(away)
+        axes = np.stack([self.normal, *axial.frame(self.normal)])
+        return Block((away - size / 2) * self.normal, (size, size, size), axes=axes)
+
+    def surfaces(self) -> tuple[Surface, ...]:
+        """Return the plane, and the other faces of the block in place of the half-space."""
+        return (Plane(self.point, self.normal), *self.block().surfaces()[1:])
+
+    def moved(self, shift: Array, scale: float, turn: Array | None = None) -> HalfSpace:
+        """Return the solid ``turn @ (x - shift) / scale``, with an optional rotation matrix."""
+        normal = self.normal if turn is None else turn @ self.normal
+        return HalfSpace(place(self.point, shift, scale, turn), normal)
+
+    def box(self) -> tuple[Array, float]:
+        """Return the point of the plane and an infinite radius."""
+        return self.point, float("inf")
+
+    def inside(self, points: Array) -> Bools:
+        """Return which points are behind the plane."""
+        return np.asarray((points - self.point) @ self.normal < 0)
+
+
+class Polyhedron(Primitive):
+    """A solid bounded by triangles, which are its exact surface.
+
+    Parameters
+    ----------
+    points : pyvista.PolyData or array_like, shape (P, 3)
+        Closed surface, or corners of its triangles.
+    triangles : array_like of int, shape (T, 3), optional
+        Indices of corners, all counter-clockwise or all clockwise seen from outside. Not used
+        with a PyVista mesh, which has its own; faces with more corners are triangulated.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is not valid, or if the surface is not closed and consistently oriented.
+
+    Notes
+    -----
+    Equal points are merged. Triangles must not cross each other, which is not checked.
+    """
+
+    def __init__(
+        self, points: ArrayLike | _Triangles, triangles: ArrayLike | None = None, /
+    ) -> None:
+        if triangles is None and hasattr(points, "regular_faces"):
+            mesh = cast("_Triangles", points).triangulate()
+            points, triangles = mesh.points, mesh.regular_faces
+        elif triangles is None:
+            expected = "a pyvista.PolyData, or an array of points and one of triangles"
+            remedy = "pass mesh.extract_surface()"
+            raise TypeError(_check.message("points", expected, _check.describe(points), remedy))
+        places = np.asarray(_check.vectors("points", points, n=3), dtype=np.float64)
+        corners = np.asarray(triangles)
+        if corners.ndim != 2 or corners.shape[1] != 3 or corners.dtype.kind not in "iu":
+            expected = "an integer array of shape (T, 3)"
+            raise ValueError(_check.message("triangles", expected, _check.describe(triangles)))
+        if corners.size and not 0 <= corners.min() <= corners.max() < len(places):
+            expected = f"indices from 0 to {len(places) - 1}"
+            raise ValueError(_check.message("triangles", expected, _check.describe(triangles)))
+        if not np.all(np.isfinite(places)):
+            raise ValueError(_check.message("points", "finite values", "others"))
+        unique, which = np.unique(places, axis=0, return_inverse=True)
+        found = which.ravel()[corners].astype(np.intp)
+        found = found[np.all(found != np.roll(found, 1, axis=1), axis=1)]
+        codes = found * len(unique) + np.roll(found, -1, axis=1)
+        back = np.roll(found, -1, axis=1) * len(unique) + found
+        if len(np.unique(codes)) < codes.size or not np.array_equal(
+            np.unique(codes), np.unique(back)
+        ):
+            remedy = "fill its holes, and run mesh.clean() and mesh.compute_normals()"
+            expected = "a closed surface with consistently oriented triangles"
+            raise ValueError(_check.message("triangles", expected, "another", remedy))
+        self._set(unique, found)
+        if self.volume < 0:
+            self._set(unique, np.ascontiguousarray(found[:, ::-1]))
+
+    def _set(self, points: Array, triangles: Indices) -> None:
+        self.points, self.triangles = points, triangles
+
+    def __repr__(self) -> str:
+        return f"Polyhedron({len(self.points)} points, {len(self.triangles)} triangles)"
+
+    @property
+    def empty(self) -> bool:
+        """Whether the solid has no volume."""
+        return not len(self.triangles)
+
+    @property
+    def volume(self) -> float:
+        """The volume."""
+        corners = self.points[self.triangles] - self.box()[0]
+        return float(np.linalg.det(corners).sum()) / 6
+
+    @functools.cached_property
+    def _planes(self) -> tuple[tuple[Surface, ...], Indices]:
+        """Return the different planes of the triangles, and the one of each triangle."""
+        middle, size = self.box()
+        corners = self.points[self.triangles]
+        across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        area = np.linalg.norm(across, axis=1)
+        normal = across / np.where(area > 0, area, 1)[:, np.newaxis]
+        offset = np.einsum("ij,ij->i", corners[:, 0] - middle, normal) / (size or 1.0)
+        keys = np.round(np.column_stack([normal, offset]) / SAME_PLANE)
+        _, first, which = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+        planes = tuple(Plane(corners[i, 0], normal[i]) for i in first)
+        return planes, which.ravel().astype(np.intp)
+
+    @property
+    def patch(self) -> Indices:
+        """Index of the plane of each triangle."""
+        return self._planes[1]
+
+    def surfaces(self) -> tuple[Surface, ...]:
+        """Return the planes of the triangles."""
+        return self._planes[0]
+
+    def moved(self, shift: Array, scale: float, turn: Array | None = None) -> Polyhedron:
+        """Return the solid ``turn @ (x - shift) / scale``, with an optional rotation matrix."""
+        found = Polyhedron.__new__(Polyhedron)
+        found._set(place(self.points, shift, scale, turn), self.triangles)
+        return found
+
+    def box(self) -> tuple[Array, float]:
+        """Return the centre and the radius of a ball that contains it."""
+        if not len(self.points):
+            return np.zeros(3), 0.0
+        middle = self.points.min(axis=0) / 2 + self.points.max(axis=0) / 2
+        return middle, float(np.linalg.norm(self.points - middle, axis=1).max())
+
+    def inside(self, points: Array) -> Bools:
+        """Return which points are inside, by the triangles that a ray in z direction crosses.
+
+        Equal corners are one point and each edge is evaluated from its lower corner, so that a ray
+        through an edge crosses one of its two triangles.
+        """
+        order = np.argsort(points[:, 0])
+        x, y, z = points[order].T
+        count = np.zeros(len(points), np.intp)
+        corners = self.points[self.triangles]
+        low = np.searchsorted(x, corners[:, :, 0].min(axis=1), side="left")
+        high = np.searchsorted(x, corners[:, :, 0].max(axis=1), side="right")
+        for t in np.flatnonzero(high > low):
+            rows = np.arange(low[t], high[t])
+            under = np.zeros(len(rows), np.bool_)
+            for i in range(3):
+                a, b = sorted((self.triangles[t, i], self.triangles[t, i - 1]))
+                (ax, ay, _), (bx, by, _) = self.points[a], self.points[b]
+                if ay != by:
+                    between = (ay <= y[rows]) != (by <= y[rows])
+                    under ^= between & (x[rows] < ax + (y[rows] - ay) * ((bx - ax) / (by - ay)))
+            rows = rows[under]
+            first, *_ = corners[t]
+            normal = np.cross(corners[t, 1] - first, corners[t, 2] - first)
+            if len(rows) and normal[2] != 0:
+                away = (x[rows] - first[0]) * normal[0] + (y[rows] - first[1]) * normal[1]
+                above = first[2] - away / normal[2] > z[rows]
+                count[rows[above]] += 1 if normal[2] > 0 else -1
+        found = np.zeros(len(points), np.bool_)
+        found[order] = count > 0
+        return found
+
+
+class Prism(Polyhedron):
+    """A polygon extruded along the z axis, from z = 0 to its height.
+
+    Parameters
+    ----------
+    outline : array_like, shape (N, 2)
+        Corners of a simple polygon in order, convex or not, without the first corner at the end.
+    height : float, default: 1.0
+        Height, above 0.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is not valid, or if the polygon crosses itself.
+    """
+
+    def __init__(self, outline: ArrayLike, height: float = 1.0) -> None:
+        corners = np.asarray(_check.vectors("outline", outline, n=2), dtype=np.float64)
+        height = _check.number("height", height, low=0.0)
+        if corners.ndim != 2 or len(corners) < 3 or not height > 0:
+            given = f"{len(corners)} corners and a height of {height:g}"
+            expected = "3 corners or more, and a height above 0"
+            raise ValueError(_check.message("outline", expected, given))
+        if _crosses(corners):
+            remedy = "remove repeated corners and crossings"
+            raise ValueError(_check.message("outline", "a simple polygon", "another", remedy))
+        if _area(corners) < 0:
+            corners = corners[::-1]
+        cap = _ears(corners)
+        count = len(corners)
+        low, after = np.arange(count), np.roll(np.arange(count), -1)
+        sides = [
+            np.stack([low, after, after + count], 1),
+            np.stack([low, after + count, low + count], 1),
+        ]
+        points = np.column_stack([np.tile(corners, (2, 1)), np.repeat([0.0, height], count)])
+        super().__init__(points, np.concatenate([cap[:, ::-1], cap + count, *sides]))
+
+
+def _area(corners: Array) -> float:
+    """Return twice the signed area of a polygon."""
+    x, y = (corners - corners.mean(axis=0)).T
+    return float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
+
+
+def _crosses(corners: Array) -> bool:
+    """Return whether edges of a polygon cross each other, or a corner is repeated."""
+    after = np.roll(corners, -1, axis=0)
+    side = [np.array([np.sign(_left(a, b, p)) for a, b in zip(corners, after, strict=True)])
+            for p in (corners, after)]  # fmt: skip
+    apart = side[0] * side[1] < 0
+    repeated = len(np.unique(corners, axis=0)) < len(corners)
+    return repeated or bool(np.any(apart & apart.T))
+
+
+def _ears(corners: Array) -> Indices:
+    """Return triangles of a counter-clockwise polygon, cut off corner by corner."""
+    ring = list(range(len(corners)))
+    found = []
+    while len(ring) > 3:
+        for i, b in enumerate(ring):
+            a, c = ring[i - 1], ring[(i + 1) % len(ring)]
+            others = corners[[j for j in ring if j not in (a, b, c)]]
+            if _left(corners[a], corners[b], corners[c][np.newaxis])[0] <= 0:
+                continue
+            inside = np.ones(len(others), np.bool_)
+            for p, q in ((a, b), (b, c), (c, a)):
+                inside &= _left(corners[p], corners[q], others) >= 0
+            if not inside.any():
+                found.append((a, b, c))
+                del ring[i]
+                break
+        else:
+            remedy = "remove corners in the middle of straight edges"
+            raise ValueError(_check.message("outline", "a polygon with an area", "none", remedy))
+    return np.array([*found, tuple(ring)], np.intp)
+
+
+def _left(start: Array, stop: Array, points: Array) -> Array:
+    """Return twice the signed areas of triangles of an edge and points to its left."""
+    (x, y), rel = stop - start, points - start
+    return np.asarray(x * rel[:, 1] - y * rel[:, 0])
