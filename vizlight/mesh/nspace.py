@@ -57,7 +57,7 @@ class Turning:
         """Return a mesh with its arrays rotated, and cut by the hyperplane; not yet projected."""
         if isinstance(mesh, pv.ImageData | pv.RectilinearGrid):
             mesh = mesh.cast_to_structured_grid()
-        out = mesh.copy(deep=False)
+        out = mesh.copy(deep=True)
         # The normals of the mesh are not those of the result.
         out.point_data.active_normals_name = None
         arrays = self._arrays(out)

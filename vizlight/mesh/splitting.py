@@ -105,7 +105,7 @@ def as_polydata(mesh: pv.DataSet) -> pv.PolyData:
 def _copy(mesh: pv.DataSet, out: pv.PolyData) -> None:
     """Copy the point and field arrays of a mesh, with what is active, to one of equal points."""
     out.GetPointData().ShallowCopy(mesh.GetPointData())
-    out.GetFieldData().ShallowCopy(mesh.GetFieldData())
+    out.GetFieldData().DeepCopy(mesh.GetFieldData())
 
 
 class Cells:
@@ -271,7 +271,7 @@ def rebuilt(
         rows = np.asarray(array)
         added = given[key] if key in given else _interpolated(rows, new)
         point_arrays.attach_rows(out, key, np.concatenate([rows, added.astype(rows.dtype)]))
-    out.GetFieldData().ShallowCopy(mesh.GetFieldData())
+    out.GetFieldData().DeepCopy(mesh.GetFieldData())
     for attribute in ("Normals", "Vectors", "Scalars", "Tangents", "TCoords"):
         active = getattr(mesh.GetPointData(), f"Get{attribute}")()
         if active is not None:

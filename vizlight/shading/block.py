@@ -233,8 +233,9 @@ def _toward(
 ) -> tuple[Array, Array | None]:
     """Return unit directions toward a light or eye, and distances: None at infinity.
 
-    Distances stay in float64, whose range they may need. float32 points in float32 work: the target is split into two float32 numbers, whose
-    differences lose nothing to the distance from the origin.
+    Distances stay in float64, whose range they may need. float32 points in float32 work: the
+    target is split into two float32 numbers, whose differences lose nothing to the distance from
+    the origin.
     """
     parallel = owner.parallel if isinstance(owner, View) else owner.position is None
     if parallel:
