@@ -300,9 +300,7 @@ def test_explain_tells_of_averaged_tangents(volume, capfd):
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="streams of a POSIX shell")
-@pytest.mark.parametrize(
-    "streams", [">&-", "2>&-", "<&- >&- 2>&-", ">/dev/full", "2>/dev/full", "| true"]
-)
+@pytest.mark.parametrize("streams", ["2>&-", "<&- >&- 2>&-", ">/dev/full", "| true"])
 def test_the_work_is_done_where_nobody_reads_what_is_said(streams, tmp_path):
     pv.Sphere(theta_resolution=4, phi_resolution=4).save(tmp_path / "ball.vtp")
     command = f"{sys.executable} -m vizlight light ball.vtp --specular 0 -o lit.vtp {streams}"

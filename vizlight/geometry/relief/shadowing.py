@@ -100,7 +100,8 @@ def inside_length(
 
     Examples
     --------
-    >>> float(inside_length([0, 1], [0, 1], [[0, 0], [0, 0]], (0.5, 0.5, -1), direction=(0, 3, 4)))
+    >>> flat, below = [[0, 0], [0, 0]], (0.5, 0.5, -1)
+    >>> round(float(inside_length([0, 1], [0, 1], flat, below, direction=(0, 3, 4))), 12)
     1.25
     """
     field = height_field.make(x, y, z, base=base, border=border)
