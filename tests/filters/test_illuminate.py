@@ -311,9 +311,9 @@ def test_progress_bar_is_drawn_on_standard_error(capfd):
     assert "100%" in err
 
 
-def test_result_does_not_hold_the_input_in_memory_twice():
+def test_a_shared_result_does_not_hold_the_input_in_memory_twice():
     plane = meshes()["PolyData"]
-    lit = illuminate(plane, SCENE, tangents="V")
+    lit = illuminate(plane.copy(deep=False), SCENE, tangents="V", inplace=True)
     assert np.shares_memory(lit["V"], plane["V"])
     assert np.shares_memory(lit.points, plane.points)
 

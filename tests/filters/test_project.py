@@ -278,9 +278,9 @@ def test_no_tangents_named_are_the_frame(torus):
         np.testing.assert_array_equal(one["luminance"], other["luminance"])
 
 
-def test_what_is_not_changed_is_shared(torus):
-    """As the docstring says, and as in shallow copies."""
-    assert np.shares_memory(project(torus)["frame"], torus["frame"])
+def test_what_is_not_changed_is_copied(torus):
+    np.testing.assert_array_equal(project(torus)["frame"], torus["frame"])
+    assert not np.shares_memory(project(torus)["frame"], torus["frame"])
     assert not np.shares_memory(project(torus, rotation=TURN)["frame"], torus["frame"])
 
 

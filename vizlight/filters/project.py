@@ -149,8 +149,7 @@ def project(
         orthonormalised; for each array V of ``vectors`` its image ``projected_V``, of the length
         that it comes to. What was done is kept as field data, ``provenance(mesh, "projection")``;
         ``luminance_provenance`` makes the light again from the mesh that was given.
-        Arrays that nothing is done to, without a rotation positions and frame too, are shared with
-        ``mesh``, as in PyVista's shallow copies: copy one before changing it in place.
+        It shares no memory with ``mesh``: arrays that nothing is done to are copies.
 
     Raises
     ------
