@@ -82,3 +82,19 @@ def test_types_of_floats():
 def test_long_values_are_shortened():
     assert len(_check.describe("x" * 500)) <= 60
     assert _check.describe(np.ones((2, 3))) == "an array of shape (2, 3) and type float64"
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64, np.int64, np.bool_])
+def test_masked_elements_are_nan(dtype):
+    given = np.ma.array(np.ones((3, 3), dtype), mask=np.eye(3))
+    for read in (_check.floats, _check.vectors):
+        found = read("x", given)
+        assert not isinstance(found, np.ma.MaskedArray)
+        np.testing.assert_array_equal(np.isnan(found), np.eye(3))
+    assert np.array_equal(given.data, np.ones((3, 3)))
+    assert not np.isnan(_check.floats("x", np.ma.array(np.ones(3, dtype)))).any()
+
+
+def test_a_masked_number_is_none():
+    with pytest.raises(TypeError, match="x: expected a number, got an array"):
+        _check.number("x", np.ma.masked)

@@ -94,9 +94,10 @@ def floats(name: str, value: object) -> Array:
     """Return ``value`` as a floating-point array.
 
     Integers and booleans become float64 and float16 becomes float32; float32 and float64 stay.
+    Masked elements become NaN.
     """
     try:
-        array = np.asarray(value)
+        array = np.asarray(unmasked(value))
     except ValueError as error:
         expected = "numbers in rows of equal length"
         raise TypeError(message(name, expected, describe(value))) from error
@@ -107,6 +108,19 @@ def floats(name: str, value: object) -> Array:
     if array.dtype == np.float16:
         return array.astype(np.float32)
     return array
+
+
+def unmasked(value: object) -> object:
+    """Return a masked array as a plain one with NaN in masked places, anything else as it is.
+
+    Integers and booleans with masked elements become float64.
+    """
+    if not isinstance(value, np.ma.MaskedArray):
+        return value
+    if not np.ma.is_masked(value):
+        return value.data
+    kind = value.dtype if value.dtype.kind == "f" else np.float64
+    return np.ma.filled(value.astype(kind), np.nan)
 
 
 def vectors(name: str, value: object, *, n: int | None = None) -> Array:
@@ -133,7 +147,7 @@ def cells(name: str, value: object, count: int, sizes: Sequence[int]) -> Indices
 
 def number(name: str, value: object, *, low: float = -math.inf, high: float = math.inf) -> float:
     """Return ``value`` as a finite float in the closed range [low, high]."""
-    if isinstance(value, np.ndarray) and value.ndim == 0:
+    if isinstance(value, np.ndarray) and value.ndim == 0 and value is not np.ma.masked:
         value = value.item()
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         raise TypeError(message(name, "a number", describe(value)))

@@ -28,3 +28,29 @@ def test_control_points_are_not_lit():
     normals = np.array([[-0.4, -0.4, 1], [0.4, 0, 1], [0, 0.4, 1]])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     np.testing.assert_allclose(lit["luminance"][:3], 0.1 + 0.8 * normals @ toward, rtol=1e-5)
+
+
+def clouds():
+    points = np.random.default_rng(1).normal(size=(20, 3)).astype(np.float32)
+    grid = pv.UnstructuredGrid()
+    grid.points = points
+    return [grid, pv.PointSet(points), pv.PolyData(points)]
+
+
+@pytest.mark.parametrize("cloud", clouds(), ids=lambda mesh: type(mesh).__name__)
+def test_points_without_cells_are_lit_by_vectors_of_their_own(cloud):
+    vectors = np.random.default_rng(2).normal(size=(20, 3))
+    scene = Scene(lights=Light(direction=(0, 0, 1)), view=View(direction=(0, 0, 1)))
+    points = np.asarray(cloud.points)
+    lines = vizlight.illuminate(cloud, scene, tangents=vectors)
+    expected = vizlight.engine.shade(points, vectors, scene)
+    np.testing.assert_array_equal(lines["luminance"], expected.luminance)
+    sheets = vizlight.illuminate(cloud, scene, normals=vectors, facing="as given")
+    expected = vizlight.engine.shade(points, None, scene, normals=vectors)
+    np.testing.assert_array_equal(sheets["luminance"], expected.luminance)
+    with pytest.raises(ValueError, match=r"mesh: expected a surface.*tangents= or .* normals="):
+        vizlight.illuminate(cloud, scene)
+    with pytest.raises(ValueError, match="mesh: expected a surface with faces"):
+        vizlight.isoluminance(cloud, scene)
+    with pytest.raises(ValueError, match="mesh: expected faces or lines, got points alone"):
+        vizlight.refine(cloud, scene, tangents=vectors)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from fractions import Fraction
 
 import numpy as np
@@ -108,3 +109,80 @@ def test_numbers_of_any_type_are_written_as_numbers():
     told = vizlight.provenance(lit)["options"]
     assert told["tolerance"] == 1 / 256
     np.testing.assert_array_equal(told["tangents"], np.eye(3))
+
+
+STRANGE = [
+    "{}", "[]", "1", "null", '"text"', "not JSON", "[" * 100_000, "{" * 1000, "\0", "NaN",
+    '{"arrays": ["own", "luminance"]}',
+    '{"vizlight": "1", "filter": "f", "arrays": ["own", "luminance"]}',
+    '{"vizlight": "1", "filter": "f", "arrays": {"own": "842:0", "luminance": 5}}',
+    '{"vizlight": "1", "filter": "f", "arrays": {"own": "842:0", "luminance": "x"}}',
+    '{"vizlight": "1", "filter": "f", "arrays": {}, "options": 5}',
+    '{"vizlight": "1", "filter": "f", "arrays": {}, "inside": -1, "sharp": 1e999}',
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("text", STRANGE, ids=range(len(STRANGE)))
+def test_a_record_of_unknown_origin_costs_the_user_no_array(text):
+    mesh = pv.Sphere()
+    own = {"own": np.arange(842), "luminance": np.arange(842.0), "projected_V": mesh["Normals"]}
+    for name, array in own.items():
+        mesh[name] = array
+    for name in ("luminance", "light", "vizlight_normals", "vizlight_tangents", "projection"):
+        mesh.field_data[f"{name}_provenance"] = [text]
+    with pytest.raises(ValueError, match="name: expected one under which .* got 'luminance'"):
+        vizlight.illuminate(mesh, SCENE)
+    lit = vizlight.illuminate(mesh, SCENE, name="light")
+    for name, array in own.items():
+        np.testing.assert_array_equal(lit[name], array)
+    assert vizlight.provenance(lit, "light")["filter"] == "illuminate"
+
+
+@pytest.mark.parametrize("value", [[1.5, 2], np.zeros(0), np.zeros((2, 3), np.uint8)])
+def test_a_record_that_is_no_text_is_none(value):
+    mesh = pv.Sphere()
+    mesh.field_data["luminance_provenance"] = value
+    with pytest.raises(ValueError, match="mesh: expected one with an array by vizlight, got none"):
+        vizlight.provenance(mesh)
+    assert "luminance" in vizlight.illuminate(mesh, SCENE).point_data
+
+
+def test_light_that_the_user_changed_is_the_users():
+    lit = lit_mesh()
+    lit["luminance"][7] += 0.5
+    with pytest.raises(ValueError, match="got 'luminance', changed since it was computed"):
+        vizlight.illuminate(lit, SCENE)
+    part = lit_mesh().extract_points(np.arange(100), adjacent_cells=False)
+    with pytest.raises(ValueError, match="changed since it was computed; .* delete it"):
+        vizlight.illuminate(part, SCENE)
+
+
+def test_kept_normals_of_unknown_origin_are_computed_again():
+    mesh = pv.Sphere()
+    mesh.clear_data()
+    lit = vizlight.illuminate(mesh, SCENE)
+    right = np.array(lit["luminance"])
+    lit["vizlight_normals"][:] = 1
+    assert "vizlight_normals" in lit.point_data
+    np.testing.assert_array_equal(vizlight.illuminate(lit, SCENE)["luminance"], right)
+    record = json.loads(lit.field_data["vizlight_normals_provenance"][0])
+    record["inside"], record["sharp"] = 10**9, -5
+    lit.field_data["vizlight_normals_provenance"] = [json.dumps(record)]
+    np.testing.assert_array_equal(vizlight.illuminate(lit, SCENE)["luminance"], right)
+
+
+def test_filters_take_their_own_light_along():
+    mesh = pv.Plane(i_resolution=3, j_resolution=3)
+    mesh.clear_data()
+    scene = Scene(lights=Light(position=(0.2, 0.1, 0.5)), view=View(direction=(0, 0, 1)))
+    fine = vizlight.refine(mesh, scene, components=True)
+    again = vizlight.refine(vizlight.illuminate(mesh, scene, components=True), scene)
+    assert "diffuse" in fine.point_data
+    assert "diffuse" not in again.point_data
+    cube = pv.Cube().triangulate().clean()
+    cube.clear_data()
+    with pytest.warns(UserWarning, match="of the edges are sharper"):
+        cube = vizlight.illuminate(cube, scene, components=True)
+    split = vizlight.illuminate(cube, scene, feature_angle=30)
+    assert split.n_points == 24
+    assert "diffuse" not in split.point_data

@@ -6,7 +6,7 @@ import numpy as np
 import oracles
 import pytest
 
-from vizlight import DepthCue, Light, Material, Scene, View, engine
+from vizlight import DepthCue, Light, Material, Scene, View, _compiled, engine
 from vizlight.model import reflection
 from vizlight.studies._measuring import peak_memory
 
@@ -527,3 +527,50 @@ def test_points_that_share_a_normal(kind, random):
         engine.shade(points, tangents, scene, normals=normals, repeat=7)
     with pytest.raises(ValueError, match=r"tangents: expected shape \(100 or 300, k, 3\)"):
         engine.shade(points, tangents[:50], scene, normals=normals, repeat=3)
+
+
+@pytest.mark.parametrize("role", ["tangents", "normals", "base_tangents", "points"])
+def test_masked_rows_are_invalid(role):
+    rng = np.random.default_rng(5)
+    scene = Scene(lights=Light(position=(1, 2, 3)), material=Material(specular=0))
+    arrays = {name: rng.normal(size=(9, 3)) for name in ("points", "tangents", role)}
+    arrays[role] = np.ma.array(arrays[role], mask=np.zeros((9, 3), bool))
+    arrays[role][2] = np.ma.masked
+    arrays[role][5, 1] = np.ma.masked
+    if role == "base_tangents":
+        rows = np.ma.concatenate([arrays[role], rng.normal(size=(9, 3))], axis=1)
+        arrays[role] = rows
+    points, tangents = arrays.pop("points"), arrays.pop("tangents")
+    options = {"conditioned": True} if role == "normals" else {}
+    lit = engine.shade(points, tangents, scene, **arrays, **options)
+    np.testing.assert_array_equal(np.flatnonzero(~lit.valid), [2, 5])
+    assert np.isfinite(lit.luminance).all()
+
+
+@pytest.mark.parametrize("fast", ["0", "1"])
+@pytest.mark.parametrize("vectors", [np.float32, np.float64])
+def test_light_does_not_depend_on_the_unit_of_length(vectors, fast):
+    """The same scene in units from 1e-300 to 1e300: float32 work keeps float64 distances."""
+    rng = np.random.default_rng(3)
+    points, normals = rng.normal(size=(64, 3)), rng.normal(size=(64, 3)).astype(vectors)
+    place, eye = np.array([1.0, 2.0, 9.0]), np.array([0.0, 1.0, 8.0])
+    limit = 2e-6 if vectors == np.float32 else 1e-13
+    base = None
+    with _compiled.setting(fast):
+        for exponent in (0, *range(-300, 301, 50), -42, 37, 38):
+            unit = 10.0**exponent
+            scene = Scene(
+                lights=Light(position=unit * place, attenuation=(1, 0.1 / unit, 0)),
+                view=View(position=unit * eye),
+            )
+            lit = engine.shade(points * unit, None, scene, normals=normals)
+            base = lit.luminance if base is None else base
+            assert lit.valid.all()
+            np.testing.assert_allclose(lit.luminance, base, rtol=0, atol=limit)
+
+
+def test_a_light_nearer_than_float32_resolves_has_a_direction():
+    points, normals = np.zeros((1, 3), np.float32), np.float32([[0, 0, 1]])
+    scene = Scene(lights=Light(position=(0, 0, 1e-60)), material=Material(specular=0, ambient=0))
+    lit = engine.shade(points, None, scene, normals=normals)
+    np.testing.assert_allclose(lit.luminance, scene.material.diffuse)

@@ -283,7 +283,7 @@ def _grow(
         _check.warn(f"{inside} of {options.fibres} fibres point into the surface and {verb}")
         if options.inward == "drop":
             results[0] = strands.drop(results[0])
-    meshes = [strands.mesh(), surface.copy(deep=False)]
+    meshes = [strands.mesh(), surface.copy(deep=True)]
     lighting.finish(meshes, results, "fur", scene, options, name)
     return pv.MultiBlock(dict(zip(("fibres", "skin"), meshes, strict=True)))
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from typing import TYPE_CHECKING, cast
 
+import numpy as np
 import pyvista as pv
 
 from vizlight import _check, _progress
@@ -52,7 +53,9 @@ def illuminate(
     threads : int, optional
         Number of threads. Default: the processors that this process may use.
     inplace : bool, default: False
-        Whether the result is attached to the mesh itself.
+        Whether the result is attached to the mesh itself, without a copy. Else the result shares
+        no memory with the mesh; ``illuminate(mesh.copy(deep=False), ..., inplace=True)`` saves the
+        copy where a shared result is wanted.
     progress_bar : bool, default: False
         Whether progress is shown on standard error.
 
@@ -124,7 +127,9 @@ def light_mesh(
     """
     _check.instance("scene", scene, Scene)
     blocks.check(mesh)
-    out = mesh if _check.boolean("inplace", inplace) else shallow_copy(mesh)
+    # A refined mesh has points of its own.
+    deep = not options.refine
+    out = mesh if _check.boolean("inplace", inplace) else separate_copy(mesh, deep=deep)
     named = list(blocks.named_blocks(out))
     lighting.refuse_overwriting(
         named, options.name, components=options.components, colored=scene.colored,
@@ -239,14 +244,16 @@ def _replaced(mesh: MeshT, made: Iterator[pv.DataSet]) -> MeshT:
     return mesh
 
 
-def shallow_copy(mesh: MeshT) -> MeshT:
-    """Return a mesh that shares its arrays but may get new ones."""
+def separate_copy(mesh: MeshT, *, deep: bool = True) -> MeshT:
+    """Return a mesh that may get new arrays; its own are shared with the first if not ``deep``."""
     if not isinstance(mesh, pv.MultiBlock):
-        return mesh.copy(deep=False)
+        return mesh.copy(deep=deep)
     out = type(mesh)()
     for i in range(mesh.n_blocks):
         block = mesh[i]
-        out.append(None if block is None else shallow_copy(block), mesh.get_block_name(i))
+        out.append(
+            None if block is None else separate_copy(block, deep=deep), mesh.get_block_name(i)
+        )
     for key, value in mesh.field_data.items():
-        out.field_data[key] = value
+        out.field_data[key] = np.array(value) if deep else value
     return out

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import json
 import time
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any, TypedDict
@@ -458,7 +457,7 @@ def _blocks(
     surface.cell_data[name] = bands.values
     surface.cell_data.active_scalars_name = name
     surface.field_data[f"{name}_error"] = [bands.error]
-    surface.field_data[records.key(name)] = [json.dumps(record)]
+    records.write(surface, name, record)
     lines = pv.PolyData()
     if len(bands.lines):
         used, ends = np.unique(bands.lines, return_inverse=True)

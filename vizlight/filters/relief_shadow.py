@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight import _check, _progress
-from vizlight.filters.illuminate import shallow_copy
+from vizlight.filters.illuminate import separate_copy
 from vizlight.filters.lighting import DEFAULT_NAME, PARTS, VALID, attach, refuse_overwriting
 from vizlight.geometry.relief import sun as sky
 from vizlight.mesh import point_arrays, records
@@ -175,9 +175,9 @@ def relief_shadow(
         )  # fmt: skip
 
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
-    out = mesh if inplace else shallow_copy(mesh)
+    out = mesh if inplace else separate_copy(mesh)
     if own is not mesh:
-        out.ShallowCopy(own)
+        out.DeepCopy(own)
     if shading is not None:
         light = records.of_light(shading, "relief_shadow", scene, asked)
         attach(out, shading, DEFAULT_NAME, light)

@@ -11,7 +11,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight._version import __version__
 from vizlight.filters import lighting, relight
-from vizlight.filters.illuminate import shallow_copy
+from vizlight.filters.illuminate import separate_copy
 from vizlight.mesh import blocks, point_arrays, records
 from vizlight.scene import DepthCue, Scene
 
@@ -116,7 +116,7 @@ def tint(
     dtype('uint8')
     """
     blocks.check(lit)
-    out = lit if _check.boolean("inplace", inplace) else shallow_copy(lit)
+    out = lit if _check.boolean("inplace", inplace) else separate_copy(lit)
     every = list(blocks.named_blocks(out))
     meshes = [block for block, _ in every]
     if not isinstance(name, str) or not name:

@@ -5,10 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pyvista as pv
 
 if TYPE_CHECKING:
-    import pyvista as pv
-
     from vizlight._types import Array, Indices
 
 #: Name of a temporary point array, chosen not to clash with a user's array.
@@ -19,8 +18,12 @@ def outer_surface(mesh: pv.DataSet) -> tuple[pv.PolyData, Indices]:
     """Return the outer surface of a mesh, and the index of each of its points in the mesh.
 
     The index is -1 where the mesh has no such point. Each curved cell is replaced by a flat cell
-    with the same nodes.
+    with the same nodes. Points without cells have a surface of all points without cells.
     """
+    if not mesh.n_cells:
+        bare = pv.PolyData()
+        bare.SetPoints(pv.vtk_points(np.asarray(mesh.points), deep=False))
+        return bare, np.arange(mesh.n_points)
     if not mesh.has_nonlinear_cells:
         surface = mesh.extract_surface(algorithm="geometry", pass_pointid=True, pass_cellid=False)
         ids = surface.point_data.pop("vtkOriginalPointIds")

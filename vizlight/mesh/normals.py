@@ -36,13 +36,10 @@ if TYPE_CHECKING:
 NEARLY_CLOSED = 0.2
 #: Angle in degrees between the normals of two faces above which their common edge is sharp.
 SHARP = 30.0
-<<<<<<< HEAD
 #: Least height of a triangle that has a direction, as a share of its longest side.
 NARROWEST = 1e-5
-=======
 #: Share of sharp edges, of all edges of a mesh, from which a warning names the remedy.
 MANY_SHARP = 0.02
->>>>>>> rest15
 #: Name under which a user's array keeps out of the way of VTK's.
 _OWN = "vizlight own"
 #: Sharp edges are creases if at most this many times as many edges are half as sharp or more.
@@ -281,7 +278,7 @@ def computed_normals(
     surface, origin = _skin(mesh)
     if surface is None:
         expected, got = "a surface, whose normals are lit", f"a {type(mesh).__name__} without faces"
-        remedy = "name its tangent vectors by tangents="
+        remedy = "name its tangent vectors by tangents= or its normals by normals="
         raise ValueError(_check.message("mesh", expected, got, remedy))
     bare = pv.PolyData()
     bare.copy_structure(surface)
@@ -525,6 +522,7 @@ def split_edges(mesh: pv.PolyData, angle: float | Literal["auto"]) -> pv.PolyDat
     if _OWN in found.point_data:
         found.point_data["Normals"] = found.point_data.pop(_OWN)
         found.point_data.active_normals_name = None
+    records.carry(mesh, found)
     return found
 
 
@@ -566,9 +564,9 @@ def keep(mesh: pv.DataSet, normals: Sided) -> None:
     point_arrays.attach_rows(mesh, KEPT, rows.astype(np.float32))
     record: records.Record = {
         "vizlight": __version__, "filter": "normals", "source": source, "sharp": normals.sharp,
-        "inside": normals.inside, "arrays": [KEPT],
+        "inside": normals.inside,
     }  # fmt: skip
-    records.write(mesh, KEPT, record)
+    records.write(mesh, KEPT, record, [KEPT])
 
 
 def _kept(mesh: pv.DataSet) -> Sided | None:
@@ -581,13 +579,12 @@ def _kept(mesh: pv.DataSet) -> Sided | None:
         return None
     if record.get("source") != fingerprint(mesh):
         return None
-    sharp, inside = record.get("sharp"), record.get("inside")
     return Sided(
         np.ascontiguousarray(rows[:, :3]),
         rows[:, 3],
         rows[:, 4] > 0,
-        float(sharp) if isinstance(sharp, int | float) else 0.0,
+        records.share(record, "sharp"),
         kept=True,
         computed=True,
-        inside=inside if isinstance(inside, int) else 0,
+        inside=records.count(record, "inside", mesh.n_points),
     )

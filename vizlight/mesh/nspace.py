@@ -57,7 +57,7 @@ class Turning:
         """Return a mesh with its arrays rotated, and cut by the hyperplane; not yet projected."""
         if isinstance(mesh, pv.ImageData | pv.RectilinearGrid):
             mesh = mesh.cast_to_structured_grid()
-        out = mesh.copy(deep=False)
+        out = mesh.copy(deep=True)
         # The normals of the mesh are not those of the result.
         out.point_data.active_normals_name = None
         arrays = self._arrays(out)
@@ -74,6 +74,7 @@ class Turning:
             point_arrays.attach_rows(out, name, array)
         if plane is not None:
             out = self._sliced(out, *plane, lost)
+            records.carry(mesh, out)
         records.write(out, RECORD, self._record(exact, records.read(mesh, RECORD)))
         done.add(mesh.n_points)
         return out
@@ -160,7 +161,8 @@ class Turning:
         if not good.all():
             expected = "finite points before the eye's hyperplane"
             self._count_lost(int(np.count_nonzero(~good)), len(good), expected, lost)
-            mesh = _without(mesh, ~good)
+            whole, mesh = mesh, _without(mesh, ~good)
+            records.carry(whole, mesh)
             position = np.asarray(mesh.point_data[self.positions])
             points, _ = self._points(position)
         out = mesh.copy(deep=False)
@@ -175,6 +177,10 @@ class Turning:
                 point_arrays.attach_rows(
                     out, name, self._image(out, self.frame, position, space=True)
                 )
+        framed = () if self.frame is None else (self.frame,)
+        images = [PROJECTED + name for name in (*self.vectors, *framed)]
+        record = records.read(out, RECORD) or {}
+        records.write(out, RECORD, record, [name for name in images if name in out.point_data])
         done.add(mesh.n_points)
         return out
 
@@ -304,10 +310,9 @@ def _named(mesh: pv.DataSet, argument: str, name: object) -> Array:
 
 def _refuse_overwriting(mesh: pv.DataSet, names: list[str]) -> None:
     """Raise ValueError if a result would replace a user's array."""
-    if records.key(RECORD) in mesh.field_data:
-        return
+    ours = records.made(mesh, RECORD)
     for name in names:
-        if name in mesh.point_data:
+        if name in mesh.point_data and name not in ours:
             expected = "a mesh without an array under the name of a result"
             raise ValueError(_check.message("mesh", expected, repr(name), "rename that array"))
 

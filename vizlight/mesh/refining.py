@@ -118,6 +118,7 @@ def refined(
     cells, left = refine(between, shading, parents, options.refine, most)
     given = _named(flat, between, options)
     found = splitting.rebuilt(flat, cells, origin, given, places=options.positions)
+    records.carry(mesh, found)
     made = _extended(part, between, cells.corners)
     if origin is None and options.tangents is None and made.inputs.tangents is not None:
         splitting.keep_tangents(found, np.asarray(made.inputs.tangents[:]))

@@ -105,7 +105,7 @@ def as_polydata(mesh: pv.DataSet) -> pv.PolyData:
 def _copy(mesh: pv.DataSet, out: pv.PolyData) -> None:
     """Copy the point and field arrays of a mesh, with what is active, to one of equal points."""
     out.GetPointData().ShallowCopy(mesh.GetPointData())
-    out.GetFieldData().ShallowCopy(mesh.GetFieldData())
+    out.GetFieldData().DeepCopy(mesh.GetFieldData())
 
 
 class Cells:
@@ -279,7 +279,7 @@ def rebuilt(
         own = given.get(key)
         added = _interpolated(rows, new, places=key == places) if own is None else own
         point_arrays.attach_rows(out, key, np.concatenate([rows, added.astype(rows.dtype)]))
-    out.GetFieldData().ShallowCopy(mesh.GetFieldData())
+    out.GetFieldData().DeepCopy(mesh.GetFieldData())
     for attribute in ("Normals", "Vectors", "Scalars", "Tangents", "TCoords"):
         active = getattr(mesh.GetPointData(), f"Get{attribute}")()
         if active is not None:
@@ -341,9 +341,8 @@ def keep_tangents(mesh: pv.PolyData, tangents: Array) -> None:
     point_arrays.attach_rows(mesh, TANGENTS, tangents)
     record: records.Record = {
         "vizlight": __version__, "filter": "refine", "source": normals.fingerprint(mesh),
-        "arrays": [TANGENTS],
     }  # fmt: skip
-    records.write(mesh, TANGENTS, record)
+    records.write(mesh, TANGENTS, record, [TANGENTS])
 
 
 def kept_tangents(mesh: pv.DataSet) -> Array | None:
@@ -351,6 +350,8 @@ def kept_tangents(mesh: pv.DataSet) -> Array | None:
     rows = mesh.point_data.get(TANGENTS)
     record = None if rows is None else records.read(mesh, TANGENTS)
     if rows is None or record is None or np.shape(rows) != (mesh.n_points, 3):
+        return None
+    if TANGENTS not in records.made(mesh, TANGENTS):
         return None
     return np.asarray(rows) if record.get("source") == normals.fingerprint(mesh) else None
 

@@ -43,7 +43,7 @@ def with_normals(
     for key, array in own.point_data.items():
         if np.asarray(array).dtype.kind in "biuf":
             triangles.point_data[key] = np.asarray(array)
-    triangles.point_data[NORMALS] = normals.normals_of(surface, None, 3, view, warn=angle is None)
+    triangles.point_data[NORMALS] = normals.normals_of(own, None, 3, view, warn=angle is None)
     return triangles if triangles.is_all_triangles else triangles.triangulate()
 
 

@@ -20,6 +20,10 @@ if TYPE_CHECKING:
     from vizlight.shading.plan import Plan
 
 
+#: Coordinates below this leave no room in float32 for the rest beyond its digits.
+SMALLEST_HELD = 1e-30
+
+
 class Output:
     """The arrays that a plan fills."""
 
@@ -194,7 +198,8 @@ def _scale(
     scale: Array | np.floating = plan.dtype.type(light.intensity)
     if lit.distance is not None:
         if light.attenuation != NO_ATTENUATION:
-            scale = scale * falloff.fading(lit.distance, light.attenuation)
+            fading = falloff.fading(lit.distance, light.attenuation)
+            scale = scale * fading.astype(plan.dtype, copy=False)
         if not lit.distance.all():
             # A light on the point has no direction to come from.
             scale = scale * (lit.distance > 0)
@@ -238,8 +243,9 @@ def _toward(
 ) -> tuple[Array, Array | None]:
     """Return unit directions toward a light or eye, and distances: None at infinity.
 
-    float32 points in float32 work: the target is split into two float32 numbers, whose
-    differences lose nothing to the distance from the origin.
+    Distances stay in float64, whose range they may need. float32 points in float32 work: the
+    target is split into two float32 numbers, whose differences lose nothing to the distance from
+    the origin.
     """
     parallel = owner.parallel if isinstance(owner, View) else owner.position is None
     if parallel:
@@ -250,14 +256,15 @@ def _toward(
     assert owner.position is not None
     at = np.array(owner.position, dtype=np.float64)[:, np.newaxis]
     high = at.astype(np.float32)
-    if dtype == np.float32 and points.dtype == np.float32 and np.isfinite(high).all():
+    held = np.isfinite(high) & ((np.abs(high) > SMALLEST_HELD) | (at == 0))
+    if dtype == np.float32 and points.dtype == np.float32 and held.all():
         low = (at - high).astype(np.float32)
         difference = high - points
         if low.any():
             difference += low
         return kernels.unit(difference)
     direction, distance = kernels.unit(at - points)
-    return direction.astype(dtype, copy=False), distance.astype(dtype, copy=False)
+    return direction.astype(dtype, copy=False), distance
 
 
 class _Sums:

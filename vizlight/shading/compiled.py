@@ -17,7 +17,7 @@ import numpy as np
 from vizlight import _compiled, _pool
 from vizlight.model import cylinder_kernels, frames, kernels
 from vizlight.scene.light import NO_ATTENUATION, WHITE
-from vizlight.shading.block import Output, shade_block
+from vizlight.shading.block import SMALLEST_HELD, Output, shade_block
 from vizlight.shading.elementary import HELPERS
 from vizlight.shading.form import BITS, Form, LightForm
 from vizlight.shading.writer import write
@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 LANES = 64
 #: Largest space and number of tangents for which code is written out.
 MOST_COMPONENTS, MOST_TANGENTS = 6, 3
+#: Largest coefficient of a distance of which float32 holds the products.
+MOST_FADING = 1e9
 #: Seconds that compiled code saves per point: of the whole, and for each light.
 SAVED, SAVED_PER_LIGHT = 10e-9, 15e-9
 
@@ -197,6 +199,12 @@ def _beyond(plan: Plan) -> str:
         places.append(view.position)
     if any(abs(x) > most for place in places for x in place or ()):
         return f"a light or the eye is out of the range of {plan.dtype.name}"
+    if plan.dtype == np.float32:
+        if any(0 < abs(x) < SMALLEST_HELD for place in places for x in place or ()):
+            return "a light or the eye is nearer to 0 than float32 resolves"
+        factors = (c for light in plan.scene.lights for c in light.attenuation)
+        if any(c > MOST_FADING for c in factors):
+            return "a light fades faster than float32 resolves"
     return ""
 
 

@@ -131,6 +131,8 @@ LN2_HIGH, LN2_LOW = F(0.693359375), F({second!r})
 LEAST_f4 = np.finfo(np.float32).tiny / np.finfo(np.float32).eps
 LEAST_f8 = np.finfo(np.float64).tiny / np.finfo(np.float64).eps
 MOST_f4, MOST_f8 = np.finfo(np.float32).max, np.finfo(np.float64).max
+# Squares in float64 of lengths that float32 holds.
+LEAST_f8_of_f4, MOST_f8_of_f4 = 1e-70, 1e70
 LOST = F(np.nan)
 """
     return constants + PRELUDE.format(log=log, exp=exp, arctan=arctan)

@@ -211,6 +211,8 @@ class ShadingInputs:
 def array_source(name: str, value: ArrayLike | ArraySource) -> ArraySource:
     """Return rows to slice: an array is validated, anything else that slices stays as it is.
 
+    Masked elements become NaN, which is not lit.
+
     Raises
     ------
     TypeError
@@ -219,7 +221,7 @@ def array_source(name: str, value: ArrayLike | ArraySource) -> ArraySource:
     if hasattr(value, "dtype") and not isinstance(value, np.ndarray):
         source: ArraySource = value  # type: ignore[assignment]
         return source
-    array: NDArray[np.generic] = np.asarray(value)
+    array: NDArray[np.generic] = np.asarray(_check.unmasked(value))
     if array.dtype.kind not in "iubf":
         raise TypeError(_check.message(name, "real numbers", _check.describe(array)))
     return array

@@ -163,7 +163,8 @@ class Statements:
             least = squares[0]
             for square in squares[1:]:
                 least = self.name(f"{least} if {least} < {square} else {square}")
-            good = f"({least} > LEAST_{kind}) & ({' + '.join(squares)} < MOST_{kind})"
+            limit = kind if kind == self.form.work else f"{kind}_of_{self.form.work}"
+            good = f"({least} > LEAST_{limit}) & ({' + '.join(squares)} < MOST_{limit})"
             self.lines.append(f"{self.indent}odd = odd | (not ({good}))")
         self.squares = {}
 

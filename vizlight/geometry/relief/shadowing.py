@@ -284,9 +284,9 @@ def lengths(
     """
     _check.choice("method", method, get_args(Method))
     with contextlib.suppress(_compiled.FailedError):
-        return _lengths(field, start, count, ray, method, threads, below)
+        return _lengths(field, start, count, ray, method, threads, below, report)
     # Compiled code is off from here on.
-    return _lengths(field, start, count, ray, method, threads, below)
+    return _lengths(field, start, count, ray, method, threads, below, report)
 
 
 def _lengths(
@@ -297,6 +297,7 @@ def _lengths(
     method: Method,
     threads: int | None,
     below: float | None,
+    report: Callable[[int], None] | None,
 ) -> Array:
     length = np.empty(count)
     endless = field.border == "extend" and field.base == -np.inf

@@ -1,0 +1,86 @@
+"""A result shares no memory with what was given, unless sharing was asked for."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight import Light, Scene, View
+from vizlight.geometry import manifolds
+
+SCENE = Scene(lights=Light(direction=(0.3, 0.2, 1)), view=View(direction=(0, 0, 1)))
+SCENE_4 = Scene(lights=Light(direction=(0.7, 0.6, 0.4, 0.2)), view=View(direction=(0, -1, 0.5, 0)))
+
+
+def arrays(mesh):
+    if isinstance(mesh, pv.MultiBlock):
+        return [array for block in mesh for array in arrays(block)]
+    found = [] if isinstance(mesh, pv.ImageData) else [np.asarray(mesh.points)]
+    for data in (mesh.point_data, mesh.cell_data, mesh.field_data):
+        found += [np.asarray(array) for array in data.values()]
+    if isinstance(mesh, pv.PolyData):
+        cells = [mesh.GetPolys(), mesh.GetLines()]
+        found += [np.asarray(pv.convert_array(c.GetConnectivityArray())) for c in cells]
+    return [array for array in found if array.size and array.dtype.kind in "biuf"]
+
+
+def ball():
+    mesh = pv.Sphere(theta_resolution=12, phi_resolution=12)
+    mesh["V"] = np.cross(mesh["Normals"], [0, 0, 1.0]) + np.array([0.1, 0.2, 0.3])
+    mesh.cell_data["c"] = np.arange(mesh.n_cells)
+    mesh.field_data["f"] = [1.0, 2, 3]
+    return mesh
+
+
+def hills():
+    x, y = np.meshgrid(np.arange(9.0), np.arange(9.0))
+    mesh = pv.StructuredGrid(x, y, np.sin(x / 3) + np.cos(y / 4))
+    mesh["own"] = np.arange(81.0)
+    return mesh
+
+
+def torus():
+    return vizlight.manifold(manifolds.torus(1.5, 0.75, resolution=8))
+
+
+FILTERS = {
+    "illuminate": (ball, lambda mesh: vizlight.illuminate(mesh, SCENE)),
+    "by tangents": (ball, lambda mesh: vizlight.illuminate(mesh, SCENE, tangents="V")),
+    "split": (ball, lambda mesh: vizlight.illuminate(mesh, SCENE, feature_angle=10)),
+    "blocks": (
+        lambda: pv.MultiBlock([ball(), pv.MultiBlock([hills()])]),
+        lambda mesh: vizlight.illuminate(mesh, SCENE),
+    ),
+    "refine": (ball, lambda mesh: vizlight.refine(mesh, SCENE)),
+    "project": (torus, vizlight.project),
+    "project lit": (torus, lambda mesh: vizlight.project(mesh, scene=SCENE_4)),
+    "satin": (ball, lambda mesh: vizlight.satin(mesh, SCENE, tangents="V")),
+    "fur": (ball, lambda mesh: vizlight.fur(mesh, SCENE)),
+    "relief_shadow": (hills, lambda mesh: vizlight.relief_shadow(mesh, SCENE)),
+    "isoluminance": (ball, lambda mesh: vizlight.isoluminance(mesh, SCENE)),
+}
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("name", FILTERS)
+def test_a_result_has_memory_of_its_own(name):
+    make, run = FILTERS[name]
+    mesh = make()
+    before = [array.copy() for array in arrays(mesh)]
+    out = run(mesh)
+    assert arrays(out)
+    for own in arrays(out):
+        assert not any(np.shares_memory(own, given) for given in arrays(mesh))
+        own[...] = 0
+    for array, was in zip(arrays(mesh), before, strict=True):
+        np.testing.assert_array_equal(array, was)
+
+
+def test_a_result_is_shared_where_that_is_asked_for():
+    mesh = ball()
+    lit = vizlight.illuminate(mesh.copy(deep=False), SCENE, inplace=True)
+    assert np.shares_memory(lit.points, mesh.points)
+    assert "luminance" in lit.point_data
+    assert "luminance" not in mesh.point_data
