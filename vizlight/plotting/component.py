@@ -124,8 +124,8 @@ class Component:
 
         Notes
         -----
-        Exported scenes cannot hold live light: ``export_html``, ``export_gltf`` and the like raise a
-        ValueError with the remedy while there is any.
+        Exported scenes cannot hold live light: ``export_html``, ``export_gltf`` and the like raise
+        a ValueError with the remedy while there is any.
 
         Light at the points is bit-identical to that of the filter for the same camera. Light in
         fragments is within 4 of 255 of it on fine meshes.
