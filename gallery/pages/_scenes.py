@@ -130,9 +130,10 @@ def cut_thumbnails(app):
     size = app.config.sphinx_gallery_conf["thumbnail_size"]
     for script, part in PARTS.items():
         thumbnail = folder / "thumb" / f"sphx_glr_{script}_thumb.png"
-        if not thumbnail.exists():
+        pictures = sorted(folder.glob(f"sphx_glr_{script}_[0-9]*.png"))
+        if not thumbnail.exists() or not pictures:
             continue
-        with Image.open(sorted(folder.glob(f"sphx_glr_{script}_[0-9]*.png"))[-1]) as whole:
+        with Image.open(pictures[-1]) as whole:
             ends = [x * side for x, side in zip(part, whole.size * 2, strict=True)]
             cut = whole.convert("RGB").crop([round(x) for x in ends])
         ImageOps.pad(cut, size, color=cut.getpixel((1, 1))).save(thumbnail)

@@ -467,3 +467,40 @@ def test_short_form_saves_a_picture(tmp_path):
     assert image.dimensions[:2] == (90, 80)
     assert COLORS not in ball().point_data
     assert image.point_data.active_scalars.max() > 60
+
+
+def test_light_at_points_is_drawn_as_it_is_whatever_the_material(plotter):
+    # VTK multiplies colours by the sum of both coefficients where a mesh has no lighting.
+    plotter.vizlight.add_mesh(ball(), light="points", color="white", ambient=0.3, diffuse=0.4)
+    dim = picture(plotter)
+    other = pv.Plotter(off_screen=True, window_size=plotter.window_size)
+    other.background_color = plotter.background_color
+    other.vizlight.add_mesh(ball(), light="fragments", color="white", ambient=0.3, diffuse=0.4)
+    other.camera = plotter.camera.copy()
+    bright = picture(other)
+    assert bright.max() > 160
+    assert abs(int(bright.max()) - int(dim.max())) <= 8
+    assert np.abs(bright.astype(int) - dim.astype(int)).mean() < 1
+    other.close()
+
+
+@pytest.mark.parametrize("light", ["points", "fragments"])
+def test_mesh_that_loses_its_colours_or_its_points_stays_as_it_was(plotter, light):
+    mesh = ball()
+    mesh["height"] = np.array(mesh.points[:, 2])
+    plotter.vizlight.add_mesh(
+        mesh, scene=SCENE, light=light, scalars="height", show_scalar_bar=False
+    )
+    before = picture(plotter)
+    for _ in range(2):
+        del mesh.point_data["height"]
+        with pytest.warns(UserWarning, match="keeps the light.*'height'"):
+            np.testing.assert_array_equal(picture(plotter), before)
+        mesh["height"] = np.array(mesh.points[:, 2])
+        np.testing.assert_array_equal(picture(plotter), before)
+    full = mesh.copy()
+    mesh.copy_from(pv.PolyData())
+    with pytest.warns(UserWarning, match="keeps the light"):
+        np.testing.assert_array_equal(picture(plotter), before)
+    mesh.copy_from(full)
+    np.testing.assert_array_equal(picture(plotter), before)

@@ -133,6 +133,56 @@ def test_grids_have_their_light_too():
     np.testing.assert_array_equal(a, b)
 
 
+def test_volumes_are_lit_by_the_normals_of_their_surface():
+    grid = pv.ImageData(dimensions=(41, 41, 41), origin=(-1, -1, -1), spacing=(0.05,) * 3)
+    grid["r"] = np.linalg.norm(grid.points, axis=1)
+    volume = grid.threshold(0.9, scalars="r", invert=True)
+    for mesh in (volume, grid):
+        fragments, points = pictures(mesh, SCENES["near"])
+        of_surface, _ = pictures(mesh.extract_surface(algorithm="geometry"), SCENES["near"])
+        assert points.std() > 10
+        assert np.abs(fragments - of_surface).mean() < 0.1
+
+
+def test_coarse_data_are_as_if_they_were_split():
+    """Light in fragments is that at the points of split segments, which share no code with it."""
+    bundle = vizlight.load_example("fibre_bundle.vtp")
+    points, at = np.asarray(bundle.points, dtype=np.float64), 0
+    rows, tangents, cells = [], [], []
+    coarse_rows, coarse_tangents, coarse_cells = [], [], []
+    count = coarse_count = 0
+    while at < len(bundle.lines):
+        n = bundle.lines[at]
+        line = points[bundle.lines[at + 1 : at + 1 + n]][::4]
+        at += n + 1
+        if len(line) < 3:
+            continue
+        unit = np.gradient(line, axis=0)
+        unit /= np.linalg.norm(unit, axis=1, keepdims=True)
+        coarse_rows.append(line)
+        coarse_tangents.append(unit)
+        coarse_cells.append([len(line), *range(coarse_count, coarse_count + len(line))])
+        coarse_count += len(line)
+        fine = np.linspace(0, len(line) - 1, 24 * (len(line) - 1) + 1)
+        for found, values in ((rows, line), (tangents, unit)):
+            found.append(
+                np.stack([np.interp(fine, np.arange(len(line)), axis) for axis in values.T], axis=1)
+            )
+        cells.append([len(fine), *range(count, count + len(fine))])
+        count += len(fine)
+    coarse = pv.PolyData(np.concatenate(coarse_rows), lines=np.concatenate(coarse_cells))
+    coarse["t"] = np.concatenate(coarse_tangents)
+    split = pv.PolyData(np.concatenate(rows), lines=np.concatenate(cells))
+    split["t"] = np.concatenate(tangents)
+    scene = Scene(lights=FAR, material=Material(shininess=40))
+    fragments, at_points = pictures(coarse, scene, tangents="t", line_width=2)
+    _, expected = pictures(split, scene, tangents="t", line_width=2)
+    covered = np.all([p.max(axis=-1) > 0 for p in (fragments, at_points, expected)], axis=0)
+    error, coarse_error = (np.abs(p - expected)[covered] for p in (fragments, at_points))
+    assert error.mean() < 0.5 * coarse_error.mean()
+    assert np.quantile(error, 0.98) < 0.2 * np.quantile(coarse_error, 0.98)
+
+
 @pytest.mark.filterwarnings("ignore:.* of the edges are sharper")
 def test_open_surface_faces_the_eye_in_each_fragment():
     half = torus().clip(normal="x", origin=(0.2, 0, 0)).extract_surface(algorithm=None)

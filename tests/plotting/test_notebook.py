@@ -173,3 +173,32 @@ def test_show_refuses_client_rendering_with_the_remedy(backend):
     with pytest.raises(ValueError, match="pass jupyter_backend='server'"):
         plotter.show(jupyter_backend=backend)
     plotter.close()
+
+
+EXPORTS = ["export_html", "export_vtksz", "export_gltf", "export_obj", "export_vrml"]
+
+
+@pytest.mark.parametrize("light", ["points", "fragments"])
+def test_exported_scenes_are_refused_while_there_is_live_light(light, tmp_path):
+    plotter = pv.Plotter(off_screen=True, window_size=(40, 40))
+    plotter.vizlight.add_mesh(pv.Sphere(), scene=SCENE, light=light)
+    for name in EXPORTS:
+        with pytest.raises(ValueError, match=f"{name}: expected .* plotter.add_mesh"):
+            getattr(plotter, name)(tmp_path / "scene")
+    plotter.clear_actors()
+    plotter.add_mesh(pv.Sphere())
+    plotter.export_obj(tmp_path / "ball.obj")
+    assert (tmp_path / "ball.obj").stat().st_size > 1000
+    plotter.close()
+
+
+@pytest.mark.skipif("trame_pyvista" in MISSING, reason="needs trame_pyvista")
+def test_gallery_of_pyvista_keeps_the_picture_of_live_light(monkeypatch):
+    plotter = live_plotter()
+    with pytest.raises(ValueError, match="export_vtksz"):
+        plotter.trame.export_vtksz(filename=None)
+    monkeypatch.setattr(pv, "BUILDING_GALLERY", True)
+    plotter.show(auto_close=False)
+    assert plotter.last_vtksz is None
+    assert plotter.last_image.max() > 50
+    plotter.close()

@@ -15,7 +15,7 @@ from vizlight.filters.tint import RGB, unlit_colors
 from vizlight.mesh import blocks, records
 from vizlight.plotting.fragments import Fragments, unfit
 from vizlight.plotting.live import Live, colorless, headlight_scene, items, lifted
-from vizlight.plotting.notebook import guard
+from vizlight.plotting.notebook import guard, guard_exports
 from vizlight.plotting.points import Points
 from vizlight.scene import Scene
 from vizlight.shading.options import LightOptions
@@ -111,8 +111,8 @@ class Component:
         Raises
         ------
         TypeError, ValueError
-            If an argument does not fit, as for :func:`vizlight.illuminate`; if the plotter is
-            closed, or the record of the mesh does not suffice.
+            If an argument does not fit, as for :func:`vizlight.illuminate`, or the record of the
+            mesh does not suffice.
         RuntimeError
             If the plotter is closed.
 
@@ -124,6 +124,9 @@ class Component:
 
         Notes
         -----
+        Exported scenes cannot hold live light: ``export_html``, ``export_gltf`` and the like raise
+        a ValueError with the remedy while there is any.
+
         Light at the points is bit-identical to that of the filter for the same camera. Light in
         fragments is within 4 of 255 of it on fine meshes.
         """
@@ -202,8 +205,8 @@ class Component:
         follow: bool,
     ) -> pv.Actor:
         """Draw one source, light it once, and let its light follow."""
-        live = Live(source, source.mesh.copy(deep=False), scene, follow=follow)
         reason = "asked for" if light == "points" else _reason(source, drawing)
+        live = Live(source, scene, follow=follow, by_surface=not reason)
         if light == "fragments" and reason:
             _check.warn(f"light='fragments': the light is computed at the points, because {reason}")
         drawing = dict(drawing)
@@ -236,6 +239,7 @@ class Component:
 
     def _keep(self, plotter: pv.BasePlotter, live: Live, actor: pv.Actor) -> None:
         """Tie a live light to its actor, and observe the renderers."""
+        guard_exports(plotter)
         # The actor owns its observer: without the actor nothing is left of the light.
         holder = _Holder(live)
         actor.AddObserver("DeleteEvent", holder.release)

@@ -10,7 +10,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.filters import lighting
-from vizlight.mesh import point_arrays
+from vizlight.mesh import hull
 from vizlight.mesh.point_arrays import unit_rows
 from vizlight.plotting import glsl
 from vizlight.plotting.live import NORMALS, TANGENTS
@@ -83,10 +83,10 @@ def _edges(mesh: pv.DataSet) -> tuple[Indices, Indices]:
     """Return the points at both ends of consecutive corners of the cells that are drawn."""
     surface = mesh if isinstance(mesh, pv.PolyData) else None
     if surface is None:
-        shell = mesh.extract_surface(algorithm=None, pass_pointid=True)
-        ids = np.asarray(shell.point_data["vtkOriginalPointIds"])
-        starts, ends = _edges(shell)
-        return ids[starts], ids[ends]
+        shell, ids = hull.outer_surface(mesh)
+        starts, ends = (ids[corners] for corners in _edges(shell))
+        inside = (starts >= 0) & (ends >= 0)
+        return starts[inside], ends[inside]
     pairs = []
     for cells in (surface.GetLines(), surface.GetPolys(), surface.GetStrips()):
         ids = pv.convert_array(cells.GetConnectivityArray())
@@ -135,7 +135,7 @@ class Fragments:
         inputs, data = live.source.inputs, live.drawn.GetPointData()
         tangents, normals = (_rows(inputs, rows) for rows in (inputs.tangents, inputs.normals))
         if tangents is not None:
-            point_arrays.attach_rows(live.drawn, TANGENTS, tangents.astype(np.float32))
+            live.attach(TANGENTS, tangents.astype(np.float32))
             data.SetActiveTangents(TANGENTS)
         if normals is None:
             # VTK lights lines, and so draws with a shader for them, only if they have normals.
@@ -148,7 +148,7 @@ class Fragments:
         elif live.source.sided is not None:
             normals = normals * _lean_lengths(live.source, len(normals))[:, np.newaxis]
         if normals is not None:
-            point_arrays.attach_rows(live.drawn, NORMALS, normals.astype(np.float32))
+            live.attach(NORMALS, normals.astype(np.float32))
             data.SetActiveNormals(NORMALS)
 
     def drawing(self, live: Live, drawing: dict[str, Any]) -> dict[str, Any]:
@@ -272,7 +272,7 @@ def _rows(inputs: ShadingInputs, rows: ArraySource | None) -> Array | None:
     """Return unit vectors, one per point, also where several points share one."""
     if rows is None:
         return None
-    unit = unit_rows(np.asarray(rows[0 : rows.shape[0]]).reshape(rows.shape[0], -1))
+    unit = unit_rows(np.asarray(rows[0 : rows.shape[0]]).reshape(-1, 3))
     unit[~np.all(np.isfinite(unit), axis=1)] = 0
     return unit if len(unit) == inputs.count else np.repeat(unit, inputs.repeat, axis=0)
 

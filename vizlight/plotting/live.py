@@ -7,22 +7,23 @@ import warnings
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
+import pyvista as pv
 
 from vizlight import _check
 from vizlight.filters import relight
 from vizlight.filters.tint import values_of
-from vizlight.mesh import point_arrays
+from vizlight.mesh import hull, point_arrays
 from vizlight.scene import Light, Material, Scene, View
 from vizlight.scene.vtk import lights_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    import pyvista as pv
+    from numpy.typing import NDArray
     from vtkmodules.vtkCommonCore import vtkCollection
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
-    from vizlight._types import Array, Vector
+    from vizlight._types import Array, Indices, Vector
     from vizlight.shading.inputs import ShadingInputs
 
 #: Names of the arrays that the drawn copy of a mesh has beside those of the mesh.
@@ -61,19 +62,24 @@ class Live:
     ----------
     source : Source
         What is lit. Its mesh is that of the caller.
-    drawn : pyvista.DataSet
-        Shallow copy of it that is drawn.
     scene : Scene or None
         Scene; None for the lights and the material of the plotter.
     follow : bool
         Whether the camera takes the place of the view of the scene.
+    by_surface : bool
+        Whether the outer surface of a mesh of cells is drawn: VTK takes the normals from the mesh
+        where it extracts that surface itself.
     """
 
     def __init__(
-        self, source: relight.Source, drawn: pv.DataSet, scene: Scene | None, *, follow: bool
+        self, source: relight.Source, scene: Scene | None, *, follow: bool, by_surface: bool
     ) -> None:
-        self.source, self.drawn = source, drawn
-        self.scene, self.follow = scene, follow
+        self.source, self.scene, self.follow = source, scene, follow
+        self._by_surface = by_surface and not isinstance(source.mesh, pv.PolyData)
+        self._shown: Indices | None = None
+        #: Shallow copy of the mesh, or of its outer surface, that is drawn.
+        self.drawn: pv.DataSet = pv.PolyData() if self._by_surface else source.mesh.copy(deep=False)
+        self._redraw()
         self.painter: Painter | None = None
         #: Name of the array that gives the colours, or None.
         self.scalars: str | None = None
@@ -90,6 +96,21 @@ class Live:
         """Dimension of the space of the light."""
         return int(self.source.inputs.points.shape[1])
 
+    def _redraw(self) -> None:
+        """Draw the mesh as it is now."""
+        mesh = self.source.mesh
+        if self._by_surface:
+            mesh, self._shown = hull.outer_surface(mesh)
+        self.drawn.shallow_copy(mesh)
+
+    def attach(self, name: str, rows: NDArray[np.generic]) -> None:
+        """Attach one row for each point of the mesh to what is drawn."""
+        if self._shown is not None:
+            # A control point of a curved cell, which has no index, is not lit.
+            missing, rows = self._shown < 0, rows[self._shown]
+            rows[missing] = 0
+        point_arrays.attach_rows(self.drawn, name, rows)
+
     def color_by(self, scalars: str, component: int | None, *, at_points: bool) -> None:
         """Take the colours from an array of the mesh.
 
@@ -103,14 +124,13 @@ class Live:
         mesh = self.source.mesh
         self._of_cells = scalars in mesh.cell_data and scalars not in mesh.point_data
         if at_points or not self._of_cells:
-            self._color(scalars)
+            self._color(scalars, values_of(mesh, scalars, component))
 
-    def _color(self, given: str) -> None:
+    def _color(self, given: str, values: Array) -> None:
         """Attach the values that are coloured, unless they are an array of the mesh."""
-        values = values_of(self.source.mesh, given, self._component)
         if np.ndim(self.source.mesh.point_data[given]) > 1:
             self.scalars = VALUES
-            point_arrays.attach_rows(self.drawn, VALUES, values)
+            self.attach(VALUES, values)
 
     def start(self, renderer: vtkRenderer, actor: vtkActor) -> None:
         """Light the mesh for the first time.
@@ -147,6 +167,7 @@ class Live:
             self._read(renderer, actor)
             scene = self.scene_of(renderer, actor)
             self.painter.paint(self, scene, renderer, actor)
+            self._warned = False
         except (KeyError, TypeError, ValueError) as error:
             if not self._warned:
                 self._warned = True
@@ -175,13 +196,17 @@ class Live:
         mesh, named = self.source.mesh, self.source.named
         if mesh.GetMTime() == self._changed:
             return
-        self.drawn.shallow_copy(mesh)
         self._changed = mesh.GetMTime()
+        # What cannot be lit or coloured any more stays as it is drawn.
+        source, given, values = self.source, self._given, None
         if named is not None:
-            self.source = relight.read(mesh, "", self.scene_of(renderer, actor), named)
-            self._placed = None
-        if self._given is not None and not self._of_cells:
-            self._color(self._given)
+            source = relight.read(mesh, "", self.scene_of(renderer, actor), named)
+        if given is not None and not self._of_cells:
+            values = values_of(mesh, given, self._component)
+        self.source, self._placed = source, None
+        self._redraw()
+        if given is not None and values is not None:
+            self._color(given, values)
         if self.painter is not None:
             self.painter.attach(self)
 

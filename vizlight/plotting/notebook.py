@@ -1,8 +1,10 @@
-"""Notebooks: light that follows the camera needs the renderer that Python has."""
+"""Notebooks and exported scenes: live light needs the renderer that Python has."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import importlib.util
+import weakref
+from typing import TYPE_CHECKING, Any
 
 import pyvista as pv
 
@@ -16,6 +18,8 @@ if TYPE_CHECKING:
 
 #: Backends that draw in the browser, or may: there nothing computes the light.
 DRAWN_BY_THE_BROWSER = ("client", "html", "trame")
+#: Methods of a plotter, and of its component ``trame``, that write scenes for other renderers.
+EXPORTS = ("export_html", "export_vtksz", "export_gltf", "export_obj", "export_vrml")
 
 
 class Guarded:
@@ -57,3 +61,45 @@ def guard() -> None:
         if registered.name in DRAWN_BY_THE_BROWSER and not isinstance(registered.handler, Guarded):
             guarded = Guarded(registered.name, registered.handler)
             pv.jupyter.register_jupyter_backend(registered.name, guarded, override=True)
+
+
+class _Export:
+    """A method of a plotter that writes the scene, unless there is live light in it."""
+
+    def __init__(self, plotter: pv.BasePlotter, owner: object, name: str) -> None:
+        self.name = name
+        # The owner has this as an attribute, and is to be released with its last reference.
+        self._plotter, self._owner = weakref.ref(plotter), weakref.ref(owner)
+
+    def __call__(self, *arguments: object, **options: object) -> object:
+        """Write the scene.
+
+        Raises
+        ------
+        ValueError
+            If there is live light in it, which the file would not have.
+        ImportError
+            In place of it while a gallery is built.
+        """
+        plotter, owner = self._plotter(), self._owner()
+        if plotter is not None and is_live(plotter):
+            remedy = (
+                "draw the result of vizlight.illuminate or vizlight.tint by "
+                "plotter.add_mesh(lighting=False), or pass light='points' to vizlight.render"
+            )
+            expected = "a scene without light that follows the camera, which a file cannot hold"
+            # PyVista's gallery keeps the picture of a plotter whose scene it cannot export.
+            kind = ImportError if pv.BUILDING_GALLERY else ValueError
+            raise kind(_check.message(self.name, expected, "live light", remedy))
+        return getattr(type(owner), self.name)(owner, *arguments, **options)
+
+
+def guard_exports(plotter: pv.BasePlotter) -> None:
+    """Let the methods of a plotter that export its scene know of live light."""
+    owners: list[Any] = [plotter]
+    if importlib.util.find_spec("trame_pyvista") is not None:
+        owners.append(getattr(plotter, "trame", plotter))
+    for owner in owners:
+        for name in EXPORTS:
+            if callable(getattr(owner, name, None)) and name not in vars(owner):
+                setattr(owner, name, _Export(plotter, owner, name))

@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     from vizlight.plotting.live import Live
     from vizlight.scene import Scene
 
+#: Fragment shader that draws the colours of the points.
+AS_IT_IS = "  gl_FragData[0] = vec4(vertexColorVSOutput.rgb, opacity);\n"
+
 
 class Points:
     """Light as a point array of the drawn mesh, the same numbers as a filter attaches.
@@ -62,12 +65,21 @@ class Points:
         return drawing | plain | {"scalars": COLORS, "rgb": True, "color": own}
 
     def start(self, live: Live, actor: vtkActor) -> None:
-        """Let the mapper of an actor draw lit colours in place of those of the data."""
+        """Let an actor draw lit colours as they are, in place of those of the data."""
+        prop = actor.GetProperty()
+        if live.scene is None:
+            # Without lights VTK multiplies by the sum of both coefficients, which are the material.
+            actor.GetShaderProperty().AddFragmentShaderReplacement(
+                "//VTK::Light::Impl", True, AS_IT_IS, False
+            )
+        else:
+            prop.SetAmbient(1.0)
+            prop.SetDiffuse(0.0)
         if live.scalars is None:
             return
         mapper = actor.GetMapper()
         if live.scene is None:
-            actor.GetProperty().SetSpecularColor(1.0, 1.0, 1.0)
+            prop.SetSpecularColor(1.0, 1.0, 1.0)
         mapper.SetScalarModeToUsePointFieldData()
         mapper.SelectColorArray(COLORS)
         mapper.SetColorModeToDirectScalars()
