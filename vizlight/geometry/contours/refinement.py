@@ -40,6 +40,9 @@ KEPT = 0.98
 #: Number of triangles beyond which they are not searched for smaller highlights, and number of
 #: points per edge of the search grid.
 ASKED, GRID = 3000, 10
+#: Largest distance of a crease from a chord between its points, as a share of the chord. Surfaces
+#: that nearly coincide cross further away.
+BULGE = 0.25
 #: Radius of the hole at the apex of a cone, around which each ruling has its own normal.
 APEX = 1e-7
 
@@ -172,6 +175,19 @@ class _Lit:
         other = owner != self.both[self.edge.ravel(), 0]
         self.both[:, 1] = self.both[:, 0]
         self.both[self.edge.ravel()[other], 1] = owner[other]
+        self._check_creases()
+
+    def _check_creases(self) -> None:
+        """Leave chords on one of their two surfaces where these do not cross near them."""
+        crease = np.flatnonzero(self.both[:, 0] != self.both[:, 1])
+        a, b = (self.mesh.points[ends] for ends in np.divmod(self.codes[crease], self.size))
+        way = b - a
+        size = BULGE**2 * np.einsum("ij,ij->i", way, way)
+        for share in ALONG:
+            chord = a + share * way
+            moved = exact_surfaces.onto(self.mesh.surfaces, chord, self.both[crease]) - chord
+            far = np.einsum("ij,ij->i", moved, moved) > size
+            self.both[crease[far], 1] = self.both[crease[far], 0]
 
     @property
     def triangles(self) -> Indices:
