@@ -43,5 +43,7 @@ plotter.show()
 # %%
 # One of them as an interactive scene in 3-space.
 
-plotter = render.make_plotter(panels[2], camera=camera, size=(1000, 700), background="#203048")
+plotter = render.make_plotter(
+    panels[2], camera=camera, size=(1000, 700), background="#203048", light="points"
+)
 plotter.show()

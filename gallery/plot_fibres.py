@@ -37,5 +37,5 @@ plotter.show()
 # The lit bundle as an interactive scene. The light is stored with the fibres as data, so it does
 # not change with the view.
 
-plotter = render.make_plotter(lit, camera=camera, size=(1000, 700), line_width=1)
+plotter = render.make_plotter(lit, camera=camera, size=(1000, 700), line_width=1, light="points")
 plotter.show()

@@ -117,16 +117,23 @@ OF_NUMBERS = {
         "filters/fur.py", "options.shading.for_surface()", "options.shading",
     ),
     "streamlines: the part across the surface added": (
-        "filters/streamlines.py", "along = array - np.einsum", "along = array + np.einsum",
+        "filters/streamlines.py", "array - np.einsum", "array + np.einsum",
     ),
     "streamlines: forward alone": (
-        "filters/streamlines.py", 'integration_direction="both"',
-        'integration_direction="forward"',
+        "mesh/tracers.py", "SetIntegrationDirectionToBoth()",
+        "SetIntegrationDirectionToForward()",
     ),
     "streamlines: seeds on one edge of each triangle": (
-        "filters/streamlines.py",
-        "(1 - b - c) * corner[:, 0] + b * corner[:, 1] + c * corner[:, 2]",
-        "(1 - b) * corner[:, 0] + b * corner[:, 1]",
+        "mesh/tracers.py", "Places(face, weights.astype(np.float64))",
+        "Places(face, weights * (1.0, 1.0, 0.0))",
+    ),
+    "streamlines: lit by their chords": (
+        "filters/streamlines.py", "replace(light, tangents=tangents)",
+        "replace(light, tangents=None)",
+    ),
+    "line fields: vertices are not aligned": (
+        "geometry/lines/tracing.py", "np.where(turned[:, :, np.newaxis], -corners, corners)",
+        "corners",
     ),
     "camera: up is not set": ("pictures/cameras.py", "    camera.up = tuple(up)\n", ""),
     "camera: fitted with another up": (

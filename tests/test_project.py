@@ -45,7 +45,7 @@ REASONS = {
 #: Extras whose packages the files of a folder may import, besides the dependencies.
 ALLOWED = {
     "vizlight": ["fast", "formats", "movie", "rays", "solids", "tracts", "test"],
-    "tests": ["test", "tracts", "formats"],
+    "tests": ["test", "docs", "tracts", "formats"],
     "gallery": ["docs"],
 }
 

@@ -33,7 +33,7 @@ TIERS = [
     {"verify"},
     {"mesh", "data"},
     {"files", "filters"},
-    {"pictures"},
+    {"pictures", "plotting"},
     {"accessor", "demo", "doctor", "studies"},
     {"cli"},
     {"__main__"},

@@ -32,6 +32,8 @@ if TYPE_CHECKING:
     from vizlight.filters.satin import satin
     from vizlight.filters.solids import to_polydata
     from vizlight.filters.streamlines import streamlines
+    from vizlight.filters.tint import tint
+    from vizlight.filters.tint import unlit_colors as unlit_colors
     from vizlight.geometry.solids.polyhedra import HalfSpace, Polyhedron, Prism
     from vizlight.geometry.solids.primitives import Block, Frustum, Sphere, Torus, Truncus
     from vizlight.mesh.polylines import direction_colors
@@ -71,6 +73,8 @@ _HOMES = {
     "report": "vizlight.verify.report",
     "satin": "vizlight.filters",
     "streamlines": "vizlight.filters",
+    "tint": "vizlight.filters",
+    "unlit_colors": "vizlight.filters",
     "to_polydata": "vizlight.filters",
 }
 _MODULES = (
@@ -110,6 +114,7 @@ __all__ = [
     "report",
     "satin",
     "streamlines",
+    "tint",
     "to_polydata",
 ]
 

@@ -1,4 +1,4 @@
-"""The accessor ``mesh.vizlight``: the filters as methods of every PyVista mesh.
+"""The accessor ``mesh.vizlight``: filters and live light as methods of every PyVista mesh.
 
 It is registered as an entry point of PyVista, so it is available without importing vizlight.
 """
@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
 import pyvista as pv
 
 from vizlight import filters
+from vizlight.plotting import component
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -42,13 +43,14 @@ class Accessor:
         self._mesh: Any = mesh
 
     def __repr__(self) -> str:
-        known = ", ".join(name for name in filters.__all__ if hasattr(self, name))
+        known = ", ".join(name for name in (*filters.__all__, "plot") if hasattr(self, name))
         return f"vizlight of {type(self._mesh).__name__}: {known}"
 
     bas_relief = _method(filters.bas_relief)
     fur = _method(filters.fur)
     illuminate = _method(filters.illuminate)
     isoluminance = _method(filters.isoluminance)
+    plot = _method(component.plot)
     project = _method(filters.project)
     provenance = _method(filters.provenance)
     refine = _method(filters.refine)
@@ -57,3 +59,4 @@ class Accessor:
     relief_shadow = _method(filters.relief_shadow)
     satin = _method(filters.satin)
     streamlines = _method(filters.streamlines)
+    tint = _method(filters.tint)

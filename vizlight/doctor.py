@@ -18,7 +18,7 @@ PACKAGES = (
 OPTIONAL = (
     ("movies in GIF files", "imageio", "movie"),
     ("movies in MP4 files", "imageio-ffmpeg", "movie"),
-    ("shadows of closed meshes ten times as fast", "embreex", "rays"),
+    ("shadows of closed meshes by nearby lights ten times as fast", "embreex", "rays"),
     ("combined solids", "manifold3d", "solids"),
     ("light of many points ten times as fast", "numba", "fast"),
     ("tractograms in .trk and .tck files", "nibabel", "tracts"),

@@ -21,13 +21,13 @@ INTERACTIVE = ("plot_flow", "plot_carotid", "plot_fibres", "plot_complex_curve")
 # Lines and flows, then surfaces, terrain, 4-space, formulas and their errors; scripts that are not
 # listed come last.
 ORDER = [
-    "plot_flow", "plot_carotid", "plot_lines", "plot_tubes", "plot_fibres", "plot_satin",
-    "plot_fur", "plot_ambient", "plot_depth_cue", "plot_attenuation", "plot_terrain_day",
-    "plot_terrain", "plot_earth", "plot_bas_relief", "plot_seeping_light", "plot_codimension",
-    "plot_turning", "plot_complex_curve", "plot_shapes", "plot_field_in_4_space", "plot_highlights",
-    "plot_highlights_shapes", "plot_highlight_error", "plot_isoluminance",
-    "plot_isoluminance_painter", "plot_line_models", "plot_errors", "plot_tolerance",
-    "plot_isoluminance_speed",
+    "plot_flow", "plot_live", "plot_carotid", "plot_lines", "plot_tubes", "plot_fibres",
+    "plot_satin", "plot_fur", "plot_ambient", "plot_depth_cue", "plot_attenuation",
+    "plot_terrain_day", "plot_terrain", "plot_earth", "plot_bas_relief", "plot_seeping_light",
+    "plot_codimension", "plot_turning", "plot_complex_curve", "plot_shapes",
+    "plot_field_in_4_space", "plot_highlights", "plot_highlights_shapes", "plot_highlight_error",
+    "plot_isoluminance", "plot_isoluminance_painter", "plot_line_models", "plot_errors",
+    "plot_tolerance", "plot_isoluminance_speed",
 ]  # fmt: skip
 
 #: Part of a wide picture that its thumbnail shows: left, top, right and bottom as shares of 1.
@@ -98,7 +98,8 @@ def scrape(block, block_vars, gallery_conf):
 
 
 def _tabs(name, source):
-    picture = figure_rst([str(name.with_suffix(".png"))], str(source))
+    kind = ".gif" if name.suffix == ".gif" else ".png"
+    picture = figure_rst([str(name.with_suffix(kind))], str(source))
     if name.suffix != ".vtksz":
         return picture
     scenes = source / "_static" / "scenes"

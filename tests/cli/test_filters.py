@@ -83,6 +83,8 @@ COMMANDS = {
     "lines by direction": "light tract.vtp --scalars direction --line-width 3",
     "lines by their bundle": "light tract.vtp --scalars bundle",
     "streamlines on a surface": "streamlines flow.vti --vectors V --contour r --confined --seeds 9",
+    "evenly spaced": "streamlines flow.vti --vectors V --contour r --confined --spacing 1.5",
+    "lines without sign": "streamlines flow.vti --vectors V --line-field --seeds 9",
     "relief": "relief terrain.vti --light 315,20 --depth 0.5 --border wall",
     "relief, lit": "relief terrain.vti --lit --color white --factor 2 --elevation height",
     "relief of a surface": "relief flow.vti --contour r --level 3 --depth 0.5",
@@ -141,7 +143,14 @@ FILTERS = {
 #: Options that no text on the command line can give, or that a file has none of.
 IN_SCRIPTS = {
     "light": {"positions"},
-    "streamlines": {"positions", "tangents", "surface"},
+    "streamlines": {
+        "positions",
+        "tangents",
+        "surface",
+        "separation",
+        "shortest",
+        "terminator",
+    },
     "relief": {"occluders", "sun"},
     "fur": set(),
     "contours": {"tolerance"},

@@ -376,6 +376,15 @@ def test_nothing_of_a_solid_is_left(color):
     assert [block.n_cells for block in nothing] == [0, 0]
 
 
+def test_progress_is_shown_on_standard_error(capsys):
+    scene = Scene(lights=Light(direction=(1, 1, 1)), view=View(direction=(1, 0, 0.3)))
+    vizlight.isoluminance(pv.Sphere(), scene, progress_bar=True)
+    shown = capsys.readouterr()
+    assert "contours" in shown.err
+    assert "100%" in shown.err
+    assert shown.out == ""
+
+
 @pytest.mark.parametrize("grid", [False, True])
 def test_a_box_has_one_band_per_face(grid):
     cube = pv.Cube().triangulate()

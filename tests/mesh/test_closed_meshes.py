@@ -8,23 +8,28 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from vizlight.mesh import closed_meshes
+from vizlight.mesh import closed_meshes, parallel_rays
 
 EMBREE = importlib.util.find_spec("embreex") is not None
 
 
 @pytest.fixture(
     params=[
-        False,
-        pytest.param(True, marks=pytest.mark.skipif(not EMBREE, reason="pip install embreex")),
-    ],
-    ids=["vtk", "embree"],
+        "projected",
+        "vtk",
+        pytest.param("embree", marks=pytest.mark.skipif(not EMBREE, reason="pip install embreex")),
+    ]
 )
-def make(request):
-    def solid(mesh):
-        return closed_meshes.solid(*closed_meshes.closed(mesh), np.zeros(3), embree=request.param)
+def make(request, monkeypatch):
+    """A function that makes solids, whose hits are found in one of the ways."""
+    if request.param != "projected":
+        monkeypatch.setattr(parallel_rays, "hits", lambda *_: None)
 
-    return solid
+    def of(mesh):
+        body = closed_meshes.closed(mesh)
+        return closed_meshes.solid(*body, np.zeros(3), embree=request.param == "embree")
+
+    return of
 
 
 def rays(start, way):

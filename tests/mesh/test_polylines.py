@@ -109,9 +109,11 @@ def test_lines_as_thin_cylinders():
     scene = Scene(lights=Light(direction=(1, 0.9, 0.5)), view=View(direction=(0.2, 1, 0.3)))
     lines = vizlight.streamlines(flow, scene, vectors="V", seeds=10, model="cylinder")
     assert vizlight.provenance(lines)["options"]["model"] == "cylinder"
-    again = vizlight.illuminate(lines, scene, model="cylinder", name="again")
+    again = vizlight.illuminate(lines, scene, tangents="Tangents", model="cylinder", name="again")
     np.testing.assert_array_equal(again["again"], lines["luminance"])
-    cheap = vizlight.illuminate(lines, scene, compensate=False, name="cheap")["cheap"]
+    cheap = vizlight.illuminate(lines, scene, tangents="Tangents", compensate=False, name="cheap")[
+        "cheap"
+    ]
     assert np.corrcoef(cheap, lines["luminance"])[0, 1] > 0.5
     assert np.abs(cheap - lines["luminance"]).max() > 0.05
     coat = vizlight.fur(pv.Sphere(), scene, density=0.1, fibres=50, model="cylinder")

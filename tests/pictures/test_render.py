@@ -16,6 +16,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight import Light, Material, Scene, View, demo, render
+from vizlight.mesh import polylines
 from vizlight.pictures import backends
 
 pytestmark = pytest.mark.opengl
@@ -371,3 +372,31 @@ def test_lines_are_as_wide_as_asked_in_pixels_of_the_picture(width, anti_aliasin
     picture = np.asarray(plotter.screenshot(return_img=True), dtype=float)
     plotter.close()
     assert picture[:, :, 0].sum() / 255 / 80 == pytest.approx(width, abs=0.55)
+
+
+@pytest.mark.parametrize("parallel", [False, True])
+def test_a_surface_does_not_hide_the_lines_on_it(parallel):
+    """As much of them is seen as of the lines of the near side without the surface."""
+    ball = pv.Sphere(radius=1, theta_resolution=40, phi_resolution=40)
+    ball["luminance"] = np.ones(ball.n_points)
+    rings = [ball.slice("z", origin=(0, 0, z)).strip() for z in np.linspace(-0.7, 0.7, 8)]
+    lines = pv.merge(rings)
+    lines.clear_data()
+    lines["luminance"] = np.zeros(lines.n_points)
+    before = lines.points.copy()
+    camera = render.camera_on(ball.bounds, (1, 0.2, 0.1), parallel=parallel)
+    eye = np.array(camera.position) * (1e3 if parallel else 1)
+    ink = []
+    ends = polylines.segments(lines.GetLines())
+    middle = np.asarray(lines.points)[ends].mean(axis=1)
+    near = lines.copy()
+    near.SetLines(
+        pv.CellArray.from_regular_cells(ends[np.sum((eye - middle) * middle, axis=1) > 0])
+    )
+    for mesh in (near, pv.MultiBlock([ball, lines])):
+        plotter = render.make_plotter(mesh, camera=camera, size=(300, 240), background="white")
+        picture = np.asarray(plotter.screenshot(return_img=True), dtype=float)
+        plotter.close()
+        ink.append((255 - picture[:, :, 0]).sum())
+    assert ink[1] == pytest.approx(ink[0], rel=0.1)
+    np.testing.assert_array_equal(lines.points, before)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import vizlight
-from vizlight import DepthCue, Light, Material, Scene, View, engine
+from vizlight import DepthCue, Light, Material, Scene, View, _compiled, engine
 from vizlight.model import cylinder
 from vizlight.shading import bounds
 from vizlight.shading.plan import EXACT
@@ -25,6 +25,12 @@ CASES = [
     for case in itertools.product(LIGHTS, ("line", "surface", "conditioned"), engine.Model.__args__)
     if case[1:] != ("surface", "cylinder")
 ]
+
+
+@pytest.fixture(autouse=True)
+def by_numpy(monkeypatch):
+    """NumPy's code, for which more is cheaper than for compiled code."""
+    monkeypatch.setenv("VIZLIGHT_FAST", "0")
 
 
 @pytest.mark.parametrize("view", [PARALLEL, NEAR], ids=["parallel", "perspective"])
@@ -125,6 +131,55 @@ def test_where_no_bound_holds_the_exact_forms_stay(random):
     assert made.plan.dtype == np.float64
     assert made.plan.choice.bound == np.inf
     assert "no bound within it" in made.plan.explain()
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1 / 255])
+@pytest.mark.parametrize("options", [{"model": "cylinder"}, {"k": 2}, {"model": "blinn"}])
+def test_float32_data_without_a_bound_stay_in_float32(options, tolerance, random):
+    """Float64 would take longer than no tolerance at all."""
+    k = options.get("k", 1)
+    model = {key: value for key, value in options.items() if key != "k"}
+    scene = Scene(lights=Light(position=(3, 4, 5)), view=NEAR)
+    points, *lines = random.standard_normal((1 + k, 50, 3)).astype("f4")
+    lines = np.stack(lines, axis=1)
+    exact = engine.shade(points, lines, scene, **model)
+    made = engine.shade(points, lines, scene, tolerance=tolerance, **model)
+    assert made.luminance.dtype == np.float32
+    assert np.array_equal(made.luminance, exact.luminance)
+    assert made.plan.choice.bound == np.inf
+    assert "nothing is cheaper than the exact forms" in made.plan.explain()
+
+
+def test_float32_data_whose_rounding_exceeds_the_tolerance_are_lit_in_float64(random):
+    points, normals = random.standard_normal((2, 50, 3)).astype("f4")
+    scene = Scene(lights=Light(position=(3, 4, 5)), view=NEAR)
+    made = engine.shade(points, None, scene, normals=normals, tolerance=1e-9)
+    assert made.luminance.dtype == np.float64
+    assert made.plan.choice.bound < 1e-9
+
+
+def test_float32_saves_nothing_without_a_highlight():
+    scene = Scene(lights=Light(position=(1, 2, 3)), view=NEAR, material=Material(specular=0))
+    made = lines_of(scene, tolerance=1 / 255)
+    assert made.dtype == np.float64
+    assert not made.choice.cheaper
+    assert lines_of(scene.replace(material=Material()), tolerance=1 / 255).choice.cheaper
+
+
+@pytest.mark.parametrize("shininess", [20, 20.01])
+def test_what_compiled_code_saves(shininess, monkeypatch):
+    """Of all that is cheaper for NumPy, the models of which the cylinder is a multiple."""
+    monkeypatch.setattr(_compiled, "why_not", lambda: "")
+    scene = Scene(lights=Light.headlight(), view=PARALLEL, material=Material(shininess=shininess))
+    for options in ({}, {"model": "blinn"}):
+        made, exact = lines_of(scene, tolerance=0.05, **options), lines_of(scene, **options)
+        assert made.dtype == np.float64
+        assert made.highlights == exact.highlights
+        assert made.exponent == exact.exponent
+        assert "nothing is cheaper" in made.explain()
+    made = lines_of(scene, tolerance=0.05, model="cylinder")
+    assert made.model == "blinn"
+    assert made.choice.cheaper
 
 
 def test_a_precision_that_is_asked_for_stays(random):

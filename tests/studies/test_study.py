@@ -11,7 +11,7 @@ import pytest
 import pyvista as pv
 
 from vizlight import cli, studies
-from vizlight.studies import Curve, Panel, Row, Study
+from vizlight.studies import Curve, Panel, Row, Study, _measuring
 
 
 @pytest.fixture
@@ -158,7 +158,7 @@ def test_command_line(tmp_path, capfd, monkeypatch):
     out = tmp_path / "deep" / "folder"
     assert cli.main(["study", "brightness", "--quick", "-o", str(out)]) == 0
     said, err = capfd.readouterr()
-    assert "verdict: p(k, n) gives" in said
+    assert re.search("verdict: (p.k, n. gives|none, because repeats)", said)
     assert "brightness" in err
     assert {p.name for p in out.iterdir()} == {"brightness.csv", "brightness.png"}
 
@@ -169,3 +169,45 @@ def test_bad_command_lines(tmp_path, capfd):
     (tmp_path / "file").touch()
     assert cli.main(["study", "brightness", "-o", str(tmp_path / "file")]) == 2
     assert "out: expected a folder" in capfd.readouterr().err
+
+
+def test_no_verdict_where_repeats_spread(toy, monkeypatch):
+    taken = iter([1.0, 1.1, 3.0, 1.0, 2.0, 2.0, 2.0, 2.0, 1.2])
+    clock = (t for each in taken for t in (0.0, each))
+    monkeypatch.setattr(_measuring.time, "process_time", lambda: next(clock))
+
+    def timed(quick):
+        def step():
+            seconds = _measuring.take_turns({"rough": lambda: None}, 3)["rough"]
+            return [Row("rough", 1, 1e-3, seconds)]
+
+        return [step] if quick else [step, step]
+
+    study = dataclasses.replace(toy, steps=timed)
+    assert studies.run("toy", study, quick=True).verdict == "at 1/255 use rough, 1"
+    result = studies.run("toy", study, quick=True)
+    assert result.verdict.startswith("none, because repeats of one time differ by 20%")
+    assert result.rows[0].cost == 1.0
+    assert next(taken, None) is None
+
+
+def test_spread_of_repeats():
+    assert _measuring.spread([2.0, 5.0, 1.0]) == 1.0
+    assert _measuring.spread([1.0, 1.0]) == 0.0
+    assert _measuring.spread([0.0, 0.0, 0.0]) == 0.0
+
+
+def test_slopes_in_theory_are_beside_the_nearest_curve(toy):
+    from matplotlib.figure import Figure
+
+    axes = Figure().add_subplot()
+    rows = [Row("steep", n, 3 * n**-2.1, 1.0) for n in (1, 2, 4, 8)]
+    rows += [Row("flat", n, 5 * n**-1.05, 1.0) for n in (1, 2, 4, 8)]
+    panel = Panel(axes=("parameter", "error"), slopes=(-2.0, -1.0))
+    studies.Result("toy", toy, rows, "")._draw_panel(panel, axes)
+    lines = {line.get_label(): line for line in axes.lines}
+    for name, slope in (("steep", -2), ("flat", -1)):
+        x, y = np.log(lines[f"slope {slope} (theory)"].get_data())
+        assert (y[1] - y[0]) / (x[1] - x[0]) == pytest.approx(slope)
+        own = np.log(np.array(lines[name].get_data(), dtype=float))
+        assert [x.mean(), y.mean()] == pytest.approx(own.mean(axis=1))

@@ -25,7 +25,11 @@ if TYPE_CHECKING:
 RENAMED = {"light": "when"}
 
 
-@options.takes(vizlight.streamlines, "Streamlines", without=("positions", "tangents"))
+@options.takes(
+    vizlight.streamlines,
+    "Streamlines",
+    without=("positions", "tangents", "separation", "shortest", "terminator"),
+)
 def streamlines(
     files: list[Path],
     /,
@@ -161,7 +165,7 @@ def contours(
     def job(path: Path) -> Job:
         mesh = scenes.surface(scenes.data(path, shape), shape)
         camera = look.camera(mesh)
-        lit = Step("found", "vizlight.isoluminance", mesh, look.scene(camera), **given)
+        lit = _step("found", "isoluminance", mesh, look.scene(camera), given, common.out)
         bands = Step("", "[]", lit, "bands")
         return Job(lit, asked.name, look, camera, shown=bands, parts=("bands", "contours"))
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypedDict
 import numpy as np
 import pyvista as pv
 
-from vizlight import _check
+from vizlight import _check, _progress
 from vizlight.filters import lighting
 from vizlight.geometry.contours import banding, facets, refinement, spacing
 from vizlight.geometry.contours import isoluminance as closed
@@ -26,6 +26,8 @@ from vizlight.shading.options import LightOptions, accepts, check_sides
 from vizlight.verify import report
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike
     from typing_extensions import Unpack
 
@@ -116,6 +118,7 @@ def isoluminance(
     scene: Scene,
     *,
     threads: int | None = None,
+    progress_bar: bool = False,
     **options: Unpack[ContourKeywords],
 ) -> pv.MultiBlock:
     """Return contours of equal luminance, and the bands between them with one value per band.
@@ -133,6 +136,8 @@ def isoluminance(
         Fields of ContourOptions.
     threads : int, optional
         Number of threads.
+    progress_bar : bool, default: False
+        Whether the share of triangles that keep the allowed error is shown on standard error.
 
     Returns
     -------
@@ -161,7 +166,7 @@ def isoluminance(
     Notes
     -----
     A solid is lit at its exact points and normals. A mesh is lit with its normals, interpolated
-    over each triangle and normalised. Contour points are found by halving edges, so that the
+    over each triangle and normalised. Contour points are found by bracketing, so that the
     terminator is not restricted to corners, and triangles are split where the luminance is not
     linear. With tangents the luminance itself is interpolated. An empty mesh has no bands. A
     sphere or a frustum under one light without a highlight has closed forms.
@@ -169,8 +174,11 @@ def isoluminance(
     """
     asked = ContourOptions(**options)
     start = time.perf_counter()
-    with report.paused():
-        made, bands, light = _make(mesh, scene, asked, threads)
+    with report.paused(), _progress.progress("contours", 100, show=progress_bar) as show:
+        made, bands, light = _make(
+            mesh, scene, asked, threads, lambda share: show(int(100 * share))
+        )
+        show(100)
     seconds = time.perf_counter() - start
     _note(bands, light, seconds, 1024 * made.actual_memory_size, sampled=asked.tangents is None)
     return made
@@ -181,10 +189,11 @@ def _make(
     scene: Scene,
     options: ContourOptions,
     threads: int | None,
+    progress: Callable[[float], None],
 ) -> tuple[pv.MultiBlock, Bands, _Light]:
     """Return bands and contours as meshes, the bands as arrays, and their luminance."""
     _check.instance("scene", scene, Scene)
-    light = _Light(scene, options, threads)
+    light = _Light(scene, options, threads, progress)
     if isinstance(mesh, Solid):
         for option in ("normals", "tangents"):
             if getattr(options, option) is not None:
@@ -211,8 +220,16 @@ def _make(
 class _Light:
     """The luminance of points with normals, and its record."""
 
-    def __init__(self, scene: Scene, options: ContourOptions, threads: int | None) -> None:
+    def __init__(
+        self,
+        scene: Scene,
+        options: ContourOptions,
+        threads: int | None,
+        progress: Callable[[float], None],
+    ) -> None:
         self.scene, self.options, self.threads = scene, options, threads
+        #: Function that is called with the share of the refinement that is done.
+        self.progress = progress
         self.last: Shading | None = None
         #: Mesh on the exact surfaces of a solid.
         self.shape: Mesh | None = None
@@ -264,7 +281,9 @@ def _of_solid(solid: Solid, light: _Light) -> Bands:
     if isinstance(found, banding.Bands):
         return found
     light.shape = tessellation.tessellate(solid, tolerance=asked.tolerance)
-    return refinement.draw(light.shape, light, asked.levels, low=low if dull else None)
+    return refinement.draw(
+        light.shape, light, asked.levels, low=low if dull else None, progress=light.progress
+    )
 
 
 def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Light]:
@@ -310,11 +329,11 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
         found = normals.normals_of(surface, asked.normals, 3, normals.onlooker(scene))
         unit = unit_rows(np.asarray(found, dtype=np.float64))
         rows = np.concatenate([points, unit, *carried.values()], axis=1)
-
-        def luminance(places: Array, directions: Array) -> Array:
-            return light(places, unit_rows(directions))
-
-        bands = refinement.refine(facets.Facets(rows, triangles, luminance, lit.valid), levels)
+        near = any(lamp.position is not None for lamp in scene.lights)
+        near |= scene.view is not None and scene.view.position is not None
+        placed = near or scene.depth_cue is not None
+        lit_facets = facets.Facets(rows, triangles, light, lit.valid, placed)
+        bands = refinement.refine(lit_facets, levels, progress=light.progress)
     else:
         values = np.asarray(lit.luminance[triangles], dtype=np.float64)
         steps = spacing.steps(levels, float(values.min()), float(values.max()), exact=True)

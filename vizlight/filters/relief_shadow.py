@@ -130,7 +130,7 @@ def relief_shadow(
     -----
     ``t = d / r``, r the length inside the solid of the segment from ``p' = p - d n`` to the
     light; 1 where r is less than d. A field of cells of size h errs by h^2 / d, in the mean
-    where shadows begin. A closed surface is followed by VTK's StaticCellLocator in float64.
+    where shadows begin. Rays through a closed surface are followed in float64.
     Source: cos-theta, section 3, which prints ``t = r/d`` once; it is d/r.
 
     Examples

@@ -9,34 +9,40 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
-from vizlight import _check
+from vizlight import _check, _progress
 from vizlight.filters.illuminate import light_mesh
-from vizlight.geometry.lines import fur
-from vizlight.mesh import blocks, point_arrays, polylines, records, surfaces
+from vizlight.mesh import blocks, hull, point_arrays, polylines, records, surfaces, tracers
 from vizlight.mesh.normals import onlooker
 from vizlight.mesh.records import all_made
-from vizlight.model import kernels
+from vizlight.mesh.tracers import TRACED
+from vizlight.model import line_fields
 from vizlight.scene import Scene
 from vizlight.shading.options import LightKeywords, LightOptions, accepts
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike
     from typing_extensions import Unpack
 
     from vizlight._types import Array
 
-#: Name of the array that is traced; no array of a user has it.
-TRACED = "vizlight vectors"
+#: Name of the point array of the directions that were integrated, and by which the lines are lit.
+TANGENTS = "Tangents"
 
 
 class StreamlineKeywords(LightKeywords, total=False):
     """The fields of :class:`StreamlineOptions` as keyword arguments."""
 
     vectors: str | None
+    line_field: bool
     surface: pv.PolyData | None
     confined: bool | None
     seeds: int | ArrayLike | pv.DataSet
     seed: int
+    spacing: float | None
+    separation: float
+    shortest: float
     step: float
     max_length: float | None
     max_steps: int
@@ -49,7 +55,12 @@ class StreamlineOptions(LightOptions):
     Parameters
     ----------
     vectors : str, optional
-        Name of a point array of 3 components. Default: the active vectors.
+        Name of a point array of 3 components, or of 6 or 9: a symmetric tensor (XX, YY, ZZ, XY, YZ,
+        XZ, as in VTK) or a matrix, whose first eigenvector is traced as a line field. Default: the
+        active vectors.
+    line_field : bool, default: False
+        Whether the vectors have no sign, such as principal directions: along a line each is
+        aligned with the direction before it. Tensors are line fields in any case.
     surface : pyvista.PolyData, optional
         Surface whose normals condition the light of the lines near it (Banks 6), and on which
         confined lines stay. Default for a mesh that is a surface: the mesh itself.
@@ -57,10 +68,18 @@ class StreamlineOptions(LightOptions):
         Whether the lines stay on the surface: the tangential part of the vectors is integrated.
         Default: whether the mesh itself is a surface and no other is given.
     seeds : int or array_like, shape (M, 3), or mesh, default: 200
-        Points at which lines start. A number stands for points of the mesh, drawn without
-        repetition, or, for confined lines, for places on the surface, uniform in area.
+        Points at which lines start. A number is that of the lines, from points of the mesh drawn
+        without repetition, or, for confined lines and line fields, from random places, uniform in
+        area or volume. Has no effect as a number with ``spacing``.
     seed : int, default: 0
         Seed of the random numbers.
+    spacing : float, optional
+        Distance between evenly spaced lines, in the unit of the mesh, at which they cover the whole
+        surface or volume.
+    separation : float, default: 0.5
+        Share of the spacing at which a line ends before another.
+    shortest : float, default: 2.0
+        Length of the shortest line that is kept, in spacings, where other lines cut it short.
     step : float, default: 0.3
         Largest step of the integration, in cell lengths.
     max_length : float, optional
@@ -74,10 +93,14 @@ class StreamlineOptions(LightOptions):
     """
 
     vectors: str | None = None
+    line_field: bool = False
     surface: pv.PolyData | None = None
     confined: bool | None = None
     seeds: int | ArrayLike | pv.DataSet = 200
     seed: int = 0
+    spacing: float | None = None
+    separation: float = 0.5
+    shortest: float = 2.0
     step: float = 0.3
     max_length: float | None = None
     max_steps: int = 4000
@@ -89,7 +112,12 @@ class StreamlineOptions(LightOptions):
             self,
             step=_check.number("step", self.step, low=1e-6),
             max_steps=int(_check.number("max_steps", self.max_steps, low=1, high=1e9)),
+            line_field=_check.boolean("line_field", self.line_field),
+            separation=_check.number("separation", self.separation, low=0.05, high=0.95),
+            shortest=_check.number("shortest", self.shortest, low=0.0),
         )
+        if self.spacing is not None:
+            _check.set_fields(self, spacing=_check.positive("spacing", self.spacing))
 
 
 @accepts(StreamlineOptions)
@@ -102,7 +130,7 @@ def streamlines(
     progress_bar: bool = False,
     **options: Unpack[StreamlineKeywords],
 ) -> pv.PolyData:
-    """Integrate streamlines by VTK's tracer, light them, condition them by a surface.
+    """Integrate streamlines, light them by the field, condition them by a surface.
 
     Parameters
     ----------
@@ -117,23 +145,38 @@ def streamlines(
     Returns
     -------
     pyvista.PolyData
-        The lines that left their seed, with the point array ``luminance`` and the arrays of the
-        tracer; with a surface ``Normals``; for confined lines the field array ``drift``, the
-        largest distance from the surface before they were put back on it.
+        The lines that left their seed, one per seed, with the point array ``luminance``, the point
+        arrays of the mesh, and ``Tangents``, the directions that were integrated and are lit; with
+        a surface ``Normals``. Confined lines have the field array ``drift``, the largest distance
+        from the surface; evenly spaced ones ``largest_gap``, the largest distance of any place
+        from a line, ``nearest``, the distance to the next line that 5 % of the places on lines fall
+        below, both in spacings, and ``closed``, the number of closed lines.
 
     Raises
     ------
     TypeError, ValueError
         If an argument does not fit, or no line could be traced.
 
+    Warns
+    -----
+    UserWarning
+        If fewer lines than the number in ``seeds`` could be traced.
+
     Notes
     -----
-    Confined lines are moved to the closest point of the surface after tracing, so that they lie
-    on its triangles to rounding: 1e-6 of the surface's size. VTK traces in float32; a mesh far
-    from the origin is therefore traced near it, and its lines are returned in float64. Lines end
-    where vectors are less than a millionth of the median, zero or not finite, and where a line
-    turns back by more than a right angle from one step to the next, as it does at a wall.
-    Sources: Banks 4.1 and (6).
+    Lines in space are traced by VTK (Runge-Kutta 4-5, float32). Confined lines, line fields and
+    evenly spaced lines are traced from triangle to triangle, or from tetrahedron to tetrahedron
+    after splitting the cells (about 0.3 kB per tetrahedron), by the midpoint rule: the error of a
+    line is of order ``step^2``, and a confined line lies on its triangles to rounding. Lines end
+    where vectors are less than a millionth of the median, zero or not finite, where a tensor has no
+    first eigenvector, at the boundary, and where a line turns by more than a right angle from one
+    step to the next, as it does at a wall.
+
+    Evenly spaced lines start a spacing beside others and end where they come nearer to one than
+    ``separation``; lines that meet their own start are closed. On a surface distances include half
+    a spacing times the difference of normals, so that two sides of a thin sheet are apart.
+    Sources: Banks 4.1 and (6); Jobard and Lefer, Creating evenly-spaced streamlines of arbitrary
+    density (1997).
 
     Examples
     --------
@@ -161,10 +204,13 @@ def light_lines(
     _check_mesh(mesh)
     _check.instance("scene", scene, Scene)
     made = _resolved(mesh, options)
-    lines = _traced(mesh, scene, made)
+    with _progress.progress("trace", 100, show=progress_bar) as report:
+        lines, tangents = _traced(mesh, scene, made, report)
     conditioned = made.surface is not None if made.conditioned is None else made.conditioned
     normals = "Normals" if conditioned is True and made.normals is None else made.normals
     light = dataclasses.replace(made, conditioned=conditioned, normals=normals)
+    if light.tangents is None:
+        light = dataclasses.replace(light, tangents=tangents)
     lit = light_mesh(lines, scene, light, threads=threads, inplace=True, progress_bar=progress_bar)
     recorded = dataclasses.replace(options, vectors=made.vectors)
     records.amend(lit, options.name, "streamlines", recorded)
@@ -183,68 +229,156 @@ def _check_mesh(mesh: object) -> None:
 
 def _resolved(mesh: pv.DataSet, options: StreamlineOptions) -> StreamlineOptions:
     """Return the options with vectors, surface and whether lines are confined put in."""
-    vectors = _vectors_name(mesh, options.vectors)
-    surface, confined = options.surface, options.confined
-    is_surface = isinstance(mesh, pv.PolyData) and bool(
-        mesh.GetNumberOfPolys() or mesh.GetNumberOfStrips()
-    )
+    vectors, tensor = _vectors_name(mesh, options.vectors)
+    surface, confined = _as_surface(options.surface), options.confined
+    own = _as_surface(mesh)
+    is_surface = isinstance(own, pv.PolyData) and blocks.has_faces(own)
     if confined is None:
         confined = is_surface and surface is None
-    if surface is None and isinstance(mesh, pv.PolyData) and is_surface:
-        surface = mesh
+    if surface is None and is_surface:
+        surface = own
     if surface is None and (confined or options.conditioned):
         what = "confined" if confined else "conditioned"
         raise ValueError(_check.message("surface", f"a surface for {what} lines", None))
-    return dataclasses.replace(options, vectors=vectors, surface=surface, confined=confined)
+    return dataclasses.replace(
+        options,
+        vectors=vectors,
+        surface=surface,
+        confined=confined,
+        line_field=options.line_field or tensor,
+    )
 
 
-def _traced(mesh: pv.DataSet, scene: Scene, options: StreamlineOptions) -> pv.PolyData:
-    """Return the lines, put back on the surface that they are confined to."""
-    vectors, confined = options.vectors or "", bool(options.confined)
+def _as_surface(mesh: object) -> pv.PolyData | None:
+    """Return a grid of points whose cells are faces as a surface; others as they are."""
+    grid = isinstance(mesh, pv.StructuredGrid | pv.UnstructuredGrid)
+    if grid and mesh.n_cells and mesh.GetMaxSpatialDimension() == 2:  # type: ignore[attr-defined]
+        return hull.outer_surface(mesh)[0]  # type: ignore[arg-type]
+    return mesh  # type: ignore[return-value]
+
+
+def _traced(
+    mesh: pv.DataSet, scene: Scene, options: StreamlineOptions, report: Callable[[int], None]
+) -> tuple[pv.PolyData, str]:
+    """Return the lines, and the name of their array of tangents."""
+    confined = bool(options.confined)
     surface, traced, own = None, mesh, all_made(mesh)
     if options.surface is not None:
         own |= all_made(options.surface)
         surface = surfaces.with_normals(options.surface, onlooker(scene))
-        if confined:
-            surface = traced = _tangential(surface, mesh, vectors)
+    vectors = _field(mesh, surface if confined else None, options)
+    if confined and surface is not None:
+        traced = surface
     # VTK traces in float32 to an absolute error: near the origin, in a box of size 1.
     origin, size = np.array(blocks.near_origin(traced)), blocks.box(traced)[1]
-    traced = blocks.moved(_traceable(traced, vectors, own), -origin, 1 / size)
-    seeds = _seeds(traced, options.seeds, options.seed, origin, size, on_surface=confined)
-    lines = traced.streamlines_from_source(
-        pv.PolyData(seeds),
-        vectors=TRACED,
-        surface_streamlines=confined,
-        integration_direction="both",
-        initial_step_length=options.step,
-        max_step_length=options.step,
-        min_step_length=min(0.01, options.step),
-        max_steps=options.max_steps,
-        max_length=_max_length(traced, options.max_length, size),
-        terminal_speed=1e-6,
-        compute_vorticity=False,
-    )
-    lines = polylines.before_turning_back(lines)
-    for key in (surfaces.NORMALS, TRACED):
-        if key in lines.point_data:
-            del lines.point_data[key]
+    if surface is not None:
+        surface = blocks.moved(surface, -origin, 1 / size)
+    traced = tracers.scaled(blocks.moved(_bare(traced, own), -origin, 1 / size), vectors)
+    lines = _lines(traced, options, origin, size, report)
     if not lines.n_points:
         expected = "points inside the mesh where the vectors are not zero"
         raise ValueError(_check.message("seeds", expected, "no line"))
     places: Array = np.asarray(lines.points, dtype=np.float64)
+    tangents: Array = np.array(lines.point_data[TRACED], dtype=np.float64)
     if surface is not None:
-        nearest, normals = surfaces.closest(blocks.moved(surface, -origin, 1 / size), places)
         if confined:
-            drift = size * np.linalg.norm(nearest - places, axis=1).max()
-            lines.field_data["drift"] = [drift]
-            places = nearest
+            normals = point_arrays.unit_rows(lines.point_data[surfaces.NORMALS])
+            tangents -= np.einsum("ij,ij->i", tangents, normals)[:, np.newaxis] * normals
+        else:
+            normals = surfaces.closest(surface, places)[1]
         lines.point_data["Normals"] = normals.astype(np.float32)
+    for key in (surfaces.NORMALS, TRACED):
+        if key in lines.point_data:
+            del lines.point_data[key]
+    name = TANGENTS if TANGENTS not in mesh.point_data else "vizlight tangents"
+    tangents = point_arrays.unit_rows(tangents)
+    resting = ~np.any(tangents, axis=1)
+    if resting.any():
+        # Where a line comes to rest it has the direction in which it came.
+        tangents[resting] = polylines.line_tangents(lines)[resting]
+    lines.point_data[name] = tangents.astype(np.float32)
     far = np.any(origin) or not 1e-30 < size < 1e30
-    lines.points = (size * places + origin).astype(np.float64 if far else np.float32)
+    exact = size * places + origin
+    lines.points = exact.astype(np.float64 if far else np.float32)
+    if confined:
+        drift = np.abs(np.asarray(lines.points, dtype=np.float64) - exact).max()
+        lines.field_data["drift"] = [drift]
+    return lines, name
+
+
+def _lines(
+    mesh: pv.DataSet,
+    options: StreamlineOptions,
+    origin: Array,
+    size: float,
+    report: Callable[[int], None],
+) -> pv.PolyData:
+    """Return the lines of TRACED in a mesh that was moved to the origin and scaled to size 1."""
+    seed = _check.integer("seed", options.seed, low=0)
+    how = tracers.Tracing(
+        options.step, _max_length(mesh, options.max_length, size), options.max_steps, seed
+    )
+    count, places = _seeds(options.seeds, origin, size)
+    if not (options.confined or options.line_field or options.spacing is not None):
+        return _in_space(mesh, how, count, places, report)
+    cells: pv.PolyData | pv.UnstructuredGrid = (
+        mesh if isinstance(mesh, pv.PolyData) and mesh.is_all_triangles else mesh.triangulate()
+    )
+    normals = surfaces.NORMALS if options.confined else None
+    tracer = tracers.CellTracer(cells, normals, line_field=options.line_field)
+    given = None if places is None else tracer.located(places)
+    if options.spacing is None:
+        start = tracer.random(count, seed) if given is None else given
+        wanted = count if given is None else None
+        lines = tracer.lines(tracer.traced(start, how, wanted, report))
+        _warn_of_fewer(lines, wanted)
+        return lines
+    spacing = options.spacing / size
+    tracers.check_spacing(tracer, spacing, size)
+    asked = spacing, options.separation, options.shortest
+    curves, facts = tracer.even(given, how, asked, report)
+    lines = tracer.lines(curves)
+    for key, value in facts.items():
+        lines.field_data[key] = [value]
     return lines
 
 
-def _vectors_name(mesh: pv.DataSet, vectors: str | None) -> str:
+def _in_space(
+    mesh: pv.DataSet,
+    how: tracers.Tracing,
+    count: int,
+    places: Array | None,
+    report: Callable[[int], None],
+) -> pv.PolyData:
+    """Return lines that VTK traces; where seeds of its choice fail others are tried."""
+    if places is not None:
+        return tracers.in_space(mesh, places, how, report)
+    points = np.asarray(mesh.points, dtype=np.float64)
+    count = min(count, len(points))
+    random = np.random.default_rng(how.seed)
+    chosen = np.sort(random.choice(len(points), count, replace=False))
+    rest = random.permutation(np.setdiff1d(np.arange(len(points)), chosen))
+    moving = np.any(np.asarray(mesh.point_data[TRACED])[rest] != 0, axis=1)
+    rest, lines = rest[moving], tracers.in_space(mesh, points[chosen], how, report)
+    while (missing := count - lines.n_lines) > 0 and len(rest):
+        # Seeds beside those of which some fail.
+        chosen, rest = np.append(chosen, rest[:missing]), rest[missing:]
+        more = tracers.in_space(mesh, points[chosen[-min(missing, len(chosen)) :]], how, report)
+        lines = lines.append_polydata(more) if lines.n_lines else more
+    _warn_of_fewer(lines, count)
+    return lines
+
+
+def _warn_of_fewer(lines: pv.PolyData, wanted: int | None) -> None:
+    if wanted is not None and 0 < lines.n_lines < wanted:
+        _check.warn(
+            f"{lines.n_lines} of {wanted} lines could be traced: from other points none leaves "
+            "its seed, as the vectors are zero there or point out of the mesh"
+        )
+
+
+def _vectors_name(mesh: pv.DataSet, vectors: str | None) -> tuple[str, bool]:
+    """Return the name of the array that is traced, and whether it holds tensors."""
     point_arrays.refuse_unnamed("vectors", vectors)
     if vectors is None:
         vectors = mesh.point_data.active_vectors_name
@@ -252,8 +386,11 @@ def _vectors_name(mesh: pv.DataSet, vectors: str | None) -> str:
             raise _no_vectors(mesh, None)
     if vectors not in mesh.point_data and vectors not in mesh.cell_data:
         raise _no_vectors(mesh, vectors)
+    array = point_arrays.array_of(mesh, "vectors", vectors)
+    if array.shape[1] in (6, 9):
+        return vectors, True
     point_arrays.vectors_of(mesh, "vectors", vectors, 3)
-    return vectors
+    return vectors, False
 
 
 def _no_vectors(mesh: pv.DataSet, got: str | None) -> ValueError:
@@ -278,66 +415,68 @@ def _no_vectors(mesh: pv.DataSet, got: str | None) -> ValueError:
     )
 
 
-def _tangential(surface: pv.PolyData, mesh: pv.DataSet, vectors: str) -> pv.PolyData:
-    """Return the surface with the tangential part of the vectors, sampled where it lacks them."""
-    if vectors in surface.point_data:
-        point_arrays.vectors_of(surface, "vectors", vectors, 3)
+def _field(mesh: pv.DataSet, surface: pv.PolyData | None, options: StreamlineOptions) -> Array:
+    """Return the vectors that are traced; on a surface their tangential part.
+
+    They are sampled from the mesh where the surface lacks them, those without sign as tensors. The
+    surface then gets the array that was sampled.
+    """
+    name = options.vectors or ""
+    if surface is None:
+        return _directions(np.asarray(mesh.point_data[name]))
+    if name in surface.point_data:
+        rows = point_arrays.array_of(surface, "vectors", name)
+        if rows.shape[1] not in (3, 6, 9):
+            point_arrays.vectors_of(surface, "vectors", name, 3)
+        array = _directions(rows)
     else:
-        field = pv.PolyData(surface.points).sample(mesh)
-        surface.point_data[vectors] = np.asarray(field.point_data[vectors])
-    array = np.array(surface.point_data[vectors], dtype=np.float64)
+        source = mesh.copy(deep=False)
+        array = np.asarray(mesh.point_data[name])
+        if options.line_field and array.shape[1] == 3:
+            products = line_fields.outer(array[:, np.newaxis]).reshape(-1, 9)
+            source.point_data[TRACED] = products
+        field = pv.PolyData(surface.points).sample(source)
+        surface.point_data[name] = np.asarray(field.point_data[name])
+        array = _directions(
+            np.asarray(field.point_data[TRACED if TRACED in source.point_data else name])
+        )
     array[~np.all(np.isfinite(array), axis=1)] = 0
     normal = np.asarray(surface.point_data[surfaces.NORMALS], dtype=np.float64)
-    along = array - np.einsum("ij,ij->i", array, normal)[:, np.newaxis] * normal
-    surface.point_data[vectors] = along
-    return surface
+    return np.asarray(array - np.einsum("ij,ij->i", array, normal)[:, np.newaxis] * normal)
 
 
-def _traceable(mesh: pv.DataSet, vectors: str, own: set[str]) -> pv.DataSet:
-    """Return a mesh that the tracer may change, with the vectors as TRACED.
+def _directions(rows: Array) -> Array:
+    """Return vectors as they are, and tensors as their first eigenvectors."""
+    if rows.shape[1] in (6, 9):
+        return tracers.principal_directions(np.asarray(rows, dtype=np.float64))
+    return np.array(rows, dtype=np.float64)
 
-    Arrays of words, which end the tracer's process, and vizlight's own are left out. The vectors
-    are scaled to a median speed of 1: where it is below a millionth a line has come to rest.
+
+def _bare(mesh: pv.DataSet, own: set[str]) -> pv.DataSet:
+    """Return a mesh that the tracer may change.
+
+    Arrays of words, which end the tracer's process, and vizlight's own are left out.
     """
     bare = mesh.copy(deep=False)
     for key in list(bare.point_data):
         if key in own or np.asarray(bare.point_data[key]).dtype.kind not in "biuf":
             del bare.point_data[key]
-    array = np.array(mesh.point_data[vectors], dtype=np.float64)
-    array[~np.all(np.isfinite(array), axis=1)] = 0
-    speed = kernels.length(np.ascontiguousarray(array.T))
-    moving = speed[(speed > 0) & np.isfinite(speed)]
-    scale = float(np.median(moving)) if len(moving) else 1.0
-    bare.point_data[TRACED] = np.clip(array / scale, -1e30, 1e30)
     return bare
 
 
-def _seeds(
-    mesh: pv.DataSet, seeds: object, seed: int, origin: Array, size: float, *, on_surface: bool
-) -> Array:
-    """Return where lines start in a mesh that was moved to the origin and scaled to size 1."""
+def _seeds(seeds: object, origin: Array, size: float) -> tuple[int, Array | None]:
+    """Return the number of lines, or where they start in a mesh that was moved and scaled."""
     if isinstance(seeds, pv.DataSet):
         given: Array = np.asarray(seeds.points, dtype=np.float64)
     else:
         given = _check.floats("seeds", seeds).astype(np.float64)
-    if given.ndim:
-        places = (_check.vectors("seeds", given, n=3) - origin) / size
-        if places.ndim != 2 or not np.all(np.isfinite(places)):
-            what = "finite points of shape (M, 3)"
-            raise ValueError(_check.message("seeds", what, _check.describe(seeds)))
-        return places
-    count, seed = _check.integer("seeds", seeds, low=1), _check.integer("seed", seed, low=0)
-    points = np.asarray(mesh.points, dtype=np.float64)
-    if not on_surface:
-        count = min(count, mesh.n_points)
-        chosen = np.random.default_rng(seed).choice(mesh.n_points, count, replace=False)
-        return points[np.sort(chosen)]
-    faces = np.asarray(mesh.regular_faces)
-    face, weights = fur.seeds(points, faces, count, seed=seed)
-    b, c = weights[:, 1:, np.newaxis].astype(np.float64).transpose(1, 0, 2)
-    corner = points[faces[face]]
-    places = (1 - b - c) * corner[:, 0] + b * corner[:, 1] + c * corner[:, 2]
-    return np.asarray(places)
+    if not given.ndim:
+        return _check.integer("seeds", seeds, low=1), None
+    places = (_check.vectors("seeds", given, n=3) - origin) / size
+    if places.ndim != 2 or not np.all(np.isfinite(places)):
+        what = "finite points of shape (M, 3)"
+        raise ValueError(_check.message("seeds", what, _check.describe(seeds)))
+    return len(places), places
 
 
 def _max_length(mesh: pv.DataSet, max_length: float | None, size: float) -> float:

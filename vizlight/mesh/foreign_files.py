@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 
+from vizlight.mesh import polylines
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
     from pathlib import Path
@@ -109,13 +111,11 @@ def _polylines(
     starts = np.asarray(starts, dtype=np.intp)[lengths > 0]
     ends = np.concatenate([[0], np.cumsum(lengths[lengths > 0])])
     rows = np.arange(ends[-1]) + np.repeat(starts - ends[:-1], np.diff(ends))
-    mesh = pv.PolyData()
     if not len(rows):
-        return mesh
+        return pv.PolyData()
     # Half precision, which TRX files have, is none of VTK's types.
-    mesh.points = np.array(points[rows], dtype=np.result_type(points.dtype, np.float32))
-    numbers = np.asarray(np.arange(len(rows)), dtype=int)
-    mesh.SetLines(pv.CellArray.from_arrays(np.asarray(ends, dtype=int), numbers))
+    kind = np.result_type(points.dtype, np.float32)
+    mesh = polylines.polydata(np.asarray(points[rows], dtype=kind), ends)
     for name, array in of_points.items():
         _attach(mesh.point_data, name, np.asarray(array)[rows])
     for name, array in of_lines.items():

@@ -67,8 +67,8 @@ def part_of(mesh: pv.DataSet, path: str, scene: Scene, options: LightOptions) ->
                 argument="conditioned",
             )
         elif tangents is None or options.conditioned:
-            sided = sided_normals(mesh, options.normals, n, _kind(options))
-            normals = sided.facing(_kind(options), points, scene.view)
+            sided = sided_normals(mesh, options.normals, n, shown_side(options))
+            normals = sided.facing(shown_side(options), points, scene.view)
             if options.flip_normals:
                 normals = -normals
             if scene.view is None and _alike(sided, options.facing):
@@ -93,13 +93,13 @@ def _sides(sided: Sided, view: View | None, options: LightOptions) -> Sides:
 
     def turned(normals: Array, facts: Array, points: Array) -> Array:
         own = Sided(normals, lean=facts[:, 0], open=facts[:, 1] > 0.5)
-        found = own.facing(_kind(options), points, view)
+        found = own.facing(shown_side(options), points, view)
         return -found if options.flip_normals else found
 
     return Sides(sided.vectors, sided.facts(), turned)
 
 
-def _kind(options: LightOptions) -> Facing:
+def shown_side(options: LightOptions) -> Facing:
     """Return the side that normals show; the older switches take the place of the eye."""
     old = options.two_sided or options.flip_normals
     return "outward" if old and options.facing == "auto" else options.facing

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista as pv
@@ -12,6 +12,7 @@ from vizlight.geometry.lines.curves import polyline_tangents
 from vizlight.mesh import blocks, hull
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
     from vtkmodules.vtkCommonDataModel import vtkCellArray
 
     from vizlight._types import Array, Indices
@@ -126,16 +127,59 @@ def before_turning_back(mesh: pv.PolyData) -> pv.PolyData:
         return mesh
     if not kept.any():
         return pv.PolyData()
-    out = pv.PolyData()
-    out.points = np.asarray(mesh.points)[ids[kept]]
     length = np.bincount(line[kept], minlength=len(size))[keep_line]
-    ends = np.concatenate([[0], np.cumsum(length)])
-    numbers = np.asarray(np.arange(len(out.points)), dtype=int)
-    out.SetLines(pv.CellArray.from_arrays(ends, numbers))
+    out = polydata(np.asarray(mesh.points)[ids[kept]], np.concatenate([[0], np.cumsum(length)]))
     for key, array in mesh.point_data.items():
         out.point_data[key] = np.asarray(array)[ids[kept]]
     for key, array in mesh.cell_data.items():
         out.cell_data[key] = np.asarray(array)[keep_line]
+    return out
+
+
+def polydata(points: NDArray[np.floating[Any]], ends: Indices, /) -> pv.PolyData:
+    """Return a mesh of polylines.
+
+    Parameters
+    ----------
+    points : ndarray, shape (N, 3)
+        Points of the lines, one line after the other.
+    ends : ndarray of int, shape (L + 1,)
+        Start of each line, followed by N.
+    """
+    out = pv.PolyData()
+    if len(points):
+        out.points = points
+    numbers = np.asarray(np.arange(len(points)), dtype=int)
+    out.SetLines(pv.CellArray.from_arrays(np.asarray(ends, dtype=int), numbers))
+    return out
+
+
+def joined_at_seeds(mesh: pv.PolyData) -> pv.PolyData:
+    """Return one line for each seed: VTK's tracer gives one forward and one backward from it.
+
+    The mesh has VTK's cell array SeedIds and point array IntegrationTime, negative backward.
+    """
+    if not mesh.n_lines:
+        return mesh
+    ids, offsets = _cells(mesh.GetLines())
+    seed = np.asarray(mesh.cell_data["SeedIds"])
+    time = np.asarray(mesh.point_data["IntegrationTime"])[ids]
+    back = np.minimum.reduceat(time, offsets[:-1]) < 0
+    runs: dict[int, Indices] = {}
+    first: dict[int, int] = {}
+    # Those that run backward come first, reversed.
+    for line in np.lexsort((~back, seed)).tolist():
+        run, key = ids[offsets[line] : offsets[line + 1]], int(seed[line])
+        run = run[::-1] if back[line] else run
+        runs[key] = np.concatenate([runs[key], run[1:]]) if key in runs else run
+        first[key] = line
+    rows = np.concatenate([*runs.values()])
+    ends = np.concatenate([[0], np.cumsum([len(run) for run in runs.values()])])
+    out = polydata(np.asarray(mesh.points)[rows], ends)
+    for name, array in mesh.point_data.items():
+        out.point_data[name] = np.asarray(array)[rows]
+    for name, array in mesh.cell_data.items():
+        out.cell_data[name] = np.asarray(array)[[*first.values()]]
     return out
 
 

@@ -11,6 +11,8 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.files import check_output, replace_file
+from vizlight.filters.tint import unlit_colors
+from vizlight.mesh import records
 from vizlight.mesh.blocks import all_blocks
 from vizlight.mesh.polylines import has_lines_only
 from vizlight.pictures.backends import (
@@ -22,6 +24,7 @@ from vizlight.pictures.backends import (
     window_class,
 )
 from vizlight.pictures.cameras import Mesh, camera_on, common_bounds, over_shoulder
+from vizlight.plotting.component import add_recorded
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -48,9 +51,13 @@ __all__ = [
 ]
 
 AntiAliasing = Literal["ssaa", "msaa", "fxaa"]
+PictureLight = Literal["auto", "points"]
 
 #: Supersampling draws at twice the size, and drivers support at most 16384 pixels per side.
 LARGEST_SIDE, LARGEST_AREA = 8192, 33_000_000
+#: Distance by which lines are drawn nearer to the eye than a surface on which they lie, as a share
+#: of the size of what is drawn: enough for triangles not to hide the lines between them.
+LIFT = 3e-3
 #: Width of a line that supersampling draws one pixel wide, as measured from pictures of lines of 1
 #: to 40 pixels: twice the size, and VTK's lines are a tenth narrower there.
 SUPERSAMPLED = 2 / 0.9
@@ -79,6 +86,7 @@ class PlotterKeywords(TypedDict, total=False):
     line_width: float
     anti_aliasing: AntiAliasing | None
     backend: Backend | None
+    light: PictureLight
 
 
 def make_plotter(
@@ -96,6 +104,7 @@ def make_plotter(
     line_width: float = 1.0,
     anti_aliasing: AntiAliasing | None = "ssaa",
     backend: Backend | None = None,
+    light: PictureLight = "auto",
 ) -> pv.Plotter:
     """Return an offscreen plotter that shows lit meshes on a grid of panels with one camera.
 
@@ -122,11 +131,18 @@ def make_plotter(
     background : colour, optional
         Background colour. Default: black if all meshes consist of lines only, otherwise white.
     line_width : float, default: 1.0
-        Width of lines in pixels of the picture, whatever the anti-aliasing.
+        Width of lines in pixels of the picture, whatever the anti-aliasing. Beside surfaces lines
+        are drawn nearer to the eye, by 0.3 % of the bounding box's diagonal and at the same pixels,
+        so that a surface on which they lie does not hide them.
     anti_aliasing : {"ssaa", "msaa", "fxaa"} or None, default: "ssaa"
         Method of anti-aliasing: supersampling, multisampling, FXAA, or none.
     backend : {"egl", "osmesa"}, optional
         OpenGL library; see :func:`choose_backend`.
+    light : {"auto", "points"}
+        What is drawn: "points", the array as it is, interpolated between the points. "auto", the
+        light of its record, computed in each fragment, where the array is a light of which that
+        is possible (in gray from 0 to 1, or ``rgb``): it is right between the points too. A scene
+        that is exported to a page needs "points", because the page has no such shaders.
 
     Returns
     -------
@@ -142,6 +158,8 @@ def make_plotter(
     """
     shown = _check_panels(panels, scalars)
     _check_options(camera, cmap, clim, anti_aliasing)
+    _check.choice("light", light, get_args(PictureLight))
+    plain = cmap == "gray" and tuple(clim) == (0.0, 1.0) and not bar
     pixels = pixels_of(size)
     rows = min(_check.integer("rows", rows, low=1), len(shown))
     columns = math.ceil(len(shown) / rows)
@@ -163,7 +181,9 @@ def make_plotter(
             # PyVista supersamples for FXAA too where the driver lacks that.
             drawn = plotter.renderer.GetPass()
             pixel = SUPERSAMPLED if drawn is not None and drawn.IsA("vtkSSAAPass") else 1.0
-            _draw(plotter, panel, cmap, clim, line_width * pixel)
+            width = line_width * pixel
+            lit = light == "auto" and plain
+            _draw(plotter, panel, cmap, clim, width, camera, fragments=lit)
             if panel.title:
                 plotter.add_text(panel.title, position="upper_edge", font_size=10, color=ink)
             plotter.camera = camera.copy()  # type: ignore[no-untyped-call]
@@ -247,7 +267,7 @@ def save_png(
         Path of the picture, in an existing folder.
     **options
         Options of :func:`make_plotter`: camera, rows, size, scalars, cmap, clim, bar, background,
-        line_width, anti_aliasing, backend.
+        line_width, anti_aliasing, backend, light.
 
     Returns
     -------
@@ -321,19 +341,27 @@ def pixels_of(size: object) -> list[int]:
 
 
 def _draw(
-    plotter: pv.Plotter, panel: Panel, cmap: Any, clim: tuple[float, float], line_width: float
-) -> None:
-    for mesh in all_blocks(panel.mesh):
-        if not mesh.n_points:
+    plotter: pv.Plotter, panel: Panel, cmap: Any, clim: tuple[float, float], line_width: float,
+    camera: pv.Camera, *, fragments: bool,
+) -> None:  # fmt: skip
+    blocks = [mesh for mesh in all_blocks(panel.mesh) if mesh.n_points]
+    of_lines = [has_lines_only(mesh) for mesh in blocks]
+    size = LIFT * max((mesh.length for mesh in blocks), default=0.0)
+    for mesh, lines in zip(blocks, of_lines, strict=True):
+        shown = mesh.copy(deep=False)
+        if lines and not all(of_lines):
+            # Assigning to shown.points would move the points that it shares with the mesh.
+            shown.SetPoints(pv.vtk_points(_lifted(np.asarray(mesh.points), camera, size)))
+        if fragments and add_recorded(plotter, shown, panel.scalars, line_width=line_width):
             continue
         of_points = panel.scalars in mesh.point_data
         values = np.asarray((mesh.point_data if of_points else mesh.cell_data)[panel.scalars])
         colour = values.ndim == 2
-        if colour:
+        if colour and values.dtype != np.uint8:
             # VTK wraps around above 1, so a bright highlight would turn black.
             values = np.clip(values, 0, 1)
-        plotter.add_mesh(
-            mesh.copy(deep=False),
+        actor = plotter.add_mesh(
+            shown,
             scalars=values,
             preference="point" if of_points else "cell",
             rgb=colour,
@@ -343,3 +371,17 @@ def _draw(
             line_width=line_width,
             show_scalar_bar=False,
         )
+        if (records.read(mesh, panel.scalars) or {}).get("filter") == "tint":
+            # The colours are drawn as they are; a scalar bar shows those before they were lit.
+            actor.mapper.lookup_table = unlit_colors(mesh, panel.scalars)
+
+
+def _lifted(points: NDArray[np.floating[Any]], camera: pv.Camera, by: float) -> Any:
+    """Return points that are nearer to the eye and stay at the same pixels."""
+    eye = np.array(camera.position)
+    toward = eye - np.asarray(points, dtype=np.float64)
+    if camera.parallel_projection:
+        back = eye - np.array(camera.focal_point)
+        return points + by * back / np.linalg.norm(back)
+    distance = np.linalg.norm(toward, axis=1, keepdims=True)
+    return points + toward * np.minimum(by / np.where(distance > 0, distance, 1), 0.5)

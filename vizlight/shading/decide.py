@@ -83,12 +83,20 @@ def plan(
 
 
 def decide(
-    scene: Scene, layout: Layout, options: ShadingOptions, dtype: DTypeLike | None = None
+    scene: Scene,
+    layout: Layout,
+    options: ShadingOptions,
+    dtype: DTypeLike | None = None,
+    *,
+    narrow: bool = False,
 ) -> Plan:
-    """Return the plan for inputs of a layout; see :func:`plan`."""
+    """Return the plan for inputs of a layout; see :func:`plan`.
+
+    Inputs that are ``narrow`` have no more digits than float32.
+    """
     _check.instance("scene", scene, Scene)
     dtype = options.precision if dtype is None else dtype
-    kind = _precision(np.float64 if dtype is None else dtype)
+    kind = _precision((np.float32 if narrow else np.float64) if dtype is None else dtype)
     _check_layout(layout, options)
     _check_scene(scene, layout.n)
     n, surface = layout.n, layout.k is None
@@ -122,7 +130,7 @@ def decide(
     )
     if not options.tolerance:
         return exact
-    return relax(exact, options.tolerance, any_precision=dtype is None)
+    return relax(exact, options.tolerance, asked=dtype is not None)
 
 
 def _needed(scene: Scene, layout: Layout, options: ShadingOptions) -> tuple[Scene, bool, bool]:

@@ -251,7 +251,7 @@ def run(
     if options.precision is None and not options.tolerance:
         precision: Precision = "float32" if inputs.narrow else "float64"
         options = dataclasses.replace(options, precision=precision)
-    made = decide(scene, inputs.layout, options)
+    made = decide(scene, inputs.layout, options, narrow=inputs.narrow)
     start = time.perf_counter()
     count, repeat = inputs.count, inputs.repeat
     output = Output(made, count)

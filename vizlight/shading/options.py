@@ -80,17 +80,18 @@ class ShadingOptions:
         :meth:`vizlight.engine.Plan.explain` names the choice and its bound.
     tolerance : float, default: 0.0
         Largest error of ``luminance`` that is accepted for speed, such as 1/255. The cheapest
-        evaluation whose stated bound is within it is chosen: float32, Blinn's model for Phong's,
-        whole powers, and under headlights the models that the light of a cylinder is a multiple
-        of. Where rounding in float32 has no bound that holds for all data (several tangents per
-        point, a cylinder, Blinn's model with eye or light nearby) the choice is float64, which
-        takes longer for float32 data. 0: the exact forms.
+        evaluation whose stated bound is within it is chosen: under headlights the models that the
+        light of a cylinder is a multiple of, and without compiled code (extra ``fast``) float32 for
+        float64 data, Blinn's model for Phong's, and whole powers. Where nothing is cheaper the
+        exact forms stay. float32 data are lit in float64 if the bound of rounding in float32
+        exceeds the tolerance; there is none for several tangents per point, a cylinder, and
+        Blinn's model with eye or light nearby. 0: the exact forms.
     terminator : float, default: 0.0
         Value of ``N . wi``, up to 1, below which the highlight of a one-sided surface fades
         smoothly to the terminator. 0: it ends sharply where the light does. The largest change is
         :func:`vizlight.model.highlights.terminator_error`.
     two_sided : bool, default: False
-        Whether the far side of a surface is lit like the near one, by ``|N . wi|``.
+        Whether the far side of a surface is lit like the near one: by ``|N . wi|``.
     conditioned : bool or str
         Whether tangents inherit the self-shadow of the surface that the normals belong to
         (Banks 6).

@@ -60,12 +60,15 @@ class Choice:
         rounding has no bound within the tolerance that holds for all data.
     notes, rejected : tuple of str
         What was chosen and what was not, in words.
+    cheaper : bool
+        Whether anything cheaper than the exact forms was chosen.
     """
 
     tolerance: float = 0.0
     bound: float = math.inf
     notes: tuple[str, ...] = ()
     rejected: tuple[str, ...] = ()
+    cheaper: bool = False
 
 
 EXACT = Choice()
@@ -383,7 +386,8 @@ def _choice(plan: Plan, words: _Words) -> None:
         if math.isfinite(choice.bound)
         else "rounding has no bound within it here"
     )
-    words.add(f"tolerance: {choice.tolerance:.3g} of luminance, {bound}")
+    exact = "" if choice.cheaper else "nothing is cheaper than the exact forms, "
+    words.add(f"tolerance: {choice.tolerance:.3g} of luminance, {exact}{bound}")
 
 
 def _code(plan: Plan, words: _Words) -> None:

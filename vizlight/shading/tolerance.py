@@ -2,7 +2,8 @@
 
 Tried in the order of what they save: under headlights, the models of which a cylinder's light is a
 multiple; float32 for float64; Blinn's model for Phong's where there is one half vector; whole
-powers.
+powers. Only what was measured to save time is tried. Compiled code is limited by memory, so that
+nothing but the first of these saves any; float32 saves none of NumPy's time without a highlight.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vizlight import _check
+from vizlight import _check, _compiled
 from vizlight.model import brightness, kernels
 from vizlight.shading import bounds
 from vizlight.shading.highlight import choose
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from vizlight.shading.plan import Plan
 
 
-def relax(plan: Plan, tolerance: float, *, any_precision: bool) -> Plan:
+def relax(plan: Plan, tolerance: float, *, asked: bool) -> Plan:
     """Return the plan with cheaper evaluations that are together within the tolerance.
 
     Parameters
@@ -34,14 +35,19 @@ def relax(plan: Plan, tolerance: float, *, any_precision: bool) -> Plan:
         Plan of the exact forms.
     tolerance : float
         Tolerance of the luminance, above 0.
-    any_precision : bool
-        Whether float32 may replace the precision of the plan.
+    asked : bool
+        Whether the precision was asked for. Else float32 may replace float64; float64, which takes
+        longer, replaces float32 where the bound of its rounding exceeds the tolerance.
 
     Raises
     ------
     ValueError
         If float32 is asked for and its rounding is not within the tolerance.
     """
+    if plan.dtype == np.float32 and not asked and tolerance < bounds.rounding(plan) < math.inf:
+        plan = dataclasses.replace(plan, dtype=np.dtype(np.float64))
+    exact = plan
+    compiled = not _compiled.why_not()
     notes: list[str] = []
     rejected: list[str] = []
     spent = 0.0
@@ -62,32 +68,33 @@ def relax(plan: Plan, tolerance: float, *, any_precision: bool) -> Plan:
 
     if plan.model == "cylinder" and (plan.diffuse or plan.specular):
         offer(*_flat_line(plan))
-    if any_precision:
+    if plan.dtype == np.float64 and plan.specular and not (asked or compiled):
         single = dataclasses.replace(plan, dtype=np.dtype(np.float32))
         offer(0.0, single, "precision: float32", low=True)
-    if plan.model == "phong" and plan.specular:
+    if plan.model == "phong" and plan.specular and not compiled:
         # Highlights that differ too much are named in the plan, light by light.
         left = 255 * max(tolerance - spent - _finite(bounds.rounding(plan)), 0)
         made = dataclasses.replace(plan, highlights=choose(plan.scene, "phong", left))
         if spent + made.highlight_error / 255 + _finite(bounds.rounding(made)) <= tolerance:
             plan, spent = made, spent + made.highlight_error / 255
-    if plan.diffuse and _slow(plan.exponent):
+    if plan.diffuse and _slow(plan.exponent) and not compiled:
         whole = float(max(round(plan.exponent), 1))
         error = kernels.power_error(plan.exponent, whole)
         error *= bounds.weight(plan, plan.scene.material.diffuse)
         made = dataclasses.replace(plan, exponent=whole)
         offer(error, made, f"diffuse: power {whole:g} for {plan.exponent:.6g}")
-    if plan.specular:
+    if plan.specular and not compiled:
         _offer_whole_shininess(plan, offer)
     bound = spent + bounds.rounding(plan)
     if bound > tolerance:
-        if not any_precision and plan.dtype == np.float32:
+        if asked and plan.dtype == np.float32:
             got = f"{tolerance:.3g} with precision='float32', whose rounding "
             got += f"may be {bound:.3g}" if math.isfinite(bound) else "has no bound here"
             remedy = "omit precision=, or pass 'float64'"
             raise ValueError(_check.message("tolerance", "more than rounding", got, remedy))
         bound = math.inf
-    choice = Choice(tolerance, bound, tuple(notes), tuple(rejected))
+    cheaper = plan is not exact and (bool(notes) or plan.highlight_error > 0)
+    choice = Choice(tolerance, bound, tuple(notes), tuple(rejected), cheaper)
     return dataclasses.replace(plan, choice=choice)
 
 

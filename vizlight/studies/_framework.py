@@ -69,6 +69,8 @@ class Panel:
         Label of the line y = x, which is drawn unless the label is empty.
     x : str
         Label of the x axis. Default: the heading of its column in the table.
+    slopes : tuple of float
+        Slopes in theory, which are drawn beside the curves.
     """
 
     axes: tuple[Axis, Axis] = ("cost", "error")
@@ -76,6 +78,7 @@ class Panel:
     curve: Callable[[Row], Curve | None] = by_way
     diagonal: str = ""
     x: str = ""
+    slopes: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)

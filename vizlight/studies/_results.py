@@ -7,8 +7,11 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from vizlight import _console, _progress
 from vizlight.studies._framework import PIXEL, Curve
+from vizlight.studies._measuring import MOST_SPREAD, noted_spreads
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -85,7 +88,24 @@ class Result:
         )  # fmt: skip
         if panel.diagonal:
             axes.axline((1, 1), (10, 10), color=GREY, linestyle="-", label=panel.diagonal)
+        _draw_slopes(panel, axes)
         _label_axes(axes)
+
+
+def _draw_slopes(panel: Panel, axes: Axes) -> None:
+    """Draw the slopes in theory, each through the middle of the curve that is nearest to it."""
+    data = [np.array(line.get_data(), dtype=np.float64) for line in axes.lines]
+    for slope in panel.slopes:
+        found = []
+        for x, y in (np.log(curve) for curve in data if curve.shape[1] > 2):
+            found.append((abs(np.polyfit(x, y, 1)[0] - slope), x.mean(), y.mean(), np.ptp(x)))
+        if found:
+            _, x, y, width = min(found)
+            ends = np.array([-width / 2, width / 2])
+            axes.plot(
+                np.exp(x + ends), np.exp(y + slope * ends), color=GREY, linestyle="--",
+                linewidth=2, alpha=0.6, label=f"slope {slope:g} (theory)",
+            )  # fmt: skip
 
 
 def _draw_curves(panel: Panel, curves: Mapping[Curve, Sequence[Row]], axes: Axes) -> None:
@@ -150,13 +170,25 @@ def run(name: str, study: Study, /, *, quick: bool = False, progress_bar: bool =
     Returns
     -------
     Result
+        Rows, and the verdict. There is none if the two shortest repeats of a processor time differ
+        by more than 15 %.
     """
     steps = study.steps(quick)
     rows: list[Row] = []
-    with _progress.progress(name, len(steps), show=progress_bar) as report:
+    with (
+        noted_spreads() as spreads,
+        _progress.progress(name, len(steps), show=progress_bar) as report,
+    ):
         for done, step in enumerate(steps):
             rows += step()
             report(done + 1)
+    worst = max(spreads, default=0.0)
+    if worst > MOST_SPREAD:
+        found = (
+            f"none, because repeats of one time differ by {worst:.0%}, more than "
+            f"{MOST_SPREAD:.0%}; run the study while nothing else runs"
+        )
+        return Result(name, study, rows, found)
     return Result(name, study, rows, study.verdict(rows))
 
 

@@ -125,4 +125,5 @@ STUDY = Study(
     steps=lambda quick: [partial(frame_errors, 64 if quick else 128, 3 if quick else 5)],
     verdict=verdict,
     axes=("parameter", "error"),
+    slopes=(2.0,),
 )

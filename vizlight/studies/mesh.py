@@ -172,4 +172,5 @@ STUDY = Study(
     steps=steps,
     verdict=verdict,
     axes=("parameter", "error"),
+    slopes=(-2.0, -1.0),
 )

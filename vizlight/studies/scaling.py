@@ -204,4 +204,5 @@ STUDY = Study(
     steps=steps,
     verdict=verdict,
     axes=("parameter", "cost"),
+    slopes=(0.0,),
 )

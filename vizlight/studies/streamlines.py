@@ -16,7 +16,7 @@ import pyvista as pv
 
 from vizlight.filters import streamlines
 from vizlight.scene import Light, Scene, View
-from vizlight.studies._framework import Row, Study, holding, order, words
+from vizlight.studies._framework import Curve, Panel, Row, Study, holding, order, words
 from vizlight.studies._measuring import take_turns
 
 if TYPE_CHECKING:
@@ -96,6 +96,11 @@ def steps(quick: bool) -> list[Callable[[], list[Row]]]:
     ]
 
 
+def curve_of(*ways: str) -> Callable[[Row], Curve | None]:
+    """Return the curves of some methods, whose steps have one unit."""
+    return lambda row: Curve(row.way) if row.way in ways else None
+
+
 def verdict(rows: Sequence[Row]) -> str:
     """Return the largest suitable step, whether step or cells matter more, and the orders."""
     ways = {way: [row for row in rows if row.way == way] for way in (STEP, CELL, SPHERE)}
@@ -137,4 +142,14 @@ STUDY = Study(
     steps=steps,
     verdict=verdict,
     axes=("parameter", "error"),
+    curve=curve_of(STEP),
+    x="step / cell size",
+    beside=(
+        Panel(
+            axes=("parameter", "error"),
+            curve=curve_of(CELL, SPHERE),
+            x="cell size / domain",
+            slopes=(2.0,),
+        ),
+    ),
 )

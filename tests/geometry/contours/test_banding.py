@@ -79,14 +79,15 @@ def test_one_value_everywhere():
 
 
 def test_a_luminance_that_is_not_monotone_along_an_edge():
-    """Halving keeps the order of the levels: still one polygon a band, and closed."""
+    """Brackets keep the order of the levels: still one polygon a band, and closed."""
     points, triangles, _ = soup(8, 8)
 
     def wave(p):
         return 0.5 + 0.5 * np.sin(9 * p[:, 0]) * np.cos(7 * p[:, 1])
 
     def along(a, b, t, _):
-        return wave(points[a] * (1 - t[:, None]) + points[b] * t[:, None])
+        places = points[a][:, None] * (1 - t[..., None]) + points[b][:, None] * t[..., None]
+        return wave(places.reshape(-1, 3)).reshape(t.shape)
 
     values = wave(points)
     made, _ = banding.cut(

@@ -13,13 +13,25 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Array, Indices
+    from vizlight._types import Array, Bools, Indices
     from vizlight.geometry.contours.spacing import Steps
 
     Luminance = Callable[[Indices, Indices, Array, Indices], Array]
 
-#: Halvings of an edge in search of a contour; the remaining interval is below rounding.
-HALVINGS = 48
+#: Share of an edge that the search for a contour point leaves: the rounding of the luminance moves
+#: it by as much.
+WIDTH = 2.0**-40
+#: Distance of two places from the root of a chord, for a bracket of width 1; it grows where they
+#: miss the root.
+SPREAD = 0.1
+#: Such a distance at which brackets are divided equally instead.
+HOPELESS = 100.0
+#: Number of parts that a round of the search divides all brackets into, and the largest number of
+#: parts of one bracket.
+PARTS, MOST = 2048, 32
+#: Width of a bracket at which the chord gives the crossing to rounding, and at which a jump of the
+#: luminance is not searched more closely: a change by more than JUMP of the span of all levels.
+NARROW, JUMP = 2.0**-20, 1e-3
 #: Share of the edge below which a contour point is merged with the corner.
 SNAP = 1e-11
 
@@ -148,7 +160,7 @@ def cut(
     patch: Indices | None = None,
     place: Callable[[Indices, Indices, Array], Array] | None = None,
     luminance: Luminance | None = None,
-    halvings: int = HALVINGS,
+    known: Crossings | None = None,
 ) -> tuple[Bands, Indices]:
     """Cut triangles along contours.
 
@@ -169,10 +181,11 @@ def cut(
         Function ``place(a, b, t)`` that returns the points on the surface at the fraction t of the
         edges from a to b. Default: points on the chord.
     luminance : callable, optional
-        Function ``luminance(a, b, t, patch)`` that returns the luminance at these points. With it,
-        contour points are found by halving the edge, else by linear interpolation.
-    halvings : int, default: 48
-        Number of halvings.
+        Function ``luminance(a, b, t, patch)`` that returns the luminance at fractions t, shape
+        (N, m), of N edges. With it,
+        contour points are found by bracketing, else by linear interpolation.
+    known : Crossings, optional
+        Crossings of the levels that were found before; new ones are added.
 
     Returns
     -------
@@ -183,28 +196,131 @@ def cut(
 
     Notes
     -----
-    A value in (edges[k-1], edges[k]] belongs to band k. Halving keeps the order of the levels
-    along an edge even where the luminance is not monotone there, so that each triangle is cut
-    into one polygon per band. All triangles at an edge have all its contour points as corners,
-    whichever side they come from: a closed surface stays closed.
+    A value in (edges[k-1], edges[k]] belongs to band k. Brackets keep the order of the levels along
+    an edge even where the luminance is not monotone there, so that each triangle is cut into one
+    polygon per band. All triangles at an edge have all its contour points as corners, whichever
+    side they come from: a closed surface stays closed. Triangles without contour points are taken
+    over as they are.
     """
     count = len(triangles)
     patch = np.zeros(count, np.intp) if patch is None else np.asarray(patch, np.intp)
-    side, edge, ends, owner, side_values = _sides(triangles, values, patch)
     levels = steps.edges[: max(len(steps.edges) - 1, 1)]
+    bands = np.searchsorted(levels, values, side="left")
+    touched = _touched(triangles, bands, patch)
+    rows, whole = np.flatnonzero(touched), np.flatnonzero(~touched)
+    pieces, new, lines, line_level = _pieces(
+        points, triangles[rows], values[rows], bands[rows], levels, patch[rows], place, luminance,
+        Crossings() if known is None else known,
+    )  # fmt: skip
+    triangle = np.concatenate([rows[pieces.triangle], whole])
+    order = np.argsort(triangle, kind="stable")
+    offsets, corners = _reordered(
+        np.concatenate([np.diff(pieces.offsets), np.full(len(whole), 3)]),
+        np.concatenate([pieces.corners, triangles[whole].ravel()]),
+        order,
+    )
+    triangle = triangle[order]
+    band = np.concatenate([pieces.band, bands[whole, 0]])[order]
+    made = np.concatenate([points, new])
+    used, corners, lookup = _compact(corners, len(made))
+    lines = lookup[lines]
+    kept = np.all(lines >= 0, axis=1) & (lines[:, 0] != lines[:, 1])
+    cut_bands = Bands(
+        points=made[used],
+        offsets=offsets,
+        corners=corners,
+        band=band,
+        values=steps.values[band],
+        patch=patch[triangle],
+        lines=lines[kept],
+        line_levels=levels[line_level[kept]],
+        steps=steps,
+        error=float("nan"),
+    )
+    return cut_bands, triangle
+
+
+class Crossings:
+    """The fractions at which levels are crossed along sides, by the edge and patch of a side.
+
+    They hold for one luminance and one sequence of levels. The indices of points must not change;
+    points may be added.
+    """
+
+    #: Bits of the index of a point and of a patch in a key; of larger indices nothing is kept.
+    POINT, PATCH = 24, 14
+
+    def __init__(self) -> None:
+        self._keys, self._start = np.empty(0, np.intp), np.empty(0, np.intp)
+        self._share = np.empty(0)
+
+    def keys(self, ends: Indices, patch: Indices) -> Indices | None:
+        """Return a key for each side, or None if the indices are too large for keys."""
+        if max(ends.max(initial=0) >> self.POINT, patch.max(initial=0) >> self.PATCH):
+            return None
+        return (ends[:, 0] << self.POINT | ends[:, 1]) << self.PATCH | patch
+
+    def find(self, keys: Indices) -> tuple[Bools, Indices]:
+        """Return which sides are known, and the place of the first fraction of each."""
+        if not len(self._keys):
+            return np.zeros(len(keys), np.bool_), np.zeros(len(keys), np.intp)
+        place = np.minimum(np.searchsorted(self._keys, keys), len(self._keys) - 1)
+        return self._keys[place] == keys, self._start[place]
+
+    def taken(self, places: Indices) -> Array:
+        """Return fractions by their places."""
+        return self._share[places]
+
+    def add(self, keys: Indices, start: Indices, share: Array) -> None:
+        """Add the fractions of sides, which begin at ``start``."""
+        keys = np.concatenate([self._keys, keys])
+        order = np.argsort(keys, kind="stable")
+        self._keys = keys[order]
+        self._start = np.concatenate([self._start, start + len(self._share)])[order]
+        self._share = np.concatenate([self._share, share])
+
+
+@dataclass(frozen=True)
+class _Pieces:
+    """Polygons that triangles are cut into, in the order of the triangles and of the bands."""
+
+    offsets: Indices
+    corners: Indices
+    band: Indices
+    triangle: Indices
+
+
+def _pieces(
+    points: Array, triangles: Indices, values: Array, bands: Indices, levels: Array,
+    patch: Indices, place: Callable[[Indices, Indices, Array], Array] | None,
+    luminance: Luminance | None, known: Crossings,
+) -> tuple[_Pieces, Array, Indices, Indices]:  # fmt: skip
+    """Return the pieces of triangles, the contour points, and the contours with their levels.
+
+    The contour points follow the given points.
+    """
+    count = len(triangles)
+    side, edge, ends, owner, side_values = _sides(triangles, values, patch)
     at = np.searchsorted(levels, side_values, side="left")
     first, last = at.min(axis=1), at.max(axis=1)
     of_side, level = _ranges(first, last)
-    a, b = ends[edge[of_side]].T
-    share = _shares(a, b, owner[of_side], side_values[of_side], levels[level], luminance, halvings)
+    if luminance is None:
+        share = _linear(side_values[of_side], levels[level])
+    else:
+        share = _crossings(ends[edge], owner, side_values, levels, first, last, luminance, known)
     share[share < SNAP] = 0
     share[share > 1 - SNAP] = 1
 
     # Along each edge: by fraction, and for equal fractions in the order of a side's levels.
-    rising = np.where(at[of_side, 0] <= at[of_side, 1], level, -level)
-    order = np.lexsort((rising, share, edge[of_side]))
+    down = at[of_side, 0] > at[of_side, 1]
+    after = np.cumsum(last - first)
+    row = np.arange(len(level))
+    order = np.where(down, (2 * after - (last - first) - 1)[of_side] - row, row)
+    same = np.diff(edge[of_side]) == 0
+    if np.any(same & (np.diff(share[order]) < 0)):
+        order = np.lexsort((np.where(down, -level, level), share, edge[of_side]))
     of_side, level, share = of_side[order], level[order], share[order]
-    a, b = a[order], b[order]
+    a, b = ends[edge[of_side]].T
     between = (share > 0) & (share < 1)
     number = len(points) + np.cumsum(between) - 1
     vertex = np.where(between, number, np.where(share > 0.5, b, a))
@@ -215,40 +331,62 @@ def cut(
         new = place(a[between], b[between], share[between])
     starts = np.searchsorted(edge[of_side], np.arange(len(ends) + 1))
 
-    corner_band = np.searchsorted(levels, values, side="left")
-    turn = np.argsort(corner_band, axis=1, kind="stable")
+    turn = np.argsort(bands, axis=1, kind="stable")
     rows = np.arange(count)[:, np.newaxis]
     flipped = ((turn[:, 1] - turn[:, 0]) % 3) == 2
-    sorted_band, sorted_corner = corner_band[rows, turn], triangles[rows, turn]
+    sorted_band, sorted_corner = bands[rows, turn], triangles[rows, turn]
     record = _walk(
         sorted_corner, sorted_band, turn, side, edge, ends, starts, of_side, level, vertex
     )
     triangle, band, position, corner, crossed = record
     position = np.where(flipped[triangle], -position, position)
-    order = np.lexsort((position, band, triangle))
+    order = _sorted(triangle, band, position)
     offsets, corners, first_row = _polygons(triangle[order], band[order], corner[order])
     which = order[first_row]
     lines, line_level = _lines(triangle, crossed, corner)
-    band = band[which]
-    made = np.concatenate([points, new])
-    used, corners = np.unique(corners, return_inverse=True)
-    lookup = np.full(len(made), -1)
-    lookup[used] = np.arange(len(used))
-    lines = lookup[lines]
-    kept = np.all(lines >= 0, axis=1) & (lines[:, 0] != lines[:, 1])
-    cut_bands = Bands(
-        points=made[used],
-        offsets=offsets,
-        corners=corners.reshape(-1),
-        band=band,
-        values=steps.values[band],
-        patch=patch[triangle[which]],
-        lines=lines[kept],
-        line_levels=levels[line_level[kept]],
-        steps=steps,
-        error=float("nan"),
-    )
-    return cut_bands, triangle[which]
+    return _Pieces(offsets, corners, band[which], triangle[which]), new, lines, line_level
+
+
+def _sorted(triangle: Indices, band: Indices, position: Indices) -> Indices:
+    """Return the order by triangle, band and position, no two of which are equal."""
+    low = int(position.min(initial=0))
+    places = int(position.max(initial=0)) - low + 1
+    count = int(band.max(initial=0)) + 1
+    if (int(triangle.max(initial=0)) + 1) * count * places < 1 << 62:
+        return np.argsort((triangle * count + band) * places + position - low)
+    return np.lexsort((position, band, triangle))
+
+
+def _touched(triangles: Indices, bands: Indices, patch: Indices) -> Bools:
+    """Return which triangles have contour points on their edges, or too few corners."""
+    a, b, c = triangles.T
+    touched: Bools = (a == b) | (b == c) | (c == a)
+    own = bands != np.roll(bands, -1, axis=1)
+    touched |= own.any(axis=1)
+    if len(patch) and np.any(patch != patch[0]) and np.any(own):
+        # At a crease the contour points of one side are corners on the other one, too.
+        stop = np.roll(triangles, -1, axis=1)
+        size = int(triangles.max(initial=0)) + 1
+        codes = np.minimum(triangles, stop) * size + np.maximum(triangles, stop)
+        touched |= np.isin(codes, codes[own]).any(axis=1)
+    return touched
+
+
+def _reordered(size: Indices, corners: Indices, order: Indices) -> tuple[Indices, Indices]:
+    """Return the offsets and the corners of polygons in another order."""
+    start = np.cumsum(size) - size
+    size = size[order]
+    offsets = np.concatenate([[0], np.cumsum(size)]).astype(np.intp)
+    step = np.repeat(start[order] - offsets[:-1], size)
+    return offsets, corners[step + np.arange(len(step))]
+
+
+def _compact(corners: Indices, count: int) -> tuple[Indices, Indices, Indices]:
+    """Return the points that are used, the corners as indices of these, and the new indices."""
+    there = np.zeros(count, np.bool_)
+    there[corners] = True
+    lookup = np.where(there, np.cumsum(there) - 1, -1)
+    return np.flatnonzero(there), lookup[corners], lookup
 
 
 def weld(bands: Bands, clusters: Indices) -> Bands:
@@ -270,16 +408,14 @@ def weld(bands: Bands, clusters: Indices) -> Bands:
     owner = np.repeat(np.arange(len(size)), size)
     offsets, corners, first = _polygons(owner, owner, clusters[bands.corners])
     cell = owner[first]
-    used, corners = np.unique(corners, return_inverse=True)
-    lookup = np.full(len(bands.points), -1)
-    lookup[used] = np.arange(len(used))
+    used, corners, lookup = _compact(corners, len(bands.points))
     lines = lookup[clusters[bands.lines]]
     kept = lines[:, 0] != lines[:, 1]
     return dataclasses.replace(
         bands,
         points=bands.points[used],
         offsets=offsets,
-        corners=corners.reshape(-1),
+        corners=corners,
         band=bands.band[cell],
         values=bands.values[cell],
         patch=bands.patch[cell],
@@ -322,28 +458,124 @@ def _ranges(first: Indices, last: Indices) -> tuple[Indices, Indices]:
     return owner, np.arange(len(owner)) - start[owner] + first[owner]
 
 
-def _shares(
-    a: Indices,
-    b: Indices,
-    patch: Indices,
-    values: Array,
-    level: Array,
-    luminance: Luminance | None,
-    halvings: int,
-) -> Array:
-    """Return the fraction of its edge at which each level is crossed."""
-    if luminance is None:
-        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            linear = (level - values[:, 0]) / (values[:, 1] - values[:, 0])
-        return np.clip(np.nan_to_num(linear, nan=0.5), 0, 1)
-    low, high = np.zeros(len(a)), np.ones(len(a))
-    up = values[:, 1] > level
-    for _ in range(halvings if len(a) else 0):
-        middle = (low + high) / 2
-        after = (luminance(a, b, middle, patch) > level) == up
-        high = np.where(after, middle, high)
-        low = np.where(after, low, middle)
-    return (low + high) / 2
+def _linear(values: Array, level: Array) -> Array:
+    """Return the fraction of an edge at which a luminance that is linear crosses each level."""
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        linear = (level - values[:, 0]) / (values[:, 1] - values[:, 0])
+    return np.clip(np.nan_to_num(linear, nan=0.5), 0, 1)
+
+
+def _crossings(
+    ends: Indices, patch: Indices, values: Array, levels: Array, first: Indices, last: Indices,
+    luminance: Luminance, known: Crossings,
+) -> Array:  # fmt: skip
+    """Return the fraction of its side at which each level is crossed, as :func:`_bracketed`."""
+    keys = known.keys(ends, patch)
+    if keys is None:
+        return _bracketed(ends, patch, values, levels, first, last, luminance)
+    crossed = first < last
+    there, start = known.find(keys)
+    new = np.flatnonzero(crossed & ~there)
+    found = _bracketed(ends[new], patch[new], values[new], levels, first[new], last[new], luminance)
+    size = (last - first)[new]
+    known.add(keys[new], np.cumsum(size) - size, found)
+    _, start = known.find(keys)
+    _, places = _ranges(start, start + last - first)
+    return known.taken(places)
+
+
+def _bracketed(
+    ends: Indices, patch: Indices, values: Array, levels: Array, first: Indices, last: Indices,
+    luminance: Luminance,
+) -> Array:  # fmt: skip
+    """Return the fraction of its side at which each level is crossed.
+
+    The levels of a side are those from ``first`` to ``last``; the result has those of one side
+    after those of the other.
+
+    Notes
+    -----
+    A bracket is an interval of a side with all levels that are crossed there. In each round the
+    luminance is found at places inside all brackets, which divides each bracket and its levels.
+    Brackets do not overlap, so the levels stay in order. Where one level is left, two of the places
+    are on both sides of the root of the chord: the width is then squared in each round. Other
+    brackets, and those at jumps of the luminance, are divided equally.
+    """
+    size = last - first
+    start = np.cumsum(size) - size - first
+    share = np.empty(int(size.sum()))
+    rising = values[:, 0] < values[:, 1]
+    side = np.flatnonzero(size)
+    lower, upper = first[side], last[side]
+    place = np.tile([0.0, 1.0], (len(side), 1))
+    light = values[side]
+    spread = np.full(len(side), SPREAD)
+    span = float(levels[-1] - levels[0]) or 1.0
+    while len(side):
+        t = _inside(place, light - levels[lower][:, np.newaxis], spread, upper - lower)
+        found = luminance(ends[side, 0], ends[side, 1], t, patch[side])
+        place = np.column_stack([place[:, 0], t, place[:, 1]])
+        light = np.column_stack([light[:, 0], found, light[:, 1]])
+        # Levels that are crossed before each place: the lowest ones where the luminance rises.
+        split = np.clip(np.searchsorted(levels, light), lower[:, np.newaxis], upper[:, np.newaxis])
+        up = rising[side]
+        split = np.where(up[:, np.newaxis], split, (lower + upper)[:, np.newaxis] - split)
+        split[:, 0], split[:, -1] = lower, upper
+        split = np.maximum.accumulate(split, axis=1)
+        bracket, part = np.nonzero(np.diff(split, axis=1))
+        begin, end = split[bracket, part], split[bracket, part + 1]
+        turned = lower[bracket] + upper[bracket]
+        up = up[bracket]
+        lower, upper = np.where(up, begin, turned - end), np.where(up, end, turned - begin)
+        before = place[bracket, -1] - place[bracket, 0]
+        both = np.stack([part, part + 1], axis=1)
+        rows = bracket[:, np.newaxis]
+        place, light, side, spread = (
+            place[rows, both],
+            light[rows, both],
+            side[bracket],
+            spread[bracket],
+        )
+        width = place[:, 1] - place[:, 0]
+        gap = light - levels[lower][:, np.newaxis]
+        smooth = np.all(gap != 0, axis=1) & (upper - lower == 1)
+        jump = np.abs(light[:, 1] - light[:, 0]) > JUMP * span
+        done = width <= np.where(smooth | jump, NARROW, WIDTH)
+        which, level = _ranges(lower[done], upper[done])
+        part = np.where(smooth & ~jump, _root(gap), 0.5)[done]
+        share[start[side[done]][which] + level] = (place[done, 0] + part * width[done])[which]
+        # The places on both sides of the chord's root have missed the root.
+        missed = width > 2.01 * spread * np.maximum(before**2, WIDTH)
+        spread = np.where(missed, 4 * spread, spread)
+        kept = ~done
+        side, lower, upper, spread = side[kept], lower[kept], upper[kept], spread[kept]
+        place, light = place[kept], light[kept]
+    return share
+
+
+def _inside(place: Array, gap: Array, spread: Array, count: Indices) -> Array:
+    """Return the places that divide brackets, ascending, shape (number of brackets, m).
+
+    Fewer brackets are divided into more parts, as a round has a cost of its own.
+    """
+    parts = min(max(PARTS // len(place), 2), MOST)
+    low, width = place[:, :1], place[:, 1:] - place[:, :1]
+    inside = np.tile(np.arange(1, parts + 2) / (parts + 2), (len(place), 1))
+    # Where the luminance ends at a level, as at a terminator, or jumps, chords do not help.
+    near = np.flatnonzero((count == 1) & np.all(gap != 0, axis=1) & (spread < HOPELESS))
+    root = _root(gap[near])[:, np.newaxis]
+    reach = spread[near, np.newaxis] * np.maximum(width[near], WIDTH / width[near])
+    both = np.clip(np.concatenate([root - reach, root + reach], axis=1), 0, 1)
+    even = np.tile(np.arange(1, parts) / parts, (len(near), 1))
+    inside[near] = np.sort(np.concatenate([both, even], axis=1), axis=1)
+    return np.asarray(low + inside * width)
+
+
+def _root(gap: Array) -> Array:
+    """Return where in [0, 1] a chord crosses 0, from its values at both ends."""
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        root = gap[:, 0] / (gap[:, 0] - gap[:, 1])
+    return np.asarray(np.clip(np.where(np.isfinite(root), root, 0.5), 0, 1))
 
 
 def _walk(
@@ -356,12 +588,14 @@ def _walk(
     a crossing. A point on a contour has two rows, one for each of its bands.
     """
     count = len(corner)
+    # More than the positions of one side.
+    span = 2 * int(np.diff(starts).max(initial=0)) + 3
     rows: list[list[Indices]] = []
     for slot in range(3):
         here = corner[:, slot]
         tri = np.arange(count)
         none = np.full(count, -1)
-        rows.append([tri, band[:, slot], none + 1 + (slot << 40), here, none])
+        rows.append([tri, band[:, slot], none + 1 + slot * span, here, none])
         i, j = turn[:, slot], turn[:, (slot + 1) % 3]
         # Edge i of a triangle runs from corner i to the next.
         own_side = side[tri, np.where((j - i) % 3 == 1, i, j)]
@@ -377,7 +611,7 @@ def _walk(
         passed = passed - before_first
         sign = 1 if slot < 2 else -1
         after = band[tri, slot] + sign * passed
-        position = (slot << 40) + 2 * (step + 1)
+        position = slot * span + 2 * (step + 1)
         none = np.full(len(tri), -1)
         crossed = np.where(own, level[index], none)
         rows.append([tri[own], (after - sign)[own], position[own] - 1, vertex[index][own],

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vizlight._types import Array, Bools, Indices
-    from vizlight.geometry.contours.banding import Bands
+    from vizlight.geometry.contours.banding import Bands, Crossings
     from vizlight.geometry.contours.spacing import Steps
 
     Luminance = Callable[[Array, Array], Array]
@@ -33,53 +33,68 @@ class Facets:
     lit : ndarray of bool, shape (P,)
         Mask of the points that could be lit. The luminance of other points is discontinuous, and
         their triangles are not refined.
+    placed : bool, default: True
+        Whether the luminance depends on the positions.
     """
 
-    def __init__(self, points: Array, triangles: Indices, luminance: Luminance, lit: Bools) -> None:
+    def __init__(
+        self, points: Array, triangles: Indices, luminance: Luminance, lit: Bools,
+        placed: bool = True,
+    ) -> None:  # fmt: skip
         self.points, self.triangles, self.lit = points, triangles, lit
         self._light = luminance
+        self._first = 0 if placed else 3
+        self._carried = points.shape[1] - 6
+        self._values = np.zeros(len(points))
+        used = np.zeros(len(points), np.bool_)
+        used[triangles] = True
+        self._values[used] = self.light(points[used])
 
     def light(self, points: Array) -> Array:
-        """Return the luminance of rows of positions and normals."""
-        return np.asarray(self._light(points[:, :3], points[:, 3:6]), dtype=np.float64)
+        """Return the luminance of rows of positions and normals, or of normals alone."""
+        end = points.shape[1] - self._carried
+        normals = points[:, end - 3 : end]
+        places = np.broadcast_to(0.0, normals.shape) if self._first else points[:, :3]
+        return np.asarray(self._light(places, normals), dtype=np.float64)
 
     def corners(self) -> Array:
         """Return the luminance at the corners of all triangles."""
-        used, place = np.unique(self.triangles, return_inverse=True)
-        return np.asarray(self.light(self.points[used])[place.reshape(-1, 3)])
+        return np.asarray(self._values[self.triangles])
 
-    def cut(self, values: Array, steps: Steps, halvings: int) -> tuple[Bands, Indices]:
+    def cut(
+        self, values: Array, steps: Steps, known: Crossings, rows: Indices | None
+    ) -> tuple[Bands, Indices]:
         """Return the bands, and the triangle that each polygon was cut from."""
+        rows_of = np.ascontiguousarray(self.points[:, self._first :])
 
         def along(a: Indices, b: Indices, share: Array, _: Indices) -> Array:
-            t = share[:, np.newaxis]
-            return self.light(self.points[a] * (1 - t) + self.points[b] * t)
+            start = rows_of[a]
+            places = refinement.along(start, rows_of[b] - start, share)
+            return self.light(places).reshape(share.shape)
 
-        return banding.cut(
-            self.points, self.triangles, values, steps, luminance=along, halvings=halvings
+        if rows is None:
+            rows = np.arange(len(self.triangles))
+        made, triangle = banding.cut(
+            self.points, self.triangles[rows], values[rows], steps, luminance=along, known=known
         )
+        return made, rows[triangle]
 
     def measure(self, bands: Bands, triangle: Indices) -> Array:
         """Return the largest error of each polygon at its centre and along its edges."""
-        worst = np.zeros(len(bands.values))
-        for places, of in refinement.within(bands):
-            miss = np.abs(self.light(places) - bands.values[of])
-            worst = np.maximum(worst, refinement.largest(bands, miss))
-        worst[refinement.slivers(bands, triangle, len(self.triangles))] = 0
+        worst = refinement.measured(
+            bands, triangle, lambda places, _: self.light(places), self._first
+        )
         worst[~np.all(self.lit[self.triangles], axis=1)[triangle]] = 0
         return worst
 
-    def peaks(self, values: Array, bound: float) -> Indices:
-        """Return the triangles whose luminance exceeds that of their corners by over ``bound``."""
-        if len(self.triangles) > refinement.ASKED:
-            return np.empty(0, np.intp)
-        top = values.max(axis=1) + bound
-        found = np.zeros(len(self.triangles), np.bool_)
-        for row in refinement.grid():
-            found |= self.light(np.einsum("i,tij->tj", row, self.points[self.triangles])) > top
-        return np.flatnonzero(found & np.all(self.lit[self.triangles], axis=1))
+    def peaks(self, rows: Indices) -> Array:
+        """Return the highest luminance found at a grid of points inside some triangles."""
+        places = refinement.searched(self.points[self.triangles[rows]])
+        found = self.light(places.reshape(-1, places.shape[-1])).reshape(len(rows), -1)
+        lit = np.all(self.lit[self.triangles[rows]], axis=1)
+        return np.where(lit, found.max(axis=1), -np.inf)
 
-    def split(self, chosen: Indices) -> None:
+    def split(self, chosen: Indices) -> Indices:
         """Halve the edges of chosen triangles, and split their neighbours to match."""
         start, stop = self.triangles, np.roll(self.triangles, -1, axis=1)
         count = len(self.points)
@@ -88,6 +103,9 @@ class Facets:
         a, b = np.divmod(marked, count)
         place = np.minimum(np.searchsorted(marked, codes), len(marked) - 1)
         number = np.where(marked[place] == codes, count + place, -1)
-        self.triangles, _ = triangle_mesh.split(self.triangles, number)
-        self.points = np.concatenate([self.points, self.points[a] / 2 + self.points[b] / 2])
+        self.triangles, owner = triangle_mesh.split(self.triangles, number)
+        new = self.points[a] / 2 + self.points[b] / 2
+        self.points = np.concatenate([self.points, new])
+        self._values = np.concatenate([self._values, self.light(new)])
         self.lit = np.concatenate([self.lit, self.lit[a] & self.lit[b]])
+        return owner[: np.count_nonzero(np.all(number < 0, axis=1))]

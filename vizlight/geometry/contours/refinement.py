@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -14,21 +15,20 @@ from vizlight.geometry.contours import banding, spacing
 from vizlight.geometry.solids import exact_surfaces, triangle_mesh
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
-    from vizlight._types import Array, Bools, Indices
-    from vizlight.geometry.contours.banding import Bands
+    from vizlight._types import Array, Indices
+    from vizlight.geometry.contours.banding import Bands, Crossings
     from vizlight.geometry.contours.spacing import Levels, Steps
     from vizlight.geometry.solids.triangle_mesh import Mesh
 
     Luminance = Callable[[Array, Array], Array]
+    Progress = Callable[[float], None]
 
 #: Largest number of rounds of refinement, and numbers of triangles and polygons that end it.
 ROUNDS, ENOUGH, MANY = 20, 1_500_000, 300_000
 #: Share of a step that contours drawn as chords may add to the error.
 CURVED = 0.1
-#: Halvings of an edge during refinement.
-ROUGH = 20
 #: Share of a triangle's area below which a polygon is not measured: where the luminance is
 #: discontinuous, all contours coincide.
 SLIVER = 1e-4
@@ -37,9 +37,13 @@ ALONG, WITHIN = (0.25, 0.5, 0.75), 1e-3
 #: Share of an allowed error that a measured one must keep, since the error between the measured
 #: points may be slightly larger.
 KEPT = 0.98
-#: Number of triangles beyond which they are not searched for smaller highlights, and number of
-#: points per edge of the search grid.
-ASKED, GRID = 3000, 10
+#: Number of corners that are measured at once.
+BLOCK = 1 << 15
+#: Number of triangles beyond which only the brightest ones are searched for smaller highlights, the
+#: number of these, and the number of points per edge of the search grid.
+ASKED, BRIGHTEST, GRID = 3000, 64, 10
+#: Share of the allowed error by which steps may move without a new cut.
+STILL = 1e-2
 #: Largest distance of a crease from a chord between its points, as a share of the chord. Surfaces
 #: that nearly coincide cross further away.
 BULGE = 0.25
@@ -47,7 +51,10 @@ BULGE = 0.25
 APEX = 1e-7
 
 
-def draw(mesh: Mesh, luminance: Luminance, levels: Levels, /, *, low: float | None = None) -> Bands:
+def draw(
+    mesh: Mesh, luminance: Luminance, levels: Levels, /, *, low: float | None = None,
+    progress: Progress | None = None,
+) -> Bands:  # fmt: skip
     """Return the bands of a luminance on the surfaces of a solid.
 
     Parameters
@@ -61,6 +68,8 @@ def draw(mesh: Mesh, luminance: Luminance, levels: Levels, /, *, low: float | No
         Steps of luminance, as for :func:`vizlight.geometry.contours.spacing.steps`.
     low : float, optional
         Luminance of points without light. Default: the lowest luminance found.
+    progress : callable, optional
+        Function that is called after each round with the share of triangles that keep the error.
 
     Returns
     -------
@@ -76,7 +85,7 @@ def draw(mesh: Mesh, luminance: Luminance, levels: Levels, /, *, low: float | No
 
     Notes
     -----
-    Contour points are found by halving edges and lie on the exact surface, at creases on both
+    Contour points are found by bracketing and lie on the exact surface, at creases on both
     surfaces; contours are chords between them.
     """
     spacing.check(levels)
@@ -84,7 +93,7 @@ def draw(mesh: Mesh, luminance: Luminance, levels: Levels, /, *, low: float | No
         none = spacing.steps(levels, low or 0.0, low or 0.0)
         empty, _ = banding.cut(mesh.points[:0], mesh.triangles, np.empty((0, 3)), none)
         return dataclasses.replace(empty, error=0.0)
-    made = refine(_Lit(open_apexes(mesh), luminance), levels, low=low)
+    made = refine(_Lit(open_apexes(mesh), luminance), levels, low=low, progress=progress)
     made = _close_apexes(made, mesh)
     return dataclasses.replace(made, points=mesh.world(made.points))
 
@@ -99,20 +108,31 @@ class LitTriangles(Protocol):
     def corners(self) -> Array:
         """Return the luminance at the corners of all triangles."""
 
-    def cut(self, values: Array, steps: Steps, halvings: int) -> tuple[Bands, Indices]:
-        """Return the bands, and the triangle that each polygon was cut from."""
+    def cut(
+        self, values: Array, steps: Steps, known: Crossings, rows: Indices | None
+    ) -> tuple[Bands, Indices]:
+        """Return the bands of some triangles, or of all, and the triangle of each polygon.
+
+        Triangles that share a crease with these may be among them.
+        """
 
     def measure(self, bands: Bands, triangle: Indices) -> Array:
         """Return the largest error of each polygon."""
 
-    def peaks(self, values: Array, bound: float) -> Indices:
-        """Return the triangles whose luminance exceeds that of their corners by over ``bound``."""
+    def peaks(self, rows: Indices) -> Array:
+        """Return the highest luminance found at a grid of points inside some triangles."""
 
-    def split(self, chosen: Indices) -> None:
-        """Halve the edges of chosen triangles, and split their neighbours to match."""
+    def split(self, chosen: Indices) -> Indices:
+        """Halve the edges of chosen triangles, and split their neighbours to match.
+
+        Returns the earlier indices of the triangles that stay as they were; they become the first.
+        """
 
 
-def refine(surface: LitTriangles, levels: Levels, /, *, low: float | None = None) -> Bands:
+def refine(
+    surface: LitTriangles, levels: Levels, /, *, low: float | None = None,
+    progress: Progress | None = None,
+) -> Bands:  # fmt: skip
     """Return the bands of a lit surface, refined until they keep the allowed error.
 
     Parameters
@@ -120,38 +140,108 @@ def refine(surface: LitTriangles, levels: Levels, /, *, low: float | None = None
     surface : LitTriangles
         Lit triangles of a solid, or :class:`vizlight.geometry.contours.facets.Facets`. They are
         split in place.
-    levels, low
-        Steps of luminance and the luminance without light, as for :func:`draw`.
+    levels, low, progress
+        Steps of luminance, luminance without light, and function of the progress, as for
+        :func:`draw`.
 
     Returns
     -------
     Bands
         Bands with the measured error.
     """
+    values, steps, keep = _settled(surface, levels, low, _Found())
+    for turn in range(ROUNDS + 1):
+        count = len(surface.triangles)
+        known = len(keep.error)
+        fresh = np.arange(known, count) if known else None
+        bands, triangle = surface.cut(values, steps, keep.crossings, fresh)
+        pieces = np.bincount(triangle, minlength=count)
+        error = np.zeros(count)
+        np.maximum.at(error, triangle, surface.measure(bands, triangle))
+        error[:known], pieces[:known] = keep.error, keep.pieces
+        chosen = np.flatnonzero(error > _allowed(levels, steps))
+        if progress is not None:
+            progress(1 - len(chosen) / count)
+        if not len(chosen) or turn == ROUNDS or count > ENOUGH or pieces.sum() > MANY:
+            break
+        keep = dataclasses.replace(keep, error=error, pieces=pieces).of(surface.split(chosen))
+        values, found, keep = _settled(surface, levels, low, keep)
+        if _moved(steps, found):
+            steps, keep = found, _Found(keep.highest)
+    if fresh is not None:
+        bands, _ = surface.cut(values, steps, keep.crossings, None)
+    worst, bound = float(error.max(initial=0)), spacing.allowed(levels)
+    if bound is not None and worst > bound:
+        _check.warn(f"levels={bound:g} is not kept everywhere: the largest error is {worst:.3g}")
+    return dataclasses.replace(bands, error=worst)
+
+
+@dataclass(frozen=True)
+class _Found:
+    """What was found of the first triangles, which stay as they were.
+
+    The highest luminance inside each, and under the same steps its error, the number of its
+    polygons, and the crossings of its edges.
+    """
+
+    highest: Array = field(default_factory=lambda: np.zeros(0))
+    error: Array = field(default_factory=lambda: np.zeros(0))
+    pieces: Indices = field(default_factory=lambda: np.zeros(0, np.intp))
+    crossings: Crossings = field(default_factory=banding.Crossings)
+
+    def of(self, same: Indices) -> _Found:
+        """Return what is known of triangles by their earlier indices."""
+        known = same[same < len(self.error)]
+        highest = self.highest[same[same < len(self.highest)]]
+        return _Found(highest, self.error[known], self.pieces[known], self.crossings)
+
+
+def _allowed(levels: Levels, steps: Steps) -> float:
+    """Return the error beyond which a triangle is split."""
     bound = spacing.allowed(levels)
-    worst: float | None = None
-    for last in (*range(ROUNDS), None):
+    return (1 + CURVED) * steps.error if bound is None else KEPT * bound
+
+
+def _settled(
+    surface: LitTriangles, levels: Levels, low: float | None, keep: _Found
+) -> tuple[Array, Steps, _Found]:
+    """Split the triangles with a highlight inside; return the values at corners and the steps."""
+    for turn in range(ROUNDS + 1):
         values = surface.corners()
         bottom = float(values.min()) if low is None else low
         steps = spacing.steps(levels, bottom, float(values.max()))
-        if last is None or len(surface.triangles) > ENOUGH:
+        bad, highest = _peaks(surface, values, _allowed(levels, steps), keep.highest)
+        keep = dataclasses.replace(keep, highest=highest)
+        if not len(bad) or turn == ROUNDS:
             break
-        allowed = (1 + CURVED) * steps.error if bound is None else KEPT * bound
-        rough, triangle = surface.cut(values, steps, ROUGH)
-        if len(rough.values) > MANY:
-            break
-        error = surface.measure(rough, triangle)
-        bad = np.unique(np.concatenate([triangle[error > allowed], surface.peaks(values, allowed)]))
-        if not len(bad):
-            worst = float(error.max(initial=0))
-            break
-        surface.split(bad)
-    made, triangle = surface.cut(values, steps, banding.HALVINGS)
-    if worst is None:
-        worst = float(surface.measure(made, triangle).max(initial=0))
-    if bound is not None and worst > bound:
-        _check.warn(f"levels={bound:g} is not kept everywhere: the largest error is {worst:.3g}")
-    return dataclasses.replace(made, error=worst)
+        keep = keep.of(surface.split(bad))
+    return values, steps, keep
+
+
+def _peaks(
+    surface: LitTriangles, values: Array, allowed: float, highest: Array
+) -> tuple[Indices, Array]:
+    """Return the triangles with a highlight inside that their corners miss.
+
+    Of many triangles only the brightest ones are searched; the highest luminance of all, which
+    determines the steps, is found more exactly. ``highest`` holds the highest luminance of the
+    first triangles, as far as it is known; it is returned for all that are searched.
+    """
+    count = len(values)
+    top = values.max(axis=1, initial=-np.inf)
+    ceiling = top.max(initial=-np.inf) + STILL * allowed
+    if count > ASKED:
+        rows = np.argpartition(top, -BRIGHTEST)[-BRIGHTEST:]
+        return rows[surface.peaks(rows) > ceiling], highest[:0]
+    highest = np.concatenate([highest, surface.peaks(np.arange(len(highest), count))])
+    return np.flatnonzero(highest > np.minimum(top + allowed, ceiling)), highest
+
+
+def _moved(steps: Steps, found: Steps) -> bool:
+    """Return whether the steps have changed by more than a negligible share of a step."""
+    if len(steps.edges) != len(found.edges):
+        return True
+    return float(np.abs(steps.edges - found.edges).max()) > STILL * steps.error
 
 
 class _Lit:
@@ -217,17 +307,34 @@ class _Lit:
         )
 
     def at(self, a: Indices, b: Indices, share: Array, patch: Indices) -> Array:
-        """Return the luminance at fractions of edges, with the normals of one side."""
-        return self.light(self.place(a, b, share), patch)
+        """Return the luminance at fractions (N, m) of edges, with the normals of one side."""
+        count = share.shape[1]
+        places = self.place(np.repeat(a, count), np.repeat(b, count), share.ravel())
+        return self.light(places, np.repeat(patch, count)).reshape(share.shape)
 
-    def cut(self, values: Array, steps: Steps, halvings: int) -> tuple[Bands, Indices]:
-        """Return the bands, and the triangle that each polygon was cut from."""
-        return banding.cut(
-            self.mesh.points, self.mesh.triangles, values, steps, patch=self.mesh.patch,
-            place=self.place, luminance=self.at, halvings=halvings,
+    def cut(
+        self, values: Array, steps: Steps, known: Crossings, rows: Indices | None
+    ) -> tuple[Bands, Indices]:
+        """Return the bands of some triangles, or of all, and the triangle of each polygon.
+
+        Triangles that share a crease with these are among them, as they share its points.
+        """
+        if rows is None:
+            rows = np.arange(len(self.mesh.triangles))
+        else:
+            crease = np.zeros(len(self.codes), np.bool_)
+            crease[self.edge[rows].ravel()] = True
+            crease &= self.both[:, 0] != self.both[:, 1]
+            here = np.asarray(crease[self.edge].any(axis=1))
+            here[rows] = True
+            rows = np.flatnonzero(here)
+        made, triangle = banding.cut(
+            self.mesh.points, self.mesh.triangles[rows], values[rows], steps,
+            patch=self.mesh.patch[rows], place=self.place, luminance=self.at, known=known,
         )  # fmt: skip
+        return made, rows[triangle]
 
-    def split(self, chosen: Indices) -> None:
+    def split(self, chosen: Indices) -> Indices:
         """Halve the edges of chosen triangles, and split their neighbours to match."""
         marked = np.zeros(len(self.codes), np.bool_)
         marked[self.edge[chosen].ravel()] = True
@@ -236,6 +343,7 @@ class _Lit:
         number = np.full(len(self.codes), -1)
         number[marked] = self.size + np.arange(len(a))
         triangles, owner = triangle_mesh.split(self.mesh.triangles, number[self.edge])
+        same = owner[: np.count_nonzero(~marked[self.edge].any(axis=1))]
         self._set(
             self.mesh.replace(
                 points=np.concatenate([self.mesh.points, new]),
@@ -243,77 +351,99 @@ class _Lit:
                 patch=self.mesh.patch[owner],
             )
         )
+        return same
 
-    def peaks(self, values: Array, bound: float) -> Indices:
-        """Return the triangles whose luminance exceeds that of their corners by over ``bound``.
+    def peaks(self, rows: Indices) -> Array:
+        """Return the highest luminance found at a grid of points inside some triangles.
 
-        A highlight may be smaller than a triangle, so each is searched at a grid of points. If
-        there are many triangles, these are small and are not searched.
+        A highlight may be smaller than a triangle.
         """
-        triangles, patch = self.mesh.triangles, self.mesh.patch
-        if len(triangles) > ASKED:
-            return np.empty(0, np.intp)
-        top = values.max(axis=1) + bound
-        found = np.zeros(len(triangles), np.bool_)
-        for row in grid():
-            places = np.einsum("i,tij->tj", row, self.mesh.points[triangles])
-            found |= (
-                self.light(
-                    exact_surfaces.onto(self.mesh.surfaces, places, patch[:, None], 2), patch
-                )
-                > top
-            )
-        return np.flatnonzero(found)
+        places = searched(self.mesh.points[self.mesh.triangles[rows]])
+        patch = np.repeat(self.mesh.patch[rows], places.shape[1])
+        on = exact_surfaces.onto(self.mesh.surfaces, places.reshape(-1, 3), patch[:, np.newaxis], 2)
+        return np.asarray(self.light(on, patch).reshape(len(rows), -1).max(axis=1))
 
     def measure(self, bands: Bands, triangle: Indices) -> Array:
         """Return the largest error of each polygon at its centre and along its edges."""
-        worst = np.zeros(len(bands.values))
-        for places, of in within(bands):
+
+        def light(places: Array, of: Indices) -> Array:
             patch = bands.patch[of]
             on = exact_surfaces.onto(self.mesh.surfaces, places, patch[:, np.newaxis])
-            miss = np.abs(self.light(on, patch) - bands.values[of])
-            worst = np.maximum(worst, largest(bands, miss))
-        worst[slivers(bands, triangle, len(self.mesh.triangles))] = 0
-        return worst
+            return self.light(on, patch)
+
+        return measured(bands, triangle, light)
 
 
-def grid() -> Array:
-    """Return barycentric weights of points inside a triangle, one point per row."""
+def along(start: Array, way: Array, share: Array) -> Array:
+    """Return points at fractions (N, m) of N edges, one after the other."""
+    places = start[:, np.newaxis] + share[:, :, np.newaxis] * way[:, np.newaxis]
+    return np.asarray(places.reshape(-1, start.shape[1]))
+
+
+def searched(corners: Array) -> Array:
+    """Return the points of a grid inside each triangle, shape (T, number of points, columns)."""
     steps = np.array([(i, j) for i in range(GRID) for j in range(GRID - i)]) + 0.5
-    return np.column_stack([steps, GRID + 0.5 - steps.sum(axis=1)]) / (GRID + 0.5)
+    weights = np.column_stack([steps, GRID + 0.5 - steps.sum(axis=1)]) / (GRID + 0.5)
+    return np.asarray(weights @ corners)
 
 
-def within(bands: Bands) -> Iterator[tuple[Array, Indices]]:
-    """Yield the points at which the error of polygons is measured, and the polygon of each."""
-    middle = bands.middles()
-    yield middle, np.arange(len(middle))
-    size = np.diff(bands.offsets)
-    owner = np.repeat(np.arange(len(size)), size)
-    corner, after = bands.points[bands.corners], bands.points[bands.corners[_next(bands)]]
-    for share in ALONG:
-        # The points are just inside the polygon: on a contour both bands are right.
-        places = corner + share * (after - corner)
-        yield places + WITHIN * (middle[owner] - places), owner
+def measured(
+    bands: Bands, triangle: Indices, light: Callable[[Array, Indices], Array], first_column: int = 0
+) -> Array:
+    """Return the largest error of each polygon at its centre and at points of its edges.
 
-
-def largest(bands: Bands, miss: Array) -> Array:
-    """Return the largest value of each polygon, from one value per polygon or per corner."""
-    if len(miss) == len(bands.values):
-        return miss
-    return np.asarray(np.maximum.reduceat(miss, bands.offsets[:-1]))
-
-
-def slivers(bands: Bands, triangle: Indices, count: int) -> Bools:
-    """Return which polygons have a negligible share of the area of their triangle."""
-    owner = np.repeat(np.arange(len(bands.values)), np.diff(bands.offsets))
+    Parameters
+    ----------
+    bands : Bands
+        Bands whose values are compared.
+    triangle : ndarray of int, shape (C,)
+        Triangle of each polygon. Polygons with a negligible share of its area have no error.
+    light : callable
+        Function ``light(points, polygons)`` that returns the luminance of points on polygons.
+    first_column : int, default: 0
+        First of the columns of points that ``light`` takes.
+    """
+    worst, area = np.zeros(len(bands.values)), np.zeros(len(bands.values))
+    columns = np.ascontiguousarray(bands.points.T)
     # Relative to the extent: squares of tiny lengths underflow and those of huge ones overflow.
-    unit = float(np.ptp(bands.points[:, :3], axis=0).max(initial=0)) or 1.0
-    middle = bands.middles()[owner, :3] / unit
-    corner = bands.points[bands.corners, :3] / unit
-    across = np.cross(corner - middle, corner[_next(bands)] - middle)
-    area = np.bincount(owner, np.sqrt(np.einsum("ij,ij->i", across, across)), len(bands.values))
-    whole = np.bincount(triangle, area, count)
-    return np.asarray(area <= SLIVER * whole[triangle])
+    unit = float(np.ptp(columns[:3], axis=1).max(initial=0)) if len(worst) else 0.0
+    first = 0
+    while first < len(worst):
+        last = int(np.searchsorted(bands.offsets, bands.offsets[first] + BLOCK, side="right")) - 1
+        last = max(last, first + 1)
+        offsets = bands.offsets[first : last + 1] - bands.offsets[first]
+        size = np.diff(offsets)
+        corner = columns[:, bands.corners[bands.offsets[first] : bands.offsets[last]]]
+        middle = np.add.reduceat(corner, offsets[:-1], axis=1) / size
+        edge = np.empty_like(corner)
+        edge[:, :-1] = corner[:, 1:]
+        edge[:, offsets[1:] - 1] = corner[:, offsets[:-1]]
+        edge -= corner
+        inward = np.repeat(middle, size, axis=1) - corner
+        doubled = _cross_length(edge[:3] / (unit or 1.0), inward[:3] / (unit or 1.0))
+        area[first:last] = np.add.reduceat(doubled, offsets[:-1])
+        middle, inward, corner, edge = (
+            part[first_column:] for part in (middle, inward, corner, edge)
+        )
+        # The points are just inside the polygon: on a contour both bands are right.
+        corner += WITHIN * inward
+        edge *= 1 - WITHIN
+        places = np.concatenate([middle, *(corner + share * edge for share in ALONG)], axis=1)
+        rows = np.arange(first, last)
+        of = np.concatenate([rows, np.tile(np.repeat(rows, size), len(ALONG))])
+        miss = np.abs(light(places.T, of) - bands.values[of])
+        sides = miss[len(rows) :].reshape(len(ALONG), -1).max(axis=0)
+        worst[first:last] = np.maximum(miss[: len(rows)], np.maximum.reduceat(sides, offsets[:-1]))
+        first = last
+    whole = np.bincount(triangle, area)
+    worst[area <= SLIVER * whole[triangle]] = 0
+    return worst
+
+
+def _cross_length(a: Array, b: Array) -> Array:
+    """Return the lengths of cross products of vectors, shape (3, N)."""
+    parts = [a[i] * b[j] - a[j] * b[i] for i, j in ((1, 2), (2, 0), (0, 1))]
+    return np.asarray(np.sqrt(sum(part * part for part in parts)))
 
 
 def _next(bands: Bands) -> Indices:

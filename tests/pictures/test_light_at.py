@@ -1,0 +1,92 @@
+"""Pictures of lit meshes: in fragments from the record, or the array as it is."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight import Light, Material, Scene, View, render
+
+pytestmark = pytest.mark.opengl
+
+
+@pytest.fixture(autouse=True)
+def one_sample_per_pixel(monkeypatch):
+    """Draw pixels that are covered or not, whose colours can be compared."""
+    monkeypatch.setattr(pv.global_theme, "multi_samples", 1)
+
+
+def helix(count):
+    t = np.linspace(0, 6 * np.pi, count)
+    return pv.MultipleLines(np.stack([np.cos(t), np.sin(t), t * 0.06 - 0.6], 1))
+
+
+def picture(mesh, **options):
+    look = {"size": (240, 200), "background": "black", "anti_aliasing": None, "line_width": 3}
+    (found,) = render.pictures([[mesh]], **look | options)
+    return found.astype(np.int16)
+
+
+CAMERA = render.camera_on((-1, 1, -1, 1, -1, 1), (1, 0.5, 0.6))
+SCENE = Scene(
+    lights=Light(direction=(1, 0.9, 0.5)),
+    material=Material(shininess=60),
+    view=View.from_camera(CAMERA),
+)
+
+
+def test_pictures_are_right_between_the_points():
+    coarse, fine = (
+        picture(vizlight.illuminate(helix(count), SCENE), camera=CAMERA) for count in (61, 6001)
+    )
+    points = picture(vizlight.illuminate(helix(61), SCENE), camera=CAMERA, light="points")
+    both = (fine.min(axis=-1) > 0) & (coarse.min(axis=-1) > 0)
+    errors = [np.abs(shown - fine)[both].mean() for shown in (coarse, points)]
+    assert errors[0] < 0.5 * errors[1]
+
+
+def test_light_is_that_of_the_record_whatever_the_camera():
+    mesh = pv.Sphere(theta_resolution=150, phi_resolution=150)
+    aside = render.camera_on((-1, 1, -1, 1, -1, 1), (-0.2, 1, 0.3))
+    for scene in (SCENE, SCENE.replace(material=Material(color="tan"))):
+        lit = vizlight.illuminate(mesh, scene)
+        name = "rgb" if scene.colored else "luminance"
+        options = {"camera": aside, "scalars": name}
+        error = np.abs(picture(lit, **options) - picture(lit, light="points", **options))
+        assert 0 < error.max() <= 4
+
+
+def test_an_array_that_is_not_that_of_its_record_is_drawn_as_it_is():
+    lit = vizlight.illuminate(helix(61), SCENE)
+    lit["luminance"] = 0.3 * np.asarray(lit["luminance"])
+    shown = (picture(lit, camera=CAMERA, light=light) for light in ("auto", "points"))
+    np.testing.assert_array_equal(*shown)
+    bare = helix(61)
+    bare["luminance"] = np.linspace(0, 1, bare.n_points)
+    shown = (picture(bare, camera=CAMERA, light=light) for light in ("auto", "points"))
+    np.testing.assert_array_equal(*shown)
+    with pytest.raises(ValueError, match="light: expected 'auto' or 'points'"):
+        render.make_plotter(lit, light="fragments")
+
+
+def test_scalar_bar_beside_lit_colours_shows_the_unlit_ones():
+    ball = pv.Sphere()
+    ball["height"] = np.array(ball.points[:, 2])
+    tinted = vizlight.tint(vizlight.illuminate(ball, SCENE), "height", cmap="hot", clim=(-1, 1))
+    plotter = render.make_plotter(tinted, scalars="rgb", bar="height, m", size=(200, 160))
+    table = plotter.scalar_bars["height, m"].GetLookupTable()
+    np.testing.assert_array_equal(
+        pv.convert_array(table.GetTable()), pv.LookupTable("hot", n_values=256).values
+    )
+    assert table.GetRange() == (-1, 1)
+    shown = np.array(plotter.screenshot(None, return_img=True))
+    plotter.close()
+    expected = pv.Plotter(off_screen=True, window_size=(200, 160))
+    expected.add_mesh(tinted, scalars="rgb", rgb=True, lighting=False)
+    direct = np.array(expected.screenshot(None, return_img=True))
+    expected.close()
+    # A ball of red and black through white: both have the same darkest and brightest colours.
+    assert np.ptp(shown[..., 0].astype(int)) > 150
+    assert np.ptp(direct[..., 0].astype(int)) > 150

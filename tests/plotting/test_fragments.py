@@ -1,0 +1,277 @@
+"""Light in fragments is that of the filters on fine meshes, and right between coarse points."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight import DepthCue, Light, Material, Scene, View
+from vizlight.geometry import manifolds
+from vizlight.pictures.backends import probe
+from vizlight.plotting import component
+
+pytestmark = pytest.mark.opengl
+
+FAR = Light(direction=(1, 0.9, 0.5), intensity=0.6)
+NEAR = Light(position=(3, 4, 5), intensity=0.5, attenuation=(0.5, 0.1, 0.01), color=(1, 0.8, 0.5))
+CUE = DepthCue(back_scale=0.3, cue=0.1, color=(0.3, 0.4, 1.0))
+
+
+def torus():
+    """Return a fine surface with a tangent field that has no singular point."""
+    angles = np.linspace(0, 2 * np.pi, 240)
+    angles[-1] = 0.0
+    u, v = np.meshgrid(angles, angles, indexing="ij")
+    ring = 1 + 0.4 * np.cos(v)
+    grid = pv.StructuredGrid(ring * np.cos(u), ring * np.sin(u), 0.4 * np.sin(v))
+    mesh = grid.extract_surface(algorithm=None)
+    a, b = (np.ravel(x, order="F") for x in (u, v))
+    mesh["Normals"] = np.stack([np.cos(a) * np.cos(b), np.sin(a) * np.cos(b), np.sin(b)], 1)
+    mesh.point_data.active_normals_name = "Normals"
+    mesh["around"] = np.stack([-np.sin(a), np.cos(a), 0 * a], 1)
+    mesh["height"] = np.array(mesh.points[:, 2])
+    return mesh
+
+
+def helix(count=12001):
+    t = np.linspace(0, 12 * np.pi, count)
+    mesh = pv.MultipleLines(np.stack([np.cos(t), np.sin(t), t * 0.03 - 0.6], 1))
+    mesh["height"] = np.array(mesh.points[:, 2])
+    return mesh
+
+
+def shot(plotter, camera=None):
+    if camera is None:
+        plotter.view_vector((1, 0.6, 0.8))
+        plotter.camera.zoom(1.3)
+    else:
+        plotter.camera = camera.copy()
+    plotter.render()
+    return np.array(plotter.screenshot(None, return_img=True), dtype=np.int16)
+
+
+def pictures(mesh, scene, **options):
+    """Return the pictures with light in fragments and at the points."""
+    found, camera = [], None
+    for light in ("fragments", "points"):
+        plotter = pv.Plotter(off_screen=True, window_size=(240, 200))
+        plotter.background_color = "black"
+        # At the outline samples of a pixel lie outside their triangle, where light is extrapolated.
+        plotter.render_window.SetMultiSamples(0)
+        options["show_scalar_bar"] = False
+        plotter.vizlight.add_mesh(mesh, scene=scene, light=light, **options)
+        found.append(shot(plotter, camera))
+        camera = plotter.camera.copy()
+        plotter.close()
+    return found
+
+
+SURFACE = {
+    "surface": {},
+    "two-sided": {"two_sided": True},
+    "terminator": {"terminator": 0.3},
+    "tangents": {"tangents": "around"},
+    "conditioned": {"tangents": "around", "conditioned": True},
+}
+SCENES = {
+    "far": Scene(lights=FAR),
+    "near": Scene(lights=NEAR, material=Material(specular=0.3, shininess=35.5)),
+    "two in fog": Scene(lights=[FAR, NEAR], depth_cue=CUE, ambient_color=(0.7, 0.8, 1)),
+    "headlight": Scene(material=Material(color="tan", specular_color=(1, 0.9, 0.8))),
+}
+
+
+@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("model", ["phong", "blinn"])
+@pytest.mark.parametrize("shape", [*SURFACE, "lines"])
+def test_within_four_of_the_light_at_points(shape, model, scene):
+    lines = shape == "lines"
+    mesh = helix() if lines else torus()
+    options = {"line_width": 3} if lines else SURFACE[shape]
+    fragments, points = pictures(mesh, SCENES[scene], model=model, **options)
+    assert points.std() > 5
+    assert np.abs(fragments - points).max() <= 4
+
+
+@pytest.mark.parametrize("shape", ["surface", "conditioned", "lines"])
+def test_colours_of_data_within_four(shape):
+    lines = shape == "lines"
+    mesh = helix() if lines else torus()
+    options = {"line_width": 3} if lines else SURFACE[shape]
+    fragments, points = pictures(
+        mesh, SCENES["two in fog"], scalars="height", cmap="viridis", **options
+    )
+    error = np.abs(fragments - points)
+    # Colours are mapped in each fragment too, which is another rounding.
+    assert error.max() <= 5
+    assert error.mean() < 0.3
+
+
+@pytest.mark.filterwarnings("ignore:light='fragments'")
+def test_fur_within_four():
+    scene = Scene(lights=Light(direction=(1, 0.5, 0.3)), view=View(direction=(1, 0, 0)))
+    coat = vizlight.fur(
+        pv.Sphere(theta_resolution=90, phi_resolution=90), scene, density=0.6, fibres=300,
+        length=0.2, segments=40,
+    )  # fmt: skip
+    fragments, points = pictures(coat, None, line_width=3)
+    assert points.std() > 10
+    assert np.quantile(np.abs(fragments - points), 0.999) <= 4
+
+
+def test_grids_have_their_light_too():
+    mesh = torus()
+    grid = mesh.cast_to_unstructured_grid()
+    a, _ = pictures(grid, SCENES["near"], tangents="around", conditioned=True)
+    b, _ = pictures(mesh, SCENES["near"], tangents="around", conditioned=True)
+    np.testing.assert_array_equal(a, b)
+
+
+@pytest.mark.filterwarnings("ignore:.* of the edges are sharper")
+def test_open_surface_faces_the_eye_in_each_fragment():
+    half = torus().clip(normal="x", origin=(0.2, 0, 0)).extract_surface(algorithm=None)
+    half.point_data.clear()
+    for facing in ("auto", "eye"):
+        fragments, points = pictures(half, SCENES["near"], facing=facing)
+        assert points.std() > 5
+        # Where it turns away, light at the points is a mean of that on both sides.
+        assert np.quantile(np.abs(fragments - points), 0.99) <= 4
+
+
+def test_coarse_lines_are_right_between_their_points():
+    scene = Scene(lights=Light(direction=(1, 0.9, 0.5)), material=Material(shininess=60))
+    coarse, coarse_points = pictures(helix(73), scene, line_width=3)
+    fine, _ = pictures(helix(73 * 120 + 1), scene, line_width=3)
+    # The courses of both lines differ by less than the width, so pixels that both cover count.
+    both = (fine.min(axis=-1) > 0) & (coarse.min(axis=-1) > 0)
+    fragments, points = (np.abs(picture - fine)[both].mean() for picture in (coarse, coarse_points))
+    assert fragments < 0.5 * points
+
+
+def test_camera_light_and_moved_actor_are_followed():
+    mesh = torus()
+    plotter = pv.Plotter(off_screen=True, window_size=(240, 200))
+    plotter.background_color = "black"
+    actor = plotter.vizlight.add_mesh(mesh, scene=SCENES["two in fog"], tangents="around")
+    assert plotter.vizlight.explain(actor).startswith("light in each fragment")
+    plotter.show(auto_close=False)
+    actor.user_matrix = np.diag([1.0, 0.6, 1.5, 1.0])
+    for step in range(3):
+        plotter.camera.azimuth += 70
+        plotter.camera.parallel_projection = step == 1
+        got = shot(plotter, plotter.camera)
+        moved = mesh.transform(actor.user_matrix, inplace=False, transform_all_input_vectors=False)
+        moved["around"] = np.asarray(mesh["around"]) * (1.0, 0.6, 1.5)
+        scene = SCENES["two in fog"].replace(view=View.from_camera(plotter.camera))
+        lit = vizlight.illuminate(moved, scene, tangents="around")
+        lit["rgb"] = np.clip(lit["rgb"], 0, 1)
+        other = pv.Plotter(off_screen=True, window_size=(240, 200))
+        other.background_color = "black"
+        other.add_mesh(lit, scalars="rgb", rgb=True, lighting=False)
+        expected = shot(other, plotter.camera)
+        other.close()
+        assert np.quantile(np.abs(got - expected), 0.9995) <= 4
+    plotter.close()
+
+
+def test_lights_of_the_plotter_may_come_and_go():
+    plotter = pv.Plotter(off_screen=True, window_size=(120, 100))
+    plotter.background_color = "black"
+    plotter.render_window.SetMultiSamples(0)
+    plotter.vizlight.add_mesh(torus(), light="fragments", color="white", ambient=0.2)
+    lit = shot(plotter)
+    plotter.remove_all_lights()
+    dark = shot(plotter, plotter.camera)
+    assert lit.max() > 100
+    assert set(np.unique(dark)) == {0, 51}
+    plotter.add_light(pv.Light(position=(5, 5, 5), light_type="scene light", positional=True))
+    assert shot(plotter, plotter.camera).max() > 100
+    plotter.close()
+
+
+@pytest.mark.parametrize("open_", [False, True])
+def test_lights_of_a_scene_do_not_need_those_of_the_plotter(open_):
+    mesh = pv.Plane(i_resolution=9, j_resolution=9) if open_ else torus()
+    plotter = pv.Plotter(off_screen=True, window_size=(120, 100))
+    plotter.background_color = "black"
+    plotter.vizlight.add_mesh(mesh, scene=SCENES["far"], light="fragments")
+    lit = shot(plotter)
+    plotter.remove_all_lights()
+    without = shot(plotter, plotter.camera)
+    plotter.close()
+    assert lit.max() > 40
+    np.testing.assert_array_equal(without, lit)
+
+
+def reversing():
+    mesh = torus()
+    signs = np.random.default_rng(3).choice([-1.0, 1.0], mesh.n_points)
+    mesh["around"] = np.asarray(mesh["around"]) * signs[:, np.newaxis]
+    return mesh
+
+
+FALLBACKS = {
+    "2 tangents per point": (
+        lambda: manifolds_mesh("after"), Scene(lights=FAR), {"tangents": "projected_frame"}
+    ),
+    "4-space": (
+        lambda: manifolds_mesh("before"), Scene(lights=FAR),
+        {"tangents": "frame", "positions": "position"},
+    ),
+    "cylinder": (helix, Scene(lights=FAR), {"model": "cylinder"}),
+    "sign is arbitrary": (reversing, Scene(lights=FAR), {"tangents": "around"}),
+    "spheres and tubes": (helix, Scene(lights=FAR), {"render_lines_as_tubes": True}),
+}  # fmt: skip
+
+
+def manifolds_mesh(when):
+    shape = manifolds.clifford_torus(resolution=12)
+    return vizlight.manifold(shape, distance=2.0)
+
+
+@pytest.mark.parametrize("reason", FALLBACKS)
+def test_what_fragments_cannot_do_is_done_at_points_with_the_reason(reason):
+    mesh, scene, options = FALLBACKS[reason]
+    plotter = pv.Plotter(off_screen=True, window_size=(60, 50))
+    actor = plotter.vizlight.add_mesh(mesh(), scene=scene, **options)
+    assert reason in plotter.vizlight.explain(actor).splitlines()[0]
+    with pytest.warns(UserWarning, match=f"computed at the points, because .*{reason}"):
+        plotter.vizlight.add_mesh(mesh(), scene=scene, light="fragments", **options)
+    plotter.close()
+
+
+@pytest.mark.parametrize("backend", ["egl", "osmesa"])
+def test_each_backend_draws_the_light_in_fragments(backend):
+    if not probe(backend).works:
+        pytest.skip(probe(backend).detail)
+    code = (
+        "import sys; sys.path.insert(0, 'tests/plotting')\n"
+        "import test_fragments as t, numpy as np\n"
+        "scene, options = t.SCENES['two in fog'], t.SURFACE['conditioned']\n"
+        "a, b = t.pictures(t.torus(), scene, **options)\n"
+        "print(np.abs(a - b).max(), int(b.std()))"
+    )
+    window = {"egl": "vtkEGLRenderWindow", "osmesa": "vtkOSOpenGLRenderWindow"}[backend]
+    run = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        check=True,
+        cwd=os.fspath(pytest.importorskip("pathlib").Path(__file__).parents[2]),
+        env={**os.environ, "VTK_DEFAULT_OPENGL_WINDOW": window},
+    )
+    error, spread = map(int, run.stdout.split()[-2:])
+    assert error <= 4
+    assert spread > 5
+
+
+def test_component_is_the_one_of_the_plotter():
+    plotter = pv.Plotter(off_screen=True)
+    assert isinstance(plotter.vizlight, component.Component)
+    plotter.close()

@@ -1,0 +1,175 @@
+"""Notebooks: the server keeps the light live, and the browser is not left to draw it."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import pyvista as pv
+from PIL import Image
+
+import vizlight
+from vizlight import Light, Scene, View
+from vizlight.plotting import component, notebook
+
+pytestmark = pytest.mark.opengl
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+MISSING = [
+    name
+    for name in ("trame_pyvista", "nest_asyncio2", "playwright")
+    if importlib.util.find_spec(name) is None
+] + ([] if CHROMIUM else ["chromium"])
+SCENE = Scene(lights=Light(direction=(1, 0.6, 0.5)))
+
+#: A notebook's kernel in small: an event loop, in which PyVista shows a plotter in its default way.
+KERNEL = """
+import asyncio, json, sys
+import pyvista as pv
+import vizlight.plotting.component
+from vizlight import Light, Scene
+
+async def kernel():
+    plotter = pv.Plotter(notebook=True, off_screen=True, window_size=(400, 400))
+    plotter.background_color = "black"
+    ball = pv.Sphere(theta_resolution=90, phi_resolution=90)
+    scene = Scene(lights=Light(direction=(1, 0.6, 0.5)))
+    plotter.vizlight.add_mesh(ball, scene=scene, light="points")
+    plotter.view_vector((1, 0.2, 0.1))
+    how = {"handler": lambda viewer, url, **_: url, "server_proxy_enabled": False}
+    url = plotter.show(jupyter_backend="trame", return_viewer=True, jupyter_kwargs=how)
+    print("URL", url, flush=True)
+    loop = asyncio.get_running_loop()
+    while await loop.run_in_executor(None, sys.stdin.readline):
+        camera = plotter.camera
+        print("CAMERA", json.dumps([camera.position, camera.focal_point, camera.up]), flush=True)
+
+asyncio.run(kernel())
+"""
+
+
+def highlight(picture):
+    """Return where the highlight of a ball is, from its centre in units of its radius."""
+    bright = picture.astype(float).mean(axis=-1)
+    rows, columns = np.nonzero(bright > 8)
+    centre = np.array([columns.min() + columns.max(), rows.min() + rows.max()]) / 2
+    rows, columns = np.nonzero(bright > 0.97 * bright.max())
+    return (np.array([columns.mean(), rows.mean()]) - centre) / (
+        np.ptp(np.nonzero(bright > 8)[1]) / 2
+    )
+
+
+def baked(camera, view):
+    """Return PyVista's picture of a ball with the light of a view."""
+    ball = pv.Sphere(theta_resolution=90, phi_resolution=90)
+    lit = vizlight.illuminate(ball, SCENE.replace(view=view))
+    plotter = pv.Plotter(off_screen=True, window_size=(400, 400))
+    plotter.background_color = "black"
+    plotter.add_mesh(
+        lit, scalars="luminance", cmap="gray", clim=(0, 1), lighting=False, show_scalar_bar=False
+    )
+    plotter.camera = camera
+    try:
+        return np.array(plotter.screenshot(None, return_img=True))
+    finally:
+        plotter.close()
+
+
+def answer(process, word):
+    """Return what a process prints after a word."""
+    for line in process.stdout:
+        if line.startswith(word):
+            return line.removeprefix(word).strip()
+    raise AssertionError(f"the kernel ended without {word}")
+
+
+@pytest.mark.skipif(bool(MISSING), reason=f"needs {', '.join(MISSING)}")
+def test_highlight_follows_a_drag_in_the_browser(tmp_path):
+    from playwright.sync_api import sync_playwright
+
+    process = subprocess.Popen(
+        [sys.executable, "-c", KERNEL],
+        stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
+    )  # fmt: skip
+    shots = []
+    try:
+        url = answer(process, "URL")
+        with sync_playwright() as play:
+            browser = play.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+            page = browser.new_page(viewport={"width": 500, "height": 450})
+            page.goto(url)
+            for turn in range(2):
+                for _ in range(60):
+                    page.wait_for_timeout(500)
+                    page.screenshot(path=tmp_path / "page.png")
+                    picture = np.array(Image.open(tmp_path / "page.png").convert("RGB"))[70:]
+                    # The page fades in; a ball has its highlight and, once turned, another one.
+                    if picture.max() > 200 and (not turn or np.any(picture != shots[0])):
+                        break
+                page.wait_for_timeout(1000)
+                page.screenshot(path=tmp_path / "page.png")
+                shots.append(np.array(Image.open(tmp_path / "page.png").convert("RGB"))[70:])
+                if not turn:
+                    page.mouse.move(200, 200)
+                    page.mouse.down()
+                    for i in range(12):
+                        page.mouse.move(200 + 10 * i, 200 + 3 * i)
+                        page.wait_for_timeout(50)
+                    page.mouse.up()
+            browser.close()
+        process.stdin.write("camera\n")
+        process.stdin.flush()
+        position, focal, up = json.loads(answer(process, "CAMERA"))
+    finally:
+        process.stdin.close()
+        process.wait(20)
+        process.stdout.close()
+    camera = pv.Camera()
+    camera.position, camera.focal_point, camera.up = position, focal, up
+    first = View(position=tuple(np.linalg.norm(position) * np.array((1, 0.2, 0.1)) / 1.0247))
+    seen = highlight(shots[1])
+    assert np.abs(seen - highlight(shots[0])).max() > 0.2
+    np.testing.assert_allclose(seen, highlight(baked(camera, View.from_camera(camera))), atol=0.04)
+    stale = highlight(baked(camera, first))
+    assert np.abs(seen - stale).max() > 0.08
+
+
+def live_plotter(**options):
+    plotter = pv.Plotter(off_screen=True, window_size=(40, 40), **options)
+    assert isinstance(plotter.vizlight, component.Component)
+    plotter.vizlight.add_mesh(pv.Sphere(), scene=SCENE)
+    return plotter
+
+
+@pytest.mark.parametrize("name", ["client", "html"])
+def test_browser_is_not_left_to_draw_live_light(name):
+    shown = notebook.Guarded(name, lambda plotter, **options: options)
+    plotter = live_plotter()
+    with pytest.raises(ValueError, match="jupyter_backend: expected server rendering.*'server'"):
+        shown(plotter)
+    plotter.clear_actors()
+    assert shown(plotter, screenshot=None) == {"screenshot": None}
+    plotter.close()
+
+
+def test_default_backend_draws_live_light_on_the_server():
+    shown = notebook.Guarded("trame", lambda plotter, **options: options)
+    plotter = live_plotter()
+    assert shown(plotter) == {"mode": "server"}
+    with pytest.raises(ValueError, match="got 'client'"):
+        shown(plotter, mode="client")
+    plotter.close()
+
+
+@pytest.mark.skipif("trame_pyvista" in MISSING, reason="needs trame_pyvista")
+@pytest.mark.parametrize("backend", ["client", "html"])
+def test_show_refuses_client_rendering_with_the_remedy(backend):
+    plotter = live_plotter(notebook=True)
+    with pytest.raises(ValueError, match="pass jupyter_backend='server'"):
+        plotter.show(jupyter_backend=backend)
+    plotter.close()

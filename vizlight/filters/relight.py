@@ -1,0 +1,296 @@
+"""What a mesh needs to be lit again: the arrays and options of its light, from its record."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import pyvista as pv
+
+from vizlight import _check
+from vizlight.filters import lighting
+from vizlight.filters.fur import FurOptions, fur
+from vizlight.filters.project import ProjectOptions
+from vizlight.filters.relief_shadow import ReliefOptions, relief_shadow
+from vizlight.mesh import blocks, records
+from vizlight.mesh.inputs import part_of, shown_side
+from vizlight.mesh.nspace import PROJECTED
+from vizlight.scene import Scene
+from vizlight.shading import engine
+from vizlight.shading.options import LightOptions
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from vizlight._types import Array
+    from vizlight.mesh.normals import Sided
+    from vizlight.scene import View
+    from vizlight.shading.inputs import ArraySource, ShadingInputs
+    from vizlight.shading.options import Facing, ShadingOptions
+
+#: Share of the points whose light may differ from the record, such as those on the rim of a cut.
+CHANGED = 0.05
+#: Difference of luminance that counts as one.
+SEEN = 2 / 255
+
+
+class Source(NamedTuple):
+    """One mesh, the inputs of its light, and how it is lit.
+
+    ``named`` are options of a filter, from which the inputs are read again after the mesh has
+    changed; None where that takes the filter itself. Where normals are turned to the eye,
+    ``inputs`` has them as they are and ``sided`` turns them. ``inside`` is the number of points of
+    a volume that are not on its surface.
+    """
+
+    mesh: pv.DataSet
+    inputs: ShadingInputs
+    options: ShadingOptions
+    named: LightOptions | None
+    sided: Sided | None = None
+    inside: int = 0
+
+    @property
+    def facing(self) -> Facing:
+        """Side of the surface that is lit."""
+        return "as given" if self.named is None else shown_side(self.named)
+
+    def seen_from(self, view: View | None, inputs: ShadingInputs) -> ShadingInputs:
+        """Return inputs with the normals turned to an eye."""
+        if self.sided is None or inputs.normals is None:
+            return inputs
+        sided = dataclasses.replace(self.sided, vectors=np.asarray(inputs.normals[:]))
+        return dataclasses.replace(inputs, normals=sided.facing(self.facing, inputs.points, view))
+
+
+def from_options(
+    mesh: pv.DataSet | pv.MultiBlock, scene: Scene, options: LightOptions
+) -> list[Source]:
+    """Return what :func:`vizlight.illuminate` lights on a mesh, one source for each block."""
+    return [read(block, path, scene, options) for block, path in blocks.named_blocks(mesh)]
+
+
+def read(mesh: pv.DataSet, path: str, scene: Scene, options: LightOptions) -> Source:
+    """Return what is lit on one mesh by options of :func:`vizlight.illuminate`."""
+    if options.feature_angle is not None:
+        expected, remedy = "None for light that follows", "light a mesh with split points"
+        got = repr(options.feature_angle)
+        raise ValueError(_check.message("feature_angle", expected, got, remedy))
+    part = part_of(mesh, path, scene, options)
+    inputs, sided = part.inputs, part.sided
+    inside = 0 if sided is None else sided.inside
+    source = Source(mesh, inputs, part.options, options, None, inside)
+    turned = sided is not None and (
+        source.facing == "eye" or (source.facing == "auto" and sided.any_open)
+    )
+    if scene.view is None or sided is None or not turned:
+        return source
+    inputs = dataclasses.replace(inputs, normals=sided.vectors)
+    return source._replace(inputs=inputs, sided=sided)
+
+
+def is_lit(mesh: pv.DataSet | pv.MultiBlock, name: str = lighting.DEFAULT_NAME) -> bool:
+    """Return whether each block of a mesh has the record of a light."""
+    every = list(blocks.all_blocks(mesh))
+    return bool(every) and all(
+        "scene" in (records.read(block, name) or {}) and name in block.point_data for block in every
+    )
+
+
+def from_record(
+    mesh: pv.DataSet | pv.MultiBlock,
+    scene: Scene | None = None,
+    name: str = lighting.DEFAULT_NAME,
+) -> tuple[list[Source], Scene]:
+    """Return what a filter lit on the meshes that it returned, and the scene.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet or pyvista.MultiBlock
+        Result of :func:`vizlight.illuminate`, ``streamlines``, ``satin``, ``project``, ``fur`` or,
+        with ``lit=True``, ``relief_shadow``.
+    scene : Scene, optional
+        Scene in place of the recorded one.
+    name : str, default: "luminance"
+        Name of the light.
+
+    Returns
+    -------
+    list of Source
+        One for each block.
+    Scene
+        Scene of the record, or the given one.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If there is no record of the light, it does not suffice, or the light of the record is not
+        that of the mesh, because points or arrays have changed.
+    """
+    record = records.provenance(mesh, name)
+    made = str(record.get("filter"))
+    recorded = Scene.from_dict(record["scene"])
+    used = recorded if scene is None else scene
+    if made == "fur":
+        return _of_fur(mesh, record["options"], used), used
+    found: list[Source] = []
+    for block, path in blocks.named_blocks(mesh):
+        own = records.read(block, name)
+        if own is None:
+            expected = f"a record of {name!r} on each block"
+            raise ValueError(_check.message("mesh", expected, f"none on block {path or block}"))
+        found.append(_of_block(block, path, own, used))
+    if scene is None:
+        _check_light(found, recorded, name)
+    return found, used
+
+
+def _of_block(mesh: pv.DataSet, path: str, record: Mapping[str, Any], scene: Scene) -> Source:
+    made, options = str(record["filter"]), dict(record["options"])
+    _refuse_described(made, options)
+    if made == "relief_shadow":
+        return _of_relief(mesh, options, scene)
+    readers: dict[str, Callable[[pv.DataSet, dict[str, Any]], LightOptions]] = {
+        "illuminate": lambda _, options: LightOptions(**options),
+        "refine": lambda _, options: LightOptions(**_own(LightOptions, options)),
+        "streamlines": _of_lines,
+        "project": _of_projection,
+    }
+    if made not in readers:
+        expected = "light that follows the view"
+        remedy = "draw its arrays by plotter.add_mesh"
+        raise ValueError(_check.message("mesh", expected, f"that of {made}", remedy))
+    light = readers[made](mesh, options)
+    # The points of the result are split already.
+    return read(mesh, path, scene, dataclasses.replace(light, feature_angle=None))
+
+
+def _refuse_described(made: str, options: Mapping[str, object]) -> None:
+    """Refuse options that the record describes instead of holding them."""
+    for option, value in options.items():
+        if isinstance(value, str) and (
+            value.startswith("an array of shape") or value.endswith(" points")
+        ):
+            remedy = f"attach the array and name it by {option}=, or pass scene= and the options"
+            expected = f"a record of {made} that holds {option}"
+            raise ValueError(_check.message("mesh", expected, value, remedy))
+
+
+def _own(kind: type, options: Mapping[str, Any]) -> dict[str, Any]:
+    names = {field.name for field in dataclasses.fields(kind)}
+    return {name: value for name, value in options.items() if name in names}
+
+
+def _of_lines(mesh: pv.DataSet, options: dict[str, Any]) -> LightOptions:
+    """Return the options of streamlines: beside a surface their normals condition the light."""
+    beside = "Normals" in mesh.point_data
+    light = _own(LightOptions, options)
+    if light.get("conditioned") is None:
+        light["conditioned"] = beside
+    if light["conditioned"] is True and light.get("normals") is None:
+        light["normals"] = "Normals"
+    return LightOptions(**light)
+
+
+def _of_projection(mesh: pv.DataSet, options: dict[str, Any]) -> LightOptions:  # noqa: ARG001
+    """Return the options of light in n-space before a projection, or in 3-space after it."""
+    kept = {name: value for name, value in options.items() if name not in ("rotation", "cut")}
+    asked = ProjectOptions(**_own(ProjectOptions, kept))
+    before = asked.light == "before"
+    frame = None if asked.frame is None else f"{'' if before else PROJECTED}{asked.frame}"
+    return asked.by(frame, asked.positions if before else None)
+
+
+def _of_relief(mesh: pv.DataSet, options: dict[str, Any], scene: Scene) -> Source:
+    """Return the source of light with a cos-theta shadow, which is cast again."""
+    kept = {name: value for name, value in options.items() if name != "occluders" or value}
+    made = ReliefOptions(**_own(ReliefOptions, kept) | {"lit": True, "components": False})
+    arguments = {field.name: getattr(made, field.name) for field in dataclasses.fields(made)}
+    seen = _Seen()
+    with engine.observed(seen):
+        relief_shadow(mesh.copy(deep=False), scene, **arguments)
+    inputs, light = seen.runs[-1]
+    return Source(mesh, inputs, light, None)
+
+
+class _Seen:
+    """Observer of the engine that keeps the inputs and the options of its runs."""
+
+    def __init__(self) -> None:
+        self.runs: list[tuple[ShadingInputs, ShadingOptions]] = []
+
+    def __call__(
+        self, inputs: ShadingInputs, _: Scene, __: engine.Shading, options: ShadingOptions
+    ) -> None:
+        self.runs.append((_stored(inputs), options))
+
+
+def _of_fur(
+    mesh: pv.DataSet | pv.MultiBlock, options: Mapping[str, Any], scene: Scene
+) -> list[Source]:
+    """Return the sources of fibres and skin, which grow again."""
+    _refuse_described("fur", options)
+    if not isinstance(mesh, pv.MultiBlock) or {"fibres", "skin"} - set(mesh.keys()):
+        expected, remedy = "the fibres and the skin of fur", "pass the MultiBlock that fur returned"
+        raise ValueError(_check.message("mesh", expected, "one of them", remedy))
+    if options.get("inward") == "drop":
+        remedy = "grow it with inward='flip', or draw its arrays by plotter.add_mesh"
+        raise ValueError(
+            _check.message("mesh", "fur without dropped fibres", "inward='drop'", remedy)
+        )
+    fibres, skin = mesh["fibres"], mesh["skin"]
+    assert isinstance(fibres, pv.DataSet)
+    assert isinstance(skin, pv.PolyData)
+    seen = _Seen()
+    with engine.observed(seen):
+        fur(skin, scene, **_own(FurOptions, options))
+    return [
+        Source(block, inputs, light, None)
+        for block, (inputs, light) in zip((fibres, skin), seen.runs, strict=True)
+    ]
+
+
+def _stored(inputs: ShadingInputs) -> ShadingInputs:
+    """Return inputs whose rows are arrays, not made on demand."""
+    if not inputs.generated:
+        return inputs
+    step, m, rows = inputs.block or inputs.rows, inputs.repeat, inputs.rows
+
+    def stored(source: ArraySource | None) -> Array | None:
+        if source is None:
+            return None
+        array: Array = np.empty(source.shape, source.dtype)
+        each = source.shape[0] != rows
+        for start in range(0, rows, step):
+            stop = min(start + step, rows)
+            for j in range(m if each else 1):
+                at = slice(start * m + j, stop * m, m) if each else slice(start, stop)
+                array[at] = source[at]
+        return array
+
+    points = stored(inputs.points)
+    assert points is not None
+    return dataclasses.replace(
+        inputs,
+        points=points,
+        tangents=stored(inputs.tangents),
+        normals=stored(inputs.normals),
+        fur_height=stored(inputs.fur_height),
+        block=None,
+        generated=False,
+    )
+
+
+def _check_light(sources: list[Source], scene: Scene, name: str) -> None:
+    """Check that the light of the record is the light that the meshes have."""
+    parts = [(source.seen_from(scene.view, source.inputs), source.options) for source in sources]
+    results, _ = lighting.light(parts, scene, threads=None, progress_bar=False)
+    for source, shading in zip(sources, results, strict=True):
+        stored = np.asarray(source.mesh.point_data[name])
+        differs = ~(np.abs(shading.luminance - stored) <= SEEN)
+        if np.count_nonzero(differs) > CHANGED * differs.size:
+            share = f"other light at {np.mean(differs):.0%} of the points"
+            expected = f"a mesh whose {name!r} is that of its record"
+            remedy = "light it again: points or arrays have changed"
+            raise ValueError(_check.message("mesh", expected, share, remedy))

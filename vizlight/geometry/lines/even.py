@@ -1,0 +1,482 @@
+"""Evenly spaced integral curves: all grow at once and stop where they come close to another."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from vizlight.geometry.lines.simplices import Places
+from vizlight.geometry.lines.tracing import Curves, Flow, Trail, Walkers
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from vizlight._types import Array, Bools, Indices
+
+#: Samples of curves per spacing.
+SAMPLES = 4
+#: Largest number of curves that grow at the same time.
+CROWD = 64
+#: Distances between seeds of the same moment, in spacings: at first, and at least.
+APART, NEAR = 8.0, 1.0
+#: Weight of the difference of normals in the distance of places on a surface, in spacings: two
+#: sides of a thin sheet are a spacing apart.
+NORMALS = 0.5
+#: Distance to the side, in spacings, within which a curve that comes back to itself is closed.
+CLOSED = 0.05
+#: Number of samples in the small tree, which is made again at every step.
+RECENT = 1500
+#: Number of places that are looked at as seeds at once.
+QUEUE = 512
+#: Number of random places per square or cube of the spacing that are looked at for gaps.
+DENSE, MOST_PLACES = 8, 200_000
+
+
+class Samples:
+    """Samples of the curves, found by distance."""
+
+    def __init__(self) -> None:
+        self.points: Array = np.empty((0, 3))
+        self.along: Array = np.empty((0, 3))
+        self.sign: Array = np.empty(0)
+        self.length: Array = np.empty(0)
+        self.curve: Indices = np.empty(0, dtype=np.intp)
+        self.number: Indices = np.empty(0, dtype=np.intp)
+        self._cell: Indices = np.empty(0, dtype=np.intp)
+        self._weights: Array = np.empty((0, 3))
+        self._embedded: Array = np.empty((0, 3))
+        self._used: Bools = np.empty(0, dtype=np.bool_)
+        self._size = 0
+        # Most samples are in a tree that is seldom made again, the rest in one that often is.
+        self._old: cKDTree | None = None
+        self._new: cKDTree | None = None
+        self._rows: Indices = np.empty(0, dtype=np.intp)
+        self._recent = self._rows
+        self._whole, self._seen, self._stale = 0, 0, 0
+
+    def add(self, walkers: Walkers, points: Array, embedded: Array) -> None:
+        """Add where ends are now."""
+        count, size = len(points), self._size
+        if size + count > len(self.curve):
+            columns = embedded.shape[1], walkers.places.weights.shape[1]
+            self._grow(max(4096, 2 * (size + count)), *columns)
+        rows = slice(size, size + count)
+        self.points[rows], self._embedded[rows] = points, embedded
+        self.curve[rows], self.sign[rows] = walkers.curve, walkers.sign
+        self.along[rows] = walkers.along
+        self.length[rows], self.number[rows] = walkers.length, walkers.number
+        self._cell[rows], self._weights[rows] = walkers.places.cell, walkers.places.weights
+        self._used[rows] = True
+        self._size += count
+
+    def _grow(self, room: int, dimension: int, corners: int) -> None:
+        """Make room for more samples."""
+
+        def larger(array: Array, *columns: int) -> Array:
+            made = np.zeros((room, *columns))
+            if self._size:
+                made[: self._size] = array[: self._size]
+            return made
+
+        def longer(numbers: Indices) -> Indices:
+            return np.resize(numbers, room) if len(numbers) else np.zeros(room, dtype=np.intp)
+
+        self.points, self.along = larger(self.points, 3), larger(self.along, 3)
+        self._embedded = larger(self._embedded, dimension)
+        self._weights = larger(self._weights, corners)
+        self.sign, self.length = larger(self.sign), larger(self.length)
+        self.curve, self.number = longer(self.curve), longer(self.number)
+        self._cell = longer(self._cell)
+        used = np.zeros(room, dtype=np.bool_)
+        used[: self._size] = self._used[: self._size]
+        self._used = used
+
+    def drop(self, curve: int) -> None:
+        """Forget the samples of a curve."""
+        rows = np.flatnonzero(self.curve[: self._size] == curve)
+        self._used[rows] = False
+        self._seen = -1
+        self._stale += int(np.count_nonzero(rows < self._whole))
+
+    def of(self, curve: int) -> tuple[Places, Array]:
+        """Return the places of a curve's samples, and its directions there."""
+        rows = np.flatnonzero(self.curve[: self._size] == curve)[:: SAMPLES // 2]
+        return Places(self._cell[rows], self._weights[rows]), self.along[rows]
+
+    def near(self, embedded: Array, radius: float, count: int) -> tuple[Array, Indices]:
+        """Return distances and rows of samples within a radius, shape (N, K); infinity for none."""
+        if self._size - self._whole > RECENT or self._stale > RECENT:
+            self._rows = np.flatnonzero(self._used[: self._size])
+            self._old = cKDTree(self._embedded[self._rows], balanced_tree=False)
+            self._whole, self._seen, self._stale = self._size, -1, 0
+            self._recent, self._new = self._rows[:0], None
+        if self._seen != self._size:
+            self._recent = self._whole + np.flatnonzero(self._used[self._whole : self._size])
+            self._new = cKDTree(self._embedded[self._recent], balanced_tree=False)
+            self._seen = self._size
+        distances: list[Array] = []
+        numbers: list[Indices] = []
+        for tree, rows in ((self._old, self._rows), (self._new, self._recent)):
+            if tree is None or not len(rows):
+                continue
+            found = tree.query(embedded, k=count, distance_upper_bound=radius)
+            distance = np.asarray(found[0]).reshape(-1, count)
+            row = rows[np.minimum(np.asarray(found[1]).reshape(-1, count), len(rows) - 1)]
+            distances.append(np.where(self._used[row], distance, np.inf))
+            numbers.append(row)
+        if not distances:
+            empty = np.zeros((len(embedded), 1))
+            return empty + np.inf, empty.astype(np.intp)
+        return np.concatenate(distances, axis=1), np.concatenate(numbers, axis=1)
+
+
+@dataclass(frozen=True)
+class Spacing:
+    """How far apart curves are.
+
+    Attributes
+    ----------
+    spacing : float
+        Distance at which a curve starts beside another.
+    separation : float
+        Share of the spacing at which a curve stops before another.
+    shortest : float
+        Length, in spacings, of the shortest curve that is kept where others cut it short.
+    step : float
+        Largest length of a step, in extents of its cell.
+    max_length, max_steps : float, int
+        Largest length, and number of steps, on either side of a seed.
+    """
+
+    spacing: float
+    separation: float
+    shortest: float
+    step: float
+    max_length: float
+    max_steps: int
+
+
+class Growth:
+    """Curves while they grow; see :func:`evenly_spaced`."""
+
+    def __init__(
+        self, flow: Flow, normals: Array | None, asked: Spacing, random: np.random.Generator
+    ) -> None:
+        self.flow, self.normals, self.asked, self.random = flow, normals, asked, random
+        self.samples, self.trail = Samples(), Trail()
+        #: Number of the last step that is kept, by curve and sign, where some are not.
+        self.last: dict[tuple[int, int], int] = {}
+        self.closed: set[int] = set()
+        self.dropped: set[int] = set()
+        #: Curves that were stopped by another or by themselves.
+        self.cut: set[int] = set()
+        #: Number of ends that grow, and length of those that have stopped, by curve.
+        self.growing: dict[int, int] = {}
+        self.lengths: dict[int, float] = {}
+        self.count, self.apart = 0, APART
+        nowhere = Places(np.empty(0, dtype=np.intp), np.empty((0, flow.mesh.k + 1)))
+        self.walkers = Walkers.at(flow, nowhere, nowhere.cell)
+        #: Of each end: step at which it came back beside its own curve, or -1; length at its last
+        #: sample.
+        self.returning, self.sampled = nowhere.cell, np.empty(0)
+        #: Places a spacing beside curves, from which others may start.
+        self.beside = nowhere
+
+    def embedded(self, places: Places, points: Array) -> Array:
+        """Return positions and, on a surface, scaled normals, in which distances are measured."""
+        if self.normals is None:
+            return points
+        normal = self.flow.mesh.interpolated(self.normals, places)
+        size = np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-30)
+        return np.hstack([points, NORMALS * self.asked.spacing / size * normal])
+
+    def distances(self, places: Places, radius: float) -> Array:
+        """Return the distance of places from the nearest sample; infinite beyond a radius."""
+        embedded = self.embedded(places, self.flow.mesh.positions(places))
+        return np.asarray(self.samples.near(embedded, radius, 4)[0].min(axis=1))
+
+    def start(self, seeds: Places) -> Bools:
+        """Let curves grow from seeds that are apart from each other; return which were taken."""
+        points = self.flow.mesh.positions(seeds)
+        embedded = self.embedded(seeds, points)
+        room = CROWD - len(self.growing)
+        chosen = _apart(embedded, self.apart * self.asked.spacing, room)
+        wide = len(chosen) >= room // 4
+        self.apart = min(APART, 1.5 * self.apart) if wide else max(NEAR, self.apart / 1.5)
+        taken = np.zeros(len(points), dtype=np.bool_)
+        taken[chosen] = True
+        numbers = self.count + np.arange(len(chosen))
+        self.count += len(chosen)
+        made = Walkers.at(self.flow, seeds[chosen], numbers)
+        for curve in made.curve.tolist():
+            self.growing[curve] = self.growing.get(curve, 0) + 1
+        at = self.flow.mesh.positions(made.places)
+        self.trail.add(made)
+        self.samples.add(made, at, self.embedded(made.places, at))
+        self.walkers = self.walkers.joined(made)
+        self.returning = np.append(self.returning, np.full(len(made.curve), -1))
+        self.sampled = np.append(self.sampled, np.zeros(len(made.curve)))
+        return taken
+
+    def grow(self) -> None:
+        """Let all ends make one step."""
+        walkers, mesh = self.walkers, self.flow.mesh
+        sample = self.asked.spacing / SAMPLES
+        size = np.minimum(self.asked.step * mesh.sizes(walkers.places), sample)
+        places, along, made, inside = self.flow.advance(
+            walkers.places, walkers.along, walkers.sign, size
+        )
+        ahead = walkers.moved(places, along, size)
+        points = mesh.positions(places)
+        embedded = self.embedded(places, points)
+        blocked, back, reached, losers = self._met(ahead, points, embedded)
+        for curve in losers.tolist():
+            self.samples.drop(curve)
+            self.growing.pop(curve, None)
+        self.dropped.update(losers.tolist())
+        lost = np.isin(ahead.curve, losers)
+        made &= ~blocked & ~lost
+        self.trail.add(ahead.kept(made))
+        due = made & ~back & (ahead.length - self.sampled >= 0.999 * sample)
+        self.samples.add(ahead.kept(due), points[due], embedded[due])
+        self.sampled = np.where(due, ahead.length, self.sampled)
+        for row in np.flatnonzero(made & (reached >= 0)).tolist():
+            self._close(ahead, row, int(reached[row]))
+        going = made & inside & (ahead.length < self.asked.max_length)
+        going &= (ahead.number < self.asked.max_steps) & ~np.isin(ahead.curve, [*self.closed])
+        began = np.where(self.returning < 0, walkers.number, self.returning)
+        for row in np.flatnonzero(~going & ~lost).tolist():
+            # What runs beside the curve itself is taken back, unless that closes it.
+            if blocked[row]:
+                self.cut.add(int(ahead.curve[row]))
+            if self.returning[row] >= 0:
+                key = int(ahead.curve[row]), int(ahead.sign[row])
+                self.last.setdefault(key, int(self.returning[row]))
+            self._stop(int(ahead.curve[row]), float(walkers.length[row]))
+        self.returning = np.where(back, began, -1)[going]
+        self.walkers, self.sampled = ahead.kept(going), self.sampled[going]
+
+    def _met(
+        self, ahead: Walkers, points: Array, embedded: Array
+    ) -> tuple[Bools, Bools, Indices, Indices]:
+        """Return which ends are blocked, which come back to their own curve, and what they reach.
+
+        The third is the row of the sample at which the curve is closed, or -1; the fourth are the
+        curves that give way.
+        """
+        samples, spacing = self.samples, self.asked.spacing
+        d = self.asked.separation * spacing
+        distance, row = samples.near(embedded, d, 16)
+        sign = ahead.sign[:, np.newaxis]
+        own = samples.curve[row] == ahead.curve[:, np.newaxis]
+        between = np.abs(
+            samples.sign[row] * samples.length[row] - sign * ahead.length[:, np.newaxis]
+        )
+        hit = np.isfinite(distance) & (~own | (between > 3 * d))
+        # A curve that started earlier goes on and a later one gives way, as if it had come first.
+        later = samples.curve[row] > ahead.curve[:, np.newaxis]
+        losers = np.unique(samples.curve[row[hit & later]])
+        hit &= ~later
+        toward = samples.points[row] - points[:, np.newaxis]
+        along = np.einsum("nkj,nj->nk", toward, ahead.along)
+        lateral = np.linalg.norm(
+            toward - along[..., np.newaxis] * ahead.along[:, np.newaxis], axis=2
+        )
+        seed = samples.number[row] == 0
+        facing = np.einsum("nkj,nj->nk", samples.along[row], ahead.along)
+        # Along an orbit the other end of the curve comes the opposite way.
+        opposite = np.where(seed, np.abs(facing), -facing) > 0.8
+        orbit = own & (seed | (samples.sign[row] != sign)) & np.isfinite(distance)
+        # Also a small circle, all of which is near, as soon as the other end is ahead.
+        orbit &= opposite & (lateral < 0.3 * spacing) & (hit | (along > 0))
+        # Of the samples of the other end the outermost is reached first.
+        place = np.where(orbit, -samples.length[row], np.inf).argmin(axis=1)
+        each = np.arange(len(place))
+        back = orbit.any(axis=1)
+        abreast = back & (along[each, place] <= spacing / SAMPLES)
+        close = abreast & (lateral[each, place] <= CLOSED * spacing)
+        blocked = (hit & ~orbit).any(axis=1) | (abreast & ~close)
+        return blocked, back, np.where(close & ~blocked, row[each, place], -1), losers
+
+    def _close(self, ahead: Walkers, row: int, sample: int) -> None:
+        """Close the curve of an end that has reached a sample of the other end."""
+        curve, sign = int(ahead.curve[row]), int(ahead.sign[row])
+        if curve not in self.closed:
+            self.closed.add(curve)
+            self.last[curve, -sign] = int(self.samples.number[sample])
+            self.last[curve, sign] = int(ahead.number[row])
+
+    def _stop(self, curve: int, length: float) -> None:
+        """Note that an end has stopped; after the second keep the curve or drop it."""
+        self.growing[curve] -= 1
+        self.lengths[curve] = self.lengths.get(curve, 0.0) + length
+        if self.growing[curve]:
+            return
+        del self.growing[curve]
+        short = self.lengths[curve] < self.asked.shortest * self.asked.spacing
+        if short and curve in self.cut:
+            self.dropped.add(curve)
+            self.samples.drop(curve)
+        else:
+            self._look_beside(curve)
+
+    def _look_beside(self, curve: int) -> None:
+        """Queue places a spacing beside a curve."""
+        places, along = self.samples.of(curve)
+        if self.normals is not None:
+            u: Array = np.cross(self.flow.mesh.interpolated(self.normals, places), along)
+            sides = [u, -u]
+        else:
+            u = np.cross(along, self.random.normal(size=along.shape))
+            v: Array = np.cross(along, u)
+            sides = [u, -u, v, -v]
+        for side in sides:
+            size = np.linalg.norm(side, axis=1, keepdims=True)
+            step = self.asked.spacing * side / np.where(size > 0, size, 1)
+            found, inside = self.flow.mesh.walk(places, step)
+            self.beside = self.beside.joined(found[inside])
+
+    def refill(self, pool: Places) -> Places:
+        """Start new curves where there is room; return the places of the pool still to be tried."""
+        spacing = self.asked.spacing
+        while len(self.growing) <= CROWD // 2 and len(self.beside.cell):
+            first, rest = self.beside[:QUEUE], self.beside[QUEUE:]
+            first = first[self.distances(first, 0.95 * spacing) >= 0.95 * spacing]
+            if len(first.cell):
+                self.beside = first[~self.start(first)].joined(rest)
+                return pool
+            self.beside = rest
+        if not self.growing:
+            pool = pool[self.distances(pool, spacing) >= spacing]
+            if len(pool.cell):
+                rest = pool[QUEUE:]
+                pool = pool[:QUEUE]
+                pool = pool[~self.start(pool)].joined(rest)
+        return pool
+
+
+def evenly_spaced(
+    flow: Flow,
+    normals: Array | None,
+    asked: Spacing,
+    /,
+    *,
+    seeds: Places | None = None,
+    seed: int = 0,
+    report: Callable[[int], None] = lambda _: None,
+) -> tuple[Curves, int]:
+    """Return integral curves that are evenly spaced, on a whole surface or in a whole volume.
+
+    Parameters
+    ----------
+    flow : Flow
+    normals : ndarray, shape (N, 3), or None
+        Normals at the vertices of a surface; None in a volume.
+    asked : Spacing
+    seeds : Places, optional
+        Seeds of the first curves. Default: random places.
+    seed : int
+        Seed of the random numbers.
+    report : callable, optional
+        Function that takes the number of places of :func:`places_of` that are covered.
+
+    Returns
+    -------
+    curves : Curves
+    closed : int
+        Number of curves that are closed.
+
+    Notes
+    -----
+    Curves start a spacing beside others and stop where they come nearer than ``separation`` to
+    another or to themselves. Where no place beside a curve is free, random places that are a
+    spacing from all curves are tried until none is left: so every part is reached. Source: Jobard
+    and Lefer, Creating evenly-spaced streamlines of arbitrary density (1997), with all curves
+    growing at the same time.
+    """
+    random = np.random.default_rng(seed)
+    pool = places_of(flow, asked.spacing, random)
+    # Parts that are too small for a random place have one of their own.
+    pool = pool[random.permutation(len(pool.cell))].joined(flow.mesh.one_each())
+    growth = Growth(flow, normals, asked, random)
+    total, covered = len(pool.cell), 0
+    if seeds is not None:
+        growth.beside = seeds
+    while True:
+        if len(growth.growing) <= CROWD // 2:
+            pool = growth.refill(pool)
+            covered = max(covered, total - len(pool.cell))
+            report(covered)
+        if not len(growth.walkers.curve):
+            if not growth.growing and not len(growth.beside.cell) and not len(pool.cell):
+                break
+            continue
+        growth.grow()
+    report(total)
+    curves = growth.trail.curves(growth.last, closed=growth.closed, dropped=growth.dropped)
+    return curves, len(growth.closed - growth.dropped)
+
+
+def places_of(flow: Flow, spacing: float, random: np.random.Generator) -> Places:
+    """Return random places all over a surface or a volume, some in each square of the spacing."""
+    return flow.mesh.random(place_count(flow, spacing), random)
+
+
+def place_count(flow: Flow, spacing: float) -> int:
+    """Return the number of places of :func:`places_of`."""
+    count = DENSE * flow.mesh.extent / spacing**flow.mesh.k
+    return int(np.clip(count, 1000, MOST_PLACES))
+
+
+def gaps(
+    flow: Flow, normals: Array | None, asked: Spacing, curves: Curves, /, *, seed: int = 1
+) -> tuple[float, float]:
+    """Return how even curves are.
+
+    Returns
+    -------
+    gap : float
+        Largest distance of random places from the nearest curve, in spacings.
+    near : float
+        Distance of a curve's place to the nearest other curve that 5 % of the places fall below, in
+        spacings; infinite for a single curve.
+    """
+    random = np.random.default_rng(seed)
+    growth = Growth(flow, normals, asked, random)
+    places = places_of(flow, asked.spacing, random)
+    # The field has no curve where it has no direction.
+    places = places[flow.directions(places, None, np.ones(len(places.cell)))[1]]
+    there = growth.embedded(curves.places, flow.mesh.positions(curves.places))
+    tree = cKDTree(there)
+    gap = np.asarray(tree.query(growth.embedded(places, flow.mesh.positions(places)))[0])
+    own = np.repeat(np.arange(len(curves.offsets) - 1), np.diff(curves.offsets))
+    picked = random.choice(len(there), min(len(there), 4000), replace=False)
+    nearest = np.full(len(picked), np.inf)
+    # Neighbours are looked for in larger and larger sets until one is of another curve.
+    left, count = np.arange(len(picked)), 32
+    while len(left) and count <= max(len(there), 32):
+        distance, row = tree.query(there[picked[left]], k=min(count, len(there)))
+        distance = np.where(own[row] != own[picked[left]][:, np.newaxis], distance, np.inf)
+        nearest[left] = distance.min(axis=1)
+        left, count = left[~np.isfinite(nearest[left])], 4 * count
+        if count > 4096:
+            break
+    found = nearest[np.isfinite(nearest)]
+    near = float(np.percentile(found, 5)) if len(found) else np.inf
+    return float(gap.max(initial=0)) / asked.spacing, near / asked.spacing
+
+
+def _apart(embedded: Array, distance: float, most: int) -> Indices:
+    """Return at most so many rows, the first ones first, at least a distance apart."""
+    chosen: list[int] = []
+    left = np.arange(len(embedded))
+    while len(left) and len(chosen) < most:
+        chosen.append(int(left[0]))
+        gap = embedded[left] - embedded[left[0]]
+        left = left[np.einsum("ij,ij->i", gap, gap) >= distance**2]
+        if left.size and left[0] == chosen[-1]:
+            left = left[1:]
+    return np.array(chosen, dtype=np.intp)

@@ -1,0 +1,261 @@
+"""Walks on triangles and tetrahedra: points that move from cell to cell, many at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+if TYPE_CHECKING:
+    from vizlight._types import Array, Bools, Indices
+
+#: Largest number of cells that one step crosses.
+MOST_CROSSINGS = 300
+
+
+@dataclass(frozen=True)
+class Places:
+    """Places in cells.
+
+    Attributes
+    ----------
+    cell : ndarray of int, shape (N,)
+        Index of the cell of each place.
+    weights : ndarray, shape (N, k + 1)
+        Its barycentric coordinates.
+    """
+
+    cell: Indices
+    weights: Array
+
+    def __getitem__(self, rows: Indices | Bools | slice) -> Places:
+        """Return some of the places."""
+        return Places(self.cell[rows], self.weights[rows])
+
+    def joined(self, other: Places) -> Places:
+        """Return these places and then others."""
+        return Places(
+            np.concatenate([self.cell, other.cell]), np.concatenate([self.weights, other.weights])
+        )
+
+
+class Simplices:
+    """Triangles or tetrahedra in 3-space, and which of them share a side.
+
+    Parameters
+    ----------
+    points : ndarray, shape (N, 3)
+        Positions of the vertices.
+    cells : ndarray of int, shape (M, k + 1)
+        Vertices of each cell, k = 2 for triangles and 3 for tetrahedra. Vertices at the same
+        position count as one; cells without extent have no neighbours.
+    """
+
+    def __init__(self, points: Array, cells: Indices) -> None:
+        self.points = np.asarray(points, dtype=np.float64)
+        self.cells = np.asarray(cells, dtype=np.intp)
+        self.k = self.cells.shape[1] - 1
+        corners = self.points[self.cells]
+        edges = corners[:, 1:] - corners[:, :1]
+        # Rows of the pseudoinverse are the gradients of the weights 1 to k; all sum to zero.
+        gram = edges @ np.swapaxes(edges, 1, 2)
+        with np.errstate(all="ignore"):
+            size = np.einsum("mij,mij->m", edges, edges)
+            volume = np.linalg.det(gram / np.where(size > 0, size, 1)[:, np.newaxis, np.newaxis])
+        self.good: Bools = np.isfinite(volume) & (volume > 1e-24)
+        gram[~self.good] = np.eye(self.k)
+        rest = np.linalg.solve(gram, edges)
+        rest[~self.good] = 0
+        self.gradients = np.concatenate([-rest.sum(axis=1, keepdims=True), rest], axis=1)
+        self._extents = np.linalg.norm(np.ptp(corners, axis=1), axis=1)
+
+    @cached_property
+    def merged(self) -> Indices:
+        """Vertices of each cell with one number for each position, shape (M, k + 1)."""
+        order = np.lexsort(self.points.T)
+        ranked = self.points[order]
+        fresh = np.ones(len(order), dtype=np.intp)
+        fresh[1:] = np.any(ranked[1:] != ranked[:-1], axis=1)
+        number = np.empty(len(order), dtype=np.intp)
+        number[order] = np.cumsum(fresh) - 1
+        return np.asarray(number[self.cells])
+
+    @cached_property
+    def neighbours(self) -> Indices:
+        """Cell beyond the side opposite each vertex, shape (M, k + 1); -1 where there is none.
+
+        A side of three cells or more has no cell beyond.
+        """
+        k = self.k
+        cells = np.flatnonzero(self.good)
+        sides = np.stack(
+            [np.delete(self.merged[cells], i, axis=1) for i in range(k + 1)], axis=1
+        ).reshape(-1, k)
+        sides.sort(axis=1)
+        order = np.lexsort(sides.T)
+        ranked = sides[order]
+        same = np.all(ranked[1:] == ranked[:-1], axis=1)
+        before, after = np.append(False, same), np.append(same, False)
+        twice = np.flatnonzero(same & ~before[:-1] & ~after[1:])
+        found = np.full((len(cells), k + 1), -1, dtype=np.intp)
+        a, b = order[twice], order[twice + 1]
+        found.ravel()[a] = cells[b // (k + 1)]
+        found.ravel()[b] = cells[a // (k + 1)]
+        neighbours = np.full(self.cells.shape, -1, dtype=np.intp)
+        neighbours[cells] = found
+        return neighbours
+
+    @cached_property
+    def _sizes(self) -> Array:
+        """Mean extent of the cells at each vertex of each cell, shape (M, k + 1)."""
+        numbers = self.merged.ravel()
+        total = np.bincount(numbers, np.repeat(self._extents, self.k + 1))
+        return np.asarray((total / np.maximum(np.bincount(numbers), 1))[self.merged])
+
+    def sizes(self, places: Places) -> Array:
+        """Return the extent of cells near places, by which steps are chosen; it has no jumps."""
+        return np.asarray(np.einsum("ni,ni->n", places.weights, self._sizes[places.cell]))
+
+    @cached_property
+    def measures(self) -> Array:
+        """Area or volume of each cell, 0 where it has none."""
+        corners = self.points[self.cells]
+        edges = corners[:, 1:] - corners[:, :1]
+        if self.k == 2:
+            size = np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1) / 2
+        else:
+            size = np.abs(np.linalg.det(edges)) / 6
+        return np.where(self.good & np.isfinite(size), size, 0)
+
+    @property
+    def extent(self) -> float:
+        """Area or volume of all cells."""
+        return float(self.measures.sum())
+
+    def one_each(self) -> Places:
+        """Return the middle of the largest cell of each connected part."""
+        cells = np.flatnonzero(self.good)
+        beyond = self.neighbours[cells]
+        own = np.repeat(cells, self.k + 1)[beyond.ravel() >= 0]
+        pairs = own, beyond.ravel()[beyond.ravel() >= 0]
+        count = len(self.cells)
+        graph = coo_array((np.ones(len(own), dtype=np.int8), pairs), shape=(count, count))
+        part = connected_components(graph, directed=False)[1][cells]
+        order = np.lexsort((-self.measures[cells], part))
+        first = np.unique(part[order], return_index=True)[1]
+        share = np.full((len(first), self.k + 1), 1 / (self.k + 1))
+        return Places(cells[order[first]], share)
+
+    def positions(self, places: Places) -> Array:
+        """Return the positions of places, shape (N, 3)."""
+        return self.interpolated(self.points, places)
+
+    def interpolated(self, values: Array, places: Places) -> Array:
+        """Return values of the vertices at places."""
+        return np.asarray(
+            np.einsum("ni,ni...->n...", places.weights, values[self.cells[places.cell]])
+        )
+
+    def locate(self, cell: Indices, positions: Array) -> Places:
+        """Return the places of positions in given cells, or the nearest in each cell roughly."""
+        first = self.points[self.cells[cell]]
+        middle = first.mean(axis=1)
+        share = 1 / (self.k + 1)
+        weights = share + np.einsum("nij,nj->ni", self.gradients[cell], positions - middle)
+        weights = np.maximum(weights, 0)
+        return Places(cell, weights / weights.sum(axis=1, keepdims=True))
+
+    def random(self, count: int, random: np.random.Generator) -> Places:
+        """Return random places, uniform in area or volume; one in each of ``count`` equal parts."""
+        total = np.cumsum(self.measures)
+        at = (np.arange(count) + random.random(count)) * (total[-1] / count)
+        cell = np.minimum(np.searchsorted(total, at, side="right"), len(total) - 1)
+        weights = random.standard_exponential((count, self.k + 1))
+        return Places(cell, weights / weights.sum(axis=1, keepdims=True))
+
+    def walk(self, places: Places, steps: Array) -> tuple[Places, Bools]:
+        """Return where straight steps lead, and whether they ended before a boundary.
+
+        On triangles a step is laid into the plane of its first triangle with its length kept, and
+        continues straight across edges, as if both triangles were unfolded.
+
+        Parameters
+        ----------
+        places : Places
+            N places.
+        steps : ndarray, shape (N, 3)
+            Steps from them.
+
+        Returns
+        -------
+        places : Places
+            Ends of the steps, on the boundary where they would leave the mesh.
+        inside : ndarray of bool, shape (N,)
+            Whether a step was made whole.
+        """
+        cell, weights = places.cell.copy(), places.weights.copy()
+        inside = np.ones(len(cell), dtype=np.bool_)
+        on = np.arange(len(cell))
+        ahead = self._laid(cell, steps)
+        for _ in range(MOST_CROSSINGS):
+            here, at = cell[on], weights[on]
+            change = np.einsum("nij,nj->ni", self.gradients[here], ahead)
+            with np.errstate(all="ignore"):
+                time = np.where(change < 0, -at / change, np.inf)
+            side = np.argmin(time, axis=1)
+            rows = np.arange(len(on))
+            share = np.minimum(time[rows, side], 1.0)
+            at = np.maximum(at + share[:, np.newaxis] * change, 0)
+            through = time[rows, side] < 1
+            at[rows[through], side[through]] = 0
+            at /= at.sum(axis=1, keepdims=True)
+            weights[on] = at
+            beyond = self.neighbours[here, side]
+            inside[on[through & (beyond < 0)]] = False
+            go = through & (beyond >= 0)
+            if not go.any():
+                return Places(cell, weights), inside
+            on, ahead = on[go], ahead[go] * (1 - share[go])[:, np.newaxis]
+            cell[on], weights[on], ahead = self._crossed(
+                here[go], side[go], at[go], beyond[go], ahead
+            )
+        inside[on] = False
+        return Places(cell, weights), inside
+
+    def _laid(self, cell: Indices, steps: Array) -> Array:
+        """Return steps in the planes of their triangles, of the same length."""
+        if self.k == 3:
+            return steps
+        # A weight's change times an edge, summed, is the part of a step in the plane.
+        change = np.einsum("nij,nj->ni", self.gradients[cell], steps)
+        flat = np.einsum("ni,nij->nj", change, self.points[self.cells[cell]])
+        length, asked = np.linalg.norm(flat, axis=1), np.linalg.norm(steps, axis=1)
+        scale = np.where(length > 0, asked / np.where(length > 0, length, 1), 0)
+        return np.asarray(flat * scale[:, np.newaxis])
+
+    def _crossed(
+        self, cell: Indices, side: Indices, weights: Array, beyond: Indices, ahead: Array
+    ) -> tuple[Indices, Array, Array]:
+        """Return cell, weights and the rest of the step beyond the side of a cell."""
+        own, other = self.merged[cell], self.merged[beyond]
+        shared = other[:, :, np.newaxis] == own[:, np.newaxis, :]
+        shared[np.arange(len(cell)), :, side] = False
+        found = np.einsum("nij,nj->ni", shared, weights)
+        if self.k == 2:
+            apex = np.argmin(shared.any(axis=2), axis=1)
+            inward = self.gradients[beyond, apex]
+            inward = inward / np.linalg.norm(inward, axis=1, keepdims=True)
+            rows = np.arange(len(cell))
+            a = self.points[self.cells[cell, (side + 1) % 3]]
+            edge = self.points[self.cells[cell, (side + 2) % 3]] - a
+            edge /= np.linalg.norm(edge, axis=1, keepdims=True)
+            along = np.einsum("ni,ni->n", ahead, edge)
+            across = ahead - along[rows, np.newaxis] * edge
+            ahead = along[:, np.newaxis] * edge + (
+                np.linalg.norm(across, axis=1, keepdims=True) * inward
+            )
+        return beyond, found, ahead

@@ -1,0 +1,215 @@
+"""Streamlines of a mesh: by VTK in space, by vizlight itself in triangles and tetrahedra."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyvista as pv
+from vtkmodules.vtkCommonCore import vtkCommand
+from vtkmodules.vtkCommonDataModel import vtkDataObject
+from vtkmodules.vtkFiltersFlowPaths import vtkStreamTracer
+
+from vizlight import _check
+from vizlight.geometry.lines import even, fur
+from vizlight.geometry.lines.simplices import Places, Simplices
+from vizlight.geometry.lines.tracing import Curves, Flow, trace
+from vizlight.mesh import polylines
+from vizlight.model import kernels, line_fields
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from vizlight._types import Array
+
+#: Name of the array that is traced; no array of a user has it.
+TRACED = "vizlight vectors"
+#: Largest number of samples of evenly spaced curves.
+MOST_SAMPLES = 20_000_000
+#: Order of the 6 components of a symmetric tensor in VTK: XX, YY, ZZ, XY, YZ, XZ.
+SYMMETRIC = [[0, 3, 5], [3, 1, 4], [5, 4, 2]]
+
+
+@dataclass(frozen=True)
+class Tracing:
+    """How curves are traced, in a mesh of size 1; see the options of streamlines."""
+
+    step: float
+    max_length: float
+    max_steps: int
+    seed: int
+
+
+def principal_directions(rows: Array) -> Array:
+    """Return first eigenvectors of tensors of 6 or 9 components; zero where none is first."""
+    if rows.shape[1] == 9:
+        tensors = rows.reshape(-1, 3, 3)
+        tensors = (tensors + np.swapaxes(tensors, 1, 2)) / 2
+    else:
+        tensors = rows[:, SYMMETRIC]
+    return line_fields.principal(tensors)[0][:, 0]
+
+
+def in_space(
+    mesh: pv.DataSet, seeds: Array, how: Tracing, report: Callable[[int], None]
+) -> pv.PolyData:
+    """Return the streamlines of the point array TRACED, one line per seed that leaves it.
+
+    ``report`` takes the share that is done, out of 100.
+    """
+    tracer = vtkStreamTracer()
+    tracer.SetInputDataObject(mesh)
+    tracer.SetSourceData(pv.PolyData(seeds))
+    points = vtkDataObject.FIELD_ASSOCIATION_POINTS
+    tracer.SetInputArrayToProcess(0, 0, 0, points, TRACED)
+    tracer.SetIntegratorTypeToRungeKutta45()
+    tracer.SetIntegrationDirectionToBoth()
+    tracer.SetIntegrationStepUnit(vtkStreamTracer.CELL_LENGTH_UNIT)
+    tracer.SetInitialIntegrationStep(how.step)
+    tracer.SetMaximumIntegrationStep(how.step)
+    tracer.SetMinimumIntegrationStep(min(0.01, how.step))
+    tracer.SetMaximumNumberOfSteps(how.max_steps)
+    tracer.SetMaximumPropagation(how.max_length)
+    tracer.SetTerminalSpeed(1e-6)
+    tracer.SetMaximumError(1e-6)
+    tracer.SetComputeVorticity(False)
+    tracer.AddObserver(vtkCommand.ProgressEvent, lambda *_: report(int(100 * tracer.GetProgress())))
+    tracer.Update()
+    lines: Any = pv.wrap(tracer.GetOutput())
+    return polylines.joined_at_seeds(polylines.before_turning_back(lines))
+
+
+class CellTracer:
+    """Curves in the triangles of a surface or the tetrahedra of a volume.
+
+    Parameters
+    ----------
+    mesh : pyvista.PolyData or pyvista.UnstructuredGrid
+        Triangles, or tetrahedra, with the point array TRACED.
+    normals : str, optional
+        Name of the point normals of a surface.
+    line_field : bool
+        Whether the vectors have no sign.
+    """
+
+    def __init__(
+        self, mesh: pv.PolyData | pv.UnstructuredGrid, normals: str | None, *, line_field: bool
+    ) -> None:
+        self.mesh = mesh
+        if isinstance(mesh, pv.UnstructuredGrid):
+            ids = mesh.cells_dict.get(np.uint8(pv.CellType.TETRA))
+            cells = np.empty((0, 4), dtype=int) if ids is None else np.asarray(ids)
+        else:
+            cells = np.asarray(mesh.regular_faces)
+        points = np.asarray(mesh.points, dtype=np.float64)
+        self.cells = Simplices(points, cells)
+        self.flow = Flow(self.cells, np.asarray(mesh.point_data[TRACED]), line_field=line_field)
+        self.normals = None
+        if normals is not None:
+            self.normals = np.asarray(mesh.point_data[normals], dtype=np.float64)
+
+    def located(self, points: Array) -> Places:
+        """Return places: the closest on a surface; in a volume only those inside."""
+        if isinstance(self.mesh, pv.PolyData):
+            found: Any = self.mesh.find_closest_cell(points, return_closest_point=True)  # type: ignore[arg-type]
+            cell, points = np.atleast_1d(found[0]), np.atleast_2d(found[1])
+        else:
+            cell = np.atleast_1d(self.mesh.find_containing_cell(points))  # type: ignore[arg-type]
+        inside = np.flatnonzero(cell >= 0)
+        return self.cells.locate(cell[inside], points[inside])
+
+    def random(self, count: int, seed: int) -> Places:
+        """Return random places, uniform in area or volume."""
+        if self.cells.k == 3:
+            return self.cells.random(count, np.random.default_rng(seed))
+        face, weights = fur.seeds(self.cells.points, self.cells.cells, count, seed=seed)
+        return Places(face, weights.astype(np.float64))
+
+    def traced(
+        self, seeds: Places, how: Tracing, wanted: int | None, report: Callable[[int], None]
+    ) -> Curves:
+        """Return curves through seeds; where some fail others are drawn until ``wanted`` are there.
+
+        ``report`` takes the share that is done, out of 100.
+        """
+        curves, tried = None, 0
+        while True:
+            total = max(2 * len(seeds.cell), 1)
+            new = trace(
+                self.flow,
+                seeds,
+                step=how.step,
+                max_length=how.max_length,
+                max_steps=how.max_steps,
+                report=lambda done, total=total: report(100 * done // total),  # type: ignore[misc]
+            )
+            curves = new if curves is None else curves.joined(new)
+            missing = 0 if wanted is None else wanted - (len(curves.offsets) - 1)
+            tried += 1
+            if missing <= 0 or tried == 10:
+                return curves if wanted is None else curves.first(wanted)
+            seeds = self.random(2 * missing, how.seed + tried)
+
+    def even(
+        self,
+        seeds: Places | None,
+        how: Tracing,
+        spacing: tuple[float, float, float],
+        report: Callable[[int], None],
+    ) -> tuple[Curves, dict[str, float]]:
+        """Return evenly spaced curves, and how even they are; ``report`` as for traced.
+
+        Parameters
+        ----------
+        seeds : Places, optional
+        how : Tracing
+        spacing : tuple of float
+            Spacing, separation and shortest.
+        """
+        asked = even.Spacing(*spacing, how.step, how.max_length, how.max_steps)
+        total = even.place_count(self.flow, asked.spacing)
+        curves, closed = even.evenly_spaced(
+            self.flow,
+            self.normals,
+            asked,
+            seeds=seeds,
+            seed=how.seed,
+            report=lambda done: report(100 * done // total),
+        )
+        gap, near = even.gaps(self.flow, self.normals, asked, curves)
+        return curves, {"largest_gap": gap, "nearest": near, "closed": closed}
+
+    def lines(self, curves: Curves) -> pv.PolyData:
+        """Return curves as polylines with the point arrays of the mesh, TRACED of length 1."""
+        lines = polylines.polydata(self.cells.positions(curves.places), curves.offsets)
+        for name, array in self.mesh.point_data.items():
+            rows = self.cells.interpolated(np.asarray(array), curves.places)
+            kind = array.dtype if array.dtype.kind == "f" else np.float64
+            lines.point_data[name] = rows.astype(kind)
+        # Interpolated without a regard to signs they would cancel in a line field.
+        lines.point_data[TRACED] = curves.along
+        return lines
+
+
+def check_spacing(tracer: CellTracer, spacing: float, size: float) -> None:
+    """Refuse a spacing that gives more curves than memory holds."""
+    k = tracer.cells.k
+    least = (tracer.cells.extent * even.SAMPLES / MOST_SAMPLES) ** (1 / k)
+    if spacing < least:
+        expected = f"at least {size * least:.3g} for a mesh of this size"
+        raise ValueError(_check.message("spacing", expected, f"{size * spacing:.3g}"))
+
+
+def scaled(mesh: pv.DataSet, vectors: Array) -> pv.DataSet:
+    """Attach vectors as TRACED, scaled to a median length of 1, zero where they are not finite.
+
+    Below a millionth of that a line has come to rest.
+    """
+    array = np.array(vectors, dtype=np.float64)
+    array[~np.all(np.isfinite(array), axis=1)] = 0
+    speed = kernels.length(np.ascontiguousarray(array.T))
+    moving = speed[(speed > 0) & np.isfinite(speed)]
+    scale = float(np.median(moving)) if len(moving) else 1.0
+    mesh.point_data[TRACED] = np.clip(array / scale, -1e30, 1e30)
+    return mesh

@@ -1,0 +1,297 @@
+"""What keeps a drawn mesh lit: its source, its scene at a moment, and what has changed since."""
+
+from __future__ import annotations
+
+import dataclasses
+import warnings
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+from vizlight import _check
+from vizlight.filters import relight
+from vizlight.filters.tint import values_of
+from vizlight.mesh import point_arrays
+from vizlight.scene import Light, Material, Scene, View
+from vizlight.scene.vtk import lights_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    import pyvista as pv
+    from vtkmodules.vtkCommonCore import vtkCollection
+    from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
+
+    from vizlight._types import Array, Vector
+    from vizlight.shading.inputs import ShadingInputs
+
+#: Names of the arrays that the drawn copy of a mesh has beside those of the mesh.
+LUMINANCE, COLORS, VALUES = "vizlight luminance", "vizlight colors", "vizlight values"
+TANGENTS, NORMALS = "vizlight tangents", "vizlight normals"
+
+
+class Painter(Protocol):
+    """The way in which a drawn mesh shows its light."""
+
+    #: Name of the way: "points" or "fragments".
+    light: str
+
+    def attach(self, live: Live) -> None:
+        """Give the drawn mesh the arrays that a new source needs."""
+
+    def drawing(self, live: Live, drawing: dict[str, Any]) -> dict[str, Any]:
+        """Return the keywords of ``plotter.add_mesh``."""
+
+    def start(self, live: Live, actor: vtkActor) -> None:
+        """Prepare an actor that was just made."""
+
+    def paint(self, live: Live, scene: Scene, renderer: vtkRenderer, actor: vtkActor) -> None:
+        """Show the light of a scene."""
+
+    def explain(self, live: Live, scene: Scene) -> str:
+        """Return what is computed, and what is skipped and why."""
+
+
+class Live:
+    """A drawn mesh whose light follows the camera, the lights and the mesh.
+
+    An observer of the actor keeps it alive, so that nothing is left once the actor is gone.
+
+    Parameters
+    ----------
+    source : Source
+        What is lit. Its mesh is that of the caller.
+    drawn : pyvista.DataSet
+        Shallow copy of it that is drawn.
+    scene : Scene or None
+        Scene; None for the lights and the material of the plotter.
+    follow : bool
+        Whether the camera takes the place of the view of the scene.
+    """
+
+    def __init__(
+        self, source: relight.Source, drawn: pv.DataSet, scene: Scene | None, *, follow: bool
+    ) -> None:
+        self.source, self.drawn = source, drawn
+        self.scene, self.follow = scene, follow
+        self.painter: Painter | None = None
+        #: Name of the array that gives the colours, or None.
+        self.scalars: str | None = None
+        self._given: str | None = None
+        self._component: int | None = None
+        self._of_cells = False
+        self._changed = source.mesh.GetMTime()
+        self._state: tuple[object, ...] = ()
+        self._placed: tuple[tuple[float, ...], ShadingInputs] | None = None
+        self._warned = False
+
+    @property
+    def n(self) -> int:
+        """Dimension of the space of the light."""
+        return int(self.source.inputs.points.shape[1])
+
+    def color_by(self, scalars: str, component: int | None, *, at_points: bool) -> None:
+        """Take the colours from an array of the mesh.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If there is no such array, or it is a cell array and the light is at the points.
+        """
+        self._given, self._component = scalars, component
+        self.scalars = scalars
+        mesh = self.source.mesh
+        self._of_cells = scalars in mesh.cell_data and scalars not in mesh.point_data
+        if at_points or not self._of_cells:
+            self._color(scalars)
+
+    def _color(self, given: str) -> None:
+        """Attach the values that are coloured, unless they are an array of the mesh."""
+        values = values_of(self.source.mesh, given, self._component)
+        if np.ndim(self.source.mesh.point_data[given]) > 1:
+            self.scalars = VALUES
+            point_arrays.attach_rows(self.drawn, VALUES, values)
+
+    def start(self, renderer: vtkRenderer, actor: vtkActor) -> None:
+        """Light the mesh for the first time.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If the scene does not fit.
+        """
+        assert self.painter is not None
+        self.painter.paint(self, self.scene_of(renderer, actor), renderer, actor)
+
+    def invalid(self) -> int:
+        """Return the number of points whose vectors have no direction."""
+        good = np.ones(self.source.inputs.rows, dtype=np.bool_)
+        for rows in (self.source.inputs.tangents, self.source.inputs.normals):
+            if rows is not None and rows.shape[0] == len(good):
+                vectors = np.asarray(rows[:]).reshape(len(good), -1)
+                good &= np.any(vectors, axis=1) & np.all(np.isfinite(vectors), axis=1)
+        unlit = int(np.count_nonzero(~good)) - self.source.inside
+        return max(unlit, 0) * self.source.inputs.repeat
+
+    def update(self, renderer: vtkRenderer, actor: vtkActor) -> None:
+        """Light the mesh anew if anything has changed since; called before a frame is drawn.
+
+        What cannot be lit keeps the light it has, with one warning.
+        """
+        if self.painter is None:
+            return
+        state = self._state_of(renderer, actor)
+        if state == self._state:
+            return
+        try:
+            self._read(renderer, actor)
+            scene = self.scene_of(renderer, actor)
+            self.painter.paint(self, scene, renderer, actor)
+        except (KeyError, TypeError, ValueError) as error:
+            if not self._warned:
+                self._warned = True
+                _check.warn(f"the mesh keeps the light that it has: {error}")
+        # Painting itself changes the actor.
+        self._state = self._state_of(renderer, actor)
+
+    def _state_of(self, renderer: vtkRenderer, actor: vtkActor) -> tuple[object, ...]:
+        """Return what the light depends on, in a form that can be compared."""
+        camera, mapper = renderer.GetActiveCamera(), actor.GetMapper()
+        state: list[object] = [
+            camera.GetAddressAsString(""), camera.GetMTime(), self.source.mesh.GetMTime(),
+            _elements(actor),
+        ]  # fmt: skip
+        if self.scene is None:
+            lights = renderer.GetLights()
+            state += [lights.GetMTime(), *(light.GetMTime() for light in items(lights))]
+            state.append(actor.GetProperty().GetMTime())
+        if self.scalars is not None:
+            table = mapper.GetLookupTable()
+            state += [table.GetMTime(), *mapper.GetScalarRange()]
+        return tuple(state)
+
+    def _read(self, renderer: vtkRenderer, actor: vtkActor) -> None:
+        """Read the mesh again after it has changed."""
+        mesh, named = self.source.mesh, self.source.named
+        if mesh.GetMTime() == self._changed:
+            return
+        self.drawn.shallow_copy(mesh)
+        self._changed = mesh.GetMTime()
+        if named is not None:
+            self.source = relight.read(mesh, "", self.scene_of(renderer, actor), named)
+            self._placed = None
+        if self._given is not None and not self._of_cells:
+            self._color(self._given)
+        if self.painter is not None:
+            self.painter.attach(self)
+
+    def scene_of(self, renderer: vtkRenderer, actor: vtkActor) -> Scene:
+        """Return the scene of a frame, in the space of the light."""
+        camera = renderer.GetActiveCamera()
+        if self.scene is not None and not self.follow:
+            return self.scene
+        view = View.from_camera(camera)
+        if self.scene is None:
+            with warnings.catch_warnings():
+                # They were given when the mesh was added.
+                warnings.simplefilter("ignore", UserWarning)
+                return lifted(scene_of(renderer, actor, self.source.options.model), self.n)
+        if self.scene.view is not None and self.n > 3 and self.scene.n == self.n:
+            # An eye in n-space is not that of the camera.
+            return self.scene
+        if self.scene.n in (None, 3):
+            return lifted(self.scene.replace(view=view), self.n)
+        if self.scene.n != self.n:
+            # The plan names what does not fit.
+            return self.scene
+        return self.scene.replace(view=_lifted_view(view, self.n))
+
+    def placed(self, actor: vtkActor) -> ShadingInputs:
+        """Return the inputs of the light where the actor stands."""
+        elements = _elements(actor)
+        inputs = self.source.inputs
+        if self.n != 3 or np.array_equal(np.reshape(elements, (4, 4)), np.eye(4)):
+            return inputs
+        if self._placed is None or self._placed[0] != elements:
+            self._placed = elements, _transformed(inputs, np.reshape(elements, (4, 4)))
+        return self._placed[1]
+
+
+def scene_of(renderer: vtkRenderer, actor: vtkActor, model: str) -> Scene:
+    """Return the scene of a renderer: its lights, its camera and the material of an actor."""
+    camera = renderer.GetActiveCamera()
+    view = View.from_camera(camera)
+    lights = list(lights_of(items(renderer.GetLights()), camera))
+    kind = "phong" if model == "phong" else "blinn"
+    prop = actor.GetProperty()
+    material = Material.from_property(prop, lights=lights, view=view, model=kind)
+    return Scene(lights=lights, material=material, view=view)
+
+
+def items(collection: vtkCollection) -> Iterator[Any]:
+    """Yield what a collection of VTK holds."""
+    for i in range(collection.GetNumberOfItems()):
+        yield collection.GetItemAsObject(i)
+
+
+def lifted(scene: Scene, n: int) -> Scene:
+    """Return a scene of 3-space in the hyperplane of the first three axes of n-space."""
+    if n <= 3 or scene.n != 3:
+        return scene
+    lights = tuple(
+        dataclasses.replace(
+            light, direction=_lifted(light.direction, n), position=_lifted(light.position, n)
+        )
+        for light in scene.lights
+    )
+    view = None if scene.view is None else _lifted_view(scene.view, n)
+    return scene.replace(lights=lights, view=view)
+
+
+def _lifted(vector: Vector | None, n: int) -> Vector | None:
+    return None if vector is None else (*vector, *([0.0] * (n - len(vector))))
+
+
+def _lifted_view(view: View, n: int) -> View:
+    return View(
+        position=_lifted(view.position, n),
+        direction=_lifted(view.direction, n),
+        parallel=view.parallel,
+    )
+
+
+def _elements(actor: vtkActor) -> tuple[float, ...]:
+    """Return the matrix by which an actor is placed, row after row."""
+    matrix = actor.GetMatrix()
+    return tuple(matrix.GetElement(i, j) for i in range(4) for j in range(4))
+
+
+def _transformed(inputs: ShadingInputs, matrix: Array) -> ShadingInputs:
+    """Return inputs in 3-space moved by a matrix; normals stay across the surface."""
+    linear, offset = matrix[:3, :3], matrix[:3, 3]
+    points = np.asarray(inputs.points[:], dtype=np.float64) @ linear.T + offset
+    tangents = normals = None
+    if inputs.tangents is not None:
+        rows = np.asarray(inputs.tangents[:])
+        tangents = (rows.reshape(-1, 3) @ linear.T).astype(rows.dtype).reshape(rows.shape)
+    if inputs.normals is not None:
+        rows = np.asarray(inputs.normals[:])
+        normals = (rows @ np.linalg.inv(linear)).astype(rows.dtype)
+    return dataclasses.replace(inputs, points=points, tangents=tangents, normals=normals)
+
+
+def headlight_scene(n: int) -> Scene:
+    """Return a scene by which a source can be checked before there is a frame."""
+    view = View(direction=(0.0, 0.0, 1.0))
+    return lifted(Scene(lights=Light(direction=(0.0, 0.0, 1.0)), view=view), n)
+
+
+def colorless(scene: Scene) -> Scene:
+    """Return a scene without colours, whose light is luminance alone."""
+    cue, material = scene.depth_cue, scene.material
+    return scene.replace(
+        lights=tuple(dataclasses.replace(light, color=None) for light in scene.lights),
+        material=dataclasses.replace(material, color=None, specular_color=None),
+        ambient_color=None,
+        depth_cue=None if cue is None else dataclasses.replace(cue, color=None),
+    )

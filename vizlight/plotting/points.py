@@ -1,0 +1,122 @@
+"""Light at the points, computed again before a frame in which it would be another one."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from vizlight import _check
+from vizlight.filters import lighting
+from vizlight.filters.tint import light_factors, map_colors, times_light
+from vizlight.mesh import point_arrays
+from vizlight.plotting.live import COLORS, LUMINANCE
+from vizlight.shading.decide import decide
+
+if TYPE_CHECKING:
+    import pyvista as pv
+    from numpy.typing import NDArray
+    from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
+
+    from vizlight.plotting.live import Live
+    from vizlight.scene import Scene
+
+
+class Points:
+    """Light as a point array of the drawn mesh, the same numbers as a filter attaches.
+
+    Parameters
+    ----------
+    reason : str
+        Why the light is not computed in each fragment.
+    """
+
+    light = "points"
+
+    def __init__(self, reason: str) -> None:
+        self.reason = reason
+
+    def attach(self, live: Live) -> None:
+        """Give the drawn mesh an array; the first frame fills it."""
+        count = live.drawn.n_points
+        point_arrays.attach_rows(live.drawn, LUMINANCE, np.zeros(count))
+        channels = 3 if live.scalars is None else 4
+        kind = np.float64 if live.scalars is None else np.uint8
+        point_arrays.attach_rows(live.drawn, COLORS, np.zeros((count, channels), kind))
+
+    def drawing(self, live: Live, drawing: dict[str, Any]) -> dict[str, Any]:
+        """Return the keywords of ``plotter.add_mesh``."""
+        if live.scalars is not None:
+            return drawing | {"lighting": False}
+        color = drawing.pop("color", None)
+        if color is not None and live.scene is not None:
+            channels = _check.color("color", color)
+            material = dataclasses.replace(live.scene.material, color=channels)
+            live.scene = live.scene.replace(material=material)
+        plain = {"lighting": False, "show_scalar_bar": False}
+        if live.scene is not None and not live.scene.colored:
+            gray = {"scalars": LUMINANCE, "cmap": "gray", "clim": (0.0, 1.0)}
+            return drawing | plain | gray
+        own = True if color is None else color
+        return drawing | plain | {"scalars": COLORS, "rgb": True, "color": own}
+
+    def start(self, live: Live, actor: vtkActor) -> None:
+        """Let the mapper of an actor draw lit colours in place of those of the data."""
+        if live.scalars is None:
+            return
+        mapper = actor.GetMapper()
+        if live.scene is None:
+            actor.GetProperty().SetSpecularColor(1.0, 1.0, 1.0)
+        mapper.SetScalarModeToUsePointFieldData()
+        mapper.SelectColorArray(COLORS)
+        mapper.SetColorModeToDirectScalars()
+        mapper.SetInterpolateScalarsBeforeMapping(False)
+
+    def paint(self, live: Live, scene: Scene, renderer: vtkRenderer, actor: vtkActor) -> None:  # noqa: ARG002
+        """Light the points and draw them with the result."""
+        inputs = live.source.seen_from(scene.view, live.placed(actor))
+        source = live.source._replace(inputs=inputs, sided=None)
+        if live.scalars is not None:
+            (factors,) = light_factors([source], scene)
+            colors = _colors(live, actor)
+            _write(live.drawn, COLORS, times_light(colors, *factors))
+            return
+        parts = [(source.inputs, source.options)]
+        (shading,), _ = lighting.light(parts, scene, threads=None, progress_bar=False)
+        if live.scene is None or live.scene.colored:
+            rgb = shading.rgb
+            if rgb is None:
+                rgb = np.repeat(shading.luminance[:, np.newaxis], 3, axis=1)
+            # VTK wraps around above 1, so a bright highlight would turn black.
+            _write(live.drawn, COLORS, np.clip(rgb, 0, 1))
+        else:
+            _write(live.drawn, LUMINANCE, shading.luminance)
+
+    def explain(self, live: Live, scene: Scene) -> str:
+        """Return why the light is computed at the points, and what of it."""
+        fitted = lighting.fit_depth_cue(scene, [live.source.inputs])
+        plan = decide(fitted, live.source.inputs.layout, live.source.options)
+        return f"light at the points: {self.reason}\n{plan.explain()}"
+
+
+def _colors(live: Live, actor: vtkActor) -> NDArray[np.uint8]:
+    """Return the colours of the data, as the mapper has them."""
+    values = np.asarray(live.drawn.point_data[live.scalars or ""])
+    if values.ndim == 2:
+        # PyVista keeps colours of its own for an opacity of each point.
+        return values.astype(np.uint8)
+    table: pv.LookupTable = actor.GetMapper().GetLookupTable()
+    return map_colors(table, values)
+
+
+def _write(mesh: pv.DataSet, name: str, values: NDArray[np.generic]) -> None:
+    """Write values to an array of a mesh, in place where they fit."""
+    if name in mesh.point_data:
+        array = mesh.point_data[name]
+        if array.shape == values.shape and array.dtype == values.dtype:
+            np.copyto(array, values)
+            mesh.GetPointData().GetAbstractArray(name).Modified()
+            mesh.Modified()
+            return
+    point_arrays.attach_rows(mesh, name, values)
