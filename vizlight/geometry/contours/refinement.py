@@ -34,9 +34,9 @@ CURVED = 0.1
 SLIVER = 1e-4
 #: Fractions of edges at which the error of polygons is measured, and the offset inward.
 ALONG, WITHIN = (0.25, 0.5, 0.75), 1e-3
-#: Share of an allowed error that a measured one must keep, since the error between the measured
-#: points may be slightly larger.
-KEPT = 0.98
+#: Share of an allowed error beyond half a step that a measured one must keep, since the error
+#: between the measured points may be slightly larger.
+KEPT = 0.7
 #: Number of corners that are measured at once.
 BLOCK = 1 << 15
 #: Number of triangles beyond which only the brightest ones are searched for smaller highlights, the
@@ -199,7 +199,9 @@ class _Found:
 def _allowed(levels: Levels, steps: Steps) -> float:
     """Return the error beyond which a triangle is split."""
     bound = spacing.allowed(levels)
-    return (1 + CURVED) * steps.error if bound is None else KEPT * bound
+    if bound is None:
+        return (1 + CURVED) * steps.error
+    return steps.error + KEPT * (bound - steps.error)
 
 
 def _settled(
