@@ -1,9 +1,10 @@
 """Random plans and inputs, directed at the hard cases, lit by compiled code and by NumPy.
 
-``python tests/differential.py [COUNT]`` lights COUNT random plans (default 100,000), each at 32
-points, by kernels that numba compiles, and prints the largest difference in units of the bound for
-each kind of plan. A kernel serves all plans of its form; numbers, points and vectors are random for
-each plan. It takes some ten minutes; ``tests/shading/test_compiled.py`` runs a sample.
+``python tests/differential.py [COUNT [START]]`` lights COUNT random plans (default 100,000) at 32
+points each, by kernels that numba compiles, and prints the largest difference in units of the bound
+for each kind of plan. A kernel serves all plans of its form; numbers, points and vectors are random
+for each plan. It takes half an hour of one core; START is the number of the form with which a run
+that was interrupted goes on. ``tests/shading/test_compiled.py`` runs a sample.
 """
 
 from __future__ import annotations
@@ -25,6 +26,8 @@ from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import ShadingOptions
 
 POINTS = 32
+#: Number of plans of each form.
+EACH = 500
 KINDS = ("surface", "line", "frame", "conditioned", "free", "based", "fur", "shadow", "cylinder")
 POWERS = (0, 0.3, 1, 2, 7.5, 20, 20, 31, 63, 64, 100.5, 1e4, 1e6)
 
@@ -320,13 +323,13 @@ def _way(position, direction, points, *, far):
     return _unit(np.asarray(position, float) - points)
 
 
-def main(count: int) -> None:
-    """Run all, print the worst of each kind."""
-    random = np.random.default_rng(14)
+def main(count: int, start: int = 0) -> None:
+    """Run all from the form of a number, print the worst of each kind."""
     worst, cases, points = defaultdict(float), defaultdict(int), 0
-    for number in range(count // 500):
+    for number in range(start, count // EACH):
         form = frame(np.random.default_rng(1000 + number))
-        for _ in range(500):
+        random = np.random.default_rng((14, number))
+        for _ in range(EACH):
             ratio, lit = compare(case(form, random), interpreted=False)
             worst[form.kind] = max(worst[form.kind], ratio)
             cases[form.kind] += 1
@@ -338,4 +341,4 @@ def main(count: int) -> None:
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 100_000)
+    main(*map(int, sys.argv[1:3] or ["100000"]))

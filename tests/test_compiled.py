@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import warnings
 
 import numpy as np
 import pytest
@@ -141,8 +142,73 @@ def test_a_missing_or_old_numba_is_named(monkeypatch, found, words):
 def test_a_numba_that_refuses_numpy_is_named(home, monkeypatch):
     monkeypatch.setattr(_compiled, "_BROKEN", [])
     monkeypatch.setitem(sys.modules, "numba", None)
-    assert not _compiled.Kernel(triple).pays(1e9)
-    assert _compiled.why_not().startswith("numba cannot be imported")
+    with pytest.warns(RuntimeWarning, match="numba cannot be used: .*NumPy computes the same"):
+        assert not _compiled.Kernel(triple).pays(1e9)
+    assert _compiled.why_not().startswith("numba cannot be used: ModuleNotFoundError")
+
+
+def unknown(values):
+    return no_such_name(values)  # noqa: F821
+
+
+@pytest.mark.parametrize("fault", ["type", "llvm", "run"])
+def test_a_kernel_that_fails_switches_compiled_code_off(home, monkeypatch, fault):
+    """By a function that numba refuses, a compiler that breaks down, and one that fails later."""
+    monkeypatch.setattr(_compiled, "_BROKEN", [])
+    kernel, other = (_compiled.Kernel(f) for f in (unknown if fault == "type" else triple, triple))
+
+    def broken(*_):
+        raise RuntimeError("LLVM ERROR: out of registers\nmore")
+
+    if fault == "run":
+        assert kernel(np.array([2.0])) == 6
+        monkeypatch.setattr(kernel, "_compiled", broken)
+    elif fault == "llvm":
+        monkeypatch.setattr(kernel, "_compile", lambda folder: broken)
+
+    def call(values):
+        with pytest.raises(
+            _compiled.FailedError, match=r"a function that numba compiles|numba, see"
+        ):
+            kernel(values)
+
+    with pytest.warns(RuntimeWarning, match="slower for many points") as caught:
+        call(np.array([2.0]))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        call(np.array([2.0]))
+    assert len(caught) == 1
+    words = "TypingError" if fault == "type" else "RuntimeError: LLVM ERROR: out of registers"
+    assert f"numba failed with {kernel.function.__name__}: {words}" in _compiled.status()
+    assert not other.pays(1e9)
+
+
+def test_the_doctor_tries_it_out(home, monkeypatch):
+    from vizlight import doctor
+
+    def broken(*_):
+        raise RuntimeError("LLVM ERROR: no such processor")
+
+    monkeypatch.setattr(_compiled, "_BROKEN", [])
+    monkeypatch.setattr(
+        doctor.render, "probe", lambda backend: doctor.render.Probe(backend, works=True, detail="")
+    )
+    assert dict(doctor.findings())["compiled code"].startswith("on (where it pays)")
+    monkeypatch.setattr(_compiled.Kernel, "_first", broken)
+    assert "LLVM ERROR: no such" in dict(doctor.findings())["compiled code"]
+
+
+def test_a_disk_that_fills_costs_the_cache_alone(home, monkeypatch):
+    from numba.core.caching import IndexDataCacheFile
+
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(_compiled, "_BROKEN", [])
+    monkeypatch.setattr(IndexDataCacheFile, "save", full)
+    kernel = _compiled.Kernel(triple)
+    assert kernel(np.array([2.0])) == 6
+    assert _compiled.active()
 
 
 def test_generated_code_is_kept(home):

@@ -39,10 +39,12 @@ if TYPE_CHECKING:
     from vizlight.mesh.polylines import direction_colors
     from vizlight.mesh.records import provenance
     from vizlight.scene import DepthCue, Light, Material, Scene, View
+    from vizlight.shading.options import Bundle
     from vizlight.verify.report import report
 
 _HOMES = {
     "Block": "vizlight.geometry.solids.primitives",
+    "Bundle": "vizlight.shading.options",
     "DepthCue": "vizlight.scene",
     "Frustum": "vizlight.geometry.solids.primitives",
     "HalfSpace": "vizlight.geometry.solids.polyhedra",
@@ -85,6 +87,7 @@ _aliases.install()
 
 __all__ = [
     "Block",
+    "Bundle",
     "DepthCue",
     "Frustum",
     "HalfSpace",

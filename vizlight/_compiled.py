@@ -21,6 +21,7 @@ import sys
 import tempfile
 import threading
 import types
+import warnings
 from functools import cache, lru_cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -46,6 +47,8 @@ IMPORT, READ, COMPILE = 0.35, 0.15, 1.2
 SHARED = 1 / 3
 #: What a damaged file of the cache raises when numba reads it.
 _DAMAGED = (pickle.UnpicklingError, EOFError, ValueError, LookupError, AttributeError, ImportError)
+#: What the import of numba raises beside other releases of NumPy or without its own libraries.
+_UNUSABLE = (ImportError, OSError, AttributeError, RuntimeError, TypeError, ValueError)
 
 _SETTING: contextvars.ContextVar[str | None] = contextvars.ContextVar("fast", default=None)
 _LOCK = threading.RLock()
@@ -101,9 +104,35 @@ def status() -> str:
     return f"on ({when}), by numba {version('numba')}, {kept}"
 
 
+def try_out() -> None:
+    """Compile and run a small function, after which :func:`status` says whether that works."""
+    if active():
+        with warnings.catch_warnings(), contextlib.suppress(FailedError):
+            warnings.simplefilter("ignore")
+            Kernel(_twice)(1.0)
+
+
+def _twice(x: float) -> float:
+    return 2 * x
+
+
 def could_pay(saved: float) -> bool:
     """Return whether some kernel could pay for its start-up by the seconds it saves."""
     return wanted() == "1" or saved >= READ + (0.0 if "numba" in sys.modules else IMPORT)
+
+
+class FailedError(RuntimeError):
+    """Compiled code cannot be used: its caller computes the same by NumPy."""
+
+
+def _give_up(what: str, error: Exception) -> str:
+    """Switch compiled code off in this process, with a warning at the first time; return why."""
+    if not _BROKEN:
+        words = str(error).strip().splitlines() or [""]
+        _BROKEN.append(f"{what}: {type(error).__name__}: {words[0]}")
+        text = f"{_BROKEN[0]}. NumPy computes the same, slower for many points."
+        warnings.warn(text, RuntimeWarning, stacklevel=3)
+    return _BROKEN[0]
 
 
 def _unusable() -> str:
@@ -222,15 +251,15 @@ class Kernel(Generic[P, R]):
     def ready(self) -> bool:
         """Import numba and prepare the function; return whether that worked.
 
-        Where numba cannot be imported, :func:`why_not` says so from then on.
+        Where it did not, as numba refuses a release of NumPy that it does not know, a warning and
+        :func:`why_not` say so, and nothing is compiled from then on.
         """
         if not active():
             return False
         try:
             self._dispatcher()
-        except ImportError as error:
-            # numba refuses a release of NumPy that it does not know.
-            _BROKEN.append(f"numba cannot be imported: {error}")
+        except _UNUSABLE as error:
+            _give_up("numba cannot be used", error)
         return active()
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
@@ -238,25 +267,40 @@ class Kernel(Generic[P, R]):
 
         Raises
         ------
-        RuntimeError
-            If numba is not installed.
+        FailedError
+            If numba is not installed, or fails to compile or to run the function. A warning says
+            so once, and no other function is compiled in this process: call NumPy code instead.
         """
-        if self._proven and self._compiled is not None:
-            return self._compiled(*args, **kwargs)
+        name = self.function.__name__
         if _unusable():
-            expected = "numba, see Kernel.pays"
-            raise RuntimeError(_check.message(self.function.__name__, expected, _unusable()))
-        with _LOCK:
-            try:
-                result = self._dispatcher()(*args, **kwargs)
-            except _DAMAGED:
-                # A file of the cache is damaged, or the function itself fails, which it does again.
-                if (folder := self._folder()) is not None:
-                    shutil.rmtree(folder, ignore_errors=True)
-                self._compiled = None
-                result = self._dispatcher()(*args, **kwargs)
-            self._proven = True
+            raise FailedError(_check.message(name, "numba, see Kernel.pays", _unusable()))
+        try:
+            if self._proven and self._compiled is not None:
+                return self._compiled(*args, **kwargs)
+            with _LOCK:
+                result = self._first(*args, **kwargs)
+                self._proven = True
+        except Exception as error:
+            reason = _give_up(f"numba failed with {name}", error)
+            raise FailedError(
+                _check.message(name, "a function that numba compiles", reason)
+            ) from error
         return result
+
+    def _first(self, *args: P.args, **kwargs: P.kwargs) -> R:
+        """Compile the function, or read it from the disk, and call it."""
+        try:
+            return self._dispatcher()(*args, **kwargs)
+        except _DAMAGED:
+            # A file of the cache is damaged, or the function itself fails, which it does again.
+            if (folder := self._folder()) is not None:
+                shutil.rmtree(folder, ignore_errors=True)
+            self._compiled = None
+            return self._dispatcher()(*args, **kwargs)
+        except OSError:
+            # The disk is full or cannot be read: the code stays in memory.
+            self._compiled = self._compile(None)
+            return self._compiled(*args, **kwargs)
 
     def _dispatcher(self) -> Callable[P, R]:
         """Return numba's own function."""

@@ -32,6 +32,8 @@ Doing: TypeAlias = Literal["read", "write", "draw"]
 LACKING, BAD_INPUT = 1, 2
 #: Time that a file may take to be read, in seconds, and what each megabyte adds.
 READ_SECONDS, READ_SECONDS_PER_MB = 60.0, 1.0
+#: Seconds that a child has to end after Ctrl-C.
+PATIENCE = 5.0
 #: Environment variable that replaces READ_SECONDS.
 READ_VARIABLE = "VIZLIGHT_READ_SECONDS"
 
@@ -248,9 +250,9 @@ class _Parent:
             os.kill(self.child, signal.SIGKILL)
         if self.interrupted is not None:
             waited = time.monotonic() - self.interrupted
-            if waited > 3:
+            if waited > PATIENCE:
                 os.kill(self.child, signal.SIGKILL)
-            elif waited > 0.5 and not self.passed_on:
+            elif waited > PATIENCE / 10 and not self.passed_on:
                 self.passed_on = True
                 os.kill(self.child, signal.SIGINT)
 

@@ -53,6 +53,7 @@ def findings() -> list[tuple[str, str]]:
     for feature, package, extra in OPTIONAL:
         remedy = f"missing; needed for {feature} (try: pip install 'vizlight[{extra}]')"
         rows.append((f"{package} [{extra}]", _version(package) or remedy))
+    _compiled.try_out()
     rows.append(("compiled code", _compiled.status()))
     rows.append(("data", str(data.example_path())))
     for backend in get_args(render.Backend):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import io
 import os
 import re
 import shutil
@@ -113,7 +114,13 @@ def read(path: str | Path, /, *, salvage: bool = False, isolated: bool = False) 
     if isolated:
         _try_to_read(path, limit)
     reading = _supervise.stage("read", path, seconds=limit)
-    with reading, _captured_errors() as errors, warnings.catch_warnings():
+    said = io.StringIO()
+    with (
+        reading,
+        _captured_errors() as errors,
+        warnings.catch_warnings(),
+        contextlib.redirect_stdout(said),
+    ):
         warnings.simplefilter("ignore")
         try:
             found = foreign_files.read(path)
@@ -122,6 +129,8 @@ def read(path: str | Path, /, *, salvage: bool = False, isolated: bool = False) 
             mesh = _one_grid(found) if isinstance(found, pv.MultiBlock) else found
         except Exception as error:  # noqa: BLE001 - readers raise exceptions of any type
             reason = f"{type(error).__name__}: {_first_line(error)}"
+        except SystemExit:  # meshio ends the process where one of its readers finds a fault
+            reason = f"meshio: {_first_line(said.getvalue())}"
     if not isinstance(mesh, pv.DataSet) or mesh.n_points == 0:
         if errors and reason == "no points":
             reason = f"no points: {errors[0]}"
@@ -160,7 +169,7 @@ def _try_to_read(path: Path, limit: float) -> None:
 read_mesh = read
 
 
-def _first_line(error: Exception) -> str:
+def _first_line(error: Exception | str) -> str:
     return next((line.strip() for line in str(error).splitlines() if line.strip()), "no reason")
 
 

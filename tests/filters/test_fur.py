@@ -8,7 +8,7 @@ import pyvista as pv
 import vtk
 
 import vizlight
-from vizlight import Light, Material, Scene, View, fur
+from vizlight import Light, Material, Scene, View, _compiled, fur
 from vizlight.model import cylinder
 from vizlight.studies import fur as study
 from vizlight.studies._measuring import peak_memory
@@ -466,3 +466,81 @@ def test_absorption_where_lengths_vary_is_that_of_the_mean_length():
     ):
         with pytest.raises(ValueError, match=words):
             fur(mesh, SCENE, fibres=5, **options)
+
+
+def varied():
+    """Return a surface with arrays of all kinds, of which some vectors are zero or not finite."""
+    mesh, random = torus(24), np.random.default_rng(4)
+    vectors = random.normal(size=(mesh.n_points, 3)).astype(np.float32)
+    vectors[::10], vectors[1], vectors[2] = 0, 1e-30, 1e30
+    mesh["v"], mesh["to"] = vectors, random.normal(size=(mesh.n_points, 3))
+    mesh["size"] = random.random(mesh.n_points)
+    return mesh
+
+
+@pytest.mark.filterwarnings("ignore:.* fibres point into the surface")
+@pytest.mark.parametrize(
+    "options",
+    [
+        {},
+        {"segments": 1, "fibres": 70_000},
+        {"segments": 6, "toward": (0, 0, -1), "bend": 0.5},
+        {"vectors": "v", "length": "size", "inward": "keep"},
+        {"vectors": "v", "toward": "to", "bend": 0.7, "length": "size", "inward": "drop"},
+        {"segments": 2, "curl": 0.3, "turns": 2.0, "toward": "to", "bend": 0.4},
+        {"length": 0.0, "curl": 0.3, "conditioned": False, "attenuated": False},
+    ],
+)
+@pytest.mark.parametrize("origin", [0.0, 5e6])
+def test_compiled_code_grows_the_same_fibres(options, origin):
+    if not _compiled.active():
+        pytest.skip(_compiled.why_not())
+    mesh = varied()
+    if origin:
+        mesh.points = mesh.points.astype(np.float64) + origin
+    coats = []
+    for code in ("0", "1"):
+        with _compiled.setting(code):
+            coats.append(fur(mesh, SCENE, **{"fibres": 2000, "threads": 2, **options}))
+    exact, found = (coat["fibres"] for coat in coats)
+    assert found.points.dtype == exact.points.dtype
+    # A curl's sine and cosine are rounded otherwise.
+    spacing = np.spacing(np.float32(3)) if "curl" in options else 0
+    np.testing.assert_allclose(
+        found.points, exact.points, rtol=0, atol=spacing + 1e-9 * bool(origin)
+    )
+    np.testing.assert_array_equal(found.lines, exact.lines)
+    np.testing.assert_allclose(found["luminance"], exact["luminance"], rtol=0, atol=3e-5)
+    np.testing.assert_array_equal(coats[1]["skin"].points, coats[0]["skin"].points)
+
+
+def test_compiled_fibres_do_not_depend_on_the_number_of_threads():
+    if not _compiled.active():
+        pytest.skip(_compiled.why_not())
+    with _compiled.setting("1"):
+        coat = fur(torus(24), SCENE, fibres=500, segments=3, curl=0.2)
+        again = fur(torus(24), SCENE, fibres=500, segments=3, curl=0.2, threads=1)
+    np.testing.assert_array_equal(coat["fibres"].points, again["fibres"].points)
+    np.testing.assert_array_equal(coat["fibres"]["luminance"], again["fibres"]["luminance"])
+
+
+def test_points_of_the_skin_are_split_at_sharp_edges():
+    box = pv.Cube().triangulate().subdivide(3).clean()
+    box.clear_data()
+    box["long"] = np.full(box.n_points, 0.1)
+    scene = Scene(lights=Light(direction=(1, 2, 3)), view=View(direction=(1, 1, 1)))
+    with pytest.warns(UserWarning, match="8% of the edges are sharper than 30 degrees"):
+        fur(box, scene, fibres=10)
+    found = fur(box, scene, fibres=600, feature_angle=30, length="long")
+    # Each face has its own points, and fibres stand square on it.
+    assert found["skin"].n_points == 6 * 81
+    assert box.n_points == 386
+    ends = np.asarray(found["fibres"].points).reshape(600, -1, 3)
+    ways = ends[:, -1] - ends[:, 0]
+    np.testing.assert_allclose(np.abs(ways).max(axis=1), 0.1, rtol=1e-5)
+    np.testing.assert_allclose(np.abs(ways).sum(axis=1), 0.1, rtol=1e-5)
+    assert np.all(np.abs(found["skin"].points).max(axis=1) > 0.4999)
+    with pytest.raises(TypeError, match="length: expected the name of a point array beside"):
+        fur(box, scene, feature_angle=30, length=np.full(box.n_points, 0.1))
+    with pytest.raises(ValueError, match="feature_angle: expected a number of degrees"):
+        fur(box, scene, feature_angle="sharp")

@@ -282,7 +282,9 @@ def test_a_closed_mesh_stays_closed():
     ],
 )
 def test_kinds_of_meshes(mesh):
-    found = isoluminance(mesh, DULL, levels=5)
+    # The hull of a grid has the sharp edges of a box.
+    angle = 30 if isinstance(mesh, pv.ImageData) else None
+    found = isoluminance(mesh, DULL, levels=5, feature_angle=angle)
     assert found.keys() == ["bands", "contours"]
     assert found["bands"].n_cells > 0
     assert np.isfinite(found["bands"]["luminance"]).all()

@@ -119,3 +119,24 @@ def test_errors_name_the_argument(tangents, error, words):
     ball["one"] = np.ones(ball.n_points)
     with pytest.raises(error, match=words):
         vizlight.satin(ball, SCENE, tangents=tangents)
+
+
+@pytest.mark.filterwarnings("ignore:2 of 3482 points could not be lit")
+def test_vectors_of_cells_are_averaged_on_request():
+    """Whatever their signs, the panels are those of the field at the points, nearly."""
+    mesh = pv.Sphere(theta_resolution=60, phi_resolution=60)
+    centres = np.asarray(mesh.cell_centers().points)
+    across = np.cross(centres, (0, 0, 1))
+    signs = np.random.default_rng(1).choice([-1.0, 1.0], size=(len(across), 1))
+    mesh.cell_data["C"] = signs * across
+    mesh.point_data["T"] = np.cross(mesh.points, (0, 0, 1)) + 1e-9
+    with pytest.raises(ValueError, match="tangents: expected a point array, got the cell array"):
+        vizlight.satin(mesh, SCENE, tangents="C")
+    found = vizlight.satin(mesh, SCENE, tangents="C", average_cells=True, seeds=20)
+    expected = vizlight.satin(mesh, SCENE, tangents="T", seeds=20)
+    away = np.abs(np.asarray(mesh.points)[:, 2]) < 0.45
+    for panel in ("surface", "field", "conditioned"):
+        off = np.abs(found[panel]["luminance"] - expected[panel]["luminance"])[away]
+        assert off.max() < 0.02
+    assert found["curves"].n_lines == expected["curves"].n_lines == 20
+    assert "C" not in mesh.point_data

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from contextlib import nullcontext
 from pathlib import Path
 
 import numpy as np
@@ -463,11 +464,12 @@ def test_tensors_give_their_first_eigenvector(on_surface):
     mesh["e"] = signs * vectors / np.where(length > 0, length, 1)
     seeds = np.asarray(mesh.points, float)[[200, 333, 470]] * 0.97
     options = {"seeds": seeds, "max_length": 0.6, "conditioned": False}
-    found = [
-        streamlines(mesh, SCENE, vectors="D9", **options),
-        streamlines(mesh, SCENE, vectors="D6", **options),
-        streamlines(mesh, SCENE, vectors="e", line_field=True, **options),
-    ]
+    found = []
+    for name in ("D9", "D6", "e"):
+        # At the poles of the ball the vectors are zero, and the tensors isotropic.
+        told = on_surface and name != "e"
+        with pytest.warns(UserWarning, match="^2 of 842 tensors") if told else nullcontext():
+            found.append(streamlines(mesh, SCENE, vectors=name, line_field=name == "e", **options))
     for lines in found[1:]:
         np.testing.assert_allclose(
             lines["luminance"].mean(), found[0]["luminance"].mean(), rtol=1e-3
@@ -481,10 +483,81 @@ def test_lines_end_where_a_tensor_is_isotropic():
     tensors = np.tile(np.eye(3).ravel(), (grid.n_points, 1))
     tensors[grid.points[:, 0] < 1.05, 0] = 4.0
     grid["D"] = tensors
-    lines = streamlines(grid, SCENE, vectors="D", seeds=[[0.5, 0.22, 0.21]])
+    with pytest.warns(UserWarning, match="^250 of 525 tensors have no first eigenvector"):
+        lines = streamlines(grid, SCENE, vectors="D", seeds=[[0.5, 0.22, 0.21]])
     x = np.asarray(lines.points)[:, 0]
     assert x.min() < 0.01
     assert 1.0 <= x.max() <= 1.1
+
+
+def test_points_where_a_tensor_is_isotropic_are_marked():
+    """The mean of tensors along x and along y is isotropic in the plane, midway between them."""
+    grid = pv.ImageData(dimensions=(3, 3, 3), spacing=(0.1, 0.1, 0.1))
+    tensors = np.tile(np.diag([2.0, 1, 0]).ravel(), (grid.n_points, 1))
+    grid["D"] = tensors
+    free = streamlines(grid, SCENE, vectors="D", seeds=[[0.1, 0.1, 0.1]])
+    assert "Tangents_valid" not in free.point_data
+    tensors[np.isclose(grid.points[:, 0], 0.2)] = np.diag([1.0, 2, 0]).ravel()
+    grid["D"] = tensors
+    lines = streamlines(grid, SCENE, vectors="D", seeds=[[0.05, 0.1, 0.1]])
+    isotropic = np.isclose(np.asarray(lines["D"])[:, 0], np.asarray(lines["D"])[:, 4], rtol=1e-7)
+    marked = ~np.asarray(lines.point_data.get("Tangents_valid", ~isotropic))
+    np.testing.assert_array_equal(marked, isotropic)
+
+
+@pytest.mark.parametrize("kind", [np.float32, np.float64])
+@pytest.mark.parametrize("on_surface", [False, True])
+def test_the_own_array_of_a_line_field_does_not_depend_on_signs(kind, on_surface, random):
+    """Random signs: the same array along the lines, with the sign of their tangents."""
+    mesh = ball(40) if on_surface else vortex()
+    vectors = 3 * np.asarray(mesh["V"], kind)
+    signs = random.choice([-1, 1], size=(len(vectors), 1)).astype(kind)
+    found = []
+    for given in (vectors, signs * vectors):
+        mesh["e"] = given
+        seeds = np.asarray(mesh.points, float)[[200, 333, 470]] * 0.97
+        found.append(
+            streamlines(mesh, SCENE, vectors="e", line_field=True, seeds=seeds, max_length=0.5)
+        )
+    assert found[0].n_points == found[1].n_points > 20
+    for lines in found:
+        along = np.einsum("ij,ij->i", np.asarray(lines["e"]), np.asarray(lines["Tangents"]))
+        size = np.linalg.norm(lines["e"], axis=1)
+        assert along.min() >= -1e-6
+        np.testing.assert_allclose(along, size, atol=2e-2 * size.max())
+    for one, other in zip(found[0].cell, found[1].cell, strict=True):
+        a, b = (
+            np.asarray(lines["e"])[cell.point_ids]
+            for lines, cell in zip(found, (one, other), strict=True)
+        )
+        # From its other end a line has the other sign.
+        if np.linalg.norm(one.points[0] - other.points[0]) > 1e-5:
+            b = -b[::-1]
+        np.testing.assert_allclose(a, b, atol=1e-5)
+
+
+def test_a_line_field_sampled_on_a_surface_keeps_its_length():
+    """Vectors of a volume with random signs, on a surface that lacks them."""
+    grid = pv.ImageData(dimensions=(9, 9, 9), origin=(-1, -1, -1), spacing=(0.25, 0.25, 0.25))
+    signs = np.random.default_rng(0).choice([-1.0, 1.0], size=(grid.n_points, 1))
+    grid["e"] = signs * np.array([[0, 0, 3.0]])
+    surface = pv.Sphere(radius=0.7)
+    lines = streamlines(
+        grid, SCENE, vectors="e", line_field=True, surface=surface, confined=True, seeds=9
+    )
+    np.testing.assert_allclose(np.abs(np.asarray(lines["e"])[:, 2]), 3.0, rtol=1e-5)
+
+
+def test_the_surface_of_lines_is_split_at_sharp_edges():
+    box = pv.Cube().triangulate().subdivide(3).clean()
+    box.clear_data()
+    box["V"] = np.cross(box.points, (0.1, 0.2, 1))
+    with pytest.warns(UserWarning, match="8% of the edges are sharper than 30 degrees"):
+        round_ = streamlines(box, SCENE, vectors="V", seeds=20)
+    lines = streamlines(box, SCENE, vectors="V", seeds=20, feature_angle="auto")
+    np.testing.assert_allclose(np.abs(lines["Normals"]).max(axis=1), 1, atol=1e-6)
+    assert np.abs(round_["Normals"]).max(axis=1).min() < 0.9
+    np.testing.assert_allclose(lines.length, round_.length, rtol=1e-2)
 
 
 @pytest.mark.parametrize("options", [{}, {"line_field": True}, {"spacing": 0.5}])

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
+
 import numpy as np
 import pytest
 import pyvista as pv
 
 import vizlight
-from vizlight import Light, Material, Scene, View, relief_shadow
+from vizlight import Light, Material, Scene, View, _progress, relief_shadow
+from vizlight.geometry.relief import shadowing
+from vizlight.mesh import closed_meshes
 
 TOWARD = np.array([0.6, -0.5, 0.4])
 SCENE = Scene(lights=Light(direction=TOWARD), material=Material(ambient=0.1, specular=0))
@@ -106,7 +110,8 @@ def test_field_and_the_same_solid_as_a_mesh_agree():
         inner = (start[:, :2] > 0.3).all(axis=1) & (start[:, :2] < 1.7).all(axis=1)
         nearest = [mesh.find_closest_point(p) for p in start[inner]]
         flat = np.isclose(start[inner][:, 2], 0) & (np.abs(start[inner][:, 0] - 1) > 0.55)
-        t = relief_shadow(mesh, SCENE, depth=0.05)["t"][nearest]
+        with pytest.warns(UserWarning, match="of the edges are sharper than 30 degrees"):
+            t = relief_shadow(mesh, SCENE, depth=0.05)["t"][nearest]
         np.testing.assert_allclose(t[flat], field["t"][inner][flat], atol=1e-6)
 
 
@@ -172,3 +177,52 @@ def test_a_shadow_is_made_again_from_what_is_told():
     for wrong in (0, told["options"]["occluders"]):
         with pytest.raises(TypeError, match="occluders.*: expected .*surface"):
             relief_shadow(ball, SCENE, occluders=wrong)
+
+
+@pytest.mark.parametrize("inplace", [False, True])
+def test_points_are_split_at_sharp_edges(inplace):
+    """The free faces of a box toward the light have its cosine, up to their edges, at depth 0."""
+    box = pv.Cube().triangulate().subdivide(3).clean()
+    box.clear_data()
+    scene = Scene(lights=Light(direction=(1, 2, 3)))
+    out = relief_shadow(box, scene, depth=0.0, feature_angle="auto", inplace=inplace)
+    assert (out is box) == inplace
+    assert out.n_points == 6 * 81
+    cosines = [0, *(np.array([1.0, 2, 3]) / 14**0.5)]
+    off = np.abs(np.asarray(out["t"])[:, np.newaxis] - cosines)
+    assert off.min(axis=1).max() < 1e-6
+    assert np.bincount(off.argmin(axis=1)).tolist() == [3 * 81, 81, 81, 81]
+    day = vizlight.relief_day(box, sun=[(30, 20), (60, 50)], feature_angle=30)
+    assert day["t"].shape == (6 * 81, 2)
+
+
+def test_a_height_field_has_no_sharp_edges():
+    flat = pv.ImageData(dimensions=(5, 5, 1))
+    flat["height"] = [0.0] * 25
+    with pytest.raises(ValueError, match="feature_angle: expected none on a height field, got 30"):
+        relief_shadow(flat, SCENE, feature_angle=30)
+
+
+@pytest.mark.parametrize("kind", ["field", "solid"])
+def test_progress_advances_within_one_light(kind, monkeypatch):
+    told = []
+
+    @contextlib.contextmanager
+    def progress(what, total, *, show):
+        assert (what, show) == ("shadow", True)
+        told.append(total)
+        yield told.append
+
+    monkeypatch.setattr(_progress, "progress", progress)
+    monkeypatch.setattr(closed_meshes, "BLOCK", 100)
+    monkeypatch.setattr(shadowing, "BLOCK", 100)
+    mesh = pv.Sphere()
+    if kind == "field":
+        mesh = pv.ImageData(dimensions=(30, 30, 1))
+        mesh["height"] = np.arange(900.0) % 7
+    relief_shadow(mesh, SCENE, progress_bar=True, angular_diameter=0.1, samples=3, threads=1)
+    total, *steps = told
+    assert total == 3 * mesh.n_points
+    assert steps == sorted(steps)
+    assert steps[-1] == total
+    assert len(set(steps)) > 3 if kind == "field" else len(set(steps)) > 9

@@ -119,6 +119,15 @@ def test_a_tetrahedron_in_a_file_that_meshio_reads(tmp_path):
     assert int(np.argmin(lit["luminance"])) == 0
 
 
+def test_a_file_at_which_meshio_ends_the_process(tmp_path, capsys):
+    pytest.importorskip("meshio")
+    path = tmp_path / "a.off"
+    path.write_text("OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n")
+    with pytest.raises(files.FileError, match=r"a\.off' \(meshio: Can only read triangular faces"):
+        vizlight.read(path)
+    assert capsys.readouterr().out == ""
+
+
 @pytest.mark.parametrize(
     ("name", "module", "words"),
     [

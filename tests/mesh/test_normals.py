@@ -99,3 +99,20 @@ def test_strips_and_loose_points_have_their_piece():
     found = normals.surface_normals(loose, View(direction=(1, 1, 1)))
     np.testing.assert_allclose(found[:3], 3**-0.5, rtol=1e-6)
     np.testing.assert_array_equal(found[3], 0)
+
+
+def test_faces_without_area_have_no_sharp_edges():
+    """Meshes of a globe often have such faces at the poles."""
+    ball = pv.Sphere(theta_resolution=60, phi_resolution=40)
+    pole = int(np.argmax(ball.points[:, 2]))
+    faces = ball.regular_faces
+    around = faces[(faces == pole).any(axis=1)]
+    points = np.concatenate([ball.points, np.repeat(ball.points[[pole]], len(around), axis=0)])
+    points[ball.n_points :, 0] += 1e-9 * np.arange(len(around))
+    extra = ball.n_points + np.arange(len(around))
+    beside = around[np.arange(len(around)), (around != pole).argmax(axis=1)]
+    doubled = np.column_stack([np.full(len(around), pole), extra, beside])
+    mesh = pv.PolyData.from_regular_faces(points, np.concatenate([faces, doubled]))
+    assert normals.computed_normals(mesh).sharp == 0
+    assert normals.split_edges(mesh, "auto") is mesh
+    assert normals.computed_normals(pv.Cube().triangulate().clean()).sharp > 0.5

@@ -476,3 +476,41 @@ def test_the_search_ends_if_nothing_helps(monkeypatch):
     with pytest.warns(UserWarning, match="of the places are off by more than 0.0001"):
         refine(ball(), SCENE, error=1e-4)
     assert len(calls) == 3
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_parts_interpolate_to_the_directions_of_their_cell(dtype):
+    """Also after many splits, a place has the normal that interpolation over the mesh gives it."""
+    slant = np.radians(50)
+    mesh = pv.PolyData(np.array([[0, 0, 1], [2, 0, 1], [0, 2, 1]], dtype=dtype), [3, 0, 1, 2])
+    mesh["normal"] = np.array(
+        [[np.sin(slant), 0, np.cos(slant)], [-np.sin(slant), 0, np.cos(slant)],
+         [0, np.sin(slant), np.cos(slant)]], dtype=dtype
+    )  # fmt: skip
+    fine = refine(mesh, SCENE, normals="normal", facing="as given")
+    shares = np.asarray(fine.points, dtype=np.float64)[:, :2] / 2
+    shares = np.column_stack([1 - shares.sum(axis=1), shares])
+    true = unit(shares @ np.asarray(mesh["normal"], dtype=np.float64))
+    assert fine.n_points > 100
+    few = 40 * float(np.finfo(dtype).eps)
+    np.testing.assert_allclose(fine["normal"], true, atol=few)
+    np.testing.assert_allclose(fine["luminance"], phong(true), atol=40 * few)
+    weights = lattice(7)
+    places = np.einsum("lw,cwi->cli", weights, shares[fine.regular_faces]).reshape(-1, 3)
+    exact = phong(unit(places @ np.asarray(mesh["normal"], dtype=np.float64)))
+    off = np.abs(between(fine, fine["luminance"], 7) - exact)
+    assert share_above(fine, off, 7) < 0.002
+
+
+def test_points_at_distance_1_from_the_origin_stay_on_their_cells():
+    points = np.array([[1.0, 0, 0], [0, 1, 0], [0, 0, 1]])
+    mesh = pv.PolyData(points, [3, 0, 1, 2])
+    mesh["normal"], mesh["place"] = points, points
+    fine = refine(mesh, SCENE, normals="normal", facing="as given")
+    assert fine.n_points > 100
+    np.testing.assert_allclose(fine.points.sum(axis=1), 1, atol=1e-6)
+    lit = illuminate(fine, SCENE, normals="normal", facing="as given")
+    np.testing.assert_allclose(lit["luminance"], fine["luminance"], atol=1e-6)
+    np.testing.assert_allclose(np.linalg.norm(fine["normal"], axis=1), 1, atol=1e-6)
+    named = refine(mesh, SCENE, normals="normal", positions="place", facing="as given")
+    np.testing.assert_allclose(named["place"].sum(axis=1), 1, atol=1e-12)

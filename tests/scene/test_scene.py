@@ -113,42 +113,102 @@ def test_lights_and_cameras_of_pyvista_are_taken_as_they_are():
     assert made.diffuse == 0.5
 
 
-@pytest.mark.opengl
-@pytest.mark.parametrize("lighting", ["light kit", "scene"])
-def test_the_material_of_an_actor_gives_the_picture_of_vtk(lighting):
-    """Within 3 of 255 under perspective, off the silhouette."""
-    ball = pv.Sphere(theta_resolution=300, phi_resolution=300)
+LOOK = {"ambient": 0.15, "diffuse": 0.6, "specular": 0.3, "specular_power": 18}
 
-    def plotter(mesh, **options):
-        made = pv.Plotter(
-            off_screen=True,
-            window_size=(300, 240),
-            lighting="light kit" if lighting == "light kit" else "none",
-        )
-        made.background_color = "black"
-        actor = made.add_mesh(mesh, **options)
-        made.camera_position = [(2.5, 1.5, 1), (0, 0, 0), (0, 0, 1)]
-        return made, actor
 
-    look = {"ambient": 0.15, "diffuse": 0.6, "specular": 0.3, "specular_power": 18}
-    theirs, actor = plotter(ball, color="tan", smooth_shading=True, **look)
-    if lighting == "scene":
-        theirs.add_light(pv.Light(position=(3, 2, 4), light_type="scene light", intensity=0.7))
-        theirs.add_light(pv.Light(light_type="headlight", intensity=0.3))
-    expected = np.array(theirs.screenshot(return_img=True)).astype(int)
-    scene = Scene.from_plotter(theirs, actor=actor)
-    with pytest.raises(ValueError, match="material: expected an actor alone, got both"):
-        Scene.from_plotter(theirs, actor=actor, material=Material())
-    with pytest.raises(TypeError, match=r"actor: expected a pyvista.Actor"):
-        Scene.from_plotter(theirs, actor=ball)
-    theirs.close()
-    lit = illuminate(ball, scene)
-    ours, _ = plotter(lit, scalars=np.clip(lit["rgb"], 0, 1), rgb=True, lighting=False)
+def plotter_of(mesh, lamps, **options):
+    made = pv.Plotter(
+        off_screen=True,
+        window_size=(300, 240),
+        lighting="light kit" if lamps == "light kit" else "none",
+    )
+    made.background_color = "black"
+    actor = made.add_mesh(mesh, **options)
+    made.camera_position = [(2.5, 1.5, 1), (0, 0, 0), (0, 0, 1)]
+    if lamps == "two lights":
+        made.add_light(pv.Light(position=(3, 2, 4), light_type="scene light", intensity=0.7))
+        made.add_light(pv.Light(light_type="headlight", intensity=0.3))
+    elif lamps == "headlight":
+        made.add_light(pv.Light(light_type="headlight"))
+    return made, actor
+
+
+def channels(lit):
+    """Light in three channels, equal where the scene has no colour."""
+    grey = np.asarray(lit["luminance"])[:, np.newaxis]
+    return np.asarray(lit["rgb"] if "rgb" in lit.point_data else np.repeat(grey, 3, axis=1))
+
+
+def off_from_vtk(expected, ball, rgb):
+    """Largest difference of a picture of colours at points from VTK's, off the silhouette."""
+    shown = ball.copy()
+    ours, _ = plotter_of(shown, "none", scalars=np.clip(rgb, 0, 1), rgb=True, lighting=False)
     got = np.array(ours.screenshot(return_img=True)).astype(int)
     ours.close()
     inside = binary_erosion(expected.max(axis=2) > 0, iterations=4)
     assert inside.sum() > 5000
-    assert np.abs(got - expected)[inside].max() <= 3
+    return np.abs(got - expected)[inside].max()
+
+
+@pytest.mark.opengl
+@pytest.mark.parametrize(
+    ("lighting", "model"),
+    [
+        ("light kit", "phong"),
+        ("two lights", "phong"),
+        ("headlight", "phong"),
+        ("headlight", "blinn"),
+    ],
+)
+def test_the_material_of_an_actor_gives_the_picture_of_vtk(lighting, model):
+    """Within 3 of 255 under perspective, off the silhouette."""
+    ball = pv.Sphere(theta_resolution=300, phi_resolution=300)
+    theirs, actor = plotter_of(ball, lighting, color="tan", smooth_shading=True, **LOOK)
+    expected = np.array(theirs.screenshot(return_img=True)).astype(int)
+    scene = Scene.from_plotter(theirs, actor=actor, model=model)
+    with pytest.raises(ValueError, match="material: expected an actor alone, got both"):
+        Scene.from_plotter(theirs, actor=actor, material=Material())
+    with pytest.raises(TypeError, match=r"actor: expected a pyvista.Actor"):
+        Scene.from_plotter(theirs, actor=ball)
+    seen = View.from_camera(theirs.camera)
+    assert scene.view.parallel == (lighting == "headlight")
+    assert (scene.view.position, scene.view.direction) == (seen.position, seen.direction)
+    assert Scene.from_plotter(theirs, actor=actor, view=seen).view == seen
+    theirs.close()
+    assert off_from_vtk(expected, ball, channels(illuminate(ball, scene, model=model))) <= 3
+
+
+@pytest.mark.opengl
+@pytest.mark.parametrize("lighting", ["light kit", "two lights", "headlight"])
+def test_colours_of_data_times_the_light_are_the_picture_of_vtk(lighting):
+    """The highlight has no part in the product, and lights keep their tints."""
+    ball = pv.Sphere(theta_resolution=300, phi_resolution=300)
+    heights = np.asarray(ball.points[:, 2])
+    theirs, actor = plotter_of(
+        ball.copy(), lighting, scalars=heights, cmap="viridis", interpolate_before_map=False,
+        smooth_shading=True, show_scalar_bar=False, **LOOK,
+    )  # fmt: skip
+    expected = np.array(theirs.screenshot(return_img=True)).astype(int)
+    scene = Scene.from_plotter(theirs, actor=actor)
+    theirs.close()
+    colours = pv.LookupTable("viridis", scalar_range=(heights.min(), heights.max()))(heights)
+    material = scene.material
+    matt = dataclasses.replace(material, specular=0.0)
+    gloss = dataclasses.replace(material, ambient=0.0, diffuse=0.0)
+    light, highlight = (
+        channels(illuminate(ball, scene.replace(material=part))) for part in (matt, gloss)
+    )
+    assert off_from_vtk(expected, ball, colours[:, :3] * light + highlight) <= 3
+
+
+@pytest.mark.opengl
+def test_a_highlight_that_is_not_that_of_vtk_is_told_of():
+    look = {"diffuse": 0.3, "specular": 1.0, "specular_power": 5.0}
+    theirs, actor = plotter_of(pv.Sphere(), "headlight", **look)
+    with pytest.warns(UserWarning, match="Blinn model and power 5; .* light by model='blinn'"):
+        Scene.from_plotter(theirs, actor=actor)
+    Scene.from_plotter(theirs, actor=actor, model="blinn")
+    theirs.close()
 
 
 @pytest.mark.opengl

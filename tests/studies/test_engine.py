@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import time
 
 import numpy as np
@@ -34,14 +35,15 @@ def test_peak_memory_counts_numpy():
 
 def test_turns():
     """The first time, which is slower, does not count."""
-    seen, waits = [], iter((0.02, 0, 0))
+    seen, waits = [], itertools.chain((0.02,), itertools.repeat(0))
 
     def first():
         seen.append(1)
         time.sleep(next(waits))
 
     seconds = _measuring.take_turns({"a": first, "b": lambda: seen.append(2)}, 3)
-    assert seen == [1, 2] * 3
+    assert 3 <= len(seen) // 2 <= 6  # repeated where times do not agree
+    assert seen == [1, 2] * (len(seen) // 2)
     assert all(0 < value < 0.02 for value in seconds.values())
 
 

@@ -98,7 +98,7 @@ def test_a_resolution_that_is_not_enough_is_named():
     scene = Scene(lights=Light(direction=(0, 0, 1)), view=View(direction=(0, 0, 1)))
     found = report_of(lambda: illuminate(mesh, scene, normals="n", facing="as given"))
     assert found.runs[0].finer is None
-    assert "no cells 1/128 as long, or refine=1/255, would do" in str(found)
+    assert "cells 1/128 as long would not do; refine=1/255 leaves" in str(found)
 
 
 @pytest.mark.parametrize("count", [1, 10, 300, 4096])
@@ -141,6 +141,24 @@ def test_lines_surfaces_and_volumes_have_an_error_and_clouds_have_none():
     assert [run.places for run in runs] == [4096, 4096, 4096, 0, 0, 0]
     assert all(0 < run.between < 1 for run in runs[:3])
     assert np.isnan(runs[3].between)
+    said = [run.unmeasured.partition(",")[0] for run in runs]
+    cloud = "points without cells between them"
+    assert said == ["", "", "", cloud, "fur", "fur"]
+
+
+def test_what_is_not_measured_is_named():
+    scene = Scene(lights=Light(direction=(1, 2, 3)), view=View(direction=(0, 0, 1)))
+    told = report_of(lambda: vizlight.relief_shadow(pv.Sphere(), scene, lit=True))
+    words = "not measured between points: cast shadows"
+    assert str(told).count(words) == len(told.runs) == 2
+    ball = pv.Sphere()
+    pair = np.concatenate([ball.points, np.roll(ball.points, 1, axis=1)], axis=1)
+    told = report_of(lambda: illuminate(ball, scene, tangents=pair))
+    assert told.runs[0].places
+    assert "not measured between points: the peaks of highlights" in str(told)
+    dull = scene.replace(material=vizlight.Material(specular=0))
+    assert "not measured" not in str(report_of(lambda: illuminate(ball, dull, tangents=pair)))
+    assert "not measured" not in str(report_of(lambda: illuminate(ball, scene)))
 
 
 def test_no_sample_no_places(ball):

@@ -122,7 +122,7 @@ def test_every_shadow_of_every_light(name, monkeypatch):
     assert run.sample > 30
     assert run.error < (4e-3 if make is terrain else 1e-9)
     right = casters._FieldCaster.of if make is terrain else casters._SolidCaster.of
-    worse = lambda self, light: right(self, light) * (0.9 if light.position else 1)  # noqa: E731
+    worse = lambda self, light, show: right(self, light, show) * (0.9 if light.position else 1)  # noqa: E731
     caster = casters._FieldCaster if make is terrain else casters._SolidCaster
     monkeypatch.setattr(caster, "of", worse)
     with vizlight.report() as told:

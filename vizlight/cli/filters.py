@@ -10,7 +10,7 @@ from vizlight.cli import options, scenes
 from vizlight.cli.arguments import COMMON, LIT, OUTPUT, Color, Common, Part, Shape
 from vizlight.cli.job import Job, carry_out
 from vizlight.cli.script import Step
-from vizlight.filters.fur import FurOptions
+from vizlight.filters.fur import LENGTH, FurOptions
 from vizlight.filters.isoluminance import ContourOptions
 from vizlight.filters.project import ProjectOptions
 from vizlight.filters.relief_shadow import ReliefOptions
@@ -95,10 +95,11 @@ def relief(
         if shape.contour is not None or shape.slice is not None or not _is_field(found):
             mesh = scenes.surface(mesh, shape)
             found = None
+        on = {} if found is not None or asked.raster is not None else {"feature_angle": "auto"}
         heights = None if found is None else _heights(found, asked)
         raised = mesh if heights is None else Step("raised", "files.warped", mesh, *heights)
         camera = look.camera(raised, is_map=found is not None)
-        lit = _step("shaded", "relief_shadow", mesh, look.scene(camera), given, common.out)
+        lit = _step("shaded", "relief_shadow", mesh, look.scene(camera), on | given, common.out)
         shown = None if heights is None else Step("shown", "files.warped", lit, *heights)
         made = Job(lit, asked.name, look, camera, shown=shown, scalars=asked.name, before=mesh)
         made.suffix = ".vtp" if found is None else _suffix(found)
@@ -126,13 +127,13 @@ def fur(
         Surface, or a mesh with one; of several each is lit by itself.
     """
     scenes.check_target(shape)
-    look = scenes.Look(common)
-    given = options.keywords(how)
+    look = scenes.Look(common, material=scenes.FUR)
+    given = {"feature_angle": "auto"} | options.keywords(how)
     asked = FurOptions(**given)
 
     def job(path: Path) -> Job:
         mesh = scenes.surface(scenes.data(path, shape), shape)
-        camera = look.camera(mesh)
+        camera = look.camera(_tips(mesh, asked))
         lit = _step("furry", "fur", mesh, look.scene(camera), given, common.out)
         return Job(lit, asked.name, look, camera, parts=("fibres", "skin"))
 
@@ -218,6 +219,17 @@ def _step(
     progress = {"progress_bar": True} if out.progress else {}
     arguments = (mesh,) if scene is None else (mesh, scene)
     return Step(name, f"vizlight.{filter_}", *arguments, **given, **progress)
+
+
+def _tips(mesh: Step, asked: FurOptions) -> Step:
+    """Return the step that moves the points of a surface to where straight fur ends."""
+    found: pv.PolyData = mesh.run()
+    length = LENGTH * found.length if asked.length is None else asked.length
+    if isinstance(length, str):
+        known = length in found.point_data and found.n_points
+        length = float(found.point_data[length].max()) if known else 0.0
+    normals = Step("", ".compute_normals", mesh, auto_orient_normals=True, cell_normals=False)
+    return Step("tips", ".warp_by_vector", normals, "Normals", factor=length)
 
 
 def _heights(field: pv.DataSet, asked: ReliefOptions) -> tuple[str, float] | None:

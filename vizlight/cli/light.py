@@ -100,4 +100,5 @@ def _explain(lit: pv.DataSet, asked: LightOptions) -> None:
     scene = vizlight.Scene.from_dict(record["scene"])
     inputs = inputs_of(next(all_blocks(lit)), "", scene, asked)
     dtype = None if asked.tolerance and asked.precision is None else record["precision"]
-    say(decide(scene, inputs.layout, asked, dtype).explain())
+    layout = inputs.layout._replace(dimmed=bool(asked.bundle), occluded=bool(asked.bundle))
+    say(decide(scene, layout, asked, dtype).explain())

@@ -14,6 +14,7 @@ from vizlight.cli.arguments import Shape
 from vizlight.cli.script import Step
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from typing import TypeAlias
 
     from vizlight._types import Vector
@@ -33,6 +34,8 @@ TINT = "tint"
 #: comes from the eye and keeps faces legible that the key light does not reach.
 MATERIAL = {"ambient": 0.12, "diffuse": 0.6, "specular": 0.2}
 KEY, FILL = 0.78, 0.32
+#: Material of fur, which is lit through fur and seen through fur.
+FUR = {"ambient": 0.2, "diffuse": 1.4, "specular": 0.4}
 #: Name that stands for the direction of lines among the arrays that colour a picture.
 DIRECTION = "direction"
 #: Angle of view, in degrees.
@@ -152,7 +155,9 @@ def tinted(lit: Step, name: str, data: Step, color: Color) -> Step | None:
 class Look:
     """Camera and scene as the options describe them; what needs no mesh is checked first."""
 
-    def __init__(self, common: Common, *, fill: bool = True) -> None:
+    def __init__(
+        self, common: Common, *, fill: bool = True, material: Mapping[str, float] = MATERIAL
+    ) -> None:
         self._fill = fill
         self._lights, self._eye = common.lights, common.eye
         self.size = arguments.pixels(common.out.size)
@@ -161,7 +166,7 @@ class Look:
         base = vizlight.Scene() if self._file is None else self._file
         changes = _given(vars(common.finish))
         self._material: Step | None = None
-        kept: dict[str, object] = dict(MATERIAL) if fill else {}
+        kept: dict[str, object] = dict(material) if fill else {}
         if self._file is not None:
             kept = _given(vars(base.material)) if changes else {}
         if kept or changes:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
-from vizlight import _check
+from vizlight import _check, _progress
 from vizlight.geometry.relief.depth_map import depth_map
 from vizlight.mesh import closed_meshes
 
@@ -25,6 +25,7 @@ def bas_relief(
     height: float | None = None,
     margin: float = 0.05,
     name: str = "height",
+    progress_bar: bool = False,
 ) -> pv.ImageData:
     """Return the bas-relief of a mesh: its depth map, flattened, on a plate.
 
@@ -45,6 +46,8 @@ def bas_relief(
         Width of the plate around the mesh, as a share of the longer side of the mesh.
     name : str, default: "height"
         Name of the point array of heights.
+    progress_bar : bool, default: False
+        Whether progress is shown on standard error.
 
     Returns
     -------
@@ -89,7 +92,14 @@ def bas_relief(
     count = np.maximum(count, 2)
     first = ((low + high)[:2] - (count - 1) * step) / 2
     axes = [first[k] + step * np.arange(count[k]) for k in (0, 1)]
-    depth = depth_map(axes[0], axes[1], places, triangles)
+    with _progress.progress("depth", 100, show=progress_bar) as report:
+        depth = depth_map(
+            axes[0],
+            axes[1],
+            places,
+            triangles,
+            progress=lambda done, total: report(100 * done // total),
+        )
     there = np.isfinite(depth)
     if not there.any():
         expected, got = "a surface wider than a node", "a thinner one"

@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
+import threading
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, TypedDict, get_args
 
 import numpy as np
 import pyvista as pv
 
-from vizlight import _check
+from vizlight import _check, _pool
 from vizlight.filters import lighting
+from vizlight.geometry.lines import compiled
 from vizlight.geometry.lines import fur as geometry
 from vizlight.mesh import blocks, point_arrays, surfaces
-from vizlight.mesh.normals import onlooker
+from vizlight.mesh.normals import onlooker, split_where_computed
 from vizlight.mesh.point_arrays import unit_rows
-from vizlight.mesh.strands import Grown, Strands
+from vizlight.mesh.strands import Grown, Room, Strands
 from vizlight.model import kernels
 from vizlight.scene import Scene
 from vizlight.shading.inputs import ShadingInputs
-from vizlight.shading.options import ShadingOptions, accepts
+from vizlight.shading.options import ShadingOptions, accepts, check_sides
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,11 +28,13 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from vizlight._types import Array, Bools, Indices, VectorLike
-    from vizlight.shading.options import Model
+    from vizlight.shading.options import FeatureAngle, Model
 
 Inward = Literal["keep", "flip", "drop"]
 #: Default absorption, and length of fibres as a share of the diagonal of the mesh.
 ABSORPTION, LENGTH = 0.5, 0.03
+#: Number of blocks of random numbers that are kept for threads that work on parts of them.
+KEPT = 8
 #: Largest length of a fibre: differences of longer ones leave the range of float32.
 LONGEST = 1e30
 
@@ -50,6 +54,7 @@ class FurKeywords(TypedDict, total=False):
     curl: float
     turns: float
     seed: int
+    feature_angle: FeatureAngle
     conditioned: bool
     attenuated: bool
     compensate: bool
@@ -90,6 +95,9 @@ class FurOptions:
         tip.
     seed : int, default: 0
         Seed of the random numbers.
+    feature_angle : float or "auto", optional
+        Angle in degrees above which edges are sharp, as for :func:`vizlight.illuminate`. Default:
+        none is.
     conditioned : bool, default: True
         Whether fibres inherit the self-shadow of the surface (Banks 6).
     attenuated : bool, default: True
@@ -112,6 +120,7 @@ class FurOptions:
     curl: float = 0.0
     turns: float = 1.0
     seed: int = 0
+    feature_angle: FeatureAngle = None
     conditioned: bool = True
     attenuated: bool = True
     compensate: bool = True
@@ -120,6 +129,7 @@ class FurOptions:
 
     def __post_init__(self) -> None:
         _check.choice("inward", self.inward, get_args(Inward))
+        check_sides("auto", self.feature_angle)
         for option in ("bend", "curl", "turns"):
             value = getattr(self, option)
             _check.number(option, value, low=-_check.LARGEST, high=_check.LARGEST)
@@ -228,10 +238,17 @@ def _grow(
     _check.instance("scene", scene, Scene)
     if scene.n not in (None, 3):
         raise ValueError(_check.message("scene", "vectors of 3 components", scene.n))
-    skin = surfaces.with_normals(surface, onlooker(scene))
+    if options.feature_angle is not None and np.asarray(options.length, dtype=object).ndim:
+        expected, remedy = "the name of a point array beside feature_angle=", "attach the array"
+        got = _check.describe(options.length)
+        raise TypeError(_check.message("length", expected, got, remedy))
+    surface = split_where_computed(surface, options.feature_angle)
+    skin = surfaces.with_normals(surface, onlooker(scene), options.feature_angle)
     name = options.name
     lighting.refuse_overwriting([(surface, "")], name, components=False, colored=scene.colored)
-    coat = _Coat(surface, skin, options)
+    points = options.fibres * (options.segments + 1)
+    fast = compiled.grow.pays(compiled.SAVED * points / _pool.workers(threads))
+    coat = _Coat(surface, skin, options, fast=fast)
     if options.fibres and not (len(coat.total) and coat.total[-1] > 0):
         raise ValueError(_check.message("surface", "faces of some area", "none"))
     far = any(coat.origin)
@@ -243,6 +260,7 @@ def _grow(
         straight=options.straight,
         threads=threads,
         unit=coat.unit,
+        fill=coat.fill if fast else None,
     )
     through = options.lost
     fibres = strands.inputs(
@@ -276,7 +294,9 @@ class _Coat:
     Points are less ``origin``, which is not 0 where the surface is far from there.
     """
 
-    def __init__(self, surface: pv.PolyData, skin: pv.PolyData, options: FurOptions) -> None:
+    def __init__(
+        self, surface: pv.PolyData, skin: pv.PolyData, options: FurOptions, *, fast: bool
+    ) -> None:
         self.options = options
         self.origin = blocks.near_origin(skin)
         size = float(skin.length)
@@ -284,7 +304,10 @@ class _Coat:
             remedy = "scale the mesh"
             raise ValueError(_check.message("surface", "a size from 1e-30 to 1e30", size, remedy))
         faces: Indices = np.asarray(skin.regular_faces, dtype=np.intp)
-        self.faces = faces[geometry.along_curve(np.asarray(skin.points), faces)]
+        order, self.total = geometry.laid(np.asarray(skin.points), faces, fast=fast)
+        self.faces = faces.take(order, axis=0)
+        self._drawn: dict[int, geometry.Draws] = {}
+        self._lock = threading.Lock()
         self.normals = np.asarray(skin.point_data[surfaces.NORMALS], dtype=np.float32)
         self.vectors: Array | None = None
         if options.vectors is not None:
@@ -301,7 +324,6 @@ class _Coat:
         # The unit of the heights of fur, in which light is lost.
         mean = float(np.mean(self.length)) if np.size(self.length) else 0.0
         self.unit = mean if options.density is None and mean > 0 else 1.0
-        self.total = geometry.areas(np.asarray(skin.points), self.faces)
         # All that is interpolated stands in one table, so that it is looked up once.
         with np.errstate(invalid="ignore"):
             local = np.asarray(skin.points) - np.array(self.origin)
@@ -319,9 +341,7 @@ class _Coat:
         """Return some of the fibres."""
         start = block.start // geometry.SEED_BLOCK * geometry.SEED_BLOCK
         part = slice(block.start - start, block.stop - start)
-        face, weights = geometry.seed_block(
-            self.total, start, self.options.fibres, self.options.seed
-        )
+        face, weights = geometry.seed_block(self.total, self._draws(start))
         face, weights = face[part], weights[part]
         corners = self.faces.take(face, axis=0)
         found: Array = self._table.take(corners[:, 0], axis=0)
@@ -337,12 +357,50 @@ class _Coat:
         if toward is not None and toward.shape[1] > 1:
             toward = kernels.unit(next(columns))[0]
         length = next(columns)[0] if isinstance(self.length, np.ndarray) else self.length
-        phase = None
-        if self.options.curl:
-            random = np.random.default_rng([self.options.seed, start, 1])
-            phase = random.random(part.stop)[part] * 2 * np.pi
+        phase = self._phases(start, part)
         offsets = self._strands(way, length, toward, phase)
         return Grown(root, offsets, way, normal, inside)
+
+    def fill(self, block: slice, room: Room) -> None:
+        """Write some of the fibres, by compiled code."""
+        start = block.start // geometry.SEED_BLOCK * geometry.SEED_BLOCK
+        part = slice(block.start - start, block.stop - start)
+        draws, phase = self._draws(start), self._phases(start, part)
+        options = self.options
+        whole = not isinstance(self.length, np.ndarray)
+        given = [self.vectors is not None, self.toward is not None and len(self.toward) > 1]
+        columns = np.cumsum([6, *(3 * there for there in given)])
+        at = [there * column for there, column in zip([*given, not whole], columns, strict=True)]
+        bend = 0.0 if self.toward is None else options.bend
+        length = self.length if whole else 0.0
+        compiled.grow(
+            self.total, draws.place[part], draws.number[part], draws.jitter[part], draws.starts,
+            draws.first, draws.mean, self.faces.reshape(-1), self._table.reshape(-1),
+            np.array([self._table.shape[1], *at]),
+            np.zeros(3, np.float32) if self.toward is None else self.toward[0],
+            np.empty(0) if phase is None else phase,
+            np.array([length, bend, options.curl, options.turns, self.unit], np.float64),
+            options.segments, options.inward == "flip", *room,
+        )  # fmt: skip
+
+    def _draws(self, start: int) -> geometry.Draws:
+        """Return the random numbers of the block of seeds at ``start``, drawn once."""
+        with self._lock:
+            drawn = self._drawn.get(start)
+            if drawn is None:
+                options = self.options
+                drawn = geometry.draw(self.total, start, options.fibres, options.seed)
+                self._drawn[start] = drawn
+                if len(self._drawn) > KEPT:
+                    del self._drawn[next(iter(self._drawn))]
+            return drawn
+
+    def _phases(self, start: int, part: slice) -> Array | None:
+        """Return the angles at which the curl starts of a part of the block at ``start``."""
+        if not self.options.curl:
+            return None
+        random = np.random.default_rng([self.options.seed, start, 1])
+        return np.asarray(random.random(part.stop)[part] * 2 * np.pi)
 
     def _ways(self, normal: Array, vector: Array | None) -> tuple[Array, Bools | None]:
         """Return unit directions at the root, and which of the vectors point into the surface."""

@@ -326,7 +326,9 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
         bands, _ = banding.cut(np.empty((0, 3)), triangles, np.empty((0, 3)), steps)
         bands = dataclasses.replace(bands, error=0.0)
     elif options.tangents is None:
-        found = normals.normals_of(surface, asked.normals, 3, normals.onlooker(scene))
+        found = normals.normals_of(
+            surface, asked.normals, 3, normals.onlooker(scene), warn=angle is None
+        )
         unit = unit_rows(np.asarray(found, dtype=np.float64))
         rows = np.concatenate([points, unit, *carried.values()], axis=1)
         near = any(lamp.position is not None for lamp in scene.lights)

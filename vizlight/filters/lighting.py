@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight import _check, _progress
-from vizlight.mesh import records
+from vizlight.mesh import bundles, records
 from vizlight.shading import engine
 
 if TYPE_CHECKING:
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     import pyvista as pv
     from numpy.typing import NDArray
 
+    from vizlight.mesh.bundles import Dimming
     from vizlight.mesh.records import Record
     from vizlight.scene import Scene
     from vizlight.shading.inputs import ShadingInputs
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 DEFAULT_NAME = "luminance"
 VALID = "_valid"
 PARTS = ("ambient", "diffuse", "specular", "rgb")
+BUNDLE_PARTS = (bundles.TRANSMITTANCE, bundles.OCCLUSION)
 
 
 def light(
@@ -82,12 +84,18 @@ def part_name(name: str, part: str) -> str:
 
 
 def refuse_overwriting(
-    named: list[tuple[pv.DataSet, str]], name: str, *, components: bool, colored: bool
+    named: list[tuple[pv.DataSet, str]],
+    name: str,
+    *,
+    components: bool,
+    colored: bool,
+    bundle: bool = False,
 ) -> None:
     """Refuse a name under which the light would replace an array of the user."""
     if not isinstance(name, str) or not name:
         raise ValueError(_check.message("name", "a name for the point array", repr(name)))
     parts = [part for part in PARTS if (colored if part == "rgb" else components)]
+    parts += BUNDLE_PARTS if bundle else ()
     made = [part_name(name, part) for part in parts]
     records.refuse_overwriting(named, name, [name, name + VALID, *made])
 
@@ -101,13 +109,15 @@ def finish(
     name: str,
     *,
     inside: int = 0,
+    dimmings: Sequence[Dimming] = (),
 ) -> None:
     """Attach the light to the meshes with its record; warn once if points could not be lit.
 
     Points inside volumes, of which there are ``inside``, have no normal and are not counted.
     """
-    for mesh, shading in zip(meshes, results, strict=True):
-        attach(mesh, shading, name, records.of_light(shading, filter_name, scene, options))
+    for i, (mesh, shading) in enumerate(zip(meshes, results, strict=True)):
+        record = records.of_light(shading, filter_name, scene, options)
+        attach(mesh, shading, name, record, dimmings[i] if dimmings else None)
     invalid = sum(shading.invalid for shading in results) - inside
     if invalid > 0:
         total = sum(shading.luminance.size for shading in results) - inside
@@ -122,14 +132,29 @@ def unlit(invalid: int, total: int) -> str:
     )
 
 
-def attach(mesh: pv.DataSet, shading: engine.Shading, name: str, record: Record) -> None:
+def attach(
+    mesh: pv.DataSet,
+    shading: engine.Shading,
+    name: str,
+    record: Record,
+    dimming: Dimming | None = None,
+) -> None:
     """Attach the light to a mesh, in place of what it has under the name."""
     parts: dict[str, NDArray[np.generic]] = {}
     if shading.diffuse is not None and shading.specular is not None:
         ambient = np.full_like(shading.luminance, shading.plan.ambient)
+        if dimming is not None and dimming.occlusion is not None:
+            ambient *= dimming.occlusion
         parts = {"ambient": ambient, "diffuse": shading.diffuse, "specular": shading.specular}
     if shading.rgb is not None:
         parts["rgb"] = shading.rgb
+    if dimming is not None:
+        parts |= {
+            part: array
+            for part, array in zip(BUNDLE_PARTS, dimming[:2], strict=True)
+            if array is not None and array.size
+        }
+        record = record | {"bundle": dimming.record}
     arrays = {part_name(name, part): array for part, array in parts.items()}
     if shading.invalid:
         arrays[name + VALID] = shading.valid

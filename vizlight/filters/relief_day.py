@@ -89,7 +89,7 @@ def relief_day(
     name = options.get("name", ReliefOptions.name)
     mean = f"{name}_mean"
     records.refuse_overwriting([(found, "")], name, [mean])
-    t, seen = np.zeros((mesh.n_points, len(toward))), 0
+    t, seen = np.zeros((found.n_points, len(toward))), 0
     for hour, way in enumerate(toward):
         if way[2] > 0:
             t[:, hour] = found.point_data[f"{name}_{seen}"]

@@ -14,13 +14,14 @@ from vizlight.filters.lighting import DEFAULT_NAME, PARTS, VALID, attach, refuse
 from vizlight.geometry.relief import sun as sky
 from vizlight.mesh import point_arrays, records
 from vizlight.mesh.casters import CasterKeywords, CasterOptions, caster
+from vizlight.mesh.normals import split_where_computed
 from vizlight.scene import Light, Material, Scene
 from vizlight.shading import engine
 from vizlight.shading.options import accepts
 from vizlight.verify.report import note_ratio
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
     from typing_extensions import Unpack
@@ -148,7 +149,8 @@ def relief_shadow(
         _check.instance("scene", base, Scene)
         scene = base.replace(lights=[lit_by])
     scene, lights = _lights(scene)
-    shadow = caster(mesh, scene, asked, threads)
+    own = mesh if asked.raster is not None else split_where_computed(mesh, asked.feature_angle)
+    shadow = caster(own, scene, asked, threads)
     name = asked.name
     each = [f"{name}_{i}" for i in range(len(lights) if asked.components else 0)]
     refuse_overwriting([(mesh, "")], name, components=False, colored=False)
@@ -174,10 +176,12 @@ def relief_shadow(
 
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
     out = mesh if inplace else shallow_copy(mesh)
+    if own is not mesh:
+        out.ShallowCopy(own)
     if shading is not None:
         light = records.of_light(shading, "relief_shadow", scene, asked)
         attach(out, shading, DEFAULT_NAME, light)
-    arrays: dict[str, NDArray[np.generic]] = {own: t[:, i].copy() for i, own in enumerate(each)}
+    arrays: dict[str, NDArray[np.generic]] = {one: t[:, i].copy() for i, one in enumerate(each)}
     arrays[name] = t @ (weight / weight.sum())
     missing = int(np.count_nonzero(~shadow.valid))
     if missing:
@@ -207,10 +211,16 @@ def _ratios(
     start = time.perf_counter()
     t = np.empty((len(shadow.points), len(lights)))
     discs = [_disc(light, options) for light in lights]
-    with _progress.progress("shadow", len(lights), show=progress_bar) as report:
+    count, done = len(t), 0
+    total = count * sum(map(len, discs))
+    with _progress.progress("shadow", total, show=progress_bar) as report:
         for i, disc in enumerate(discs):
-            t[:, i] = sum(shadow.of(one) for one in disc) / len(disc)
-            report(i + 1)
+            column = np.zeros(count)
+            for one in disc:
+                column += shadow.of(one, _further(done, report))
+                done += count
+                report(done)
+            t[:, i] = column / len(disc)
 
     def again(point: int, light: int) -> float:
         return float(np.mean([shadow.reference(point, one) for one in discs[light]]))
@@ -219,6 +229,10 @@ def _ratios(
     effort = shadow.effort * max(map(len, discs))
     note_ratio(t, shadow.valid, time.perf_counter() - start, size, again, effort)
     return t
+
+
+def _further(before: int, report: Callable[[int], None]) -> Callable[[int], None]:
+    return lambda now: report(before + now)
 
 
 def sun_direction(sun: object, name: str = "sun") -> Array:

@@ -13,12 +13,12 @@ from vizlight.filters import lighting
 from vizlight.filters.fur import FurOptions, fur
 from vizlight.filters.project import ProjectOptions
 from vizlight.filters.relief_shadow import ReliefOptions, relief_shadow
-from vizlight.mesh import blocks, records
+from vizlight.mesh import blocks, bundles, records
 from vizlight.mesh.inputs import part_of, shown_side
 from vizlight.mesh.nspace import PROJECTED
 from vizlight.scene import Scene
 from vizlight.shading import engine
-from vizlight.shading.options import LightOptions
+from vizlight.shading.options import Bundle, LightOptions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -79,6 +79,8 @@ def read(mesh: pv.DataSet, path: str, scene: Scene, options: LightOptions) -> So
         raise ValueError(_check.message("feature_angle", expected, got, remedy))
     part = part_of(mesh, path, scene, options)
     inputs, sided = part.inputs, part.sided
+    if isinstance(options.bundle, Bundle):
+        inputs = _dimmed(mesh, inputs, scene, options.bundle, options.name)
     inside = 0 if sided is None else sided.inside
     source = Source(mesh, inputs, part.options, options, None, inside)
     turned = sided is not None and (
@@ -88,6 +90,18 @@ def read(mesh: pv.DataSet, path: str, scene: Scene, options: LightOptions) -> So
         return source
     inputs = dataclasses.replace(inputs, normals=sided.vectors)
     return source._replace(inputs=inputs, sided=sided)
+
+
+def _dimmed(
+    mesh: pv.DataSet, inputs: ShadingInputs, scene: Scene, bundle: Bundle, name: str
+) -> ShadingInputs:
+    """Return inputs with the shares of light inside a bundle, which do not depend on the eye."""
+    if any(light.follows_view and light.intensity > 0 for light in scene.lights):
+        expected, remedy = "no headlight beside it in a live light", "give the scene fixed lights"
+        raise ValueError(_check.message("bundle", expected, "a headlight", remedy))
+    names = [lighting.part_name(name, part) for part in lighting.BUNDLE_PARTS]
+    (own,) = bundles.dim([mesh], [inputs], scene, bundle, (name, names[0], names[1]))
+    return dataclasses.replace(inputs, transmittance=own.transmittance, occlusion=own.occlusion)
 
 
 def is_lit(mesh: pv.DataSet | pv.MultiBlock, name: str = lighting.DEFAULT_NAME) -> bool:

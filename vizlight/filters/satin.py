@@ -51,7 +51,7 @@ def satin(
     ----------
     surface : pyvista.PolyData
         Surface that is lit; not changed. ``tangents`` names its point array of 3 components,
-        tangent to it; it must be given.
+        tangent to it, or with ``average_cells`` its cell array; it must be given.
     scene : Scene
         Banks' material is ``Material(ambient=0.1, diffuse=0.5, specular=1.0,
         color=(1.0, 0.25, 0.30))``. His panels have ``compensate=False``.
@@ -76,9 +76,17 @@ def satin(
     asked = SatinOptions(**options)
     if asked.tangents is None:
         raise ValueError(_check.message("tangents", "the name of a point array", None))
+    traced, averaged = surface, False
     if isinstance(surface, pv.DataSet):
         point_arrays.refuse_unnamed("tangents", asked.tangents)
-        point_arrays.vectors_of(surface, "tangents", asked.tangents, 3)
+        name = str(asked.tangents)
+        averaged = asked.average_cells and name not in surface.point_data
+        if averaged and name in surface.cell_data:
+            # Means over cells have no sign.
+            rows = point_arrays.tangents_of(surface, name, 3, average_cells=True)
+            traced = surface.copy(deep=False)
+            traced.point_data[name] = rows
+        point_arrays.vectors_of(traced, "tangents", name, 3)
     light = {f.name: getattr(asked, f.name) for f in dataclasses.fields(LightOptions)}
     field = LightOptions(**light | {"conditioned": False, "terminator": 0.0})
     panels = {
@@ -93,6 +101,7 @@ def satin(
     lines = dataclasses.replace(
         asked,
         vectors=str(asked.tangents),
+        line_field=asked.line_field or averaged,
         tangents=None,
         conditioned=False,
         terminator=0.0,
@@ -101,7 +110,7 @@ def satin(
         flip_normals=False,
         facing="auto",
     )
-    curves = light_lines(surface, scene, lines, threads=threads, progress_bar=progress_bar)
+    curves = light_lines(traced, scene, lines, threads=threads, progress_bar=progress_bar)
     made = {
         name: light_mesh(surface, scene, panel, threads=threads, progress_bar=progress_bar)
         for name, panel in panels.items()

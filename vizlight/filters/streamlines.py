@@ -147,7 +147,9 @@ def streamlines(
     pyvista.PolyData
         The lines that left their seed, one per seed, with the point array ``luminance``, the point
         arrays of the mesh, and ``Tangents``, the directions that were integrated and are lit; with
-        a surface ``Normals``. Confined lines have the field array ``drift``, the largest distance
+        a surface ``Normals``. Vectors of a line field have the sign of ``Tangents``. The array
+        ``Tangents_valid`` marks points at which a tensor has a first eigenvector, where it is
+        isotropic at some. Confined lines have the field array ``drift``, the largest distance
         from the surface; evenly spaced ones ``largest_gap``, the largest distance of any place
         from a line, ``nearest``, the distance to the next line that 5 % of the places on lines fall
         below, both in spacings, and ``closed``, the number of closed lines.
@@ -160,7 +162,8 @@ def streamlines(
     Warns
     -----
     UserWarning
-        If fewer lines than the number in ``seeds`` could be traced.
+        If fewer lines than the number in ``seeds`` could be traced. With the
+        count, if tensors other than zero have no first eigenvector.
 
     Notes
     -----
@@ -265,7 +268,7 @@ def _traced(
     surface, traced, own = None, mesh, all_made(mesh)
     if options.surface is not None:
         own |= all_made(options.surface)
-        surface = surfaces.with_normals(options.surface, onlooker(scene))
+        surface = surfaces.with_normals(options.surface, onlooker(scene), options.feature_angle)
     vectors = _field(mesh, surface if confined else None, options)
     if confined and surface is not None:
         traced = surface
@@ -297,6 +300,11 @@ def _traced(
         # Where a line comes to rest it has the direction in which it came.
         tangents[resting] = polylines.line_tangents(lines)[resting]
     lines.point_data[name] = tangents.astype(np.float32)
+    rows = np.asarray(lines.point_data[options.vectors or ""])
+    if rows.ndim == 2 and rows.shape[1] in (6, 9):
+        isotropic = ~np.any(tracers.principal_directions(rows), axis=1)
+        if isotropic.any():
+            lines.point_data[f"{name}_valid"] = ~isotropic
     far = np.any(origin) or not 1e-30 < size < 1e30
     exact = size * places + origin
     lines.points = exact.astype(np.float64 if far else np.float32)
@@ -326,18 +334,19 @@ def _lines(
     )
     normals = surfaces.NORMALS if options.confined else None
     tracer = tracers.CellTracer(cells, normals, line_field=options.line_field)
+    unsigned = options.vectors if options.line_field else None
     given = None if places is None else tracer.located(places)
     if options.spacing is None:
         start = tracer.random(count, seed) if given is None else given
         wanted = count if given is None else None
-        lines = tracer.lines(tracer.traced(start, how, wanted, report))
+        lines = tracer.lines(tracer.traced(start, how, wanted, report), unsigned)
         _warn_of_fewer(lines, wanted)
         return lines
     spacing = options.spacing / size
     tracers.check_spacing(tracer, spacing, size)
     asked = spacing, options.separation, options.shortest
     curves, facts = tracer.even(given, how, asked, report)
-    lines = tracer.lines(curves)
+    lines = tracer.lines(curves, unsigned)
     for key, value in facts.items():
         lines.field_data[key] = [value]
     return lines
@@ -432,14 +441,20 @@ def _field(mesh: pv.DataSet, surface: pv.PolyData | None, options: StreamlineOpt
     else:
         source = mesh.copy(deep=False)
         array = np.asarray(mesh.point_data[name])
-        if options.line_field and array.shape[1] == 3:
+        unsigned = options.line_field and array.shape[1] == 3
+        if unsigned:
             products = line_fields.outer(array[:, np.newaxis]).reshape(-1, 9)
-            source.point_data[TRACED] = products
+            lengths = np.linalg.norm(array, axis=1, keepdims=True)
+            source.point_data[TRACED] = np.concatenate([products, lengths], axis=1)
         field = pv.PolyData(surface.points).sample(source)
-        surface.point_data[name] = np.asarray(field.point_data[name])
-        array = _directions(
-            np.asarray(field.point_data[TRACED if TRACED in source.point_data else name])
-        )
+        if unsigned:
+            found = np.asarray(field.point_data[TRACED])
+            array = tracers.principal_directions(found[:, :9])
+            surface.point_data[name] = array * found[:, 9:]
+        else:
+            rows = np.asarray(field.point_data[name])
+            surface.point_data[name] = rows
+            array = _directions(rows)
     array[~np.all(np.isfinite(array), axis=1)] = 0
     normal = np.asarray(surface.point_data[surfaces.NORMALS], dtype=np.float64)
     return np.asarray(array - np.einsum("ij,ij->i", array, normal)[:, np.newaxis] * normal)
@@ -448,7 +463,14 @@ def _field(mesh: pv.DataSet, surface: pv.PolyData | None, options: StreamlineOpt
 def _directions(rows: Array) -> Array:
     """Return vectors as they are, and tensors as their first eigenvectors."""
     if rows.shape[1] in (6, 9):
-        return tracers.principal_directions(np.asarray(rows, dtype=np.float64))
+        found = tracers.principal_directions(np.asarray(rows, dtype=np.float64))
+        lost = int(np.count_nonzero(~np.any(found, axis=1) & np.any(rows, axis=1)))
+        if lost:
+            _check.warn(
+                f"{lost} of {len(found)} tensors have no first eigenvector (isotropic or not "
+                "finite): lines end there"
+            )
+        return found
     return np.array(rows, dtype=np.float64)
 
 

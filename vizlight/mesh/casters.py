@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol, TypedDict
 
@@ -15,6 +15,7 @@ from vizlight import _check
 from vizlight.geometry.relief import height_field, shadowing
 from vizlight.mesh import closed_meshes, normals, point_arrays
 from vizlight.mesh.height_grids import Grid, heights_of
+from vizlight.shading.options import check_sides
 from vizlight.verify import rays
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from vizlight.geometry.relief.height_field import Border
     from vizlight.geometry.relief.shadowing import Method
     from vizlight.scene import Light, Scene
+    from vizlight.shading.options import FeatureAngle
 
 #: Default depth of a closed surface, as a share of the diagonal of the mesh.
 DEPTH = 0.01
@@ -43,6 +45,7 @@ class CasterKeywords(TypedDict, total=False):
     method: Method
     raster: float | None
     thickness: float | None
+    feature_angle: FeatureAngle
     occluders: pv.PolyData | Sequence[pv.PolyData]
 
 
@@ -70,6 +73,9 @@ class CasterOptions:
         cell of it; what it does not cover has the height of the nearest covered node.
     thickness : float, optional
         Thickness of the shell, measured against the normals, that stands for an open surface.
+    feature_angle : float or "auto", optional
+        Angle in degrees above which edges of a closed surface are sharp, as for
+        :func:`vizlight.illuminate`. Default: none is.
     occluders : pyvista.PolyData or sequence of pyvista.PolyData
         Further closed surfaces between the surface and the light.
     """
@@ -82,6 +88,7 @@ class CasterOptions:
     method: Method = "fast"
     raster: float | None = None
     thickness: float | None = None
+    feature_angle: FeatureAngle = None
     occluders: pv.PolyData | Sequence[pv.PolyData] = ()
 
     def __post_init__(self) -> None:
@@ -92,6 +99,7 @@ class CasterOptions:
             expected = "a closed surface or several"
             raise TypeError(_check.message("occluders", expected, _check.describe(given)))
         _check.set_fields(self, occluders=list(given))
+        check_sides("auto", self.feature_angle)
 
 
 class Caster(Protocol):
@@ -107,8 +115,8 @@ class Caster(Protocol):
     depth: float
     effort: int
 
-    def of(self, light: Light) -> Array:
-        """Return t at all points."""
+    def of(self, light: Light, report: Callable[[int], None]) -> Array:
+        """Return t at all points; ``report`` takes the number of rays followed so far."""
 
     def reference(self, point: int, light: Light) -> float:
         """Return t at one point by an independent method; NaN where that does not apply."""
@@ -118,10 +126,10 @@ def caster(mesh: pv.DataSet, scene: Scene, options: CasterOptions, threads: int 
     """Return the shadow caster of a mesh."""
     sampled = options.raster is not None
     if isinstance(mesh, Grid) or (sampled and isinstance(mesh, pv.PolyData)):
-        for option in ("thickness", "occluders"):
+        for option in ("thickness", "feature_angle", "occluders"):
             value = getattr(options, option)
             if value:
-                got = value if option == "thickness" else len(value)
+                got = len(value) if option == "occluders" else repr(value)
                 remedy = "leave it out, or pass the surface of the grid as a closed mesh"
                 raise ValueError(_check.message(option, "none on a height field", got, remedy))
         return _FieldCaster(mesh, options, threads)
@@ -163,15 +171,16 @@ class _FieldCaster:
         exact = not found.sampled and self.depth > shadowing.LEAST_DEPTH * size
         self.effort = rays.SAMPLES if exact else 0
 
-    def of(self, light: Light) -> Array:
+    def of(self, light: Light, report: Callable[[int], None]) -> Array:
         turn = np.eye(3) if self._turn is None else self._turn
         way, end = (
             None if v is None else turn @ np.array(v) for v in (light.direction, light.position)
         )
         ray = shadowing.toward(self._field, direction=way, position=end)
         t = shadowing.ratio(
-            self._field, self._normal, self.depth, ray, method=self._method, threads=self._threads
-        )
+            self._field, self._normal, self.depth, ray, method=self._method, threads=self._threads,
+            report=report,
+        )  # fmt: skip
         t[self._holes] = 0
         t = self._to_points(t)
         t[~self.valid] = 0
@@ -199,7 +208,9 @@ class _SolidCaster:
         thickness = options.thickness
         if thickness is None:
             body = closed_meshes.closed(mesh)
-        vectors = normals.normals_of(mesh, None, 3, normals.onlooker(scene))
+        vectors = normals.normals_of(
+            mesh, None, 3, normals.onlooker(scene), warn=options.feature_angle is None
+        )
         self.normals = point_arrays.unit_rows(np.asarray(vectors, dtype=np.float64))
         if thickness is not None:
             thickness = _check.number("thickness", thickness, low=0.0)
@@ -219,7 +230,7 @@ class _SolidCaster:
         self.effort = faces if self.depth / self._unit > shadowing.LEAST_DEPTH else 0
         self._corners: list[Array] | None = None
 
-    def of(self, light: Light) -> Array:
+    def of(self, light: Light, report: Callable[[int], None]) -> Array:
         good = self.valid
         depth = self.depth / self._unit
         limit = depth <= shadowing.LEAST_DEPTH
@@ -229,7 +240,7 @@ class _SolidCaster:
         normal = self.normals[good]
         start = place + inset * normal if limit else place - inset * normal
         way, reach = self._toward(light, start)
-        length = closed_meshes.inside_length(self._solids, start, way, reach)
+        length = closed_meshes.inside_length(self._solids, start, way, reach, report)
         t = np.zeros(len(good))
         if limit:
             cosine = np.clip(np.einsum("ij,ij->i", normal, way), 0, 1)

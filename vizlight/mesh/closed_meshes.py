@@ -14,6 +14,8 @@ from vizlight import _check
 from vizlight.mesh import blocks, embree_rays, parallel_rays
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from embreex.rtcore_scene import EmbreeScene
 
     from vizlight._types import Array, Indices
@@ -190,7 +192,13 @@ def hits(body: Solid, start: Array, way: Array, reach: Array) -> tuple[Indices, 
     return np.array(rays, dtype=np.intp), np.array(cells, dtype=np.intp), True
 
 
-def inside_length(solids: list[Solid], start: Array, way: Array, reach: Array) -> Array:
+def inside_length(
+    solids: list[Solid],
+    start: Array,
+    way: Array,
+    reach: Array,
+    report: Callable[[int], None] = lambda _: None,
+) -> Array:
     """Return the length of each ray inside the union of the solids.
 
     Parameters
@@ -200,6 +208,8 @@ def inside_length(solids: list[Solid], start: Array, way: Array, reach: Array) -
         Starting points and unit directions of the rays.
     reach : ndarray, shape (N,)
         Lengths of the rays; they end outside all solids.
+    report : callable
+        Function that takes the number of rays that are done, after each block.
 
     Returns
     -------
@@ -225,6 +235,7 @@ def inside_length(solids: list[Solid], start: Array, way: Array, reach: Array) -
         nearer = np.where(ends, 0.0, np.append(s[1:], 0.0)[: len(s)])
         parts = np.where(inside, s - nearer, 0.0)
         length[rows] = np.bincount(ray, parts, minlength=len(length[rows]))
+        report(min(rows.stop, len(start)))
     return length
 
 

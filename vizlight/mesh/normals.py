@@ -20,18 +20,29 @@ from vizlight.mesh.point_arrays import unit_rows, vectors_of
 from vizlight.scene import View
 
 if TYPE_CHECKING:
+    from typing import TypeVar
+
     from numpy.typing import NDArray
 
     from vizlight._types import Array, Bools, Indices
     from vizlight.scene import Scene
     from vizlight.shading.inputs import ArraySource
-    from vizlight.shading.options import Facing, LightOptions
+    from vizlight.shading.options import Facing, FeatureAngle, LightOptions
+
+    SurfaceT = TypeVar("SurfaceT")
 
 #: A piece counts as nearly closed if the sum of the area vectors of its faces is shorter than this
 #: share of its area.
 NEARLY_CLOSED = 0.2
 #: Angle in degrees between the normals of two faces above which their common edge is sharp.
 SHARP = 30.0
+<<<<<<< HEAD
+#: Least height of a triangle that has a direction, as a share of its longest side.
+NARROWEST = 1e-5
+=======
+#: Share of sharp edges, of all edges of a mesh, from which a warning names the remedy.
+MANY_SHARP = 0.02
+>>>>>>> rest15
 #: Name under which a user's array keeps out of the way of VTK's.
 _OWN = "vizlight own"
 #: Sharp edges are creases if at most this many times as many edges are half as sharp or more.
@@ -205,14 +216,32 @@ def _given(mesh: pv.DataSet, value: object, n: int) -> Array | None:
     return None if carried is None else np.asarray(carried)
 
 
-def normals_of(mesh: pv.DataSet, value: object, n: int, view: View | None) -> Array:
+def normals_of(
+    mesh: pv.DataSet, value: object, n: int, view: View | None, *, warn: bool = False
+) -> Array:
     """Return normals that agree on a side: those in ``value``, of the mesh, or of its surface.
 
     Those of the surface point outward on closed and nearly closed pieces, else as a whole to the
-    eye and away from the centroid.
+    eye and away from the centroid. With ``warn`` a warning is given if they were averaged across
+    many sharp edges.
     """
     given = _given(mesh, value, n)
-    return surface_normals(mesh, view) if given is None else given
+    if given is not None:
+        return given
+    found = computed_normals(mesh, view=view, sides=warn)
+    if warn:
+        warn_of_edges(found.sharp, isinstance(mesh, pv.PolyData))
+    return found.vectors
+
+
+def warn_of_edges(share: float, splits: bool) -> None:
+    """Warn if a share of the edges is sharp and large; ``splits``: whether points can be split."""
+    if share > MANY_SHARP:
+        first = "" if splits else "take the extract_surface() of the mesh and "
+        _check.warn(
+            f"{share:.0%} of the edges are sharper than {SHARP:g} degrees, and light is averaged "
+            f"across them; {first}pass feature_angle={SHARP:g} to split the points there"
+        )
 
 
 def surface_normals(mesh: pv.DataSet, view: View | None) -> Array:
@@ -378,10 +407,15 @@ class _Shape:
         """Return the share of sharp edges where these are creases, else 0.
 
         Creases stand apart: few edges are nearly as sharp. On a coarse mesh of a smooth shape there
-        are more of those, and no edge is meant to be seen.
+        are more of those, and no edge is meant to be seen. Faces without area, which many meshes
+        have at a pole, have no direction and no sharp edges.
         """
-        faces = unit_rows(self.across)
-        rows = self.triangles
+        corners = self.away[self.triangles] / self.scale
+        sides = corners - np.roll(corners, -1, axis=1)
+        longest = np.einsum("ijk,ijk->ij", sides, sides).max(axis=1, initial=0.0)
+        full = np.linalg.norm(self.across, axis=1) > NARROWEST * longest
+        faces = unit_rows(self.across[full])
+        rows = self.triangles[full]
         keys = _edges(rows, len(self.points))
         order = np.argsort(keys)
         keys = keys[order]
@@ -449,6 +483,17 @@ def _corners(surface: pv.PolyData) -> tuple[Indices, Bools]:
         corners.append(ids)
         last.append(ends)
     return np.concatenate(corners), np.concatenate(last)
+
+
+def split_where_computed(mesh: SurfaceT, angle: FeatureAngle) -> SurfaceT | pv.PolyData:
+    """Return a surface with points split at its sharp edges, if its normals will be computed.
+
+    Anything but a surface, and one with active normals, is returned as it is; see
+    :func:`split_edges`.
+    """
+    if angle is None or not isinstance(mesh, pv.PolyData):
+        return mesh
+    return mesh if mesh.point_data.active_normals is not None else split_edges(mesh, angle)
 
 
 def split_edges(mesh: pv.PolyData, angle: float | Literal["auto"]) -> pv.PolyData:

@@ -12,6 +12,8 @@ from vizlight.geometry.lines.curves import polyline_tangents
 from vizlight.mesh import blocks, hull
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
     from vtkmodules.vtkCommonDataModel import vtkCellArray
 
@@ -40,13 +42,42 @@ def line_tangents(mesh: pv.DataSet) -> Array:
 
     Consecutive segments, such as those of contour lines, are joined first.
     """
-    if not isinstance(mesh, pv.PolyData):
-        surface, origin = hull.outer_surface(mesh)
-        if mesh.has_nonlinear_cells:
-            # VTK turns each curve into a polyline; segments let the curves be joined below.
-            ends = np.asarray(segments(surface.GetLines()), dtype=int)
-            surface.SetLines(pv.CellArray.from_regular_cells(ends))
-        return hull.scattered(line_tangents(surface), origin, mesh.n_points)
+    return of_points(mesh, _tangents)
+
+
+def _tangents(points: Array, ids: Indices, offsets: Indices) -> Array:
+    return polyline_tangents(points, connectivity=ids, offsets=offsets)
+
+
+def of_points(mesh: pv.DataSet, function: Callable[[Array, Indices, Indices], Array], /) -> Array:
+    """Return what a function of points, connectivity and offsets of lines gives for each point.
+
+    Points that no line uses have zero. Consecutive segments are joined first.
+    """
+    surface, origin = _flat(mesh)
+    found = function(*_joined(surface))
+    return found if origin is None else hull.scattered(found, origin, mesh.n_points)
+
+
+def cells_of(mesh: pv.DataSet, /) -> tuple[Array, Indices, Indices]:
+    """Return points, connectivity and offsets of the lines of a mesh, segments joined."""
+    return _joined(_flat(mesh)[0])
+
+
+def _flat(mesh: pv.DataSet) -> tuple[pv.PolyData, Indices | None]:
+    """Return the lines of a mesh as polylines, and the index of each of their points in it."""
+    if isinstance(mesh, pv.PolyData):
+        return mesh, None
+    surface, origin = hull.outer_surface(mesh)
+    if mesh.has_nonlinear_cells:
+        # VTK turns each curve into a polyline; segments let the curves be joined below.
+        ends = np.asarray(segments(surface.GetLines()), dtype=int)
+        surface.SetLines(pv.CellArray.from_regular_cells(ends))
+    return surface, origin
+
+
+def _joined(mesh: pv.PolyData) -> tuple[Array, Indices, Indices]:
+    """Return points, connectivity and offsets of polylines, consecutive segments joined."""
     lines = mesh.GetLines()
     ids, offsets = _cells(lines)
     if np.any(np.diff(offsets) == 2) and len(np.unique(ids)) < len(ids):
@@ -54,8 +85,7 @@ def line_tangents(mesh: pv.DataSet) -> Array:
         bare.SetPoints(mesh.GetPoints())
         bare.SetLines(lines)
         ids, offsets = _cells(bare.strip(join=True, max_length=mesh.n_points + 1).GetLines())
-    found: Array = polyline_tangents(np.asarray(mesh.points), connectivity=ids, offsets=offsets)
-    return found
+    return np.asarray(mesh.points), ids, offsets
 
 
 def direction_colors(mesh: pv.DataSet, /) -> Array:

@@ -135,6 +135,8 @@ def _plain(value: object) -> object:
         return float(value)
     if isinstance(value, list | tuple) and len(value) <= WRITTEN_OUT:
         return [_plain(part) for part in value]
+    if dataclasses.is_dataclass(value):
+        return plain(value)
     array: NDArray[np.generic] = np.asarray(value)
     if array.size <= WRITTEN_OUT and array.dtype.kind in "biufU":
         # JSON holds at most the digits of float64.

@@ -116,7 +116,8 @@ def refined(
     between = Between(inputs, scene, options, threads)
     most = max(MANY, 2 * count) if most is None else most
     cells, left = refine(between, shading, parents, options.refine, most)
-    found = splitting.rebuilt(flat, cells, origin, _named(flat, between, options))
+    given = _named(flat, between, options)
+    found = splitting.rebuilt(flat, cells, origin, given, places=options.positions)
     made = _extended(part, between, cells.corners)
     if origin is None and options.tangents is None and made.inputs.tangents is not None:
         splitting.keep_tangents(found, np.asarray(made.inputs.tangents[:]))
@@ -133,7 +134,7 @@ def _named(mesh: pv.PolyData, between: Between, options: LightOptions) -> dict[s
     found = {}
     for name, key in named.items():
         if name in between.vectors and isinstance(key, str) and key in mesh.point_data:
-            rows = between.vectors[name].reshape(len(between.points), -1)
+            rows = between.rows(name).reshape(len(between.points), -1)
             rows = between.scales.get(name, 1.0) * rows
             known = np.asarray(mesh.point_data[key], dtype=np.float64)
             if name == "normals" and np.nansum(rows[: len(known)] * known) < 0:
@@ -148,7 +149,8 @@ def _extended(part: Part, between: Between, corners: Indices) -> Part:
     inputs, sided = part.inputs, part.sided
     count = inputs.count
     own: dict[str, ArraySource] = {"points": _joined(inputs.points, between.points[count:])}
-    for name, rows in between.vectors.items():
+    for name in between.vectors:
+        rows = between.rows(name)
         added = rows[count:].reshape(len(rows) - count, rows[0].size if count else 0)
         if name == "normals":
             added = between.turned(added, between.facts[count:], between.points[count:])
@@ -156,7 +158,7 @@ def _extended(part: Part, between: Between, corners: Indices) -> Part:
     sides = inputs.sides and inputs.sides()
     if sided is not None and sides is not None:
         facts = between.facts
-        vectors = _joined(sided.vectors, between.vectors["normals"][count:, 0])
+        vectors = _joined(sided.vectors, between.rows("normals")[count:, 0])
         sides = sides._replace(normals=vectors, facts=facts)
         lean = None if sided.lean is None else facts[:, 0].astype(np.float32)
         sided = dataclasses.replace(

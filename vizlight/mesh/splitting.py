@@ -227,7 +227,12 @@ def _pairs(a: Indices, b: Indices) -> Indices:
 
 
 def rebuilt(
-    mesh: pv.PolyData, parts: Cells, origin: Indices | None, given: Mapping[str, Array]
+    mesh: pv.PolyData,
+    parts: Cells,
+    origin: Indices | None,
+    given: Mapping[str, Array],
+    *,
+    places: str | None = None,
 ) -> pv.PolyData:
     """Return a mesh whose segments or triangles are split, with its data.
 
@@ -241,6 +246,8 @@ def rebuilt(
         Cell of the mesh that each triangle was taken from; None for segments.
     given : mapping of str to ndarray
         Point arrays by name, with the rows of the new points.
+    places : str, optional
+        Name of a point array of places, which lie on their cells like the points.
 
     Returns
     -------
@@ -253,7 +260,7 @@ def rebuilt(
     shares = parts.shares()
     new = shares[parts.count :]
     points = np.asarray(mesh.points)
-    out.points = np.concatenate([points, _interpolated(points, new)])
+    out.points = np.concatenate([points, _interpolated(points, new, places=True)])
     others = mesh.n_verts + mesh.n_lines
     out.SetVerts(mesh.GetVerts())
     if origin is None:
@@ -269,7 +276,8 @@ def rebuilt(
         out.cell_data[key] = np.asarray(array)[cells]
     for key, array in mesh.point_data.items():
         rows = np.asarray(array)
-        added = given[key] if key in given else _interpolated(rows, new)
+        own = given.get(key)
+        added = _interpolated(rows, new, places=key == places) if own is None else own
         point_arrays.attach_rows(out, key, np.concatenate([rows, added.astype(rows.dtype)]))
     out.GetFieldData().ShallowCopy(mesh.GetFieldData())
     for attribute in ("Normals", "Vectors", "Scalars", "Tangents", "TCoords"):
@@ -298,8 +306,13 @@ def _split_lines(lines: vtkCellArray, parts: Cells, shares: csr_array) -> pv.Cel
     )
 
 
-def _interpolated(rows: NDArray[np.generic], shares: csr_array) -> NDArray[np.generic]:
-    """Return values of a point array at new points, given the shares of those of the mesh."""
+def _interpolated(
+    rows: NDArray[np.generic], shares: csr_array, *, places: bool = False
+) -> NDArray[np.generic]:
+    """Return values of a point array at new points, given the shares of those of the mesh.
+
+    Places are not directions, although they may have the length 1, such as those of a sphere.
+    """
     colour = rows.dtype == np.uint8 and rows.ndim == 2 and rows.shape[1] in (3, 4)
     if rows.dtype.kind != "f" and not colour:
         order = np.lexsort(
@@ -310,7 +323,7 @@ def _interpolated(rows: NDArray[np.generic], shares: csr_array) -> NDArray[np.ge
     values = rows.reshape(len(rows), -1).astype(np.float64)
     with np.errstate(all="ignore"):
         found = np.asarray(shares @ values)
-        if are_unit(values):
+        if not places and are_unit(values):
             found = unit_rows(found)
     found = np.rint(found) if colour else found
     return np.asarray(found.reshape(-1, *rows.shape[1:]).astype(rows.dtype))

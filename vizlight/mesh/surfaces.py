@@ -12,14 +12,20 @@ from vizlight.mesh import blocks, normals
 if TYPE_CHECKING:
     from vizlight._types import Array
     from vizlight.scene import View
+    from vizlight.shading.options import FeatureAngle
 
 
 #: Name of the point array of normals, chosen not to clash with a user's array.
 NORMALS = "vizlight normals"
 
 
-def with_normals(surface: object, view: View | None, name: str = "surface") -> pv.PolyData:
+def with_normals(
+    surface: object, view: View | None, angle: FeatureAngle = None, name: str = "surface"
+) -> pv.PolyData:
     """Return the triangles of a surface as a new mesh with the point normals ``NORMALS``.
+
+    Points are split at edges sharper than the angle; without one a warning is given if normals
+    were averaged across many sharp edges.
 
     Raises
     ------
@@ -28,16 +34,16 @@ def with_normals(surface: object, view: View | None, name: str = "surface") -> p
     ValueError
         If it has no faces.
     """
-    surface = blocks.surface(surface, name)
+    own = normals.split_where_computed(blocks.surface(surface, name), angle)
     # Vertices and lines are left out, because every cell must be a triangle.
     triangles = pv.PolyData()
-    triangles.SetPoints(surface.GetPoints())
-    triangles.SetPolys(surface.GetPolys())
-    triangles.SetStrips(surface.GetStrips())
-    for key, array in surface.point_data.items():
+    triangles.SetPoints(own.GetPoints())
+    triangles.SetPolys(own.GetPolys())
+    triangles.SetStrips(own.GetStrips())
+    for key, array in own.point_data.items():
         if np.asarray(array).dtype.kind in "biuf":
             triangles.point_data[key] = np.asarray(array)
-    triangles.point_data[NORMALS] = normals.normals_of(surface, None, 3, view)
+    triangles.point_data[NORMALS] = normals.normals_of(surface, None, 3, view, warn=angle is None)
     return triangles if triangles.is_all_triangles else triangles.triangulate()
 
 

@@ -180,16 +180,30 @@ class CellTracer:
         gap, near = even.gaps(self.flow, self.normals, asked, curves)
         return curves, {"largest_gap": gap, "nearest": near, "closed": closed}
 
-    def lines(self, curves: Curves) -> pv.PolyData:
-        """Return curves as polylines with the point arrays of the mesh, TRACED of length 1."""
+    def lines(self, curves: Curves, unsigned: str | None = None) -> pv.PolyData:
+        """Return curves as polylines with the point arrays of the mesh, TRACED of length 1.
+
+        Vectors without sign, of the array ``unsigned``, are interpolated with the signs of the
+        direction of the curve.
+        """
         lines = polylines.polydata(self.cells.positions(curves.places), curves.offsets)
         for name, array in self.mesh.point_data.items():
-            rows = self.cells.interpolated(np.asarray(array), curves.places)
+            if name == unsigned and np.shape(array)[1:] == (3,):
+                rows = self._along(np.asarray(array), curves)
+            else:
+                rows = self.cells.interpolated(np.asarray(array), curves.places)
             kind = array.dtype if array.dtype.kind == "f" else np.float64
             lines.point_data[name] = rows.astype(kind)
         # Interpolated without a regard to signs they would cancel in a line field.
         lines.point_data[TRACED] = curves.along
         return lines
+
+    def _along(self, vectors: Array, curves: Curves) -> Array:
+        """Return vectors at the places of curves, those of each cell turned along the curve."""
+        corners = np.asarray(vectors, dtype=np.float64)[self.cells.cells[curves.places.cell]]
+        against = np.einsum("nij,nj->ni", corners, curves.along) < 0
+        weights = np.where(against, -curves.places.weights, curves.places.weights)
+        return np.asarray(np.einsum("ni,nij->nj", weights, corners))
 
 
 def check_spacing(tracer: CellTracer, spacing: float, size: float) -> None:

@@ -60,6 +60,8 @@ def unfit(inputs: ShadingInputs, options: ShadingOptions, mesh: pv.DataSet) -> s
         return "the highlight of a cylinder is an integral that GLSL has no function for"
     if layout.shadowed:
         return "t of the cos-theta shadow is known at the points"
+    if layout.dimmed or layout.occluded:
+        return "the shares of light inside a bundle are known at the points"
     if layout.base:
         return "base tangents span a plane, which is not interpolated"
     if inputs.tangents is not None and _reverses(inputs, mesh):

@@ -200,11 +200,15 @@ class Scene:
             Plotter, whose active renderer is read. If its camera is not set yet, it is set as
             ``show`` would set it.
         actor : pyvista.Actor, optional
-            Actor of the plotter, whose material the scene takes. An actor that is coloured by data
-            gives no colour of the material. Its light matches that of VTK under perspective.
+            Actor of the plotter, whose material the scene takes, and whose light then matches that
+            of VTK within 3 of 255 under perspective. VTK computes the highlight of a lone headlight
+            as if the eye were at infinity: the view of the scene is then parallel. An actor that is
+            coloured by data gives no colour of the material: its picture is the data colours times
+            the light without highlight, plus the highlight.
         model : {"phong", "blinn"}, default: "phong"
             Reflection model by which the actor's mesh will be lit; VTK's is Blinn's with a single
-            headlight, else Phong's, see :meth:`Material.to_property`.
+            headlight, else Phong's, see :meth:`Material.to_property`. A warning is given if the
+            highlight of VTK differs visibly in this model.
         **fields
             Further fields of the scene, such as ``material=``.
 
@@ -217,13 +221,19 @@ class Scene:
         TypeError, ValueError
             If the argument is not a plotter, the actor has no property, or both actor and material
             are given.
+
+        Notes
+        -----
+        In parallel projection VTK computes highlights as if the eye were at the position of the
+        camera, except those of a lone headlight. The scene has the eye at infinity, as the picture
+        shows it, and highlights of other lights differ from VTK's.
         """
         renderer = getattr(plotter, "renderer", None)
         if renderer is None or not hasattr(renderer, "GetLights"):
             raise TypeError(
                 _check.message("plotter", "a pyvista.Plotter", _check.describe(plotter))
             )
-        camera = plotter.camera
+        camera, own_view = plotter.camera, "view" not in fields
         fields.setdefault("view", View.from_camera(camera))
         fields.setdefault("lights", list(vtk.lights_of(renderer.GetLights(), camera)))
         if actor is not None:
@@ -231,6 +241,9 @@ class Scene:
                 raise ValueError(_check.message("material", "an actor alone", "both"))
             lights, view = fields["lights"], fields["view"]
             fields["material"] = _of_actor(actor, lights, view, model)
+            if own_view and vtk.vtk_model(vtk.all_lights(lights, view)) == "blinn":
+                own = View.from_camera(camera)
+                fields["view"] = View(position=own.position, direction=own.direction, parallel=True)
         return cls(**fields)
 
 

@@ -95,9 +95,10 @@ def property_values(
             _check.message("source", "a pyvista.Property or vtkProperty", _check.describe(source))
         )
     given, view = _check_lights(lights, view), as_view(view)
-    power = float(source.GetSpecularPower())
+    shown = power = float(source.GetSpecularPower())
     if _check_model(model) != vtk_model(given):
         power = _converted(power, _angle(given, view), "phong" if model == "blinn" else "blinn")
+    _warn_of_error(source.GetSpecular(), power, given, view, model, shown)
     if tuple(source.GetAmbientColor()) != tuple(source.GetDiffuseColor()):
         _check.warn(
             "the ambient colour of the property differs from its diffuse colour, which is used "
@@ -230,7 +231,8 @@ def _warn_of_error(
     if used != model and used == "blinn":
         remedy = (
             "; VTK uses the Blinn model if exactly one light is switched on and it is a "
-            "headlight, otherwise the Phong model; add a second light of intensity 0"
+            "headlight, otherwise the Phong model; add a second light of intensity 0, or light "
+            "by model='blinn'"
         )
     _check.warn(
         f"VTK lights this scene with the {used.capitalize()} model and power {shown:.4g}; its "

@@ -159,6 +159,10 @@ def _shade_points(
         if lit.distance is not None:
             valid &= lit.distance >= 0
         scale = _scale(plan, light, lit, shape.surface, passed, sight)
+        if plan.dimmed and inputs.transmittance is not None:
+            share = np.asarray(inputs.transmittance[block])[:, number].astype(plan.dtype)
+            valid &= share >= 0
+            scale = scale * share
         pair = shape.manifold.pair(lit.split, sight.split)
         if plan.diffuse:
             if passed is not None and plan.surface:
@@ -173,7 +177,13 @@ def _shade_points(
             if sight.seen is not None and not sight.seen.all():
                 value = value * sight.seen
             sums.add("specular", value, light)
-    _store(plan, sums, position, valid, block, output)
+    occlusion = None
+    if inputs.occlusion is not None:
+        occlusion = np.asarray(inputs.occlusion[block]).astype(plan.dtype)
+        known = occlusion >= 0
+        valid &= known
+        occlusion[~known] = 1
+    _store(plan, sums, position, valid, block, output, occlusion)
 
 
 def _scale(
@@ -280,6 +290,7 @@ def _store(
     valid: Bools,
     block: slice,
     output: Output,
+    occlusion: Array | None = None,
 ) -> None:
     """Multiply the sums by the material, fade them with depth, write them to the output."""
     fade = _fade(plan, points, valid)
@@ -292,6 +303,8 @@ def _store(
                 value[..., spoiled] = 0
     light = output.luminance[block]
     light[:] = plan.dtype.type(plan.ambient)
+    if occlusion is not None:
+        light *= occlusion
     for value in sums.white.values():
         light += value
     cue = plan.scene.depth_cue
@@ -303,7 +316,7 @@ def _store(
         if array is not None:
             array[block] = sums.white.get(name, 0)
     if output.rgb is not None:
-        output.rgb[block] = _rgb(plan, sums, fade, len(valid)).T
+        output.rgb[block] = _rgb(plan, sums, fade, len(valid), occlusion).T
 
 
 def _fade(plan: Plan, points: Array | None, valid: Bools) -> Array | None:
@@ -327,7 +340,7 @@ def _fade(plan: Plan, points: Array | None, valid: Bools) -> Array | None:
     return fade
 
 
-def _rgb(plan: Plan, sums: _Sums, fade: Array | None, count: int) -> Array:
+def _rgb(plan: Plan, sums: _Sums, fade: Array | None, count: int, occlusion: Array | None) -> Array:
     """Return the colour, channel by channel."""
     scene, material, cue = plan.scene, plan.scene.material, plan.scene.depth_cue
     colors = {
@@ -337,6 +350,8 @@ def _rgb(plan: Plan, sums: _Sums, fade: Array | None, count: int) -> Array:
     }
     column = {name: np.array(c, plan.dtype)[:, np.newaxis] for name, c in colors.items()}
     rgb: Array = np.repeat(plan.dtype.type(plan.ambient) * column["ambient"], count, axis=1)
+    if occlusion is not None:
+        rgb *= occlusion
     for term, value in (sums.channels or sums.white).items():
         rgb += column[term] * value
     if cue is not None and fade is not None:

@@ -55,6 +55,8 @@ def why_not(plan: Plan) -> str:
         return f"{plan.k} tangents per point, more than {MOST_TANGENTS}"
     if not (plan.diffuse or plan.specular or plan.scene.depth_cue):
         return "the ambient term alone needs none"
+    if plan.dimmed or plan.occluded:
+        return "shares of light, as inside a bundle, are multiplied in by NumPy"
     least = cylinder_kernels.TABLE_FROM
     if plan.model == "cylinder" and plan.specular and plan.scene.material.shininess < least:
         return f"a cylinder's highlight of a shininess below {least:g} is no table"
@@ -103,7 +105,10 @@ class Compiled(NamedTuple):
             _flat(shadow, form.work),
             _flat(part.fur_height if form.fur else None, form.work),
         ]
-        self._run(given, [light, terms[0], terms[1], color], count)
+        try:
+            self._run(given, [light, terms[0], terms[1], color], count)
+        except _compiled.FailedError:
+            light[...] = np.nan
         if not whole:
             output.luminance[at] = light
         output.valid[at] = True

@@ -124,6 +124,8 @@ def decide(
             brightness.exponent(layout.base, n) if layout.base and options.compensate else 1.0
         ),
         shadowed=layout.shadowed,
+        dimmed=layout.dimmed and (diffuse or specular),
+        occluded=layout.occluded,
         fur=layout.fur if diffuse or specular else 0.0,
         diffuse=diffuse,
         specular=specular,
@@ -152,7 +154,7 @@ def _precision(dtype: DTypeLike) -> np.dtype[np.floating]:
 
 def _check_layout(layout: Layout, options: ShadingOptions) -> None:
     """Check that tangents, normals and options go together."""
-    n, k, normals, base, _, fur = layout
+    n, k, normals, base, _, fur, _, _ = layout
     if k is None and not normals:
         raise ValueError(
             _check.message("tangents", "tangents (k=) or normals (normals=True)", "neither")

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vizlight import _check, _pool
+from vizlight import _check, _compiled, _pool
 from vizlight.scene import Scene
 from vizlight.shading import compiled
 from vizlight.shading.block import Output, columns, shade_block, view_depth
@@ -88,7 +88,7 @@ class Shading:
 
     @property
     def ambient(self) -> float:
-        """Ambient term, one number for all points."""
+        """Ambient term of points that nothing occludes, one number for all."""
         return self.plan.ambient
 
     @property
@@ -131,6 +131,8 @@ def shade(
     fur_height: ArrayLike | ArraySource | None = None,
     fur: float = 0.0,
     shadow: ArrayLike | ArraySource | None = None,
+    transmittance: ArrayLike | ArraySource | None = None,
+    occlusion: ArrayLike | ArraySource | None = None,
     repeat: int = 1,
     threads: int | None = None,
     block: int | None = None,
@@ -163,6 +165,11 @@ def shade(
         t of the cos-theta shadow for each of the L lights of intensity above 0. It takes the
         place of the cosine of normals in the diffuse term and where they condition; the highlight
         of a surface keeps ``min(1, t / cos)``.
+    transmittance : array_like, shape (N, L), optional
+        Share of each of the L lights of intensity above 0 that reaches a point, a factor of its
+        diffuse and its specular term.
+    occlusion : array_like, shape (N,), optional
+        Share of the ambient light that reaches a point: 1 for a point that is open to all sides.
     repeat : int, default: 1
         Number of points, one after the other, that share a normal, such as those of a fibre:
         N = M repeat. Tangents have N rows or M. What depends on the row alone is computed once.
@@ -206,6 +213,10 @@ def shade(
         fur_height=None if fur_height is None else array_source("fur_height", fur_height),
         fur=fur,
         shadow=None if shadow is None else array_source("shadow", shadow),
+        transmittance=(
+            None if transmittance is None else array_source("transmittance", transmittance)
+        ),
+        occlusion=None if occlusion is None else array_source("occlusion", occlusion),
         repeat=repeat,
     )
     chosen = ShadingOptions(**options)
@@ -269,6 +280,8 @@ def run(
     for done in _pool.run(work, _pool.blocks(inputs.rows, step), threads):
         if progress is not None:
             progress(done, count)
+    if code is not None and (reason := _compiled.why_not()):
+        made = dataclasses.replace(made, compiled=False, code=reason)
     shading = Shading(
         luminance=output.luminance,
         valid=output.valid,

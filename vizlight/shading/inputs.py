@@ -49,6 +49,10 @@ class Layout(NamedTuple):
         Whether t of a cos-theta shadow is given.
     fur : float
         Density of the fur that light passes.
+    dimmed : bool
+        Whether shares of the lights are given.
+    occluded : bool
+        Whether the share of the ambient light is given.
     """
 
     n: int = 3
@@ -57,6 +61,8 @@ class Layout(NamedTuple):
     base: int = 0
     shadowed: bool = False
     fur: float = 0.0
+    dimmed: bool = False
+    occluded: bool = False
 
 
 class Sides(NamedTuple):
@@ -97,6 +103,10 @@ class ShadingInputs:
         Density of that fur.
     shadow : ArraySource, shape (N, L), optional
         t of the cos-theta shadow of each light.
+    transmittance : ArraySource, shape (N, L), optional
+        Share of each light that reaches the points.
+    occlusion : ArraySource, shape (N,), optional
+        Share of the ambient light that reaches the points.
     repeat : int, default: 1
         Number of points, one after the other, that share a normal.
     block : int, optional
@@ -119,6 +129,8 @@ class ShadingInputs:
     fur_height: ArraySource | None = None
     fur: float = 0.0
     shadow: ArraySource | None = None
+    transmittance: ArraySource | None = None
+    occlusion: ArraySource | None = None
     repeat: int = 1
     block: int | None = None
     origin: Vector | None = None
@@ -142,7 +154,10 @@ class ShadingInputs:
         n = int(self.points.shape[1])
         k = None if self.tangents is None else int(np.prod(self.tangents.shape[1:])) // n
         base = 0 if self.base_tangents is None else int(np.prod(self.base_tangents.shape[1:])) // n
-        return Layout(n, k, self.normals is not None, base, self.shadow is not None, self.fur)
+        return Layout(
+            n, k, self.normals is not None, base, self.shadow is not None, self.fur,
+            self.transmittance is not None, self.occlusion is not None,
+        )  # fmt: skip
 
     @property
     def narrow(self) -> bool:
@@ -180,6 +195,8 @@ class ShadingInputs:
         for name, given, expected in (
             ("normals", self.normals, (rows, n)),
             ("fur_height", self.fur_height, (count,)),
+            ("transmittance", self.transmittance, (count, lights)),
+            ("occlusion", self.occlusion, (count,)),
         ):
             if given is not None and tuple(given.shape) != expected:
                 got = f"shape {tuple(given.shape)}"

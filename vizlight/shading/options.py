@@ -7,13 +7,16 @@ import difflib
 import functools
 import inspect
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias, TypedDict, get_args
+
+import numpy as np
 
 from vizlight import _check
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
     from typing import ParamSpec, TypeVar
 
     from numpy.typing import ArrayLike
@@ -23,12 +26,81 @@ if TYPE_CHECKING:
 
 Model = Literal["phong", "blinn", "cylinder"]
 Precision = Literal["float32", "float64"]
+#: Largest number of voxels along a side of a bundle's grid.
+FINEST_GRID = 1024
 FeatureAngle: TypeAlias = float | Literal["auto"] | None
 Facing = Literal["auto", "eye", "outward", "as given"]
 
 
 #: Least error between points that light is refined to: rounding in float32 is about 1e-6.
 FINEST = 1e-5
+
+
+@dataclass(frozen=True)
+class Bundle:
+    """Light inside a bundle of lines, which are taken for a medium of thin cylinders.
+
+    Parameters
+    ----------
+    diameter : float, optional
+        Diameter of the lines that take the light, in the unit of the mesh. Default: the one at
+        which the median point of the lines has the optical depth ``depth``, but at most 1/500 of
+        the diagonal of their bounding box, so that few lines stay bright.
+    depth : float, default: 2.0
+        Optical depth, as a mean over all directions, that the default diameter aims at: 2 leaves
+        about 1/7 of the light.
+    directions : int, default: 64
+        Number of directions, even, of the light from all sides; 0 leaves the ambient term as it
+        is.
+    grid : int, default: 128
+        Number of voxels along the longest side of the bounding box of the lines, from 4 to 1024.
+        Memory grows with its third power. A voxel is at least two diameters wide.
+    lines : pyvista.DataSet or pyvista.MultiBlock, optional
+        Lines that dim what is lit, such as a surface among them. Default: all lines of the mesh
+        that is lit, which dim its surfaces as well.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a value does not fit.
+
+    Notes
+    -----
+    The share of light that reaches a point is ``exp(-d sum(l |w x t|) / A)``, summed over the
+    segments, of length l and tangent t, of all other lines in the column of cross section A from
+    the point toward the light w (Beer and Lambert). Banks (7) is this law for fibres across the
+    light: ``1 - rho = exp(-d l / V)``, l the length in the volume V; he leaves out ``|w x t|``. A
+    medium has no single lines: where few, thick lines stand in the way, points are evenly dim in
+    place of dark and bright. The mean error against rays among cylinders is at most 0.01 for
+    isotropic, parallel and layered lines, for lights outside and light from all sides, and at most
+    0.02 for a light among the lines, whose nearest lines matter most; the study ``bundle`` measures
+    it. The share at a point of a single line is within 0.06 of 1.
+
+    Examples
+    --------
+    >>> import vizlight
+    >>> vizlight.Bundle(depth=1.0).directions
+    64
+    """
+
+    diameter: float | None = None
+    depth: float = 2.0
+    directions: int = 64
+    grid: int = 128
+    lines: object = None
+
+    def __post_init__(self) -> None:
+        if self.diameter is not None:
+            least = float(np.finfo(np.float64).tiny)
+            _check.set_fields(self, diameter=_check.number("diameter", self.diameter, low=least))
+        directions = _check.integer("directions", self.directions, low=0)
+        if directions % 2:
+            raise ValueError(_check.message("directions", "an even number", directions))
+        grid = _check.integer("grid", self.grid, low=4)
+        if grid > FINEST_GRID:
+            raise ValueError(_check.message("grid", f"at most {FINEST_GRID}", grid))
+        depth = _check.number("depth", self.depth, low=1e-6, high=1e6)
+        _check.set_fields(self, depth=depth, directions=directions, grid=grid)
 
 
 class ShadingKeywords(TypedDict, total=False):
@@ -56,6 +128,7 @@ class LightKeywords(ShadingKeywords, total=False):
     flip_normals: bool
     average_cells: bool
     refine: float
+    bundle: bool | Bundle
     name: str
 
 
@@ -188,6 +261,12 @@ class LightOptions(ShadingOptions):
         Largest error between the points, such as 1/255: segments and triangles are split where
         interpolation of the light would be further off, see :func:`vizlight.refine`. 0: the mesh
         stays as it is.
+    bundle : bool or Bundle, default: False
+        Whether lines dim one another, and surfaces among them, as a bundle of thin cylinders; a
+        :class:`vizlight.Bundle` says how. The point arrays ``transmittance``, with one component
+        per light of intensity above 0, and ``occlusion``, 1 for a point that is open to all
+        sides, multiply each light and the ambient term. They are computed anew only where lines,
+        lights or points have changed.
     name : str, default: "luminance"
         Name of the result. Under another name the further arrays are ``<name>_diffuse`` and so on.
     """
@@ -206,10 +285,12 @@ class LightOptions(ShadingOptions):
     flip_normals: bool = False
     average_cells: bool = False
     refine: float = 0.0
+    bundle: bool | Bundle = False
     name: str = "luminance"
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        _check.set_fields(self, bundle=_bundle(self.bundle))
         for name in ("flip_normals", "average_cells"):
             _check.set_fields(self, **{name: _check.boolean(name, getattr(self, name))})
         _check.set_fields(self, refine=_check.number("refine", self.refine, low=0.0))
@@ -221,6 +302,16 @@ class LightOptions(ShadingOptions):
             if getattr(self, name) and self.facing != "auto":
                 expected = f"facing= alone, which replaces {name}="
                 raise ValueError(_check.message(name, expected, "both", "leave it out"))
+
+
+def _bundle(value: object) -> bool | Bundle:
+    """Return False or a bundle, which a record holds as a dict."""
+    if isinstance(value, Mapping):
+        value = Bundle(**value)
+    if isinstance(value, Bundle):
+        return value
+    wanted = _check.boolean("bundle", value, expected="True, False or a vizlight.Bundle")
+    return Bundle() if wanted else False
 
 
 def check_sides(facing: object, feature_angle: object) -> None:

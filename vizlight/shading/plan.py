@@ -105,6 +105,8 @@ class Plan:
         Exponent of that factor.
     shadowed : bool
         Whether t of the cos-theta shadow takes the place of the cosine of normals.
+    dimmed, occluded : bool
+        Whether a share of each light, and of the ambient light, reaches each point.
     fur : float
         Density of the fur that light passes on its way in and out, 0 for none.
     diffuse, specular : bool
@@ -133,6 +135,8 @@ class Plan:
     base: int
     base_exponent: float
     shadowed: bool
+    dimmed: bool
+    occluded: bool
     fur: float
     diffuse: bool
     specular: bool
@@ -250,7 +254,8 @@ def _why_not(plan: Plan, term: str) -> str:
 
 
 def _manifold(plan: Plan, words: _Words) -> None:
-    words.add(f"ambient: the constant {plan.ambient:g}")
+    share = ", times the share of each point" if plan.occluded else ""
+    words.add(f"ambient: the constant {plan.ambient:g}{share}")
     if plan.surface:
         sides = "both sides alike" if plan.two_sided else "the outer side only"
         words.add(
@@ -356,6 +361,8 @@ def _factors(plan: Plan, words: _Words) -> None:
         )
     elif not plan.surface:
         words.add(None, "self-shadow: no surface conditions the tangents")
+    if plan.dimmed:
+        words.add("transmittance: a share of each light for each point, as inside a bundle")
     if plan.terminator:
         end = f"N.wi = {plan.terminator:g}"
         words.add(f"terminator: highlights fade smoothly below {end}")

@@ -49,6 +49,7 @@ class Places(NamedTuple):
 def measurable(inputs: ShadingInputs) -> bool:
     """Return whether light between the points follows from what the inputs hold at the points."""
     given = inputs.shadow is None and inputs.fur_height is None
+    given = given and inputs.transmittance is None and inputs.occlusion is None
     return given and inputs.repeat == 1 and not inputs.generated
 
 
@@ -72,7 +73,9 @@ class Between:
     points : ndarray, shape (N, n)
         Points.
     vectors : dict of str to ndarray, shape (N, k, n)
-        Those of unit ``normals``, ``tangents`` and ``base_tangents`` that the inputs have.
+        Those of unit ``normals``, ``tangents`` and ``base_tangents`` that the inputs have. At
+        points that were added they are as interpolation leaves them, shorter than the others, so
+        that parts of a cell interpolate to the same directions as the cell; see :meth:`rows`.
     scales : dict of str to float
         Factors by which tangents have been divided.
     """
@@ -110,13 +113,22 @@ class Between:
 
     def at(self, places: Places) -> tuple[Array, dict[str, Array], Array]:
         """Return the points, the vectors and the facts on which sides depend, at places."""
+        points, found, facts = self._interpolated(places)
+        for name in self._unit & found.keys():
+            found[name] = unit_rows(found[name][:, 0])[:, np.newaxis]
+        return points, found, facts
+
+    def _interpolated(self, places: Places) -> tuple[Array, dict[str, Array], Array]:
         found: dict[str, Array] = {}
         for name, rows in self.vectors.items():
             mean = interpolated if name == "normals" else mean_spaces
             found[name] = mean(rows, places)
-            if name in self._unit:
-                found[name] = unit_rows(found[name][:, 0])[:, np.newaxis]
         return interpolated(self.points, places), found, interpolated(self.facts, places)
+
+    def rows(self, name: str) -> Array:
+        """Return vectors of all points, of length 1 where those of the mesh are."""
+        rows = self.vectors[name]
+        return unit_rows(rows[:, 0])[:, np.newaxis] if name in self._unit else rows
 
     def turned(self, normals: Array, facts: Array, points: Array) -> Array:
         """Return normals, shape (M, n), turned to the side of the surface that is seen."""
@@ -124,7 +136,7 @@ class Between:
 
     def extend(self, places: Places) -> None:
         """Make points of places, after those that there are."""
-        points, vectors, facts = self.at(places)
+        points, vectors, facts = self._interpolated(places)
         self.points = np.concatenate([self.points, points])
         self.facts = np.concatenate([self.facts, facts])
         for name, rows in vectors.items():
@@ -174,7 +186,9 @@ class Between:
         else:
             at = cells.ravel()
             normals = self.vectors["normals"][at, 0]
-            given = self.turned(normals, self.facts[at], self.points[at]).reshape(rows.shape)
+            turned = self.turned(unit_rows(normals), self.facts[at], self.points[at])
+            length = np.linalg.norm(normals, axis=1, keepdims=True)
+            given = (length * turned).reshape(rows.shape)
         solve = _across if lines else _toward_half
         found = []
         for light in scene.lights:

@@ -111,6 +111,8 @@ class Oracle:
         base_tangents: Sequence[Vector] | None = None,
         fur_height: float = 0.0,
         shadow: Vector | None = None,
+        transmittance: Vector | None = None,
+        occlusion: float = 1.0,
         model: str = "phong",
         compensate: bool = True,
         exponent: float | None = None,
@@ -132,7 +134,7 @@ class Oracle:
             Normal of any length.
         scene : Scene
             Scene whose depth cue, if it has one, has both ends.
-        base_tangents, fur_height, shadow, model, compensate, conditioned, two_sided, terminator, fur
+        base_tangents, fur_height, shadow, transmittance, occlusion, model, compensate, conditioned, two_sided, terminator, fur
             Options of :func:`vizlight.engine.shade`, for one point.
         exponent : float, optional
             Exponent of the diffuse term, in place of that of ``compensate``.
@@ -164,10 +166,12 @@ class Oracle:
             wi, distance = self.toward(light.seen_from(view), at)
             if wi is not None:
                 scale = self._arriving(wi, distance, light, place)
+                if transmittance is not None:
+                    scale *= self.number(transmittance[i])
                 passed = None if shadow is None else self.number(shadow[i])
                 diffuse, specular = self._reflected(wi, passed, place)
                 parts.append((light, scale * diffuse, scale * specular))
-        return self._sum(at, scene, parts)
+        return self._sum(at, scene, parts, self.number(occlusion))
 
     def _frames(
         self,
@@ -245,10 +249,12 @@ class Oracle:
             value *= self.smooth(min(cosine / place.terminator, self.number(1.0)))
         return value
 
-    def _sum(self, at: Vector, scene: Scene, parts: Sequence[tuple[Light, Real, Real]]) -> Lit:
+    def _sum(
+        self, at: Vector, scene: Scene, parts: Sequence[tuple[Light, Real, Real]], occlusion: Real
+    ) -> Lit:
         """Return the sum of the lights, given both terms of each for a white material."""
         material, zero = scene.material, self.number(0.0)
-        ambient = self.number(material.ambient) * scene.ambient_intensity
+        ambient = self.number(material.ambient) * scene.ambient_intensity * occlusion
         parts = [(one, material.diffuse * d, material.specular * s) for one, d, s in parts]
         diffuse = sum((d for _, d, _ in parts), zero)
         specular = sum((s for _, _, s in parts), zero)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import contextvars
+import dataclasses
 import math
 import time
 from dataclasses import dataclass, field
@@ -35,6 +36,7 @@ RAYS = 64
 #: Largest number of places or triangles that all these rays are tested against.
 TRIALS = 20_000_000
 SHADOW = ("t",)
+SHADOWED = "cast shadows, whose edges run between the points"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,6 +80,8 @@ class Run:
     finer : int or None
         Factor by which all segments or triangles must be shorter so that no such place is left;
         None if 128 is not enough.
+    unmeasured : str
+        What of the error between the points is not measured and why, in words; empty if all is.
     """
 
     points: int
@@ -97,6 +101,7 @@ class Run:
     between_rms: float = math.nan
     visible: float = math.nan
     finer: int | None = 1
+    unmeasured: str = ""
 
     @property
     def missed(self) -> float:
@@ -206,9 +211,16 @@ def _lines(run: Run) -> list[str]:
         if run.visible:
             text += f"; {_percent(run.visible)} are off by more than 1/255"
         if run.visible > unseen(run.places):
-            shorter = f"cells 1/{run.finer} as long" if run.finer else "no cells 1/128 as long"
-            text += f": {shorter}, or refine=1/255, would do"
+            if run.finer:
+                text += f": cells 1/{run.finer} as long, or refine=1/255, would do"
+            else:
+                text += (
+                    ": cells 1/128 as long would not do; "
+                    "refine=1/255 leaves only places where the light jumps"
+                )
         found.append(text)
+    if run.unmeasured:
+        found.append(f"  not measured between points: {run.unmeasured}")
     return found
 
 
@@ -264,8 +276,9 @@ def report(*, sample: int = 4096, seed: int = 0) -> Iterator[Report]:
     The error between the points is that of the picture: light that is interpolated over segments
     and triangles, against the light of normals and tangents that are interpolated and normalised,
     as a fragment shader computes it. It is computed by the engine in float64, in some 4 ms for
-    4,096 places and 0.1 µs for each cell. It is not measured for fur, for cast shadows, and for
-    points without cells. Filters that other threads call are not recorded.
+    4,096 places and 0.1 µs for each cell. It is not measured for fur, for cast shadows, for
+    light inside a bundle, and for points without cells, and the report says so where it is not.
+    Filters that other threads call are not recorded.
 
     Examples
     --------
@@ -334,6 +347,7 @@ def note(given: ShadingInputs, scene: Scene, shading: Shading, options: ShadingO
             ),
             visible=float(np.mean(places.error > VISIBLE)) if len(places.error) else math.nan,
             finer=places.finer,
+            unmeasured=_unmeasured(given, shading, len(places.error)) if active.sample else "",
         )
     )
 
@@ -348,6 +362,23 @@ def _between(
         given, scene, options, shading, given.cells(), count=active.sample, seed=active.seed,
         allowed=VISIBLE,
     )  # fmt: skip
+
+
+def _unmeasured(given: ShadingInputs, shading: Shading, places: int) -> str:
+    """Return what of the error between the points was not measured, and why."""
+    if given.shadow is not None:
+        return SHADOWED
+    if given.generated or given.fur_height is not None:
+        return "fur, which light passes on a way of its own at each place"
+    if not places:
+        return "points without cells between them, or cells without light"
+    k = given.layout.k
+    if k is not None and k > 1 and "specular" in shading.plan.terms:
+        return (
+            "the peaks of highlights, which have no closed form for several tangents per point: "
+            "one that is smaller than a cell is seen only where a place falls on it"
+        )
+    return ""
 
 
 def _bright(shading: Shading) -> int:
@@ -389,7 +420,8 @@ def note_ratio(
     off = off[np.isfinite(off)]
     active.seconds -= time.perf_counter() - start
     invalid = int(np.count_nonzero(~valid))
-    active.runs.append(_run(off, SHADOW, t, seconds, size, len(t), invalid, math.nan))
+    run = _run(off, SHADOW, t, seconds, size, len(t), invalid, math.nan)
+    active.runs.append(dataclasses.replace(run, unmeasured=SHADOWED if active.sample else ""))
 
 
 def note_bands(
@@ -474,6 +506,8 @@ def _reference(
         base_tangents=vectors(given.base_tangents),
         fur_height=0.0 if given.fur_height is None else numbers(given.fur_height, own)[0],
         shadow=None if given.shadow is None else numbers(given.shadow, own),
+        transmittance=(None if given.transmittance is None else numbers(given.transmittance, own)),
+        occlusion=1.0 if given.occlusion is None else numbers(given.occlusion, own)[0],
         model=options.model,
         compensate=options.compensate,
         conditioned=bool(options.conditioned),

@@ -54,7 +54,7 @@ def test_squares_are_the_cells(way, border, random):
     ways = np.repeat(way[:, None], 500, axis=1)
     compiled.walk(
         start, ways, np.full(500, marching.FAR), *field.edges, field.corners,
-        compiled.levels(field), field.base, field.top, found,
+        compiled.levels(field.bounds), field.base, field.top, found,
     )  # fmt: skip
     np.testing.assert_allclose(found, by_cells(field, start, way), atol=1e-11)
 
@@ -77,3 +77,21 @@ def test_a_level_surface_and_one_that_the_light_grazes():
     down = relief.shadow(x, x, slope, depth=1e-3, direction=sun(10, 180))
     np.testing.assert_allclose(down[5:-5, 5:-5], np.sin(np.radians(20)), atol=1e-9)
     assert relief.shadow(x, x, slope, depth=0.5, direction=sun(10, 0))[:, 3].max() < 0.02
+
+
+@pytest.mark.parametrize("light", [{"direction": sun(15, 70)}, {"position": (0, 0, 90)}])
+def test_numpy_follows_the_rays_that_a_kernel_fails_with(light, monkeypatch):
+    def broken(*_):
+        raise RuntimeError("LLVM ERROR")
+
+    x, y, z = hills(20, 15)
+    with _compiled.setting("0"):
+        numpys = relief.shadow(x, y, z, depth=0.1, **light)
+    monkeypatch.setattr(_compiled, "_BROKEN", [])
+    for kernel in (compiled.walk, compiled.follow):
+        monkeypatch.setattr(kernel, "_proven", True)
+        monkeypatch.setattr(kernel, "_compiled", broken)
+    with pytest.warns(RuntimeWarning, match="LLVM ERROR") as caught:
+        found = relief.shadow(x, y, z, depth=0.1, **light)
+    assert len(caught) == 1
+    np.testing.assert_array_equal(found, numpys)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from vizlight import _check
+from vizlight.geometry.lines import compiled
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -69,16 +70,36 @@ def seeds(
     triangles = _check.cells("faces", faces, len(vertices), (3,))
     count = _check.integer("count", count, low=0)
     seed = _check.integer("seed", seed, low=0)
-    order = along_curve(vertices, triangles)
-    total = areas(vertices, triangles[order])
+    order, total = laid(vertices, triangles)
     if count and not (len(total) and total[-1] > 0):
         raise ValueError(_check.message("faces", "triangles with an area above 0", "none"))
     face, weights = np.empty(count, np.intp), np.empty((count, 3), np.float32)
     for start in range(0, count, SEED_BLOCK):
         block = slice(start, start + SEED_BLOCK)
-        place, weights[block] = seed_block(total, start, count, seed)
+        place, weights[block] = seed_block(total, draw(total, start, count, seed))
         face[block] = order[place]
     return face, weights
+
+
+def laid(vertices: Array, triangles: Indices, *, fast: bool = False) -> tuple[Indices, Array]:
+    """Return the order of triangles along a Hilbert curve, and their cumulative areas in it.
+
+    With ``fast`` compiled code finds both.
+    """
+    if not fast or not len(triangles):
+        order = along_curve(vertices, triangles)
+        return order, areas(vertices, triangles[order])
+    key, area = np.empty(len(triangles), np.intp), np.empty(len(triangles))
+    flat = np.ascontiguousarray(vertices).reshape(-1), np.ascontiguousarray(triangles).reshape(-1)
+    compiled.lay(*flat, curve_bits(len(triangles)), key, area)
+    order = np.argsort(key) if key.any() else np.arange(len(key))
+    return order, np.cumsum(area[order])
+
+
+def curve_bits(count: int) -> int:
+    """Return the bits per axis of a curve through the centres of a number of triangles."""
+    # Cells of a quarter of the mean distance of triangles on a flat surface.
+    return min(max(count.bit_length() // 2 + 2, 4), 20)
 
 
 def along_curve(vertices: Array, triangles: Indices) -> Indices:
@@ -94,8 +115,7 @@ def along_curve(vertices: Array, triangles: Indices) -> Indices:
         side = float(np.nanmax(centre - low, initial=0))
     if not 0 < side < np.inf:
         return np.arange(len(triangles))
-    # Cells of a quarter of the mean distance of triangles on a flat surface.
-    bits = min(max(len(triangles).bit_length() // 2 + 2, 4), 20)
+    bits = curve_bits(len(triangles))
     places = np.nan_to_num((centre - low) / side) * ((1 << bits) - 1)
     return np.argsort(hilbert(np.ascontiguousarray(places.T).astype(np.int64), bits))
 
@@ -135,15 +155,51 @@ def areas(vertices: Array, triangles: Indices) -> Array:
     return np.cumsum(np.where(np.isfinite(area), area, 0))
 
 
-def seed_block(total: Array, start: int, count: int, seed: int) -> tuple[Indices, Array]:
-    """Return the seeds of the block that begins at ``start``, a multiple of SEED_BLOCK."""
+class Draws(NamedTuple):
+    """Random numbers of a block of seeds.
+
+    Attributes
+    ----------
+    place : ndarray, shape (B,)
+        Areas before the seeds, in rising order.
+    number : ndarray, shape (B,)
+        Numbers of the seeds on the lattice, in turns.
+    jitter : ndarray of float32, shape (B,)
+    starts : ndarray
+        Starts of the lattice on each triangle that has a seed, and those between them.
+    first : int
+        The first of these triangles.
+    mean : float
+        Area per seed.
+    """
+
+    place: Array
+    number: Array
+    jitter: Array
+    starts: Array
+    first: int
+    mean: float
+
+
+def draw(total: Array, start: int, count: int, seed: int) -> Draws:
+    """Return the random numbers of the block that begins at ``start``, a multiple of SEED_BLOCK."""
     random = np.random.default_rng([seed, start // SEED_BLOCK])
     number = np.arange(start, min(start + SEED_BLOCK, count), dtype=np.float64)
     place = number.copy()
     place += random.random(len(place))
     place *= total[-1] / count
-    # Places are sorted, so a search per triangle is enough and none per place is needed.
     first, last = np.minimum(np.searchsorted(total, place[[0, -1]], side="right"), len(total) - 1)
+    number *= TURN
+    starts = random.random(last + 1 - first)
+    jitter = random.random(len(place), dtype=np.float32)
+    return Draws(place, number, jitter, starts, int(first), float(total[-1] / count))
+
+
+def seed_block(total: Array, draws: Draws) -> tuple[Indices, Array]:
+    """Return the triangles and the weights of a block of seeds."""
+    place, first = draws.place, draws.first
+    last = first + len(draws.starts) - 1
+    # Places are sorted, so a search per triangle is enough and none per place is needed.
     ends = np.searchsorted(place, total[first:last], side="left")
     counts = np.diff(ends, prepend=0, append=len(place))
     face = np.repeat(np.arange(first, last + 1), counts)
@@ -152,11 +208,10 @@ def seed_block(total: Array, start: int, count: int, seed: int) -> tuple[Indices
     share = (place - np.repeat(edges[:-1], counts)) / np.repeat(np.where(area > 0, area, 1), counts)
     root = np.sqrt(np.clip(share, 0, 1)).astype(np.float32)
     # Each triangle has its own lattice with a random start, so that no pattern spans triangles.
-    number *= TURN
-    number += np.repeat(random.random(len(area)), counts)
+    number = draws.number + np.repeat(draws.starts, counts)
     # The part of a triangle that lies in another block has the same number of places per area.
-    spread = np.minimum(total[-1] / (count * np.where(area > 0, area, 1)), 1)
-    number += np.repeat(np.sqrt(spread), counts) * random.random(len(place), dtype=np.float32)
+    spread = np.minimum(draws.mean / np.where(area > 0, area, 1), 1)
+    number += np.repeat(np.sqrt(spread), counts) * draws.jitter
     weights = np.empty((len(place), 3), np.float32)
     weights[:, 0] = 1 - root
     weights[:, 2] = (number - np.floor(number)) * root

@@ -9,6 +9,8 @@ import numpy as np
 from vizlight import _check
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike
 
     from vizlight._types import Array, Bools, Indices
@@ -19,7 +21,15 @@ __all__ = ["depth_map"]
 BLOCK = 1 << 20
 
 
-def depth_map(x: ArrayLike, y: ArrayLike, points: ArrayLike, triangles: ArrayLike, /) -> Array:
+def depth_map(
+    x: ArrayLike,
+    y: ArrayLike,
+    points: ArrayLike,
+    triangles: ArrayLike,
+    /,
+    *,
+    progress: Callable[[int, int], None] | None = None,
+) -> Array:
     """Return the largest z of triangles above the nodes of a grid.
 
     Parameters
@@ -30,6 +40,9 @@ def depth_map(x: ArrayLike, y: ArrayLike, points: ArrayLike, triangles: ArrayLik
         Vertices of the triangles.
     triangles : array_like of int, shape (T, 3)
         Indices of the vertices of each triangle.
+    progress : callable, optional
+        Function that is called as ``progress(pairs done, pairs)`` after each block of pairs of a
+        triangle and a node.
 
     Returns
     -------
@@ -83,6 +96,8 @@ def depth_map(x: ArrayLike, y: ArrayLike, points: ArrayLike, triangles: ArrayLik
         flat = node[inside, 1] * shape[1] + node[inside, 0]
         np.maximum.at(height, flat, z)
         begin = end
+        if progress is not None:
+            progress(int(total[end - 1]), int(total[-1]))
     height[np.isneginf(height)] = np.nan
     return height.reshape(shape)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
@@ -44,9 +45,6 @@ class Field:
         Boundaries of the cells, from -inf to inf.
     corners : ndarray, shape (ny + 2, nx + 2)
         Heights at the corners of the cells.
-    bounds : list of (ndarray, ndarray)
-        Largest and least height over 2^l x 2^l cells, for l = 0, 1, ...; both are -inf where there
-        is no solid.
     base : float
         Height of the lower side of the solid, -inf without one.
     top : float
@@ -61,10 +59,14 @@ class Field:
     heights: Array
     edges: tuple[Array, Array]
     corners: Array
-    bounds: list[tuple[Array, Array]]
     base: float
     top: float
     border: Border
+
+    @cached_property
+    def bounds(self) -> list[tuple[Array, Array]]:
+        """Largest and least heights over 2^l x 2^l cells, l = 0, 1, ...; -inf without a solid."""
+        return _pyramid(self.corners, self.border)
 
     def height(self, x: Array, y: Array) -> Array:
         """Return heights at positions relative to the origin, -inf where there is no solid."""
@@ -143,7 +145,6 @@ def make(x: ArrayLike, y: ArrayLike, z: ArrayLike, *, base: float | None, border
         heights=wide,
         edges=(_edges(axes[0]), _edges(axes[1])),
         corners=corners,
-        bounds=_pyramid(corners, border),
         base=-np.inf if base is None else base - low,
         top=top,
         border=border,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
@@ -100,7 +101,8 @@ def inside_length(
 
     Examples
     --------
-    >>> float(inside_length([0, 1], [0, 1], [[0, 0], [0, 0]], (0.5, 0.5, -1), direction=(0, 3, 4)))
+    >>> flat, below = [[0, 0], [0, 0]], (0.5, 0.5, -1)
+    >>> round(float(inside_length([0, 1], [0, 1], flat, below, direction=(0, 3, 4))), 12)
     1.25
     """
     field = height_field.make(x, y, z, base=base, border=border)
@@ -230,8 +232,12 @@ def ratio(
     *,
     method: Method = "fast",
     threads: int | None = None,
+    report: Callable[[int], None] | None = None,
 ) -> Array:
-    """Return :func:`shadow` for a validated field and its normals."""
+    """Return :func:`shadow` for a validated field and its normals.
+
+    ``report`` takes the number of rays that are done.
+    """
     size = max(field.x[-1], field.y[-1], field.top)
     if depth * LEAST_DEPTH > size:
         expected = f"at most {size / LEAST_DEPTH:g}, 1e9 times the size of the field"
@@ -246,7 +252,8 @@ def ratio(
         place = np.stack([field.x.take(column), field.y.take(row), heights.take(rays)])
         return np.asarray(place - inset * normals.take(rays, axis=0).T)
 
-    t = lengths(field, start, normal.shape[0] * normal.shape[1], ray, method, threads, inset)
+    count = normal.shape[0] * normal.shape[1]
+    t = lengths(field, start, count, ray, method, threads, inset, report)
     if limit:
         step = min(np.diff(field.x).min(), np.diff(field.y).min())
         free = t <= 1e-6 * step
@@ -268,6 +275,7 @@ def lengths(
     method: Method,
     threads: int | None,
     below: float | None = None,
+    report: Callable[[int], None] | None = None,
 ) -> Array:
     """Return the lengths inside the solid of rays that begin at ``start(rays)``, shape (3, rays).
 
@@ -275,6 +283,21 @@ def lengths(
     the surface at which rays start; for None it is found from all of them.
     """
     _check.choice("method", method, get_args(Method))
+    with contextlib.suppress(_compiled.FailedError):
+        return _lengths(field, start, count, ray, method, threads, below)
+    # Compiled code is off from here on.
+    return _lengths(field, start, count, ray, method, threads, below)
+
+
+def _lengths(
+    field: Field,
+    start: Callable[[Indices], Array],
+    count: int,
+    ray: Ray,
+    method: Method,
+    threads: int | None,
+    below: float | None,
+) -> Array:
     length = np.empty(count)
     endless = field.border == "extend" and field.base == -np.inf
     if ray.direction is not None and ray.direction[2] < 0 and endless:
@@ -285,10 +308,12 @@ def lengths(
             below = _largest_offset(field, start(np.arange(count)))
         profiles = _profiles(field, ray.direction, below, count, method)
         if profiles is not None:
-            _by_profile(profiles, start, length, threads)
+            _by_profile(profiles, start, length, threads, report)
             return length
     fast = compiled.walk.pays(compiled.SAVED * count)
-    bounds = compiled.levels(field) if fast else None
+    # Asked for once, before threads need them.
+    pyramid = field.bounds
+    bounds = compiled.levels(pyramid) if fast else None
 
     def work(rows: slice) -> int:
         places = start(np.arange(rows.start, rows.stop))
@@ -302,7 +327,7 @@ def lengths(
             )  # fmt: skip
         return int(rows.stop)
 
-    _all(work, _pool.blocks(count, BLOCK), threads)
+    _all(work, _pool.blocks(count, BLOCK), threads, report)
     return length
 
 
@@ -321,6 +346,7 @@ def _by_profile(
     start: Callable[[Indices], Array],
     length: Array,
     threads: int | None,
+    report: Callable[[int], None] | None,
 ) -> None:
     """Fill in lengths, one band of profiles and its rays after the other."""
     count = len(length)
@@ -346,12 +372,18 @@ def _by_profile(
             length[some] = made.lengths(start(some))
         return int(part.stop)
 
-    _all(work, parts, threads)
+    _all(work, parts, threads, report)
 
 
-def _all(work: Callable[[slice], int], parts: list[slice], threads: int | None) -> None:
-    for _ in _pool.run(work, parts, threads):
-        pass
+def _all(
+    work: Callable[[slice], int],
+    parts: list[slice],
+    threads: int | None,
+    report: Callable[[int], None] | None = None,
+) -> None:
+    for done in _pool.run(work, parts, threads):
+        if report is not None:
+            report(done)
 
 
 def _largest_offset(field: Field, places: Array) -> float:

@@ -1,0 +1,281 @@
+"""Light inside a bundle as a filter: what multiplies what, what is used again, surfaces, errors."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight import _compiled
+from vizlight.filters import relight
+from vizlight.geometry.lines import bundle as geometry
+from vizlight.mesh import bundles
+from vizlight.plotting import fragments
+from vizlight.shading import engine
+from vizlight.shading.options import LightOptions
+
+FAR = vizlight.Light(direction=(0, 0, 1))
+NEAR = vizlight.Light(position=(0.2, 0.1, 3.0), intensity=0.5)
+OFF = vizlight.Light(direction=(1, 0, 0), intensity=0.0)
+SCENE = vizlight.Scene(lights=[FAR, OFF, NEAR], view=vizlight.View(direction=(0, -1, 0.3)))
+QUICK = vizlight.Bundle(grid=24, directions=8)
+
+
+def lines(count=300, points=12, seed=1):
+    """Return straight lines at random in a ball."""
+    random = np.random.default_rng(seed)
+    way = random.normal(size=(count, 3))
+    way /= np.linalg.norm(way, axis=1, keepdims=True)
+    middle = random.uniform(-0.7, 0.7, (count, 3))
+    places = middle[:, None] + np.linspace(-0.3, 0.3, points)[:, None] * way[:, None]
+    mesh = pv.PolyData()
+    mesh.points = places.reshape(-1, 3)
+    ids = np.arange(count * points).reshape(count, points)
+    mesh.lines = np.insert(ids, 0, points, axis=1).ravel()
+    return mesh
+
+
+def test_the_shares_multiply_each_light_and_the_ambient_term():
+    """Against lighting by one light at a time, without a bundle."""
+    mesh = lines()
+    lit = vizlight.illuminate(mesh, SCENE, bundle=QUICK, components=True)
+    share, open_ = np.asarray(lit["transmittance"]), np.asarray(lit["occlusion"])
+    assert share.shape == (mesh.n_points, 2)
+    assert share.min() >= 0
+    assert share.max() <= 1
+    assert 0.02 < share.mean() < 0.98
+    alone = [
+        vizlight.illuminate(mesh, SCENE.replace(lights=[light]), components=True)
+        for light in (FAR, NEAR)
+    ]
+    for term in ("diffuse", "specular"):
+        expected = share[:, 0] * alone[0][term] + share[:, 1] * alone[1][term]
+        np.testing.assert_allclose(lit[term], expected, atol=1e-6)
+    np.testing.assert_allclose(lit["ambient"], open_ * alone[0]["ambient"], atol=1e-7)
+    total = lit["ambient"] + lit["diffuse"] + lit["specular"]
+    np.testing.assert_allclose(lit["luminance"], total, atol=1e-6)
+
+
+def test_points_deep_inside_are_darker_and_the_outermost_are_not():
+    mesh = lines(2000)
+    lit = vizlight.illuminate(mesh, SCENE.replace(lights=[FAR]), bundle=QUICK)
+    height, share = np.asarray(mesh.points)[:, 2], np.asarray(lit["transmittance"])
+    assert share[height > 0.8].mean() > 0.9
+    assert share[height < -0.5].mean() < 0.3
+    radius = np.abs(mesh.points).max(axis=1)
+    assert lit["occlusion"][radius < 0.2].mean() < 0.6 * lit["occlusion"][radius > 0.8].mean()
+
+
+def test_the_reference_of_a_report_takes_the_shares_too():
+    red = vizlight.Material(color=(1.0, 0.3, 0.2))
+    with vizlight.report(sample=60) as report:
+        vizlight.illuminate(lines(100), SCENE.replace(material=red), bundle=QUICK)
+    assert report.error < 2e-6
+    assert report.runs[0].sample == 60
+
+
+def test_what_has_not_changed_is_not_computed_again(monkeypatch):
+    asked = []
+    dimmed = geometry.Medium.dimmed
+
+    def counted(self, targets, diameter, lights, count, **options):
+        asked.append((len(lights), count))
+        return dimmed(self, targets, diameter, lights, count, **options)
+
+    monkeypatch.setattr(geometry.Medium, "dimmed", counted)
+    lit = vizlight.illuminate(lines(), SCENE, bundle=QUICK)
+    turned = vizlight.illuminate(
+        lit, SCENE.replace(view=vizlight.View(direction=(1, 0, 0))), bundle=QUICK
+    )
+    assert asked == [(2, 8)]
+    for name in ("transmittance", "occlusion"):
+        assert np.array_equal(turned[name], lit[name])
+    assert not np.array_equal(turned["luminance"], lit["luminance"])
+    head = SCENE.replace(lights=[NEAR, vizlight.Light.headlight()])
+    other = vizlight.illuminate(turned, head, bundle=QUICK)
+    assert asked[1:] == [(1, 0)]
+    assert np.array_equal(other["transmittance"][:, 0], lit["transmittance"][:, 1])
+    other.points[0, 0] += 0.1
+    vizlight.illuminate(other, head, bundle=QUICK)
+    vizlight.illuminate(lit, SCENE, bundle=dataclasses.replace(QUICK, depth=1.0))
+    assert asked[2:] == [(2, 8), (2, 8)]
+    bare = vizlight.illuminate(lit, SCENE)
+    assert "transmittance" not in bare.point_data
+
+
+def test_the_same_with_any_number_of_threads_and_without_compiled_code(monkeypatch):
+    mesh = lines(200)
+    one, two = (
+        vizlight.illuminate(mesh, SCENE, bundle=QUICK, threads=threads) for threads in (1, 2)
+    )
+    assert np.array_equal(one["transmittance"], two["transmittance"])
+    assert np.array_equal(one["occlusion"], two["occlusion"])
+    monkeypatch.setenv("VIZLIGHT_FAST", "0")
+    plain = vizlight.illuminate(mesh, SCENE, bundle=QUICK)
+    if _compiled._missing():
+        pytest.skip("numba is not installed")
+    monkeypatch.setenv("VIZLIGHT_FAST", "1")
+    fast = vizlight.illuminate(mesh, SCENE, bundle=QUICK)
+    for name in ("transmittance", "occlusion", "luminance"):
+        np.testing.assert_allclose(fast[name], plain[name], atol=2e-5)
+
+
+@pytest.mark.parametrize("kind", [np.float32, np.float64])
+@pytest.mark.parametrize(("scale", "far"), [(1e-20, 0.0), (1e12, 0.0), (1.0, 1e4)])
+def test_neither_the_unit_nor_the_place_matters(kind, scale, far):
+    mesh = lines(150)
+    moved = mesh.copy()
+    moved.points = (np.asarray(mesh.points, np.float64) * scale + far).astype(kind)
+    scene = SCENE.replace(lights=[FAR])
+    found = vizlight.illuminate(mesh, scene, bundle=QUICK)
+    other = vizlight.illuminate(moved, scene, bundle=QUICK)
+    off = 2e-2 if far and kind is np.float32 else 2e-3
+    np.testing.assert_allclose(other["transmittance"], found["transmittance"], atol=off)
+    assert abs(other["occlusion"] - found["occlusion"]).mean() < off
+
+
+def test_the_default_diameter_has_the_depth_asked_for_or_a_share_of_the_size():
+    dense = vizlight.illuminate(lines(6000), SCENE, bundle=QUICK)
+    record = vizlight.provenance(dense)["bundle"]
+    ball = lines(6000)
+    assert record["diameter"] < ball.length / 500
+    thin = vizlight.illuminate(ball, SCENE, bundle=dataclasses.replace(QUICK, depth=0.5))
+    ratio = vizlight.provenance(thin)["bundle"]["diameter"] / record["diameter"]
+    assert ratio == pytest.approx(0.25)
+    few = vizlight.illuminate(lines(20), SCENE, bundle=QUICK)
+    record = vizlight.provenance(few)["bundle"]
+    assert record["diameter"] == pytest.approx(lines(20).length / 500, rel=1e-6)
+    assert few["occlusion"].min() > 0.7
+
+
+def test_a_record_repeats_the_light():
+    mesh = lines(100)
+    lit = vizlight.illuminate(mesh, SCENE, bundle=QUICK, name="light")
+    assert {"light_transmittance", "light_occlusion"} <= set(lit.point_data)
+    record = vizlight.provenance(lit, "light")
+    scene = vizlight.Scene.from_dict(record["scene"])
+    again = vizlight.illuminate(mesh, scene, **record["options"])
+    assert np.array_equal(again["light"], lit["light"])
+
+
+def test_a_surface_is_dimmed_by_the_lines_above_it():
+    """Lines above a plate: dark below their middle, bright beside, like the lines' own medium."""
+    mesh = lines(3000)
+    plate = pv.Plane(center=(0, 0, -1.2), i_size=6, j_size=6, i_resolution=30, j_resolution=30)
+    scene = vizlight.Scene(lights=[FAR], view=vizlight.View(direction=(0, 0, 1)))
+    lit = vizlight.illuminate(plate, scene, bundle=dataclasses.replace(QUICK, lines=mesh))
+    away = np.abs(plate.points[:, :2]).max(axis=1)
+    assert lit["transmittance"][away < 0.3].max() < 0.3
+    assert (lit["transmittance"][away > 1.3] == 1).all()
+    assert lit["occlusion"][away < 0.3].mean() < lit["occlusion"][away > 2.5].mean()
+    both = vizlight.illuminate(pv.MultiBlock({"l": mesh, "p": plate}), scene, bundle=QUICK)
+    np.testing.assert_allclose(both["p"]["transmittance"], lit["transmittance"], atol=1e-6)
+    alone = vizlight.illuminate(mesh, scene, bundle=QUICK)
+    np.testing.assert_allclose(both["l"]["transmittance"], alone["transmittance"], atol=1e-6)
+    below = plate.copy()
+    below.points[:, 2] = 1.2
+    clear = vizlight.illuminate(below, scene, bundle=dataclasses.replace(QUICK, lines=mesh))
+    assert clear["transmittance"].min() > 1 - 1e-6
+    # Light from all sides comes from above alone.
+    assert clear["occlusion"].min() > 1 - 1e-6
+
+
+def test_streamlines_and_segments_of_a_grid():
+    flow = vizlight.load_example()
+    lit = vizlight.streamlines(flow, SCENE, vectors="V", seeds=20, bundle=QUICK)
+    assert lit["transmittance"].shape == (lit.n_points, 2)
+    mesh = lines(60)
+    grid = mesh.cast_to_unstructured_grid()
+    found, same = (vizlight.illuminate(each, SCENE, bundle=QUICK) for each in (grid, mesh))
+    np.testing.assert_allclose(found["transmittance"], same["transmittance"], atol=1e-6)
+    pieces = mesh.copy()
+    ids = mesh.lines.reshape(60, -1)[:, 1:]
+    ends = np.stack([ids[:, :-1].ravel(), ids[:, 1:].ravel()], axis=1)
+    pieces.lines = np.insert(ends, 0, 2, axis=1).ravel()
+    cut = vizlight.illuminate(pieces, SCENE, bundle=QUICK)
+    np.testing.assert_allclose(cut["transmittance"], same["transmittance"], atol=1e-5)
+
+
+def test_without_directions_the_ambient_term_stays():
+    lit = vizlight.illuminate(
+        lines(50), SCENE, bundle=vizlight.Bundle(grid=8, directions=0), components=True
+    )
+    assert "occlusion" not in lit.point_data
+    assert np.ptp(lit["ambient"]) == 0
+
+
+def test_points_that_are_not_finite_and_lines_of_no_length():
+    mesh = lines(40)
+    mesh.points[5] = np.nan
+    mesh.points[12:24] = mesh.points[12]
+    with pytest.warns(UserWarning, match="could not be lit"):
+        lit = vizlight.illuminate(mesh, SCENE, bundle=QUICK)
+    assert np.isfinite(lit["luminance"]).all()
+    assert lit["transmittance"][5].tolist() == [1, 1]
+    one = pv.Line((0, 0, 0), (0, 0, 0))
+    with pytest.warns(UserWarning, match="could not be lit"):
+        assert np.isfinite(vizlight.illuminate(one, SCENE, bundle=True)["luminance"]).all()
+    straight = vizlight.illuminate(pv.Line(resolution=50), SCENE, bundle=True)
+    # A single line on a row of voxels: its own share is known on average alone.
+    assert straight["transmittance"].min() > 0.94
+
+
+def test_a_plan_says_that_light_is_dimmed():
+    mesh = lines(3)
+    share = np.full((mesh.n_points, 2), 0.5)
+    given = engine.ShadingInputs(
+        points=mesh.points, tangents=mesh.points, transmittance=share, occlusion=share[:, 0]
+    )
+    text = engine.run(given, SCENE, engine.ShadingOptions()).plan.explain()
+    assert "transmittance: a share of each light for each point" in text
+    assert "times the share of each point" in text
+    whole = engine.shade(mesh.points, mesh.points, SCENE)
+    half = engine.shade(mesh.points, mesh.points, SCENE, transmittance=share, occlusion=share[:, 0])
+    np.testing.assert_allclose(half.luminance, whole.luminance / 2, rtol=1e-6)
+    assert "transmittance" not in whole.plan.explain()
+    share[0] = np.nan
+    bad = engine.shade(mesh.points, mesh.points, SCENE, transmittance=share, occlusion=share[:, 0])
+    assert bad.invalid == 1
+    assert np.isfinite(bad.luminance).all()
+
+
+def test_bad_input():
+    for keywords, words in (
+        ({"diameter": 0.0}, "diameter"), ({"diameter": np.nan}, "diameter"),
+        ({"directions": 7}, "directions: expected an even number"),
+        ({"directions": -2}, "directions"), ({"grid": 2}, "grid"), ({"grid": 4096}, "grid"),
+        ({"depth": 0}, "depth"),
+    ):  # fmt: skip
+        with pytest.raises(ValueError, match=words):
+            vizlight.Bundle(**keywords)
+    mesh = lines(5)
+    with pytest.raises(TypeError, match="bundle: expected True, False or a vizlight.Bundle"):
+        vizlight.illuminate(mesh, SCENE, bundle="yes")
+    with pytest.raises(ValueError, match="bundle: expected a mesh with lines"):
+        vizlight.illuminate(pv.Sphere(), SCENE, bundle=True)
+    with pytest.raises(TypeError, match=r"Bundle\(lines=\)"):
+        vizlight.illuminate(pv.Sphere(), SCENE, bundle=vizlight.Bundle(lines=3))
+    with pytest.raises(ValueError, match=r"Bundle\(lines=\): expected a mesh of lines"):
+        vizlight.illuminate(mesh, SCENE, bundle=vizlight.Bundle(lines=pv.Sphere()))
+    mesh["occlusion"] = np.zeros(mesh.n_points)
+    with pytest.raises(ValueError, match="'occlusion'"):
+        vizlight.illuminate(mesh, SCENE, bundle=True)
+    assert bundles.OCCLUSION in mesh.point_data
+    with pytest.raises(ValueError, match="transmittance: expected shape"):
+        engine.shade(mesh.points, mesh.points, SCENE, transmittance=np.ones(mesh.n_points))
+
+
+def test_live_light_takes_the_shares_or_says_why_not():
+    mesh = lines(80)
+    scene = SCENE.replace(lights=[FAR])
+    lit = vizlight.illuminate(mesh, scene, bundle=QUICK)
+    sources, used = relight.from_record(lit)
+    again = engine.run(sources[0].inputs, used, sources[0].options)
+    np.testing.assert_allclose(again.luminance, lit["luminance"], atol=1e-6)
+    assert "bundle" in fragments.unfit(sources[0].inputs, sources[0].options, lit)
+    head = SCENE.replace(lights=[vizlight.Light.headlight()])
+    with pytest.raises(ValueError, match="bundle: expected no headlight"):
+        relight.from_options(mesh, head, LightOptions(bundle=QUICK))

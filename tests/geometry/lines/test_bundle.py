@@ -1,0 +1,180 @@
+"""Light inside a bundle: closed forms of a slab and a ball, real tubes, both paths of the grid."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from vizlight import _compiled
+from vizlight.geometry.lines import bundle
+
+
+def pieces(middles, tangents, length, voxel):
+    """Return the medium of straight lines."""
+    ends = np.stack([middles - length / 2 * tangents, middles + length / 2 * tangents], axis=1)
+    count = len(middles)
+    return bundle.medium(
+        ends.reshape(-1, 3), np.arange(2 * count), np.arange(0, 2 * count + 1, 2), voxel=voxel
+    )
+
+
+def depths(lines, places, toward):
+    """Return the depths per diameter in the unit of the points."""
+    found = lines.depths(lines.targets(places).places, toward)
+    return [depth / lines.voxel for depth in found]
+
+
+def filled(rng, side, low, high):
+    """Return places that fill a box more evenly than at random: one in each cell."""
+    cells = np.stack(np.meshgrid(*3 * [np.arange(side)], indexing="ij"), axis=-1).reshape(-1, 3)
+    return low + (high - low) * (cells + rng.uniform(size=cells.shape)) / side
+
+
+def ball_of_lines(rng, side, length, voxel, *, hole=(0, 0, 0), radius=0.0):
+    """Return lines in all directions in the unit ball with a hole, their length per volume."""
+    middles = filled(rng, side, -1.0, 1.0)
+    middles = middles[np.linalg.norm(middles, axis=1) < 1]
+    middles = middles[np.linalg.norm(middles - hole, axis=1) >= radius]
+    tangents = unit(rng.normal(size=middles.shape))
+    return pieces(middles, tangents, length, voxel), (side / 2) ** 3 * length
+
+
+def unit(rows):
+    return rows / np.linalg.norm(rows, axis=-1, keepdims=True)
+
+
+def test_a_slab_of_lines_across_the_light_has_the_depth_of_its_lines():
+    """Lines along x between z = 0 and 1: the depth at z toward +z is (1 - z) length per volume."""
+    rng = np.random.default_rng(1)
+    middles, length = filled(rng, 60, 0.0, 1.0), 0.02
+    count = len(middles)
+    slab = pieces(middles, np.tile([1.0, 0, 0], (count, 1)), length, voxel=0.05)
+    height = np.linspace(0.1, 0.9, 9)
+    places = np.stack([np.full(9, 0.5), np.full(9, 0.5), height], axis=1)
+    forth, back = depths(slab, places, (0, 0, 2))
+    assert forth == pytest.approx(count * length * (1 - height), rel=0.02)
+    assert back == pytest.approx(count * length * height, rel=0.02)
+    along, _ = depths(slab, places, (1, 0, 0))
+    assert along == pytest.approx(0, abs=1e-3 * count * length)
+    slanted, _ = depths(slab, places, (0, 0.6, 0.8))
+    middle = height > 0.4  # farther down the way leaves by the side of the slab
+    expected = count * length * (1 - height) / 0.8
+    assert slanted[middle] == pytest.approx(expected[middle], rel=0.03)
+
+
+def test_a_ball_of_lines_in_all_directions():
+    """The mean of |w x t| is pi / 4; from the place r the way out along w is in closed form."""
+    rng = np.random.default_rng(2)
+    ball, density = ball_of_lines(rng, 80, 0.01, 0.06)
+    places = unit(rng.normal(size=(40, 3))) * rng.uniform(0, 0.8, (40, 1))
+    for toward in np.eye(3):
+        along = places @ toward
+        way = np.sqrt(1 - (places * places).sum(axis=1) + along**2)
+        for depth, sign in zip(depths(ball, places, toward), (-1, 1), strict=True):
+            assert depth == pytest.approx(np.pi / 4 * density * (way + sign * along), rel=0.05)
+
+
+@pytest.mark.parametrize("lamp", [(0.3, -0.2, 0.1), (2.0, 1.5, -3.0)])
+def test_a_lamp_in_and_out_of_a_ball(lamp):
+    """A hole around the lamp: without it the few pieces next to the lamp darken many points."""
+    rng = np.random.default_rng(3)
+    ball, density = ball_of_lines(rng, 80, 0.01, 0.06, hole=lamp, radius=0.15)
+    places = unit(rng.normal(size=(3000, 3))) * rng.uniform(0, 0.7, (3000, 1))
+    toward = np.asarray(lamp) - places
+    distance = np.linalg.norm(toward, axis=1)
+    along = (places * toward).sum(axis=1) / distance
+    out = np.sqrt(1 - (places * places).sum(axis=1) + along**2) - along
+    way = np.where(distance < out, distance - 0.15, out)
+    keep = way > 0.2
+    depth, _ = ball.near_depth(
+        ball.targets(places).places, (np.array(lamp) - ball.origin) / ball.voxel
+    )
+    depth = depth / ball.voxel
+    ratio = depth[keep] / (np.pi / 4 * density * way[keep])
+    assert ratio.mean() == pytest.approx(1, abs=0.01)
+    assert ratio.std() < (0.1 if distance.min() > 1 else 0.25)
+
+
+def shaded(origins, toward, own, middles, tangents, length, diameter):
+    """Return whether rays meet a cylinder other than their own, one ray after the other."""
+    across = np.cross(tangents, toward)
+    sine = np.maximum(np.linalg.norm(across, axis=1), 1e-12)
+    cosine = tangents @ toward
+    found = np.zeros(len(origins), np.bool_)
+    for i, origin in enumerate(origins):
+        way = middles - origin
+        gap = np.abs((way * across).sum(axis=1)) / sine
+        x, y = way @ toward, (way * tangents).sum(axis=1)
+        at, along = (x - cosine * y) / sine**2, (cosine * x - y) / sine**2
+        met = (gap < diameter / 2) & (at > 0) & (np.abs(along) < length / 2)
+        met[own[i]] = False
+        found[i] = met.any()
+    return found
+
+
+@pytest.mark.parametrize("kind", ["isotropic", "aligned"])
+def test_the_mean_light_among_real_tubes(kind):
+    """The mean over many points differs from that of rays by less than 3 of its deviations."""
+    rng = np.random.default_rng(5)
+    count, length, diameter, tries = 3000, 0.5, 0.005, 1200
+    middles = unit(rng.normal(size=(count, 3))) * rng.uniform(size=(count, 1)) ** (1 / 3)
+    tangents = unit(rng.normal(size=(count, 3)))
+    if kind == "aligned":
+        tangents = unit([1, 0, 0] + 0.1 * tangents)
+    own = rng.integers(count, size=tries)
+    places = middles[own] + rng.uniform(-0.45, 0.45, (tries, 1)) * length * tangents[own]
+    toward = unit(np.array([0.2, 0.3, 1.0]))
+    side = unit(np.cross(toward, tangents[own]))
+    free = np.mean(
+        [
+            ~shaded(places + x * diameter * side, toward, own, middles, tangents, length, diameter)
+            for x in (-0.4, -0.2, 0.0, 0.2, 0.4)
+        ],
+        axis=0,
+    )
+    lines = pieces(middles, tangents, length, 4 * diameter)
+    targets = lines.targets(places, tangents[own], np.full(tries, length))
+    left = lines.dimmed(targets, diameter, [(toward, False)], 0)[0][:, 0]
+    difference = left - free
+    assert abs(difference.mean()) < 3 * difference.std() / np.sqrt(tries)
+    assert difference.std() / np.sqrt(tries) < 0.012
+    without = np.exp(-diameter * depths(lines, places, toward)[0])
+    assert abs(without - free).mean() > abs(difference).mean()
+
+
+def test_compiled_and_plain_grids_agree(monkeypatch):
+    rng = np.random.default_rng(7)
+    shape = (9, 11, 13)
+    cells = (rng.uniform(size=(3, 5000)) * (np.array(shape)[:, None] - 2)).astype(np.float32)
+    values = rng.uniform(size=5000).astype(np.float32)
+    monkeypatch.setenv("VIZLIGHT_FAST", "0")
+    grid = bundle.spread(cells, values, shape)
+    seen = bundle.read(grid, cells)
+    assert grid.sum() == pytest.approx(values.sum(), rel=1e-5)
+    corner = np.array([[2.0], [3.0], [4.0]], np.float32)
+    assert bundle.read(grid, corner)[0] == grid[2, 3, 4]
+    if _compiled._missing():
+        pytest.skip("numba is not installed")
+    monkeypatch.setenv("VIZLIGHT_FAST", "1")
+    np.testing.assert_allclose(bundle.spread(cells, values, shape), grid, rtol=1e-4, atol=1e-5)
+    np.testing.assert_allclose(bundle.read(grid, cells), seen, rtol=1e-5)
+
+
+def test_lines_that_are_odd():
+    """One point, no line, points that are not finite, repeated points: finite pieces or none."""
+    points = np.array([[0, 0, 0], [1, 0, 0], [np.nan, 0, 0], [1, 0, 0], [1, 0, 0]], np.float32)
+    found = bundle.medium(
+        points, np.array([0, 1, 2, 3, 4, 4]), np.array([0, 3, 4, 4, 6]), voxel=0.25
+    )
+    assert found.middles.shape == (3, 5)
+    assert np.isfinite(found.middles).all()
+    targets = found.targets(points)
+    left, sides = found.dimmed(targets, 0.1, [((0, 0, 1), False), ((0, 0, 1), True)], 4)
+    assert left[2].tolist() == [1, 1]
+    assert sides[2] == 1
+    assert ((left > 0) & (left <= 1)).all()
+    empty = bundle.medium(points[:0], np.zeros(0, int), np.zeros(1, int), voxel=0.25)
+    assert empty.middles.shape == (3, 0)
+    left, sides = empty.dimmed(targets, 0.1, [((0, 0, 1), False), ((0, 0, 1), True)], 4)
+    assert (left == 1).all()
+    assert (sides == 1).all()

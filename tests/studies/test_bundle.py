@@ -1,0 +1,51 @@
+"""The study of light inside bundles measures what it says; no time is asserted."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from vizlight.mesh import embree_rays
+from vizlight.studies import Row, bundle
+
+
+@pytest.mark.parametrize("kind", bundle.KINDS)
+def test_rays_among_tubes_and_the_medium_agree(kind):
+    """The means over the points have a random error of about 0.005."""
+    pytest.importorskip("embreex")
+    far, inside = bundle.measure(kind, 10_000, 96, 0)
+    (sides,) = bundle.measure(kind, 10_000, 48, 16)
+    assert [row.way for row in (far, inside, sides)] == [
+        f"{kind}, far light", f"{kind}, light inside", f"{kind}, all sides"
+    ]  # fmt: skip
+    assert far.error < 0.015
+    assert inside.error < 0.03
+    assert sides.error < 0.015
+    assert 0.1 < far.more["mean share"] < 0.6
+
+
+def test_tubes_are_as_wide_as_lines():
+    made = bundle.tubes("isotropic", 10)
+    assert len(made.corners) == 2 * bundle.SIDES * bundle.TUBES
+    own = made.corners[: 2 * bundle.SIDES].reshape(-1, 3) - made.middles[0]
+    along = own @ made.tangents[0]
+    assert np.abs(along) == pytest.approx(bundle.LENGTH / 2)
+    out = np.linalg.norm(own - along[:, None] * made.tangents[0], axis=1)
+    assert out == pytest.approx(bundle.DIAMETER / 2, rel=0.03)
+    assert out.min() > bundle.DIAMETER / 2
+
+
+def test_without_embree_the_study_names_the_extra(monkeypatch):
+    monkeypatch.setattr(embree_rays, "tree", lambda _: None)
+    bundle.truth.cache_clear()
+    with pytest.raises(ImportError, match=r"vizlight\[rays\]"):
+        bundle.truth("isotropic", 5)
+
+
+def test_the_verdict_has_the_worst_kind():
+    rows = [
+        Row(f"{kind}, {name}", at, error, 1.0)
+        for kind, error in (("isotropic", 0.001), ("layered", 0.004))
+        for name, at in (("far light", 128), ("light inside", 128), ("all sides", 64))
+    ]
+    assert "0.004 for far light (layered)" in bundle.verdict(rows)

@@ -1,0 +1,306 @@
+"""Light inside a bundle of lines: the shares of light that reach the points of meshes."""
+
+from __future__ import annotations
+
+import hashlib
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import pyvista as pv
+
+from vizlight import _check
+from vizlight.geometry.lines import bundle as geometry
+from vizlight.mesh import blocks, polylines, records
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import NDArray
+
+    from vizlight._types import Array, Indices
+    from vizlight.geometry.lines.bundle import Medium
+    from vizlight.mesh.records import Record
+    from vizlight.scene import Light, Scene
+    from vizlight.shading.inputs import ShadingInputs
+    from vizlight.shading.options import Bundle
+
+#: Share of the diagonal that the default diameter is at most.
+THICKEST = 1 / 500
+#: Numbers of points and of directions that the default diameter is estimated from.
+SAMPLE, SIDES = 20_000, 16
+TRANSMITTANCE, OCCLUSION = "transmittance", "occlusion"
+
+
+class Dimming(NamedTuple):
+    """The shares of light that reach the points of a mesh, and a record of them.
+
+    Attributes
+    ----------
+    transmittance : ndarray of float32, shape (N, L)
+        Share of each light of intensity above 0.
+    occlusion : ndarray of float32, shape (N,), or None
+        Share of the ambient light; None where it is left as it is.
+    record : dict
+        Diameter, side of a voxel, and digests of what the shares were computed from.
+    """
+
+    transmittance: Array
+    occlusion: Array | None
+    record: Record
+
+
+class _Lines(NamedTuple):
+    """Polylines of one or several meshes."""
+
+    points: Array
+    ids: Indices
+    offsets: Indices
+
+
+def dim(
+    meshes: Sequence[pv.DataSet],
+    inputs: Sequence[ShadingInputs],
+    scene: Scene,
+    bundle: Bundle,
+    names: tuple[str, str, str],
+    /,
+    *,
+    threads: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> list[Dimming]:
+    """Return the shares of light that reach the points of meshes inside a bundle of lines.
+
+    Parameters
+    ----------
+    meshes : sequence of pyvista.DataSet
+        Meshes that are lit.
+    inputs : sequence of ShadingInputs
+        Their points with tangents or normals.
+    scene : Scene
+        Lights, in the unit of the meshes, and the view that headlights follow.
+    bundle : Bundle
+        How the lines dim the light.
+    names : tuple of str
+        Names of the luminance, the transmittance and the occlusion. Shares that a mesh has under
+        them are used again where nothing that they depend on has changed.
+    threads : int, optional
+        Number of threads.
+    progress : callable, optional
+        Function that is called with the number of grids that are done, and of all.
+
+    Returns
+    -------
+    list of Dimming
+        One for each mesh.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If there are no lines, or points that are not in 3-space.
+    """
+    for given in inputs:
+        if given.points.shape[1] != 3:
+            got = f"points of {given.points.shape[1]} components"
+            raise ValueError(_check.message("bundle", "points in 3-space", got))
+    own = bundle.lines is None
+    lines = _joined(meshes) if own else _lines_of(bundle.lines)
+    if not len(lines.ids):
+        remedy = "pass Bundle(lines=...) to dim another mesh by lines"
+        raise ValueError(_check.message("bundle", "a mesh with lines", "none", remedy))
+    asked = [bundle.diameter, bundle.depth, bundle.directions, bundle.grid]
+    source = _digest(lines.points, lines.ids, lines.offsets, np.array(repr([asked, own])))
+    lights = [light.seen_from(scene.view) for light in scene.lights if light.intensity > 0]
+    work = _Work(lines, source, bundle, threads)
+    made = []
+    for number, (mesh, given) in enumerate(zip(meshes, inputs, strict=True)):
+        done = number * (len(lights) + bundle.directions // 2)
+        total = len(meshes) * (len(lights) + bundle.directions // 2)
+
+        def report(count: int, done: int = done, total: int = total) -> None:
+            if progress is not None:
+                progress(done + count, total)
+
+        made.append(work.dim(mesh, given, lights, names, report))
+    return made
+
+
+class _Work:
+    """Lines and what is computed of them once they are needed."""
+
+    def __init__(self, lines: _Lines, source: str, bundle: Bundle, threads: int | None) -> None:
+        self.lines, self.source, self.bundle, self.threads = lines, source, bundle, threads
+        self._made: tuple[Medium, float] | None = None
+
+    def dim(
+        self,
+        mesh: pv.DataSet,
+        given: ShadingInputs,
+        lights: Sequence[Light],
+        names: tuple[str, str, str],
+        progress: Callable[[int], None],
+    ) -> Dimming:
+        """Return the shares of one mesh, kept ones where they still hold."""
+        points = np.asarray(given.points[:])
+        vectors = given.normals if given.tangents is None else given.tangents
+        rows = None if vectors is None else np.asarray(vectors[:])
+        lengths: Array | None = None
+        if given.tangents is not None:
+            lengths = np.zeros(len(points))
+            if self.bundle.lines is None and polylines.has_lines_only(mesh):
+                lengths = _lengths(mesh)
+        if rows is not None and rows.shape != points.shape:
+            # Several tangents per point: a surface or a volume that light reaches from all sides.
+            rows = lengths = None
+        empty = np.empty(0)
+        digest = _digest(
+            np.array(self.source), points, *(empty if x is None else x for x in (rows, lengths))
+        )
+        keys = [_key(light) for light in lights]
+        kept = _kept(mesh, names, digest)
+        columns: dict[str, Array] = {}
+        sides: Array | None = None
+        if kept is not None:
+            columns = dict(zip(kept[0], kept[1].T, strict=True))
+            sides = kept[2]
+        missing = [i for i, key in enumerate(keys) if key not in columns]
+        count = self.bundle.directions if sides is None else 0
+        facts = {} if kept is None else kept[3]
+        if missing or count:
+            medium, diameter = self.medium()
+            targets = medium.targets(points, rows, lengths)
+            found, new = medium.dimmed(
+                targets,
+                diameter,
+                [_place(lights[i]) for i in missing],
+                count,
+                threads=self.threads,
+                progress=progress,
+            )
+            columns |= {keys[i]: found[:, j] for j, i in enumerate(missing)}
+            sides = new if count else sides
+            facts = {"diameter": diameter, "voxel": medium.voxel}
+        transmittance = np.empty((len(points), len(keys)), np.float32)
+        for i, key in enumerate(keys):
+            transmittance[:, i] = columns[key]
+        record: Record = {**facts, "source": digest, "lights": keys}
+        return Dimming(transmittance, sides, record)
+
+    def medium(self) -> tuple[Medium, float]:
+        """Return the medium of the lines and their diameter."""
+        if self._made is None:
+            self._made = self._make()
+        return self._made
+
+    def _make(self) -> tuple[Medium, float]:
+        lines, bundle = self.lines, self.bundle
+        ends = lines.points[lines.ids].astype(np.float64)
+        ends = ends[np.isfinite(ends).all(axis=1)]
+        box = np.ptp(ends, axis=0) if len(ends) else np.zeros(3)
+        longest, diagonal = float(box.max()), float(np.linalg.norm(box))
+        voxel = longest / bundle.grid or 1.0
+        diameter = bundle.diameter
+        if diameter is None:
+            diameter = diagonal * THICKEST or 1.0
+            coarse = geometry.medium(*lines, voxel=voxel)
+            ids = lines.ids[:: max(1, len(lines.ids) // SAMPLE)]
+            lengths = geometry.line_lengths(*lines)[ids]
+            tangents = _tangents(*lines)[ids]
+            places = coarse.targets(lines.points[ids], tangents, lengths)
+            depth = coarse.crowded(places, SIDES)
+            if depth * diameter > bundle.depth * voxel:
+                diameter = bundle.depth * voxel / depth
+        voxel = max(voxel, geometry.LEAST_VOXEL * diameter)
+        return geometry.medium(*lines, voxel=voxel), diameter
+
+
+def _tangents(points: Array, ids: Indices, offsets: Indices) -> Array:
+    """Return a vector along a line through each point."""
+    first = geometry.segment_starts(ids, offsets)
+    found = np.zeros((len(points), 3))
+    step = points[ids[first + 1]].astype(np.float64) - points[ids[first]]
+    found[ids[first + 1]] = step
+    found[ids[first]] = step
+    return found
+
+
+def _place(light: Light) -> tuple[tuple[float, ...], bool]:
+    """Return the position of a light and True, or its direction and False."""
+    if light.position is not None:
+        return tuple(light.position), True
+    assert light.direction is not None
+    return tuple(light.direction), False
+
+
+def _key(light: Light) -> str:
+    """Return a text that tells where light comes from."""
+    place, near = _place(light)
+    if not near:
+        size = float(np.linalg.norm(place))
+        place = tuple(round(x / size, 15) + 0.0 for x in place)
+    return f"{'near' if near else 'far'} {place}"
+
+
+def _kept(
+    mesh: pv.DataSet, names: tuple[str, str, str], digest: str
+) -> tuple[list[str], Array, Array | None, Record] | None:
+    """Return keys of lights, transmittance, occlusion and facts that still hold for a mesh."""
+    whole = records.read(mesh, names[0])
+    record = (whole or {}).get("bundle")
+    if not isinstance(record, dict) or record.get("source") != digest:
+        return None
+    keys, made = record.get("lights"), records.made(mesh, names[0])
+    if not isinstance(keys, list) or not {names[1]} <= made & set(mesh.point_data):
+        return None
+    shares = np.asarray(mesh.point_data[names[1]]).reshape(mesh.n_points, -1)
+    if shares.shape[1] != len(keys):
+        return None
+    sides = None
+    if names[2] in made and names[2] in mesh.point_data:
+        sides = np.asarray(mesh.point_data[names[2]])
+    facts: Record = {name: record.get(name) for name in ("diameter", "voxel")}
+    return keys, shares, sides, facts
+
+
+def _digest(*arrays: NDArray[np.generic]) -> str:
+    """Return a digest of arrays."""
+    digest = hashlib.sha256()
+    for array in arrays:
+        digest.update(f"{array.dtype}{array.shape}".encode())
+        digest.update(np.ascontiguousarray(array).tobytes())
+    return digest.hexdigest()
+
+
+def _lines_of(given: object) -> _Lines:
+    """Return the lines of a mesh or of the blocks of several."""
+    if not isinstance(given, pv.DataSet | pv.MultiBlock):
+        expected = "a PyVista mesh of lines"
+        raise TypeError(_check.message("Bundle(lines=)", expected, type(given).__name__))
+    lines = _joined(list(blocks.all_blocks(given)))
+    if not len(lines.ids):
+        expected, got = "a mesh of lines", type(given).__name__
+        raise ValueError(_check.message("Bundle(lines=)", expected, got))
+    return lines
+
+
+def _joined(meshes: Sequence[pv.DataSet]) -> _Lines:
+    """Return the lines of the meshes that have nothing but lines."""
+    found = [polylines.cells_of(mesh) for mesh in meshes if polylines.has_lines_only(mesh)]
+    if not found:
+        none = np.empty(0, np.intp)
+        return _Lines(np.empty((0, 3)), none, np.zeros(1, np.intp))
+    points, ids, offsets = zip(*found, strict=True)
+    kind = np.result_type(*points)
+    starts = np.cumsum([0, *(len(rows) for rows in points)])
+    ends = np.cumsum([0, *(len(own) for own in ids)])
+    return _Lines(
+        np.concatenate(points).astype(kind, copy=False),
+        np.concatenate([own + start for own, start in zip(ids, starts, strict=False)]),
+        np.concatenate(
+            [[0], *(own[1:] + end for own, end in zip(offsets, ends, strict=False))]
+        ).astype(np.intp),
+    )
+
+
+def _lengths(mesh: pv.DataSet) -> Array:
+    """Return the length of the line that each point of a mesh of lines belongs to."""
+    return polylines.of_points(mesh, geometry.line_lengths)
