@@ -93,3 +93,21 @@ def test_bad_levels(value, kind, words):
 @pytest.mark.parametrize("value", [np.int32(4), np.float32(0.125), np.array([0.25, 0.5, 0.75])])
 def test_numbers_of_numpy(value):
     assert spacing.steps(value, 0.0, 1.0, exact=True).error == pytest.approx(0.125)
+
+
+@pytest.mark.parametrize("high", [0.97, 1.0, 7.3])
+def test_the_count_is_the_smallest_that_keeps_the_error(high):
+    """Against a search over all counts, with the error measured on dense samples."""
+    light = np.linspace(0.1, high, 4001)
+    for error in (high - 0.1) / np.array([2.5, 7.2, 19.4, 38.3, 80.1, 150.7]):
+        smallest = 1
+        while True:
+            equal = spacing.steps(smallest, 0.1, high)
+            if np.abs(equal.values[equal.band(light)] - light).max() <= error * (1 + 1e-9):
+                break
+            smallest += 1
+        exact = len(spacing.steps(float(error), 0.1, high, exact=True).edges) - 1
+        drawn = len(spacing.steps(float(error), 0.1, high).edges) - 1
+        assert exact == smallest
+        assert smallest <= drawn <= 1.05 * smallest
+        assert spacing.steps(float(error), 0.1, high).error <= 0.99 * error * (1 + 1e-9)

@@ -34,9 +34,9 @@ CURVED = 0.1
 SLIVER = 1e-4
 #: Fractions of edges at which the error of polygons is measured, and the offset inward.
 ALONG, WITHIN = (0.25, 0.5, 0.75), 1e-3
-#: Share of an allowed error that a measured one must keep, since the error between the measured
-#: points may be slightly larger.
-KEPT = 0.98
+#: Share of an allowed error beyond half a step that a measured one must keep, since the error
+#: between the measured points may be slightly larger.
+KEPT = 0.7
 #: Number of corners that are measured at once.
 BLOCK = 1 << 15
 #: Number of triangles beyond which only the brightest ones are searched for smaller highlights, the
@@ -44,6 +44,9 @@ BLOCK = 1 << 15
 ASKED, BRIGHTEST, GRID = 3000, 64, 10
 #: Share of the allowed error by which steps may move without a new cut.
 STILL = 1e-2
+#: Largest distance of a crease from a chord between its points, as a share of the chord. Surfaces
+#: that nearly coincide cross further away.
+BULGE = 0.25
 #: Radius of the hole at the apex of a cone, around which each ruling has its own normal.
 APEX = 1e-7
 
@@ -196,7 +199,9 @@ class _Found:
 def _allowed(levels: Levels, steps: Steps) -> float:
     """Return the error beyond which a triangle is split."""
     bound = spacing.allowed(levels)
-    return (1 + CURVED) * steps.error if bound is None else KEPT * bound
+    if bound is None:
+        return (1 + CURVED) * steps.error
+    return steps.error + KEPT * (bound - steps.error)
 
 
 def _settled(
@@ -262,6 +267,19 @@ class _Lit:
         other = owner != self.both[self.edge.ravel(), 0]
         self.both[:, 1] = self.both[:, 0]
         self.both[self.edge.ravel()[other], 1] = owner[other]
+        self._check_creases()
+
+    def _check_creases(self) -> None:
+        """Leave chords on one of their two surfaces where these do not cross near them."""
+        crease = np.flatnonzero(self.both[:, 0] != self.both[:, 1])
+        a, b = (self.mesh.points[ends] for ends in np.divmod(self.codes[crease], self.size))
+        way = b - a
+        size = BULGE**2 * np.einsum("ij,ij->i", way, way)
+        for share in ALONG:
+            chord = a + share * way
+            moved = exact_surfaces.onto(self.mesh.surfaces, chord, self.both[crease]) - chord
+            far = np.einsum("ij,ij->i", moved, moved) > size
+            self.both[crease[far], 1] = self.both[crease[far], 0]
 
     @property
     def triangles(self) -> Indices:

@@ -21,8 +21,9 @@ if TYPE_CHECKING:
 
 #: Largest number of steps; a float32 picture cannot show more.
 MOST = 1 << 20
-#: Share of an allowed error that is reserved for contours drawn as chords.
-CHORDS = 0.05
+#: Largest and smallest share of an allowed error that is reserved for contours drawn as chords, and
+#: largest ratio of the number of steps to the smallest number possible.
+CHORDS, LEAST, MORE = 0.05, 0.01, 1.05
 
 
 @dataclass(frozen=True)
@@ -100,8 +101,9 @@ def steps(levels: Levels, low: float, high: float, /, *, exact: bool = False) ->
     levels : int, float or sequence of float
         Number n of equal steps (int), allowed error e (float) or luminance of the contours
         (sequence). For an allowed error the number of steps is the smallest whose half step is at
-        most e, or 95 % of e unless ``exact``; the rest is reserved for contours drawn as chords.
-        Contours outside the bounds are ignored.
+        most e, or up to 5 % more unless ``exact``, since 1 to 5 % of e are reserved for contours
+        drawn as chords. It is 1 more where the smallest number, below 20, would leave less than
+        1 %. Contours outside the bounds are ignored.
     low, high : float
         Bounds of the luminance.
     exact : bool, default: False
@@ -130,16 +132,27 @@ def steps(levels: Levels, low: float, high: float, /, *, exact: bool = False) ->
     elif isinstance(levels, numbers.Integral):
         edges = np.linspace(low, high, int(levels) + 1)
     elif error is not None:
-        ratio = span / (2 * error * (1 if exact else 1 - CHORDS))
-        if ratio > MOST:
+        ratio = span / (2 * error)
+        if ratio > MOST * (1 if exact else 1 - CHORDS):
             raise ValueError(
                 _check.message("levels", f"an error that at most {MOST} steps keep", repr(levels))
             )
-        # An integer ratio needs no further step; the factor covers rounding of the ratio.
-        edges = np.linspace(low, high, max(1, math.ceil(ratio * (1 - 1e-12))) + 1)
+        edges = np.linspace(low, high, _count(ratio, exact) + 1)
     else:
         given = np.unique(np.asarray(levels, dtype=np.float64))
         inside = given[(given > low) & (given < high)]
         edges = np.concatenate([[low], inside, [high]])
     middle = edges[:-1] + np.diff(edges) / 2
     return Steps(edges, np.concatenate([edges[:1], middle]))
+
+
+def _count(ratio: float, exact: bool) -> int:
+    """Return the number of steps for a luminance range in units of twice the allowed error."""
+
+    # An integer ratio needs no further step; the factor covers rounding of the ratio.
+    def least(share: float) -> int:
+        return max(1, math.ceil(ratio / (1 - share) * (1 - 1e-12)))
+
+    if exact:
+        return least(0)
+    return min(least(CHORDS), max(math.floor(MORE * least(0)), least(LEAST)))

@@ -10,7 +10,7 @@ from vizlight.geometry.solids import repair, triangle_mesh
 from vizlight.geometry.solids.exact_surfaces import onto
 
 if TYPE_CHECKING:
-    from vizlight._types import Indices
+    from vizlight._types import Array, Indices
     from vizlight.geometry.solids.triangle_mesh import Mesh
 
 #: Length of the part of a normal that is independent of other normals at a point: below it two
@@ -39,9 +39,25 @@ def place(mesh: Mesh, tolerance: float) -> Mesh:
     Mesh
         Mesh with each point on one surface, on two at a crease or on three at a corner, to
         rounding. Where two surfaces touch, a point is on one of them. Triangles that this would
-        flip are removed by changes of their edges.
+        flip are removed by changes of their edges. Where such changes do not help, points stay
+        where they are.
     """
-    mesh = repair.straighten(mesh)
+    straight = repair.straighten(mesh)
+    points = _placed(straight, tolerance)
+    found = repair.upright(_merge(straight.replace(points, straight.triangles, straight.patch)))
+    if not repair.flipped(found).any():
+        return found
+    found = _kept(straight, points)
+    return found if not repair.flipped(found).any() else unplaced(mesh)
+
+
+def unplaced(mesh: Mesh) -> Mesh:
+    """Return a mesh with its own points, which are on the facets of its primitives."""
+    return _kept(mesh, mesh.points)
+
+
+def _placed(mesh: Mesh, tolerance: float) -> Array:
+    """Return the points on their surfaces."""
     which = _meeting(mesh)
     points = onto(mesh.surfaces, mesh.points, which, ROUNDS)
     moved = points - mesh.points
@@ -51,7 +67,19 @@ def place(mesh: Mesh, tolerance: float) -> Mesh:
         apex = getattr(surface, "apex", None)
         if apex is not None:
             points[np.abs(points - apex).max(axis=1) < SAME] = apex
-    return repair.upright(_merge(mesh.replace(points, mesh.triangles, mesh.patch)))
+    return points
+
+
+def _kept(mesh: Mesh, points: Array) -> Mesh:
+    """Return a mesh with moved points, except those of triangles that they would flip."""
+    points = points.copy()
+    while True:
+        found = mesh.replace(points, mesh.triangles, mesh.patch)
+        corners = np.unique(mesh.triangles[repair.flipped(found)])
+        moved = corners[np.any(points[corners] != mesh.points[corners], axis=1)]
+        if not len(moved):
+            return repair.upright(found)
+        points[moved] = mesh.points[moved]
 
 
 def _meeting(mesh: Mesh) -> Indices:

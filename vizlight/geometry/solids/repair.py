@@ -26,6 +26,8 @@ FLAT = 1e-14
 #: Distance from the chord between its neighbours below which a point of a crease is needless; it is
 #: above the grid of coordinates.
 STRAIGHT = 1e-9
+#: Distance from the apex of a cone below which a point is at the apex.
+APEX = 1e-9
 
 
 def flipped(mesh: Mesh) -> Bools:
@@ -115,6 +117,13 @@ class _Editor:
             np.arange(len(mesh.points) + 1),
         )
         self._stars: dict[int, set[int]] = {}
+        #: Points at the apexes of cones, which stay.
+        self.fixed = {
+            int(i)
+            for surface in mesh.surfaces
+            if (apex := getattr(surface, "apex", None)) is not None
+            for i in np.flatnonzero(np.abs(mesh.points - apex).max(axis=1) < APEX)
+        }
 
     def mesh(self) -> Mesh:
         """Return the mesh with all changes."""
@@ -233,12 +242,12 @@ class _Editor:
             for change in (self._merged(a, b), self._merged(b, a)):
                 if change is not None:
                     yield change
-            if len(self._surfaces(c)) == 1:
+            if len(self._surfaces(c)) == 1 and c not in self.fixed:
                 middle = np.mean([self.points[u] for u in self._neighbours(c)], axis=0)
                 yield self._moved(c, self._add(middle, [patch]))
             first, along = self.points[a], self.points[b] - self.points[a]
             share = float((self.points[c] - first) @ along) / max(float(along @ along), FLAT**2)
-            if 0 < share < 1:
+            if 0 < share < 1 and c not in self.fixed:
                 m = self._add(first + share * along, [])
                 self.loose.add(m)
                 yield self._moved(c, m)
@@ -248,6 +257,8 @@ class _Editor:
 
         No crease or corner is moved: a point of a crease stays on it.
         """
+        if v in self.fixed:
+            return None
         own, sides = self._surfaces(v), self._star(v) & self._star(u)
         across = {self.patch[t] for t in sides}
         if own - self._surfaces(u) or len(own) > 2 or (own != across and len(own) > 1):
