@@ -89,8 +89,8 @@ def illuminate(
     Error bounds: :func:`vizlight.engine.shade`. Sources: Banks (1) to (6), Lecture.
 
     ``bundle`` costs one grid for each light and for each two directions of the light from all
-    sides: with 64 directions and 128 voxels along the longest side about 2 s for 100 thousand
-    points on one processor with the extra ``fast``, three times as long without.
+    sides: with 64 directions and 128 voxels along the longest side 3 to 5 s of processor
+    time for 100 thousand points and 5 to 12 s for a million.
 
     Examples
     --------
