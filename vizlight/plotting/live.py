@@ -126,7 +126,7 @@ class Live:
         if at_points or not self._of_cells:
             self._color(scalars, values_of(mesh, scalars, component))
 
-    def _color(self, given: str, values: Array) -> None:
+    def _color(self, given: str, values: NDArray[np.generic]) -> None:
         """Attach the values that are coloured, unless they are an array of the mesh."""
         if np.ndim(self.source.mesh.point_data[given]) > 1:
             self.scalars = VALUES
