@@ -170,6 +170,7 @@ def test_float32_saves_nothing_without_a_highlight():
 def test_what_compiled_code_saves(shininess, monkeypatch):
     """Of all that is cheaper for NumPy, the models of which the cylinder is a multiple."""
     monkeypatch.setattr(_compiled, "why_not", lambda: "")
+    monkeypatch.setenv("VIZLIGHT_FAST", "1")
     scene = Scene(lights=Light.headlight(), view=PARALLEL, material=Material(shininess=shininess))
     for options in ({}, {"model": "blinn"}):
         made, exact = lines_of(scene, tolerance=0.05, **options), lines_of(scene, **options)

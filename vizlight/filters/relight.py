@@ -13,6 +13,7 @@ from vizlight.filters import lighting
 from vizlight.filters.fur import FurOptions, fur
 from vizlight.filters.project import ProjectOptions
 from vizlight.filters.relief_shadow import ReliefOptions, relief_shadow
+from vizlight.filters.streamlines import OWN_TANGENTS, TANGENTS
 from vizlight.mesh import blocks, bundles, records
 from vizlight.mesh.inputs import part_of, shown_side
 from vizlight.mesh.nspace import PROJECTED
@@ -204,6 +205,10 @@ def _of_lines(mesh: pv.DataSet, options: dict[str, Any]) -> LightOptions:
         light["conditioned"] = beside
     if light["conditioned"] is True and light.get("normals") is None:
         light["normals"] = "Normals"
+    if light.get("tangents") is None:
+        # Both are there if the traced mesh had an array of the first name.
+        made = (name for name in (OWN_TANGENTS, TANGENTS) if name in mesh.point_data)
+        light["tangents"] = next(made, None)
     return LightOptions(**light)
 
 

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 #: Name of the point array of the directions that were integrated, and by which the lines are lit.
 TANGENTS = "Tangents"
+#: Its name where the traced mesh has an array of that name.
+OWN_TANGENTS = "vizlight tangents"
 
 
 class StreamlineKeywords(LightKeywords, total=False):
@@ -293,7 +295,7 @@ def _traced(
     for key in (surfaces.NORMALS, TRACED):
         if key in lines.point_data:
             del lines.point_data[key]
-    name = TANGENTS if TANGENTS not in mesh.point_data else "vizlight tangents"
+    name = TANGENTS if TANGENTS not in mesh.point_data else OWN_TANGENTS
     tangents = point_arrays.unit_rows(tangents)
     resting = ~np.any(tangents, axis=1)
     if resting.any():

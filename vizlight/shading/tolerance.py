@@ -47,7 +47,8 @@ def relax(plan: Plan, tolerance: float, *, asked: bool) -> Plan:
     if plan.dtype == np.float32 and not asked and tolerance < bounds.rounding(plan) < math.inf:
         plan = dataclasses.replace(plan, dtype=np.dtype(np.float64))
     exact = plan
-    compiled = not _compiled.why_not()
+    # By default few points are lit by compiled code, and many cost next to nothing either way.
+    compiled = _compiled.active() and _compiled.wanted() == "1"
     notes: list[str] = []
     rejected: list[str] = []
     spent = 0.0
