@@ -19,6 +19,9 @@ import os, signal, sys, tempfile, time
 from pathlib import Path
 from vizlight import _supervise
 
+for name in (signal.SIGINT, signal.SIGHUP):
+    signal.signal(name, signal.default_int_handler if name == signal.SIGINT else signal.SIG_DFL)
+
 def main():
 {body}
 

@@ -197,7 +197,9 @@ class _Parent:
 
     def wait(self) -> int:
         """Wait for the child and return the exit code."""
-        kept = {name: signal.signal(name, self.on_signal) for name in _PASSED_ON}
+        # What the caller ignores, as a shell does for jobs in the background, stays ignored.
+        heard = [name for name in _PASSED_ON if signal.getsignal(name) != signal.SIG_IGN]
+        kept = {name: signal.signal(name, self.on_signal) for name in heard}
         signal.pthread_sigmask(signal.SIG_UNBLOCK, _PASSED_ON)
         try:
             status = self.listen()

@@ -28,7 +28,7 @@ RENAMED = {"light": "when"}
 @options.takes(
     vizlight.streamlines,
     "Streamlines",
-    without=("positions", "tangents", "separation", "shortest", "terminator"),
+    without=("positions", "tangents", "separation", "shortest", "terminator", "highlight_error"),
 )
 def streamlines(
     files: list[Path],

@@ -90,6 +90,7 @@ def test_parts_of_a_surface_have_lines_of_their_own():
     assert np.any(np.abs(x - 2.9) < 0.5)
 
 
+@pytest.mark.filterwarnings("ignore:.* of the edges are sharper")
 def test_two_sides_of_a_sheet_are_apart():
     """Sides a third of a spacing from each other do not take the place of the other's lines."""
     sheet = pv.Box((0, 1, 0, 1, 0, 0.03), level=15).triangulate().clean()
