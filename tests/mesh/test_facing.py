@@ -204,6 +204,16 @@ def test_points_are_split_in_the_mesh_itself_only_if_asked(inplace):
         assert mesh["box"] == before["box"]
 
 
+def test_corners_stand_apart_from_coarse_arcs():
+    """A rod of 20 sides has edges of 18 degrees, and more of them than around its two ends."""
+    rod = pv.Line((0, 0, 0), (0, 0, 3), resolution=6).tube(radius=0.5, n_sides=20, capping=True)
+    rod = rod.triangulate().clean()
+    rod.clear_data()
+    assert normals.computed_normals(rod).sharp > 0.02
+    ends = normals.split_edges(rod, "auto")
+    assert ends.n_points == rod.n_points + 40
+
+
 def test_a_smooth_shape_of_coarse_triangles_has_no_creases():
     ball = pv.Icosphere(nsub=1)
     ball.clear_data()

@@ -44,6 +44,9 @@ MANY_SHARP = 0.02
 _OWN = "vizlight own"
 #: Sharp edges are creases if at most this many times as many edges are half as sharp or more.
 STAND_APART = 0.5
+#: They also are if of those above twice the angle, at least MANY_SHARP of all edges, there are more
+#: than of those between by this factor: corners stand apart from coarse arcs.
+CORNERS_APART = 0.7
 #: Name of the point array in which normals that had to be computed stay with a result: three
 #: components of the normal, its lean, and 1 on an open piece.
 KEPT = "vizlight_normals"
@@ -421,10 +424,11 @@ class _Shape:
             return 0.0
         one, other = (faces[order[twice + i] // 3] for i in (0, 1))
         cosine = _dots(one, other)
-        least, nearly = np.cos(np.radians([SHARP, SHARP / 2]))
-        share = float(np.mean(cosine < least))
+        corner, least, nearly = np.cos(np.radians([2 * SHARP, SHARP, SHARP / 2]))
+        share, corners = float(np.mean(cosine < least)), float(np.mean(cosine < corner))
         below = float(np.mean((cosine >= least) & (cosine < nearly)))
-        return share if below <= STAND_APART * share else 0.0
+        apart = corners >= MANY_SHARP and share - corners <= CORNERS_APART * corners
+        return share if apart or below <= STAND_APART * share else 0.0
 
 
 def _edges(triangles: Indices, count: int) -> Indices:
