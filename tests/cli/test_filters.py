@@ -150,6 +150,7 @@ IN_SCRIPTS = {
         "separation",
         "shortest",
         "terminator",
+        "highlight_error",
     },
     "relief": {"occluders", "sun"},
     "fur": set(),
