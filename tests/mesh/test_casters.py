@@ -10,7 +10,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight import Light, Material, Scene, View, _progress, relief_shadow
-from vizlight.geometry.relief import shadowing
+from vizlight.geometry.relief import sweeping
 from vizlight.mesh import closed_meshes
 
 TOWARD = np.array([0.6, -0.5, 0.4])
@@ -215,8 +215,8 @@ def test_progress_advances_within_one_light(kind, monkeypatch):
 
     monkeypatch.setattr(_progress, "progress", progress)
     monkeypatch.setattr(closed_meshes, "BLOCK", 100)
-    monkeypatch.setattr(shadowing, "BLOCK", 100)
-    # Compiled code has blocks of its own, of many more rays.
+    monkeypatch.setattr(sweeping, "BAND", 100)
+    # Compiled code has bands of its own, of many more rays.
     monkeypatch.setenv("VIZLIGHT_FAST", "0")
     mesh = pv.Sphere()
     if kind == "field":
