@@ -425,9 +425,9 @@ class _Shape:
         one, other = (faces[order[twice + i] // 3] for i in (0, 1))
         cosine = _dots(one, other)
         corner, least, nearly = np.cos(np.radians([2 * SHARP, SHARP, SHARP / 2]))
-        share, corners = float(np.mean(cosine < least)), float(np.mean(cosine < corner))
+        share, beyond = float(np.mean(cosine < least)), float(np.mean(cosine < corner))
         below = float(np.mean((cosine >= least) & (cosine < nearly)))
-        apart = corners >= MANY_SHARP and share - corners <= CORNERS_APART * corners
+        apart = beyond >= MANY_SHARP and share - beyond <= CORNERS_APART * beyond
         return share if apart or below <= STAND_APART * share else 0.0
 
 
