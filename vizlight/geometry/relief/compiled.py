@@ -57,9 +57,8 @@ def positive(f0: float, f1: float, f2: float, end: float) -> float:
 
 
 @_compiled.kernel(inline=True)
-def locate(edges: Array, place: float) -> int:
-    """Return the index of the interval of rising edges, the first and last unbounded."""
-    low, high = 0, len(edges) - 1
+def bisect(edges: Array, place: float, low: int, high: int) -> int:
+    """Return the index of the interval of rising edges between two of them."""
     while high - low > 1:
         middle = (low + high) >> 1
         if edges[middle] <= place:
@@ -67,6 +66,12 @@ def locate(edges: Array, place: float) -> int:
         else:
             high = middle
     return low
+
+
+@_compiled.kernel(inline=True)
+def locate(edges: Array, place: float) -> int:
+    """Return the index of the interval of rising edges, the first and last unbounded."""
+    return bisect(edges, place, 0, len(edges) - 1)
 
 
 @_compiled.kernel(inline=True)
@@ -79,13 +84,7 @@ def near(edges: Array, place: float, at: int) -> int:
         high, low, step = low, max(low - step, 0), 2 * step
     while high <= last and edges[high] <= place:
         low, high, step = high, min(high + step, last + 1), 2 * step
-    while high - low > 1:
-        middle = (low + high) >> 1
-        if edges[middle] <= place:
-            low = middle
-        else:
-            high = middle
-    return low
+    return bisect(edges, place, low, high)
 
 
 @_compiled.kernel(inline=True)
