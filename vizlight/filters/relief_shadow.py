@@ -175,9 +175,9 @@ def relief_shadow(
         )  # fmt: skip
 
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
-    out = mesh if inplace else separate_copy(mesh)
-    if own is not mesh:
-        out.DeepCopy(own)
+    out = mesh if inplace else separate_copy(own)
+    if inplace and own is not mesh:
+        mesh.ShallowCopy(own)
     if shading is not None:
         light = records.of_light(shading, "relief_shadow", scene, asked)
         attach(out, shading, DEFAULT_NAME, light)

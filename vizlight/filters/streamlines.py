@@ -61,8 +61,8 @@ class StreamlineOptions(LightOptions):
         XZ, as in VTK) or a matrix, whose first eigenvector is traced as a line field. Default: the
         active vectors.
     line_field : bool, default: False
-        Whether the vectors have no sign, such as principal directions: along a line each is
-        aligned with the direction before it. Tensors are line fields in any case.
+        Whether the vectors are directions without sign, such as principal directions. Each vector
+        is then aligned with the one before it on the line. Tensors are always line fields.
     surface : pyvista.PolyData, optional
         Surface whose normals condition the light of the lines near it (Banks 6), and on which
         confined lines stay. Default for a mesh that is a surface: the mesh itself.

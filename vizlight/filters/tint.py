@@ -250,7 +250,7 @@ def map_colors(table: pv.LookupTable, values: NDArray[np.generic]) -> Bytes:
     if plain.dtype == np.bool_:
         plain = plain.astype(np.uint8)
     table.BuildSpecialColors()
-    # VTK shows unsigned bytes as colours unless it is told to map them.
+    # By default VTK takes unsigned bytes for colours and does not map them.
     mapped = table.MapScalars(pv.convert_array(plain), 1, -1, 4)
     return np.array(pv.convert_array(mapped), np.uint8).reshape(-1, 4)
 

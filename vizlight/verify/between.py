@@ -214,10 +214,10 @@ def interpolated(rows: Array, places: Places) -> Array:
 def mean_spaces(frames: Array, places: Places) -> Array:
     """Return the spaces that frames span, interpolated at places, as frames.
 
-    Of one vector neither the sign nor that of its neighbours matters: signs are chosen so that the
-    mean is as long as possible. Where they agree this is the plain mean. Of several the mean of the
-    projections on the spaces is taken, and of that the space of its k largest eigenvalues, which
-    depends on no basis.
+    For one vector, signs are chosen so that the mean is as long as possible; the given signs do not
+    matter. Where they agree this is the plain mean. For several vectors, the projections on the
+    spaces are averaged, and the result is the space of the k largest eigenvalues of that average,
+    which depends on no basis.
 
     Parameters
     ----------

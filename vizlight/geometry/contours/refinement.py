@@ -225,8 +225,8 @@ def _peaks(
 ) -> tuple[Indices, Array]:
     """Return the triangles with a highlight inside that their corners miss.
 
-    Of many triangles only the brightest ones are searched; the highest luminance of all, which
-    determines the steps, is found more exactly. ``highest`` holds the highest luminance of the
+    If there are many triangles, only the brightest are searched. The highest luminance of all,
+    which determines the steps, is found more exactly. ``highest`` holds the highest luminance of the
     first triangles, as far as it is known; it is returned for all that are searched.
     """
     count = len(values)
