@@ -214,7 +214,7 @@ def interpolated(rows: Array, places: Places) -> Array:
 def mean_spaces(frames: Array, places: Places) -> Array:
     """Return the spaces that frames span, interpolated at places, as frames.
 
-    For one vector, signs are chosen so that the mean is as long as possible; the given signs do not
+    For one vector, signs are chosen so that the mean is as long as possible; given signs do not
     matter. Where they agree this is the plain mean. For several vectors, the projections on the
     spaces are averaged, and the result is the space of the k largest eigenvalues of that average,
     which depends on no basis.
