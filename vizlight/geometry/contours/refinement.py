@@ -226,8 +226,8 @@ def _peaks(
     """Return the triangles with a highlight inside that their corners miss.
 
     If there are many triangles, only the brightest are searched. The highest luminance of all,
-    which determines the steps, is found more exactly. ``highest`` holds the highest luminance of the
-    first triangles, as far as it is known; it is returned for all that are searched.
+    which determines the steps, is found more exactly. ``highest`` holds the highest luminance of
+    the first triangles, as far as it is known; it is returned for all that are searched.
     """
     count = len(values)
     top = values.max(axis=1, initial=-np.inf)
