@@ -44,8 +44,8 @@ REASONS = {
 }
 #: Extras whose packages the files of a folder may import, besides the dependencies.
 ALLOWED = {
-    "vizlight": ["fast", "formats", "movie", "rays", "solids", "tracts", "test"],
-    "tests": ["test", "docs", "tracts", "formats"],
+    "vizlight": ["fast", "formats", "movie", "rays", "scale", "solids", "tracts", "test"],
+    "tests": ["test", "docs", "tracts", "formats", "scale"],
     "gallery": ["docs"],
 }
 

@@ -33,7 +33,7 @@ TIERS = [
     {"verify"},
     {"mesh", "data"},
     {"files", "filters"},
-    {"pictures", "plotting"},
+    {"pictures", "pieces", "plotting"},
     {"accessor", "demo", "doctor", "studies"},
     {"cli"},
     {"__main__"},

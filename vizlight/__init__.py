@@ -15,6 +15,7 @@ from vizlight._version import __version__ as __version__
 if TYPE_CHECKING:
     from vizlight import engine as engine
     from vizlight import movie as movie
+    from vizlight import pieces as pieces
     from vizlight import render as render
     from vizlight import testing as testing
     from vizlight.data import example_path, load_example
@@ -80,7 +81,8 @@ _HOMES = {
     "to_polydata": "vizlight.filters",
 }
 _MODULES = (
-    "accessor", "engine", "filters", "geometry", "model", "movie", "render", "studies", "testing",
+    "accessor", "engine", "filters", "geometry", "model", "movie", "pieces", "render", "studies",
+    "testing",
 )  # fmt: skip
 
 _aliases.install()

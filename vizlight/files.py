@@ -117,7 +117,7 @@ def read(path: str | Path, /, *, salvage: bool = False, isolated: bool = False) 
     said = io.StringIO()
     with (
         reading,
-        _captured_errors() as errors,
+        captured_errors() as errors,
         warnings.catch_warnings(),
         contextlib.redirect_stdout(said),
     ):
@@ -194,7 +194,7 @@ def _samples(grid: pv.UnstructuredGrid) -> Iterator[tuple[int, int]]:
 
 
 @contextlib.contextmanager
-def _captured_errors() -> Iterator[list[str]]:
+def captured_errors() -> Iterator[list[str]]:
     """Capture the standard error of C and C++ readers; the list holds VTK's errors afterwards."""
     errors: list[str] = []
     sys.stderr.flush()
@@ -295,7 +295,7 @@ def _scalars(mesh: pv.DataSet, argument: str, name: str) -> NDArray[np.generic]:
     raise ValueError(_check.message(argument, expected, got, remedy))
 
 
-def check_output(path: str | Path, /, formats: tuple[str, ...]) -> Path:
+def check_output(path: str | Path, /, formats: tuple[str, ...], *, name: str = "output") -> Path:
     """Return the path of an output file, if the file can be written.
 
     Parameters
@@ -304,6 +304,8 @@ def check_output(path: str | Path, /, formats: tuple[str, ...]) -> Path:
         Path of the file.
     formats : tuple of str
         Allowed file name extensions, each with its dot.
+    name : str, default: "output"
+        Name of the argument in messages.
 
     Returns
     -------
@@ -317,15 +319,15 @@ def check_output(path: str | Path, /, formats: tuple[str, ...]) -> Path:
     path = Path(path)
     if path.suffix.lower() not in formats:
         raise FileError(
-            _check.message("output", f"a name that ends in {', '.join(formats)}", f"'{path}'")
+            _check.message(name, f"a name that ends in {', '.join(formats)}", f"'{path}'")
         )
     if not path.parent.is_dir():
-        raise FileError(_check.message("output", "a folder that exists", f"'{path.parent}'"))
+        raise FileError(_check.message(name, "a folder that exists", f"'{path.parent}'"))
     if path.is_dir():
-        raise FileError(_check.message("output", "a file", f"the folder '{path}'"))
+        raise FileError(_check.message(name, "a file", f"the folder '{path}'"))
     if not os.access(path.parent, os.W_OK):
         got = f"'{path.parent}', which is read-only"
-        raise FileError(_check.message("output", "a writable folder", got))
+        raise FileError(_check.message(name, "a writable folder", got))
     return path
 
 
@@ -375,7 +377,7 @@ def write_mesh(mesh: pv.DataSet, path: str | Path, /) -> Path:
     def save(draft: str) -> None:
         # Text of base64 has 4 bytes for 3.
         _reserve(Path(draft), mesh.actual_memory_size * 1024 * 4 // 3 + 65536)
-        with _captured_errors() as errors:
+        with captured_errors() as errors:
             mesh.save(draft)
         _check_draft(Path(draft), mesh, errors)
 
@@ -422,7 +424,7 @@ def _check_draft(draft: Path, mesh: pv.DataSet, errors: list[str]) -> None:
     if not reason and draft.suffix != ".vtk":
         reader = READERS[draft.suffix]()
         reader.SetFileName(str(draft))
-        with _captured_errors() as errors:
+        with captured_errors() as errors:
             reader.UpdateInformation()
         seen = {reader.GetPointArrayName(i) for i in range(reader.GetNumberOfPointArrays())}
         with draft.open("rb") as file:

@@ -25,9 +25,11 @@ Outputs = Annotated[list[Path], Parameter(name=["--output", "-o"], negative=())]
 #: How the options of a group stand in a command's signature.
 GROUPS = {
     name: Group(name, sort_key=place)
-    for place, name in enumerate(("What is lit", "How", "Light", "Material", "Camera", "Output"))
+    for place, name in enumerate(
+        ("What is lit", "How", "Light", "Material", "Camera", "Output", "Pieces")
+    )
 }
-LIT, _, LIGHT, MATERIAL, CAMERA, OUTPUT = (
+LIT, _, LIGHT, MATERIAL, CAMERA, OUTPUT, PIECES = (
     Parameter(name="*", group=group) for group in GROUPS.values()
 )
 COMMON = Parameter(name="*")
@@ -210,6 +212,25 @@ class Color:
 
     scalars: str | None = None
     cmap: str = "viridis"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pieces:
+    """Data in pieces, for an output .pvtp, .pvtu, .pvti, .pvtr or .pvts.
+
+    Parameters
+    ----------
+    workers
+        Number of processes. Default: 1, one piece after the other.
+    scheduler
+        Address of a scheduler of Dask.
+    slab
+        Largest size in MB of a slab of a structured grid. Default: 64.
+    """
+
+    workers: int | None = None
+    scheduler: str | None = None
+    slab: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,8 +8,19 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 import vizlight
-from vizlight.cli import options, scenes
-from vizlight.cli.arguments import COMMON, GROUPS, LIT, OUTPUT, Color, Common, Flag, Target
+from vizlight.cli import in_pieces, options, scenes
+from vizlight.cli.arguments import (
+    COMMON,
+    GROUPS,
+    LIT,
+    OUTPUT,
+    PIECES,
+    Color,
+    Common,
+    Flag,
+    Pieces,
+    Target,
+)  # fmt: skip
 from vizlight.cli.job import Job, carry_out
 from vizlight.cli.output import say
 from vizlight.cli.script import Step
@@ -30,6 +41,7 @@ def light(
     how: object = None,
     common: Annotated[Common, COMMON] = Common(),  # noqa: B008
     color: Annotated[Color, OUTPUT] = Color(),  # noqa: B008
+    pieces: Annotated[Pieces, PIECES] = Pieces(),  # noqa: B008
     explain: Annotated[Flag, Parameter(group=GROUPS["Output"])] = False,
 ) -> int:
     """Light a mesh from any file that PyVista reads, and write the lit mesh and a picture.
@@ -37,7 +49,9 @@ def light(
     Parameters
     ----------
     files
-        Mesh to light; of several each is lit by itself.
+        Mesh to light; of several each is lit by itself, or all as pieces of one mesh where the
+        output ends in .pvtp, .pvtu, .pvti, .pvtr or .pvts. A structured grid is then read, lit and
+        written slab by slab.
     explain
         Print what is computed and what is skipped.
     """
@@ -47,6 +61,8 @@ def light(
     scenes.check_color(color)
     look = scenes.Look(common)
     given = options.keywords(how)
+    if in_pieces.are_asked(common.out, pieces):
+        return in_pieces.light(files, target, given, common, color, pieces, look)
     taken = target.surface or target.contour is not None or target.slice is not None
     if taken:
         # In a picture a crease is seen as one.

@@ -1,4 +1,6 @@
-"""Files that other packages read: tractograms by nibabel and trx-python, netCDF by xarray."""
+"""Files that other packages read: tractograms by nibabel and trx-python, netCDF by xarray,
+and the index of surfaces in pieces by VTK.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista as pv
+from vtkmodules.vtkIOXML import vtkXMLPPolyDataReader
 
 from vizlight.mesh import polylines
 
@@ -62,6 +65,11 @@ def read(path: Path) -> pv.DataSet | None:
         return _tracts_of_trx(path)
     if suffix in (".nc", ".cdf"):
         return _grid(path)
+    if suffix == ".pvtp":
+        reader = vtkXMLPPolyDataReader()
+        reader.SetFileName(str(path))
+        reader.Update()
+        return pv.wrap(reader.GetOutput())
     return None
 
 

@@ -51,7 +51,7 @@ def attach(
 
 def write(mesh: pv.DataSet, name: str, record: Record, arrays: Iterable[str] = ()) -> None:
     """Attach the record of an array, with digests of the point arrays that it tells of."""
-    digests = {own: digest(mesh.point_data[own]) for own in arrays}
+    digests = {own: digest(mesh.point_data[own]) for own in sorted(arrays)}
     mesh.field_data[key(name)] = [json.dumps(record | {"arrays": digests})]
 
 

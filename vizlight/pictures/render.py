@@ -178,6 +178,8 @@ def make_plotter(
             plotter.background_color = back
             if anti_aliasing is not None:
                 plotter.enable_anti_aliasing(anti_aliasing)
+            else:  # PyVista's theme asks for several samples of a pixel all the same
+                plotter.render_window.SetMultiSamples(0)  # type: ignore[union-attr]
             # PyVista supersamples for FXAA too where the driver lacks that.
             drawn = plotter.renderer.GetPass()
             pixel = SUPERSAMPLED if drawn is not None and drawn.IsA("vtkSSAAPass") else 1.0

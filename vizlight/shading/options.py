@@ -391,7 +391,7 @@ def accepts(
                     _check.warn(f"{old}= is replaced by {new}", DeprecationWarning)
             for name in keywords:
                 if name not in known:
-                    raise TypeError(_unknown(function.__name__, name, known))
+                    raise TypeError(unknown_option(function.__name__, name, known))
             for name in required - keywords.keys():
                 raise TypeError(_check.message(name, f"a value for {function.__name__}", "none"))
             return function(*arguments, **keywords)
@@ -420,7 +420,7 @@ def _doc(function: Callable[..., object]) -> str:
     return inspect.cleandoc(function.__doc__ or "")
 
 
-def _unknown(function: str, name: str, known: list[str]) -> str:
+def unknown_option(function: str, name: str, known: list[str]) -> str:
     """Return the message for a keyword that a function does not have."""
     near = difflib.get_close_matches(name, known, n=1)
     remedy = f"did you mean {near[0]}=?" if near else f"it has {', '.join(known[1:])}"

@@ -1,0 +1,368 @@
+"""Pieces are lit as the whole, whatever the cut; finished ones are kept, faulty ones are named."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import signal
+import threading
+import time
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight import DepthCue, Light, Scene, View, pieces
+
+SCENE = Scene(
+    lights=[Light(direction=(1, 0.5, 2)), Light(position=(9, 9, 9))],
+    view=View(position=(20, 5, 9)),
+    depth_cue=DepthCue(),
+)
+PLAIN = Scene(view=View(direction=(0, 0, 1)))
+LEVEL = 1.2
+
+
+@pytest.fixture(scope="module")
+def image():
+    grid = pv.ImageData(dimensions=(21, 18, 23), spacing=(0.2,) * 3, origin=(5, 3, 2))
+    x, y, z = np.asarray(grid.points).T
+    middle = np.array(grid.center)[:, None]
+    away = np.linalg.norm((np.array([x, y, z]) - middle) * [[1], [1.2], [0.9]], axis=0)
+    grid["s"] = (away + 0.1 * np.sin(4 * x)).astype(np.float32)
+    grid["V"] = np.stack([np.cos(3 * y), np.sin(2 * z), x], axis=1).astype(np.float32)
+    return grid
+
+
+def cut(grid, folder, labels, suffix):
+    """Write the parts of a mesh by a label per cell."""
+    for i in np.unique(labels):
+        which = np.flatnonzero(labels == i)
+        part = grid.extract_cells(which, pass_point_ids=False, pass_cell_ids=False)
+        part = part.extract_surface(algorithm="geometry") if suffix == "vtp" else part
+        for data, name in (
+            (part.point_data, "vtkOriginalPointIds"),
+            (part.cell_data, "vtkOriginalCellIds"),
+        ):
+            if name in data:
+                del data[name]
+        part.save(folder / f"part{i:02d}.{suffix}")
+    return str(folder / f"*.{suffix}")
+
+
+def cuts(grid, seed):
+    """Return labels of 12 parts: slabs, blocks, sectors, random blocks, and random cells."""
+    rng = np.random.default_rng(seed)
+    low, high = np.reshape(grid.bounds, (3, 2)).T
+    share = np.clip((grid.cell_centers().points - low) / (high - low), 0, 1 - 1e-9)
+    blocks = (share * [3, 2, 2]).astype(int) @ [4, 2, 1]
+    angle = np.arctan2(*(share[:, :2] - 0.5).T)
+    return {
+        "slabs": (share[:, 2] * 12).astype(int),
+        "blocks": blocks,
+        "sectors": ((angle / np.pi + 1) * 5.999).astype(int),
+        "random blocks": rng.integers(0, 12, (4, 4, 4))[tuple((share * 4).astype(int).T)],
+        "random cells": rng.integers(0, 12, grid.n_cells),
+    }
+
+
+def assert_as_whole(lit, whole, limit=1e-6):
+    """Assert that each point of the pieces has the light of the whole, and no cell is missing."""
+    where = {tuple(p): i for i, p in enumerate(np.asarray(whole.points, dtype=np.float64).tolist())}
+    cells = 0
+    for path in lit.files:
+        part = pv.read(path)
+        at = [where[tuple(p)] for p in np.asarray(part.points, dtype=np.float64).tolist()]
+        np.testing.assert_allclose(part["luminance"], whole["luminance"][at], atol=limit)
+        assert not set(part.cell_data) & {"vizlight_ghost", "vtkGhostType"}
+        cells += part.n_cells
+    assert cells == whole.n_cells == lit.cells
+
+
+@pytest.mark.parametrize(
+    ("kind", "options"),
+    [
+        ("slabs", {}),
+        ("blocks", {"normals": "gradient"}),
+        ("sectors", {"tangents": "V", "conditioned": True}),
+        ("random blocks", {}),
+        ("random cells", {"normals": "gradient"}),
+    ],
+    ids=str,
+)
+def test_an_isosurface_in_12_pieces_is_lit_as_the_whole(image, tmp_path, kind, options):
+    grid = image.cast_to_unstructured_grid()
+    files = cut(grid, tmp_path, cuts(grid, 3)[kind], "vtu")
+    lit = pieces.light(
+        files, SCENE, contour="s", level=LEVEL, out=tmp_path / "lit.pvtp", workers=1, **options
+    )
+    if "normals" in options:
+        grid = grid.compute_derivative(scalars="s", gradient="gradient")
+    whole = grid.contour([LEVEL], scalars="s")
+    assert_as_whole(lit, vizlight.illuminate(whole, lit.scene, facing="eye", **options))
+
+
+@pytest.mark.parametrize("kind", ["slabs", "random cells"])
+def test_a_surface_in_pieces_is_lit_as_the_whole(tmp_path, kind):
+    ball = pv.Sphere(theta_resolution=40, phi_resolution=40)
+    ball.clear_data()
+    files = cut(ball, tmp_path, cuts(ball, 5)[kind], "vtp")
+    lit = pieces.light(files, SCENE, out=tmp_path / "lit.pvtp", workers=1)
+    assert_as_whole(lit, vizlight.illuminate(ball, lit.scene, facing="eye"))
+
+
+def test_every_piece_has_the_mask_and_the_index_is_read_by_vtk(image, tmp_path):
+    image.save(tmp_path / "grid.vti")
+    lit = pieces.light(
+        tmp_path / "grid.vti", PLAIN, contour="s", level=LEVEL, tangents="V", slab=0.05,
+        out=tmp_path / "lit.pvtp", workers=1,
+    )  # fmt: skip
+    assert len(lit.files) > 2
+    whole = vizlight.read(lit.path)
+    assert (whole.n_points, whole.n_cells) == (lit.points, lit.cells)
+    assert whole["luminance_valid"].all()
+    assert lit.ranges["luminance"] == (whole["luminance"].min(), whole["luminance"].max())
+    np.testing.assert_allclose(lit.bounds, whole.bounds)
+
+
+def sources(image, folder, kind):
+    """Return a grid as one kind of source."""
+    if kind in ("vti", "vtr", "vts"):
+        grid = {
+            "vti": image, "vtr": image.cast_to_rectilinear_grid(),
+            "vts": image.cast_to_structured_grid(),
+        }[kind]  # fmt: skip
+        grid.save(folder / f"grid.{kind}")
+        return folder / f"grid.{kind}"
+    if kind == "vtkhdf":
+        from vtkmodules.vtkIOHDF import vtkHDFWriter
+
+        writer = vtkHDFWriter()
+        writer.SetInputDataObject(image)
+        writer.SetFileName(str(folder / "grid.vtkhdf"))
+        writer.Write()
+        return folder / "grid.vtkhdf"
+    nodes = image.dimensions[::-1]
+    s, v = np.asarray(image["s"]).reshape(nodes), np.asarray(image["V"]).reshape(*nodes, 3)
+    if kind == "memmap":
+        np.save(folder / "s.npy", s)
+        np.save(folder / "V.npy", v)
+        s, v = (np.load(folder / f"{name}.npy", mmap_mode="r") for name in "sV")
+    elif kind == "zarr":
+        zarr = pytest.importorskip("zarr")
+        s, v = (zarr.array(a, chunks=(5, *a.shape[1:])) for a in (s, v))
+    elif kind == "dask":
+        array = pytest.importorskip("dask.array")
+        s, v = array.from_array(s, chunks=7), array.from_array(v, chunks=7)
+    return pieces.Slabs({"s": s, "V": v}, spacing=image.spacing, origin=image.origin)
+
+
+@pytest.mark.parametrize("kind", ["vti", "vtr", "vts", "vtkhdf", "array", "memmap", "zarr", "dask"])
+def test_a_grid_is_lit_slab_by_slab(image, tmp_path, kind):
+    lit = pieces.light(
+        sources(image, tmp_path, kind), SCENE, contour="s", level=LEVEL, normals="gradient",
+        slab=0.05, out=tmp_path / "lit.pvtp", workers=1,
+    )  # fmt: skip
+    assert len(lit.files) > 2
+    whole = image.compute_derivative(scalars="s", gradient="gradient").contour([LEVEL], scalars="s")
+    whole = vizlight.illuminate(whole, lit.scene, facing="eye", normals="gradient")
+    assert lit.cells == whole.n_cells
+    values = np.concatenate([pv.read(path)["luminance"] for path in lit.files])
+    assert set(np.round(values, 5)) <= set(np.round(whole["luminance"], 5)) or kind != "vti"
+    np.testing.assert_allclose([values.min(), values.max()],
+        [whole["luminance"].min(), whole["luminance"].max()], atol=1e-5)  # fmt: skip
+
+
+def test_a_grid_stays_a_grid(image, tmp_path):
+    image.save(tmp_path / "grid.vti")
+    lit = pieces.light(
+        tmp_path / "grid.vti", PLAIN, tangents="V", slab=0.05, out=tmp_path / "lit.pvti", workers=1
+    )
+    whole = pv.read(lit.path)
+    assert whole.dimensions == image.dimensions
+    expected = vizlight.illuminate(image, PLAIN, tangents="V")["luminance"]
+    np.testing.assert_array_equal(whole["luminance"], expected)
+
+
+def test_partitions_of_a_file_and_indices_are_pieces(tmp_path):
+    from vtkmodules.vtkCommonDataModel import vtkPartitionedDataSet
+    from vtkmodules.vtkIOHDF import vtkHDFWriter
+
+    balls = [pv.Sphere(center=(i, 0, 0)).cast_to_unstructured_grid() for i in range(3)]
+    parts = vtkPartitionedDataSet()
+    for i, ball in enumerate(balls):
+        parts.SetPartition(i, ball)
+    writer = vtkHDFWriter()
+    writer.SetInputDataObject(parts)
+    writer.SetFileName(str(tmp_path / "balls.vtkhdf"))
+    writer.Write()
+    lit = pieces.light(tmp_path / "balls.vtkhdf", PLAIN, out=tmp_path / "a.pvtu", workers=1)
+    assert len(lit.files) == 3
+    again = pieces.light(lit.path, PLAIN, out=tmp_path / "b.pvtu", workers=1, name="second")
+    assert (again.points, len(again.files)) == (lit.points, 3)
+    pv.MultiBlock(balls).save(tmp_path / "balls.vtm")
+    third = pieces.light(tmp_path / "balls.vtm", PLAIN, out=tmp_path / "c.pvtu", workers=1)
+    assert third.points == lit.points
+
+
+def test_streamlines_of_each_piece(image, tmp_path):
+    image.save(tmp_path / "grid.vti")
+    lit = pieces.light(
+        tmp_path / "grid.vti", PLAIN, filter="streamlines", vectors="V", seeds=5, slab=0.1,
+        out=tmp_path / "lit.pvtp", workers=1,
+    )  # fmt: skip
+    assert lit.ranges["luminance"][1] > lit.ranges["luminance"][0]
+
+
+@pytest.fixture
+def balls(tmp_path):
+    for i in range(4):
+        ball = pv.Sphere(center=(0.9 * i, 0, 0))
+        ball.clear_data()
+        ball.save(tmp_path / f"ball{i}.vtp")
+    return tmp_path
+
+
+def run(folder, source=None, **options):
+    source = str(folder / "ball*.vtp") if source is None else source
+    options = {"out": folder / "lit.pvtp", "workers": 1} | options
+    return pieces.light(source, options.pop("scene", PLAIN), **options)
+
+
+def digests(lit):
+    return [hashlib.sha256(path.read_bytes()).hexdigest() for path in lit.files]
+
+
+def test_finished_pieces_are_not_done_again(balls):
+    first = run(balls)
+    assert (first.reused, len(first.files)) == (0, 4)
+    assert run(balls).reused == 4
+    os.utime(balls / "ball1.vtp")
+    # Its neighbours have ghost cells of it only where their boxes touch.
+    assert run(balls, ghost=0).reused == 0
+    os.utime(balls / "ball1.vtp")
+    assert run(balls, ghost=0).reused == 3
+    assert run(balls, scene=PLAIN.replace(ambient_intensity=0.5), ghost=0).reused == 0
+    (balls / "ball3.vtp").unlink()
+    assert len(run(balls, ghost=0).files) == 3
+    assert len(list((balls / "lit").iterdir())) == 6
+
+
+def test_a_damaged_piece_is_named_and_the_rest_is_kept(balls):
+    whole = (balls / "ball2.vtp").read_bytes()
+    (balls / "ball2.vtp").write_bytes(whole[: len(whole) // 2])
+    with pytest.raises(pieces.PieceError, match=r"piece .*ball2\.vtp: "):
+        run(balls)
+    assert not (balls / "lit.pvtp").exists()
+    (balls / "ball2.vtp").write_bytes(whole)
+    first = run(balls)
+    mesh = pv.read(balls / "ball3.vtp")
+    mesh.points[0] = np.nan
+    mesh["V"] = np.zeros((mesh.n_points, 3))
+    before = digests(first)
+    mesh.save(balls / "ball4.vtp")
+    with pytest.raises(pieces.PieceError, match=r"piece .*ball4\.vtp: .*no point array 'V'"):
+        run(balls)
+    assert digests(first) == before
+
+
+def test_an_empty_file_is_an_error_but_not_where_an_index_names_it(balls):
+    first = run(balls)
+    text = first.path.read_text(encoding="utf-8")
+    pv.PolyData().save(balls / "empty.vtp")
+    piece = '<Piece Source="empty.vtp" />'
+    index = balls / "with_empty.pvtp"
+    index.write_text(text.replace("</PPolyData>", piece + "</PPolyData>"), encoding="utf-8")
+    lit = run(balls, index, out=balls / "again.pvtp", name="second")
+    assert len(lit.files) == 4
+    with pytest.raises(pieces.PieceError, match=r"piece .*empty\.vtp: .*no points"):
+        run(balls, [balls / "ball0.vtp", balls / "empty.vtp"])
+    (balls / "empty.vtp").unlink()
+    with pytest.raises(pieces.PieceError, match=r"with_empty.* names .*empty\.vtp"):
+        run(balls, index)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"source": "no/*.vtp"}, r"sources: expected a pattern that files match"),
+        ({"source": "no.vtp"}, r"sources: expected a file, got 'no.vtp' \(no such file\)"),
+        ({"source": []}, r"sources: expected at least one piece"),
+        ({"source": 3}, r"sources: expected paths"),
+        ({"source": [3]}, r"sources: expected a path"),
+        ({"source": {"a": 3}}, r"sources: expected paths, patterns"),
+        ({"scene": 3}, r"scene: expected"),
+        ({"facing": "auto"}, r"facing: expected 'eye' or 'as given'"),
+        ({"facing": "outward"}, r"facing: expected 'eye' or 'as given'"),
+        ({"feature_angle": "auto"}, r"feature_angle: expected a number or None"),
+        ({"refine": 0.01}, r"refine: expected no such option"),
+        ({"bundle": True}, r"bundle: expected no such option"),
+        ({"tangets": "V"}, r"tangets: expected an option of illuminate.*tangents"),
+        ({"tangents": np.zeros((3, 3))}, r"tangents: expected the name of a point array"),
+        ({"tangents": "W"}, r"piece .*: tangents: expected the name of a point array"),
+        ({"contour": "W"}, r"contour: expected a point array"),
+        ({"contour": 3}, r"contour: expected the name of a point array"),
+        ({"level": 1.0}, r"level: expected contour= beside it"),
+        ({"ghost": -1}, r"ghost: expected an integer"),
+        ({"contour": "s", "normals": "gradient", "ghost": 0}, r"ghost: expected 1 at least"),
+        ({"workers": 0}, r"workers: expected an integer"),
+        ({"workers": 2, "client": "tcp://127.0.0.1:9"}, r"workers: expected client= or workers="),
+        ({"slab": 0}, r"slab: expected a number above 0"),
+        ({"retries": -1}, r"retries: expected"),
+        ({"filter": "fur"}, r"filter: expected 'illuminate' or 'streamlines'"),
+        ({"out": "lit.vtp"}, r"out: expected a name that ends in \.pvtp"),
+        ({"out": "no/lit.pvtp"}, r"out: expected a folder that exists"),
+    ],
+    ids=str,
+)
+def test_bad_input(balls, options, message):
+    with pytest.raises((ValueError, TypeError), match=message):
+        run(balls, **options)
+    assert {path.suffix for path in balls.iterdir()} == {".vtp"}
+
+
+@pytest.mark.parametrize(
+    ("arrays", "options", "message"),
+    [
+        ({}, {}, "arrays: expected a dict"),
+        ({"a": np.zeros(3)}, {}, r"arrays: expected an array of shape \(nz, ny, nx\)"),
+        ({"a": [1]}, {}, r"arrays: expected an array of shape"),
+        ({"a": np.zeros((2, 2, 2)), "b": np.zeros((2, 2, 3))}, {}, "arrays: expected one number"),
+        ({"a": np.zeros((2, 2, 2))}, {"spacing": (0, 1, 1)}, "spacing: expected a number above 0"),
+        ({"a": np.zeros((2, 2, 2))}, {"origin": "x"}, "origin: expected"),
+    ],
+    ids=str,
+)
+def test_bad_slabs(arrays, options, message):
+    with pytest.raises((ValueError, TypeError), match=message):
+        pieces.Slabs(arrays, **options)
+
+
+def test_a_killed_worker_leaves_nothing_and_the_result_is_the_same(tmp_path, image):
+    distributed = pytest.importorskip("distributed")
+    source = sources(image, tmp_path, "memmap")
+    options = {"contour": "s", "level": LEVEL, "normals": "gradient", "slab": 0.03}
+    expected = pieces.light(source, PLAIN, out=tmp_path / "one.pvtp", workers=1, **options)
+    with (
+        distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50
+        ) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        pids = list(client.run(os.getpid).values())
+
+        def kill():
+            while len(list((tmp_path / "two").glob("*.vtp"))) < 2:
+                time.sleep(0.01)
+            os.kill(pids[0], signal.SIGKILL)
+
+        killer = threading.Thread(target=kill)
+        killer.start()
+        lit = pieces.light(source, PLAIN, out=tmp_path / "two.pvtp", client=client, **options)
+        killer.join()
+        assert pids[0] not in client.run(os.getpid).values()
+        with pytest.raises(pieces.PieceError, match="slices 0 to .*tangents: expected the name"):
+            pieces.light(source, PLAIN, out=tmp_path / "three.pvtp", client=client, tangents="W")
+    assert digests(lit) == digests(expected)
+    assert not list((tmp_path / "two").glob(".*"))

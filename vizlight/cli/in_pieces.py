@@ -1,0 +1,114 @@
+"""``vizlight light`` of data in pieces: files of one mesh, or slabs of a grid beyond memory."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from vizlight import _check
+from vizlight.cli.output import OK, complain, draw, say
+from vizlight.cli.script import Step, source
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from vizlight.cli.arguments import Color, Common, Output, Pieces, Target
+    from vizlight.cli.scenes import Look
+
+#: Suffixes of the indices of pieces.
+INDICES = (".pvtp", ".pvtu", ".pvti", ".pvtr", ".pvts")
+
+
+def are_asked(out: Output, pieces: Pieces) -> bool:
+    """Return whether files are pieces of one mesh, by the output and the workers."""
+    indices = [path for path in out.output or () if path.suffix.lower() in INDICES]
+    if indices:
+        return True
+    for name, value in vars(pieces).items():
+        option = f"--{name}"
+        if value is not None:
+            expected = f"an output that ends in {', '.join(INDICES)} beside {option}"
+            got = ", ".join(str(path) for path in out.output or ()) or "none"
+            raise ValueError(_check.message("output", expected, got))
+    return False
+
+
+def light(
+    files: Sequence[Path],
+    target: Target,
+    given: dict[str, Any],
+    common: Common,
+    color: Color,
+    pieces: Pieces,
+    look: Look,
+) -> int:
+    """Light files as pieces of one mesh, or print the script that does; return the exit code."""
+    out = common.out
+    _refuse(target, color, out)
+    indices = [path for path in out.output or () if path.suffix.lower() in INDICES]
+    others = [path for path in out.output or () if path.suffix.lower() not in INDICES]
+    for path in others:
+        if path.suffix.lower() != ".png":
+            expected = "pictures .png beside the index of pieces"
+            raise ValueError(_check.message("output", expected, f"'{path}'"))
+    if len(indices) > 1:
+        expected = "one index of pieces"
+        raise ValueError(_check.message("output", expected, ", ".join(map(str, indices))))
+    runs: dict[str, Any] = {"workers": 1 if pieces.workers is None else pieces.workers}
+    if pieces.scheduler is not None:
+        runs = {"client": pieces.scheduler} | (
+            {"workers": pieces.workers} if pieces.workers else {}
+        )
+    shown = {"progress_bar": True} if out.progress else {}
+    box = Step("box", "vizlight.pieces.bounding_box", list(files), **runs, **shown)
+    camera = look.camera(box)
+    scene = look.scene(camera)
+    what = {"contour": target.contour, "level": target.level, "slab": pieces.slab}
+    lit = Step(
+        "lit", "vizlight.pieces.light", list(files), scene,
+        **{key: value for key, value in what.items() if value is not None},
+        out=indices[0], **runs, **given, **shown,
+    )  # fmt: skip
+    name = str(given.get("name", "luminance"))
+    scalars = ("rgb" if name == "luminance" else f"{name}_rgb") if look.colored else name
+    options = {
+        "scalars": scalars,
+        "background": out.background,
+        "line_width": None if out.line_width == 1 else out.line_width,
+        "backend": out.backend,
+    }
+    drawn = [
+        Step(
+            "", "vizlight.pieces.save_png", lit, path, camera=camera, size=look.size, **runs,
+            **{key: value for key, value in options.items() if value is not None},
+        )
+        for path in others
+    ]  # fmt: skip
+    if out.script:
+        say(source([[lit, *drawn]]))
+        return OK
+    made = lit.run()
+    again = f", {made.reused} of them made before" if made.reused else ""
+    none = f", {made.empty} empty" if made.empty else ""
+    say(f"{made.points} points lit in {len(made.files)} pieces{again}{none}")
+    low, high = made.ranges[name]
+    if high > 1:
+        complain(f"{name} is from {low:.3g} to {high:.3g}; above 1 it is white in a picture")
+    say(f"mesh     {made.path}")
+    return max((draw(step.run) for step in drawn), default=OK)
+
+
+def _refuse(target: Target, color: Color, out: Output) -> None:
+    """Refuse options that need the mesh as a whole."""
+    unknown = {
+        "--clip": target.clip,
+        "--threshold": target.threshold,
+        "--slice": target.slice,
+        "--warp": target.warp,
+        "--salvage": target.salvage,
+        "--scalars": color.scalars,
+        "--report": out.report,
+    }
+    for option, value in unknown.items():
+        if value:
+            raise ValueError(_check.message(option, "no such option for pieces", "one"))

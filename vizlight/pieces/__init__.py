@@ -1,0 +1,7 @@
+"""Light of data in pieces: on one machine slab by slab, by processes, or on a cluster."""
+
+from vizlight.pieces.drawing import pictures, save_png
+from vizlight.pieces.kinds import PieceError, Slabs
+from vizlight.pieces.run import Lit, bounding_box, light
+
+__all__ = ["Lit", "PieceError", "Slabs", "bounding_box", "light", "pictures", "save_png"]

@@ -1,0 +1,140 @@
+"""Ghost cells: those of other pieces that touch a piece, joined to it and cut off again."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyvista as pv
+from vtkmodules.vtkFiltersCore import vtkAppendFilter, vtkAppendPolyData
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from vizlight._types import Array, Bools, Indices
+
+#: Name of the cell array that is 1 on the cells of other pieces.
+GHOST = "vizlight_ghost"
+
+
+def own_cells(mesh: pv.DataSet) -> pv.DataSet:
+    """Return a mesh without the cells that are marked as ghosts, and without their points."""
+    if GHOST not in mesh.cell_data:
+        return mesh
+    ghosts = np.asarray(mesh.cell_data.pop(GHOST)) > 0
+    if not ghosts.any():
+        return mesh
+    return some_cells(mesh, ~ghosts)
+
+
+def some_cells(mesh: pv.DataSet, which: Bools) -> pv.DataSet:
+    """Return some cells of a mesh with their points, of the same kind of mesh."""
+    if isinstance(mesh, pv.PolyData):
+        if not which.any():
+            return pv.PolyData()
+        rest: Any = np.flatnonzero(~which)
+        found: pv.PolyData = mesh.remove_cells(rest)
+        for data, name in (
+            (found.point_data, "vtkOriginalPointIds"),
+            (found.cell_data, "vtkOriginalCellIds"),
+        ):
+            if name in data and name not in (*mesh.point_data, *mesh.cell_data):
+                del data[name]
+        return found
+    ids: Any = np.flatnonzero(which)
+    part: pv.DataSet = mesh.extract_cells(ids, pass_point_ids=False, pass_cell_ids=False)
+    return part
+
+
+def without_ghosts(mesh: pv.DataSet) -> pv.DataSet:
+    """Return a mesh without the duplicate cells that its writer marked."""
+    name = "vtkGhostType"
+    if name in mesh.point_data:
+        del mesh.point_data[name]
+    if name not in mesh.cell_data:
+        return mesh
+    duplicate = (np.asarray(mesh.cell_data.pop(name)) & 1) > 0
+    if not duplicate.any() or not isinstance(mesh, pv.PolyData | pv.UnstructuredGrid):
+        return mesh
+    return some_cells(mesh, ~duplicate)
+
+
+def with_layer(
+    mesh: pv.DataSet, others: Sequence[pv.DataSet]
+) -> tuple[pv.DataSet, list[pv.DataSet]]:
+    """Return a mesh with the cells of others that share a place with it, and the rest of those.
+
+    Points of the mesh keep their indices; those of the layer follow, and cells of the layer use
+    the mesh's own points where their places are the same bit for bit.
+    """
+    if GHOST not in mesh.cell_data:
+        mesh.cell_data[GHOST] = np.zeros(mesh.n_cells, dtype=np.uint8)
+    own = np.asarray(mesh.points)
+    layers, rest = [], []
+    for other in others:
+        if not isinstance(other, type(mesh)):
+            other = other.cast_to_unstructured_grid()
+        touched = _touched(other, _same_place(own, np.asarray(other.points)) >= 0)
+        if touched.any():
+            layer = some_cells(other, touched)
+            layer.cell_data[GHOST] = np.ones(layer.n_cells, dtype=np.uint8)
+            layers.append(layer)
+        rest.append(some_cells(other, ~touched) if touched.any() else other)
+    return (_joined(mesh, layers) if layers else mesh), rest
+
+
+def _same_place(points: Array, others: Array) -> Indices:
+    """Return for each of some points the first of ``points`` at its place, -1 where none is."""
+    found = np.full(len(others), -1)
+    low, high = points.min(axis=0), points.max(axis=0)
+    near = np.flatnonzero(np.all((others >= low) & (others <= high), axis=1))
+    if len(near):
+        keys, first = np.unique(_keys(points), return_index=True)
+        wanted = _keys(others[near])
+        at = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
+        found[near] = np.where(keys[at] == wanted, first[at], -1)
+    return found
+
+
+def _keys(points: Array) -> Any:
+    """Return the coordinates of each point as one number that compares equal at equal places."""
+    rows = np.ascontiguousarray(np.asarray(points, dtype=np.float64) + 0.0)
+    return rows.view([(axis, rows.dtype) for axis in "xyz"]).ravel()
+
+
+def _cell_arrays(mesh: Any) -> list[Any]:
+    """Return the arrays of cells of a mesh, whose entries are indices of points."""
+    if isinstance(mesh, pv.PolyData):
+        return [mesh.GetVerts(), mesh.GetLines(), mesh.GetPolys(), mesh.GetStrips()]
+    faces = mesh.GetPolyhedronFaces() if hasattr(mesh, "GetPolyhedronFaces") else None
+    return [mesh.GetCells(), *([faces] if faces is not None else [])]
+
+
+def _touched(mesh: pv.DataSet, touching: Any) -> Any:
+    """Return a mask of the cells that have one of some points."""
+    masks = []
+    for cells in _cell_arrays(mesh)[: 4 if isinstance(mesh, pv.PolyData) else 1]:
+        ids = pv.convert_array(cells.GetConnectivityArray())
+        starts = pv.convert_array(cells.GetOffsetsArray())
+        sums = np.concatenate([[0], np.cumsum(touching[ids])])
+        masks.append(sums[starts[1:]] > sums[starts[:-1]])
+    return np.concatenate(masks)
+
+
+def _joined(mesh: pv.DataSet, layers: Sequence[pv.DataSet]) -> pv.DataSet:
+    """Return a mesh and layers around it that share the points at the same places."""
+    kind = vtkAppendPolyData if isinstance(mesh, pv.PolyData) else vtkAppendFilter
+    together: Any = kind()
+    for part in (mesh, *layers):
+        together.AddInputData(part)
+    together.Update()
+    found = pv.wrap(together.GetOutput())
+    places = np.asarray(found.points)
+    index = np.arange(found.n_points)
+    index[mesh.n_points :] = _same_place(places, places[mesh.n_points :])
+    for cells in _cell_arrays(found):
+        ids = pv.convert_array(cells.GetConnectivityArray())
+        if len(ids):
+            ids[:] = index[ids]
+    found.Modified()
+    return found  # type: ignore[no-any-return]

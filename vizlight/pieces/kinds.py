@@ -1,0 +1,429 @@
+"""What a piece of data is, in a file, a grid or an array, and how it is read."""
+
+from __future__ import annotations
+
+import math
+import xml.etree.ElementTree as ET
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyvista as pv
+from vtkmodules import vtkIOXML
+
+from vizlight import _check, files
+from vizlight.pieces.ghosts import GHOST, own_cells, with_layer, without_ghosts
+
+if TYPE_CHECKING:
+    from vizlight._types import VectorLike
+
+    Extent = tuple[int, int, int, int, int, int]
+    Stamp = list[str | int | float]
+
+#: Readers of structured grids, which read any box of nodes out of a file.
+STRUCTURED = {
+    ".vti": vtkIOXML.vtkXMLImageDataReader,
+    ".vtr": vtkIOXML.vtkXMLRectilinearGridReader,
+    ".vts": vtkIOXML.vtkXMLStructuredGridReader,
+    ".pvti": vtkIOXML.vtkXMLPImageDataReader,
+    ".pvtr": vtkIOXML.vtkXMLPRectilinearGridReader,
+    ".pvts": vtkIOXML.vtkXMLPStructuredGridReader,
+}
+#: Files that name the files of their pieces.
+INDICES = (".pvtu", ".pvtp", ".vtm")
+HDF = (".vtkhdf", ".hdf")
+
+
+class PieceError(ValueError):
+    """A piece of the data cannot be read, lit or written; the message begins with its name."""
+
+
+@dataclass(frozen=True)
+class Piece:
+    """One piece of data, small enough to be sent to another process, which reads it.
+
+    Attributes
+    ----------
+    name : str
+        Name in messages.
+    """
+
+    name: str
+
+    def read(self, ghost: int) -> pv.DataSet:
+        """Return the mesh of the piece; cells of other pieces have 1 in the array ``GHOST``."""
+        raise NotImplementedError
+
+    def own(self, mesh: pv.DataSet) -> pv.DataSet:
+        """Return the part of a mesh, read with ghost cells, that belongs to the piece."""
+        raise NotImplementedError
+
+    def stamp(self) -> Stamp | None:
+        """Return what changes with the data; None where that is not known."""
+        raise NotImplementedError
+
+    def neighbours(self) -> tuple[Piece, ...]:
+        """Return the pieces from which ghost cells are taken."""
+        return ()
+
+    def bounds(self) -> tuple[float, ...]:
+        """Return the bounding box, from no more of the data than it needs; empty without points."""
+        mesh = self.read(0)
+        return tuple(mesh.bounds) if mesh.n_points else ()
+
+
+def stamp_of(path: Path) -> Stamp:
+    """Return the place, size and time of change of a file."""
+    status = path.stat()
+    return [str(path.resolve()), status.st_size, status.st_mtime_ns]
+
+
+@dataclass(frozen=True)
+class FilePiece(Piece):
+    """A file, or one partition of a VTKHDF file, of cells in any order.
+
+    Attributes
+    ----------
+    path : pathlib.Path
+        Path of the file.
+    partition, partitions : int
+        Index of the partition, and their number.
+    beside : tuple of FilePiece
+        Pieces whose bounding boxes touch that of this one.
+    may_be_empty : bool
+        Whether an index names it, which may name files without points.
+    """
+
+    path: Path
+    partition: int = 0
+    partitions: int = 1
+    beside: tuple[FilePiece, ...] = ()
+    may_be_empty: bool = False
+
+    def load(self) -> pv.DataSet:
+        """Return the mesh without ghost cells."""
+        if self.path.suffix.lower() in HDF:
+            reader = hdf(self.path)
+            reader.UpdatePiece(self.partition, self.partitions, 0)
+            found = pv.wrap(reader.GetOutputDataObject(0))
+            mesh = found[self.partition] if isinstance(found, pv.PartitionedDataSet) else found
+            if not isinstance(mesh, pv.DataSet) or not mesh.n_points:
+                got = f"{self.name!r} (no points)"
+                raise files.FileError(_check.message("sources", "pieces with points", got))
+        else:
+            mesh = files.read(self.path)
+        return without_ghosts(mesh)
+
+    def read(self, ghost: int) -> pv.DataSet:
+        """See :class:`Piece`."""
+        mesh = self.load()
+        if not ghost:
+            return mesh
+        mesh = mesh if isinstance(mesh, pv.PolyData) else mesh.cast_to_unstructured_grid()
+        layers = [piece.load() for piece in self.beside]
+        for _ in range(ghost):
+            mesh, layers = with_layer(mesh, layers)
+        return mesh
+
+    def own(self, mesh: pv.DataSet) -> pv.DataSet:
+        """See :class:`Piece`."""
+        return own_cells(mesh)
+
+    def stamp(self) -> Stamp | None:
+        """See :class:`Piece`."""
+        return [*stamp_of(self.path), self.partition, self.partitions]
+
+    def neighbours(self) -> tuple[Piece, ...]:
+        """See :class:`Piece`."""
+        return self.beside
+
+
+@dataclass(frozen=True)
+class BoxPiece(Piece):
+    """A box of nodes of a structured grid in a file.
+
+    Attributes
+    ----------
+    path : pathlib.Path
+        Path of the file.
+    extent, whole : tuple of 6 int
+        First and last node of the piece and of the file, along x, y and z.
+    """
+
+    path: Path
+    extent: Extent
+    whole: Extent
+
+    def read(self, ghost: int) -> pv.DataSet:
+        """See :class:`Piece`."""
+        reader = structured(self.path)
+        reader.UpdateExtent(_grown(self.extent, self.whole, ghost))
+        mesh = pv.wrap(reader.GetOutputDataObject(0))
+        return _marked(without_ghosts(mesh), self.extent)
+
+    def bounds(self) -> tuple[float, ...]:
+        """See :class:`Piece`."""
+        reader = structured(self.path)
+        for selection in (reader.GetPointDataArraySelection(), reader.GetCellDataArraySelection()):
+            selection.DisableAllArrays()
+        reader.UpdateExtent(self.extent)
+        return tuple(reader.GetOutputDataObject(0).GetBounds())
+
+    def own(self, mesh: pv.DataSet) -> pv.DataSet:
+        """See :class:`Piece`."""
+        return _own_box(mesh, self.extent)
+
+    def stamp(self) -> Stamp | None:
+        """See :class:`Piece`."""
+        found: Stamp = [*stamp_of(self.path), *self.extent]
+        if self.path.suffix.lower() in (".pvti", ".pvtr", ".pvts"):
+            for path in index_files(self.path):
+                found += stamp_of(path)
+        return found
+
+
+class Slabs:
+    """A grid that is read slab by slab from arrays that are larger than memory.
+
+    Parameters
+    ----------
+    arrays : dict of str to array_like
+        Point arrays by name, of shape (nz, ny, nx) or (nz, ny, nx, components): memory-mapped
+        arrays, Zarr or Dask arrays, h5py datasets that can be pickled, or anything else of that
+        shape whose slices ``[z0:z1]`` are arrays.
+    spacing : vector of 3 components, default: (1, 1, 1)
+        Distances between the nodes along x, y and z, in the unit of the mesh.
+    origin : vector of 3 components, default: (0, 0, 0)
+        Place of the first node.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If there is no array, or their shapes do not fit each other.
+
+    Notes
+    -----
+    A memory-mapped array is sent to other processes by the name of its file, others as they are.
+
+    Examples
+    --------
+    >>> import numpy as np, vizlight
+    >>> Z = np.linspace(0, 1, 20)[:, None, None] + np.zeros((20, 10, 10))
+    >>> grid = vizlight.pieces.Slabs({"height": Z}, spacing=(0.1, 0.1, 0.05))
+    >>> grid.extent
+    (0, 9, 0, 9, 0, 19)
+    """
+
+    def __init__(
+        self,
+        arrays: Mapping[str, object],
+        *,
+        spacing: VectorLike = (1.0, 1.0, 1.0),
+        origin: VectorLike = (0.0, 0.0, 0.0),
+    ) -> None:
+        if not isinstance(arrays, Mapping) or not arrays:
+            got = _check.describe(arrays)
+            raise TypeError(_check.message("arrays", "a dict of point arrays by name", got))
+        shapes = {}
+        for name, array in arrays.items():
+            shape = getattr(array, "shape", None)
+            if shape is None or len(shape) not in (3, 4) or not hasattr(array, "dtype"):
+                expected = (
+                    f"an array of shape (nz, ny, nx) or (nz, ny, nx, components) for {name!r}"
+                )
+                raise ValueError(_check.message("arrays", expected, _check.describe(array)))
+            shapes[name] = tuple(int(size) for size in shape[:3])
+        if len(set(shapes.values())) > 1:
+            got = ", ".join(f"{name!r} with {shape}" for name, shape in shapes.items())
+            raise ValueError(_check.message("arrays", "one number of nodes along each axis", got))
+        self.arrays = {name: _Mapped.of(array) for name, array in arrays.items()}
+        steps = [_check.positive("spacing", step) for step in _check.vector("spacing", spacing)]
+        self.spacing = tuple(steps)
+        self.origin = _check.vector("origin", origin)
+        nz, ny, nx = next(iter(shapes.values()))
+        self.extent: Extent = (0, nx - 1, 0, ny - 1, 0, nz - 1)
+
+    def bytes_per_node(self) -> float:
+        """Return the memory of all arrays for each node."""
+        sizes = [
+            np.dtype(array.dtype).itemsize * math.prod(array.shape[3:])
+            for array in self.arrays.values()
+        ]
+        return float(sum(sizes))
+
+
+@dataclass(frozen=True)
+class _Mapped:
+    """A memory-mapped array by the place of its data in a file; other arrays are kept."""
+
+    shape: tuple[int, ...]
+    dtype: Any
+    kept: Any = None
+    path: str = ""
+    offset: int = 0
+
+    @classmethod
+    def of(cls, array: Any) -> _Mapped:
+        shape = tuple(int(size) for size in array.shape)
+        if isinstance(array, np.memmap) and array.filename and array.flags.c_contiguous:
+            base: Any = array
+            while isinstance(base.base, np.memmap):
+                base = base.base
+            # A view begins later in the file than the array that it is a view of.
+            first = array.__array_interface__["data"][0] - base.__array_interface__["data"][0]
+            return cls(shape, array.dtype, None, str(array.filename), base.offset + first)
+        return cls(shape, array.dtype, array)
+
+    def rows(self, low: int, high: int) -> Any:
+        """Return the slices from low up to but not including high."""
+        if self.kept is None:
+            each = math.prod(self.shape[1:]) * np.dtype(self.dtype).itemsize
+            mapped = np.memmap(
+                self.path, self.dtype, "r", self.offset + low * each, (high - low, *self.shape[1:])
+            )
+            return np.array(mapped)
+        part = self.kept[low:high]
+        return np.asarray(part.compute(scheduler="sync") if hasattr(part, "compute") else part)
+
+    def stamp(self) -> Stamp | None:
+        """See :class:`Piece`."""
+        return None if self.kept is not None else [*stamp_of(Path(self.path)), self.offset]
+
+
+@dataclass(frozen=True)
+class SlabPiece(Piece):
+    """Slices of nodes of a grid in arrays."""
+
+    grid: Slabs
+    extent: Extent
+
+    def read(self, ghost: int) -> pv.DataSet:
+        """See :class:`Piece`."""
+        x0, x1, y0, y1, low, high = _grown(self.extent, self.grid.extent, ghost)
+        mesh = pv.ImageData(spacing=self.grid.spacing, origin=self.grid.origin)
+        mesh.extent = (x0, x1, y0, y1, low, high)
+        for name, array in self.grid.arrays.items():
+            mesh.point_data[name] = array.rows(low, high + 1).reshape(-1, *array.shape[3:])
+        return _marked(mesh, self.extent)
+
+    def bounds(self) -> tuple[float, ...]:
+        """See :class:`Piece`."""
+        first = zip(self.grid.origin, self.grid.spacing, strict=True)
+        ends = [
+            (o + step * self.extent[2 * i], o + step * self.extent[2 * i + 1])
+            for i, (o, step) in enumerate(first)
+        ]
+        return (*ends[0], *ends[1], *ends[2])
+
+    def own(self, mesh: pv.DataSet) -> pv.DataSet:
+        """See :class:`Piece`."""
+        return _own_box(mesh, self.extent)
+
+    def stamp(self) -> Stamp | None:
+        """See :class:`Piece`."""
+        stamps = [array.stamp() for array in self.grid.arrays.values()]
+        if None in stamps:
+            return None
+        named = zip(self.grid.arrays, stamps, strict=True)
+        found: Stamp = [*self.extent, *self.grid.spacing, *self.grid.origin]
+        for name, stamp in named:
+            found += [name, *(stamp or ())]
+        return found
+
+
+def index_files(path: Path) -> list[Path]:
+    """Return the files that an index names.
+
+    Raises
+    ------
+    PieceError
+        If the index cannot be read, or a file is missing.
+    """
+    try:
+        root = ET.parse(path).getroot()
+    except (ET.ParseError, OSError) as error:
+        got = f"'{path}' ({error})"
+        raise PieceError(_check.message("sources", "an index in XML", got)) from error
+    found = []
+    for element in root.iter():
+        name = {"Piece": "Source", "DataSet": "file"}.get(element.tag)
+        if name and element.get(name):
+            file = path.parent / str(element.get(name))
+            if not file.is_file():
+                text = f"'{path}' names '{file}' (no such file)"
+                raise PieceError(_check.message("sources", "pieces that exist", text))
+            found.append(file)
+    return found
+
+
+def structured(path: Path) -> Any:
+    """Return a reader of a structured grid that knows the grid's extent."""
+    suffix = path.suffix.lower()
+    if suffix in HDF:
+        return hdf(path)
+    reader: Any = STRUCTURED[suffix]()
+    reader.SetFileName(str(path))
+    with files.captured_errors() as errors:
+        reader.UpdateInformation()
+    if errors:
+        got = f"'{path}' ({errors[0]})"
+        raise PieceError(_check.message("sources", "a file that can be read", got))
+    return reader
+
+
+def hdf(path: Path) -> Any:
+    """Return a reader of a VTKHDF file that knows what is in it."""
+    from vtkmodules.vtkIOHDF import vtkHDFReader
+
+    reader: Any = vtkHDFReader()
+    reader.SetFileName(str(path))
+    with files.captured_errors() as errors:
+        reader.UpdateInformation()
+    if errors:
+        got = f"'{path}' ({errors[0]})"
+        raise PieceError(_check.message("sources", "a file that can be read", got))
+    return reader
+
+
+def _grown(extent: Extent, whole: Extent, ghost: int) -> Extent:
+    """Return a box of nodes with layers of others around it, as far as there are any."""
+    low = [max(extent[2 * i] - ghost, whole[2 * i]) for i in range(3)]
+    high = [min(extent[2 * i + 1] + ghost, whole[2 * i + 1]) for i in range(3)]
+    return (low[0], high[0], low[1], high[1], low[2], high[2])
+
+
+def _marked(mesh: Any, extent: Extent) -> pv.DataSet:
+    """Mark the cells of a structured grid that are outside a box of nodes."""
+    found = mesh.GetExtent()
+    cells = [max(found[2 * i + 1] - found[2 * i], 1) for i in range(3)]
+    outside = np.ones(cells[::-1], dtype=np.uint8)
+    inner = [
+        slice(extent[2 * i] - found[2 * i], max(extent[2 * i + 1] - found[2 * i], 1))
+        for i in (2, 1, 0)
+    ]
+    outside[tuple(inner)] = 0
+    mesh.cell_data[GHOST] = outside.ravel()
+    return mesh  # type: ignore[no-any-return]
+
+
+def _own_box(mesh: Any, extent: Extent) -> pv.DataSet:
+    """Return the part of a result that belongs to a box of nodes."""
+    if not hasattr(mesh, "GetExtent"):
+        return own_cells(mesh)
+    if tuple(mesh.GetExtent()) != tuple(extent):
+        from vtkmodules.vtkFiltersExtraction import vtkExtractGrid, vtkExtractRectilinearGrid
+        from vtkmodules.vtkImagingCore import vtkExtractVOI
+
+        kinds = {pv.ImageData: vtkExtractVOI, pv.RectilinearGrid: vtkExtractRectilinearGrid}
+        cutter: Any = kinds.get(type(mesh), vtkExtractGrid)()
+        cutter.SetInputDataObject(mesh)
+        cutter.SetVOI(extent)
+        cutter.Update()
+        own = pv.wrap(cutter.GetOutput())
+        for name in mesh.field_data:
+            own.field_data[name] = mesh.field_data[name]
+        mesh = own
+    mesh.cell_data.pop(GHOST, None)
+    return mesh  # type: ignore[no-any-return]

@@ -1,0 +1,409 @@
+"""Light data in pieces: one after the other, by local processes, or on a cluster of Dask."""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import inspect
+import re
+import shutil
+from collections import Counter
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyvista as pv
+
+from vizlight import _check, _compiled, files
+from vizlight.filters.lighting import unlit
+from vizlight.pieces import index, task
+from vizlight.pieces.kinds import FilePiece, PieceError
+from vizlight.pieces.sources import pieces_of
+from vizlight.pieces.workers import collected, runner
+from vizlight.scene import Scene
+from vizlight.shading.options import LightOptions, unknown_option
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+    from vizlight.pieces.kinds import Piece
+    from vizlight.pieces.task import Done, Job, Survey
+
+#: Options of light that depend on a mesh as a whole.
+WHOLE = {
+    "refine": "split edges of neighbours would not match; refine the pieces' union",
+    "bundle": "lines of all pieces dim one another; light them together",
+}
+
+
+@dataclass(frozen=True)
+class Lit:
+    """The result of :func:`light`.
+
+    Attributes
+    ----------
+    path : pathlib.Path
+        Path of the index.
+    files : tuple of pathlib.Path
+        Files of the pieces with points.
+    points, cells : int
+        Numbers of points and cells of all files; points on a common border count in each.
+    bounds : tuple of 6 float
+        Bounding box.
+    ranges : dict of str to (float, float)
+        Smallest and largest finite value of each point array, such as for ``clim``.
+    scene : Scene
+        Scene with both ends of its depth cue, the same for all pieces.
+    level : float or None
+        Value of the contoured array on the isosurface.
+    empty, reused : int
+        Numbers of pieces that have no point, and of those that an earlier run had made.
+    """
+
+    path: Path
+    files: tuple[Path, ...]
+    points: int
+    cells: int
+    bounds: tuple[float, ...]
+    ranges: dict[str, tuple[float, float]] = field(repr=False)
+    scene: Scene = field(repr=False)
+    level: float | None
+    empty: int
+    reused: int
+
+
+def light(
+    sources: object,
+    /,
+    scene: Scene,
+    *,
+    filter: str = "illuminate",
+    contour: str | None = None,
+    level: float | None = None,
+    ghost: int = 1,
+    out: str | Path = "lit.pvtp",
+    client: Any = None,
+    workers: int | None = None,
+    retries: int = 2,
+    slab: float = 64.0,
+    progress_bar: bool = False,
+    **options: Any,
+) -> Lit:
+    """Light data in pieces, each read, lit and written by itself, as the whole would be lit.
+
+    Parameters
+    ----------
+    sources : path, Slabs or sequence of them
+        Files, patterns such as ``"run/*.vtu"``, indices (.pvtu, .pvtp, .vtm), which name the
+        files of pieces, VTKHDF files, whose partitions are pieces, and structured grids (.vti,
+        .vtr, .vts, .pvti, .pvtr, .pvts and :class:`Slabs`), which are cut in slabs.
+    scene : Scene
+        Lights, material and view. The ends of a depth cue that are not given are taken from the
+        bounding box of all pieces.
+    filter : {"illuminate", "streamlines"}
+        Filter of vizlight. Streamlines end where their piece ends, and ``seeds`` counts those of
+        each piece.
+    contour : str, optional
+        Name of a point array of one component, of which an isosurface is lit.
+    level : float, optional
+        Value of the array on the isosurface. Default: the middle of its range over all pieces,
+        which costs a first reading.
+    ghost : int, default: 1
+        Number of layers of cells of other pieces that are read around a piece for normals and
+        gradients on its border. Files and partitions must have the same points, bit for bit, at
+        common borders. 0 is enough for tangents and for normals that are named.
+    out : path, default: "lit.pvtp"
+        Path of the index: .pvtp for isosurfaces, lines and surfaces, .pvtu for cells of any other
+        kind, .pvti, .pvtr and .pvts for grids. The files of the pieces are in a folder beside it
+        that has its name without the suffix.
+    client : distributed.Client or str, optional
+        Client or address of a scheduler of Dask, whose workers see the same files. Default: local
+        processes.
+    workers : int, optional
+        Number of local processes. Default: the processors that this process may use. 1: the
+        pieces are lit one after the other in this process, without Dask.
+    retries : int, default: 2
+        Number of times that a piece is tried again after an error of the operating system.
+    slab : float, default: 64.0
+        Largest size in MB of a slab of a structured grid, ghost cells apart.
+    progress_bar : bool, default: False
+        Whether progress is shown on standard error.
+    **options
+        Options of the filter. ``normals="gradient"`` with ``contour`` takes the gradient of the
+        contoured array. ``facing`` is "eye" by default, or "as given": a piece cannot tell on
+        which side of a surface the outside is.
+
+    Returns
+    -------
+    Lit
+        Path of the index, and what the pieces have in common.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument or an option does not fit.
+    PieceError
+        If a piece is missing, empty or damaged, has other arrays than the first, or cannot be lit
+        or written; the message begins with its name. Pieces that were finished are kept, and the
+        same call does not do them again.
+    ImportError
+        If Dask is asked for and not installed.
+
+    Warns
+    -----
+    UserWarning
+        Once, with the count, if points could not be lit; once for each other warning of the
+        filter that most pieces give.
+
+    Notes
+    -----
+    Light of a piece equals that of the whole within 1e-6, normals on borders included. The
+    memory of a process is bounded by its piece with its ghost cells, one neighbour at a time, and
+    the result. Each file is written under another name and moved to its place, so that a worker
+    that is killed leaves no part of one; its piece is then lit by another, with the same bits.
+    Compiled code is used only with ``VIZLIGHT_FAST=1``, so that every worker computes alike.
+
+    Examples
+    --------
+    >>> import tempfile, pyvista as pv, vizlight
+    >>> folder = tempfile.mkdtemp()
+    >>> for i in range(2):
+    ...     pv.Sphere(center=(i, 0, 0)).save(f"{folder}/part{i}.vtp")
+    >>> scene = vizlight.Scene(view=vizlight.View(direction=(0, 0, 1)))
+    >>> lit = vizlight.pieces.light(f"{folder}/*.vtp", scene, workers=1, out=f"{folder}/lit.pvtp")
+    >>> len(lit.files), lit.points
+    (2, 1684)
+    """
+    _check.instance("scene", scene, Scene)
+    path = files.check_output(Path(out), tuple(task.INDEX.values()), name="out")
+    ghost = _check.integer("ghost", ghost, low=0)
+    job = task.Job(
+        scene=scene,
+        filter=filter,
+        options=_common_options(filter, options, contour, ghost),
+        contour=contour if contour is None else _name("contour", contour),
+        level=None if level is None else _check.number("level", level),
+        ghost=ghost if filter == "illuminate" else 0,
+        suffix={own: suffix for suffix, own in task.INDEX.items()}[path.suffix.lower()],
+        compiled="1" if _compiled.wanted() == "1" else "0",
+    )
+    if level is not None and contour is None:
+        raise ValueError(_check.message("level", "contour= beside it", level))
+    retries = _check.integer("retries", retries, low=0)
+    parts = pieces_of(sources, _check.positive("slab", slab))
+    folder = path.with_suffix("")
+    files.make_folder("out", folder)
+    with contextlib.ExitStack() as stack:
+        stack.callback(_clear, folder)
+        run = stack.enter_context(runner(client, workers, retries, len(parts)))
+        parts, job = _prepared(parts, job, run, show=progress_bar)
+        targets = [folder / f"{path.stem}_{i:04d}" for i in range(len(parts))]
+        calls = [(piece, job, target) for piece, target in zip(parts, targets, strict=True)]
+        done = collected(run(task.light, calls), len(calls), "light", show=progress_bar)
+    full = [one for one in done if one.file]
+    if not full:
+        what = f"contour {contour!r} at {job.level:g}" if contour is not None else "points"
+        raise PieceError(_check.message("sources", "pieces with something to light", f"no {what}"))
+    index.write(path, full, folder.name, job.name)
+    _remove_stale(folder, path.stem, {one.file for one in full}, {t.name for t in targets})
+    return _result(path, folder, done, job)
+
+
+def bounding_box(
+    sources: object,
+    /,
+    *,
+    client: Any = None,
+    workers: int | None = None,
+    progress_bar: bool = False,
+) -> pv.PolyData:
+    """Return the bounding box of data in pieces as a mesh, such as to set a camera on it.
+
+    Parameters
+    ----------
+    sources, client, workers, progress_bar
+        As for :func:`light`.
+
+    Returns
+    -------
+    pyvista.PolyData
+
+    Raises
+    ------
+    TypeError, ValueError, PieceError, ImportError
+        As for :func:`light`.
+    """
+    parts = pieces_of(sources, 64.0)
+    with runner(client, workers, 0, len(parts)) as run:
+        calls = [(piece,) for piece in parts]
+        boxes = collected(run(task.bounds, calls), len(calls), "bounds", show=progress_bar)
+    rows = np.array([box for box in boxes if box]).reshape(-1, 6)
+    if not len(rows):
+        raise PieceError(_check.message("sources", "pieces with points", "none"))
+    return pv.Box(np.where(np.arange(6) % 2, rows.max(axis=0), rows.min(axis=0)).tolist())
+
+
+def _name(argument: str, value: object) -> str:
+    if not isinstance(value, str) or not value:
+        raise TypeError(_check.message(argument, "the name of a point array", repr(value)))
+    return value
+
+
+def _common_options(
+    filter_name: str, options: dict[str, Any], contour: str | None, ghost: int
+) -> dict[str, Any]:
+    """Return the options of a filter that give a piece no opinion of its own."""
+    _check.choice("filter", filter_name, tuple(task.FILTERS))
+    for name, remedy in WHOLE.items():
+        if options.get(name):
+            raise ValueError(_check.message(name, "no such option for pieces", "one", remedy))
+    function: Any = task.FILTERS[filter_name]
+    known = [*inspect.signature(function).parameters]
+    for name in options:
+        if name not in known or name in ("inplace", "progress_bar"):
+            raise TypeError(unknown_option(filter_name, name, known))
+    if filter_name != "illuminate":
+        return dict(options)
+    for name in ("tangents", "normals", "conditioned"):
+        if options.get(name) is not None and not isinstance(options[name], str | bool):
+            expected = "the name of a point array that every piece has"
+            raise TypeError(_check.message(name, expected, _check.describe(options[name])))
+    asked = LightOptions(**options)
+    if asked.feature_angle == "auto":
+        remedy = "pass a number of degrees: a piece cannot tell what creases the whole has"
+        raise ValueError(_check.message("feature_angle", "a number or None", "'auto'", remedy))
+    if options.get("facing", "eye") not in ("eye", "as given"):
+        remedy = "a piece cannot tell which side of the whole is outside"
+        got = repr(options["facing"])
+        raise ValueError(_check.message("facing", "'eye' or 'as given'", got, remedy))
+    if options.get("normals") == task.GRADIENT and contour is not None and not ghost:
+        raise ValueError(_check.message("ghost", "1 at least beside normals='gradient'", ghost))
+    sided = asked.tangents is None or asked.conditioned is True
+    older = asked.two_sided or asked.flip_normals
+    return (
+        dict(options)
+        | ({"facing": "eye"} if sided and not older else {})
+        | ({"facing": options["facing"]} if "facing" in options else {})
+    )
+
+
+def _prepared(
+    parts: list[Piece], job: Job, run: Callable[..., Iterator[tuple[int, Any]]], *, show: bool
+) -> tuple[list[Piece], Job]:
+    """Return pieces that know their neighbours, and a job without a question left open."""
+    cue = job.scene.depth_cue
+    open_cue = cue is not None and (cue.front is None or cue.back is None)
+    loose = any(isinstance(piece, FilePiece) for piece in parts)
+    if not (loose or open_cue or (job.contour is not None and job.level is None)):
+        return parts, job
+    calls = [(piece, job.contour) for piece in parts]
+    found: list[Survey] = collected(run(task.survey, calls), len(calls), "survey", show=show)
+    pairs = [(piece, one) for piece, one in zip(parts, found, strict=True) if one.points]
+    if not pairs:
+        raise PieceError(_check.message("sources", "pieces with points", "none"))
+    first_piece, first = pairs[0]
+    for piece, one in pairs[1:]:
+        _check_alike(piece, one.arrays, first_piece, first.arrays)
+    boxes = np.array([one.bounds for _, one in pairs]).reshape(-1, 3, 2)
+    if open_cue:
+        low, high = boxes[:, :, 0].min(axis=0), boxes[:, :, 1].max(axis=0)
+        grid = np.meshgrid(*np.stack([low, high], axis=1), indexing="ij")
+        corners = np.stack(grid, axis=-1).reshape(-1, 3)
+        job = dataclasses.replace(job, scene=_with_ends(job.scene, corners))
+    if job.contour is not None and job.level is None:
+        low_value = min(one.values[0] for _, one in pairs)
+        high_value = max(one.values[1] for _, one in pairs)
+        if not low_value <= high_value:
+            names = [key.partition(" ")[2] for key in first.arrays if key.startswith("point ")]
+            expected = f"a point array of one component, {_check.one_of(names)}"
+            raise ValueError(_check.message("contour", expected, repr(job.contour)))
+        job = dataclasses.replace(job, level=(low_value + high_value) / 2)
+    return _neighbours([piece for piece, _ in pairs], boxes, job.ghost), job
+
+
+def _check_alike(
+    piece: Piece, arrays: dict[str, str], first: Piece, expected: dict[str, str]
+) -> None:
+    """Check that a piece has the arrays of the first."""
+    for name in expected | arrays:
+        here, there = arrays.get(name), expected.get(name)
+        if here != there:
+            kind, _, own = name.partition(" ")
+            wanted = f"the {kind} array {own!r} of {there}" if there else f"no {kind} array {own!r}"
+            text = _check.message("sources", f"{wanted} as in {first.name}", here or "none")
+            raise PieceError(f"piece {piece.name}: {text}")
+
+
+def _with_ends(scene: Scene, corners: Any) -> Scene:
+    from vizlight.filters.lighting import fit_depth_cue
+    from vizlight.shading.inputs import ShadingInputs
+
+    return fit_depth_cue(scene, [ShadingInputs(points=corners)])
+
+
+def _neighbours(parts: list[Piece], boxes: Any, ghost: int) -> list[Piece]:
+    """Return the pieces, those of files with the pieces whose boxes touch theirs."""
+    if not ghost:
+        return parts
+    found: list[Piece] = []
+    for i, piece in enumerate(parts):
+        if not isinstance(piece, FilePiece):
+            found.append(piece)
+            continue
+        touch = np.all((boxes[:, :, 0] <= boxes[i, :, 1]) & (boxes[:, :, 1] >= boxes[i, :, 0]), 1)
+        beside = [parts[j] for j in np.flatnonzero(touch) if j != i]
+        own = tuple(one for one in beside if isinstance(one, FilePiece))
+        found.append(dataclasses.replace(piece, beside=own))
+    return found
+
+
+def _clear(folder: Path) -> None:
+    """Remove drafts of workers that were killed, and the folder if nothing is in it."""
+    for draft in folder.glob(".vizlight-*"):
+        shutil.rmtree(draft, ignore_errors=True)
+    with contextlib.suppress(OSError):  # pieces that are finished stay
+        folder.rmdir()
+
+
+def _remove_stale(folder: Path, stem: str, made: set[str], notes: set[str]) -> None:
+    """Remove pieces of an earlier run that the index does not name."""
+    own = re.compile(re.escape(stem) + r"_\d{4,}\.(vt[puirs]|json)")
+    for path in folder.iterdir():
+        if own.fullmatch(path.name):
+            kept = path.stem in notes if path.suffix == ".json" else path.name in made
+            if not kept:
+                path.unlink()
+
+
+def _result(path: Path, folder: Path, done: Sequence[Done], job: Job) -> Lit:
+    """Return the result, and warn once of what the workers warned of."""
+    full = [one for one in done if one.file]
+    points, invalid = sum(one.points for one in full), sum(one.invalid for one in full)
+    if invalid:
+        _check.warn(f"{unlit(invalid, points)}; the point array '{job.name}_valid' marks them")
+    for note, count in Counter(note for one in full for note in set(one.notes)).items():
+        # Of the shape of the whole a single piece knows too little.
+        if 2 * count > len(full):
+            _check.warn(f"{note} ({count} of {len(done)} pieces)")
+    names = {name for one in full for name in one.ranges}
+    boxes = np.array([one.bounds for one in full])
+    both = np.where(np.arange(6) % 2, boxes.max(axis=0), boxes.min(axis=0))
+    return Lit(
+        path=path,
+        files=tuple(folder / one.file for one in full),
+        points=points,
+        cells=sum(one.cells for one in full),
+        bounds=tuple(float(x) for x in both),
+        ranges={
+            name: (
+                min(one.ranges[name][0] for one in full if name in one.ranges),
+                max(one.ranges[name][1] for one in full if name in one.ranges),
+            )
+            for name in sorted(names)
+        },
+        scene=job.scene,
+        level=job.level,
+        empty=len(done) - len(full),
+        reused=sum(one.reused for one in done),
+    )

@@ -1,0 +1,272 @@
+"""What is done with one piece: read it, light it, cut off the ghost cells, write it whole."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import json
+import warnings
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+import pyvista as pv
+
+from vizlight import _check, _compiled, files
+from vizlight._version import __version__
+from vizlight.filters import illuminate, streamlines
+from vizlight.mesh import normals, records
+from vizlight.pieces.ghosts import GHOST
+from vizlight.pieces.kinds import FilePiece, Piece, PieceError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from vizlight.scene import Scene
+
+T = TypeVar("T")
+
+#: Filters that light a piece without knowing the others.
+FILTERS = {"illuminate": illuminate, "streamlines": streamlines}
+#: Name of the gradient of the contoured array, which gives normals that no cut changes.
+GRADIENT = "gradient"
+#: Suffix of the index of pieces, by the suffix of the pieces.
+INDEX = {".vtp": ".pvtp", ".vtu": ".pvtu", ".vti": ".pvti", ".vtr": ".pvtr", ".vts": ".pvts"}
+SUFFIX = {
+    "PolyData": ".vtp", "UnstructuredGrid": ".vtu", "ImageData": ".vti", "RectilinearGrid": ".vtr",
+    "StructuredGrid": ".vts",
+}  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class Job:
+    """What is done with each piece, the same for all."""
+
+    scene: Scene
+    filter: str
+    options: Mapping[str, Any]
+    contour: str | None
+    level: float | None
+    ghost: int
+    suffix: str
+    compiled: str = "0"
+
+    @property
+    def name(self) -> str:
+        """Name of the array of the light."""
+        return str(self.options.get("name", "luminance"))
+
+
+@dataclass(frozen=True)
+class Survey:
+    """What a first look at a piece finds.
+
+    Attributes
+    ----------
+    points : int
+        Number of points.
+    bounds : tuple of 6 float
+        Bounding box.
+    arrays : dict
+        Type and number of components of each array, by "point NAME" and "cell NAME".
+    values : tuple of 2 float
+        Range of the contoured array.
+    """
+
+    points: int
+    bounds: tuple[float, ...]
+    arrays: dict[str, str]
+    values: tuple[float, float] = (np.inf, -np.inf)
+
+
+@dataclass
+class Done:
+    """A piece that was lit: its file, if any point of it remains, and what is in it."""
+
+    file: str = ""
+    points: int = 0
+    cells: int = 0
+    bounds: list[float] = field(default_factory=list)
+    extent: list[int] = field(default_factory=list)
+    grid: dict[str, list[float]] = field(default_factory=dict)
+    ranges: dict[str, list[float]] = field(default_factory=dict)
+    arrays: dict[str, list[Any]] = field(default_factory=dict)
+    invalid: int = 0
+    notes: list[str] = field(default_factory=list)
+    size: int = 0
+    key: str = ""
+    reused: bool = False
+
+
+def survey(piece: Piece, contour: str | None) -> Survey:
+    """Return what a first look at a piece finds.
+
+    Raises
+    ------
+    PieceError
+        If it cannot be read, or is empty and named by itself.
+    """
+    mesh = _read(piece, 0)
+    if not mesh.n_points:
+        return Survey(0, (), {})
+    arrays = {}
+    for kind, data in (("point", mesh.point_data), ("cell", mesh.cell_data)):
+        for name, array in data.items():
+            if name != GHOST:
+                components = "" if array.ndim == 1 else f" x {array.shape[1]}"
+                arrays[f"{kind} {name}"] = f"{array.dtype}{components}"
+    values = (np.inf, -np.inf)
+    if contour is not None and contour in mesh.point_data and mesh.point_data[contour].ndim == 1:
+        rows = np.asarray(mesh.point_data[contour], dtype=np.float64)
+        rows = rows[np.isfinite(rows)]
+        values = (float(rows.min(initial=np.inf)), float(rows.max(initial=-np.inf)))
+    return Survey(mesh.n_points, tuple(mesh.bounds), arrays, values)
+
+
+def bounds(piece: Piece) -> tuple[float, ...]:
+    """Return the bounding box of a piece, empty where an index names one without points."""
+    return _tried(piece, piece.bounds) or ()
+
+
+def _read(piece: Piece, ghost: int) -> pv.DataSet:
+    return _tried(piece, partial(piece.read, ghost)) or pv.PolyData()
+
+
+def _tried(piece: Piece, read: Callable[[], T]) -> T | None:
+    """Return what a function reads, None where an index names a piece without points."""
+    try:
+        return read()
+    except (OSError, ValueError, TypeError, KeyError) as error:
+        empty = isinstance(error, files.FileError) and "(no points)" in str(error)
+        if empty and isinstance(piece, FilePiece) and piece.may_be_empty:
+            return None
+        raise PieceError(f"piece {piece.name}: {error}") from error
+
+
+def key(piece: Piece, job: Job) -> str:
+    """Return a digest of all that a lit piece depends on; empty where data have no stamp."""
+    stamps = [one.stamp() for one in (piece, *piece.neighbours())]
+    if None in stamps:
+        return ""
+    facts = dataclasses.asdict(dataclasses.replace(job, scene=None))  # type: ignore[arg-type]
+    text = json.dumps([stamps, job.scene.to_dict(), facts, __version__], default=repr)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def kept(target: Path, wanted: str) -> Done | None:
+    """Return what an earlier run made of a piece, if it is there and would be made the same."""
+    note = target.with_suffix(".json")
+    try:
+        done = Done(**json.loads(note.read_text(encoding="utf-8")))
+        whole = not done.file or (target.parent / done.file).stat().st_size == done.size
+    except (OSError, ValueError, TypeError):
+        return None  # it is made again
+    if not (wanted and done.key == wanted and whole):
+        return None
+    done.reused = True
+    return done
+
+
+def light(piece: Piece, job: Job, target: Path) -> Done:
+    """Light a piece and write it to a path without its suffix.
+
+    Raises
+    ------
+    PieceError
+        If the piece cannot be read, lit or written.
+    """
+    wanted = key(piece, job)
+    if done := kept(target, wanted):
+        return done
+    mesh = _read(piece, job.ghost)
+    try:
+        with warnings.catch_warnings(record=True) as caught, _compiled.setting(job.compiled):
+            warnings.simplefilter("always", UserWarning)
+            lit = _lit(mesh, piece, job)
+        del mesh
+        done = _described(lit, job)
+        done.key = wanted
+        said = [str(one.message) for one in caught if issubclass(one.category, UserWarning)]
+        # Points that could not be lit are counted without ghost cells.
+        done.notes = [text for text in said if "could not be lit" not in text]
+        if lit.n_points:
+            suffix = SUFFIX[type(lit).__name__]
+            if suffix != job.suffix:
+                expected = f"a name that ends in {INDEX[suffix]} for {type(lit).__name__}"
+                raise ValueError(_check.message("out", expected, f"*{INDEX[job.suffix]}"))
+            path = files.write_mesh(lit, target.with_suffix(suffix))
+            done.file, done.size = path.name, path.stat().st_size
+    except (OSError, ValueError, TypeError) as error:
+        raise PieceError(f"piece {piece.name}: {error}") from error
+    text = json.dumps(dataclasses.asdict(done))
+    note = target.with_suffix(".json")
+    files.replace_file(note, lambda draft: Path(draft).write_text(text, encoding="utf-8"))
+    return done
+
+
+def _lit(mesh: pv.DataSet, piece: Piece, job: Job) -> Any:
+    """Return the own part of a piece, lit."""
+    if mesh.n_points and job.contour is not None:
+        mesh = _contour(mesh, job)
+    if not mesh.n_points:
+        return mesh
+    lit: Any = FILTERS[job.filter](mesh, job.scene, **job.options)  # type: ignore[operator]
+    record, made = records.read(lit, job.name), records.made(lit, job.name)
+    for stale in records.made(lit, normals.KEPT):
+        # They are those of the piece with its ghost cells, and would be checked in vain.
+        del lit.point_data[stale]
+        del lit.field_data[records.key(stale)]
+    own = piece.own(lit) if job.filter == "illuminate" else lit
+    valid = f"{job.name}_valid"
+    if valid not in own.point_data:
+        own.point_data[valid] = np.ones(own.n_points, dtype=np.bool_)
+    if own.n_points:
+        own.set_active_scalars(job.name)
+        assert record is not None
+        records.write(own, job.name, record, {*made, valid})
+    return own
+
+
+def _contour(mesh: pv.DataSet, job: Job) -> pv.PolyData:
+    """Return the isosurface of a piece, with the gradient of its array if normals are that."""
+    name = str(job.contour)
+    if name not in mesh.point_data or mesh.point_data[name].ndim != 1:
+        known = [key for key in mesh.point_data if mesh.point_data[key].ndim == 1]
+        expected = f"a point array of one component, {_check.one_of(known)}"
+        raise ValueError(_check.message("contour", expected, repr(name)))
+    if job.options.get("normals") == GRADIENT and GRADIENT not in mesh.point_data:
+        mesh = mesh.compute_derivative(scalars=name, gradient=GRADIENT)
+    assert job.level is not None
+    found: pv.PolyData = mesh.contour([job.level], scalars=name)
+    return found
+
+
+def _described(lit: Any, job: Job) -> Done:
+    """Return what is in a lit piece."""
+    done = Done(points=lit.n_points, cells=lit.n_cells)
+    if not lit.n_points:
+        return done
+    done.bounds = [float(x) for x in lit.bounds]
+    for kind, data, attributes in (
+        ("point", lit.point_data, lit.GetPointData()),
+        ("cell", lit.cell_data, lit.GetCellData()),
+    ):
+        for name, array in data.items():
+            own = attributes.GetAbstractArray(name)
+            own_type, components = own.GetDataTypeAsString(), own.GetNumberOfComponents()
+            done.arrays[f"{kind} {name}"] = [own_type, components]
+            if kind == "point" and array.dtype.kind in "fiub" and array.size:
+                finite = np.asarray(array, dtype=np.float64)
+                finite = finite[np.isfinite(finite)]
+                if finite.size:
+                    done.ranges[name] = [float(finite.min()), float(finite.max())]
+    done.invalid = int(np.count_nonzero(~np.asarray(lit.point_data[f"{job.name}_valid"], bool)))
+    if hasattr(lit, "GetExtent"):
+        done.extent = [int(x) for x in lit.GetExtent()]
+    if isinstance(lit, pv.ImageData):
+        done.grid = {"Origin": list(lit.origin), "Spacing": list(lit.spacing)}
+    if isinstance(lit, pv.PolyData | pv.UnstructuredGrid | pv.StructuredGrid):
+        done.arrays["points "] = [lit.GetPoints().GetData().GetDataTypeAsString(), 3]
+    return done
