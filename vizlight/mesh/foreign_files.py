@@ -1,6 +1,4 @@
-"""Files that other packages read: tractograms by nibabel and trx-python, netCDF by xarray,
-and the index of surfaces in pieces by VTK.
-"""
+"""Files that PyVista does not read: tractograms, netCDF, and indices of surfaces in pieces."""
 
 from __future__ import annotations
 

@@ -191,6 +191,9 @@ def light(
     if level is not None and contour is None:
         raise ValueError(_check.message("level", "contour= beside it", level))
     retries = _check.integer("retries", retries, low=0)
+    if client is not None or workers != 1:
+        # Workers share the processors.
+        job = dataclasses.replace(job, options={"threads": 1} | dict(job.options))
     parts = pieces_of(sources, _check.positive("slab", slab))
     folder = path.with_suffix("")
     files.make_folder("out", folder)
@@ -269,7 +272,8 @@ def _common_options(
         if options.get(name) is not None and not isinstance(options[name], str | bool):
             expected = "the name of a point array that every piece has"
             raise TypeError(_check.message(name, expected, _check.describe(options[name])))
-    asked = LightOptions(**options)
+    fields = {one.name for one in dataclasses.fields(LightOptions)}
+    asked = LightOptions(**{name: value for name, value in options.items() if name in fields})
     if asked.feature_angle == "auto":
         remedy = "pass a number of degrees: a piece cannot tell what creases the whole has"
         raise ValueError(_check.message("feature_angle", "a number or None", "'auto'", remedy))

@@ -151,6 +151,7 @@ def key(piece: Piece, job: Job) -> str:
     if None in stamps:
         return ""
     facts = dataclasses.asdict(dataclasses.replace(job, scene=None))  # type: ignore[arg-type]
+    facts["options"].pop("threads", None)  # which change no bit
     text = json.dumps([stamps, job.scene.to_dict(), facts, __version__], default=repr)
     return hashlib.sha256(text.encode()).hexdigest()
 
@@ -236,9 +237,12 @@ def _contour(mesh: pv.DataSet, job: Job) -> pv.PolyData:
         known = [key for key in mesh.point_data if mesh.point_data[key].ndim == 1]
         expected = f"a point array of one component, {_check.one_of(known)}"
         raise ValueError(_check.message("contour", expected, repr(name)))
+    assert job.level is not None
+    values = mesh.point_data[name]
+    if not np.nanmin(values) <= job.level <= np.nanmax(values):  # the gradient takes far longer
+        return pv.PolyData()
     if job.options.get("normals") == GRADIENT and GRADIENT not in mesh.point_data:
         mesh = mesh.compute_derivative(scalars=name, gradient=GRADIENT)
-    assert job.level is not None
     found: pv.PolyData = mesh.contour([job.level], scalars=name)
     return found
 
