@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import contextlib
-from typing import TYPE_CHECKING, Literal, get_args
+from itertools import pairwise
+from typing import TYPE_CHECKING, Literal, Protocol, get_args
 
 import numpy as np
 
 from vizlight import _check, _compiled, _pool
-from vizlight.geometry.relief import compiled, height_field, marching, sweeping
+from vizlight.geometry.relief import compiled, height_field, marching, strips, sweeping
 from vizlight.model import kernels
 
 if TYPE_CHECKING:
@@ -111,7 +112,11 @@ def inside_length(
     odd = ~np.all(np.isfinite(flat), axis=1)
     flat[odd] = 0
     ray = toward(field, direction=direction, position=position)
-    length = lengths(field, lambda rays: flat[rays].T, len(flat), ray, method, threads)
+
+    def start(rays: Indices, _quick: bool = False, /) -> Array:
+        return flat.take(rays, axis=0).T
+
+    length = lengths(field, start, len(flat), ray, method, threads)
     length[odd] = np.nan
     return length.reshape(starts.shape[:-1])
 
@@ -183,6 +188,12 @@ def shadow(
     return t
 
 
+class Start(Protocol):
+    """Starts of rays by their indices, shape (3, rays); if ``quick`` by compiled code."""
+
+    def __call__(self, rays: Indices, quick: bool = False, /) -> Array: ...
+
+
 class Ray:
     """Directions from positions toward one light, relative to a field's origin."""
 
@@ -247,7 +258,11 @@ def ratio(
     shape = field.heights.shape
     normals, heights = normal.reshape(-1, 3), field.heights.ravel()
 
-    def start(rays: Indices) -> Array:
+    def start(rays: Indices, quick: bool = False, /) -> Array:
+        if quick:
+            place = np.empty((3, len(rays)))
+            strips.inset(rays, field.x, field.y, heights, normals.ravel(), inset, place)
+            return place
         row, column = np.divmod(rays, shape[1])
         place = np.stack([field.x.take(column), field.y.take(row), heights.take(rays)])
         return np.asarray(place - inset * normals.take(rays, axis=0).T)
@@ -269,7 +284,7 @@ def ratio(
 
 def lengths(
     field: Field,
-    start: Callable[[Indices], Array],
+    start: Start,
     count: int,
     ray: Ray,
     method: Method,
@@ -291,7 +306,7 @@ def lengths(
 
 def _lengths(
     field: Field,
-    start: Callable[[Indices], Array],
+    start: Start,
     count: int,
     ray: Ray,
     method: Method,
@@ -307,10 +322,16 @@ def _lengths(
     if ray.direction is not None and count:
         if below is None:
             below = _largest_offset(field, start(np.arange(count)))
-        profiles = _profiles(field, ray.direction, below, count, method)
-        if profiles is not None:
-            _by_profile(profiles, start, length, threads, report)
-            return length
+        if _compiled.active():
+            made = strips.strips(field, ray.direction, below, count)
+            if made is not None and strips.lengths.pays(compiled.SAVED * count):
+                _by_strip(made, start, length, threads, report)
+                return length
+        elif method == "fast":
+            profiles = sweeping.profiles(field, ray.direction, below)
+            if profiles is not None:
+                _by_profile(profiles, start, length, threads, report)
+                return length
     fast = compiled.walk.pays(compiled.SAVED * count)
     # Asked for once, before threads need them.
     pyramid = field.bounds
@@ -332,19 +353,35 @@ def _lengths(
     return length
 
 
-def _profiles(
-    field: Field, way: Array, below: float, count: int, method: Method
-) -> sweeping.Profiles | compiled.Strips | None:
-    """Return the field along the azimuth of a light, or None to follow rays through its cells."""
-    if _compiled.active():
-        made = compiled.strips(field, way, below, count)
-        return made if made and compiled.follow.pays(compiled.SAVED * count) else None
-    return sweeping.profiles(field, way, below) if method == "fast" else None
+def _by_strip(
+    made: strips.Strips,
+    start: Start,
+    length: Array,
+    threads: int | None,
+    report: Callable[[int], None] | None,
+) -> None:
+    """Fill in lengths by compiled code, one band of strips and its rays after the other."""
+    width = made.width(len(length))
+    band: Indices = np.empty(len(length), np.int32)
+
+    def find(rows: slice) -> int:
+        band[rows] = made.band(start(np.arange(rows.start, rows.stop), True), width)
+        return int(rows.stop)
+
+    _all(find, _pool.blocks(len(length), BLOCK), threads)
+    order, ends = made.order(band, width)
+
+    def work(part: slice) -> int:
+        made.write(start(order[part], True), order[part], length)
+        return int(part.stop)
+
+    parts = [slice(int(a), int(b)) for a, b in pairwise(ends)]
+    _all(work, parts, threads, report)
 
 
 def _by_profile(
-    profiles: sweeping.Profiles | compiled.Strips,
-    start: Callable[[Indices], Array],
+    profiles: sweeping.Profiles,
+    start: Start,
     length: Array,
     threads: int | None,
     report: Callable[[int], None] | None,
