@@ -41,6 +41,7 @@ def home(tmp_path, monkeypatch):
     """A folder for caches of its own, with compiled code where it pays."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.delenv("VIZLIGHT_FAST", raising=False)
+    monkeypatch.setattr(_compiled._Account, "missed", 0.0)
     pytest.importorskip("numba")
     return tmp_path
 
@@ -93,6 +94,24 @@ def triple(values):
     return 3 * values[0]
 
 
+def thrice(values):
+    return values[0] + 2 * values[0]
+
+
+def test_the_preparation_is_won_back_by_all_kernels(home, monkeypatch):
+    monkeypatch.setattr(_compiled._Account, "prepared", False)
+    assert _compiled.preparation() >= _compiled.PREPARE
+    monkeypatch.setattr(_compiled, "preparation", lambda: 1.0)
+    first, second, third = (_compiled.Kernel(f) for f in (triple, thrice, triple))
+    own = first.start_up() - 1
+    assert own > 0
+    assert not first.pays(0.9 * own)
+    assert not second.pays(1.1 * own)
+    assert second.pays(1.0)
+    assert not third.pays(0.9 * own)
+    assert third.pays(0.2 * own)
+
+
 def test_a_kernel_pays_once_it_has_missed_its_start_up(home):
     kernel = _compiled.Kernel(triple)
     left = kernel.start_up()
@@ -102,6 +121,7 @@ def test_a_kernel_pays_once_it_has_missed_its_start_up(home):
     assert kernel(np.array([2.0])) == 6
     assert kernel.start_up() == 0
     assert kernel.pays(0.0)
+    assert _compiled.preparation() == 0
 
 
 def test_settings(home, monkeypatch):

@@ -40,9 +40,10 @@ OLDEST = (0, 59)
 #: Rounding that a compiler may change where a bound of a few eps allows it: products and sums in
 #: one step, quotients as products, the sign of zero. Sums keep their order.
 ROUNDING = frozenset({"contract", "arcp", "nsz"})
-#: Seconds of processor time to import numba, to read a kernel from the disk, and to compile one, as
-#: measured with numba 0.68 for a kernel of the engine.
-IMPORT, READ, COMPILE = 0.35, 0.15, 1.2
+#: Seconds of processor time to import numba, to prepare its compiler for the first kernel of a
+#: process, to read a kernel from the disk, and to compile one, as measured with numba 0.68 for
+#: kernels of the engine.
+IMPORT, PREPARE, READ, COMPILE = 0.2, 0.28, 0.02, 1.2
 #: Share of the time to compile that one process must win back, as the disk keeps the result.
 SHARED = 1 / 3
 #: What a damaged file of the cache raises when numba reads it.
@@ -53,6 +54,13 @@ _UNUSABLE = (ImportError, OSError, AttributeError, RuntimeError, TypeError, Valu
 _SETTING: contextvars.ContextVar[str | None] = contextvars.ContextVar("fast", default=None)
 _LOCK = threading.RLock()
 _BROKEN: list[str] = []
+
+
+class _Account:
+    """Seconds that kernels would have saved in this process, and whether one has run."""
+
+    missed = 0.0
+    prepared = False
 
 
 def wanted() -> str:
@@ -116,9 +124,21 @@ def _twice(x: float) -> float:
     return 2 * x
 
 
-def could_pay(saved: float) -> bool:
-    """Return whether some kernel could pay for its start-up by the seconds it saves."""
-    return wanted() == "1" or saved >= READ + (0.0 if "numba" in sys.modules else IMPORT)
+def could_pay(saved: float, missed: float = 0.0) -> bool:
+    """Return whether a kernel could pay for its start-up, and keep account of the answer.
+
+    It would save ``saved`` seconds now, and would have saved ``missed`` seconds before. Ask
+    :meth:`Kernel.pays` with ``counted=True`` after it.
+    """
+    _Account.missed += saved
+    return wanted() == "1" or (saved + missed >= READ and _Account.missed >= preparation() + READ)
+
+
+def preparation() -> float:
+    """Return the seconds until any kernel can run, which all kernels of a process share."""
+    if _Account.prepared:
+        return 0.0
+    return PREPARE + (0.0 if "numba" in sys.modules else IMPORT)
 
 
 class FailedError(RuntimeError):
@@ -214,39 +234,47 @@ class Kernel(Generic[P, R]):
         self._proven = False
         self.__doc__ = function.__doc__
 
-    def pays(self, saved: float) -> bool:
+    def pays(self, saved: float, *, counted: bool = False) -> bool:
         """Return whether to call the kernel rather than NumPy code, and keep account of the answer.
 
         Parameters
         ----------
         saved : float
             Seconds that the kernel would save, its start-up apart.
+        counted : bool, default: False
+            Whether :func:`could_pay` was asked about these seconds.
 
         Returns
         -------
         bool
             True once the seconds saved by this call and missed by earlier ones exceed what is left
-            of the start-up: import of numba, then reading or compiling the function. What is
-            missed before is then at most what the start-up costs.
+            of the start-up: reading or compiling the function, which this kernel must win back,
+            and before the first kernel of a process the import of numba and its preparation, for
+            which the calls of all kernels count. What is missed before is then at most what the
+            start-up costs.
         """
         if not active():
             return False
+        if not counted:
+            _Account.missed += saved
         if not self._proven and wanted() != "1":
             self.missed += saved
-            if self.missed < self.start_up():
+            own = self._own_start()
+            if self.missed < own or _Account.missed < preparation() + own:
                 return False
         return self.ready()
 
     def start_up(self) -> float:
         """Return the seconds until the first call can run."""
-        if self._proven:
-            return 0.0
-        load = 0.0 if "numba" in sys.modules else IMPORT
+        return 0.0 if self._proven else preparation() + self._own_start()
+
+    def _own_start(self) -> float:
+        """Return the seconds to read or to compile the function, as far as this process pays."""
         folder = self._folder()
         if folder is None:
-            return load + COMPILE
+            return COMPILE
         name = f"{self.function.__code__.co_name}-{self.function.__code__.co_firstlineno}.*.nbi"
-        return load + (READ if any(folder.rglob(f"*{name}")) else COMPILE * SHARED)
+        return READ if any(folder.rglob(f"*{name}")) else COMPILE * SHARED
 
     def ready(self) -> bool:
         """Import numba and prepare the function; return whether that worked.
@@ -279,7 +307,7 @@ class Kernel(Generic[P, R]):
                 return self._compiled(*args, **kwargs)
             with _LOCK:
                 result = self._first(*args, **kwargs)
-                self._proven = True
+                self._proven = _Account.prepared = True
         except Exception as error:
             reason = _give_up(f"numba failed with {name}", error)
             raise FailedError(

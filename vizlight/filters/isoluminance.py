@@ -179,7 +179,8 @@ def isoluminance(
         )
         show(100)
     seconds = time.perf_counter() - start
-    _note(bands, light, seconds, 1024 * made.actual_memory_size, sampled=asked.tangents is None)
+    if report.is_open():
+        _note(bands, light, seconds, 1024 * made.actual_memory_size, sampled=asked.tangents is None)
     return made
 
 

@@ -170,10 +170,11 @@ def prepare(plan: Plan, inputs: ShadingInputs, threads: int | None) -> tuple[Com
     saved = inputs.count * (SAVED + SAVED_PER_LIGHT * len(form.lights))
     saved *= plan.dtype.itemsize / 4 / _pool.workers(threads)
     # The text itself takes milliseconds: it is not written while nothing could pay for it.
-    _MISSED[form] = saved = _MISSED.get(form, 0.0) + saved
-    if _compiled.could_pay(saved):
+    missed = _MISSED.get(form, 0.0)
+    _MISSED[form] = missed + saved
+    if _compiled.could_pay(saved, missed):
         kernel = _kernel(form)
-        if kernel.pays(saved - kernel.missed):
+        if kernel.pays(missed + saved - kernel.missed, counted=True):
             return _given(plan, form, order, kernel), ""
     return None, _compiled.why_not() or f"{inputs.count} points do not pay for its start-up"
 

@@ -35,10 +35,16 @@ def take_turns(ways: Mapping[Key, Callable[[], object]], repeats: int) -> dict[K
             start = time.process_time()
             work()
             times[way].append(time.process_time() - start)
-    noted = _SPREADS.get()
-    if noted is not None and repeats > 2:
-        noted += [spread(each) for each in times.values()]
+    for each in times.values():
+        note_spread(each)
     return {way: min(each) for way, each in times.items()}
+
+
+def note_spread(times: list[float]) -> None:
+    """Add the spread of three or more repeats to the list of :func:`noted_spreads`."""
+    noted = _SPREADS.get()
+    if noted is not None and len(times) > 2:
+        noted.append(spread(times))
 
 
 def spread(times: list[float]) -> float:
@@ -49,7 +55,7 @@ def spread(times: list[float]) -> float:
 
 @contextlib.contextmanager
 def noted_spreads() -> Iterator[list[float]]:
-    """Yield a list to which :func:`take_turns` adds the spread of each function."""
+    """Yield a list to which :func:`take_turns` and :func:`note_spread` add spreads."""
     spreads: list[float] = []
     token = _SPREADS.set(spreads)
     try:

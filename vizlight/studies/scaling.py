@@ -24,7 +24,7 @@ from vizlight import _compiled
 from vizlight.shading import engine
 from vizlight.studies import reference
 from vizlight.studies._framework import PIXEL, Row, Study, slope, words
-from vizlight.studies._measuring import peak_memory
+from vizlight.studies._measuring import note_spread, peak_memory
 from vizlight.studies.engine import SCENE
 
 if TYPE_CHECKING:
@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 CHUNK, CHECKED = 1_000_000, 10_000
 #: Largest number of calls with few points per call with the largest number of points.
 MOST = 5
+#: Number of points above which processor times decide the verdict.
+LEAST = 1e6
 #: Bytes per point: points and tangents on disk, light and validity in memory.
 ON_DISK, IN_MEMORY = 24, 5
 #: Lights so many points in a process of its own; prints wall time, processor time and error.
@@ -69,15 +71,18 @@ def measure(
     slows all of them. Small numbers are lit several times per turn, so each takes a similar part
     of the time. The processor time excludes other programs.
     """
-    best = {count: np.full(2, np.inf) for count in counts}
+    times: dict[int, list[Array]] = {count: [] for count in counts}
     end = time.perf_counter() + seconds
-    while np.inf in best[counts[-1]] or time.perf_counter() < end:
+    while not times[counts[-1]] or time.perf_counter() < end:
         for count in counts:
             work = partial(engine.shade, points[:count], tangents[:count], SCENE)
             for _ in range(min(max(counts) // count, MOST)):
                 start = _clocks()
                 work()
-                best[count] = np.minimum(best[count], _clocks() - start)
+                times[count].append(_clocks() - start)
+    for count, each in times.items():
+        if count > LEAST:
+            note_spread([float(processor) for _, processor in each])
     at = slice(0, min([*counts, CHECKED]))
     lit = engine.shade(points[at], tangents[at], SCENE)
     exact = reference.light(
@@ -88,7 +93,7 @@ def measure(
     for count in counts:
         work = partial(engine.shade, points[:count], tangents[:count], SCENE)
         extra = peak_memory(work) - IN_MEMORY * count
-        taken, processor = map(float, best[count])
+        taken, processor = map(float, np.min(times[count], axis=0))
         more = {"s": taken, "processor s": processor, "MB beyond the output": extra / 1e6}
         rows.append(Row(way, count, error, 1e9 * taken / count, more))
     return rows
@@ -169,7 +174,7 @@ def steps(quick: bool) -> list[Callable[[], list[Row]]]:
     ]
 
 
-def exponent(rows: Sequence[Row], least: float = 1e6) -> float:
+def exponent(rows: Sequence[Row], least: float = LEAST) -> float:
     """Return the exponent of the growth of processor time with the number of points.
 
     Only rows in memory with more than ``least`` points are taken.

@@ -471,6 +471,11 @@ def _run(
     )
 
 
+def is_open() -> bool:
+    """Return whether a report records the light of this context."""
+    return _ACTIVE.get() is not None
+
+
 @contextlib.contextmanager
 def paused() -> Iterator[None]:
     """Record nothing in this context, for a filter that lights many points on its way."""

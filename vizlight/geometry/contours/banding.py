@@ -21,11 +21,9 @@ if TYPE_CHECKING:
 #: Share of an edge that the search for a contour point leaves: the rounding of the luminance moves
 #: it by as much.
 WIDTH = 2.0**-40
-#: Distance of two places from the root of a chord, for a bracket of width 1; it grows where they
-#: miss the root.
-SPREAD = 0.1
-#: Such a distance at which brackets are divided equally instead.
-HOPELESS = 100.0
+#: Number of places at which a root is estimated before its bracket is divided, and number of
+#: brackets in which this is tried.
+ESTIMATES, TRIES = 3, 2
 #: Number of parts that a round of the search divides all brackets into, and the largest number of
 #: parts of one bracket.
 PARTS, MOST = 2048, 32
@@ -495,11 +493,10 @@ def _bracketed(
 
     Notes
     -----
-    A bracket is an interval of a side with all levels that are crossed there. In each round the
-    luminance is found at places inside all brackets, which divides each bracket and its levels.
-    Brackets do not overlap, so the levels stay in order. Where one level is left, two of the places
-    are on both sides of the root of the chord: the width is then squared in each round. Other
-    brackets, and those at jumps of the luminance, are divided equally.
+    A bracket is an interval of a side with all levels that are crossed there. Where one level is
+    left, its crossing is estimated from all places found so far, see :func:`_estimated`. In each
+    round the luminance is found at places inside all other brackets, which divides each bracket and
+    its levels. Brackets do not overlap, so the levels stay in order.
     """
     size = last - first
     start = np.cumsum(size) - size - first
@@ -509,10 +506,26 @@ def _bracketed(
     lower, upper = first[side], last[side]
     place = np.tile([0.0, 1.0], (len(side), 1))
     light = values[side]
-    spread = np.full(len(side), SPREAD)
+    tries = np.zeros(len(side), np.intp)
     span = float(levels[-1] - levels[0]) or 1.0
     while len(side):
-        t = _inside(place, light - levels[lower][:, np.newaxis], spread, upper - lower)
+        gap = light - levels[lower][:, np.newaxis]
+        single = (upper - lower == 1) & (tries < TRIES) & np.all(gap != 0, axis=1)
+        tries[single] += 1
+        if len(one := np.flatnonzero(single)):
+            own, level = side[one], lower[one]
+            root = _estimated(ends[own], patch[own], place[one], gap[one], levels[level], luminance)
+            good = np.isfinite(root)
+            share[(start[own] + level)[good]] = root[good]
+            kept = np.ones(len(side), np.bool_)
+            kept[one[good]] = False
+            side, lower, upper, tries = side[kept], lower[kept], upper[kept], tries[kept]
+            place, light = place[kept], light[kept]
+            if not len(side):
+                break
+        # Fewer brackets are divided into more parts, as a round has a cost of its own.
+        parts = min(max(PARTS // len(side), 3), MOST)
+        t = place[:, :1] + np.arange(1, parts) / parts * np.diff(place, axis=1)
         found = luminance(ends[side, 0], ends[side, 1], t, patch[side])
         place = np.column_stack([place[:, 0], t, place[:, 1]])
         light = np.column_stack([light[:, 0], found, light[:, 1]])
@@ -527,48 +540,56 @@ def _bracketed(
         turned = lower[bracket] + upper[bracket]
         up = up[bracket]
         lower, upper = np.where(up, begin, turned - end), np.where(up, end, turned - begin)
-        before = place[bracket, -1] - place[bracket, 0]
         both = np.stack([part, part + 1], axis=1)
         rows = bracket[:, np.newaxis]
-        place, light, side, spread = (
-            place[rows, both],
-            light[rows, both],
-            side[bracket],
-            spread[bracket],
-        )
+        place, light = place[rows, both], light[rows, both]
+        side, tries = side[bracket], tries[bracket]
         width = place[:, 1] - place[:, 0]
         gap = light - levels[lower][:, np.newaxis]
         smooth = np.all(gap != 0, axis=1) & (upper - lower == 1)
         jump = np.abs(light[:, 1] - light[:, 0]) > JUMP * span
         done = width <= np.where(smooth | jump, NARROW, WIDTH)
         which, level = _ranges(lower[done], upper[done])
-        part = np.where(smooth & ~jump, _root(gap), 0.5)[done]
+        # A jump as near to a corner as it is searched is at the corner.
+        middle = np.where(place[:, 0] == 0, 0.0, np.where(place[:, 1] == 1, 1.0, 0.5))
+        part = np.where(smooth & ~jump, _root(gap), middle)[done]
         share[start[side[done]][which] + level] = (place[done, 0] + part * width[done])[which]
-        # The places on both sides of the chord's root have missed the root.
-        missed = width > 2.01 * spread * np.maximum(before**2, WIDTH)
-        spread = np.where(missed, 4 * spread, spread)
         kept = ~done
-        side, lower, upper, spread = side[kept], lower[kept], upper[kept], spread[kept]
+        side, lower, upper, tries = side[kept], lower[kept], upper[kept], tries[kept]
         place, light = place[kept], light[kept]
     return share
 
 
-def _inside(place: Array, gap: Array, spread: Array, count: Indices) -> Array:
-    """Return the places that divide brackets, ascending, shape (number of brackets, m).
+def _estimated(
+    ends: Indices, patch: Indices, place: Array, gap: Array, level: Array, luminance: Luminance
+) -> Array:  # fmt: skip
+    """Return where in each bracket a level is crossed, NaN where that is not found soon.
 
-    Fewer brackets are divided into more parts, as a round has a cost of its own.
+    The place is interpolated as a polynomial of the luminance through the ends of the bracket and
+    all places found, by Neville's scheme. An estimate is taken where the next one would differ from
+    it by less than WIDTH, judged by the last two changes.
     """
-    parts = min(max(PARTS // len(place), 2), MOST)
-    low, width = place[:, :1], place[:, 1:] - place[:, :1]
-    inside = np.tile(np.arange(1, parts + 2) / (parts + 2), (len(place), 1))
-    # Where the luminance ends at a level, as at a terminator, or jumps, chords do not help.
-    near = np.flatnonzero((count == 1) & np.all(gap != 0, axis=1) & (spread < HOPELESS))
-    root = _root(gap[near])[:, np.newaxis]
-    reach = spread[near, np.newaxis] * np.maximum(width[near], WIDTH / width[near])
-    both = np.clip(np.concatenate([root - reach, root + reach], axis=1), 0, 1)
-    even = np.tile(np.arange(1, parts) / parts, (len(near), 1))
-    inside[near] = np.sort(np.concatenate([both, even], axis=1), axis=1)
-    return np.asarray(low + inside * width)
+    (low, high), (first, found) = place.T, gap.T
+    root, result = high, np.full(len(place), np.nan)
+    # Values of the polynomials through the last place, the last two, and so on.
+    through, off, change = [low], [first], high - low
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        for turn in range(ESTIMATES + 1):
+            off.append(found)
+            last = [root]
+            for i, value in enumerate(through):
+                other = off[-2 - i]
+                last.append((found * value - other * last[-1]) / (found - other))
+            through, earlier, root = last, root, last[-1]
+            inside = (root >= low) & (root <= high)
+            before, change = change, np.abs(root - earlier)
+            # The next change is smaller by more than this one was.
+            near = change * change <= WIDTH * before
+            result = np.where(inside & near & (turn > 0) & np.isnan(result), root, result)
+            root = np.where(inside, root, (low + high) / 2)
+            if turn < ESTIMATES:
+                found = luminance(ends[:, 0], ends[:, 1], root[:, np.newaxis], patch)[:, 0] - level
+    return result
 
 
 def _root(gap: Array) -> Array:

@@ -44,17 +44,19 @@ class Facets:
         self.points, self.triangles, self.lit = points, triangles, lit
         self._light = luminance
         self._first = 0 if placed else 3
-        self._carried = points.shape[1] - 6
         self._values = np.zeros(len(points))
         used = np.zeros(len(points), np.bool_)
         used[triangles] = True
         self._values[used] = self.light(points[used])
 
     def light(self, points: Array) -> Array:
+        """Return the luminance of rows of points."""
+        return self._lit(points[:, self._first : 6])
+
+    def _lit(self, rows: Array) -> Array:
         """Return the luminance of rows of positions and normals, or of normals alone."""
-        end = points.shape[1] - self._carried
-        normals = points[:, end - 3 : end]
-        places = np.broadcast_to(0.0, normals.shape) if self._first else points[:, :3]
+        normals = rows[:, -3:]
+        places = np.broadcast_to(0.0, normals.shape) if self._first else rows[:, :3]
         return np.asarray(self._light(places, normals), dtype=np.float64)
 
     def corners(self) -> Array:
@@ -65,12 +67,12 @@ class Facets:
         self, values: Array, steps: Steps, known: Crossings, rows: Indices | None
     ) -> tuple[Bands, Indices]:
         """Return the bands, and the triangle that each polygon was cut from."""
-        rows_of = np.ascontiguousarray(self.points[:, self._first :])
+        rows_of = np.ascontiguousarray(self.points[:, self._first : 6])
 
         def along(a: Indices, b: Indices, share: Array, _: Indices) -> Array:
             start = rows_of[a]
             places = refinement.along(start, rows_of[b] - start, share)
-            return self.light(places).reshape(share.shape)
+            return self._lit(places).reshape(share.shape)
 
         if rows is None:
             rows = np.arange(len(self.triangles))
@@ -79,10 +81,10 @@ class Facets:
         )
         return made, rows[triangle]
 
-    def measure(self, bands: Bands, triangle: Indices) -> Array:
+    def measure(self, bands: Bands, triangle: Indices, allowed: float) -> Array:
         """Return the largest error of each polygon at its centre and along its edges."""
         worst = refinement.measured(
-            bands, triangle, lambda places, _: self.light(places), self._first
+            bands, triangle, lambda places, _: self._lit(places), allowed, slice(self._first, 6)
         )
         worst[~np.all(self.lit[self.triangles], axis=1)[triangle]] = 0
         return worst

@@ -116,8 +116,8 @@ class LitTriangles(Protocol):
         Triangles that share a crease with these may be among them.
         """
 
-    def measure(self, bands: Bands, triangle: Indices) -> Array:
-        """Return the largest error of each polygon."""
+    def measure(self, bands: Bands, triangle: Indices, allowed: float) -> Array:
+        """Return the largest error of each polygon; up to ``allowed`` also that of slivers."""
 
     def peaks(self, rows: Indices) -> Array:
         """Return the highest luminance found at a grid of points inside some triangles."""
@@ -156,10 +156,11 @@ def refine(
         fresh = np.arange(known, count) if known else None
         bands, triangle = surface.cut(values, steps, keep.crossings, fresh)
         pieces = np.bincount(triangle, minlength=count)
+        limit = _allowed(levels, steps)
         error = np.zeros(count)
-        np.maximum.at(error, triangle, surface.measure(bands, triangle))
+        np.maximum.at(error, triangle, surface.measure(bands, triangle, limit))
         error[:known], pieces[:known] = keep.error, keep.pieces
-        chosen = np.flatnonzero(error > _allowed(levels, steps))
+        chosen = np.flatnonzero(error > limit)
         if progress is not None:
             progress(1 - len(chosen) / count)
         if not len(chosen) or turn == ROUNDS or count > ENOUGH or pieces.sum() > MANY:
@@ -365,7 +366,7 @@ class _Lit:
         on = exact_surfaces.onto(self.mesh.surfaces, places.reshape(-1, 3), patch[:, np.newaxis], 2)
         return np.asarray(self.light(on, patch).reshape(len(rows), -1).max(axis=1))
 
-    def measure(self, bands: Bands, triangle: Indices) -> Array:
+    def measure(self, bands: Bands, triangle: Indices, allowed: float) -> Array:
         """Return the largest error of each polygon at its centre and along its edges."""
 
         def light(places: Array, of: Indices) -> Array:
@@ -373,7 +374,7 @@ class _Lit:
             on = exact_surfaces.onto(self.mesh.surfaces, places, patch[:, np.newaxis])
             return self.light(on, patch)
 
-        return measured(bands, triangle, light)
+        return measured(bands, triangle, light, allowed)
 
 
 def along(start: Array, way: Array, share: Array) -> Array:
@@ -390,8 +391,9 @@ def searched(corners: Array) -> Array:
 
 
 def measured(
-    bands: Bands, triangle: Indices, light: Callable[[Array, Indices], Array], first_column: int = 0
-) -> Array:
+    bands: Bands, triangle: Indices, light: Callable[[Array, Indices], Array], allowed: float,
+    columns: slice = slice(0, 3),
+) -> Array:  # fmt: skip
     """Return the largest error of each polygon at its centre and at points of its edges.
 
     Parameters
@@ -402,50 +404,80 @@ def measured(
         Triangle of each polygon. Polygons with a negligible share of its area have no error.
     light : callable
         Function ``light(points, polygons)`` that returns the luminance of points on polygons.
-    first_column : int, default: 0
-        First of the columns of points that ``light`` takes.
+    allowed : float
+        Error up to which the area of a polygon does not matter.
+    columns : slice, default: slice(0, 3)
+        Columns of points that ``light`` takes.
     """
-    worst, area = np.zeros(len(bands.values)), np.zeros(len(bands.values))
-    columns = np.ascontiguousarray(bands.points.T)
-    # Relative to the extent: squares of tiny lengths underflow and those of huge ones overflow.
-    unit = float(np.ptp(columns[:3], axis=1).max(initial=0)) if len(worst) else 0.0
+    worst = np.zeros(len(bands.values))
+    taken = np.ascontiguousarray(bands.points.T[columns])
     first = 0
     while first < len(worst):
         last = int(np.searchsorted(bands.offsets, bands.offsets[first] + BLOCK, side="right")) - 1
         last = max(last, first + 1)
-        offsets = bands.offsets[first : last + 1] - bands.offsets[first]
-        size = np.diff(offsets)
-        corner = columns[:, bands.corners[bands.offsets[first] : bands.offsets[last]]]
-        middle = np.add.reduceat(corner, offsets[:-1], axis=1) / size
-        edge = np.empty_like(corner)
-        edge[:, :-1] = corner[:, 1:]
-        edge[:, offsets[1:] - 1] = corner[:, offsets[:-1]]
-        edge -= corner
-        inward = np.repeat(middle, size, axis=1) - corner
-        doubled = _cross_length(edge[:3] / (unit or 1.0), inward[:3] / (unit or 1.0))
-        area[first:last] = np.add.reduceat(doubled, offsets[:-1])
-        middle, inward, corner, edge = (
-            part[first_column:] for part in (middle, inward, corner, edge)
-        )
+        corner, edge, middle, size, offsets = _fans(bands, slice(first, last), taken)
         # The points are just inside the polygon: on a contour both bands are right.
-        corner += WITHIN * inward
-        edge *= 1 - WITHIN
-        places = np.concatenate([middle, *(corner + share * edge for share in ALONG)], axis=1)
+        corner *= 1 - WITHIN
+        corner += WITHIN * np.repeat(middle, size, axis=1)
+        edge *= (1 - WITHIN) * (ALONG[1] - ALONG[0])
+        count, each = middle.shape[1], corner.shape[1]
+        places = np.empty((len(corner), count + len(ALONG) * each))
+        places[:, :count] = middle
+        for i in range(len(ALONG)):
+            corner += edge
+            places[:, count + i * each : count + (i + 1) * each] = corner
         rows = np.arange(first, last)
         of = np.concatenate([rows, np.tile(np.repeat(rows, size), len(ALONG))])
-        miss = np.abs(light(places.T, of) - bands.values[of])
-        sides = miss[len(rows) :].reshape(len(ALONG), -1).max(axis=0)
-        worst[first:last] = np.maximum(miss[: len(rows)], np.maximum.reduceat(sides, offsets[:-1]))
+        miss = light(places.T, of)
+        miss -= bands.values[of]
+        np.abs(miss, out=miss)
+        sides = miss[count:].reshape(len(ALONG), -1).max(axis=0)
+        worst[first:last] = np.maximum(miss[:count], np.maximum.reduceat(sides, offsets))
         first = last
-    whole = np.bincount(triangle, area)
-    worst[area <= SLIVER * whole[triangle]] = 0
+    return _without_slivers(worst, bands, triangle, allowed)
+
+
+def _fans(
+    bands: Bands, rows: slice, columns: Array
+) -> tuple[Array, Array, Array, Indices, Indices]:
+    """Return the corners of polygons, the edges that begin there, and the middles.
+
+    They have the given columns of points as rows. The number and the place of the first corner of
+    each polygon follow.
+    """
+    start, end = bands.offsets[rows], bands.offsets[rows.start + 1 : rows.stop + 1]
+    size, offsets = end - start, start - start[0]
+    corner = columns[:, bands.corners[start[0] : end[-1]]]
+    edge = np.empty_like(corner)
+    edge[:, :-1] = corner[:, 1:]
+    edge[:, end - start[0] - 1] = corner[:, offsets]
+    edge -= corner
+    return corner, edge, np.add.reduceat(corner, offsets, axis=1) / size, size, offsets
+
+
+def _without_slivers(worst: Array, bands: Bands, triangle: Indices, allowed: float) -> Array:
+    """Return the errors of polygons, 0 for the slivers among those beyond the allowed error."""
+    beyond = np.zeros(triangle.max(initial=-1) + 1, np.bool_)
+    beyond[triangle[worst > allowed]] = True
+    rows = np.flatnonzero(beyond[triangle])
+    if not len(rows):
+        return worst
+    size = np.diff(bands.offsets)[rows]
+    start = np.cumsum(size) - size
+    places = np.repeat(bands.offsets[rows] - start, size) + np.arange(size.sum())
+    columns = bands.points[:, :3].T
+    # Relative to the extent: squares of tiny lengths underflow and those of huge ones overflow.
+    unit = float(np.ptp(columns, axis=1).max()) or 1.0
+    few = dataclasses.replace(
+        bands, offsets=np.append(start, size.sum()), corners=bands.corners[places]
+    )
+    corner, edge, middle, size, offsets = _fans(few, slice(0, len(rows)), columns / unit)
+    inward = np.repeat(middle, size, axis=1) - corner
+    parts = [edge[i] * inward[j] - edge[j] * inward[i] for i, j in ((1, 2), (2, 0), (0, 1))]
+    area = np.add.reduceat(np.sqrt(sum(part * part for part in parts)), offsets)
+    whole = np.bincount(triangle[rows], area)
+    worst[rows[area <= SLIVER * whole[triangle[rows]]]] = 0
     return worst
-
-
-def _cross_length(a: Array, b: Array) -> Array:
-    """Return the lengths of cross products of vectors, shape (3, N)."""
-    parts = [a[i] * b[j] - a[j] * b[i] for i, j in ((1, 2), (2, 0), (0, 1))]
-    return np.asarray(np.sqrt(sum(part * part for part in parts)))
 
 
 def _next(bands: Bands) -> Indices:
