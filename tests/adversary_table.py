@@ -27,6 +27,8 @@ BESIDE = (
     "vizlight.geometry.solids.primitives", "vizlight.geometry.solids.polyhedra",
     "vizlight.plotting.component", "vizlight.scene", "vizlight.studies",
 )  # fmt: skip
+#: Public modules that are not walked, with the reason.
+APART = {"vizlight.pieces": "each call starts processes and reads files, which takes seconds"}
 #: Public classes that only vizlight makes, and methods that only it calls.
 RETURNED = {
     "geometry.contours.banding.Bands": "returned by sphere and truncus",
@@ -57,7 +59,8 @@ TYPED_DICTS = {"PlotterKeywords": lambda: PlotterKeywords, "SceneKeywords": lamb
 def modules():
     """Return the public modules."""
     text = PAGES.read_text(encoding="utf-8")
-    return [*re.findall(r"^   (vizlight[\w.]*)$", text, re.MULTILINE), *BESIDE]
+    named = re.findall(r"^   (vizlight[\w.]*)$", text, re.MULTILINE)
+    return [name for name in [*named, *BESIDE] if name not in APART]
 
 
 def public():
