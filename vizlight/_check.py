@@ -13,7 +13,7 @@ import os
 import sys
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from typing import ParamSpec, TypeVar
 
-    from _typeshed import DataclassInstance
     from numpy.typing import NDArray
 
     from vizlight._types import Array, Color, Indices, Vector
@@ -89,7 +88,7 @@ def boolean(name: str, value: object, *, expected: str = "True or False") -> boo
     raise TypeError(message(name, expected, describe(value)))
 
 
-def flags(frozen: DataclassInstance) -> None:
+def flags(frozen: Any) -> None:
     """Check the fields of a frozen dataclass that are annotated ``bool``; see :func:`boolean`."""
     for field in dataclasses.fields(frozen):
         if field.type == "bool":
