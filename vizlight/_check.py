@@ -5,18 +5,23 @@ They raise TypeError for a value of the wrong type, ValueError for a wrong shape
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import math
 import numbers
+import os
 import sys
 import warnings
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from typing import ParamSpec, TypeVar
+
+    from numpy.typing import NDArray
 
     from vizlight._types import Array, Color, Indices, Vector
 
@@ -25,6 +30,11 @@ if TYPE_CHECKING:
 
 #: Largest intensity, coefficient or power: the product of three of them fits float32.
 LARGEST = 1e9
+#: Largest coordinate: the product of three of them fits float64.
+FARTHEST = 1e100
+#: Largest number of elements of an array, 2 TiB in float64; and largest integer, from which float64
+#: skips some.
+MOST, LARGEST_INTEGER = 2**38, 2**53
 
 
 def warn(text: str, category: type[Warning] = UserWarning) -> None:
@@ -60,7 +70,7 @@ def one_of(names: Sequence[str]) -> str:
 
 def choice(name: str, value: object, allowed: Sequence[str]) -> None:
     """Check that a value is one of the allowed strings."""
-    if value not in allowed:
+    if not (isinstance(value, str) and value in allowed):
         *others, last = (repr(text) for text in allowed)
         raise ValueError(message(name, f"{', '.join(others)} or {last}", describe(value)))
 
@@ -78,36 +88,106 @@ def boolean(name: str, value: object, *, expected: str = "True or False") -> boo
     raise TypeError(message(name, expected, describe(value)))
 
 
+def flags(frozen: Any) -> None:
+    """Check the fields of a frozen dataclass that are annotated ``bool``; see :func:`boolean`."""
+    for field in dataclasses.fields(frozen):
+        if field.type == "bool":
+            value = boolean(field.name, getattr(frozen, field.name))
+            set_fields(frozen, **{field.name: value})
+
+
+def array_name(name: str, value: object) -> str:
+    """Return the name of an array that is made: text that is not empty."""
+    expected = "a name for the point array"
+    if not text(name, value, expected=expected):
+        raise ValueError(message(name, expected, "an empty text"))
+    return str(value)
+
+
 def describe(value: object) -> str:
     """Return a short description of a value for an error message."""
     if isinstance(value, np.ndarray):
         return f"an array of shape {value.shape} and type {value.dtype}"
     try:
-        text = " ".join(repr(value).split())
+        # A file or a terminal may take no half of a surrogate pair.
+        text = " ".join(repr(value).encode("utf-8", "backslashreplace").decode().split())
     except ValueError:  # Python does not print integers of more than 4300 digits
         kind = "an integer" if isinstance(value, int) else "a number"
         text = f"{kind} of more digits than Python prints"
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
-def floats(name: str, value: object) -> Array:
-    """Return ``value`` as a floating-point array.
-
-    Integers and booleans become float64 and float16 becomes float32; float32 and float64 stay.
-    Masked elements become NaN.
-    """
+def reals(name: str, value: object) -> NDArray[np.generic]:
+    """Return ``value`` as an array of real numbers of any type; masked elements become NaN."""
     try:
         array = np.asarray(unmasked(value))
     except ValueError as error:
         expected = "numbers in rows of equal length"
         raise TypeError(message(name, expected, describe(value))) from error
-    if array.dtype.kind in "iub":
-        return array.astype(np.float64)
-    if array.dtype.kind != "f":
+    if array.dtype.kind not in "iubf":
         raise TypeError(message(name, "real numbers", describe(value)))
+    holds(name, array.shape)
+    return array
+
+
+def floats(name: str, value: object) -> Array:
+    """Return ``value`` as a floating-point array.
+
+    Integers, booleans and longer floats become float64 and float16 becomes float32; float32 and
+    float64 stay. Masked elements become NaN.
+    """
+    array = reals(name, value)
     if array.dtype == np.float16:
         return array.astype(np.float32)
+    if array.dtype.kind != "f" or array.dtype.itemsize > 8:
+        with np.errstate(over="ignore"):
+            return array.astype(np.float64)
+    return array.astype(array.dtype.newbyteorder("="), copy=False)
+
+
+def floats_in(name: str, value: object, low: float, high: float, what: str = "numbers") -> Array:
+    """Return ``value`` as a floating-point array of finite numbers in the range [low, high].
+
+    An end that is rounded up to a narrower type passes. ``what`` says what the numbers are.
+    """
+    array = floats(name, value)
+    slack = 8 * float(np.finfo(array.dtype).eps)
+    # Of float64, since the array's own type may not hold them.
+    low, high = np.float64(low - slack * abs(low)), np.float64(high + slack * abs(high))
+    if not np.all((array >= low) & (array <= high) & np.isfinite(array)):
+        bounds = f"of at least {low:g}" if high == math.inf else f"from {low:g} to {high:g}"
+        raise ValueError(message(name, f"{what} {bounds}", describe(value)))
     return array
+
+
+def coordinates(name: str, value: object) -> Array:
+    """Return ``value`` as float64 coordinates, whose products float64 holds."""
+    return floats_in(name, value, -FARTHEST, FARTHEST, "finite values").astype(np.float64)
+
+
+def together(**arrays: Array) -> list[Array]:
+    """Return arrays, each by its name, broadcast to one shape."""
+    broadcast_shape(**{name: array.shape for name, array in arrays.items()})
+    return list(np.broadcast_arrays(*arrays.values()))
+
+
+def broadcast_shape(**shapes: tuple[int, ...]) -> tuple[int, ...]:
+    """Return the shape that shapes, each by the name of its array, broadcast to."""
+    names = ", ".join(shapes)
+    try:
+        shape = np.broadcast_shapes(*shapes.values())
+    except ValueError as error:
+        got = ", ".join(str(shape) for shape in shapes.values())
+        raise ValueError(message(names, "shapes that broadcast", got)) from error
+    holds(names, shape)
+    return shape
+
+
+def holds(name: str, shape: Sequence[int]) -> None:
+    """Check that memory can hold an array of some shape."""
+    if math.prod(shape) > MOST:
+        got = describe(tuple(shape))
+        raise ValueError(message(name, f"at most {MOST:.2g} numbers in all", got, "pass fewer"))
 
 
 def unmasked(value: object) -> object:
@@ -133,22 +213,36 @@ def vectors(name: str, value: object, *, n: int | None = None) -> Array:
     return array
 
 
-def cells(name: str, value: object, count: int, sizes: Sequence[int]) -> Indices:
+def cells(
+    name: str, value: object, count: int, sizes: Sequence[int], *, of: str = "points"
+) -> Indices:
     """Return ``value`` as cells: rows of indices of ``count`` points, of one of some sizes."""
-    array = np.asarray(value)
+    array = reals(name, value)
     if array.ndim != 2 or array.shape[1] not in sizes or array.dtype.kind not in "iu":
         shapes = " or ".join(f"(M, {size})" for size in sizes)
         raise ValueError(message(name, f"integers of shape {shapes}", array))
     if array.size and not 0 <= array.min() <= array.max() < count:
         got = f"{array.min()} to {array.max()}"
-        raise ValueError(message(name, f"indices of points from 0 to {count - 1}", got))
-    return array
+        raise ValueError(message(name, f"indices of {of} from 0 to {count - 1}", got))
+    return array.astype(np.intp, copy=False)
+
+
+def indices(name: str, value: object, limit: int) -> Indices:
+    """Return ``value`` as a row of indices from 0 to ``limit - 1``."""
+    array = reals(name, value)
+    if array.size == 0:
+        array = array.astype(np.intp)
+    if array.dtype.kind not in "iu":
+        raise TypeError(message(name, "integers", array))
+    if array.ndim != 1 or (array.size and not 0 <= array.min() <= array.max() < limit):
+        expected = f"a 1-D array of indices from 0 to {limit - 1}"
+        raise ValueError(message(name, expected, array))
+    return array.astype(np.intp, copy=False)
 
 
 def number(name: str, value: object, *, low: float = -math.inf, high: float = math.inf) -> float:
     """Return ``value`` as a finite float in the closed range [low, high]."""
-    if isinstance(value, np.ndarray) and value.ndim == 0 and value is not np.ma.masked:
-        value = value.item()
+    value = _scalar(value)
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         raise TypeError(message(name, "a number", describe(value)))
     try:
@@ -168,13 +262,50 @@ def positive(name: str, value: object, *, high: float = math.inf) -> float:
     return result
 
 
-def integer(name: str, value: object, *, low: int) -> int:
-    """Return ``value`` as an int of at least ``low``."""
+def integer(name: str, value: object, *, low: int, high: int = LARGEST_INTEGER) -> int:
+    """Return ``value`` as an int in the closed range [low, high]."""
+    value = _scalar(value)
     if isinstance(value, bool) or not isinstance(value, numbers.Integral):
         raise TypeError(message(name, "an integer", describe(value)))
-    if value < low:
-        raise ValueError(message(name, f"an integer of at least {low}", describe(value)))
-    return int(value)
+    result = int(value)
+    if not low <= result <= high:
+        expected = f"of at least {low}" if result < low else f"of at most {high}"
+        raise ValueError(message(name, f"an integer {expected}", describe(value)))
+    return result
+
+
+def _scalar(value: object) -> object:
+    """Return the element of an array without axes, and anything else as it is."""
+    if isinstance(value, np.ndarray) and value.ndim == 0 and value is not np.ma.masked:
+        return value.item()
+    return value
+
+
+def text(name: str, value: object, *, expected: str = "text") -> str:
+    """Return a string without a null character, at which VTK and files end names."""
+    if not isinstance(value, str):
+        raise TypeError(message(name, expected, describe(value)))
+    if "\0" in value or value != value.encode("utf-8", "ignore").decode():
+        raise ValueError(message(name, f"{expected} of valid characters", describe(value)))
+    return str(value)
+
+
+def path(name: str, value: object) -> Path:
+    """Return a path of valid characters that is not empty."""
+    expected = "the path of a file"
+    if not isinstance(value, str | os.PathLike):
+        raise TypeError(message(name, expected, describe(value)))
+    given = os.fspath(value)
+    if not text(name, given, expected=expected):
+        raise ValueError(message(name, expected, "an empty text"))
+    return Path(given)
+
+
+def function(name: str, value: object, *, optional: bool = False) -> None:
+    """Check that a value can be called; with ``optional=True`` None is allowed too."""
+    if not (callable(value) or (optional and value is None)):
+        expected = "a function" + (" or None" if optional else "")
+        raise TypeError(message(name, expected, describe(value)))
 
 
 def vector(name: str, value: object, *, direction: bool = False) -> Vector:
@@ -183,7 +314,7 @@ def vector(name: str, value: object, *, direction: bool = False) -> Vector:
     With ``direction=True`` the vector must not be zero; it is not normalised.
     """
     array = vectors(name, value)
-    if array.ndim != 1:
+    if array.ndim != 1 or array.size > LARGEST:
         raise ValueError(message(name, "one vector of n components", array))
     result = tuple(float(x) for x in array)
     if not all(math.isfinite(x) for x in result):

@@ -5,6 +5,8 @@ from __future__ import annotations
 import contextlib
 from typing import TYPE_CHECKING
 
+from vizlight import _check
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
@@ -12,7 +14,7 @@ if TYPE_CHECKING:
 @contextlib.contextmanager
 def progress(what: str, total: int, *, show: bool) -> Iterator[Callable[[int], None]]:
     """Yield a function that takes the amount of work done so far, out of ``total``."""
-    if not show:
+    if not _check.boolean("progress_bar", show):
         yield lambda _: None
         return
     from rich.console import Console

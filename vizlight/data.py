@@ -38,8 +38,8 @@ def example_path(name: str = "rotating_disk.vtu") -> Path:
         If there is no data set of that name.
     """
     names = sorted(p.name for p in _folder().glob("*.vt?"))
-    if name not in names:
-        raise ValueError(_check.message("name", f"one of {names}", repr(name)))
+    if not (isinstance(name, str) and name in names):
+        raise ValueError(_check.message("name", f"one of {names}", _check.describe(name)))
     return _folder() / name
 
 

@@ -21,7 +21,7 @@ import pyvista as pv
 from vtkmodules import vtkIOXML
 
 from vizlight import _check, _supervise
-from vizlight.mesh import foreign_files, hull, short_files
+from vizlight.mesh import blocks, foreign_files, hull, short_files
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -99,7 +99,8 @@ def read(path: str | Path, /, *, salvage: bool = False, isolated: bool = False) 
     UserWarning
         If a damaged file is used with ``salvage``.
     """
-    path = Path(path)
+    path = _path("file", path)
+    salvage, isolated = _check.boolean("salvage", salvage), _check.boolean("isolated", isolated)
     if not path.is_file():
         what = "a folder" if path.is_dir() else "no such file"
         raise FileError(_check.message("file", "a file", f"'{path}' ({what})"))
@@ -142,6 +143,26 @@ def read(path: str | Path, /, *, salvage: bool = False, isolated: bool = False) 
     if fault:
         _check.warn(f"file: '{path}' is damaged, what was read of it is used ({fault})")
     return mesh
+
+
+def _path(name: str, value: object) -> Path:
+    """Return a path that the system takes, whether or not there is a file."""
+    path = _check.path(name, value)
+    try:
+        path.stat()
+    except OSError as error:
+        if error.errno not in (errno.ENOENT, errno.ENOTDIR, errno.EACCES):
+            got = f"{_check.describe(str(path))} ({error.strerror})"
+            raise FileError(_check.message(name, "a path that the system takes", got)) from error
+    return path
+
+
+def _dataset(mesh: object) -> None:
+    """Check that a mesh is one dataset that VTK can read."""
+    if not isinstance(mesh, pv.DataSet):
+        remedy = "join its blocks by mesh.combine()" if isinstance(mesh, pv.MultiBlock) else ""
+        raise TypeError(_check.message("mesh", "a PyVista dataset", type(mesh).__name__, remedy))
+    blocks.check_whole(mesh, "mesh")
 
 
 def _damaged(path: Path, reason: str) -> FileError:
@@ -235,6 +256,7 @@ def surface_of(
     ValueError
         If the array does not exist, or the isosurface is empty.
     """
+    _dataset(mesh)
     if contour is None:
         if isinstance(mesh, pv.PolyData):
             return mesh
@@ -274,6 +296,7 @@ def warped(mesh: pv.DataSet, name: str, factor: float, /) -> pv.DataSet:
     ValueError
         If the array does not exist, or the factor is not finite.
     """
+    _dataset(mesh)
     _scalars(mesh, "warp", name)
     moved: pv.DataSet = mesh.warp_by_scalar(name, factor=_check.number("warp_factor", factor))
     return moved
@@ -282,6 +305,7 @@ def warped(mesh: pv.DataSet, name: str, factor: float, /) -> pv.DataSet:
 def _scalars(mesh: pv.DataSet, argument: str, name: str) -> NDArray[np.generic]:
     """Return a point array of one component, or raise an error that names the argument."""
     data = mesh.point_data
+    _check.text(argument, name, expected="the name of a point array")
     if name in data and data[name].ndim == 1:
         return data[name]
     got = repr(name)
@@ -316,7 +340,7 @@ def check_output(path: str | Path, /, formats: tuple[str, ...], *, name: str = "
     FileError
         If the extension is not allowed, or the folder is missing or not writable.
     """
-    path = Path(path)
+    path = _path("output", path)
     if path.suffix.lower() not in formats:
         raise FileError(
             _check.message(name, f"a name that ends in {', '.join(formats)}", f"'{path}'")
@@ -339,7 +363,11 @@ def check_format(mesh: pv.DataSet, path: str | Path, /) -> Path:
     FileError
         If the format does not support the type of mesh.
     """
-    path, kind = Path(path), type(mesh).__name__
+    _dataset(mesh)
+    path, kind = _path("output", path), type(mesh).__name__
+    if kind not in FORMATS:
+        expected = f"one of {', '.join(FORMATS)}"
+        raise FileError(_check.message("mesh", expected, kind, "cast it to one of them"))
     formats = FORMATS[kind]
     if path.suffix.lower() not in formats:
         expected = f"a name that ends in {', '.join(formats)} for {kind}"
@@ -377,8 +405,15 @@ def write_mesh(mesh: pv.DataSet, path: str | Path, /) -> Path:
     def save(draft: str) -> None:
         # Text of base64 has 4 bytes for 3.
         _reserve(Path(draft), mesh.actual_memory_size * 1024 * 4 // 3 + 65536)
+        # A copy, because PyVista notes the types of arrays in what it saves.
+        own = mesh.copy(deep=False)
+        for data in (own.GetPointData(), own.GetCellData()):
+            for kind in range(data.NUM_ATTRIBUTES):
+                # VTK ends the process where the active normals or vectors are text.
+                if data.GetAbstractAttribute(kind) is not None and data.GetAttribute(kind) is None:
+                    data.SetActiveAttribute(-1, kind)
         with captured_errors() as errors:
-            mesh.save(draft)
+            own.save(draft)
         _check_draft(Path(draft), mesh, errors)
 
     return replace_file(path, save)
@@ -469,6 +504,7 @@ def replace_file(
     FileError
         If the file cannot be written.
     """
+    path = _path("output", path)
     target = path.resolve()  # a symbolic link stays, and what it points to is replaced
     try:
         with tempfile.TemporaryDirectory(prefix=".vizlight-", dir=target.parent) as folder:

@@ -68,11 +68,11 @@ def bas_relief(
     vertices, triangles = closed_meshes.triangles_of(mesh, "mesh")
     frame = _eye_frame(direction, up)
     resolution = _check.integer("resolution", resolution, low=2)
+    _check.holds("resolution", (resolution, resolution))
     margin = _check.number("margin", margin, low=0.0, high=10.0)
     if height is not None:
         height = _check.number("height", height, low=0.0)
-    if not isinstance(name, str) or not name:
-        raise ValueError(_check.message("name", "a name for the point array", repr(name)))
+    _check.array_name("name", name)
 
     used = vertices[np.unique(triangles)]
     if not len(used):

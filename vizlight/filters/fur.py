@@ -129,11 +129,14 @@ class FurOptions:
 
     def __post_init__(self) -> None:
         _check.choice("inward", self.inward, get_args(Inward))
+        _check.flags(self)
         check_sides("auto", self.feature_angle)
         for option in ("bend", "curl", "turns"):
             value = getattr(self, option)
             _check.number(option, value, low=-_check.LARGEST, high=_check.LARGEST)
         point_arrays.refuse_unnamed("vectors", self.vectors)
+        if isinstance(self.toward, str):
+            point_arrays.refuse_unnamed("toward", self.toward)
         if self.bend and self.toward is None:
             raise ValueError(
                 _check.message("toward", "the direction of the bend, with bend=", None)
@@ -242,10 +245,11 @@ def _grow(
         expected, remedy = "the name of a point array beside feature_angle=", "attach the array"
         got = _check.describe(options.length)
         raise TypeError(_check.message("length", expected, got, remedy))
-    surface = split_where_computed(surface, options.feature_angle)
+    surface = split_where_computed(blocks.surface(surface, "surface"), options.feature_angle)
     skin = surfaces.with_normals(surface, onlooker(scene), options.feature_angle)
     name = options.name
     lighting.refuse_overwriting([(surface, "")], name, components=False, colored=scene.colored)
+    _check.holds("fibres, segments", (options.fibres, options.segments + 1, 3))
     points = options.fibres * (options.segments + 1)
     fast = compiled.grow.pays(compiled.SAVED * points / _pool.workers(threads))
     coat = _Coat(surface, skin, options, fast=fast)
@@ -457,6 +461,7 @@ def _toward(surface: pv.PolyData, toward: str | VectorLike | None) -> Array | No
 
 def _lengths(mesh: pv.PolyData, length: object) -> Array | float:
     if isinstance(length, str):
+        _check.text("length", length, expected="a length or the name of a point array")
         if length not in mesh.point_data or mesh.point_data[length].ndim != 1:
             there = [key for key in mesh.point_data if mesh.point_data[key].ndim == 1]
             raise ValueError(

@@ -98,10 +98,8 @@ class ContourOptions:
         spacing.check(self.levels)
         check_sides("auto", self.feature_angle)
         _check.number("tolerance", self.tolerance, low=1e-6, high=0.1)
-        name: object = self.name
-        if not isinstance(name, str) or not name:
-            expected = "a non-empty name of the cell array"
-            raise ValueError(_check.message("name", expected, repr(name)))
+        _check.array_name("name", self.name)
+        _check.flags(self)
 
     @property
     def light(self) -> LightOptions:

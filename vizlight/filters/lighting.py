@@ -92,8 +92,7 @@ def refuse_overwriting(
     bundle: bool = False,
 ) -> None:
     """Refuse a name under which the light would replace an array of the user."""
-    if not isinstance(name, str) or not name:
-        raise ValueError(_check.message("name", "a name for the point array", repr(name)))
+    _check.array_name("name", name)
     parts = [part for part in PARTS if (colored if part == "rgb" else components)]
     parts += BUNDLE_PARTS if bundle else ()
     made = [part_name(name, part) for part in parts]

@@ -104,7 +104,6 @@ class ProjectOptions(LightOptions):
             self,
             vectors=tuple(vectors),
             distance=None if distance is None else projection.check_distance(distance),
-            cut=_check.boolean("cut", self.cut),
         )
 
     def by(self, tangents: str | None, positions: str | None) -> LightOptions:

@@ -71,6 +71,9 @@ def relief_day(
         As :func:`relief_shadow` and :func:`vizlight.geometry.sun.directions`.
     """
     if sun is not None:
+        if latitude is not None or day is not None or hours is not None:
+            expected = "sun alone, or latitude, day and hours"
+            raise ValueError(_check.message("sun", expected, "both"))
         directions = _from_angles(sun, directions)
     own = {"latitude": latitude, "day": day, "hours": hours, "directions": directions}
     toward = _directions(latitude, day, hours, directions)

@@ -12,7 +12,7 @@ from vizlight import _check, _progress
 from vizlight.filters.illuminate import separate_copy
 from vizlight.filters.lighting import DEFAULT_NAME, PARTS, VALID, attach, refuse_overwriting
 from vizlight.geometry.relief import sun as sky
-from vizlight.mesh import point_arrays, records
+from vizlight.mesh import blocks, point_arrays, records
 from vizlight.mesh.casters import CasterKeywords, CasterOptions, caster
 from vizlight.mesh.normals import split_where_computed
 from vizlight.scene import Light, Material, Scene
@@ -69,6 +69,7 @@ class ReliefOptions(CasterOptions):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        _check.flags(self)
         _check.set_fields(
             self,
             angular_diameter=_check.number(
@@ -143,6 +144,8 @@ def relief_shadow(
     0.5
     """
     asked = ReliefOptions(**options)
+    inplace = _check.boolean("inplace", inplace)
+    blocks.check_whole(mesh, "mesh")
     if sun is not None:
         lit_by = Light(direction=sun_direction(sun))
         base = Scene(material=Material(specular=0.0)) if scene is None else scene

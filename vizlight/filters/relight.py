@@ -306,7 +306,10 @@ def _check_light(sources: list[Source], scene: Scene, name: str) -> None:
     parts = [(source.seen_from(scene.view, source.inputs), source.options) for source in sources]
     results, _ = lighting.light(parts, scene, threads=None, progress_bar=False)
     for source, shading in zip(sources, results, strict=True):
-        stored = np.asarray(source.mesh.point_data[name])
+        stored = _check.floats(f"mesh, {name}", source.mesh.point_data[name])
+        if stored.shape != shading.luminance.shape:
+            expected = f"the {len(shading.luminance)} values of its record"
+            raise ValueError(_check.message(f"mesh, {name}", expected, stored, "light it again"))
         differs = ~(np.abs(shading.luminance - stored) <= SEEN)
         if np.count_nonzero(differs) > CHANGED * differs.size:
             share = f"other light at {np.mean(differs):.0%} of the points"

@@ -114,10 +114,17 @@ class StreamlineOptions(LightOptions):
             self,
             step=_check.number("step", self.step, low=1e-6),
             max_steps=int(_check.number("max_steps", self.max_steps, low=1, high=1e9)),
-            line_field=_check.boolean("line_field", self.line_field),
             separation=_check.number("separation", self.separation, low=0.05, high=0.95),
             shortest=_check.number("shortest", self.shortest, low=0.0),
         )
+        if self.confined is not None:
+            _check.boolean("confined", self.confined)
+        surface: object = self.surface
+        if surface is not None and not isinstance(surface, pv.DataSet):
+            expected, got = "a PyVista surface", _check.describe(surface)
+            raise TypeError(_check.message("surface", expected, got))
+        point_arrays.refuse_unnamed("vectors", self.vectors)
+        _check.integer("seed", self.seed, low=0)
         if self.spacing is not None:
             _check.set_fields(self, spacing=_check.positive("spacing", self.spacing))
 
@@ -230,6 +237,7 @@ def _check_mesh(mesh: object) -> None:
     if isinstance(mesh, pv.PointSet):
         remedy = "interpolate its vectors onto a grid, between points there are none"
         raise TypeError(_check.message("mesh", "a dataset with cells", "PointSet", remedy))
+    blocks.check_whole(mesh, "mesh")
 
 
 def _resolved(mesh: pv.DataSet, options: StreamlineOptions) -> StreamlineOptions:
@@ -495,7 +503,9 @@ def _seeds(seeds: object, origin: Array, size: float) -> tuple[int, Array | None
     else:
         given = _check.floats("seeds", seeds).astype(np.float64)
     if not given.ndim:
-        return _check.integer("seeds", seeds, low=1), None
+        count = _check.integer("seeds", seeds, low=1)
+        _check.holds("seeds", (count, 3))
+        return count, None
     places = (_check.vectors("seeds", given, n=3) - origin) / size
     if places.ndim != 2 or not np.all(np.isfinite(places)):
         what = "finite points of shape (M, 3)"

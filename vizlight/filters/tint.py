@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     ColorMap = Any
 
 RGB = "rgb"
+#: Largest number of colours of a table.
+MOST_COLORS = 1 << 16
 
 
 def tint(
@@ -119,10 +121,10 @@ def tint(
     out = lit if _check.boolean("inplace", inplace) else separate_copy(lit)
     every = list(blocks.named_blocks(out))
     meshes = [block for block, _ in every]
-    if not isinstance(name, str) or not name:
-        raise ValueError(_check.message("name", "a name for the point array", repr(name)))
+    _check.array_name("name", name)
     if not _holds_light(meshes, name):
         records.refuse_overwriting(every, name, [name])
+    component = None if component is None else _check.integer("component", component, low=0)
     values = [values_of(mesh, scalars, component) for mesh in meshes]
     table = color_table(
         np.concatenate(values) if values else np.zeros(0),
@@ -160,6 +162,7 @@ def values_of(
             expected = f"the name of a point array, {_check.one_of(own)}"
             raise ValueError(_check.message("scalars", expected, None))
     if isinstance(scalars, str):
+        _check.text("scalars", scalars, expected="the name of a point array")
         if scalars not in mesh.point_data:
             cell = scalars in mesh.cell_data
             there = f"a point array, {_check.one_of(list(mesh.point_data))}"
@@ -168,7 +171,7 @@ def values_of(
             raise ValueError(_check.message("scalars", there, got, remedy))
         array: NDArray[np.generic] = np.asarray(mesh.point_data[scalars])
     else:
-        array = np.asarray(scalars)
+        array = _check.reals("scalars", scalars)
         if array.ndim not in (1, 2) or len(array) != mesh.n_points:
             expected = f"{mesh.n_points} rows, one per point"
             raise ValueError(_check.message("scalars", expected, array))
@@ -210,6 +213,10 @@ def color_table(
     ends = None if clim is None else _check.vector("clim", clim)
     if ends is not None and (len(ends) != 2 or ends[0] > ends[1]):
         raise ValueError(_check.message("clim", "a lower and a higher number", clim))
+    if not isinstance(categories, bool):
+        categories = _check.integer("categories", categories, low=0, high=MOST_COLORS)
+    colors = {"nan_color": nan_color, "above_color": above_color, "below_color": below_color}
+    known: dict[str, Any] = {name: _known_color(name, color) for name, color in colors.items()}
     sample = pv.PolyData(np.zeros((max(len(values), 1), 3)))
     given = np.asarray(values) if len(values) else np.zeros(1)
     mapper = pv.DataSetMapper(sample)
@@ -217,16 +224,14 @@ def color_table(
         mapper.set_scalars(
             given,
             "values",
-            n_colors=_check.integer("n_colors", n_colors, low=1),
+            n_colors=_check.integer("n_colors", n_colors, low=1, high=MOST_COLORS),
             scalar_bar_args={},
             categories=categories,
             clim=ends,
             cmap=cmap,
             flip_scalars=_check.boolean("flip_scalars", flip_scalars),
             log_scale=_check.boolean("log_scale", log_scale),
-            nan_color=pv.Color(pv.global_theme.nan_color if nan_color is None else nan_color),
-            above_color=above_color,
-            below_color=below_color,
+            **known | {"nan_color": known["nan_color"] or pv.global_theme.nan_color},
         )
     except (KeyError, TypeError, ValueError) as error:
         if "n_colors" in str(error):
@@ -240,6 +245,18 @@ def color_table(
             low = float(finite[finite > 0].min(initial=high))
         table.scalar_range = (low, high)
     return table
+
+
+def _known_color(name: str, color: ColorLike | None) -> pv.Color | None:
+    """Return a colour in any form that PyVista knows, None for None."""
+    if color is None:
+        return None
+    try:
+        with np.errstate(all="ignore"):
+            return pv.Color(color)
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+        expected = "a colour that PyVista knows"
+        raise ValueError(_check.message(name, expected, _check.describe(color))) from error
 
 
 def map_colors(table: pv.LookupTable, values: NDArray[np.generic]) -> Bytes:
@@ -309,6 +326,7 @@ def _factors_of(
     lit: pv.DataSet | pv.MultiBlock, meshes: Sequence[pv.DataSet], light: str
 ) -> list[tuple[Array, Array | float]]:
     """Return the factors of the light that meshes carry, stored or computed again."""
+    _check.text("light", light, expected="the name of the light")
     if not relight.is_lit(lit, light):
         known = "a mesh with the light of a filter and its record"
         remedy = "light it by vizlight.illuminate first"

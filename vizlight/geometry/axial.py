@@ -127,6 +127,5 @@ def frame(axis: Array, toward: Array | None = None) -> tuple[Array, Array]:
 
 def options(segments: int | None, form: str, forms: tuple[str, ...]) -> int | None:
     """Validate the number of segments of a circle and the form of the result."""
-    if form not in forms:
-        raise ValueError(_check.message("form", " or ".join(map(repr, forms)), repr(form)))
+    _check.choice("form", form, forms)
     return None if segments is None else _check.integer("segments", segments, low=3)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol, TypedDict
 
@@ -19,6 +19,8 @@ from vizlight.shading.options import check_sides
 from vizlight.verify import rays
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
     from vizlight._types import Array, Bools
     from vizlight.geometry.relief.height_field import Border
     from vizlight.geometry.relief.shadowing import Method
@@ -95,10 +97,14 @@ class CasterOptions:
         given: object = self.occluders
         if isinstance(given, pv.DataObject):
             given = [given]
-        if isinstance(given, str) or not isinstance(given, Iterable):
+        if isinstance(given, str | np.ndarray) or not isinstance(given, Iterable):
             expected = "a closed surface or several"
             raise TypeError(_check.message("occluders", expected, _check.describe(given)))
         _check.set_fields(self, occluders=list(given))
+        if self.thickness is not None:
+            _check.number("thickness", self.thickness, low=0.0)
+        if self.elevation is not None:
+            _check.text("elevation", self.elevation, expected="the name of a point array")
         check_sides("auto", self.feature_angle)
 
 

@@ -162,7 +162,8 @@ def _sampled(
     if not (step > 0 and step <= sides.min()):
         expected = f"a spacing up to {sides.min():g}, the shorter side of the mesh"
         raise ValueError(_check.message("raster", expected, step))
-    count = np.round(sides / step) + 1
+    with np.errstate(over="ignore"):
+        count = np.minimum(np.round(sides / step) + 1, 2 * LARGEST)
     if count[0] * count[1] > LARGEST:
         got = f"{count[0]:g} x {count[1]:g} nodes"
         raise ValueError(_check.message("raster", f"a raster of at most {LARGEST} nodes", got))

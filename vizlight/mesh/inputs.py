@@ -138,7 +138,7 @@ def _refuse_sides(options: LightOptions) -> None:
     """Raise ValueError if an option fits only a surface, which has two sides."""
     for name in ("normals", "two_sided", "flip_normals", "facing"):
         value = getattr(options, name)
-        if value is not None and value is not False and value != "auto":
+        if not (value is None or value is False or (isinstance(value, str) and value == "auto")):
             remedy = "pass conditioned=True, or leave one of them out"
             expected = f"no {name} beside tangents, which have no sides"
             raise ValueError(_check.message(name, expected, "both", remedy))

@@ -212,8 +212,12 @@ def _given(mesh: pv.DataSet, value: object, n: int) -> Array | None:
         expected = f"a point array of {n} components for {n}-space"
         remedy = "without one pass tangents=, conditioned by the name of the surface's tangents"
         raise ValueError(_check.message("normals", expected, None, remedy))
-    carried = mesh.point_data.active_normals
-    return None if carried is None else np.asarray(carried)
+    carried = mesh.point_data.active_normals_name
+    if carried is None:
+        return None
+    found = vectors_of(mesh, "normals", carried, 3)
+    known = np.all(np.isfinite(found), axis=1)
+    return found if known.all() else np.where(known[:, np.newaxis], found, 0)
 
 
 def normals_of(

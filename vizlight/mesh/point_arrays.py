@@ -76,6 +76,7 @@ def array_of(
         If there is no such array, its shape is wrong, or it is a cell array.
     """
     if isinstance(value, str):
+        _check.text(name, value, expected="the name of a point array")
         array = _named(mesh, name, value, average_cells, sizes)
         what = f"{value!r} with "
     else:
@@ -124,6 +125,8 @@ def refuse_unnamed(name: str, value: object) -> None:
         remedy = "attach the array to the mesh and pass its name"
         got = _check.describe(value)
         raise TypeError(_check.message(name, "the name of a point array", got, remedy))
+    if value is not None:
+        _check.text(name, value, expected="the name of a point array")
 
 
 def vectors_of(mesh: pv.DataSet, name: str, value: object, n: int) -> Array:
@@ -159,6 +162,8 @@ def tangents_of(
     mesh: pv.DataSet, value: object, n: int, *, average_cells: bool, argument: str = "tangents"
 ) -> Array:
     """Return k tangents per point as an array of shape (n_points, k n), 0 < k < n."""
+    if isinstance(value, str):
+        _check.text(argument, value, expected="the name of a point array")
     of_cells = isinstance(value, str) and value not in mesh.point_data and value in mesh.cell_data
     if average_cells and of_cells:
         return _averaged_tangents(mesh, argument, str(value), n)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -252,9 +253,7 @@ class _Refinement:
         #: Cells of the mesh between whose points there is light to compare.
         self.measured: Bools = np.asarray(good[parents].all(axis=1))
         extent = between.points[good]
-        self.shortest = (
-            SHORTEST * float(np.linalg.norm(np.ptp(extent, axis=0))) if len(extent) else 0.0
-        )
+        self.shortest = SHORTEST * math.hypot(*np.ptp(extent, axis=0)) if len(extent) else 0.0
         #: Whether the budget was sufficient.
         self.enough = True
         #: Errors at random places of the present parts.
@@ -338,7 +337,7 @@ class _Refinement:
         u, v, w = b - a, c - a, c - b
         uu, vv, ww, uv = (np.einsum("ij,ij->i", x, y) for x, y in ((u, u), (v, v), (w, w), (u, v)))
         height = (uu * vv - uv * uv) / np.maximum(np.maximum(uu, vv), ww)
-        return np.asarray(good & (height > self.shortest**2))
+        return np.asarray(good & (height > self.shortest * self.shortest))
 
     def _long(self, cell: Indices, side: Indices) -> Bools:
         """Return whether edges are long enough to be split."""

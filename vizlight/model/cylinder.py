@@ -265,7 +265,7 @@ def _validated(
     """Return the shape of the batch, the tangents as frames, and wi and wo, all validated."""
     light, eye = _check.vectors("wi", wi, n=3), _check.vectors("wo", wo, n=3)
     line = _check.vectors("tangent", tangent, n=3)
-    return layout.batch(line[..., np.newaxis, :], light, eye)
+    return layout.batch("tangent", line[..., np.newaxis, :], wi=light, wo=eye)
 
 
 def _normal_parts(

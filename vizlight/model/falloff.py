@@ -47,7 +47,8 @@ def distance(d: ArrayLike, c1: float, c2: float, c3: float, /) -> Array:
     lengths = _check.floats("d", d)
     if not np.all(lengths >= 0):
         raise ValueError(_check.message("d", "distances of 0 or more", _check.describe(d)))
-    return fading(lengths, attenuation("c1, c2, c3", (c1, c2, c3)))
+    factors = [_check.number(name, c) for name, c in (("c1", c1), ("c2", c2), ("c3", c3))]
+    return fading(lengths, attenuation("c1, c2, c3", factors))
 
 
 def attenuation(name: str, value: object) -> tuple[float, float, float]:
@@ -139,13 +140,14 @@ def depth_cue(
     for name, value in (("intensity", light), ("cue", fade)):
         if not np.all(np.isfinite(value)):
             raise ValueError(_check.message(name, "finite light", _check.describe(value)))
+    depth, light, fade = _check.together(z=depth, intensity=light, cue=fade)
     scale = depth_scale(
         depth,
         front=front,
         back=back,
         front_scale=_check.number("front_scale", front_scale, low=0.0, high=1.0),
         back_scale=_check.number("back_scale", back_scale, low=0.0, high=1.0),
-        smooth=smooth,
+        smooth=_check.boolean("smooth", smooth),
     )
     return scale * light + (1 - scale) * fade
 
@@ -154,7 +156,11 @@ def depth_scale(
     z: Array, *, front: float, back: float, front_scale: float, back_scale: float, smooth: bool
 ) -> Array:
     """Return the scale S of :func:`depth_cue` for arguments that are already validated."""
-    t = np.clip((z.astype(np.float64, copy=False) - back) / (front - back), 0, 1)
+    wide = z.astype(np.float64, copy=False)
+    if max(abs(front), abs(back)) > 1e300:  # differences would overflow
+        wide, front, back = wide / 4, front / 4, back / 4
+    with np.errstate(over="ignore"):
+        t = np.clip((wide - back) / (front - back), 0, 1)
     if smooth:
         t = t * t * (3 - 2 * t)
     return (back_scale + (front_scale - back_scale) * t).astype(z.dtype, copy=False)
@@ -193,12 +199,11 @@ def fur(height: ArrayLike, sin_alpha: ArrayLike, density: float, /) -> Array:
     Source: Banks (7) and (8).
     """
     density = _check.number("density", density, low=0.0, high=1.0)
-    heights, sines = _check.floats("height", height), _check.floats("sin_alpha", sin_alpha)
+    heights = _check.floats("height", height)
     if not np.all(heights >= 0):
         raise ValueError(_check.message("height", "heights of 0 or more", _check.describe(height)))
-    if not np.all((sines >= 0) & (sines <= 1 + 8 * np.finfo(sines.dtype).eps)):
-        got = _check.describe(sin_alpha)
-        raise ValueError(_check.message("sin_alpha", "sines from 0 to 1", got))
+    sines = _check.floats_in("sin_alpha", sin_alpha, 0.0, 1.0, "sines")
+    heights, sines = _check.together(height=heights, sin_alpha=sines)
     return fur_passes(fur_path(heights, sines), density)
 
 

@@ -112,7 +112,7 @@ def split(direction: ArrayLike, frame: ArrayLike, /) -> tuple[Array, Array]:
     """
     rows = layout.as_frame(frame)
     x = _check.vectors("direction", direction, n=rows.shape[-1])
-    shape, rows, (x,) = layout.batch(rows, x)
+    shape, rows, (x,) = layout.batch("frame", rows, direction=x)
     x = np.where(np.isfinite(x).all(axis=0), x, np.nan)
     along, normal = kernels.split(x, rows)
     return np.ascontiguousarray(along.T).reshape(*shape, len(along)), normal.reshape(shape)

@@ -38,13 +38,18 @@ def reflection_from_half(n_h: ArrayLike, /, *, triple: ArrayLike = 0.0) -> Array
     ------
     TypeError
         If a value is not a real number.
+    ValueError
+        If a value is not from -1 to 1, or the shapes do not broadcast.
 
     Notes
     -----
     ``2 (N.H)^2 - 1 + 2 (L x H . N)^2``. Absolute error at most 4 eps.
     Source: Fisher and Woo (3) and (9).
     """
-    half, cross = _check.floats("n_h", n_h), _check.floats("triple", triple)
+    half, cross = _check.together(
+        n_h=_check.floats_in("n_h", n_h, -1.0, 1.0, "cosines"),
+        triple=_check.floats_in("triple", triple, -1.0, 1.0, "triple products of unit vectors"),
+    )
     return layout.result(2 * half * half - 1 + 2 * cross * cross)
 
 
@@ -64,14 +69,19 @@ def reflection_cosine(nu: ArrayLike, /, *, beta: ArrayLike, theta: ArrayLike) ->
     ------
     TypeError
         If an angle is not a real number.
+    ValueError
+        If an angle is not finite or above 1e9, or the shapes do not broadcast.
 
     Notes
     -----
     Absolute error at most 8 eps.
     Source: Fisher and Woo (7), which is (8), (9) and (12) in terms of angles.
     """
-    nu, beta, theta = (
-        _check.floats(name, value) for name, value in (("nu", nu), ("beta", beta), ("theta", theta))
+    nu, beta, theta = _check.together(
+        **{
+            name: _check.floats_in(name, value, -_check.LARGEST, _check.LARGEST, "angles")
+            for name, value in (("nu", nu), ("beta", beta), ("theta", theta))
+        }
     )
     return layout.result(np.cos(2 * nu) + 2 * np.square(np.sin(beta) * np.cos(theta)))
 
@@ -145,7 +155,9 @@ def _three(*vectors: ArrayLike) -> tuple[Array, Array, Array, tuple[int, ...]]:
         _check.vectors(name, v, n=3)
         for name, v in zip(("wi", "wo", "normal"), vectors, strict=True)
     ]
-    shape = np.broadcast_shapes(*(v.shape for v in arrays))
+    shape = _check.broadcast_shape(
+        **{name: v.shape for name, v in zip(("wi", "wo", "normal"), arrays, strict=True)}
+    )
     found = []
     for v in arrays:
         row, size = kernels.unit(np.ascontiguousarray(np.broadcast_to(v, shape).reshape(-1, 3).T))

@@ -133,7 +133,7 @@ def pixel_error(rho: ArrayLike, r: ArrayLike, /, *, factor: ArrayLike = 4.0) -> 
     off by one in some places of its first row and at 20 degrees, r = 30, where it is 1.162.
     """
     angle, r, factor = _angles("rho", rho), _powers("r", r), _powers("factor", factor)
-    angle, r, factor = _together({"rho": angle, "r": r, "factor": factor})
+    angle, r, factor = _check.together(rho=angle, r=r, factor=factor)
     q = factor * r
     with np.errstate(divide="ignore", invalid="ignore", under="ignore"):
         x = np.square(np.sin(angle / 2))
@@ -183,7 +183,7 @@ def max_pixel_error(
     """
     angle = _angles("light_eye_angle", light_eye_angle)
     r, factor = _powers("r", r), _powers("factor", factor)
-    beta, r, factor = _together({"light_eye_angle": angle / 2, "r": r, "factor": factor})
+    beta, r, factor = _check.together(light_eye_angle=angle / 2, r=r, factor=factor)
     more, less, at_more, at_less = extremes(beta, r, factor, lit=lit)
     phong_wins = more >= less
     theta = np.where(phong_wins, np.pi / 2 - np.arcsin(np.sqrt(at_more)), np.pi / 2)
@@ -229,7 +229,7 @@ def best_factor(light_eye_angle: ArrayLike, r: ArrayLike, /, *, by: Measure = "w
     _check.choice("by", by, get_args(Measure))
     angle = _angles("light_eye_angle", light_eye_angle).astype(np.float64)
     r = _powers("r", r, low=0.5, high=1e6).astype(np.float64)
-    beta, r = _together({"light_eye_angle": angle / 2, "r": r})
+    beta, r = _check.together(light_eye_angle=angle / 2, r=r)
     if by == "worst":
         low, high = np.full(beta.shape, np.log(1e-3)), np.full(beta.shape, np.log(16.0))
         for _ in range(36):
@@ -285,7 +285,7 @@ def simple_factor(light_eye_angle: ArrayLike, r: ArrayLike | None = None, /) -> 
     angle = _angles("light_eye_angle", light_eye_angle)
     if r is None:
         return result(4 * np.cos(angle / 2))
-    angle, power = _together({"light_eye_angle": angle, "r": _powers("r", r, low=0.5)})
+    angle, power = _check.together(light_eye_angle=angle, r=_powers("r", r, low=0.5))
     cosine = np.cos(angle / 2)
     return result(4 * cosine * (1 + (2 * cosine - 1) / (3 * power)))
 
@@ -355,7 +355,7 @@ def blinn_from_phong(
         If a value is out of its range.
     """
     by = _factor(light_eye_angle, factor)
-    power, by = _together({"shininess": _powers("shininess", shininess), "light_eye_angle": by})
+    power, by = _check.together(shininess=_powers("shininess", shininess), light_eye_angle=by)
     return result(power * by)
 
 
@@ -385,7 +385,7 @@ def phong_from_blinn(
         remedy = "at pi no half vector exists"
         raise ValueError(_check.message("light_eye_angle", "an angle below pi", "pi", remedy))
     power = _powers("shininess", shininess, high=_check.LARGEST**2)
-    power, by = _together({"shininess": power, "light_eye_angle": by})
+    power, by = _check.together(shininess=power, light_eye_angle=by)
     return result(power / by)
 
 
@@ -493,7 +493,7 @@ def terminator_error(
     s, width = _powers("shininess", shininess), _powers("width", width, high=1.0)
     times = 2.0 if model == "phong" else 1.0
 
-    _together({"light_eye_angle": beta, "shininess": s, "width": width})
+    _check.together(light_eye_angle=beta, shininess=s, width=width)
     safe = np.where(width > 0, width, 1)
 
     def log_loss(cosine: Array) -> Array:
@@ -523,16 +523,6 @@ def _factor(light_eye_angle: ArrayLike | None, factor: float) -> Array:
     return np.asarray(_check.number("factor", factor, low=1e-9, high=_check.LARGEST))
 
 
-def _together(arrays: dict[str, Array]) -> list[Array]:
-    """Return arrays broadcast to one shape; the keys name them in an error message."""
-    try:
-        return list(np.broadcast_arrays(*arrays.values()))
-    except ValueError as error:
-        shapes = ", ".join(str(array.shape) for array in arrays.values())
-        expected = "shapes that broadcast"
-        raise ValueError(_check.message(", ".join(arrays), expected, shapes)) from error
-
-
 def _angles(name: str, value: ArrayLike) -> Array:
     """Return angles from 0 to pi; pi rounded up to a narrower type is accepted and clamped."""
     angle = _check.floats(name, value)
@@ -544,8 +534,4 @@ def _angles(name: str, value: ArrayLike) -> Array:
 
 
 def _powers(name: str, value: ArrayLike, low: float = 0.0, high: float = _check.LARGEST) -> Array:
-    power = _check.floats(name, value)
-    if not np.all((power >= low) & (power <= high)):
-        expected = f"numbers from {low:g} to {high:g}"
-        raise ValueError(_check.message(name, expected, _check.describe(value)))
-    return power
+    return _check.floats_in(name, value, low, high)

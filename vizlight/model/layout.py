@@ -17,19 +17,19 @@ if TYPE_CHECKING:
 SLACK = 16.0
 
 
-def batch(frame: Array, *directions: Array) -> tuple[tuple[int, ...], Array, list[Array]]:
-    """Return the broadcast shape, and a frame and directions as component-first arrays."""
+def batch(
+    name: str, frame: Array, **directions: Array
+) -> tuple[tuple[int, ...], Array, list[Array]]:
+    """Return the broadcast shape, and a frame and directions as component-first arrays.
+
+    Messages call the frame by ``name``.
+    """
     k, n = frame.shape[-2:]
-    kind = np.result_type(frame, *directions)
-    shapes = [frame.shape[:-2], *(d.shape[:-1] for d in directions)]
-    try:
-        shape = np.broadcast_shapes(*shapes)
-    except ValueError as error:
-        got = ", ".join(str(one) for one in shapes)
-        expected = "directions and tangents whose batch shapes broadcast"
-        raise ValueError(_check.message("shapes", expected, got)) from error
+    kind = np.result_type(frame, *directions.values())
+    shapes = {key: d.shape[:-1] for key, d in directions.items()}
+    shape = _check.broadcast_shape(**{name: frame.shape[:-2]}, **shapes)
     rows = np.broadcast_to(frame, (*shape, k, n)).reshape(-1, k, n).transpose(1, 2, 0)
-    columns = [np.broadcast_to(d, (*shape, n)).reshape(-1, n).T for d in directions]
+    columns = [np.broadcast_to(d, (*shape, n)).reshape(-1, n).T for d in directions.values()]
     return (
         shape,
         np.ascontiguousarray(rows, dtype=kind),
@@ -52,7 +52,8 @@ def as_frame(frame: ArrayLike) -> Array:
     """Validate a tangent frame of shape (..., k, n): k < n, and each row orthonormal or zero."""
     array = as_rows("frame", frame, full=False)
     k = array.shape[-2]
-    gram = array @ np.swapaxes(array, -1, -2)
+    with np.errstate(over="ignore", invalid="ignore"):
+        gram = array @ np.swapaxes(array, -1, -2)
     diagonal = np.diagonal(gram, axis1=-2, axis2=-1)
     off = np.abs(gram - np.eye(k) * np.where(diagonal == 0, 0, 1)[..., np.newaxis])
     worst = float(off.max()) if off.size else 0.0

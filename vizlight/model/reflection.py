@@ -55,7 +55,7 @@ def diffuse(wi: ArrayLike, frame: ArrayLike, /, *, exponent: float = 1.0) -> Arr
     exponent = _check.number("exponent", exponent, low=0.0, high=_check.LARGEST)
     rows = layout.as_frame(frame)
     light = _check.vectors("wi", wi, n=rows.shape[-1])
-    shape, rows, (light,) = layout.batch(rows, light)
+    shape, rows, (light,) = layout.batch("frame", rows, wi=light)
     light, size = kernels.unit(light)
     along, sine = kernels.split(light, rows)
     value = np.where(size > 0, kernels.diffuse(sine, exponent, along), 0)
@@ -118,7 +118,7 @@ def specular(
     rows = layout.as_frame(frame)
     n = rows.shape[-1]
     light, eye = _check.vectors("wi", wi, n=n), _check.vectors("wo", wo, n=n)
-    shape, rows, (light, eye) = layout.batch(rows, light, eye)
+    shape, rows, (light, eye) = layout.batch("frame", rows, wi=light, wo=eye)
     light, light_size = kernels.unit(light)
     eye, eye_size = kernels.unit(eye)
     if model == "phong":

@@ -72,8 +72,7 @@ def probe(backend: Backend) -> Probe:
     ValueError
         If the name is unknown.
     """
-    if backend not in get_args(Backend):
-        raise ValueError(_check.message("backend", "'egl' or 'osmesa'", repr(backend)))
+    _check.choice("backend", backend, get_args(Backend))
     return _probe_window(backend, _WINDOWS[backend], f"try: {_INSTALL[backend]}")
 
 
@@ -122,6 +121,8 @@ def choose_backend(backend: Backend | None = None) -> Backend | None:
     BackendError
         If no backend can draw, or the class that the variable names cannot.
     """
+    if backend is not None:
+        _check.choice("backend", backend, get_args(Backend))
     if backend is None and (window := os.environ.get(_VARIABLE)):
         _check_variable(window)
         return None

@@ -13,7 +13,7 @@ from vizlight import _check
 from vizlight.files import check_output, replace_file
 from vizlight.filters.tint import unlit_colors
 from vizlight.mesh import records
-from vizlight.mesh.blocks import all_blocks
+from vizlight.mesh.blocks import all_blocks, check
 from vizlight.mesh.polylines import has_lines_only
 from vizlight.pictures.backends import (
     Backend,
@@ -158,6 +158,7 @@ def make_plotter(
     """
     shown = _check_panels(panels, scalars)
     _check_options(camera, cmap, clim, anti_aliasing)
+    _check.text("bar", bar, expected="a title")
     _check.choice("light", light, get_args(PictureLight))
     plain = cmap == "gray" and tuple(clim) == (0.0, 1.0) and not bar
     pixels = pixels_of(size)
@@ -214,6 +215,8 @@ def _check_panels(panels: Mesh | Panel | Sequence[Mesh | Panel], scalars: str) -
             )
         if not isinstance(panel.title, str):
             raise TypeError(_check.message("title", "a string", _check.describe(panel.title)))
+        check(panel.mesh)
+        _check.text("scalars", panel.scalars, expected="the name of an array")
         for mesh in all_blocks(panel.mesh):
             if panel.scalars not in mesh.point_data and panel.scalars not in mesh.cell_data:
                 known = ", ".join(map(repr, [*mesh.point_data, *mesh.cell_data])) or "none"
@@ -231,11 +234,11 @@ def _check_options(camera: object, cmap: str, clim: object, anti_aliasing: objec
         raise ValueError(_check.message("clim", "a lower and a higher number", clim))
     try:
         pv.LookupTable(cmap)
-    except ValueError as error:
-        raise ValueError(_check.message("cmap", "the name of a colour map", repr(cmap))) from error
-    if anti_aliasing is not None and anti_aliasing not in get_args(AntiAliasing):
-        kinds = "'ssaa', 'msaa', 'fxaa' or None"
-        raise ValueError(_check.message("anti_aliasing", kinds, repr(anti_aliasing)))
+    except (TypeError, ValueError) as error:
+        got = _check.describe(cmap)
+        raise ValueError(_check.message("cmap", "the name of a colour map", got)) from error
+    if anti_aliasing is not None:
+        _check.choice("anti_aliasing", anti_aliasing, get_args(AntiAliasing))
 
 
 def _background_of(shown: Sequence[Panel], background: ColorLike | None) -> pv.Color:
@@ -332,8 +335,8 @@ def pixels_of(size: object) -> list[int]:
     TypeError, ValueError
         If the size is not two positive integers within the limits of anti-aliasing.
     """
-    if np.shape(np.asarray(size, dtype=object)) != (2,):
-        raise ValueError(_check.message("size", "(width, height) in pixels", size))
+    if not isinstance(size, list | tuple | np.ndarray) or np.shape(size)[:1] != (2,):
+        raise ValueError(_check.message("size", "(width, height) in pixels", _check.describe(size)))
     sides = _check.vector("size", size)
     pixels = [_check.integer("size", int(p) if p == int(p) else p, low=1) for p in sides]
     if max(pixels) > LARGEST_SIDE or pixels[0] * pixels[1] > LARGEST_AREA:

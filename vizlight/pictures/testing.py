@@ -8,9 +8,10 @@ errors, each of which is insensitive to edges; together they reveal wrong light.
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import pyvista as pv
@@ -137,11 +138,12 @@ def assert_same_picture(
     seen = _pixels("got", got)
     name = "picture"
     if isinstance(expected, str | Path):
-        path = check_output(expected, (".png",)) if add_missing else Path(expected)
+        path = _check.path("expected", expected)
+        path = check_output(path, (".png",)) if add_missing else path
         name = path.stem
         if not path.exists() and add_missing:
             replace_file(path, Image.fromarray(seen).save)
-        if not path.exists():
+        if not os.path.exists(path):  # noqa: PTH110 - False for a name that is too long
             places = _keep(failed, name, {"got": seen})
             raise AssertionError(
                 f"{name}: the expected picture {str(path)!r} does not exist; store it with "
@@ -223,16 +225,22 @@ def _pixels(name: str, picture: Picture) -> Pixels:
         shot = picture.screenshot(return_img=True)
         return np.array(shot, dtype=np.uint8)[..., :3]
     if isinstance(picture, str | Path):
+        picture = _check.path(name, picture)
         try:
             with Image.open(picture) as image:
                 return np.array(image.convert("RGB"))
         except OSError as error:
             raise ValueError(_check.message(name, "a picture", f"{str(picture)!r}")) from error
-    array = np.asarray(picture)
+    array: Any = picture
+    try:
+        array = np.asarray(array)
+    except ValueError:  # rows of unequal length
+        array = np.zeros(0)
     if array.dtype != np.uint8 or array.ndim != 3 or array.shape[2] not in (3, 4) or not array.size:
         shape = "a plotter, a path or bytes of shape (h, w, 3)"
         raise TypeError(_check.message(name, shape, _check.describe(picture)))
-    return array[..., :3]
+    pixels: Pixels = array[..., :3]
+    return pixels
 
 
 def _size(picture: Pixels) -> str:

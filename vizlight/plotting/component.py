@@ -10,6 +10,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight.files import check_output
 from vizlight.filters import lighting, relight
 from vizlight.filters.tint import RGB, unlit_colors
 from vizlight.mesh import blocks, records
@@ -49,6 +50,8 @@ REFUSED = {
     "backface_params": "leave it out; two_sided=True lights both sides",
     "copy_mesh": "pass mesh.copy()",
 }
+#: Endings of the names of pictures that VTK writes.
+PICTURES = (".png", ".jpeg", ".jpg", ".bmp", ".tif", ".tiff")
 #: Coefficients that a scene has and PyVista takes as keywords.
 MATERIAL = ("ambient", "diffuse", "specular", "specular_power")
 
@@ -134,6 +137,8 @@ class Component:
         blocks.check(mesh)
         _check.instance("scene", scene, Scene, optional=True)
         _check.choice("light", light, get_args(LightAt))
+        if scalars is not None:
+            _check.text("scalars", scalars, expected="the name of an array")
         own = {key: value for key, value in options.items() if key in LIGHT}
         drawing = {key: value for key, value in options.items() if key not in LIGHT}
         _check_drawing(drawing, scene)
@@ -171,9 +176,12 @@ class Component:
         ValueError
             If the actor has no live light.
         """
+        expected = "one of plotter.vizlight.add_mesh"
+        if not hasattr(actor, "GetAddressAsString"):
+            raise TypeError(_check.message("actor", expected, _check.describe(actor)))
         live = self._live_of(actor)
         if live is None or live.painter is None:
-            raise ValueError(_check.message("actor", "one of plotter.vizlight.add_mesh", actor))
+            raise ValueError(_check.message("actor", expected, actor))
         plotter = self._open_plotter()
         return live.painter.explain(live, live.scene_of(plotter.renderer, actor))
 
@@ -386,6 +394,8 @@ def add_recorded(
         None, and nothing is added, if the mesh has no such light, the record does not suffice, or
         the light cannot be computed in each fragment.
     """
+    blocks.check(mesh)
+    _check.text("name", name, expected="the name of the light")
     light = lighting.DEFAULT_NAME if name == RGB else name
     if not relight.is_lit(mesh, light) or name not in records.made(mesh, light):
         return None
@@ -452,6 +462,21 @@ def plot(
     TypeError, ValueError
         As for ``plotter.vizlight.add_mesh``.
     """
+    for name, flag in (("off_screen", off_screen), ("notebook", notebook)):
+        if flag is not None:
+            _check.boolean(name, flag)
+    if window_size is not None:
+        sides = _check.vector("window_size", window_size)
+        if len(sides) != 2 or not all(1 <= side <= 1 << 14 for side in sides):
+            expected = "(width, height), each from 1 to 16384 pixels"
+            raise ValueError(_check.message("window_size", expected, sides))
+        window_size = (int(sides[0]), int(sides[1]))
+    if camera is not None and not hasattr(camera, "GetPosition"):
+        raise TypeError(_check.message("camera", "a pyvista.Camera", _check.describe(camera)))
+    if screenshot is not None:
+        screenshot = check_output(screenshot, PICTURES)
+    if jupyter_backend is not None:
+        _check.text("jupyter_backend", jupyter_backend)
     plotter: Any = pv.Plotter(
         off_screen=off_screen,
         notebook=notebook,

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 from vizlight import _check
 from vizlight.model import falloff
+from vizlight.scene.view import View
 
 if TYPE_CHECKING:
     from vizlight._types import Color, ColorLike, Vector, VectorLike
-    from vizlight.scene.view import View
 
 __all__ = ["Light"]
 
@@ -86,15 +86,17 @@ class Light:
             intensity=_check.number("intensity", intensity, low=0.0, high=_check.LARGEST),
             attenuation=falloff.attenuation("attenuation", attenuation),
             color=_check.color("color", color),
-            follows_view=bool(follows_view),
+            follows_view=_check.boolean("follows_view", follows_view),
         )
         given = sum(x is not None for x in (self.direction, self.position))
         if given != (0 if self.follows_view else 1):
             raise ValueError(
                 _check.message(
                     "Light",
-                    "either direction= (toward the light) or position=",
-                    "both" if given == 2 else "neither",
+                    "neither direction= nor position= with follows_view=True"
+                    if self.follows_view
+                    else "either direction= (toward the light) or position=",
+                    ("neither", "one of them", "both")[given],
                     "Light.headlight() makes a light that follows the view",
                 )
             )
@@ -142,9 +144,12 @@ class Light:
 
         Raises
         ------
+        TypeError
+            If the view is not a :class:`vizlight.View`.
         ValueError
             If the light is a headlight and there is no view.
         """
+        _check.instance("view", view, View, optional=True)
         if not self.follows_view:
             return self
         if view is None:

@@ -128,7 +128,17 @@ class Scene:
         return Scene(**{**vars(self), **changes})
 
     def moved(self, offset: VectorLike, /) -> Scene:
-        """Return the scene translated by an offset; depths from the eye do not change."""
+        """Return the scene translated by an offset; depths from the eye do not change.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If the offset is not one finite vector of as many components as those of the scene.
+        """
+        offset = _check.vector("offset", offset)
+        if self.n not in (None, len(offset)):
+            expected = f"{self.n} components, as the vectors of the scene have"
+            raise ValueError(_check.message("offset", expected, len(offset)))
         lights = tuple(
             dataclasses.replace(light, position=tuple(np.add(light.position, offset)))
             if light.position is not None
@@ -167,9 +177,8 @@ class Scene:
         if parts.get("lights") is not None:
             lights = parts["lights"]
             if isinstance(lights, str | Mapping) or not isinstance(lights, Iterable):
-                raise TypeError(
-                    _check.message("lights", "a list of dicts", _check.describe(lights))
-                )
+                expected, got = "a list of dicts", _check.describe(lights)
+                raise TypeError(_check.message("values, lights", expected, got))
             parts["lights"] = [Light(**_fields("lights", light, Light)) for light in lights]
         kinds: dict[str, type[Material] | type[View] | type[DepthCue]] = {
             "material": Material, "view": View, "depth_cue": DepthCue,

@@ -53,7 +53,9 @@ class View:
     ) -> None:
         position = _check.optional_vector("position", position)
         direction = _check.optional_vector("direction", direction, direction=True)
-        parallel = position is None if parallel is None else bool(parallel)
+        if parallel is None:
+            parallel = position is None
+        parallel = _check.boolean("parallel", parallel)
         if position is None and direction is None:
             raise ValueError(
                 _check.message(
@@ -157,7 +159,7 @@ class DepthCue:
             back_scale=_check.number("back_scale", back_scale, low=0.0, high=1.0),
             cue=_check.number("cue", cue, low=0.0, high=_check.LARGEST),
             color=_check.color("color", color),
-            smooth=bool(smooth),
+            smooth=_check.boolean("smooth", smooth),
         )
         if self.front is not None and self.front == self.back:
             raise ValueError(_check.message("front", "a depth other than back", self.front))

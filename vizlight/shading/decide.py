@@ -74,10 +74,13 @@ def plan(
         option does not fit, or the tolerance is less than the rounding of the float32 that is
         asked for.
     """
-    n = _check.integer("n", n, low=2)
+    n = _check.integer("n", n, low=2, high=int(_check.LARGEST))
+    normals = _check.boolean("normals", normals)
+    shadowed = _check.boolean("shadowed", shadowed)
+    fur = _check.number("fur", fur, low=0.0, high=1.0)
     if base_tangents is not None:
         base_tangents = _check.integer("base_tangents", base_tangents, low=1)
-    layout = Layout(n, k, bool(normals), base_tangents or 0, bool(shadowed), fur)
+    layout = Layout(n, k, normals, base_tangents or 0, shadowed, fur)
     made = decide(scene, layout, ShadingOptions(**options), dtype)
     return dataclasses.replace(made, code=compiled.why_not(made) or compiled.WHERE_IT_PAYS)
 
@@ -147,9 +150,10 @@ def _needed(scene: Scene, layout: Layout, options: ShadingOptions) -> tuple[Scen
 
 def _precision(dtype: DTypeLike) -> np.dtype[np.floating]:
     for kind in (np.dtype(np.float32), np.dtype(np.float64)):
-        if np.dtype(dtype) == kind:
+        # Comparison refuses what is no type.
+        if isinstance(dtype, str | type | np.dtype) and kind == dtype:
             return kind
-    raise ValueError(_check.message("dtype", "float32 or float64", np.dtype(dtype)))
+    raise ValueError(_check.message("dtype", "float32 or float64", _check.describe(dtype)))
 
 
 def _check_layout(layout: Layout, options: ShadingOptions) -> None:

@@ -112,6 +112,7 @@ def observed(observer: Observer | None, /) -> Iterator[None]:
         Function of the inputs, the scene, the :class:`Shading` and the options of a run; None
         for none.
     """
+    _check.function("observer", observer, optional=True)
     token = _OBSERVER.set(observer)
     try:
         yield
@@ -256,6 +257,9 @@ def run(
         As :func:`shade`.
     """
     _check.instance("scene", scene, Scene)
+    _check.instance("inputs", inputs, ShadingInputs, home="engine")
+    _check.instance("options", options, ShadingOptions, home="engine")
+    _check.function("progress", progress, optional=True)
     inputs.check(sum(light.intensity > 0 for light in scene.lights))
     if inputs.origin is not None:
         scene = scene.moved([-x for x in inputs.origin])
@@ -313,7 +317,20 @@ def depth_range(
     -------
     near, far : float
         Depths in the unit of the points; (inf, -inf) if there is no point.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If the points are not real numbers of shape (N, n), or the scene has no view in n-space.
     """
+    _check.instance("scene", scene, Scene)
+    if scene.view is None:
+        raise ValueError(_check.message("scene", "a view, from which depth is measured", None))
+    points = array_source("points", points)
+    n = len(scene.view.position or scene.view.direction or ())
+    if len(points.shape) != 2 or points.shape[1] != n:
+        raise ValueError(_check.message("points", f"shape (N, {n})", f"shape {points.shape}"))
+    block = _check.integer("block", block, low=1)
     near, far = np.inf, -np.inf
     for start in range(0, points.shape[0], block):
         depth = view_depth(scene.view, columns(points, slice(start, start + block)))

@@ -221,10 +221,7 @@ def array_source(name: str, value: ArrayLike | ArraySource) -> ArraySource:
     if hasattr(value, "dtype") and not isinstance(value, np.ndarray):
         source: ArraySource = value  # type: ignore[assignment]
         return source
-    array: NDArray[np.generic] = np.asarray(_check.unmasked(value))
-    if array.dtype.kind not in "iubf":
-        raise TypeError(_check.message(name, "real numbers", _check.describe(array)))
-    return array
+    return _check.reals(name, value)
 
 
 def _check_tangents(name: str, shape: tuple[int, ...], counts: set[int], n: int) -> None:

@@ -101,6 +101,9 @@ class Bundle:
         if grid > FINEST_GRID:
             raise ValueError(_check.message("grid", f"at most {FINEST_GRID}", grid))
         depth = _check.number("depth", self.depth, low=1e-6, high=1e6)
+        if self.lines is not None and not hasattr(self.lines, "GetDataObjectType"):
+            expected = "a PyVista mesh of lines, or None"
+            raise TypeError(_check.message("Bundle(lines=)", expected, _check.describe(self.lines)))
         _check.set_fields(self, depth=depth, directions=directions, grid=grid)
 
 
@@ -205,10 +208,8 @@ class ShadingOptions:
             highlight_error=_check.number("highlight_error", self.highlight_error, low=0.0),
             tolerance=_check.number("tolerance", self.tolerance, low=0.0),
             terminator=_check.number("terminator", self.terminator, low=0.0, high=1.0),
-            compensate=_check.boolean("compensate", self.compensate),
-            two_sided=_check.boolean("two_sided", self.two_sided),
-            components=_check.boolean("components", self.components),
         )
+        _check.flags(self)
         if self.tolerance and self.highlight_error:
             remedy = "the tolerance includes the error of the highlights"
             raise ValueError(
@@ -292,8 +293,6 @@ class LightOptions(ShadingOptions):
     def __post_init__(self) -> None:
         super().__post_init__()
         _check.set_fields(self, bundle=_bundle(self.bundle))
-        for name in ("flip_normals", "average_cells"):
-            _check.set_fields(self, **{name: _check.boolean(name, getattr(self, name))})
         _check.set_fields(self, refine=_check.number("refine", self.refine, low=0.0))
         if 0 < self.refine < FINEST:
             expected, remedy = f"0 or {FINEST:g} at least", "a picture shows 1/255"
@@ -308,6 +307,10 @@ class LightOptions(ShadingOptions):
 def _bundle(value: object) -> bool | Bundle:
     """Return False or a bundle, which a record holds as a dict."""
     if isinstance(value, Mapping):
+        known = [field.name for field in dataclasses.fields(Bundle)]
+        if not set(value) <= set(known):
+            got = _check.describe(sorted(map(str, value)))
+            raise ValueError(_check.message("bundle", f"a dict of {', '.join(known)}", got))
         value = Bundle(**value)
     if isinstance(value, Bundle):
         return value
@@ -324,11 +327,15 @@ def check_sides(facing: object, feature_angle: object) -> None:
         If a value does not fit.
     """
     _check.choice("facing", facing, get_args(Facing))
-    if feature_angle is not None and feature_angle != "auto":
+    if feature_angle is not None and not _is_auto(feature_angle):
         expected = "a number of degrees from 0 to 180, 'auto' or None"
         if isinstance(feature_angle, str):
             raise ValueError(_check.message("feature_angle", expected, repr(feature_angle)))
         _check.number("feature_angle", feature_angle, low=0.0, high=180.0)
+
+
+def _is_auto(value: object) -> bool:
+    return isinstance(value, str) and value == "auto"
 
 
 def documented(kind: type) -> dict[str, str]:

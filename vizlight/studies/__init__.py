@@ -63,7 +63,8 @@ def load(name: str, /) -> Study:
     ValueError
         If there is no study of that name.
     """
-    if name not in names():
-        raise ValueError(_check.message("study", f"one of {', '.join(names())}", repr(name)))
+    if not (isinstance(name, str) and name in names()):
+        expected = f"one of {', '.join(names())}"
+        raise ValueError(_check.message("study", expected, _check.describe(name)))
     study: Study = importlib.import_module(f"vizlight.studies.{name}").STUDY
     return study

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
+
+from vizlight import _check
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -125,7 +128,8 @@ def cheapest(rows: Iterable[Row], limit: float = PIXEL, *, usual: Row | None = N
         Default among the rows. It is returned if it is within the limit and no other row is
         clearly cheaper.
     """
-    good = [row for row in rows if row.error <= limit and not math.isnan(row.cost)]
+    limit = _check.number("limit", limit, low=0.0)
+    good = [row for row in _rows(rows) if row.error <= limit and not math.isnan(row.cost)]
     best = min(good, key=lambda row: row.cost) if good else None
     if best and usual in good and usual and best.cost > CLEAR * usual.cost:
         return usual
@@ -144,8 +148,10 @@ def holding(rows: Iterable[Row], limit: float = PIXEL, *, coarse: bool = True) -
     coarse : bool, default: True
         Whether a larger parameter is coarser, like a step. Otherwise it is finer, like a count.
     """
+    limit = _check.number("limit", limit, low=0.0)
+    coarse = _check.boolean("coarse", coarse)
     found = None
-    for row in sorted(rows, key=lambda row: float(row.parameter), reverse=not coarse):
+    for row in sorted(_rows(rows), key=lambda row: float(row.parameter), reverse=not coarse):
         if not row.error <= limit:
             break
         found = row
@@ -158,9 +164,22 @@ def order(rows: Sequence[Row]) -> float:
     Parameters
     ----------
     rows : sequence of Row
-        Rows of one method, with parameters and errors above 0.
+        Two rows or more of one method, with parameters and errors above 0.
     """
+    rows = _rows(rows)
+    least = min((min(float(row.parameter), row.error) for row in rows), default=0.0)
+    if len({row.parameter for row in rows}) < 2 or not 0 < least < math.inf:
+        expected = "two rows or more, with parameters and errors above 0"
+        raise ValueError(_check.message("rows", expected, _check.describe(rows)))
     return slope([float(row.parameter) for row in rows], [row.error for row in rows])
+
+
+def _rows(rows: object) -> list[Row]:
+    """Return rows as a list, each a :class:`Row`."""
+    given: list[Any] = list(rows) if isinstance(rows, list | tuple | Iterator) else [rows]
+    for row in given:
+        _check.instance("rows", row, Row, home="studies")
+    return given
 
 
 def slope(x: Sequence[float], y: Sequence[float]) -> float:

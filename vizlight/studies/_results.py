@@ -4,22 +4,23 @@ from __future__ import annotations
 
 import csv
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vizlight import _console, _progress
-from vizlight.studies._framework import PIXEL, Curve
+from vizlight import _check, _console, _progress
+from vizlight.studies._framework import PIXEL, Curve, Study
 from vizlight.studies._measuring import MOST_SPREAD, noted_spreads
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
     from pathlib import Path
 
     from matplotlib.axes import Axes
 
-    from vizlight.studies._framework import Panel, Row, Study
+    from vizlight.studies._framework import Panel, Row
 
 #: Colours of Okabe and Ito, which colour-blind readers can distinguish; markers and line styles.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
@@ -173,7 +174,9 @@ def run(name: str, study: Study, /, *, quick: bool = False, progress_bar: bool =
         Rows, and the verdict. There is none if the two shortest repeats of a processor time differ
         by more than 15 %.
     """
-    steps = study.steps(quick)
+    _check.text("name", name, expected="the name of a study")
+    _check.instance("study", study, Study, home="studies")
+    steps = study.steps(_check.boolean("quick", quick))
     rows: list[Row] = []
     with (
         noted_spreads() as spreads,
@@ -209,6 +212,7 @@ def print_result(result: Result) -> None:
     """
     from rich.table import Table
 
+    _check.instance("result", result, Result, home="studies")
     study, console = result.study, _console.console()
     headings, lines = result.table()
     table = Table(title=f"vizlight study {result.name}")
@@ -233,6 +237,10 @@ def print_list(studies: Mapping[str, Study]) -> None:
     """
     from rich.table import Table
 
+    if not isinstance(studies, Mapping):
+        raise TypeError(_check.message("studies", "a dict of studies", _check.describe(studies)))
+    for study in studies.values():
+        _check.instance("studies", study, Study, home="studies")
     table = Table("study", "approximated quantity", "reference", "parameter")
     table.title = "vizlight study"
     for name, study in studies.items():

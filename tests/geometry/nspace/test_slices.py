@@ -161,8 +161,8 @@ def test_where_the_manifold_touches_the_hyperplane_there_is_no_frame():
     [
         ([1.0, -1], [[0, 1, 1, 1, 1]], "simplices: expected integers of shape"),
         ([1.0, -1], [[0.0, 1]], "simplices: expected integers of shape"),
-        ([1.0, -1], [[0, 2]], "simplices: expected indices of points from 0 to 1"),
-        ([1.0, -1], [[-1, 0]], "simplices: expected indices of points"),
+        ([1.0, -1], [[0, 2]], "simplices: expected indices of values from 0 to 1"),
+        ([1.0, -1], [[-1, 0]], "simplices: expected indices of values"),
     ],
 )
 def test_bad_simplices(values, simplices, words):

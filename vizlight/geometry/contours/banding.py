@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vizlight.geometry import axial
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -141,10 +143,15 @@ class Laminae:
         ndarray of int, shape (C,)
             Indices of laminae, sorted by the depth of their centres. If the view direction lies
             in the planes of the laminae, each is seen as a line and no order is right: use bands.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If the direction is not one finite vector of 3 components that is not 0.
         """
         size = np.diff(self.offsets)
         lamina = np.repeat(np.arange(len(size)), size)
-        depth = self.points @ np.asarray(toward, dtype=np.float64)
+        depth = self.points @ axial.unit("toward", toward)
         return np.argsort(np.bincount(lamina, depth, len(size)) / np.maximum(size, 1))
 
 

@@ -113,8 +113,7 @@ def truncus(
     segments = axial.options(segments, form, get_args(Form)) or axial.FEWEST
     if method is None:
         method = "curves" if position is not None and form == "bands" else "rulings"
-    if method not in get_args(Method):
-        raise ValueError(_check.message("method", "'rulings' or 'curves'", repr(method)))
+    _check.choice("method", method, get_args(Method))
     if method == "curves" and form == "laminae":
         remedy = "use form='bands' or method='rulings'"
         raise ValueError(_check.message("method", "'rulings' with laminae", "'curves'", remedy))

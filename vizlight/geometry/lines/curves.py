@@ -63,10 +63,10 @@ def polyline_tangents(
     count = len(positions)
     ids = np.arange(count)
     if connectivity is not None:
-        ids = _indices("connectivity", connectivity, count)
+        ids = _check.indices("connectivity", connectivity, count)
     starts = np.array([0, len(ids)])
     if offsets is not None:
-        starts = _indices("offsets", offsets, len(ids) + 1)
+        starts = _check.indices("offsets", offsets, len(ids) + 1)
     if len(starts) == 0 or starts[0] != 0 or starts[-1] != len(ids) or np.any(np.diff(starts) < 0):
         raise ValueError(_check.message("offsets", f"rising indices from 0 to {len(ids)}", starts))
     tangents = np.zeros_like(positions)
@@ -81,18 +81,6 @@ def polyline_tangents(
     found[~np.all(np.isfinite(found), axis=1)] = 0
     tangents[ids] = found[vertex]
     return tangents
-
-
-def _indices(name: str, value: ArrayLike, limit: int) -> Indices:
-    array = np.asarray(value)
-    if array.size == 0:
-        array = array.astype(np.intp)
-    if array.dtype.kind not in "iu":
-        raise TypeError(_check.message(name, "integers", array))
-    if array.ndim != 1 or (array.size and not 0 <= array.min() <= array.max() < limit):
-        expected = f"a 1-D array of indices from 0 to {limit - 1}"
-        raise ValueError(_check.message(name, expected, array))
-    return array.astype(np.intp, copy=False)
 
 
 def _vertex_tangents(place: Array, line: Indices) -> Array:

@@ -69,10 +69,12 @@ def seeds(
     vertices = _check.vectors("points", points, n=3)
     triangles = _check.cells("faces", faces, len(vertices), (3,))
     count = _check.integer("count", count, low=0)
+    _check.holds("count", (count, 3))
     seed = _check.integer("seed", seed, low=0)
     order, total = laid(vertices, triangles)
     if count and not (len(total) and total[-1] > 0):
-        raise ValueError(_check.message("faces", "triangles with an area above 0", "none"))
+        expected = "triangles with an area above 0 between finite points"
+        raise ValueError(_check.message("faces", expected, "none"))
     face, weights = np.empty(count, np.intp), np.empty((count, 3), np.float32)
     for start in range(0, count, SEED_BLOCK):
         block = slice(start, start + SEED_BLOCK)
@@ -260,15 +262,44 @@ def grow(
     Returns
     -------
     ndarray, shape (F, S + 1, 3)
-        Points from root to tip, of the type of the roots.
+        Points from root to tip, of the type of the roots; NaN where an array is not finite.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument does not hold real numbers or does not have its shape, or a number is not
+        finite or above 1e9.
     """
-    way = np.ascontiguousarray(directions.T, dtype=roots.dtype)
-    target = None if toward is None else np.ascontiguousarray(toward.T, dtype=roots.dtype)
+    places = _check.vectors("roots", roots, n=3)
+    if places.ndim != 2:
+        raise ValueError(_check.message("roots", "shape (F, 3)", places))
+    count = len(places)
+
+    def rows(name: str, value: ArrayLike, *shapes: tuple[int, ...]) -> Array:
+        array = _check.floats(name, value).astype(places.dtype, copy=False)
+        if array.shape not in shapes:
+            expected = " or ".join(f"shape {shape}" for shape in shapes)
+            raise ValueError(_check.message(name, f"{expected}, one for each of roots", array))
+        return array
+
+    def number(name: str, value: float) -> float:
+        return _check.number(name, value, low=-_check.LARGEST, high=_check.LARGEST)
+
+    segments = _check.integer("segments", segments, low=1)
+    _check.holds("segments", (segments, *places.shape))
     grown = strands(
-        way, lengths, segments=segments, toward=target, bend=bend, curl=curl, turns=turns,
-        phase=phase,
-    )  # fmt: skip
-    return np.ascontiguousarray(grown.transpose(2, 0, 1)) + roots[:, np.newaxis]
+        np.ascontiguousarray(rows("directions", directions, (count, 3)).T),
+        rows("lengths", lengths, (count,), ()),
+        segments=segments,
+        toward=(
+            None if toward is None else np.ascontiguousarray(rows("toward", toward, (count, 3)).T)
+        ),
+        bend=number("bend", bend),
+        curl=number("curl", curl),
+        turns=number("turns", turns),
+        phase=None if phase is None else rows("phase", phase, (count,)),
+    )
+    return np.ascontiguousarray(grown.transpose(2, 0, 1)) + places[:, np.newaxis]
 
 
 def strands(

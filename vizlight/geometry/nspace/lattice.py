@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -36,13 +35,17 @@ def resolution(value: int | Sequence[int], k: int, closed: Sequence[bool]) -> tu
         If the value is not one integer or k of them, or one is less than 3 in a closed direction
         or less than 2 in an open one.
     """
-    sizes = tuple(value) if isinstance(value, Iterable) else (value,) * k
-    if len(sizes) != k:
-        raise ValueError(_check.message("resolution", f"1 or {k} integers", len(sizes)))
-    return tuple(
+    given: Any = value
+    several = isinstance(given, list | tuple) or np.ndim(given) == 1
+    if several and len(given) != k:
+        raise ValueError(_check.message("resolution", f"1 or {k} integers", len(given)))
+    sizes = tuple(given) if several else (given,) * k
+    counts = tuple(
         _check.integer("resolution", size, low=3 if wraps else 2)
         for size, wraps in zip(sizes, closed, strict=True)
     )
+    _check.holds("resolution", counts)
+    return counts
 
 
 def cells(shape: Sequence[int], closed: Sequence[bool], *, twisted: bool = False) -> Indices:

@@ -15,7 +15,6 @@ from vizlight.geometry.nspace import lattice
 from vizlight.geometry.nspace.parametric import (
     ROUNDING,
     Manifold,
-    check_callable,
     manifold,
     parametric,
 )
@@ -145,6 +144,7 @@ def veronese(*, radius: float = 1.0, resolution: int = 24) -> Manifold:
     """
     radius = radius_of("radius", radius)
     size = _check.integer("resolution", resolution, low=2)
+    _check.holds("resolution", (size, size))
     corners, cells = lattice.cube_skin(3, size, opposite=True)
     place = _round(corners, size)
     x, y, z = place.T
@@ -210,9 +210,8 @@ def complex_curve(
     conjugate, which is 0 if f is analytic. The inverse of f, a root or a logarithm, has the same
     surface with z and w exchanged, which a rotation in ``project`` does.
     """
-    check_callable("function", function)
-    if derivative is not None:
-        check_callable("derivative", derivative)
+    _check.function("function", function)
+    _check.function("derivative", derivative, optional=True)
     sides = _check.floats("domain", domain)
     if sides.shape != (2, 2):
         raise ValueError(_check.message("domain", "two pairs (low, high)", f"shape {sides.shape}"))
@@ -223,7 +222,11 @@ def complex_curve(
 
     def slope(z: Complex) -> Complex:
         if derivative is not None:
-            return _complex("derivative", derivative, z)
+            found = _complex("derivative", derivative, z)
+            if not np.all(np.isfinite(found)):
+                expected = "one that is finite on its domain"
+                raise ValueError(_check.message("derivative", expected, "NaN or infinity"))
+            return found
         return _slope(value, z, side)
 
     def place(x: Array, y: Array) -> tuple[Array, ...]:
@@ -347,6 +350,7 @@ def sphere3(*, radius: float = 1.0, resolution: int = 8) -> Manifold:
     """
     radius = radius_of("radius", radius)
     size = _check.integer("resolution", resolution, low=1)
+    _check.holds("resolution", (size, size, size))
     corners, cells = lattice.cube_skin(4, size)
     place = _round(corners, size)
     frame = np.stack([place[:, order] * sign for order, sign in _UNITS], axis=1)

@@ -61,11 +61,29 @@ class Manifold:
     cells : ndarray of int, shape (M, 2^k)
         Segments, quadrilaterals or hexahedra between the points, with corners in VTK's order. A
         closed direction shares its points across the seam.
+
+    Numbers that are not finite are kept; what is made of them is marked as invalid.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an array does not hold real numbers, or the shapes do not fit.
     """
 
     points: Array
     frame: Array
     cells: Indices
+
+    def __post_init__(self) -> None:
+        points, frame = (_check.floats(name, getattr(self, name)) for name in ("points", "frame"))
+        if points.ndim != 2 or points.shape[1] < 2:
+            raise ValueError(_check.message("points", "shape (N, n), n of 2 or more", points))
+        count, n = points.shape
+        if frame.ndim != 3 or frame.shape[::2] != (count, n) or not 0 < frame.shape[1] < n:
+            expected = f"shape ({count}, k, {n}) with k < {n}, for points of shape ({count}, {n})"
+            raise ValueError(_check.message("frame", expected, frame))
+        cells = _check.cells("cells", self.cells, count, (2 ** frame.shape[1],))
+        _check.set_fields(self, points=points, frame=frame, cells=cells)
 
     @property
     def k(self) -> int:
@@ -155,7 +173,7 @@ def parametric(
     >>> circle.points.shape, circle.frame.shape, circle.cells.shape
     ((64, 3), (64, 1, 3), (64, 2))
     """
-    check_callable("function", function)
+    _check.function("function", function)
     ends, wraps = _domain(domain, closed)
     k = len(ends)
     n = _check.integer("n", n, low=k + 1)
@@ -186,12 +204,6 @@ def parametric(
     return manifold(points, rows, lattice.cells(shape, wraps))
 
 
-def check_callable(name: str, value: object) -> None:
-    """Check that a value is callable."""
-    if not callable(value):
-        raise TypeError(_check.message(name, "a function", _check.describe(value)))
-
-
 def _domain(domain: object, closed: object) -> tuple[Array, tuple[bool, ...] | None]:
     ends = _check.floats("domain", domain).astype(np.float64)
     if ends.ndim != 2 or ends.shape[1] != 2 or not 1 <= len(ends) <= 3:
@@ -201,8 +213,11 @@ def _domain(domain: object, closed: object) -> tuple[Array, tuple[bool, ...] | N
         raise ValueError(_check.message("domain", "finite pairs with low < high", ends.tolist()))
     if closed is None:
         return ends, None
-    wraps = np.asarray(closed)
     expected = f"a bool or {len(ends)} of them"
+    try:
+        wraps = np.asarray(closed)
+    except ValueError as error:
+        raise TypeError(_check.message("closed", expected, _check.describe(closed))) from error
     if wraps.dtype.kind not in "biu" or not np.isin(wraps, (0, 1)).all():
         raise TypeError(_check.message("closed", expected, _check.describe(closed)))
     if wraps.shape not in ((), (len(ends),)):

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight import _check
+from vizlight.model import layout
 from vizlight.model.frames import default_rtol, orthonormalize
 
 if TYPE_CHECKING:
@@ -32,6 +33,8 @@ AXES = "xyzw"
 #: Matrices whose rows deviate more than this from orthonormality are rejected. A matrix that was
 #: written as text with 7 digits passes.
 SLACK = 2e-7
+#: Least distance of an eye; one over it is the largest.
+NEAREST = 1e-200
 #: Below this volume of a frame's image the rank comes from singular values, because the volume has
 #: lost half its digits.
 DOUBTFUL = 1e-6
@@ -60,7 +63,7 @@ def plane_rotation(n: int, plane: str | Sequence[int], angle: float, /) -> Array
     TypeError, ValueError
         If the axes are equal or out of range, or the angle is not finite.
     """
-    n = _check.integer("n", n, low=2)
+    n = _dimension(n)
     i, j = _axes(plane, n)
     angle = _check.number("angle", angle)
     matrix = np.eye(n)
@@ -91,6 +94,7 @@ def rotation(n: int, turns: object, /) -> Array:
     TypeError, ValueError
         If ``turns`` is none of these, or the matrix is a reflection or not orthogonal to 2e-7.
     """
+    n = _dimension(n)
     # JSON turns the tuple (plane, angle) into a list.
     if (
         isinstance(turns, list | tuple)
@@ -151,6 +155,13 @@ def _axes(plane: str | Sequence[int], n: int) -> tuple[int, int]:
     return axes[0], axes[1]
 
 
+def _dimension(n: object) -> int:
+    """Return the dimension of a space whose matrices memory holds."""
+    size = _check.integer("n", n, low=2)
+    _check.holds("n", (size, size))
+    return size
+
+
 def turn(vectors: ArrayLike, matrix: ArrayLike, /) -> Array:
     """Return ``R x`` for vectors or positions x.
 
@@ -164,6 +175,7 @@ def turn(vectors: ArrayLike, matrix: ArrayLike, /) -> Array:
     Returns
     -------
     ndarray, shape (..., n)
+        Not finite where a number is not.
 
     Raises
     ------
@@ -178,8 +190,10 @@ def turn(vectors: ArrayLike, matrix: ArrayLike, /) -> Array:
     square = _check.floats("matrix", matrix)
     n = rows.shape[-1]
     if square.shape != (n, n):
-        raise ValueError(_check.message("matrix", f"shape ({n}, {n})", f"shape {square.shape}"))
-    return rows @ square.T
+        expected = f"shape ({n}, {n}), since vectors have {n} components"
+        raise ValueError(_check.message("matrix", expected, f"shape {square.shape}"))
+    with np.errstate(over="ignore", invalid="ignore"):
+        return rows @ square.T
 
 
 def perspective(points: ArrayLike, /, *, distance: float | None = None) -> Array:
@@ -198,8 +212,8 @@ def perspective(points: ArrayLike, /, *, distance: float | None = None) -> Array
     Returns
     -------
     ndarray, shape (..., 3)
-        Image; not finite on the hyperplane of the eye and inverted behind it (see
-        :func:`image_and_depth`).
+        Image; not finite on the hyperplane of the eye and where a point is not finite, and inverted
+        behind the eye (see :func:`image_and_depth`).
 
     Raises
     ------
@@ -273,7 +287,7 @@ def push_forward(
     -------
     ndarray, shape (..., k, 3)
         Images of the vectors; zero for a vector that points at the eye. The images of k independent
-        tangents may be dependent (a silhouette).
+        tangents may be dependent (a silhouette). Not finite where points or vectors are not.
 
     Raises
     ------
@@ -346,16 +360,20 @@ def push_frame(
     For orthonormal tangents the space that the rows span is known to 4 eps divided by the smallest
     singular value that is counted.
     """
-    rows = orthonormalize(frame)[0]
+    rows = orthonormalize(layout.as_rows("frame", frame, full=True))[0]
     k, n = rows.shape[-2:]
+    points = _check.floats("points", points)
+    if points.shape != (*rows.shape[:-2], n):
+        expected = f"shape {(*rows.shape[:-2], n)} for a frame of shape {rows.shape}"
+        raise ValueError(_check.message("points", expected, points))
     if k > 3:
         raise ValueError(_check.message("frame", "3 tangents or fewer", k))
     tolerance = default_rtol(n, rows.dtype) if rtol is None else rtol
-    tolerance = _check.number("rtol", tolerance, low=0.0)
+    tolerance = _check.number("rtol", tolerance, low=0.0, high=_check.LARGEST)
     image = push_forward(rows, points, distance=distance)
     with np.errstate(all="ignore"):
         if distance is not None:
-            image /= _rounding(np.asarray(points), float(distance))[..., np.newaxis, np.newaxis]
+            image /= _rounding(points, check_distance(distance))[..., np.newaxis, np.newaxis]
         found, rank = orthonormalize(image)
         # The volume that the images span is at most the smallest singular value.
         doubtful = ~(_squared_volume(image) > max(DOUBTFUL, tolerance) ** 2)
@@ -402,7 +420,8 @@ def _significant(image: Array, tolerance: float) -> tuple[Array, Indices]:
 
 def check_distance(distance: object) -> float:
     """Return the distance of the eye, a number above 0."""
-    return _check.positive("distance", distance)
+    positive = _check.positive("distance", distance)
+    return _check.number("distance", positive, low=NEAREST, high=1 / NEAREST)
 
 
 def _steps(points: Array, distance: float) -> Iterator[tuple[Array, Array]]:

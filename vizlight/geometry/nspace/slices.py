@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.sparse import csr_array
+from scipy.sparse import csr_array, issparse
 
 from vizlight import _check
+from vizlight.model import layout
 from vizlight.model.frames import default_rtol, orthonormalize
 
 if TYPE_CHECKING:
@@ -75,7 +76,7 @@ def cut(values: ArrayLike, simplices: ArrayLike, /) -> tuple[Indices, Array, NDA
     height = _check.floats("values", values).astype(np.float64)
     if height.ndim != 1:
         raise ValueError(_check.message("values", "shape (N,)", height))
-    corners = _check.cells("simplices", simplices, len(height), list(_EDGES))
+    corners = _check.cells("simplices", simplices, len(height), list(_EDGES), of="values")
     size = corners.shape[1]
     corners = corners[np.all(np.isfinite(height[corners]), axis=1)]
     above = height[corners] >= 0
@@ -139,13 +140,16 @@ def mean_frame(frame: ArrayLike, shares: csr_array[np.floating, Any], /) -> Arra
     is known to 2 eps divided by the cosine of the largest angle between the spaces. Between two
     points of a smooth manifold the error of the mean grows with the square of their distance.
     """
-    rows, _ = orthonormalize(frame)
+    rows, _ = orthonormalize(layout.as_rows("frame", frame, full=True))
     if rows.ndim != 3:
         raise ValueError(_check.message("frame", "shape (N, k, n)", f"shape {rows.shape}"))
     count, k, n = rows.shape
-    parts = shares.tocsr()
+    if not issparse(shares) or shares.dtype.kind not in "iuf":
+        expected = "a sparse array of real numbers"
+        raise TypeError(_check.message("shares", expected, _check.describe(shares)))
+    parts = csr_array(shares)
     if parts.shape[1] != count:
-        expected = f"a matrix of {count} columns, one per point"
+        expected = f"a matrix of {count} columns, one per point of frame"
         raise ValueError(_check.message("shares", expected, f"shape {parts.shape}"))
     owner = np.repeat(np.arange(parts.shape[0]), np.diff(parts.indptr))
     # With entries sorted by share, the last entry of each owner is the one with its largest share.
@@ -196,13 +200,14 @@ def slice_frame(frame: ArrayLike, normal: ArrayLike, /, *, rtol: float | None = 
     space that the rows span is known to 2 eps divided by the sine of the angle between manifold and
     hyperplane.
     """
-    rows, rank = orthonormalize(frame)
+    rows, rank = orthonormalize(layout.as_rows("frame", frame, full=True))
     k, n = rows.shape[-2:]
     if k < 2:
         raise ValueError(_check.message("frame", "2 tangents or more", k))
     across = np.array(_check.vector("normal", normal, direction=True))
     if len(across) != n:
-        raise ValueError(_check.message("normal", f"{n} components", len(across)))
+        expected = f"{n} components, like the rows of frame"
+        raise ValueError(_check.message("normal", expected, len(across)))
     across /= np.abs(across).max()
     a = rows @ (across / np.linalg.norm(across))
     size = np.linalg.norm(a, axis=-1)

@@ -193,13 +193,17 @@ def hopf_fibres(
     """
     radius = radius_of("radius", radius)
     if base is None:
-        base = _spread(_check.integer("fibres", fibres, low=1))
+        fibres = _check.integer("fibres", fibres, low=1)
+        _check.holds("fibres", (fibres, 4))
+        base = _spread(fibres)
     places = _check.vectors("base", base, n=3).astype(np.float64)
-    size = np.linalg.norm(places.reshape(-1, 3), axis=1, keepdims=True)
-    if not np.all((size > 0) & np.isfinite(size)):
+    places = places.reshape(-1, 3)
+    largest = np.abs(places).max(axis=1, keepdims=True, initial=0.0)
+    if not np.all((largest > 0) & np.isfinite(largest)):
         expected = "points of the sphere, finite and not at its centre"
         raise ValueError(_check.message("base", expected, places))
-    a, b, c = (places.reshape(-1, 3) / size).T
+    places = places / largest
+    a, b, c = (places / np.linalg.norm(places, axis=1, keepdims=True)).T
     across = np.hypot(a, b)
     # |z1|^2 = (1 + c)/2 without cancellation where c is near -1, and z2 likewise.
     near, far = 1 + np.abs(c), across**2 / (1 + np.abs(c))

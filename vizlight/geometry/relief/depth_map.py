@@ -62,10 +62,13 @@ def depth_map(
     """
     axes = [_check.floats(name, a).astype(np.float64) for name, a in (("x", x), ("y", y))]
     for name, axis in zip("xy", axes, strict=True):
-        step = np.diff(axis)
+        step = np.diff(axis) if axis.ndim == 1 else np.zeros(1)
         if axis.ndim != 1 or len(axis) < 2 or not np.allclose(step, step[0]) or step[0] <= 0:
             raise ValueError(_check.message(name, "rising nodes of equal spacing", axis))
+    _check.function("progress", progress, optional=True)
     vertices = _check.vectors("points", points, n=3).astype(np.float64)
+    # A triangle with a vertex that is not finite, or too far for float64, covers no node.
+    vertices[~np.all(np.abs(vertices) < _check.FARTHEST, axis=-1)] = np.nan
     faces = _check.cells("triangles", triangles, len(vertices), (3,))
     # Positions are in units of the grid's spacing, from its first node.
     first = np.array([axis[0] for axis in axes])

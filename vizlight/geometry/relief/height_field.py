@@ -120,6 +120,9 @@ def make(x: ArrayLike, y: ArrayLike, z: ArrayLike, *, base: float | None, border
     wide: Array = heights.astype(np.float64)
     if np.isinf(wide).any():
         raise ValueError(_check.message("z", "finite heights, NaN in holes", "infinite heights"))
+    if not max(*(np.abs(axis).max() for axis in (*axes, np.nan_to_num(wide)))) <= _check.FARTHEST:
+        expected = f"a field within {_check.FARTHEST:g} of the origin"
+        raise ValueError(_check.message("x, y, z", expected, "one farther away"))
     there = ~np.isnan(wide)
     if not there.any():
         raise ValueError(_check.message("z", "heights", "NaN everywhere"))

@@ -78,7 +78,7 @@ def inside_length(
     -------
     ndarray, shape (...)
         Lengths in the unit of the mesh, float64; infinity where a ray never leaves the solid; NaN
-        for a point that is not finite.
+        for a point that is not finite, or farther than 1e100 from the origin.
 
     Raises
     ------
@@ -110,7 +110,7 @@ def inside_length(
     field = height_field.make(x, y, z, base=base, border=border)
     starts = _check.vectors("points", points, n=3)
     flat = starts.reshape(-1, 3).astype(np.float64) - field.origin
-    odd = ~np.all(np.isfinite(flat), axis=1)
+    odd = ~np.all(np.abs(flat) <= _check.FARTHEST, axis=1)
     flat[odd] = 0
     ray = toward(field, direction=direction, position=position)
 

@@ -99,9 +99,9 @@ def toward(azimuth: ArrayLike, altitude: ArrayLike, /) -> Array:
     if not np.all(np.abs(above) <= 90):
         expected = "degrees from -90 to 90"
         raise ValueError(_check.message("altitude", expected, _check.describe(altitude)))
-    around, above = np.radians(around % 360), np.radians(above)
-    east, north = np.cos(above) * np.sin(around), np.cos(above) * np.cos(around)
-    return np.stack(np.broadcast_arrays(east, north, np.sin(above)), axis=-1)
+    turn, rise = _check.together(azimuth=np.radians(around % 360), altitude=np.radians(above))
+    east, north = np.cos(rise) * np.sin(turn), np.cos(rise) * np.cos(turn)
+    return np.stack([east, north, np.sin(rise)], axis=-1)
 
 
 def disc(direction: VectorLike, diameter: float, count: int, /) -> Array:

@@ -68,14 +68,13 @@ class Solid:
         Parameters
         ----------
         factor : float
-            Ratio of new lengths to old ones, above 0.
+            Ratio of new lengths to old ones, from 1e-100 to 1e100.
         point : vector of 3 components, default: (0, 0, 0)
             Point that stays where it is.
         """
-        factor = _check.number("factor", factor, low=0.0)
-        if factor == 0:
-            raise ValueError(_check.message("factor", "a number above 0", factor))
-        middle = axial.triple("point", point)
+        factor = _check.positive("factor", factor, high=_check.FARTHEST)
+        factor = _check.number("factor", factor, low=1 / _check.FARTHEST)
+        middle = _check.coordinates("point", axial.triple("point", point))
         return self.moved(middle, 1 / factor).moved(-middle, 1.0)
 
     def rotate_vector(
@@ -96,7 +95,7 @@ class Solid:
         angle = math.radians(_check.number("angle", angle))
         cross = np.cross(np.eye(3), axis)
         turn = np.eye(3) + math.sin(angle) * cross + 2 * math.sin(angle / 2) ** 2 * cross @ cross
-        middle = axial.triple("point", point)
+        middle = _check.coordinates("point", axial.triple("point", point))
         return self.moved(middle, 1.0, turn).moved(-middle, 1.0)
 
     def rotate_x(self, angle: float, /, *, point: VectorLike = (0.0, 0.0, 0.0)) -> Solid:
@@ -125,6 +124,8 @@ class Solid:
             Results of analytic tests; for a point on a surface either value is possible.
         """
         places = np.asarray(_check.vectors("points", points, n=3), dtype=np.float64)
+        if places.ndim != 2:
+            raise ValueError(_check.message("points", "shape (N, 3)", places))
         return self.combine(iter([solid.inside(places) for solid in self.primitives()]))
 
 
@@ -200,9 +201,7 @@ class Boolean(Solid):
     second: Solid
 
     def __post_init__(self) -> None:
-        if self.operation not in ("union", "intersection", "difference"):
-            expected = "'union', 'intersection' or 'difference'"
-            raise ValueError(_check.message("operation", expected, repr(self.operation)))
+        _check.choice("operation", self.operation, ("union", "intersection", "difference"))
         given: tuple[tuple[str, object], ...] = (("first", self.first), ("second", self.second))
         for name, solid in given:
             if not isinstance(solid, Solid):

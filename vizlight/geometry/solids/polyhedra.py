@@ -133,16 +133,11 @@ class Polyhedron(Primitive):
             expected = "a pyvista.PolyData, or an array of points and one of triangles"
             remedy = "pass mesh.extract_surface()"
             raise TypeError(_check.message("points", expected, _check.describe(points), remedy))
-        places = np.asarray(_check.vectors("points", points, n=3), dtype=np.float64)
-        corners = np.asarray(triangles)
-        if corners.ndim != 2 or corners.shape[1] != 3 or corners.dtype.kind not in "iu":
-            expected = "an integer array of shape (T, 3)"
-            raise ValueError(_check.message("triangles", expected, _check.describe(triangles)))
-        if corners.size and not 0 <= corners.min() <= corners.max() < len(places):
-            expected = f"indices from 0 to {len(places) - 1}"
-            raise ValueError(_check.message("triangles", expected, _check.describe(triangles)))
-        if not np.all(np.isfinite(places)):
-            raise ValueError(_check.message("points", "finite values", "others"))
+        _check.vectors("points", points, n=3)
+        places = _check.coordinates("points", points)
+        if places.ndim != 2:
+            raise ValueError(_check.message("points", "shape (P, 3)", places))
+        corners = _check.cells("triangles", triangles, len(places), (3,))
         unique, which = np.unique(places, axis=0, return_inverse=True)
         found = which.ravel()[corners].astype(np.intp)
         found = found[np.all(found != np.roll(found, 1, axis=1), axis=1)]
@@ -261,8 +256,9 @@ class Prism(Polyhedron):
     """
 
     def __init__(self, outline: ArrayLike, height: float = 1.0) -> None:
-        corners = np.asarray(_check.vectors("outline", outline, n=2), dtype=np.float64)
-        height = _check.number("height", height, low=0.0)
+        _check.vectors("outline", outline, n=2)
+        corners = _check.coordinates("outline", outline)
+        height = _check.number("height", height, low=0.0, high=_check.FARTHEST)
         if corners.ndim != 2 or len(corners) < 3 or not height > 0:
             given = f"{len(corners)} corners and a height of {height:g}"
             expected = "3 corners or more, and a height above 0"

@@ -1,0 +1,396 @@
+"""Every public callable with adversarial values: the values, the judge, and the full walk.
+
+    python tests/adversary.py [--seed N] [--each N] [NAME ...]
+
+``adversary_table.py`` has one valid call for each callable. One argument at a time is replaced by
+values that fit its kind. The call may return, if its numbers are finite or documented as marked,
+no warning but vizlight's own was issued and the inputs are unchanged; or it may raise at a
+``raise`` of vizlight, in words that name the argument. Each callable runs in a process of its own,
+so a crash is one failure.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import collections
+import contextlib
+import functools
+import hashlib
+import inspect
+import json
+import os
+import re
+import signal
+import sys
+import tempfile
+import time
+import traceback
+import typing
+import warnings
+from pathlib import Path
+
+import adversary_table as table
+import adversary_values as values
+import numpy as np
+import pyvista as pv
+
+import vizlight
+from vizlight import _check
+
+#: Longest processor time of one call, in seconds.
+LIMIT = 5.0
+ROOT = Path(vizlight.__file__).parent
+#: Errors that a `raise` of vizlight may be of, beside its own.
+ERRORS = (ValueError, TypeError, OSError, ImportError, KeyError, RuntimeError, AssertionError)
+
+
+class TooSlow(BaseException):
+    """A call that takes too long."""
+
+
+class Call(typing.NamedTuple):
+    """One argument of one callable replaced by one value."""
+
+    name: str
+    argument: str
+    label: str
+    value: object
+
+
+@contextlib.contextmanager
+def new_folder():
+    """Work in a new folder, which is deleted after that."""
+    before = Path.cwd()
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        Path("script.py").write_text("x = 1\n", encoding="utf-8")
+        try:
+            yield
+        finally:
+            os.chdir(before)
+
+
+@functools.cache
+def raises(path):
+    """Return the lines of a file that belong to `raise` statements."""
+    tree = ast.parse(Path(path).read_text(encoding="utf-8"))
+    nodes = [node for node in ast.walk(tree) if isinstance(node, ast.Raise)]
+    return {line for node in nodes for line in range(node.lineno, node.end_lineno + 1)}
+
+
+def parameters(function):
+    """Return the parameters of a callable with their annotations as text.
+
+    Keywords of a TypedDict, ``**options: Unpack[...]``, are parameters each.
+    """
+    found = {}
+    for name, parameter in inspect.signature(function).parameters.items():
+        text = str(parameter.annotation)
+        unpacked = re.search(r"Unpack\[(\w+)\]", text)
+        if unpacked:
+            kind = table.TYPED_DICTS[unpacked[1]]()
+            found.update({key: str(value) for key, value in annotations(kind).items()})
+        elif parameter.kind is not parameter.VAR_KEYWORD:
+            found[name] = text
+    found.pop("self", None)
+    found.pop("cls", None)
+    return found
+
+
+def annotations(kind):
+    """Return the annotations of a class and its bases, as text."""
+    return {
+        key: value.__forward_arg__ if isinstance(value, typing.ForwardRef) else value
+        for base in reversed(kind.__mro__)
+        for key, value in inspect.get_annotations(base).items()
+    }
+
+
+def bound(function, given):
+    """Return positional and keyword arguments of a call from arguments by name."""
+    args, rest = [], dict(given)
+    for name, parameter in inspect.signature(function).parameters.items():
+        if name not in rest:
+            continue
+        if parameter.kind is parameter.POSITIONAL_ONLY:
+            args.append(rest.pop(name))
+        elif parameter.kind is parameter.VAR_POSITIONAL:
+            value = rest.pop(name)
+            args.extend(value if isinstance(value, tuple) else [value])
+    return args, rest
+
+
+def calls(name):
+    """Return all calls of one callable, of which the first is the valid one."""
+    function, make = table.PUBLIC[name], table.CALLS[name]
+    with new_folder():
+        valid = make()
+    return [Call(name, "", "valid", None)] + [
+        Call(name, argument, label, value)
+        for argument, text in parameters(function).items()
+        if argument in table.ONLY.get(name, (argument,)) and (name, argument) not in table.SKIPPED
+        for label, value in values.of(text, valid.get(argument))
+    ]
+
+
+def mark(value):
+    """Return a digest of all data in a value, which changes with any of them."""
+    digest = hashlib.sha256()
+    _feed(digest, value)
+    return digest.hexdigest()
+
+
+def _feed(digest, value):
+    if isinstance(value, np.ma.MaskedArray):
+        _feed(digest, np.ma.getmaskarray(value))
+        value = value.data
+    if isinstance(value, np.ndarray):
+        digest.update(f"{value.shape}{value.dtype}{value.strides}{value.flags.writeable}".encode())
+        if value.dtype.kind == "O":
+            digest.update(repr(value.tolist()).encode())
+        elif value.size < 1e7:
+            digest.update(np.ascontiguousarray(value).tobytes())
+    elif isinstance(value, pv.MultiBlock):
+        for key, block in zip(value.keys(), value, strict=True):
+            _feed(digest, key)
+            _feed(digest, block)
+    elif isinstance(value, pv.DataSet):
+        _feed_mesh(digest, value)
+    elif isinstance(value, list | tuple):
+        for item in value:
+            _feed(digest, item)
+    elif isinstance(value, dict):
+        for key in value:
+            _feed(digest, key)
+            _feed(digest, value[key])
+    elif value is None or isinstance(value, str | bytes | int | float | complex):
+        with contextlib.suppress(ValueError):
+            digest.update(repr(value).encode())
+
+
+def _feed_mesh(digest, value):
+    for part in (value.point_data, value.cell_data, value.field_data):
+        for key in part:
+            digest.update(str(key).encode())
+            _feed(digest, np.asarray(part[key]))
+    _feed(digest, np.array(value.points))
+    digest.update(f"{type(value)}{value.n_cells}{value.active_scalars_name}".encode())
+    if isinstance(value, pv.PolyData):
+        for cells in (value.faces, value.lines, value.verts):
+            _feed(digest, np.array(cells))
+    elif isinstance(value, pv.UnstructuredGrid):
+        _feed(digest, np.array(value.cells))
+
+
+def unfinite(value, path="", depth=0):
+    """Return the first place in a result whose numbers are not finite, or an empty text."""
+    if depth > 6:
+        return ""
+    if isinstance(value, float | np.floating) and not np.isfinite(value):
+        return path or "result"
+    if isinstance(value, np.ndarray):
+        if value.dtype.kind in "fc" and not np.isfinite(value).all():
+            return path or "result"
+        return ""
+    children = {}
+    if isinstance(value, pv.MultiBlock):
+        children = {f"[{i}]": block for i, block in enumerate(value)}
+    elif isinstance(value, pv.DataSet):
+        children = {"points": value.points}
+        children |= {f"point_data[{k}]": np.asarray(v) for k, v in value.point_data.items()}
+        children |= {f"cell_data[{k}]": np.asarray(v) for k, v in value.cell_data.items()}
+    elif isinstance(value, list | tuple):
+        children = {f"[{i}]": item for i, item in enumerate(value[:50])}
+    elif isinstance(value, dict):
+        children = {f"[{k}]": item for k, item in value.items()}
+    elif type(value).__module__.startswith("vizlight") and not isinstance(value, type):
+        children = {f".{k}": v for k, v in getattr(value, "__dict__", {}).items()}
+    for key, child in children.items():
+        found = unfinite(child, path + key, depth + 1)
+        if found:
+            return found
+    return ""
+
+
+def judge(call):
+    """Run a call and return what is wrong with it, or an empty text."""
+    function = table.PUBLIC[call.name]
+    with new_folder():
+        given = table.CALLS[call.name]()
+        if call.argument:
+            given[call.argument] = values.fresh(call.value)
+        args, keywords = bound(function, given)
+        if call.name in table.SELF:
+            args.insert(0, table.SELF[call.name]())
+        before, own, said = mark([args, keywords]), set(), []
+        there = {path.name for path in Path().iterdir()}
+        warn = _check.warn
+
+        def noted(text, category=UserWarning):
+            own.add(str(text))
+            warn(text, category)
+
+        _check.warn = noted
+        error = result = None
+        try:
+            with warnings.catch_warnings(record=True) as said:
+                warnings.simplefilter("always")
+                with np.errstate(over="warn", divide="warn", invalid="warn"):
+                    result = _timed(function, args, keywords, call.name)
+        except (Exception, TooSlow) as caught:  # noqa: BLE001
+            error = caught
+        finally:
+            _check.warn = warn
+            pv.close_all()
+        leaked = [item for item in said if str(item.message) not in own]
+        if isinstance(error, TooSlow):
+            return f"takes more than {LIMIT:g} s"
+        if leaked:
+            first = leaked[0]
+            place = f"{Path(first.filename).name}:{first.lineno}"
+            return f"leaks {first.category.__name__} at {place}: {first.message}"
+        if mark([args, keywords]) != before and not table.changes(call):
+            return "changes its inputs"
+        if error is not None:
+            left = {path.name for path in Path().iterdir()} - there
+            if left:
+                return f"raises and leaves {sorted(left)}"
+            return wrong_error(error, call, given)
+        place = unfinite(result)
+        return f"returns numbers that are not finite at {place}" if _bad(place, call, given) else ""
+
+
+def names_of(mesh):
+    """Return the names of the point arrays of a mesh."""
+    if isinstance(mesh, pv.MultiBlock):
+        return {name for block in mesh if block is not None for name in names_of(block)}
+    return set(mesh.point_data)
+
+
+def _bad(place, call, given):
+    marked, _ = table.MARKED.get(call.name, ("$^", ""))
+    # The bound of a plan without a tolerance is infinite. Arrays of the mesh that came in stay.
+    if not place or re.search(rf"{marked}|(plan|^)\.choice\.bound$", place):
+        return False
+    meshes = [value for value in given.values() if isinstance(value, pv.DataSet | pv.MultiBlock)]
+    kept = {"points", *(f"point_data[{name}]" for mesh in meshes for name in names_of(mesh))}
+    return re.sub(r"^(\[\d+\])*", "", place) not in (kept if meshes else ())
+
+
+def _timed(function, args, keywords, name):
+    def stop(number, frame):
+        raise TooSlow
+
+    old = signal.signal(signal.SIGPROF, stop)
+    signal.setitimer(signal.ITIMER_PROF, LIMIT)
+    try:
+        result = function(*args, **keywords)
+        if inspect.isgenerator(result):
+            return next(result)
+        if isinstance(result, contextlib.AbstractContextManager) and not isinstance(result, Path):
+            with result as entered:
+                return entered
+        return result
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, old)
+
+
+def wrong_error(error, call, given):
+    """Return what is wrong with an exception, or an empty text."""
+    if not call.argument:
+        return f"the valid call raises {type(error).__name__}: {error}"
+    frames = traceback.extract_tb(error.__traceback__)
+    inside = [f for f in frames if Path(f.filename).is_relative_to(ROOT)]
+    last = frames[-1]
+    text = " ".join(str(error).split())
+    kind = type(error).__name__
+    place = (
+        f"{Path(inside[-1].filename).relative_to(ROOT)}:{inside[-1].lineno}" if inside else "call"
+    )
+    if not Path(last.filename).is_relative_to(ROOT) or last.lineno not in raises(last.filename):
+        return f"raw {kind} at {place}: {text[:90]}"
+    if not isinstance(error, ERRORS):
+        return f"raises {kind} at {place}"
+    names = {call.argument} | table.also(call, given)
+    names |= table.ALIASES.get((call.name, call.argument), set())
+    if not any(re.search(rf"(?<!\w){re.escape(name)}(?!\w)", str(error)) for name in names):
+        return f"does not name the argument at {place}: {text[:90]}"
+    return ""
+
+
+def sample(name, each, seed):
+    """Return some calls of a callable, the same ones for a seed."""
+    every = calls(name)
+    random = np.random.default_rng([seed, *name.encode()])
+    chosen = random.permutation(len(every))[:each] if each else range(len(every))
+    return [every[i] for i in sorted(chosen)]
+
+
+def walk(name, each, seed):
+    """Judge the calls of one callable in child processes; yield each with what is wrong."""
+    todo = sample(name, each, seed)
+    start = 0
+    while start < len(todo):
+        reading, writing = os.pipe()
+        child = os.fork()
+        if not child:
+            os.close(reading)
+            _child(todo[start:], writing)
+        os.close(writing)
+        said = []
+        with os.fdopen(reading) as lines:
+            said = [json.loads(line) for line in lines]
+        _, status = os.waitpid(child, 0)
+        for wrong in said:
+            yield todo[start], wrong
+            start += 1
+        if start < len(todo) and status:
+            yield todo[start], f"crashes the process ({status})"
+            start += 1
+
+
+def _child(todo, writing):
+    quiet = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(quiet, 2)
+    os.dup2(quiet, 1)
+    with os.fdopen(writing, "w") as out:
+        for call in todo:
+            out.write(json.dumps(judge(call)) + "\n")
+            out.flush()
+    os._exit(0)
+
+
+def main():
+    """Walk all callables, or those that are named, and print what is wrong by cause."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
+    parser.add_argument("names", nargs="*", help="callables, or beginnings of their names")
+    parser.add_argument("--seed", type=int, default=0, help="seed of the sample")
+    parser.add_argument("--each", type=int, default=0, help="calls of each callable; 0: all")
+    asked = parser.parse_args()
+    names = [
+        name for name in table.CALLS
+        if not asked.names or any(name.startswith(start) for start in asked.names)
+    ]  # fmt: skip
+    tried, failed = collections.Counter(), collections.Counter()
+    for name in names:
+        begin = time.monotonic()
+        for call, wrong in walk(name, asked.each, asked.seed):
+            tried[name] += 1
+            if wrong:
+                failed[name] += 1
+                print(ascii(f"{name}({call.argument}={call.label}): {wrong}")[1:-1])
+        if failed[name]:
+            print(f"  {name}: {failed[name]} of {tried[name]} in {time.monotonic() - begin:.1f} s")
+        sys.stdout.flush()
+    bad = sum(1 for name in names if failed[name])
+    total, wrong = tried.total(), failed.total()
+    print(f"{total} calls of {len(names)} callables: {wrong} fail, of {bad} callables")
+    return bool(failed.total())
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,109 @@
+"""Every public callable refuses adversarial values by name, or returns finite numbers."""
+
+from __future__ import annotations
+
+import re
+import warnings
+
+import adversary
+import adversary_table as table
+import numpy as np
+import pytest
+import pyvista as pv
+
+from vizlight import _check
+
+#: Calls of each callable in the suite; `python tests/adversary.py` makes all of them.
+EACH = 6
+#: Beginnings of the names of callables that draw or start a process.
+DRAWING = (
+    "pictures.backends",
+    "pictures.movie",
+    "pictures.render",
+    "plotting",
+    "accessor.Accessor.plot",
+)
+
+
+def test_every_callable_has_a_line():
+    assert sorted(table.PUBLIC) == sorted(table.CALLS)
+
+
+@pytest.mark.parametrize("name", [name for name in table.CALLS if not name.startswith(DRAWING)])
+def test_adversarial_values(name):
+    for call in [adversary.calls(name)[0], *adversary.sample(name, EACH, 0)]:
+        assert not adversary.judge(call), f"{call.argument}={call.label}"
+
+
+@pytest.mark.opengl
+@pytest.mark.parametrize("name", [name for name in table.CALLS if name.startswith(DRAWING)])
+def test_adversarial_values_of_pictures(name):
+    for call in adversary.sample(name, 2, 0):
+        assert not adversary.judge(call), f"{call.argument}={call.label}"
+
+
+@pytest.mark.parametrize("name", table.MARKED)
+def test_marks_are_documented(name):
+    _, words = table.MARKED[name]
+    assert words in " ".join((table.PUBLIC[name].__doc__ or "").split())
+
+
+def raw(value):
+    return np.zeros(3)[value]
+
+
+def silent(value):
+    warnings.warn("of NumPy", RuntimeWarning, stacklevel=1)
+
+
+def changing(value):
+    value[0] = 1.0
+
+
+def nameless(value):
+    _check.number("other", value)
+
+
+def infinite(value):
+    return {"a": [pv.PolyData(np.full((1, 3), np.inf))]}
+
+
+def slow(value):
+    while True:
+        pass
+
+
+def leaving(value):
+    with open("file", "w") as file:  # noqa: PTH123
+        file.write("half")
+    _check.number("value", value)
+
+
+@pytest.mark.parametrize(
+    ("function", "value", "words"),
+    [
+        (raw, 7, "raw IndexError"),
+        (silent, 7, "leaks RuntimeWarning"),
+        (changing, np.zeros(3), "changes its inputs"),
+        (nameless, "x", "does not name the argument"),
+        (infinite, 7, r"not finite at \[a\]\[0\]points"),
+        (slow, 7, "takes more than"),
+        (leaving, "x", "leaves"),
+    ],
+)
+def test_the_judge_can_fail(function, value, words, monkeypatch):
+    monkeypatch.setitem(table.PUBLIC, "wrong", function)
+    monkeypatch.setitem(table.CALLS, "wrong", lambda: {"value": 1.0})
+    monkeypatch.setattr(adversary, "LIMIT", 0.2)
+    found = adversary.judge(adversary.Call("wrong", "value", "number:x", value))
+    assert found
+    assert re.search(words, found)
+
+
+def test_warnings_of_the_package_pass(monkeypatch):
+    def warning(value):
+        _check.warn("of vizlight")
+
+    monkeypatch.setitem(table.PUBLIC, "right", warning)
+    monkeypatch.setitem(table.CALLS, "right", lambda: {"value": 1.0})
+    assert not adversary.judge(adversary.Call("right", "value", "number:x", 2.0))
