@@ -198,7 +198,7 @@ class _Work:
         box = np.ptp(ends, axis=0) if len(ends) else np.zeros(3)
         longest, diagonal = float(box.max()), float(np.linalg.norm(box))
         voxel = longest / bundle.grid or 1.0
-        diameter = bundle.diameter
+        diameter, coarse = bundle.diameter, None
         if diameter is None:
             diameter = diagonal * THICKEST or 1.0
             coarse = geometry.medium(*lines, voxel=voxel)
@@ -209,6 +209,8 @@ class _Work:
             depth = coarse.crowded(places, SIDES)
             if depth * diameter > bundle.depth * voxel:
                 diameter = bundle.depth * voxel / depth
+        if coarse is not None and voxel >= geometry.LEAST_VOXEL * diameter:
+            return coarse, diameter
         voxel = max(voxel, geometry.LEAST_VOXEL * diameter)
         return geometry.medium(*lines, voxel=voxel), diameter
 

@@ -104,6 +104,15 @@ class Targets(NamedTuple):
         sine = np.sqrt(np.maximum(1 - cosine * cosine, 0))
         return np.stack([sine, sine])
 
+    def ordered(self, order: Indices) -> Targets:
+        """Return the points in another order."""
+        return Targets(
+            np.take(self.places, order, axis=1),
+            self.known[order],
+            None if self.vectors is None else np.take(self.vectors, order, axis=1),
+            None if self.lengths is None else self.lengths[order],
+        )
+
     def own(self, facing: Array, width: Array | float = 1.0) -> Array | float:
         """Return the depth per diameter that the line of a point adds at the point itself.
 
@@ -230,7 +239,8 @@ class Medium:
             Mean over all directions, each weighted by :meth:`Targets.facing`; None without
             directions.
         """
-        thick = diameter / self.voxel
+        thick, order = diameter / self.voxel, _by_blocks(targets.places)
+        targets = targets.ordered(order)
         ways = directions(count) if count else np.empty((0, 3))
         found: dict[int, tuple[Array, Array]] = {}
         rooms = voxels.Rooms()
@@ -250,17 +260,19 @@ class Medium:
             # In the order of the parts, so that sums do not depend on the threads.
             left, weight = found.pop(number)
             if number < len(lights):
-                transmittance[:, number] = left
+                transmittance[order, number] = left
             else:
                 total += left, weight
             if progress is not None:
                 progress(number + 1)
-        transmittance[~targets.known] = 1
+        transmittance[order[~targets.known]] = 1
         if not count:
             return transmittance, None
         with np.errstate(invalid="ignore"):
-            occlusion = (total[0] / total[1]).astype(np.float32)
-        occlusion[~targets.known | (total[1] == 0)] = 1
+            sides = (total[0] / total[1]).astype(np.float32)
+        sides[~targets.known | (total[1] == 0)] = 1
+        occlusion = np.empty_like(sides)
+        occlusion[order] = sides
         return transmittance, occlusion
 
     def _light(
@@ -334,12 +346,17 @@ def medium(points: Array, connectivity: Indices, offsets: Indices, /, *, voxel: 
     parts = np.maximum(1, np.ceil(np.linalg.norm(vector, axis=1) - 1e-9)).astype(np.intp)
     middles, vectors = voxels.cut((start + vector / 2).T, vector.T, parts)
     # Pieces near each other are spread one after the other, on voxels that are in the cache.
-    x, y, z = np.floor(middles / BLOCK).astype(np.intp)
-    order = np.argsort((x * FINEST + y) * FINEST + z, kind="stable")
+    order = _by_blocks(middles)
     middles, vectors = (
-        np.ascontiguousarray(rows[:, order], dtype=np.float32) for rows in (middles, vectors)
+        np.take(rows.astype(np.float32), order, axis=1) for rows in (middles, vectors)
     )
     return Medium(middles, vectors, origin, voxel)
+
+
+def _by_blocks(places: Array) -> Indices:
+    """Return the order of places in voxels in which those near each other follow one another."""
+    x, y, z = np.clip(np.floor(places / BLOCK), -FINEST / 2, FINEST / 2).astype(np.int64)
+    return np.argsort((x * FINEST + y) * FINEST + z, kind="stable")
 
 
 def segment_starts(connectivity: Indices, offsets: Indices, /) -> Indices:
