@@ -96,6 +96,19 @@ def test_a_lamp_in_and_out_of_a_ball(lamp):
     assert ratio.std() < (0.1 if distance.min() > 1 else 0.25)
 
 
+@pytest.mark.parametrize("gap", [0.55, 0.8, 1.5, 4.0])
+def test_a_lamp_beside_a_line_sees_the_width_of_a_cylinder(gap):
+    """A cylinder at a distance r of its axis hides 2 asin(d / 2 r) of the angle around the lamp."""
+    thick, tries = 0.4, 20_000
+    line = pieces(np.array([[gap * thick, 0, 0]]), np.eye(3)[2:], 600, 1.0)
+    ways = unit(np.random.default_rng(4).normal(size=(tries, 3)))
+    ways = ways[np.abs(ways[:, 2]) < 0.9]
+    places = (10 * ways - line.origin).T.astype(np.float32)
+    depth, _ = lamps.depths(line.middles, line.vectors, places, -line.origin, thick)
+    hidden = 1 - np.exp(-thick * depth).mean()
+    assert hidden == pytest.approx(np.arcsin(0.5 / gap) / np.pi, abs=0.01)
+
+
 def shaded(origins, toward, own, middles, tangents, length, diameter):
     """Return whether rays meet a cylinder other than their own, one ray after the other."""
     across = np.cross(tangents, toward)

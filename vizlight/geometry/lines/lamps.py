@@ -9,14 +9,14 @@ import numpy as np
 from vizlight.geometry.lines import voxels
 
 if TYPE_CHECKING:
-    from vizlight._types import Array, VectorLike
+    from vizlight._types import Array, Indices, VectorLike
 
 #: Factor of the depth per diameter by which lines shade one another less.
 CROWDING = 1 / 4
-#: Largest number of parts of a piece near a light.
-MOST_PARTS = 64
-#: Largest number of parallel pieces of a piece near a light.
-MOST_ACROSS = 16
+#: Largest number of parts of a piece near a light, along it and over its width.
+MOST_PARTS = 512
+#: Largest number of pieces that are added by such cuts.
+MOST_PIECES = 2_000_000
 #: Largest share of a voxel that a line takes from the light.
 WIDEST = 0.99
 #: Least width of a voxel near a light, and least distance from it, in voxels.
@@ -30,7 +30,7 @@ def depths(
 
     The grid has the light in its centre: on each of the six faces of a cube around it, voxels
     are cones whose width grows with the distance. Near the light they are narrower than a
-    line, which is then spread over its own width, and opaque where it covers a cone.
+    line, which is then spread over the width that it shows, and opaque where it covers a cone.
 
     Parameters
     ----------
@@ -138,12 +138,31 @@ def _for_cones(
 
     A piece is cut along its length, and into parallel pieces over the width of the line.
     """
-    cone = np.maximum(width * size(middles), NARROWEST)
-    parts = np.ceil(np.clip(size(vectors) / cone, 1, MOST_PARTS)).astype(np.intp)
+    parts = _limited(size(vectors) / (width * _nearest(middles, vectors)))
     middles, vectors = voxels.cut(middles, vectors, parts)
-    cone = np.maximum(width * size(middles), NARROWEST)
     across = np.cross(vectors, middles, axis=0)
-    across *= thick / np.maximum(size(across), NARROWEST**2)
-    parts = np.ceil(np.clip(2 * thick / cone, 1, MOST_ACROSS)).astype(np.intp)
+    reach = np.maximum(size(across), NARROWEST**2)
+    # The two planes that touch a cylinder are farther apart than its diameter where it is near.
+    sine = thick * size(vectors) / (2 * reach)
+    wider = 1 / np.sqrt(1 - np.minimum(sine, WIDEST) ** 2)
+    across *= thick * wider / reach
+    parts = _limited(2 * thick * wider / (width * _nearest(middles, vectors)))
     middles, across = voxels.cut(middles, across, parts)
-    return middles, np.repeat(vectors, parts, axis=1), np.repeat(1 / parts, parts)
+    return middles, np.repeat(vectors, parts, axis=1), np.repeat(wider / parts, parts)
+
+
+def _nearest(middles: Array, vectors: Array) -> Array:
+    """Return the least distances of pieces from the light."""
+    square = np.maximum((vectors * vectors).sum(axis=0), NARROWEST**4)
+    place = np.clip(-(middles * vectors).sum(axis=0) / square, -0.5, 0.5)
+    return np.maximum(size(middles + place * vectors), NARROWEST)
+
+
+def _limited(parts: Array) -> Indices:
+    """Return whole numbers of parts, fewer of the largest where there would be too many pieces."""
+    most = MOST_PARTS
+    while True:
+        number = np.ceil(np.clip(parts, 1, most)).astype(np.intp)
+        if most <= 1 or number.sum() <= len(number) + MOST_PIECES:
+            return number
+        most //= 2
