@@ -141,6 +141,8 @@ class _Work:
     ) -> Dimming:
         """Return the shares of one mesh, kept ones where they still hold."""
         points = np.asarray(given.points[:])
+        if given.origin is not None and any(given.origin):
+            points = points.astype(np.float64) + np.array(given.origin)
         vectors = given.normals if given.tangents is None else given.tangents
         rows = None if vectors is None else np.asarray(vectors[:])
         lengths: Array | None = None
@@ -148,6 +150,8 @@ class _Work:
             lengths = np.zeros(len(points))
             if self.bundle.lines is None and polylines.has_lines_only(mesh):
                 lengths = _lengths(mesh)
+        if rows is not None and len(rows) * given.repeat == len(points):
+            rows = np.repeat(rows, given.repeat, axis=0)
         if rows is not None and rows.shape != points.shape:
             # Several tangents per point: a surface or a volume that light reaches from all sides.
             rows = lengths = None

@@ -291,7 +291,7 @@ class LightOptions(ShadingOptions):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        _check.set_fields(self, bundle=_bundle(self.bundle))
+        _check.set_fields(self, bundle=checked_bundle(self.bundle))
         for name in ("flip_normals", "average_cells"):
             _check.set_fields(self, **{name: _check.boolean(name, getattr(self, name))})
         _check.set_fields(self, refine=_check.number("refine", self.refine, low=0.0))
@@ -305,7 +305,7 @@ class LightOptions(ShadingOptions):
                 raise ValueError(_check.message(name, expected, "both", "leave it out"))
 
 
-def _bundle(value: object) -> bool | Bundle:
+def checked_bundle(value: object) -> bool | Bundle:
     """Return False or a bundle, which a record holds as a dict."""
     if isinstance(value, Mapping):
         value = Bundle(**value)
