@@ -8,7 +8,7 @@ import pyvista as pv
 import vtk
 
 import vizlight
-from vizlight import Light, Material, Scene, View, _compiled, fur
+from vizlight import Bundle, Light, Material, Scene, View, _compiled, fur
 from vizlight.model import cylinder
 from vizlight.studies import fur as study
 from vizlight.studies._measuring import peak_memory
@@ -544,3 +544,43 @@ def test_points_of_the_skin_are_split_at_sharp_edges():
         fur(box, scene, feature_angle=30, length=np.full(box.n_points, 0.1))
     with pytest.raises(ValueError, match="feature_angle: expected a number of degrees"):
         fur(box, scene, feature_angle="sharp")
+
+
+@pytest.mark.parametrize("origin", [(0, 0, 0), (4e5, 5e6, 100)])
+@pytest.mark.parametrize("fast", ["0", "1"])
+def test_fibres_dim_one_another_and_the_skin_as_a_bundle(origin, fast, monkeypatch):
+    monkeypatch.setenv("VIZLIGHT_FAST", fast if not _compiled._missing() else "0")
+    ball = pv.Sphere(radius=1.0, theta_resolution=30, phi_resolution=30)
+    ball.points = np.asarray(ball.points, float) + np.array(origin)
+    scene = Scene(lights=Light(direction=(0, 0, 1)), view=View(direction=(0, -1, 0.4)))
+    asked = Bundle(diameter=0.01, grid=48, directions=8)
+    coat = fur(ball, scene, fibres=4000, length=0.3, bundle=asked)
+    fibres, skin = coat["fibres"], coat["skin"]
+    height = np.asarray(skin.points, float)[:, 2] - origin[2]
+    top = height > 0.5
+    # Fibres that point at the light take less of it than those across it.
+    depth = np.asarray(-np.log(skin["transmittance"]))
+    assert 0 < np.median(depth[height > 0.98]) < np.median(depth[np.abs(height - 0.5) < 0.1])
+    tips = np.asarray(fibres["transmittance"]).reshape(-1, 4)
+    lit = (np.asarray(fibres.points, float)[:, 2] - origin[2]).reshape(-1, 4)[:, 0] > 0.3
+    assert tips[lit, 3].mean() > tips[lit, 0].mean() + 0.2
+    assert np.asarray(skin["occlusion"])[top].mean() < 0.7
+    # The same as light among the finished fibres.
+    again = vizlight.illuminate(fibres, scene, bundle=asked)
+    np.testing.assert_allclose(again["transmittance"], fibres["transmittance"], atol=0.02)
+    plain = fur(ball, scene, fibres=4000, length=0.3, attenuated=False)
+    assert (fibres["luminance"] <= plain["fibres"]["luminance"] + 1e-6).all()
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"inward": "drop"}, "inward: expected 'flip' or 'keep'"),
+        ({"density": 0.3}, "bundle: expected no absorption or density"),
+        ({"bundle": 3}, "bundle: expected True, False"),
+        ({"bundle": Bundle(lines=pv.Line())}, r"Bundle\(lines=\): expected the fibres"),
+    ],
+)
+def test_what_does_not_go_with_a_bundle(options, words):
+    with pytest.raises((TypeError, ValueError), match=words):
+        fur(pv.Sphere(), Scene(view=View(direction=(0, 0, 1))), **{"bundle": True} | options)

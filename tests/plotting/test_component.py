@@ -13,6 +13,7 @@ import pyvista as pv
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View
 from vizlight.geometry import manifolds
+from vizlight.geometry.lines import bundle
 from vizlight.plotting import component
 from vizlight.plotting.live import COLORS
 
@@ -504,3 +505,28 @@ def test_mesh_that_loses_its_colours_or_its_points_stays_as_it_was(plotter, ligh
         np.testing.assert_array_equal(picture(plotter), before)
     mesh.copy_from(full)
     np.testing.assert_array_equal(picture(plotter), before)
+
+
+def test_shares_of_light_inside_a_bundle_are_kept_when_the_eye_moves(plotter, monkeypatch):
+    asked = []
+    dimmed = bundle.Medium.dimmed
+
+    def counted(self, *args, **options):
+        asked.append(args)
+        return dimmed(self, *args, **options)
+
+    monkeypatch.setattr(bundle.Medium, "dimmed", counted)
+    points = np.random.default_rng(1).normal(size=(60, 3))
+    lines = pv.MultipleLines(points).compute_arc_length()
+    few = vizlight.Bundle(grid=16, directions=4)
+    plotter.vizlight.add_mesh(lines, scene=SCENE, bundle=few)
+    picture(plotter)
+    first = np.array(plotter.camera.position)
+    plotter.camera.azimuth = 60
+    picture(plotter)
+    assert not np.allclose(plotter.camera.position, first)
+    assert len(asked) == 1
+    lines.points[0] += 0.5
+    lines.Modified()
+    picture(plotter)
+    assert len(asked) == 2

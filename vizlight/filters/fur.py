@@ -13,14 +13,14 @@ from vizlight import _check, _pool
 from vizlight.filters import lighting
 from vizlight.geometry.lines import compiled
 from vizlight.geometry.lines import fur as geometry
-from vizlight.mesh import blocks, point_arrays, surfaces
+from vizlight.mesh import blocks, bundles, point_arrays, surfaces
 from vizlight.mesh.normals import onlooker, split_where_computed
 from vizlight.mesh.point_arrays import unit_rows
 from vizlight.mesh.strands import Grown, Room, Strands
 from vizlight.model import kernels
 from vizlight.scene import Scene
 from vizlight.shading.inputs import ShadingInputs
-from vizlight.shading.options import ShadingOptions, accepts, check_sides
+from vizlight.shading.options import Bundle, ShadingOptions, accepts, check_sides, checked_bundle
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -57,6 +57,7 @@ class FurKeywords(TypedDict, total=False):
     feature_angle: FeatureAngle
     conditioned: bool
     attenuated: bool
+    bundle: bool | Bundle
     compensate: bool
     model: Model
     name: str
@@ -103,6 +104,10 @@ class FurOptions:
     attenuated : bool, default: True
         Whether light is attenuated by the fur above a point on its way in and out (Banks 7, 8):
         most at the base, not at all at the tip.
+    bundle : bool or Bundle, default: False
+        Whether the fibres dim one another and the skin as a bundle of thin cylinders, as for
+        :func:`vizlight.illuminate`, in place of the attenuation by Banks (7, 8), which does not
+        know of neighbours.
     compensate, model, name
         As for :func:`vizlight.illuminate`; with ``model="cylinder"`` the highlight of the skin is
         Blinn's.
@@ -123,6 +128,7 @@ class FurOptions:
     feature_angle: FeatureAngle = None
     conditioned: bool = True
     attenuated: bool = True
+    bundle: bool | Bundle = False
     compensate: bool = True
     model: Model = "phong"
     name: str = "luminance"
@@ -130,6 +136,9 @@ class FurOptions:
     def __post_init__(self) -> None:
         _check.choice("inward", self.inward, get_args(Inward))
         _check.flags(self)
+        _check.set_fields(self, bundle=checked_bundle(self.bundle))
+        if isinstance(self.bundle, Bundle):
+            self._check_bundle(self.bundle)
         check_sides("auto", self.feature_angle)
         for option in ("bend", "curl", "turns"):
             value = getattr(self, option)
@@ -155,6 +164,18 @@ class FurOptions:
             seed=_check.integer("seed", self.seed, low=0),
         )
 
+    def _check_bundle(self, bundle: Bundle) -> None:
+        """Refuse options that do not go with a bundle."""
+        if self.inward == "drop":
+            expected, remedy = "'flip' or 'keep' beside bundle=", "leave it out"
+            raise ValueError(_check.message("inward", expected, repr(self.inward), remedy))
+        if self.absorption is not None or self.density is not None:
+            expected, remedy = "no absorption or density", "set the diameter of a vizlight.Bundle"
+            raise ValueError(_check.message("bundle", expected, "both", remedy))
+        if bundle.lines is not None:
+            expected, remedy = "the fibres", "leave it out"
+            raise ValueError(_check.message("Bundle(lines=)", expected, "other lines", remedy))
+
     @property
     def straight(self) -> bool:
         """Whether fibres neither bend nor curl."""
@@ -163,7 +184,7 @@ class FurOptions:
     @property
     def lost(self) -> float:
         """Share of light that is lost over a unit of height, or over the fur's own length."""
-        if not self.attenuated:
+        if not self.attenuated or self.bundle:
             return 0.0
         if self.density is not None:
             return self.density
@@ -248,7 +269,9 @@ def _grow(
     surface = split_where_computed(blocks.surface(surface, "surface"), options.feature_angle)
     skin = surfaces.with_normals(surface, onlooker(scene), options.feature_angle)
     name = options.name
-    lighting.refuse_overwriting([(surface, "")], name, components=False, colored=scene.colored)
+    lighting.refuse_overwriting(
+        [(surface, "")], name, components=False, colored=scene.colored, bundle=bool(options.bundle)
+    )
     _check.holds("fibres, segments", (options.fibres, options.segments + 1, 3))
     points = options.fibres * (options.segments + 1)
     fast = compiled.grow.pays(compiled.SAVED * points / _pool.workers(threads))
@@ -276,6 +299,18 @@ def _grow(
         fur_height=coat.skin_heights() if through else None,
         fur=through,
     )
+    dimmings: list[bundles.Dimming] = []
+    if isinstance(options.bundle, Bundle):
+        # The shares of light need the points of all fibres.
+        fibres = fibres.stored()
+        lines = strands.mesh()
+        if far:
+            lines.points = np.asarray(lines.points) + np.array(coat.origin)
+        dimmings = lighting.dimmings(
+            [lines, surface], [fibres, below], scene, options.bundle, name, threads,
+            show=progress_bar,
+        )  # fmt: skip
+        fibres, below = lighting.dimmed([fibres, below], dimmings)
     parts = [(fibres, options.shading), (below, options.shading.for_surface())]
     results, scene = lighting.light(parts, scene, threads=threads, progress_bar=progress_bar)
     if far:
@@ -288,7 +323,7 @@ def _grow(
         if options.inward == "drop":
             results[0] = strands.drop(results[0])
     meshes = [strands.mesh(), surface.copy(deep=True)]
-    lighting.finish(meshes, results, "fur", scene, options, name)
+    lighting.finish(meshes, results, "fur", scene, options, name, dimmings=dimmings)
     return pv.MultiBlock(dict(zip(("fibres", "skin"), meshes, strict=True)))
 
 

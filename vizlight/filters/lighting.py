@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from vizlight.mesh.records import Record
     from vizlight.scene import Scene
     from vizlight.shading.inputs import ShadingInputs
-    from vizlight.shading.options import ShadingOptions
+    from vizlight.shading.options import Bundle, ShadingOptions
 
 DEFAULT_NAME = "luminance"
 VALID = "_valid"
@@ -97,6 +97,33 @@ def refuse_overwriting(
     parts += BUNDLE_PARTS if bundle else ()
     made = [part_name(name, part) for part in parts]
     records.refuse_overwriting(named, name, [name, name + VALID, *made])
+
+
+def dimmings(
+    meshes: Sequence[pv.DataSet],
+    inputs: Sequence[ShadingInputs],
+    scene: Scene,
+    bundle: Bundle,
+    name: str,
+    threads: int | None,
+    *,
+    show: bool,
+) -> list[Dimming]:
+    """Return the shares of light that reach meshes inside a bundle of lines."""
+    names = [part_name(name, part) for part in BUNDLE_PARTS]
+    with _progress.progress("bundle", 100, show=show) as report:
+        return bundles.dim(
+            meshes, inputs, scene, bundle, (name, names[0], names[1]),
+            threads=threads, progress=lambda done, total: report(100 * done // total),
+        )  # fmt: skip
+
+
+def dimmed(inputs: Sequence[ShadingInputs], shares: Sequence[Dimming]) -> list[ShadingInputs]:
+    """Return inputs with the shares of light that reach them."""
+    return [
+        dataclasses.replace(given, transmittance=own.transmittance, occlusion=own.occlusion)
+        for given, own in zip(inputs, shares, strict=True)
+    ]
 
 
 def finish(

@@ -24,10 +24,9 @@ from vizlight.shading.options import Bundle, LightOptions
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from vizlight._types import Array
     from vizlight.mesh.normals import Sided
     from vizlight.scene import View
-    from vizlight.shading.inputs import ArraySource, ShadingInputs
+    from vizlight.shading.inputs import ShadingInputs
     from vizlight.shading.options import Facing, ShadingOptions
 
 #: Share of the points whose light may differ from the record, such as those on the rim of a cut.
@@ -97,12 +96,17 @@ def _dimmed(
     mesh: pv.DataSet, inputs: ShadingInputs, scene: Scene, bundle: Bundle, name: str
 ) -> ShadingInputs:
     """Return inputs with the shares of light inside a bundle, which do not depend on the eye."""
-    if any(light.follows_view and light.intensity > 0 for light in scene.lights):
-        expected, remedy = "no headlight beside it in a live light", "give the scene fixed lights"
-        raise ValueError(_check.message("bundle", expected, "a headlight", remedy))
+    _refuse_headlight(scene, bundled=True)
     names = [lighting.part_name(name, part) for part in lighting.BUNDLE_PARTS]
     (own,) = bundles.dim([mesh], [inputs], scene, bundle, (name, names[0], names[1]))
     return dataclasses.replace(inputs, transmittance=own.transmittance, occlusion=own.occlusion)
+
+
+def _refuse_headlight(scene: Scene, *, bundled: bool) -> None:
+    """Refuse a light that follows the view beside shares of light that do not."""
+    if bundled and any(light.follows_view and light.intensity > 0 for light in scene.lights):
+        expected, remedy = "no headlight beside it in a live light", "give the scene fixed lights"
+        raise ValueError(_check.message("bundle", expected, "a headlight", remedy))
 
 
 def is_lit(mesh: pv.DataSet | pv.MultiBlock, name: str = lighting.DEFAULT_NAME) -> bool:
@@ -242,7 +246,7 @@ class _Seen:
     def __call__(
         self, inputs: ShadingInputs, _: Scene, __: engine.Shading, options: ShadingOptions
     ) -> None:
-        self.runs.append((_stored(inputs), options))
+        self.runs.append((inputs.stored(), options))
 
 
 def _of_fur(
@@ -258,6 +262,7 @@ def _of_fur(
         raise ValueError(
             _check.message("mesh", "fur without dropped fibres", "inward='drop'", remedy)
         )
+    _refuse_headlight(scene, bundled=bool(options.get("bundle")))
     fibres, skin = mesh["fibres"], mesh["skin"]
     assert isinstance(fibres, pv.DataSet)
     assert isinstance(skin, pv.PolyData)
@@ -268,37 +273,6 @@ def _of_fur(
         Source(block, inputs, light, None)
         for block, (inputs, light) in zip((fibres, skin), seen.runs, strict=True)
     ]
-
-
-def _stored(inputs: ShadingInputs) -> ShadingInputs:
-    """Return inputs whose rows are arrays, not made on demand."""
-    if not inputs.generated:
-        return inputs
-    step, m, rows = inputs.block or inputs.rows, inputs.repeat, inputs.rows
-
-    def stored(source: ArraySource | None) -> Array | None:
-        if source is None:
-            return None
-        array: Array = np.empty(source.shape, source.dtype)
-        each = source.shape[0] != rows
-        for start in range(0, rows, step):
-            stop = min(start + step, rows)
-            for j in range(m if each else 1):
-                at = slice(start * m + j, stop * m, m) if each else slice(start, stop)
-                array[at] = source[at]
-        return array
-
-    points = stored(inputs.points)
-    assert points is not None
-    return dataclasses.replace(
-        inputs,
-        points=points,
-        tangents=stored(inputs.tangents),
-        normals=stored(inputs.normals),
-        fur_height=stored(inputs.fur_height),
-        block=None,
-        generated=False,
-    )
 
 
 def _check_light(sources: list[Source], scene: Scene, name: str) -> None:

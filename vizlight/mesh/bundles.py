@@ -141,6 +141,8 @@ class _Work:
     ) -> Dimming:
         """Return the shares of one mesh, kept ones where they still hold."""
         points = np.asarray(given.points[:])
+        if given.origin is not None and any(given.origin):
+            points = points.astype(np.float64) + np.array(given.origin)
         vectors = given.normals if given.tangents is None else given.tangents
         rows = None if vectors is None else np.asarray(vectors[:])
         lengths: Array | None = None
@@ -148,6 +150,8 @@ class _Work:
             lengths = np.zeros(len(points))
             if self.bundle.lines is None and polylines.has_lines_only(mesh):
                 lengths = _lengths(mesh)
+        if rows is not None and len(rows) * given.repeat == len(points):
+            rows = np.repeat(rows, given.repeat, axis=0)
         if rows is not None and rows.shape != points.shape:
             # Several tangents per point: a surface or a volume that light reaches from all sides.
             rows = lengths = None
@@ -198,7 +202,7 @@ class _Work:
         box = np.ptp(ends, axis=0) if len(ends) else np.zeros(3)
         longest, diagonal = float(box.max()), float(np.linalg.norm(box))
         voxel = longest / bundle.grid or 1.0
-        diameter = bundle.diameter
+        diameter, coarse = bundle.diameter, None
         if diameter is None:
             diameter = diagonal * THICKEST or 1.0
             coarse = geometry.medium(*lines, voxel=voxel)
@@ -209,6 +213,8 @@ class _Work:
             depth = coarse.crowded(places, SIDES)
             if depth * diameter > bundle.depth * voxel:
                 diameter = bundle.depth * voxel / depth
+        if coarse is not None and voxel >= geometry.LEAST_VOXEL * diameter:
+            return coarse, diameter
         voxel = max(voxel, geometry.LEAST_VOXEL * diameter)
         return geometry.medium(*lines, voxel=voxel), diameter
 

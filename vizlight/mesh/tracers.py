@@ -12,7 +12,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 from vtkmodules.vtkFiltersFlowPaths import vtkStreamTracer
 
 from vizlight import _check
-from vizlight.geometry.lines import even, fur
+from vizlight.geometry.lines import even, fur, samples
 from vizlight.geometry.lines.simplices import Places, Simplices
 from vizlight.geometry.lines.tracing import Curves, Flow, trace
 from vizlight.mesh import polylines
@@ -209,7 +209,7 @@ class CellTracer:
 def check_spacing(tracer: CellTracer, spacing: float, size: float) -> None:
     """Refuse a spacing that gives more curves than memory holds."""
     k = tracer.cells.k
-    least = (tracer.cells.extent * even.SAMPLES / MOST_SAMPLES) ** (1 / k)
+    least = (tracer.cells.extent * samples.SAMPLES / MOST_SAMPLES) ** (1 / k)
     if spacing < least:
         expected = f"at least {size * least:.3g} for a mesh of this size"
         raise ValueError(_check.message("spacing", expected, f"{size * spacing:.3g}"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
@@ -164,6 +165,36 @@ class ShadingInputs:
         """Whether the vectors have no more digits than float32."""
         given = [rows.dtype for rows in (self.tangents, self.normals) if rows is not None]
         return bool(given) and all(kind in (np.float16, np.float32) for kind in given)
+
+    def stored(self) -> ShadingInputs:
+        """Return inputs whose rows are arrays, not made on demand."""
+        if not self.generated:
+            return self
+        step, m, rows = self.block or self.rows, self.repeat, self.rows
+
+        def stored(source: ArraySource | None) -> Array | None:
+            if source is None:
+                return None
+            array: Array = np.empty(source.shape, source.dtype)
+            each = source.shape[0] != rows
+            for start in range(0, rows, step):
+                stop = min(start + step, rows)
+                for j in range(m if each else 1):
+                    at = slice(start * m + j, stop * m, m) if each else slice(start, stop)
+                    array[at] = source[at]
+            return array
+
+        points = stored(self.points)
+        assert points is not None
+        return dataclasses.replace(
+            self,
+            points=points,
+            tangents=stored(self.tangents),
+            normals=stored(self.normals),
+            fur_height=stored(self.fur_height),
+            block=None,
+            generated=False,
+        )
 
     def check(self, lights: int) -> None:
         """Check all shapes against each other, for a number of lights.

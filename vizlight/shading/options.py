@@ -72,10 +72,10 @@ class Bundle:
     light: ``1 - rho = exp(-d l / V)``, l the length in the volume V; he leaves out ``|w x t|``. A
     medium has no single lines: where few, thick lines stand in the way, points are evenly dim in
     place of dark and bright. The mean error against rays among cylinders is at most 0.01 for
-    isotropic, parallel and layered lines, for lights outside and light from all sides. For a light
-    among the lines, whose nearest lines matter most, it is 0.02 or less in most cases, but 0.14 was
-    seen where lines lie nearly at the light; the study ``bundle`` measures it. The share at a point
-    of a single line is within 0.06 of 1.
+    isotropic, parallel and layered lines, for lights outside and among the lines and for light from
+    all sides; the study ``bundle`` measures it. A light inside a line, which rays find dark all
+    round, leaves a share of about 0.1. The share at a point of
+    a single line is within 0.06 of 1.
 
     Examples
     --------
@@ -292,7 +292,7 @@ class LightOptions(ShadingOptions):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        _check.set_fields(self, bundle=_bundle(self.bundle))
+        _check.set_fields(self, bundle=checked_bundle(self.bundle))
         _check.set_fields(self, refine=_check.number("refine", self.refine, low=0.0))
         if 0 < self.refine < FINEST:
             expected, remedy = f"0 or {FINEST:g} at least", "a picture shows 1/255"
@@ -304,7 +304,7 @@ class LightOptions(ShadingOptions):
                 raise ValueError(_check.message(name, expected, "both", "leave it out"))
 
 
-def _bundle(value: object) -> bool | Bundle:
+def checked_bundle(value: object) -> bool | Bundle:
     """Return False or a bundle, which a record holds as a dict."""
     if isinstance(value, Mapping):
         known = [field.name for field in dataclasses.fields(Bundle)]

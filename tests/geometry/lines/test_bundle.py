@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from vizlight import _compiled
-from vizlight.geometry.lines import bundle
+from vizlight.geometry.lines import bundle, lamps, voxels
 
 
 def pieces(middles, tangents, length, voxel):
@@ -86,13 +86,27 @@ def test_a_lamp_in_and_out_of_a_ball(lamp):
     out = np.sqrt(1 - (places * places).sum(axis=1) + along**2) - along
     way = np.where(distance < out, distance - 0.15, out)
     keep = way > 0.2
-    depth, _ = ball.near_depth(
-        ball.targets(places).places, (np.array(lamp) - ball.origin) / ball.voxel
-    )
+    depth, _ = lamps.depths(
+        ball.middles, ball.vectors, ball.targets(places).places,
+        (np.array(lamp) - ball.origin) / ball.voxel,
+    )  # fmt: skip
     depth = depth / ball.voxel
     ratio = depth[keep] / (np.pi / 4 * density * way[keep])
     assert ratio.mean() == pytest.approx(1, abs=0.01)
     assert ratio.std() < (0.1 if distance.min() > 1 else 0.25)
+
+
+@pytest.mark.parametrize("gap", [0.55, 0.8, 1.5, 4.0])
+def test_a_lamp_beside_a_line_sees_the_width_of_a_cylinder(gap):
+    """A cylinder at a distance r of its axis hides 2 asin(d / 2 r) of the angle around the lamp."""
+    thick, tries = 0.4, 20_000
+    line = pieces(np.array([[gap * thick, 0, 0]]), np.eye(3)[2:], 600, 1.0)
+    ways = unit(np.random.default_rng(4).normal(size=(tries, 3)))
+    ways = ways[np.abs(ways[:, 2]) < 0.9]
+    places = (10 * ways - line.origin).T.astype(np.float32)
+    depth, _ = lamps.depths(line.middles, line.vectors, places, -line.origin, thick)
+    hidden = 1 - np.exp(-thick * depth).mean()
+    assert hidden == pytest.approx(np.arcsin(0.5 / gap) / np.pi, abs=0.01)
 
 
 def shaded(origins, toward, own, middles, tangents, length, diameter):
@@ -148,16 +162,16 @@ def test_compiled_and_plain_grids_agree(monkeypatch):
     cells = (rng.uniform(size=(3, 5000)) * (np.array(shape)[:, None] - 2)).astype(np.float32)
     values = rng.uniform(size=5000).astype(np.float32)
     monkeypatch.setenv("VIZLIGHT_FAST", "0")
-    grid = bundle.spread(cells, values, shape)
-    seen = bundle.read(grid, cells)
+    grid = voxels.spread(cells, values, shape)
+    seen = voxels.read(grid, cells)
     assert grid.sum() == pytest.approx(values.sum(), rel=1e-5)
     corner = np.array([[2.0], [3.0], [4.0]], np.float32)
-    assert bundle.read(grid, corner)[0] == grid[2, 3, 4]
+    assert voxels.read(grid, corner)[0] == grid[2, 3, 4]
     if _compiled._missing():
         pytest.skip("numba is not installed")
     monkeypatch.setenv("VIZLIGHT_FAST", "1")
-    np.testing.assert_allclose(bundle.spread(cells, values, shape), grid, rtol=1e-4, atol=1e-5)
-    np.testing.assert_allclose(bundle.read(grid, cells), seen, rtol=1e-5)
+    np.testing.assert_allclose(voxels.spread(cells, values, shape), grid, rtol=1e-4, atol=1e-5)
+    np.testing.assert_allclose(voxels.read(grid, cells), seen, rtol=1e-5)
 
 
 def test_lines_that_are_odd():

@@ -21,35 +21,26 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from vizlight import _check, _compiled, _pool
+from vizlight import _check, _pool
+from vizlight.geometry.lines import lamps, voxels
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Sequence
 
     from vizlight._types import Array, Bools, Indices, VectorLike
 
-__all__ = ["Medium", "Targets", "directions", "medium", "read", "spread"]
+__all__ = ["Medium", "Targets", "directions", "medium"]
 
 #: Depth of a straight line at its own points, per diameter.
 OWN = 1 / 3
-#: Factor of the depth per diameter by which lines shade one another less.
-CROWDING = 1 / 4
 #: Least side of a voxel in diameters.
 LEAST_VOXEL = 2.0
+#: Voxels along a side of the blocks by which pieces are sorted, and more blocks than there are.
+BLOCK, FINEST = 8, 1 << 20
 #: Golden angle of the Fibonacci directions.
 GOLDEN = np.pi * (3 - np.sqrt(5))
-#: Seconds per point or piece that compiled code saves.
-SAVED = 60e-9
 #: Largest coordinate in voxels of a place: farther points are as dark as those there.
 FARTHEST = 1e6
-#: Largest number of parts of a piece near a light.
-MOST_PARTS = 64
-#: Largest number of parallel pieces of a piece near a light.
-MOST_ACROSS = 16
-#: Largest share of a voxel that a line takes from the light.
-WIDEST = 0.99
-#: Least width of a voxel near a light, and least distance from it, in voxels.
-NARROWEST = 1e-6
 
 
 def directions(count: int, /) -> Array:
@@ -113,11 +104,28 @@ class Targets(NamedTuple):
         sine = np.sqrt(np.maximum(1 - cosine * cosine, 0))
         return np.stack([sine, sine])
 
-    def own(self, toward: Array, width: Array | float = 1.0) -> Array | float:
-        """Return the depth per diameter that the line of a point adds at the point itself."""
+    def ordered(self, order: Indices) -> Targets:
+        """Return the points in another order."""
+        return Targets(
+            np.take(self.places, order, axis=1),
+            self.known[order],
+            None if self.vectors is None else np.take(self.vectors, order, axis=1),
+            None if self.lengths is None else self.lengths[order],
+        )
+
+    def own(self, facing: Array, width: Array | float = 1.0) -> Array | float:
+        """Return the depth per diameter that the line of a point adds at the point itself.
+
+        Parameters
+        ----------
+        facing : ndarray, shape (2, N)
+            Shares of light of :meth:`facing`.
+        width : ndarray, shape (N,), or float
+            Width of the voxels at the points, in voxels of the medium.
+        """
         if self.lengths is None or self.vectors is None:
             return 0.0
-        seen = self.lengths * self.facing(toward)[0]
+        seen = self.lengths * facing[0]
         share: Array = np.minimum(seen / (2 * width), 1) * np.float32(OWN) / width
         return share
 
@@ -174,7 +182,9 @@ class Medium:
             lengths = np.minimum(lengths / self.voxel, FARTHEST).astype(np.float32)
         return Targets(np.ascontiguousarray(places), known, unit, lengths)
 
-    def depths(self, places: Array, toward: VectorLike, /) -> tuple[Array, Array]:
+    def depths(
+        self, places: Array, toward: VectorLike, rooms: voxels.Rooms | None = None, /
+    ) -> tuple[Array, Array]:
         """Return the optical depth per diameter toward a direction and toward its opposite.
 
         Parameters
@@ -183,6 +193,8 @@ class Medium:
             Places of :class:`Targets`.
         toward : sequence of float, shape (3,)
             Direction toward a light at infinity, of any length.
+        rooms : voxels.Rooms, optional
+            Grids that are used again.
 
         Returns
         -------
@@ -190,65 +202,7 @@ class Medium:
             Depths, the point's own line included; diameters and depths are in voxels.
         """
         frame = _frame(toward).astype(np.float32)
-        middles, at = frame @ self.middles, frame @ places
-        across = np.hypot(*(frame[:2] @ self.vectors))
-        low, shape = _box(middles)
-        grid = spread(middles - low, across, shape)
-        cells = np.clip(at - low, 0, np.array(shape, np.float32)[:, np.newaxis] - 2)
-        return _both(grid, _summed(grid), cells)
-
-    def near_depth(
-        self, places: Array, lamp: VectorLike, thick: float = 0.0, /
-    ) -> tuple[Array, Array]:
-        """Return the optical depth per diameter between points and a light nearby.
-
-        The grid has the light in its centre: on each of the six faces of a cube around it, voxels
-        are cones whose width grows with the distance. Near the light they are narrower than a
-        line, which is then spread over its own width, and opaque where it covers a cone.
-
-        Parameters
-        ----------
-        places : ndarray of float32, shape (3, N)
-            Places of :class:`Targets`.
-        lamp : sequence of float, shape (3,)
-            Place of the light, inside or outside the bundle, in voxels.
-        thick : float, default: 0.0
-            Diameter of the lines in voxels, of which the depth includes the factor for lines in
-            one another's shadow.
-
-        Returns
-        -------
-        depth : ndarray of float32, shape (N,)
-            Depths, the point's own line included.
-        width : ndarray of float32, shape (N,)
-            Width of the voxels at the points, in voxels of the medium.
-        """
-        centre = np.asarray(lamp, np.float64)[:, np.newaxis]
-        at = places - centre
-        gone, far = _size(self.middles - centre), _size(at)
-        out = np.zeros(at.shape[1], np.float32)
-        widths: Array = np.ones(at.shape[1], np.float32)
-        if not gone.size:
-            return out, widths
-        width = 1 / max(float(np.median(gone)), 1.0)
-        middles, vectors, share = _for_cones(self.middles - centre, self.vectors, width, thick)
-        gone = _size(middles)
-        across = share * _size(np.cross(vectors, middles, axis=0)) / np.maximum(gone, NARROWEST)
-        across *= _crowding(thick / np.maximum(width * gone, NARROWEST))
-        face = np.argmax(np.abs(at), axis=0)
-        for axis in range(3):
-            for side in (1, -1):
-                rows = np.flatnonzero((face == axis) & (side * at[axis] > 0))
-                held = np.flatnonzero(side * middles[axis] > 0)
-                if rows.size and held.size:
-                    part = _Cone(axis, side, width)
-                    seen = part.seen(at[:, rows])
-                    out[rows] = part.depth(
-                        seen, far[rows], part.seen(middles[:, held]), gone[held], across[held]
-                    )
-                    height = side * at[axis, rows]
-                    widths[rows] = width * height * np.sqrt(height / far[rows])
-        return out, widths
+        return voxels.depths(self.middles, self.vectors, places, frame, rooms or voxels.Rooms())
 
     def dimmed(
         self,
@@ -285,16 +239,18 @@ class Medium:
             Mean over all directions, each weighted by :meth:`Targets.facing`; None without
             directions.
         """
-        thick = diameter / self.voxel
+        thick, order = diameter / self.voxel, _by_blocks(targets.places)
+        targets = targets.ordered(order)
         ways = directions(count) if count else np.empty((0, 3))
         found: dict[int, tuple[Array, Array]] = {}
+        rooms = voxels.Rooms()
 
         def work(part: slice) -> int:
             number = int(part.start)
             if number < len(lights):
                 found[number] = self._light(targets, thick, *lights[number])
             else:
-                found[number] = self._pair(targets, thick, ways[number - len(lights)])
+                found[number] = self._pair(targets, thick, ways[number - len(lights)], rooms)
             return number
 
         transmittance = np.empty((targets.places.shape[1], len(lights)), np.float32)
@@ -304,17 +260,19 @@ class Medium:
             # In the order of the parts, so that sums do not depend on the threads.
             left, weight = found.pop(number)
             if number < len(lights):
-                transmittance[:, number] = left
+                transmittance[order, number] = left
             else:
                 total += left, weight
             if progress is not None:
                 progress(number + 1)
-        transmittance[~targets.known] = 1
+        transmittance[order[~targets.known]] = 1
         if not count:
             return transmittance, None
         with np.errstate(invalid="ignore"):
-            occlusion = (total[0] / total[1]).astype(np.float32)
-        occlusion[~targets.known | (total[1] == 0)] = 1
+            sides = (total[0] / total[1]).astype(np.float32)
+        sides[~targets.known | (total[1] == 0)] = 1
+        occlusion = np.empty_like(sides)
+        occlusion[order] = sides
         return transmittance, occlusion
 
     def _light(
@@ -324,67 +282,37 @@ class Medium:
         if not near:
             toward = _frame(place)[2].astype(np.float32)
             depth, _ = self.depths(targets.places, toward)
-            left = _left(depth, targets.own(toward), thick)
+            left = _left(depth, targets.own(targets.facing(toward)), thick)
         else:
             lamp = (np.asarray(place, np.float64) - self.origin) / self.voxel
-            depth, width = self.near_depth(targets.places, lamp, thick)
+            depth, width = lamps.depths(self.middles, self.vectors, targets.places, lamp, thick)
             way = lamp[:, np.newaxis] - targets.places
-            way /= np.maximum(_size(way), NARROWEST)
-            width = np.maximum(width, NARROWEST)
-            own = targets.own(way.astype(np.float32), width) * _crowding(thick / width)
+            way /= np.maximum(lamps.size(way), lamps.NARROWEST)
+            width = np.maximum(width, lamps.NARROWEST)
+            own = targets.own(targets.facing(way.astype(np.float32)), width) * lamps.crowding(
+                thick / width
+            )
             left = np.exp(np.minimum(-thick * (depth - own), 0))
         return left, left
 
-    def _pair(self, targets: Targets, thick: float, toward: Array) -> tuple[Array, Array]:
+    def _pair(
+        self, targets: Targets, thick: float, toward: Array, rooms: voxels.Rooms
+    ) -> tuple[Array, Array]:
         """Return the weighted share of light from a direction and its opposite, and the weight."""
         toward = toward.astype(np.float32)
-        own, facing = targets.own(toward), targets.facing(toward)
-        forth, back = (_left(d, own, thick) for d in self.depths(targets.places, toward))
+        facing = targets.facing(toward)
+        own = targets.own(facing)
+        forth, back = (_left(d, own, thick) for d in self.depths(targets.places, toward, rooms))
         return facing[0] * forth + facing[1] * back, facing.sum(axis=0)
 
     def crowded(self, targets: Targets, count: int) -> float:
         """Return the median over points of the depth per diameter, as a mean over directions."""
         total = np.zeros(targets.places.shape[1])
-        ways = directions(count)
+        ways, rooms = directions(count), voxels.Rooms()
         for way in ways:
-            forth, back = self.depths(targets.places, way)
-            total += (forth + back) / 2 - targets.own(way.astype(np.float32))
+            forth, back = self.depths(targets.places, way, rooms)
+            total += (forth + back) / 2 - targets.own(targets.facing(way.astype(np.float32)))
         return float(np.median(total[targets.known]) / len(ways)) if targets.known.any() else 0.0
-
-
-class _Cone(NamedTuple):
-    """One of the six pyramids around a light, cut into cones of an angular width."""
-
-    axis: int
-    side: int
-    width: float
-
-    def seen(self, rows: Array) -> Array:
-        """Return the tangents of the two angles under which the light sees rows, in widths."""
-        height = self.side * rows[self.axis]
-        others = [i for i in range(3) if i != self.axis]
-        seen: Array = rows[others] / (height * self.width)
-        return seen
-
-    def depth(self, seen: Array, far: Array, held: Array, gone: Array, across: Array) -> Array:
-        """Return the depth between the light and points at distances, for pieces at distances."""
-        reach = far.max()
-        low = seen.min(axis=1, keepdims=True) - 2
-        high = seen.max(axis=1, keepdims=True) + 2
-        inside = ((held > low) & (held < high)).all(axis=0) & (gone < reach + 2)
-        if not inside.any():
-            return np.zeros(len(far), np.float32)
-        held, gone, across = held[:, inside], gone[inside], across[inside]
-        # Height over the light of the plane that is divided into squares, in voxels.
-        slant = np.sqrt(1 + self.width**2 * (held * held).sum(axis=0))
-        area = (self.width * gone) ** 2 / slant**3
-        rows = np.concatenate([held, gone[np.newaxis]])
-        low, shape = _box(rows)
-        grid = spread((rows - low).astype(np.float32), across / area, shape)
-        _summed(grid)
-        cells = np.concatenate([seen, far[np.newaxis]]) - low
-        limits = np.array(shape, np.float64)[:, np.newaxis] - 2
-        return read(grid, np.clip(cells, 0, limits).astype(np.float32))
 
 
 def medium(points: Array, connectivity: Indices, offsets: Indices, /, *, voxel: float) -> Medium:
@@ -416,18 +344,19 @@ def medium(points: Array, connectivity: Indices, offsets: Indices, /, *, voxel: 
     start = (ends[first] - origin) / voxel
     vector = (ends[first + 1] - origin) / voxel - start
     parts = np.maximum(1, np.ceil(np.linalg.norm(vector, axis=1) - 1e-9)).astype(np.intp)
-    middles, vectors = _cut((start + vector / 2).T, vector.T, parts)
-    return Medium(middles.astype(np.float32), vectors.astype(np.float32), origin, voxel)
+    middles, vectors = voxels.cut((start + vector / 2).T, vector.T, parts)
+    # Pieces near each other are spread one after the other, on voxels that are in the cache.
+    order = _by_blocks(middles)
+    middles, vectors = (
+        np.take(rows.astype(np.float32), order, axis=1) for rows in (middles, vectors)
+    )
+    return Medium(middles, vectors, origin, voxel)
 
 
-def _cut(middles: Array, vectors: Array, parts: Indices) -> tuple[Array, Array]:
-    """Return pieces, given by columns, each cut to some parts of equal lengths."""
-    owner = np.repeat(np.arange(len(parts)), parts)
-    number = np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts)
-    share = 1 / parts[owner]
-    place = (number + 0.5) * share - 0.5
-    vectors = np.take(vectors, owner, axis=1)
-    return np.take(middles, owner, axis=1) + place * vectors, vectors * share
+def _by_blocks(places: Array) -> Indices:
+    """Return the order of places in voxels in which those near each other follow one another."""
+    x, y, z = np.clip(np.floor(places / BLOCK), -FINEST / 2, FINEST / 2).astype(np.int64)
+    return np.argsort((x * FINEST + y) * FINEST + z, kind="stable")
 
 
 def segment_starts(connectivity: Indices, offsets: Indices, /) -> Indices:
@@ -465,45 +394,10 @@ def check_count(name: str, value: object, /) -> int:
     return count
 
 
-def _size(rows: Array) -> Array:
-    """Return the lengths of vectors in columns."""
-    size: Array = np.sqrt((rows * rows).sum(axis=0))
-    return size
-
-
-def _crowding(thick: Array) -> Array:
-    """Return the factor of the depth in voxels, from the diameter of the lines in voxels.
-
-    It is ``1 + d / 4`` where voxels are much wider than lines, as for a light at infinity: -log(1 -
-    d / 2) is the depth that leaves the light which a line of half the width leaves.
-    """
-    share = np.minimum(2 * CROWDING * thick, WIDEST)
-    factor: Array = -np.log1p(-share) / np.maximum(share, NARROWEST)
-    return np.where(share > NARROWEST, factor, 1)
-
-
-def _for_cones(
-    middles: Array, vectors: Array, width: float, thick: float
-) -> tuple[Array, Array, Array]:
-    """Return pieces cut again where cones from a light are narrower, and the share of each.
-
-    A piece is cut along its length, and into parallel pieces over the width of the line.
-    """
-    cone = np.maximum(width * _size(middles), NARROWEST)
-    parts = np.ceil(np.clip(_size(vectors) / cone, 1, MOST_PARTS)).astype(np.intp)
-    middles, vectors = _cut(middles, vectors, parts)
-    cone = np.maximum(width * _size(middles), NARROWEST)
-    across = np.cross(vectors, middles, axis=0)
-    across *= thick / np.maximum(_size(across), NARROWEST**2)
-    parts = np.ceil(np.clip(2 * thick / cone, 1, MOST_ACROSS)).astype(np.intp)
-    middles, across = _cut(middles, across, parts)
-    return middles, np.repeat(vectors, parts, axis=1), np.repeat(1 / parts, parts)
-
-
 def _left(depth: Array, own: Array | float, thick: float, /) -> Array:
     """Return the share of light that is left behind lines of a diameter, in voxels."""
     others = depth - own
-    others *= -thick * (1 + CROWDING * thick)
+    others *= -thick * (1 + lamps.CROWDING * thick)
     left: Array = np.exp(np.minimum(others, 0, out=others), out=others)
     return left
 
@@ -514,161 +408,3 @@ def _frame(toward: VectorLike) -> Array:
     u = np.cross(w, np.eye(3)[np.argmin(np.abs(w))])
     u /= np.linalg.norm(u)
     return np.stack([u, np.cross(w, u), w])
-
-
-def _box(rows: Array) -> tuple[Array, tuple[int, int, int]]:
-    """Return the lower corner and the shape of a grid around places, with a margin of zeros."""
-    if not rows.size:
-        return np.zeros((3, 1), np.float32), (3, 3, 3)
-    low = np.floor(rows.min(axis=1, keepdims=True)) - 1
-    i, j, k = (int(n) + 4 for n in (rows.max(axis=1) - low[:, 0]))
-    return low, (i, j, k)
-
-
-def _corners(cells: Array, shape: tuple[int, ...]) -> Iterator[tuple[Indices, Array]]:
-    """Yield the flat index and the weight of each of the 8 corners around places in a grid."""
-    low = np.floor(cells).astype(np.intp)
-    high = cells - low
-    base = (low[0] * shape[1] + low[1]) * shape[2] + low[2]
-    weights = (1 - high, high)
-    for a in (0, 1):
-        for b in (0, 1):
-            plane = weights[a][0] * weights[b][1]
-            for c in (0, 1):
-                yield base + (a * shape[1] + b) * shape[2] + c, plane * weights[c][2]
-
-
-def spread(cells: Array, values: Array, shape: tuple[int, int, int], /) -> Array:
-    """Return a grid to which values are added at places, each over the 8 voxels around it.
-
-    Parameters
-    ----------
-    cells : ndarray of float32, shape (3, N)
-        Places in units of voxels, from 0 to the shape less 2.
-    values : ndarray of float32, shape (N,)
-        Values.
-    shape : tuple of int
-        Numbers of voxels.
-
-    Returns
-    -------
-    ndarray of float32
-        Grid.
-    """
-    values = values.astype(np.float32, copy=False)
-    if _spread.pays(len(values) * SAVED):
-        grid = np.zeros(shape, np.float32)
-        _spread(np.ascontiguousarray(cells), values, grid.reshape(-1), shape[1], shape[2])
-        return grid
-    size = shape[0] * shape[1] * shape[2]
-    flat = np.zeros(size)
-    for index, weight in _corners(cells, shape):
-        flat += np.bincount(index, weights=weight * values, minlength=size)
-    return flat.astype(np.float32).reshape(shape)
-
-
-def read(grid: Array, cells: Array, /) -> Array:
-    """Return the values of a grid at places, from the 8 voxels around each.
-
-    Parameters
-    ----------
-    grid : ndarray of float32
-        Grid.
-    cells : ndarray of float32, shape (3, N)
-        Places in units of voxels, from 0 to the shape less 2.
-
-    Returns
-    -------
-    ndarray of float32, shape (N,)
-        Values.
-    """
-    return _both(grid, None, cells)[1]
-
-
-def _summed(grid: Array) -> Array:
-    """Replace each voxel by the sum of those before it and half of it; return the sum of all."""
-    total = np.empty(grid.shape[:2], np.float32)
-    if _sum.pays(grid.size * 5e-9):
-        _sum(grid.reshape(-1), total.reshape(-1), grid.shape[2])
-        return total
-    half = grid * np.float32(0.5)
-    np.cumsum(grid, axis=2, dtype=np.float32, out=grid)
-    total[:] = grid[:, :, -1]
-    grid -= half
-    return total
-
-
-def _both(grid: Array, total: Array | None, cells: Array) -> tuple[Array, Array]:
-    """Return what is left of a total per column beyond the values of a grid, and the values."""
-    shape, count = grid.shape, cells.shape[1]
-    forth, back = np.zeros(count if total is not None else 0, np.float32), np.zeros(count, "f4")
-    if _read.pays(count * SAVED):
-        columns = np.empty(0, np.float32) if total is None else total.reshape(-1)
-        cells = np.ascontiguousarray(cells)
-        _read(grid.reshape(-1), columns, cells, shape[1], shape[2], forth, back)
-        return forth, back
-    flat = grid.reshape(-1)
-    for index, weight in _corners(cells, shape):
-        back += weight * flat[index]
-        if total is not None:
-            forth += weight * total.reshape(-1)[index // shape[2]]
-    if total is not None:
-        forth -= back
-    return forth, back
-
-
-@_compiled.kernel(rounding=_compiled.ROUNDING)
-def _spread(cells: Array, values: Array, grid: Array, rows: int, columns: int) -> None:
-    """Add values to the 8 voxels around places."""
-    x, y, z = cells[0], cells[1], cells[2]
-    one = np.float32(1)
-    for i in range(len(values)):
-        p, q, r = int(x[i]), int(y[i]), int(z[i])
-        f, g, h = x[i] - np.float32(p), y[i] - np.float32(q), z[i] - np.float32(r)
-        at = (p * rows + q) * columns + r
-        near, far = values[i] * (one - f), values[i] * f
-        for plane in (near, far):
-            low, high = plane * (one - g), plane * g
-            grid[at] += low * (one - h)
-            grid[at + 1] += low * h
-            grid[at + columns] += high * (one - h)
-            grid[at + columns + 1] += high * h
-            at += rows * columns
-
-
-@_compiled.kernel()
-def _sum(grid: Array, total: Array, columns: int) -> None:
-    """Replace each voxel by the sum of those before it in its column and half of it."""
-    half = np.float32(0.5)
-    for row in range(len(total)):
-        run = np.float32(0)
-        for at in range(row * columns, (row + 1) * columns):
-            value = grid[at]
-            grid[at] = run + half * value
-            run += value
-        total[row] = run
-
-
-@_compiled.kernel(rounding=_compiled.ROUNDING)
-def _read(
-    grid: Array, total: Array, cells: Array, rows: int, columns: int, forth: Array, back: Array
-) -> None:
-    """Take values from the 8 voxels around places, and what is left of the total of columns."""
-    x, y, z = cells[0], cells[1], cells[2]
-    one, whole = np.float32(1), len(total) > 0
-    for i in range(len(back)):
-        p, q, r = int(x[i]), int(y[i]), int(z[i])
-        f, g, h = x[i] - np.float32(p), y[i] - np.float32(q), z[i] - np.float32(r)
-        line = p * rows + q
-        value = beyond = np.float32(0)
-        for share in (one - f, f):
-            at = line * columns + r
-            low = grid[at] * (one - h) + grid[at + 1] * h
-            high = grid[at + columns] * (one - h) + grid[at + columns + 1] * h
-            value += share * (low * (one - g) + high * g)
-            if whole:
-                beyond += share * (total[line] * (one - g) + total[line + 1] * g)
-            line += rows
-        back[i] = value
-        if whole:
-            forth[i] = beyond - value

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import cKDTree
 
+from vizlight.geometry.lines.samples import SAMPLES, Samples
 from vizlight.geometry.lines.simplices import Places
 from vizlight.geometry.lines.tracing import Curves, Flow, Trail, Walkers
 
@@ -16,8 +17,6 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Bools, Indices
 
-#: Samples of curves per spacing.
-SAMPLES = 4
 #: Largest number of curves that grow at the same time.
 CROWD = 64
 #: Distances between seeds of the same moment, in spacings: at first, and at least.
@@ -27,110 +26,14 @@ APART, NEAR = 8.0, 1.0
 NORMALS = 0.5
 #: Distance to the side, in spacings, within which a curve that comes back to itself is closed.
 CLOSED = 0.05
-#: Number of samples in the small tree, which is made again at every step.
-RECENT = 1500
 #: Number of places that are looked at as seeds at once.
 QUEUE = 512
 #: Number of random places per square or cube of the spacing that are looked at for gaps.
 DENSE, MOST_PLACES = 8, 200_000
-
-
-class Samples:
-    """Samples of the curves, found by distance."""
-
-    def __init__(self) -> None:
-        self.points: Array = np.empty((0, 3))
-        self.along: Array = np.empty((0, 3))
-        self.sign: Array = np.empty(0)
-        self.length: Array = np.empty(0)
-        self.curve: Indices = np.empty(0, dtype=np.intp)
-        self.number: Indices = np.empty(0, dtype=np.intp)
-        self._cell: Indices = np.empty(0, dtype=np.intp)
-        self._weights: Array = np.empty((0, 3))
-        self._embedded: Array = np.empty((0, 3))
-        self._used: Bools = np.empty(0, dtype=np.bool_)
-        self._size = 0
-        # Most samples are in a tree that is seldom made again, the rest in one that often is.
-        self._old: cKDTree | None = None
-        self._new: cKDTree | None = None
-        self._rows: Indices = np.empty(0, dtype=np.intp)
-        self._recent = self._rows
-        self._whole, self._seen, self._stale = 0, 0, 0
-
-    def add(self, walkers: Walkers, points: Array, embedded: Array) -> None:
-        """Add where ends are now."""
-        count, size = len(points), self._size
-        if size + count > len(self.curve):
-            columns = embedded.shape[1], walkers.places.weights.shape[1]
-            self._grow(max(4096, 2 * (size + count)), *columns)
-        rows = slice(size, size + count)
-        self.points[rows], self._embedded[rows] = points, embedded
-        self.curve[rows], self.sign[rows] = walkers.curve, walkers.sign
-        self.along[rows] = walkers.along
-        self.length[rows], self.number[rows] = walkers.length, walkers.number
-        self._cell[rows], self._weights[rows] = walkers.places.cell, walkers.places.weights
-        self._used[rows] = True
-        self._size += count
-
-    def _grow(self, room: int, dimension: int, corners: int) -> None:
-        """Make room for more samples."""
-
-        def larger(array: Array, *columns: int) -> Array:
-            made = np.zeros((room, *columns))
-            if self._size:
-                made[: self._size] = array[: self._size]
-            return made
-
-        def longer(numbers: Indices) -> Indices:
-            return np.resize(numbers, room) if len(numbers) else np.zeros(room, dtype=np.intp)
-
-        self.points, self.along = larger(self.points, 3), larger(self.along, 3)
-        self._embedded = larger(self._embedded, dimension)
-        self._weights = larger(self._weights, corners)
-        self.sign, self.length = larger(self.sign), larger(self.length)
-        self.curve, self.number = longer(self.curve), longer(self.number)
-        self._cell = longer(self._cell)
-        used = np.zeros(room, dtype=np.bool_)
-        used[: self._size] = self._used[: self._size]
-        self._used = used
-
-    def drop(self, curve: int) -> None:
-        """Forget the samples of a curve."""
-        rows = np.flatnonzero(self.curve[: self._size] == curve)
-        self._used[rows] = False
-        self._seen = -1
-        self._stale += int(np.count_nonzero(rows < self._whole))
-
-    def of(self, curve: int) -> tuple[Places, Array]:
-        """Return the places of a curve's samples, and its directions there."""
-        rows = np.flatnonzero(self.curve[: self._size] == curve)[:: SAMPLES // 2]
-        return Places(self._cell[rows], self._weights[rows]), self.along[rows]
-
-    def near(self, embedded: Array, radius: float, count: int) -> tuple[Array, Indices]:
-        """Return distances and rows of samples within a radius, shape (N, K); infinity for none."""
-        if self._size - self._whole > RECENT or self._stale > RECENT:
-            self._rows = np.flatnonzero(self._used[: self._size])
-            self._old = cKDTree(self._embedded[self._rows], balanced_tree=False)
-            self._whole, self._seen, self._stale = self._size, -1, 0
-            self._recent, self._new = self._rows[:0], None
-        if self._seen != self._size:
-            self._recent = self._whole + np.flatnonzero(self._used[self._whole : self._size])
-            self._new = cKDTree(self._embedded[self._recent], balanced_tree=False)
-            self._seen = self._size
-        distances: list[Array] = []
-        numbers: list[Indices] = []
-        for tree, rows in ((self._old, self._rows), (self._new, self._recent)):
-            if tree is None or not len(rows):
-                continue
-            found = tree.query(embedded, k=count, distance_upper_bound=radius)
-            distance = np.asarray(found[0]).reshape(-1, count)
-            row = rows[np.minimum(np.asarray(found[1]).reshape(-1, count), len(rows) - 1)]
-            distances.append(np.where(self._used[row], distance, np.inf))
-            numbers.append(row)
-        if not distances:
-            empty = np.zeros((len(embedded), 1))
-            return empty + np.inf, empty.astype(np.intp)
-        return np.concatenate(distances, axis=1), np.concatenate(numbers, axis=1)
+#: Number of places per spacing along each axis that are looked at for the last gaps, which are
+#: filled if they are wider than so many spacings, by curves of a share of the shortest length, or
+#: half of that from a boundary.
+DENSER, WIDE, SHARE = 4, 1.15, 0.7
 
 
 @dataclass(frozen=True)
@@ -171,12 +74,14 @@ class Growth:
         self.last: dict[tuple[int, int], int] = {}
         self.closed: set[int] = set()
         self.dropped: set[int] = set()
-        #: Curves that were stopped by another or by themselves.
-        self.cut: set[int] = set()
+        #: Number of ends that were stopped by another curve or by their own, by curve.
+        self.cut: dict[int, int] = {}
         #: Number of ends that grow, and length of those that have stopped, by curve.
         self.growing: dict[int, int] = {}
         self.lengths: dict[int, float] = {}
         self.count, self.apart = 0, APART
+        #: Whether only wide gaps are still filled.
+        self.last_gaps = False
         nowhere = Places(np.empty(0, dtype=np.intp), np.empty((0, flow.mesh.k + 1)))
         self.walkers = Walkers.at(flow, nowhere, nowhere.cell)
         #: Of each end: step at which it came back beside its own curve, or -1; length at its last
@@ -251,7 +156,7 @@ class Growth:
         for row in np.flatnonzero(~going & ~lost).tolist():
             # What runs beside the curve itself is taken back, unless that closes it.
             if blocked[row]:
-                self.cut.add(int(ahead.curve[row]))
+                self.cut[int(ahead.curve[row])] = self.cut.get(int(ahead.curve[row]), 0) + 1
             if self.returning[row] >= 0:
                 key = int(ahead.curve[row]), int(ahead.sign[row])
                 self.last.setdefault(key, int(self.returning[row]))
@@ -316,11 +221,13 @@ class Growth:
         if self.growing[curve]:
             return
         del self.growing[curve]
-        short = self.lengths[curve] < self.asked.shortest * self.asked.spacing
-        if short and curve in self.cut:
+        cut = self.cut.get(curve, 0)
+        # In a gap there is room for half the length on either side of the seed.
+        share = SHARE * cut / 2 if self.last_gaps else min(cut, 1)
+        if self.lengths[curve] < share * self.asked.shortest * self.asked.spacing:
             self.dropped.add(curve)
             self.samples.drop(curve)
-        else:
+        elif not self.last_gaps:
             self._look_beside(curve)
 
     def _look_beside(self, curve: int) -> None:
@@ -350,12 +257,21 @@ class Growth:
                 return pool
             self.beside = rest
         if not self.growing:
-            pool = pool[self.distances(pool, spacing) >= spacing]
+            least = WIDE * spacing if self.last_gaps else spacing
+            pool = pool[self.distances(pool, least) >= least]
             if len(pool.cell):
                 rest = pool[QUEUE:]
                 pool = pool[:QUEUE]
                 pool = pool[~self.start(pool)].joined(rest)
         return pool
+
+    def widest(self, places: Places) -> Places:
+        """Return the places in wide gaps, those farthest from all curves first."""
+        embedded = self.embedded(places, self.flow.mesh.positions(places))
+        tree, least = self.samples.tree(), WIDE * self.asked.spacing
+        wide = np.flatnonzero(tree.query(embedded, distance_upper_bound=least)[0] >= least)
+        distance = np.asarray(tree.query(embedded[wide])[0])
+        return places[wide[np.argsort(-distance, kind="stable")]]
 
 
 def evenly_spaced(
@@ -402,7 +318,7 @@ def evenly_spaced(
     # Parts that are too small for a random place have one of their own.
     pool = pool[random.permutation(len(pool.cell))].joined(flow.mesh.one_each())
     growth = Growth(flow, normals, asked, random)
-    total, covered = len(pool.cell), 0
+    total, covered, before = len(pool.cell), 0, -1
     if seeds is not None:
         growth.beside = seeds
     while True:
@@ -410,25 +326,30 @@ def evenly_spaced(
             pool = growth.refill(pool)
             covered = max(covered, total - len(pool.cell))
             report(covered)
-        if not len(growth.walkers.curve):
-            if not growth.growing and not len(growth.beside.cell) and not len(pool.cell):
+        if len(growth.walkers.curve):
+            growth.grow()
+        elif not growth.growing and not len(growth.beside.cell) and not len(pool.cell):
+            kept = growth.count - len(growth.dropped)
+            if kept == before:
                 break
-            continue
-        growth.grow()
+            before, growth.last_gaps = kept, True
+            pool = growth.widest(places_of(flow, asked.spacing, random, DENSER**flow.mesh.k))
     report(total)
     curves = growth.trail.curves(growth.last, closed=growth.closed, dropped=growth.dropped)
     return curves, len(growth.closed - growth.dropped)
 
 
-def places_of(flow: Flow, spacing: float, random: np.random.Generator) -> Places:
+def places_of(
+    flow: Flow, spacing: float, random: np.random.Generator, dense: int = DENSE
+) -> Places:
     """Return random places all over a surface or a volume, some in each square of the spacing."""
-    return flow.mesh.random(place_count(flow, spacing), random)
+    return flow.mesh.random(place_count(flow, spacing, dense), random)
 
 
-def place_count(flow: Flow, spacing: float) -> int:
+def place_count(flow: Flow, spacing: float, dense: int = DENSE) -> int:
     """Return the number of places of :func:`places_of`."""
-    count = DENSE * flow.mesh.extent / spacing**flow.mesh.k
-    return int(np.clip(count, 1000, MOST_PLACES))
+    count = dense * flow.mesh.extent / spacing**flow.mesh.k
+    return int(np.clip(count, 1000, MOST_PLACES * dense // DENSE))
 
 
 def gaps(
@@ -446,7 +367,7 @@ def gaps(
     """
     random = np.random.default_rng(seed)
     growth = Growth(flow, normals, asked, random)
-    places = places_of(flow, asked.spacing, random)
+    places = places_of(flow, asked.spacing, random, DENSER**flow.mesh.k)
     # The field has no curve where it has no direction.
     places = places[flow.directions(places, None, np.ones(len(places.cell)))[1]]
     there = growth.embedded(curves.places, flow.mesh.positions(curves.places))
