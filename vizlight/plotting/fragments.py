@@ -61,7 +61,8 @@ def unfit(
     str
     """
     layout = inputs.layout
-    if stroke.round and layout._replace(dimmed=False, occluded=False) != Layout(k=1):
+    alone = layout._replace(normals=False, dimmed=False, occluded=False) == Layout(k=1)
+    if stroke.round and (options.conditioned or not alone):
         return "only lines that are lit by their tangents alone can be round"
     if layout.n != 3:
         return f"light in {layout.n}-space has no direction in the picture"
