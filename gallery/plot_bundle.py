@@ -8,6 +8,7 @@ fibre is lit as a thin cylinder, and with ``bundle=True`` they are together a me
 light on its way in: sheets, gaps and single strands can be told apart, and front from back.
 """
 
+# sphinx_gallery_thumbnail_number = 1
 import numpy as np
 
 import vizlight
@@ -20,9 +21,7 @@ scene = Scene(
     view=View.from_camera(camera),
     material=Material(ambient=0.55, diffuse=1.0, specular=0.3, shininess=25),
 )
-lit = vizlight.illuminate(
-    tract, scene, bundle=Bundle(depth=1.2), model="cylinder", components=True
-)
+lit = vizlight.illuminate(tract, scene, bundle=Bundle(depth=1.2), model="cylinder", components=True)
 
 # The usual colours of directions, red, green and blue, in hues that go together.
 share = np.asarray(vizlight.direction_colors(tract), dtype=float) ** 2
