@@ -36,7 +36,7 @@ for time in times:
     steps.append(step)
 
 seeds = np.linspace((0.05, -0.32, 0.05), (0.05, 0.32, 0.05), 26)
-camera = render.camera_on((0.3, 6.7, -1.1, 1.1, 0, 0.1), (0, -0.3, 1), aspect=2.7, zoom=1.45)
+camera = render.camera_on((0.3, 6.7, -1.1, 1.1, 0, 0.1), (0, -0.3, 1), aspect=2.7, zoom=1.9)
 scene = Scene(
     lights=Light(direction=(-0.7, 0.6, 0.6)),
     view=View.from_camera(camera),

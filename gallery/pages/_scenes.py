@@ -22,8 +22,8 @@ INTERACTIVE = ("plot_flow", "plot_carotid", "plot_complex_curve")
 # listed come last.
 ORDER = [
     "plot_flow", "plot_live", "plot_carotid", "plot_lines", "plot_bundle",
-    "plot_principal_lines", "plot_streaklines", "plot_tubes", "plot_satin", "plot_fur", "plot_ambient",
-    "plot_depth_cue", "plot_attenuation",
+    "plot_principal_lines", "plot_streaklines", "plot_tubes", "plot_satin", "plot_fur",
+    "plot_ambient", "plot_depth_cue", "plot_attenuation",
     "plot_terrain_day", "plot_terrain", "plot_earth", "plot_bas_relief", "plot_seeping_light",
     "plot_codimension", "plot_turning", "plot_complex_curve", "plot_shapes",
     "plot_field_in_4_space", "plot_highlights", "plot_highlights_shapes", "plot_highlight_error",

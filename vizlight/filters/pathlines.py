@@ -135,8 +135,10 @@ def pathlines(
     are linear in time between two steps: the error is of order 2 in the time between steps. Plane
     grids and volumes are meant: on a curved surface particles leave it at once. A line ends less
     than a step before the boundary. Where a flow pulls a streak apart, particles that left one
-    after the other are joined by a chord; a smaller ``step`` releases more. VTK's vtkParticlePathFilter and vtkStreaklineFilter (9.7) are
-    of order 1 in the time between steps: they use the vectors of its end.
+    after the other are joined by a chord; a smaller ``step`` releases more.
+
+    VTK's vtkParticlePathFilter and vtkStreaklineFilter (9.7) are of order 1 in the time between
+    steps: they use the vectors of its end.
 
     Examples
     --------
