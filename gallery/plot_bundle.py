@@ -1,36 +1,46 @@
 """
-Light inside a bundle
-=====================
+A tract of the brain
+====================
 
-Lines that are lit one by one are as bright deep inside a bundle as on its rim: the bundle is flat,
-and where many lines face the light it is a blot. With ``bundle=True`` the lines are a medium of
-thin cylinders that dims the light on its way, and the ambient light of points that are closed in:
-front and back, and single strands, can be told apart.
+Three hundred nerve fibres from diffusion imaging, coloured by their direction. Left: as lines are
+usually drawn, without light. The tract is a blot in which no fibre can be followed. Right: each
+fibre is lit as a thin cylinder, and with ``bundle=True`` they are together a medium that dims the
+light on its way in: sheets, gaps and single strands can be told apart, and front from back.
 """
 
+# sphinx_gallery_thumbnail_number = 1
+import numpy as np
+
 import vizlight
-from vizlight import Light, Material, Scene, View, render
+from vizlight import Bundle, Light, Material, Scene, View, render
 
 tract = vizlight.load_example("fibre_bundle.vtp")
-camera = render.camera_on(tract, (0.3, -1, 0.4), aspect=1.5)
+camera = render.camera_on(tract, (1, -0.55, 0.2), aspect=1.1, zoom=1.07)
 scene = Scene(
-    lights=Light(direction=(-0.5, -0.6, 1)),
+    lights=Light(direction=(1.2, -0.1, 1)),
     view=View.from_camera(camera),
-    material=Material(ambient=0.25, diffuse=0.8, specular=0.5, shininess=30),
+    material=Material(ambient=0.55, diffuse=1.0, specular=0.3, shininess=25),
 )
-alone = vizlight.illuminate(tract, scene)
-bundle = vizlight.illuminate(tract, scene, bundle=True)
-panels = [render.Panel(alone, title="each line alone"), render.Panel(bundle, title="as a bundle")]
+lit = vizlight.illuminate(tract, scene, bundle=Bundle(depth=1.2), model="cylinder", components=True)
 
-plotter = render.make_plotter(panels, camera=camera, size=(1500, 500), line_width=1.5)
+# The usual colours of directions, red, green and blue, in hues that go together.
+share = np.asarray(vizlight.direction_colors(tract), dtype=float) ** 2
+share /= share.sum(axis=1, keepdims=True)
+flat = tract.copy()
+flat["rgb"] = share @ [[0.93, 0.38, 0.22], [0.98, 0.76, 0.30], [0.22, 0.52, 0.86]]
+# A strand that stands alone gets all the light, but not more than its colour.
+light = np.minimum(1.35 * (lit["ambient"] + lit["diffuse"]), 1.1)
+lit["rgb"] = np.clip(flat["rgb"] * light[:, np.newaxis] + lit["specular"][:, np.newaxis], 0, 1)
+
+panels = [render.Panel(flat, "rgb"), render.Panel(lit, "rgb")]
+options = {"camera": camera, "size": (1600, 760), "line_width": 1.4}
+plotter = render.make_plotter(panels, background="black", **options)
 plotter.show()
 
 # %%
-# On white paper what was white is lost, and what is dimmed stays.
+# The same on white paper.
 
-plotter = render.make_plotter(
-    panels, camera=camera, size=(1500, 500), line_width=1.5, background="white"
-)
+plotter = render.make_plotter(panels, background="white", **options)
 plotter.show()
 
 # %%
@@ -38,13 +48,6 @@ plotter.show()
 # from all sides, here on their own. They are computed again only where lines or lights have
 # changed, not where the eye has moved.
 
-plotter = render.make_plotter(
-    [
-        render.Panel(bundle, scalars="transmittance", title="transmittance"),
-        render.Panel(bundle, scalars="occlusion", title="occlusion"),
-    ],
-    camera=camera,
-    size=(1500, 500),
-    line_width=1.5,
-)
+shares = [render.Panel(lit, name, name) for name in ("transmittance", "occlusion")]
+plotter = render.make_plotter(shares, background="black", **options)
 plotter.show()

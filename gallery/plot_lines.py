@@ -1,40 +1,55 @@
 """
-Streamlines, free and on a surface
-==================================
+A flow in a volume
+==================
 
-Streamlines of the flow over a rotating disk, each lit by its own tangents. On the right the same
-flow is confined to an isosurface and conditioned by the surface normals. The left panel shows how
-the gas falls, turns and leaves along the disk. In the right panel only the near side is bright, so
-the dome has a front and a back although only lines are drawn.
+The gas over a heated, rotating disk, coloured from cold (blue) to hot (orange). It falls from
+above, turns, leaves along the disk, and below it swirls on; in the middle a ring of gas keeps
+turning on itself. Left: streamlines as they are usually drawn. Right: each is lit as a thin
+cylinder, and together they dim the light on its way in. Now the ring is round and hollow, and the
+lines that pass in front of it are in front.
+
+The lines start on two circles, so that they lie side by side like the threads of a fabric.
 """
 
+import numpy as np
+
 import vizlight
-from vizlight import Light, Scene, View, render
+from vizlight import Bundle, Light, Material, Scene, View, render
 
 flow = vizlight.load_example()
-camera = render.camera_on(flow.bounds, (1, 0.5, 0.3), zoom=1.1)
-scene = Scene(lights=Light(direction=(1, 0.9, 0.5)), view=View.from_camera(camera))
-free = vizlight.streamlines(flow, scene, vectors="V", seeds=250)
 
-isosurface = flow.contour([400], scalars="Temp")
-near = render.camera_on(isosurface.bounds, (1, 0.5, 0.3), zoom=1.4)
-confined = vizlight.streamlines(
-    flow,
-    Scene(lights=Light(direction=(1, 0.9, 0.5)), view=View.from_camera(near)),
-    vectors="V",
-    surface=isosurface,
-    confined=True,
-    seeds=300,
-    max_length=20,
-)
 
-plotter = render.make_plotter(
-    [render.Panel(free, title="free"), render.Panel(confined, title="on Temp = 400")],
-    camera=camera,
-    size=(1500, 760),
-    line_width=1,
+def circle(count, radius, height):
+    """Return points on a circle around the axis of the disk."""
+    turn = np.linspace(0, 2 * np.pi, count, endpoint=False)
+    return np.stack([radius * np.cos(turn), radius * np.sin(turn), 0 * turn + height], axis=1)
+
+
+camera = render.camera_on((-4.6, 4.6, -4.6, 4.6, -9.5, 8.5), (1, 0.5, 0.42), aspect=0.8, zoom=1.28)
+scene = Scene(
+    lights=Light(direction=(1, -0.6, 0.9)),
+    view=View.from_camera(camera),
+    material=Material(ambient=0.45, diffuse=1.0, specular=0.4, shininess=25),
 )
-plotter.subplot(0, 1)
-plotter.camera = near
-plotter.reset_camera_clipping_range()
+lit = vizlight.streamlines(
+    flow, scene, vectors="V", seeds=np.concatenate([circle(60, 2.75, 3.4), circle(90, 2.2, 9.5)]),
+    max_length=90, model="cylinder", bundle=Bundle(depth=1.2), components=True,
+)  # fmt: skip
+
+heat = np.clip((lit["Temp"] - 300) / 600, 0, 1)
+hues = np.array([[0.20, 0.42, 0.78], [0.33, 0.70, 0.84], [0.92, 0.66, 0.28], [0.95, 0.42, 0.12]])
+flat = lit.copy()
+flat["rgb"] = np.stack([np.interp(heat, [0, 0.2, 0.5, 1], hue) for hue in hues.T], axis=1)
+light = np.minimum(1.3 * (lit["ambient"] + lit["diffuse"]), 1.0)
+lit["rgb"] = np.clip(flat["rgb"] * light[:, np.newaxis] + lit["specular"][:, np.newaxis], 0, 1)
+
+panels = [render.Panel(flat, "rgb"), render.Panel(lit, "rgb")]
+options = {"camera": camera, "size": (1600, 1000), "line_width": 1.4}
+plotter = render.make_plotter(panels, background="black", **options)
+plotter.show()
+
+# %%
+# The same on white paper.
+
+plotter = render.make_plotter(panels, background="white", **options)
 plotter.show()

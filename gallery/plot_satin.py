@@ -29,7 +29,10 @@ scene = Scene(
     view=View.from_camera(camera),
     material=Material(ambient=0.1, diffuse=0.5, specular=1.0, color=(1.0, 0.25, 0.30)),
 )
-panels = vizlight.satin(ball, scene, tangents="satin", seeds=2500, compensate=False)
+# Threads that start at even steps around the equator keep even steps on every circle of latitude.
+turn = np.linspace(0, 2 * np.pi, 220, endpoint=False)
+equator = 0.5 * np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1)
+panels = vizlight.satin(ball, scene, tangents="satin", seeds=equator, compensate=False)
 dark = pv.Sphere(radius=0.496, theta_resolution=120, phi_resolution=120)
 dark["rgb"] = np.full((dark.n_points, 3), 0.02)
 panels["curves"] = pv.MultiBlock([panels["curves"], dark])
@@ -39,6 +42,20 @@ plotter = render.make_plotter(
     camera=camera,
     size=(1600, 440),
     background="#101010",
-    line_width=0.75,
+    line_diameter=0.009,
+)
+plotter.show()
+
+# %%
+# A and D as large as a page. Each thread has, across its width, the light of the cylinder that it
+# stands for.
+
+plotter = render.make_plotter(
+    [render.Panel(panels[name], "rgb") for name in ("curves", "conditioned")],
+    camera=render.camera_on(ball.bounds, (0.2, -1, 0.35), zoom=1.5),
+    size=(1600, 800),
+    background="#101010",
+    line_diameter=0.01,
+    render_lines_as_tubes=True,
 )
 plotter.show()

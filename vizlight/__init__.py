@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from vizlight.filters.illuminate import illuminate
     from vizlight.filters.isoluminance import isoluminance
     from vizlight.filters.manifold import manifold
+    from vizlight.filters.pathlines import pathlines
     from vizlight.filters.project import project
     from vizlight.filters.refine import refine
     from vizlight.filters.relief_day import relief_day
@@ -66,6 +67,7 @@ _HOMES = {
     "isoluminance": "vizlight.filters",
     "load_example": "vizlight.data",
     "manifold": "vizlight.filters",
+    "pathlines": "vizlight.filters",
     "project": "vizlight.filters",
     "provenance": "vizlight.filters",
     "read": "vizlight.files",
@@ -110,6 +112,7 @@ __all__ = [
     "isoluminance",
     "load_example",
     "manifold",
+    "pathlines",
     "project",
     "provenance",
     "read",

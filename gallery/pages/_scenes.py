@@ -16,13 +16,14 @@ from sphinx_gallery.scrapers import figure_rst, matplotlib_scraper
 from trame_vtk.tools.vtksz2html import embed_data_to_viewer_file
 
 #: Scripts with an interactive scene: one view of one mesh, of a few megabytes.
-INTERACTIVE = ("plot_flow", "plot_carotid", "plot_fibres", "plot_complex_curve")
+INTERACTIVE = ("plot_flow", "plot_carotid", "plot_complex_curve")
 
 # Lines and flows, then surfaces, terrain, 4-space, formulas and their errors; scripts that are not
 # listed come last.
 ORDER = [
-    "plot_flow", "plot_live", "plot_carotid", "plot_lines", "plot_tubes", "plot_fibres",
-    "plot_satin", "plot_fur", "plot_ambient", "plot_depth_cue", "plot_attenuation",
+    "plot_flow", "plot_live", "plot_carotid", "plot_lines", "plot_bundle",
+    "plot_principal_lines", "plot_streaklines", "plot_tubes", "plot_satin", "plot_fur",
+    "plot_ambient", "plot_depth_cue", "plot_attenuation",
     "plot_terrain_day", "plot_terrain", "plot_earth", "plot_bas_relief", "plot_seeping_light",
     "plot_codimension", "plot_turning", "plot_complex_curve", "plot_shapes",
     "plot_field_in_4_space", "plot_highlights", "plot_highlights_shapes", "plot_highlight_error",
@@ -38,7 +39,6 @@ PARTS = {
     "plot_complex_curve": (0.1, 0.05, 0.9, 1.0),
     "plot_depth_cue": (0.67, 0.06, 1.0, 0.5),
     "plot_earth": (0.02, 0.1, 0.48, 0.9),
-    "plot_fibres": (0.05, 0.1, 0.95, 0.8),
     "plot_errors": (0.0, 0.0, 0.5, 1.0),
     "plot_field_in_4_space": (0.667, 0.07, 1.0, 1.0),
     "plot_fur": (0.67, 0.2, 1.0, 0.9),
@@ -49,7 +49,8 @@ PARTS = {
     "plot_isoluminance_speed": (0.0, 0.0, 0.51, 1.0),
     "plot_line_models": (0.0, 0.0, 0.47, 1.0),
     "plot_lines": (0.5, 0.05, 1.0, 1.0),
-    "plot_satin": (0.75, 0.1, 1.0, 1.0),
+    "plot_principal_lines": (0.5, 0.0, 1.0, 1.0),
+    "plot_satin": (0.0, 0.0, 0.5, 1.0),
     "plot_seeping_light": (0.67, 0.05, 1.0, 0.95),
     "plot_shapes": (0.2, 0.07, 0.4, 1.0),
     "plot_terrain": (0.0, 0.08, 0.165, 0.92),

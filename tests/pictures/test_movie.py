@@ -297,3 +297,19 @@ def test_nothing_to_draw(tmp_path):
     mesh.GetPointData().AddArray(pv.convert_array(np.empty((0, 4)), "position"))
     with pytest.raises(ValueError, match="mesh: expected a mesh with points"):
         movie.turn(mesh, tmp_path / "t.png", frame=None)
+
+
+def test_frames_of_pathlines_become_pictures(tmp_path):
+    times, scene = np.linspace(0, 1, 4), Scene(view=View(direction=(0, 0, 1)))
+    steps = []
+    for time in times:
+        mesh = pv.ImageData(dimensions=(5, 5, 5))
+        mesh["V"] = np.tile([1.0, np.cos(time), 0.0], (mesh.n_points, 1))
+        steps.append(mesh)
+    frames = list(vizlight.pathlines(steps, scene, times=times, vectors="V", seeds=9))
+    files = movie.save(iter(frames), tmp_path / "flow.png", picture={"size": (64, 48)})
+    assert [file.name for file in files] == [f"flow_000{i}.png" for i in range(3)]
+    ink = [np.asarray(pv.read(file).active_scalars, dtype=float).sum() for file in files]
+    assert 0 < ink[0] < ink[1] < ink[2]
+    with pytest.raises(ValueError, match="frames: expected"):
+        movie.save([], tmp_path / "none.png")

@@ -266,6 +266,13 @@ def reversing():
     return mesh
 
 
+def strands():
+    mesh = helix(100)
+    mesh["Normals"] = np.array(mesh.points)
+    mesh.point_data.active_normals_name = "Normals"
+    return mesh
+
+
 FALLBACKS = {
     "2 tangents per point": (
         lambda: manifolds_mesh("after"), Scene(lights=FAR), {"tangents": "projected_frame"}
@@ -276,7 +283,11 @@ FALLBACKS = {
     ),
     "cylinder": (helix, Scene(lights=FAR), {"model": "cylinder"}),
     "sign is arbitrary": (reversing, Scene(lights=FAR), {"tangents": "around"}),
-    "spheres and tubes": (helix, Scene(lights=FAR), {"render_lines_as_tubes": True}),
+    "spheres and tubes": (torus, Scene(lights=FAR), {"render_lines_as_tubes": True}),
+    "alone can be round": (
+        strands, Scene(lights=FAR),
+        {"render_lines_as_tubes": True, "line_width": 3, "conditioned": True},
+    ),
 }  # fmt: skip
 
 

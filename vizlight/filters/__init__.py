@@ -6,6 +6,7 @@ from vizlight.filters.fur import fur
 from vizlight.filters.illuminate import illuminate
 from vizlight.filters.isoluminance import isoluminance
 from vizlight.filters.manifold import manifold
+from vizlight.filters.pathlines import pathlines
 from vizlight.filters.project import project
 from vizlight.filters.refine import refine
 from vizlight.filters.relief_day import relief_day
@@ -23,6 +24,7 @@ __all__ = [
     "illuminate",
     "isoluminance",
     "manifold",
+    "pathlines",
     "project",
     "provenance",
     "refine",

@@ -167,6 +167,9 @@ def from_record(
 
 def _of_block(mesh: pv.DataSet, path: str, record: Mapping[str, Any], scene: Scene) -> Source:
     made, options = str(record["filter"]), dict(record["options"])
+    if made == "streamlines":
+        # Where lines start has no part in their light.
+        options = {key: value for key, value in options.items() if key != "seeds"}
     _refuse_described(made, options)
     if made == "relief_shadow":
         return _of_relief(mesh, options, scene)

@@ -1,4 +1,4 @@
-"""Movies and PNG sequences of a mesh that rotates in n-space, with a fixed camera and scene."""
+"""Movies and PNG sequences: of lit meshes, and of a mesh that rotates in n-space."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import itertools
 import os
 import warnings
 from collections.abc import Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -24,7 +25,6 @@ from vizlight.shading.options import accepts
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
-    from pathlib import Path
 
     import pyvista as pv
     from numpy.typing import NDArray
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 Item = TypeVar("Item")
 
-__all__ = ["MovieError", "turn"]
+__all__ = ["MovieError", "save", "turn"]
 
 FORMATS = (".png", ".gif", ".mp4")
 TURN = 2 * np.pi
@@ -47,6 +47,60 @@ PLACING = ("positions", "frame", "distance", "hyperplane", "cut")
 
 class MovieError(RuntimeError):
     """The package that writes movies is not installed; the message says how to install it."""
+
+
+def save(
+    frames: Iterable[Mesh | render.Panel],
+    path: str | Path,
+    /,
+    *,
+    fps: float = 24.0,
+    camera: pv.Camera | None = None,
+    picture: render.PlotterKeywords | None = None,
+    progress_bar: bool = False,
+) -> list[Path]:
+    """Save a picture of each lit mesh, such as :func:`vizlight.pathlines` yields, as a movie.
+
+    Parameters
+    ----------
+    frames : iterable of meshes or Panels
+        Meshes to draw, one after the other.
+    path : path
+        Path of a movie or of a sequence of PNGs, as for :func:`turn`.
+    fps : float, default: 24.0
+        Frames per second of a movie, up to 100.
+    camera : pyvista.Camera, optional
+        Camera of all frames. Default: one that shows them all; the frames are then kept in memory
+        until the last is there.
+    picture : mapping, optional
+        Further options of :func:`vizlight.render.make_plotter`.
+    progress_bar : bool, default: False
+        Show progress on standard error.
+
+    Returns
+    -------
+    list of pathlib.Path
+        Paths of the files written.
+
+    Raises
+    ------
+    MovieError, BackendError, TypeError, ValueError
+        As for :func:`turn`; also if there is no frame.
+    """
+    path = _check_movie(path)
+    drawing = _drawing(picture)
+    writer = _writer(path, _check.number("fps", fps, low=0.01, high=100.0), drawing["size"])
+    if camera is None:
+        frames = list(frames)
+        meshes = [frame.mesh if isinstance(frame, render.Panel) else frame for frame in frames]
+        camera = render.camera_on(common_bounds("frames", meshes))
+    drawing["camera"] = camera
+    known = len(frames) if isinstance(frames, list) else 0
+    with progress("draw", known, show=progress_bar) as report:
+        files = writer(_counted(render.pictures(frames, **drawing), report, 0))
+    if not files:
+        raise ValueError(_check.message("frames", "one mesh or more", "none"))
+    return files
 
 
 @accepts(ProjectOptions)
@@ -123,9 +177,7 @@ def turn(
     UserWarning
         Once, with the number of frames affected, if :func:`vizlight.project` warns.
     """
-    if not isinstance(path, str | os.PathLike):
-        raise TypeError(_check.message("path", "the path of a file", _check.describe(path)))
-    path = check_output(path, FORMATS)
+    path = _check_movie(path)
     count = _check.integer("frames", frames, low=1)
     whole = _check.number("angle", angle)
     fps = _check.number("fps", fps, low=0.01, high=100.0)
@@ -162,6 +214,13 @@ def turn(
     if notes:
         _check.warn(f"in {len(notes)} of {count} frames: {notes[0]}")
     return files
+
+
+def _check_movie(path: object) -> Path:
+    """Return the path of a movie or of a sequence that can be written."""
+    if not isinstance(path, str | os.PathLike):
+        raise TypeError(_check.message("path", "the path of a file", _check.describe(path)))
+    return check_output(Path(path), FORMATS)
 
 
 def _drawing(picture: render.PlotterKeywords | None) -> render.PlotterKeywords:

@@ -12,7 +12,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.files import check_output, replace_file
 from vizlight.filters.tint import unlit_colors
-from vizlight.mesh import records
+from vizlight.mesh import polylines, records
 from vizlight.mesh.blocks import all_blocks, check
 from vizlight.mesh.polylines import has_lines_only
 from vizlight.pictures.backends import (
@@ -24,6 +24,7 @@ from vizlight.pictures.backends import (
     window_class,
 )
 from vizlight.pictures.cameras import Mesh, camera_on, common_bounds, over_shoulder
+from vizlight.plotting import strokes
 from vizlight.plotting.component import add_recorded
 
 if TYPE_CHECKING:
@@ -84,6 +85,8 @@ class PlotterKeywords(TypedDict, total=False):
     bar: str
     background: ColorLike | None
     line_width: float
+    line_diameter: float | None
+    render_lines_as_tubes: bool
     anti_aliasing: AntiAliasing | None
     backend: Backend | None
     light: PictureLight
@@ -102,6 +105,8 @@ def make_plotter(
     bar: str = "",
     background: ColorLike | None = None,
     line_width: float = 1.0,
+    line_diameter: float | None = None,
+    render_lines_as_tubes: bool = False,
     anti_aliasing: AntiAliasing | None = "ssaa",
     backend: Backend | None = None,
     light: PictureLight = "auto",
@@ -134,6 +139,14 @@ def make_plotter(
         Width of lines in pixels of the picture, whatever the anti-aliasing. Beside surfaces lines
         are drawn nearer to the eye, by 0.3 % of the bounding box's diagonal and at the same pixels,
         so that a surface on which they lie does not hide them.
+    line_diameter : float, optional
+        Diameter of lines in the unit of the mesh, in place of ``line_width``: nearer lines are
+        wider. They are bands that face the eye, at least half a pixel wide.
+    render_lines_as_tubes : bool, default: False
+        Whether lines wider than a pixel have, across their width, the light of the cylinder that
+        they stand for: its mean is that of ``model="cylinder"``. Lines keep their own light where
+        it cannot be computed in each fragment, as with ``light="points"``, on a surface that
+        conditions it, or in a bundle.
     anti_aliasing : {"ssaa", "msaa", "fxaa"} or None, default: "ssaa"
         Method of anti-aliasing: supersampling, multisampling, FXAA, or none.
     backend : {"egl", "osmesa"}, optional
@@ -165,6 +178,9 @@ def make_plotter(
     rows = min(_check.integer("rows", rows, low=1), len(shown))
     columns = math.ceil(len(shown) / rows)
     line_width = _check.number("line_width", line_width, low=0.1, high=1000.0)
+    if line_diameter is not None:
+        line_diameter = _check.positive("line_diameter", line_diameter)
+    tubes = _check.boolean("render_lines_as_tubes", render_lines_as_tubes)
     back = _background_of(shown, background)
     if camera is None:
         camera = _camera_on_all(shown, aspect=pixels[0] * rows / (pixels[1] * columns))
@@ -184,9 +200,10 @@ def make_plotter(
             # PyVista supersamples for FXAA too where the driver lacks that.
             drawn = plotter.renderer.GetPass()
             pixel = SUPERSAMPLED if drawn is not None and drawn.IsA("vtkSSAAPass") else 1.0
-            width = line_width * pixel
+            lines = {"line_width": line_width * pixel, "line_diameter": line_diameter}
+            lines["render_lines_as_tubes"] = tubes
             lit = light == "auto" and plain
-            _draw(plotter, panel, cmap, clim, width, camera, fragments=lit)
+            _draw(plotter, panel, cmap, clim, lines, camera, fragments=lit)
             if panel.title:
                 plotter.add_text(panel.title, position="upper_edge", font_size=10, color=ink)
             plotter.camera = camera.copy()  # type: ignore[no-untyped-call]
@@ -272,7 +289,7 @@ def save_png(
         Path of the picture, in an existing folder.
     **options
         Options of :func:`make_plotter`: camera, rows, size, scalars, cmap, clim, bar, background,
-        line_width, anti_aliasing, backend, light.
+        line_width, line_diameter, render_lines_as_tubes, anti_aliasing, backend, light.
 
     Returns
     -------
@@ -346,8 +363,8 @@ def pixels_of(size: object) -> list[int]:
 
 
 def _draw(
-    plotter: pv.Plotter, panel: Panel, cmap: Any, clim: tuple[float, float], line_width: float,
-    camera: pv.Camera, *, fragments: bool,
+    plotter: pv.Plotter, panel: Panel, cmap: Any, clim: tuple[float, float],
+    width: dict[str, Any], camera: pv.Camera, *, fragments: bool,
 ) -> None:  # fmt: skip
     blocks = [mesh for mesh in all_blocks(panel.mesh) if mesh.n_points]
     of_lines = [has_lines_only(mesh) for mesh in blocks]
@@ -357,8 +374,12 @@ def _draw(
         if lines and not all(of_lines):
             # Assigning to shown.points would move the points that it shares with the mesh.
             shown.SetPoints(pv.vtk_points(_lifted(np.asarray(mesh.points), camera, size)))
-        if fragments and add_recorded(plotter, shown, panel.scalars, line_width=line_width):
+        if fragments and _add_in_fragments(plotter, shown, panel.scalars, width):
             continue
+        diameter = width["line_diameter"] if lines else None
+        if diameter is not None:
+            shown["vizlight along"] = polylines.line_tangents(mesh).astype(np.float32)
+            shown.point_data.active_normals_name = "vizlight along"
         of_points = panel.scalars in mesh.point_data
         values = np.asarray((mesh.point_data if of_points else mesh.cell_data)[panel.scalars])
         colour = values.ndim == 2
@@ -373,12 +394,22 @@ def _draw(
             cmap=None if colour else cmap,
             clim=None if colour else clim,
             lighting=False,
-            line_width=line_width,
+            line_width=width["line_width"],
             show_scalar_bar=False,
         )
+        if diameter is not None:
+            strokes.widen(actor, strokes.Stroke(diameter))
         if (records.read(mesh, panel.scalars) or {}).get("filter") == "tint":
             # The colours are drawn as they are; a scalar bar shows those before they were lit.
             actor.mapper.lookup_table = unlit_colors(mesh, panel.scalars)
+
+
+def _add_in_fragments(
+    plotter: pv.Plotter, mesh: pv.DataSet, name: str, width: dict[str, Any]
+) -> bool:
+    """Add a mesh whose light is computed in each fragment; lines that cannot be round are flat."""
+    flat = width | {"render_lines_as_tubes": False}
+    return any(add_recorded(plotter, mesh, name, **options) for options in (width, flat))
 
 
 def _lifted(points: NDArray[np.floating[Any]], camera: pv.Camera, by: float) -> Any:

@@ -14,10 +14,12 @@ from vizlight.files import check_output
 from vizlight.filters import lighting, relight
 from vizlight.filters.tint import RGB, unlit_colors
 from vizlight.mesh import blocks, records
+from vizlight.mesh.polylines import has_lines_only
 from vizlight.plotting.fragments import Fragments, unfit
 from vizlight.plotting.live import Live, colorless, headlight_scene, items, lifted
 from vizlight.plotting.notebook import guard, guard_exports
 from vizlight.plotting.points import Points
+from vizlight.plotting.strokes import Stroke
 from vizlight.scene import Scene
 from vizlight.shading.options import LightOptions
 
@@ -79,6 +81,7 @@ class Component:
         scene: Scene | None = None,
         light: LightAt = "auto",
         scalars: str | None = None,
+        line_diameter: float | None = None,
         **options: Any,
     ) -> pv.Actor | list[pv.Actor]:
         """Add a mesh whose light follows the camera.
@@ -101,10 +104,16 @@ class Component:
         scalars : str, optional
             Name of the array that gives the colours, which are multiplied by ambient and diffuse
             light. Default: none, or that of :func:`vizlight.tint` for a mesh that it returned.
+        line_diameter : float, optional
+            Diameter of lines in the unit of the mesh, at least a pixel, in place of PyVista's
+            ``line_width`` in pixels: nearer lines are wider.
         **options
             Options of :func:`vizlight.illuminate`, such as ``tangents=`` and ``conditioned=``,
             except ``name`` and ``components``; and keywords of ``pyvista.Plotter.add_mesh``, such
-            as ``cmap``, ``clim``, ``name``, ``opacity``, ``line_width``, ``pickable``.
+            as ``cmap``, ``clim``, ``name``, ``opacity``, ``line_width``, ``pickable``. With
+            ``render_lines_as_tubes=True`` lines wider than a pixel have, where light is in
+            fragments, the light of the cylinder that they stand for across their width: its mean
+            is that of ``model="cylinder"``.
 
         Returns
         -------
@@ -142,6 +151,8 @@ class Component:
         own = {key: value for key, value in options.items() if key in LIGHT}
         drawing = {key: value for key, value in options.items() if key not in LIGHT}
         _check_drawing(drawing, scene)
+        if line_diameter is not None:
+            line_diameter = _check.positive("line_diameter", line_diameter)
         sources, used = _sources(mesh, scene, own)
         if getattr(plotter, "notebook", False):
             guard()
@@ -154,6 +165,7 @@ class Component:
             keywords = colors | drawing
             if several and keywords.get("name") is not None:
                 keywords["name"] = f"{keywords['name']}-{number}"
+            keywords["line_diameter"] = line_diameter
             actors.append(self._add(plotter, source, used, light, chosen, keywords, follow=True))
         if not several and not actors:
             raise ValueError(_check.message("mesh", "a mesh with points", "none"))
@@ -213,18 +225,23 @@ class Component:
         follow: bool,
     ) -> pv.Actor:
         """Draw one source, light it once, and let its light follow."""
-        reason = "asked for" if light == "points" else _reason(source, drawing)
+        drawing = dict(drawing)
+        stroke = _stroke(source, drawing)
+        reason = "asked for" if light == "points" else _reason(source, drawing, stroke)
         live = Live(source, scene, follow=follow, by_surface=not reason)
         if light == "fragments" and reason:
             _check.warn(f"light='fragments': the light is computed at the points, because {reason}")
-        drawing = dict(drawing)
         rendered = drawing.pop("render", True)
         if scalars is not None:
             live.color_by(scalars, drawing.pop("component", None), at_points=bool(reason))
             drawing["scalars"] = live.scalars
             bar = {"title": scalars, **(drawing.get("scalar_bar_args") or {})}
             drawing["scalar_bar_args"] = bar
-        painter: Points | Fragments = Points(reason) if reason else Fragments()
+        painter: Points | Fragments = (
+            Points(reason, stroke.diameter) if reason else Fragments(stroke)
+        )
+        if stroke.round and reason and stroke.diameter is None:
+            drawing["render_lines_as_tubes"] = True
         live.painter = painter
         painter.attach(live)
         drawing = painter.drawing(live, drawing)
@@ -365,11 +382,20 @@ def _check_drawing(drawing: dict[str, Any], scene: Scene | None) -> None:
         del drawing[name]
 
 
-def _reason(source: Source, drawing: dict[str, Any]) -> str:
+def _stroke(source: Source, drawing: dict[str, Any]) -> Stroke:
+    """Take from keywords how lines are drawn; a surface has none."""
+    diameter = drawing.pop("line_diameter", None)
+    if not has_lines_only(source.mesh):
+        return Stroke()
+    wide = diameter is not None or drawing.get("line_width", pv.global_theme.line_width) > 1
+    return Stroke(diameter, bool(drawing.pop("render_lines_as_tubes", False)) and wide)
+
+
+def _reason(source: Source, drawing: dict[str, Any], stroke: Stroke) -> str:
     """Return why the light cannot be computed in each fragment, or an empty string."""
     if drawing.get("render_points_as_spheres") or drawing.get("render_lines_as_tubes"):
         return "VTK shades spheres and tubes by normals of their own"
-    return unfit(source.inputs, source.options, source.mesh)
+    return unfit(source.inputs, source.options, source.mesh, stroke)
 
 
 def add_recorded(
@@ -386,7 +412,7 @@ def add_recorded(
     name : str
         Name of the light, or ``"rgb"`` for its colours.
     **drawing
-        Keywords of ``pyvista.Plotter.add_mesh``.
+        Keywords of ``pyvista.Plotter.add_mesh``, and ``line_diameter``.
 
     Returns
     -------
@@ -404,7 +430,7 @@ def add_recorded(
     except (TypeError, ValueError):
         # The array says more than the record.
         return None
-    if _reason(source, {}):
+    if _reason(source, {}, _stroke(source, dict(drawing))):
         return None
     used = scene if name == RGB else colorless(scene)
     own: Component = plotter.vizlight

@@ -10,13 +10,15 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.filters import lighting
-from vizlight.mesh import hull
+from vizlight.mesh import hull, polylines
 from vizlight.mesh.point_arrays import unit_rows
-from vizlight.plotting import glsl
+from vizlight.plotting import glsl, strokes
 from vizlight.plotting.live import NORMALS, TANGENTS
+from vizlight.plotting.strokes import Stroke
 from vizlight.scene.light import NO_ATTENUATION, WHITE
 from vizlight.scene.vtk import LARGEST_POWER
 from vizlight.shading.decide import decide
+from vizlight.shading.inputs import Layout
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -37,7 +39,12 @@ REVERSED = 0.02
 MOST_LIGHTS = 16
 
 
-def unfit(inputs: ShadingInputs, options: ShadingOptions, mesh: pv.DataSet) -> str:
+def unfit(
+    inputs: ShadingInputs,
+    options: ShadingOptions,
+    mesh: pv.DataSet,
+    stroke: Stroke = Stroke(),  # noqa: B008 (a tuple is not changed)
+) -> str:
     """Return why a source cannot be lit in each fragment, or an empty string.
 
     Parameters
@@ -46,17 +53,22 @@ def unfit(inputs: ShadingInputs, options: ShadingOptions, mesh: pv.DataSet) -> s
     options : ShadingOptions
     mesh : pyvista.DataSet
         Mesh that is drawn.
+    stroke : Stroke
+        How its lines are drawn.
 
     Returns
     -------
     str
     """
     layout = inputs.layout
+    alone = layout._replace(normals=False, dimmed=False, occluded=False) == Layout(k=1)
+    if stroke.round and (options.conditioned or not alone):
+        return "only lines that are lit by their tangents alone can be round"
     if layout.n != 3:
         return f"light in {layout.n}-space has no direction in the picture"
     if layout.k not in (None, 1):
         return f"{layout.k} tangents per point span a plane, which is not interpolated"
-    if options.model == "cylinder":
+    if options.model == "cylinder" and not stroke.round:
         return "the highlight of a cylinder is an integral that GLSL has no function for"
     if layout.shadowed:
         return "t of the cos-theta shadow is known at the points"
@@ -125,7 +137,8 @@ class Fragments:
 
     light = "fragments"
 
-    def __init__(self) -> None:
+    def __init__(self, stroke: Stroke = Stroke()) -> None:  # noqa: B008 (a tuple is not changed)
+        self._stroke = stroke
         self._key: object = None
         self._plan: Plan | None = None
         self._tallest = 0.0
@@ -140,6 +153,8 @@ class Fragments:
         if normals is None:
             # VTK lights lines, and so draws with a shader for them, only if they have normals.
             normals = tangents
+            if self._stroke != Stroke():
+                normals = polylines.line_tangents(live.source.mesh)
         elif inputs.fur_height is not None:
             # The length of a normal, which light does not need, carries the height of the fur.
             height = np.asarray(inputs.fur_height[:], dtype=np.float64)
@@ -184,17 +199,17 @@ class Fragments:
             raise ValueError(_check.message("lights", f"at most {MOST_LIGHTS} lights", got))
         key = _structure(scene, lights, live.source)
         if key != self._key or self._plan is None:
-            self._plan = _plan(scene, live.source)
+            self._plan = _plan(scene, live.source, self._stroke)
             turned = live.source.sided is not None
             code = glsl.fragment(self._plan, turned=turned)
-            _replace(actor, *code, self._plan, turned=turned)
+            _replace(actor, *code, self._plan, self._stroke, turned=turned)
             self._key = key
         self._set_uniforms(self._plan, scene.replace(lights=lights), renderer, actor)
 
     def explain(self, live: Live, scene: Scene) -> str:
         """Return what is computed in each fragment."""
         fitted = lighting.fit_depth_cue(scene, [live.source.inputs])
-        plan = decide(fitted, live.source.inputs.layout, live.source.options)
+        plan = decide(fitted, *_drawn_as(live.source, self._stroke))
         return f"light in each fragment\n{plan.explain()}"
 
     def _set_uniforms(
@@ -244,12 +259,18 @@ class Fragments:
         uniforms.SetUniform3f("vizCue", [cue.cue * c for c in cue.color or WHITE])
 
 
-def _plan(scene: Scene, source: Source) -> Plan:
+def _drawn_as(source: Source, stroke: Stroke) -> tuple[Layout, ShadingOptions]:
+    """Return the layout and the options of a source, or of the cylinders of its lines."""
+    if stroke.round:
+        return Layout(normals=True), source.options.for_surface()
+    return source.inputs.layout, source.options
+
+
+def _plan(scene: Scene, source: Source, stroke: Stroke) -> Plan:
     """Return the plan of a source in its exact form."""
-    options = dataclasses.replace(
-        source.options, tolerance=0.0, highlight_error=0.0, components=False
-    )
-    return decide(scene, source.inputs.layout, options)
+    layout, options = _drawn_as(source, stroke)
+    options = dataclasses.replace(options, tolerance=0.0, highlight_error=0.0, components=False)
+    return decide(scene, layout, options)
 
 
 def _structure(scene: Scene, lights: Sequence[Light], source: Source) -> tuple[object, ...]:
@@ -290,40 +311,33 @@ def _lean_lengths(source: Source, count: int) -> Array:
 
 
 def _replace(
-    actor: vtkActor, functions: str, body: str, plan: Plan, *, turned: bool = False
+    actor: vtkActor, functions: str, body: str, plan: Plan, stroke: Stroke, *, turned: bool = False
 ) -> None:
     """Put the light of a plan in place of VTK's, in every shader of the pipeline."""
     names = [("vizP", "vec3", "(MCVCMatrix * vertexMC).xyz")]
-    normal = plan.surface or plan.conditioned or bool(plan.fur)
+    of_cylinder = stroke.round
+    normal = (plan.surface and not of_cylinder) or plan.conditioned or bool(plan.fur)
     attributes = ""
     if normal:
         attributes += "in vec3 normalMC;\n"
         names.append(("vizN", "vec3", "normalMatrix * normalMC"))
+    elif stroke != Stroke():
+        attributes += "in vec3 normalMC;\n"
+        names.append(strokes.ALONG)
     if plan.fur or turned:
         names.append(("vizH", "float", "length(normalMC) - 1.0"))
-    if not plan.surface:
+    if of_cylinder or not plan.surface:
         attributes += "in vec3 tangentMC;\n"
         # Tangents turn with the model, of whose matrix the normal matrix is the inverse transpose.
         names.append(("vizT", "vec3", "transpose(inverse(normalMatrix)) * tangentMC"))
+    if of_cylinder:
+        names.append(("vizX", "float", "0.0"))
     shader = actor.GetShaderProperty()
     shader.ClearAllShaderReplacements()
-    out = "".join(f"out {kind} {name}VSOutput;\n" for name, kind, _ in names)
-    vertex = {
-        "//VTK::Camera::Dec": "uniform mat4 MCDCMatrix;\nuniform mat4 MCVCMatrix;\n",
-        "//VTK::Normal::Dec": f"uniform mat3 normalMatrix;\n{attributes}{out}",
-        "//VTK::Normal::Impl": "".join(
-            f"  {name}VSOutput = {value};\n" for name, _, value in names
-        ),
-    }
-    geometry = {
-        "//VTK::Normal::Dec": "".join(
-            f"in {kind} {name}VSOutput[];\nout {kind} {name}GSOutput;\n" for name, kind, _ in names
-        ),
-        "//VTK::Normal::Impl": "".join(
-            f"  {name}GSOutput = {name}VSOutput[i];\n" for name, _, _ in names
-        ),
-    }
+    strokes.pass_on(actor, names, attributes, stroke)
     given = "".join(f"in {kind} {name}VSOutput;\n" for name, kind, _ in names)
+    if of_cylinder:
+        given += "uniform mat4 MCDCMatrix;\n"
     read = "  vec3 vizP = vizPVSOutput;\n  bool vizGood = true;\n"
     for name in ("vizN", "vizT"):
         if f"{name}VSOutput" in given:
@@ -332,6 +346,8 @@ def _replace(
                 f"  vizGood = vizGood && {name}Size > 1e-6;\n"
                 f"  vec3 {name} = {name}VSOutput / max({name}Size, 1e-6);\n"
             )
+    if of_cylinder:
+        read += strokes.CYLINDER_NORMAL
     if turned:
         read += "  float vizLean = 2.0 * vizHVSOutput - 1.0;\n"
     if plan.fur:
@@ -342,9 +358,8 @@ def _replace(
         "//VTK::Light::Dec": functions + "\n",
         "//VTK::Light::Impl": f"{read}{body}\n  gl_FragData[0] = vec4(vizColor, opacity);\n",
     }
-    for mark, text in vertex.items():
-        shader.AddVertexShaderReplacement(mark, True, text, False)
-    for mark, text in geometry.items():
-        shader.AddGeometryShaderReplacement(mark, True, text, False)
+    if stroke != Stroke():
+        # The depth of VTK's own tubes.
+        pixel["//VTK::Depth::Impl"] = ""
     for mark, text in pixel.items():
         shader.AddFragmentShaderReplacement(mark, True, text, False)

@@ -10,8 +10,9 @@ import numpy as np
 from vizlight import _check
 from vizlight.filters import lighting
 from vizlight.filters.tint import light_factors, map_colors, times_light
-from vizlight.mesh import point_arrays
-from vizlight.plotting.live import COLORS, LUMINANCE
+from vizlight.mesh import point_arrays, polylines
+from vizlight.plotting import strokes
+from vizlight.plotting.live import COLORS, LUMINANCE, NORMALS
 from vizlight.shading.decide import decide
 
 if TYPE_CHECKING:
@@ -33,12 +34,14 @@ class Points:
     ----------
     reason : str
         Why the light is not computed in each fragment.
+    diameter : float, optional
+        Diameter of lines in the unit of the mesh.
     """
 
     light = "points"
 
-    def __init__(self, reason: str) -> None:
-        self.reason = reason
+    def __init__(self, reason: str, diameter: float | None = None) -> None:
+        self.reason, self._diameter = reason, diameter
 
     def attach(self, live: Live) -> None:
         """Give the drawn mesh an array; the first frame fills it."""
@@ -47,6 +50,9 @@ class Points:
         channels = 3 if live.scalars is None else 4
         kind = np.float64 if live.scalars is None else np.uint8
         point_arrays.attach_rows(live.drawn, COLORS, np.zeros((count, channels), kind))
+        if self._diameter is not None:
+            live.attach(NORMALS, polylines.line_tangents(live.source.mesh).astype(np.float32))
+            live.drawn.GetPointData().SetActiveNormals(NORMALS)
 
     def drawing(self, live: Live, drawing: dict[str, Any]) -> dict[str, Any]:
         """Return the keywords of ``plotter.add_mesh``."""
@@ -67,6 +73,8 @@ class Points:
     def start(self, live: Live, actor: vtkActor) -> None:
         """Let an actor draw lit colours as they are, in place of those of the data."""
         prop = actor.GetProperty()
+        if self._diameter is not None:
+            strokes.widen(actor, strokes.Stroke(self._diameter))
         if live.scene is None:
             # Without lights VTK multiplies by the sum of both coefficients, which are the material.
             actor.GetShaderProperty().AddFragmentShaderReplacement(

@@ -1,0 +1,74 @@
+"""
+A field on a surface
+====================
+
+A piece of the gyroid, a minimal surface, and its lines of principal curvature. Left: the surface,
+lit by its normals. Right: evenly spaced lines along the direction in which it bends most toward
+its normal, lit by that direction and shadowed by the surface. Highlights are no longer spots; they
+run across the lines and show how the surface bends, as the strokes of an engraving do.
+
+A principal direction has no sign, so the field has points around which it makes half a turn:
+``line_field=True`` lets lines pass around them.
+"""
+
+import numpy as np
+import pyvista as pv
+
+import vizlight
+from vizlight import Light, Material, Scene, View, render
+
+count, reach = 64, 1.15 * np.pi
+grid = pv.ImageData(dimensions=[count] * 3, spacing=[2 * reach / (count - 1)] * 3)
+grid.origin = (-reach, -reach, -reach)
+
+
+def gyroid(points):
+    """Return sin x cos y + sin y cos z + sin z cos x, its gradient and its second derivatives."""
+    s, c = np.sin(points), np.cos(points)
+    value = np.sum(s * np.roll(c, -1, axis=1), axis=1)
+    gradient = c * np.roll(c, -1, axis=1) - s * np.roll(s, 1, axis=1)
+    second = np.zeros((len(points), 3, 3))
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        second[:, i, i] = -s[:, i] * c[:, j] - s[:, k] * c[:, i]
+        second[:, i, j] = second[:, j, i] = -c[:, i] * s[:, j]
+    return value, gradient, second
+
+
+grid["gyroid"] = gyroid(np.asarray(grid.points))[0]
+ball = pv.Sphere(radius=3.4, theta_resolution=80, phi_resolution=80)
+surface = grid.contour([0], scalars="gyroid").clip_surface(ball).triangulate()
+_, gradient, second = gyroid(np.asarray(surface.points, dtype=float))
+normals = gradient / np.linalg.norm(gradient, axis=1, keepdims=True)
+across = np.eye(3) - normals[:, :, np.newaxis] * normals[:, np.newaxis]
+surface["Normals"] = normals
+surface.point_data.active_normals_name = "Normals"
+surface["bend"] = np.linalg.eigh(across @ second @ across)[1][:, :, 2]
+
+# %%
+# The lines are ribbons of a width in the unit of the mesh, so nearer ones are wider.
+
+camera = render.camera_on(surface.bounds, (1, -0.75, 0.55), zoom=1.5)
+scene = Scene(
+    lights=[Light(direction=(0.1, -0.75, 1)), Light(direction=(1, 0.2, 0.3), intensity=0.3)],
+    view=View.from_camera(camera),
+    material=Material(
+        ambient=0.2, diffuse=1.0, specular=0.6, shininess=30, color=(0.95, 0.72, 0.38)
+    ),
+)
+before = vizlight.illuminate(surface, scene)
+lines = vizlight.streamlines(
+    surface, scene, vectors="bend", line_field=True, spacing=0.1, facing="eye"
+)
+blue = Material(ambient=0.3, diffuse=0.7, specular=0, color=(0.10, 0.17, 0.38))
+after = pv.MultiBlock([vizlight.illuminate(surface, scene.replace(material=blue)), lines])
+
+panels = [render.Panel(before, "rgb"), render.Panel(after, "rgb")]
+options = {"camera": camera, "size": (1600, 800), "line_diameter": 0.042}
+plotter = render.make_plotter(panels, background="black", **options)
+plotter.show()
+
+# %%
+# The same on white paper.
+
+plotter = render.make_plotter(panels, background="white", **options)
+plotter.show()

@@ -1,0 +1,161 @@
+"""Pathlines and streaklines against closed forms, and what is refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight import Scene, View
+
+SCENE = Scene(view=View(direction=(0, 0, 1)))
+END = 2.0
+
+
+def steps(velocity, times, *, kind="image"):
+    made = []
+    for time in times:
+        mesh = pv.ImageData(dimensions=(25, 25, 3), spacing=(0.25, 0.25, 1), origin=(-3, -3, -1))
+        if kind == "tetrahedra":
+            mesh = mesh.triangulate()
+        mesh["V"] = velocity(np.asarray(mesh.points, dtype=float), time)
+        made.append(mesh)
+    return made
+
+
+def rotation(points, time):
+    return np.stack([-points[:, 1], points[:, 0], 0 * points[:, 0]], axis=1)
+
+
+def gust(points, time):
+    """Uniform and unsteady: u = (1, cos t)."""
+    return np.tile([1.0, np.cos(time), 0.0], (len(points), 1))
+
+
+def last(velocity, count, seeds, *, mesh="image", **options):
+    times = np.linspace(0, END, count)
+    series = steps(velocity, times, kind=mesh)
+    frames = list(
+        vizlight.pathlines(series, SCENE, times=times, vectors="V", seeds=seeds, **options)
+    )
+    assert len(frames) == count - 1
+    assert [frame.field_data["TimeValue"][0] for frame in frames] == pytest.approx(times[1:])
+    assert all("luminance" in frame.point_data for frame in frames)
+    return frames[-1]
+
+
+@pytest.mark.parametrize("mesh", ["image", "tetrahedra"])
+@pytest.mark.parametrize("kind", ["pathlines", "streaklines"])
+def test_steady_rotation_gives_circles(kind, mesh):
+    lines = last(rotation, 5, [[1.0, 0, 0], [0, 2.0, 0]], mesh=mesh, kind=kind, step=0.2)
+    points, age = np.asarray(lines.points), np.asarray(lines["Time"])
+    assert lines.n_lines == 2
+    radius = np.linalg.norm(points[:, :2], axis=1)
+    np.testing.assert_allclose(radius, np.round(radius), atol=1e-5)
+    turned = age if kind == "pathlines" else END - age
+    angle = np.arctan2(points[:, 1], points[:, 0]) - np.where(radius > 1.5, np.pi / 2, 0)
+    np.testing.assert_allclose(np.mod(angle - turned + 1, 2 * np.pi), 1, atol=1e-5)
+
+
+def _error(kind, count):
+    """Error of the line from (-2, 0): y = sin t, and on the streak y = sin T - sin tau."""
+    lines = last(gust, count, [[-2.0, 0, 0]], kind=kind)
+    points, time = np.asarray(lines.points, dtype=float), np.asarray(lines["Time"])
+    if kind == "pathlines":
+        x, y = -2 + time, np.sin(time)
+    else:
+        x, y = -2 + END - time, np.sin(END) - np.sin(time)
+    np.testing.assert_allclose(points[:, 0], x, atol=1e-6)
+    return np.abs(points[:, 1] - y).max()
+
+
+@pytest.mark.parametrize("kind", ["pathlines", "streaklines"])
+def test_error_is_of_order_2_in_the_time_between_steps(kind):
+    coarse, fine = _error(kind, 5), _error(kind, 17)
+    assert np.log(coarse / fine) / np.log(4) == pytest.approx(2, abs=0.2)
+    assert fine < 2e-3
+
+
+def test_a_tail_is_as_long_as_asked_and_pathlines_are_lit_by_their_velocity():
+    lines = last(gust, 9, [[-2.0, 0, 0]], tail=0.5)
+    assert np.ptp(lines["Time"]) == pytest.approx(0.5, abs=0.1)
+    np.testing.assert_allclose(lines["V"][:, 1], np.cos(lines["Time"]), atol=0.01)
+    np.testing.assert_array_equal(lines["Tangents"], lines["V"])
+
+
+def test_lines_end_at_the_boundary():
+    lines = last(gust, 9, [[2.5, 0, 0]])
+    assert 2.8 < lines.points[:, 0].max() <= 3 + 1e-9
+    streak = last(gust, 9, [[2.5, 0, 0]], kind="streaklines")
+    assert streak.n_lines == 1
+    assert 2.8 < streak.points[:, 0].max() <= 3 + 1e-9
+
+
+def test_a_reader_gives_what_the_list_gives(tmp_path):
+    times = np.linspace(0, END, 4)
+    series = steps(gust, times)
+    rows = ""
+    for i, (time, mesh) in enumerate(zip(times, series, strict=True)):
+        mesh.save(tmp_path / f"{i}.vti")
+        rows += f'<DataSet timestep="{time}" file="{i}.vti"/>'
+    file = tmp_path / "flow.pvd"
+    file.write_text(f'<VTKFile type="Collection"><Collection>{rows}</Collection></VTKFile>')
+    options = {"vectors": "V", "seeds": [[-2.0, 0, 0]]}
+    expected = list(vizlight.pathlines(series, SCENE, times=times, **options))[-1]
+    for source in (file, pv.get_reader(file)):
+        found = list(vizlight.pathlines(source, SCENE, **options))[-1]
+        np.testing.assert_array_equal(found.points, expected.points)
+
+
+def test_bundles_and_data_stay():
+    times = np.linspace(0, 1, 3)
+    series = steps(rotation, times)
+    before = [mesh.copy() for mesh in series]
+    frames = list(vizlight.pathlines(series, SCENE, times=times, vectors="V", bundle=True))
+    assert "transmittance" in frames[-1].point_data
+    assert frames[-1].n_lines > 150
+    assert all(a == b for a, b in zip(series, before, strict=True))
+
+
+TIMES = [0.0, 1.0, 2.0]
+
+
+def other_points():
+    meshes = steps(gust, TIMES)
+    meshes[1].origin = (0, 0, 0)
+    return meshes
+
+
+def lacking():
+    meshes = steps(gust, TIMES)
+    del meshes[2].point_data["V"]
+    return meshes
+
+
+BAD = {
+    "falling times": (lambda: steps(gust, TIMES), {"times": [0, 2, 1]}, "times: .*rise.*2 before"),
+    "too few times": (lambda: steps(gust, TIMES), {"times": [0, 1]}, "times: expected 3 times"),
+    "no times": (lambda: steps(gust, TIMES), {"times": None}, "times: .*TimeValue"),
+    "one step": (lambda: steps(gust, [0]), {"times": [0]}, "series: expected two steps"),
+    "points": (
+        other_points,
+        {},
+        r"series\[1\] \(time 1\): expected the 1875 points of",
+    ),
+    "vectors": (lacking, {}, r"series\[2\] \(time 2\): expected the point array 'V'"),
+    "no mesh": (lambda: [1, 2, 3], {}, r"series\[0\] .*a mesh with cells"),
+    "a number": (lambda: 3, {}, "series: expected meshes, a reader"),
+    "outside": (lambda: steps(gust, TIMES), {"seeds": [[9.0, 9, 9]]}, "seeds: expected points ins"),
+    "kind": (lambda: steps(gust, TIMES), {"kind": "timelines"}, "kind: expected"),
+    "tail": (lambda: steps(gust, TIMES), {"tail": 0}, "tail: expected"),
+    "step": (lambda: steps(gust, TIMES), {"step": -1}, "step: expected"),
+    "still": (lambda: steps(lambda p, t: 0 * p, TIMES), {}, "seeds: .*not zero"),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_bad_input(case):
+    make, options, words = BAD[case]
+    with pytest.raises((TypeError, ValueError), match=words):
+        list(vizlight.pathlines(make(), SCENE, **{"times": TIMES, "vectors": "V", **options}))

@@ -1,0 +1,109 @@
+"""Lines of a diameter are as wide as the projection says, and the light across them is right."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight import Light, Material, Scene, View, render
+
+pytestmark = pytest.mark.opengl
+
+WHITE = Scene(material=Material(ambient=1, diffuse=0, specular=0), view=View(direction=(0, 0, 1)))
+DIAMETER = 0.1
+
+
+def looking_down(*, parallel):
+    camera = pv.Camera()
+    camera.position, camera.focal_point, camera.up = (0, 0, 5), (0, 0, 0), (0, 1, 0)
+    camera.view_angle, camera.parallel_scale = 30.0, 1.0
+    camera.parallel_projection = parallel
+    return camera
+
+
+def shot(mesh, camera, **options):
+    plotter = render.make_plotter(mesh, camera=camera, **options)
+    picture = np.asarray(plotter.screenshot(return_img=True), dtype=float)[:, :, 0] / 255
+    plotter.close()
+    return picture
+
+
+@pytest.mark.parametrize("light", ["auto", "points"])
+@pytest.mark.parametrize("parallel", [False, True])
+@pytest.mark.parametrize("along", [(1, 0), (0, 1), (1, 1), (2, -1)])
+def test_width_at_two_distances_is_that_of_the_projection(along, parallel, light):
+    """To half a pixel: samples are a quarter of a pixel, on both sides."""
+    way = np.array([*along, 0]) / np.linalg.norm(along)
+    height, radius = 200, 60
+    row, column = np.mgrid[:height, :400]
+    near_middle = np.hypot(row - 99.5, column - 199.5) < radius
+    for z in (0.0, -3.0):
+        line = vizlight.illuminate(
+            pv.Line((0, 0, z) - 4 * way, (0, 0, z) + 4 * way, resolution=7), WHITE
+        )
+        picture = shot(line, looking_down(parallel=parallel), size=(400, height),
+                       line_diameter=DIAMETER, light=light)  # fmt: skip
+        half = 1.0 if parallel else np.tan(np.radians(15)) * (5 - z)
+        width = picture[near_middle].sum() / (2 * radius)
+        assert width == pytest.approx(DIAMETER * height / 2 / half, abs=0.5)
+
+
+def test_a_ring_has_no_gaps_where_its_segments_meet():
+    """The area of a mitred ring is its perimeter times its width, here to 1 %."""
+    turn = np.linspace(0, 2 * np.pi, 25)
+    ring = pv.MultipleLines(0.6 * np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1))
+    ring = vizlight.illuminate(ring, WHITE)
+    camera = looking_down(parallel=True)
+    picture = shot(ring, camera, size=(300, 300), line_diameter=0.4)
+    area = picture.sum() * (2 / 300) ** 2
+    assert area == pytest.approx(24 * 2 * 0.6 * np.sin(np.pi / 24) * 0.4, rel=0.01)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_mean_across_a_line_is_the_light_of_its_cylinder(seed):
+    """Means over the width are means over the visible half, weighted by projected width."""
+    random = np.random.default_rng(seed)
+    way, toward = random.normal(size=(2, 3)) * [1, 1, 0.5]
+    way /= np.linalg.norm(way)
+    scene = Scene(
+        lights=Light(direction=(*toward[:2], abs(toward[2]))),
+        view=View(direction=(0, 0, 1)),
+        material=Material(ambient=0.1, diffuse=0.5, specular=0.3, shininess=10),
+    )
+    line = vizlight.illuminate(pv.Line(-9 * way, 9 * way, resolution=5), scene, model="cylinder")
+    picture = shot(line, looking_down(parallel=True), size=(300, 300), line_diameter=0.8,
+                   render_lines_as_tubes=True, anti_aliasing=None)  # fmt: skip
+    drawn = picture[picture > 0]
+    assert drawn.std() > 0.02
+    assert drawn.mean() == pytest.approx(line["luminance"][0], abs=0.012)
+
+
+def test_live_light_widens_lines_that_come_nearer():
+    plotter = pv.Plotter(off_screen=True, window_size=(200, 200))
+    plotter.background_color = "black"
+    line = pv.Line((-2, 0, 0), (2, 0, 0))
+    scene = Scene(material=Material(ambient=1, diffuse=0, specular=0))
+    plotter.vizlight.add_mesh(line, scene=scene, line_diameter=DIAMETER)
+    widths = []
+    for distance in (5, 2.5):
+        plotter.camera = looking_down(parallel=False)
+        plotter.camera.position = (0, 0, distance)
+        plotter.reset_camera_clipping_range()
+        plotter.render()
+        picture = np.asarray(plotter.screenshot(return_img=True), dtype=float)[:, :, 0] / 255
+        widths.append(picture[:, 50:150].sum() / 100)
+    plotter.close()
+    assert widths[1] == pytest.approx(2 * widths[0], rel=0.1)
+
+
+@pytest.mark.parametrize("option", [{"line_diameter": 0}, {"line_diameter": "wide"}])
+def test_bad_input_names_the_option(option):
+    line = vizlight.illuminate(pv.Line(), WHITE)
+    with pytest.raises((TypeError, ValueError), match="line_diameter: expected"):
+        render.make_plotter(line, **option)
+    plotter = pv.Plotter(off_screen=True)
+    with pytest.raises((TypeError, ValueError), match="line_diameter: expected"):
+        plotter.vizlight.add_mesh(line, **option)
+    plotter.close()

@@ -1,0 +1,123 @@
+"""Particles that are carried by vectors which change with time, and the lines that they draw."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import pyvista as pv
+from vtkmodules.vtkFiltersCore import vtkProbeFilter
+
+from vizlight.mesh import point_arrays, polylines
+
+if TYPE_CHECKING:
+    from vizlight._types import Array
+
+#: Name of the array that is probed: the vectors at both ends of an interval.
+BOTH = "vizlight vectors"
+#: Largest number of steps in which an interval is crossed.
+MOST_STEPS = 10_000
+
+
+class Rows(NamedTuple):
+    """Particles at R times of release or of passage, for each of N seeds; NaN where there is none.
+
+    Attributes
+    ----------
+    places : ndarray, shape (R, N, 3)
+    vectors : ndarray, shape (R, N, 3)
+        Vectors that carry them.
+    times : ndarray, shape (R,)
+    """
+
+    places: Array
+    vectors: Array
+    times: Array
+
+    def joined(self, places: Array, vectors: Array, time: float) -> Rows:
+        """Return these rows and then another."""
+        return Rows(
+            np.concatenate([self.places, places[np.newaxis]]),
+            np.concatenate([self.vectors, vectors[np.newaxis]]),
+            np.append(self.times, time),
+        )
+
+    def since(self, time: float) -> Rows:
+        """Return the rows from a time on."""
+        kept = self.times >= time
+        return Rows(self.places[kept], self.vectors[kept], self.times[kept])
+
+    def lines(self, vectors: str, time: str) -> pv.PolyData:
+        """Return one line for each seed, more where one is interrupted."""
+        places = np.swapaxes(self.places, 0, 1)
+        there = np.all(np.isfinite(places), axis=2)
+        edge = np.zeros((len(there), 1), dtype=bool)
+        before = np.concatenate([edge, there[:, :-1]], axis=1)
+        after = np.concatenate([there[:, 1:], edge], axis=1)
+        # A single point is no line.
+        there &= before | after
+        starts = (there & ~before)[there]
+        out = polylines.polydata(places[there], np.append(np.flatnonzero(starts), there.sum()))
+        point_arrays.attach_rows(out, vectors, np.swapaxes(self.vectors, 0, 1)[there])
+        point_arrays.attach_rows(out, time, np.broadcast_to(self.times, there.shape)[there])
+        return out
+
+
+class Carrier:
+    """Vectors between two times, linear in time, by VTK's interpolation in the cells.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh, whose arrays are not used.
+    """
+
+    def __init__(self, mesh: pv.DataSet) -> None:
+        self._mesh = mesh.copy(deep=False)
+        self._mesh.clear_data()
+        k = mesh.GetMaxSpatialDimension()
+        sizes = mesh.compute_cell_sizes(length=k == 1, area=k == 2, volume=k == 3)
+        extent = np.abs(sizes.cell_data[("Length", "Area", "Volume")[k - 1]])
+        self._cell = float(np.median(extent[extent > 0])) ** (1 / k) if np.any(extent > 0) else 0.0
+
+    def between(self, first: Array, second: Array) -> None:
+        """Take the vectors of the points at both ends of an interval."""
+        self._mesh.point_data[BOTH] = np.concatenate([first, second], axis=1)
+        self._probe = vtkProbeFilter()
+        self._probe.SetSourceData(self._mesh)
+
+    def at(self, places: Array, share: float) -> Array:
+        """Return the vectors at places after a share of the interval; NaN outside the mesh."""
+        both = self._both(places)
+        return np.asarray((1 - share) * both[:, :3] + share * both[:, 3:])
+
+    def _both(self, places: Array) -> Array:
+        both = np.full((len(places), 6), np.nan)
+        inside = np.flatnonzero(np.all(np.isfinite(places), axis=1))
+        if len(inside):
+            self._probe.SetInputData(pv.PolyData(places[inside]))
+            self._probe.Update()
+            found: Any = pv.wrap(self._probe.GetOutput())
+            valid = np.asarray(found.point_data["vtkValidPointMask"], dtype=bool)
+            both[inside[valid]] = np.asarray(found.point_data[BOTH])[valid]
+        return both
+
+    def count(self, places: Array, duration: float, step: float) -> int:
+        """Return the number of steps of an interval, each of at most ``step`` cell lengths."""
+        both = self._both(places).reshape(len(places), 2, 3)
+        speed = np.linalg.norm(both, axis=2)
+        fastest = float(np.nanmax(speed)) if np.any(np.isfinite(speed)) else 0.0
+        wanted = fastest * duration / (step * self._cell) if self._cell else 1.0
+        return int(np.clip(np.ceil(wanted), 1, MOST_STEPS))
+
+    def moved(self, places: Array, share: float, width: float, duration: float) -> Array:
+        """Return places after a step by the method of Runge and Kutta; NaN beyond the mesh.
+
+        The step is ``width`` of the interval, from ``share`` of it on; ``duration`` is its time.
+        """
+        middle = share + width / 2
+        a = self.at(places, share)
+        b = self.at(places + duration / 2 * a, middle)
+        c = self.at(places + duration / 2 * b, middle)
+        d = self.at(places + duration * c, share + width)
+        return np.asarray(places + duration / 6 * (a + 2 * b + 2 * c + d))

@@ -1,0 +1,121 @@
+"""Meshes at rising times, from a list, a file, or a reader, one read at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyvista as pv
+
+from vizlight import _check
+from vizlight.mesh import point_arrays
+
+__all__ = ["Series"]
+
+#: Field array in which PyVista and VTK keep the time of a mesh.
+TIME = "TimeValue"
+
+
+class Series:
+    """Meshes with the same points at rising times.
+
+    Parameters
+    ----------
+    source : sequence of meshes, reader, or path
+        Meshes; a reader of PyVista with ``time_values``; or the path of a file that has one.
+    times : array_like, shape (S,), optional
+        Times of a sequence. Default: the field array ``TimeValue`` of its meshes.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If there are fewer than two meshes, or the times do not rise.
+    """
+
+    def __init__(self, source: object, times: object = None) -> None:
+        self._meshes: Sequence[Any] | None = None
+        self._reader: Any = None
+        if isinstance(source, str | Path):
+            source = pv.get_reader(source)  # type: ignore[no-untyped-call]
+        if hasattr(source, "time_values") and hasattr(source, "set_active_time_value"):
+            if times is not None:
+                remedy = "leave times= out"
+                raise ValueError(_check.message("times", "those of the reader", "both", remedy))
+            self._reader, times = source, source.time_values
+        elif isinstance(source, Sequence):
+            self._meshes = source
+            times = _own_times(source) if times is None else times
+        else:
+            expected = "meshes, a reader with time values, or the path of its file"
+            raise TypeError(_check.message("series", expected, _check.describe(source)))
+        #: Times of the steps, shape (S,).
+        self.times = _check.floats("times", times).astype(np.float64)
+        if self._meshes is not None and self.times.shape != (len(self._meshes),):
+            expected = f"{len(self._meshes)} times, one for each mesh"
+            raise ValueError(_check.message("times", expected, f"shape {self.times.shape}"))
+        if len(self.times) < 2:
+            raise ValueError(_check.message("series", "two steps or more", str(len(self.times))))
+        falls = np.flatnonzero(~(np.diff(self.times) > 0) | ~np.isfinite(self.times[1:]))
+        if len(falls):
+            got = f"{self.times[falls[0]]:g} before {self.times[falls[0] + 1]:g}"
+            raise ValueError(_check.message("times", "finite times that rise", got))
+        self._first: pv.DataSet | None = None
+
+    def mesh(self, step: int) -> pv.DataSet:
+        """Return the mesh of a step, whose points are those of the first.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If it is no mesh with cells, or its points are others.
+        """
+        if self._meshes is not None:
+            mesh = self._meshes[step]
+        else:
+            self._reader.set_active_time_value(self.times[step])
+            mesh = self._reader.read()
+        if isinstance(mesh, pv.MultiBlock):
+            mesh = mesh[0] if len(mesh) == 1 else mesh.combine()
+        name = self.name(step)
+        if not isinstance(mesh, pv.DataSet) or not mesh.n_cells:
+            raise TypeError(_check.message(name, "a mesh with cells", _check.describe(mesh)))
+        if self._first is None:
+            self._first = mesh if step == 0 else self.mesh(0)
+        first = self._first
+        same = mesh.n_points == first.n_points and mesh.n_cells == first.n_cells
+        if not same or not np.array_equal(mesh.points, first.points):
+            expected = f"the {first.n_points} points of {self.name(0)}"
+            remedy = "sample all steps to one mesh by mesh.sample(step)"
+            got = f"{mesh.n_points} points" + (", others" if same else "")
+            raise ValueError(_check.message(name, expected, got, remedy))
+        return mesh
+
+    def vectors(self, step: int, array: str) -> np.ndarray[Any, np.dtype[np.float64]]:
+        """Return the vectors of a step, zero where they are not finite.
+
+        Raises
+        ------
+        ValueError
+            If the step has no such point array of 3 components.
+        """
+        mesh = self.mesh(step)
+        if array not in mesh.point_data:
+            there = ", ".join(map(repr, mesh.point_data)) or "none"
+            expected = f"the point array {array!r} ({there})"
+            raise ValueError(_check.message(self.name(step), expected, "none of that name"))
+        rows = point_arrays.vectors_of(mesh, self.name(step), array, 3)
+        return np.where(np.isfinite(rows), rows, 0.0).astype(np.float64)
+
+    def name(self, step: int) -> str:
+        """Return the name of a step in messages."""
+        return f"series[{step}] (time {self.times[step]:g})"
+
+
+def _own_times(meshes: Sequence[Any]) -> list[float]:
+    missing = [i for i, mesh in enumerate(meshes) if TIME not in getattr(mesh, "field_data", {})]
+    if missing:
+        expected = f"times=, or meshes with the field array {TIME!r}"
+        raise ValueError(_check.message("times", expected, f"none at series[{missing[0]}]"))
+    return [float(np.asarray(mesh.field_data[TIME]).ravel()[0]) for mesh in meshes]
