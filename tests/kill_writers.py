@@ -67,13 +67,13 @@ def fault(code, error, by, out, old, new):
     return ""
 
 
-def run(total, seed, folder, *, say=lambda text: None):
+def run(total, seed, folder, *, suffixes=SUFFIXES, say=lambda text: None):
     """Kill runs of the command line; return the number of those that failed, hit and missed."""
     mesh = pv.Plane(i_resolution=SIDE, j_resolution=SIDE)
     mesh.save(folder / "plane.vtp")
     counts: Counter[str] = Counter()
     news, waits = {}, {}
-    for suffix in SUFFIXES:
+    for suffix in suffixes:
         out = folder / f"new.{suffix}"
         start = time.monotonic()
         code, error = light(folder / "plane.vtp", out)
@@ -82,7 +82,7 @@ def run(total, seed, folder, *, say=lambda text: None):
         news[suffix], waits[suffix] = out.read_bytes(), 0.2 * (time.monotonic() - start)
     for i in range(total):
         random = np.random.default_rng([seed, i])
-        by, suffix = SIGNALS[i % len(SIGNALS)], SUFFIXES[i % len(SUFFIXES)]
+        by, suffix = SIGNALS[i % len(SIGNALS)], suffixes[i % len(suffixes)]
         place = folder / f"{i}"
         place.mkdir()
         out = place / f"a.{suffix}"

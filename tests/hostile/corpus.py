@@ -7,6 +7,7 @@ import struct
 from typing import NamedTuple
 
 import numpy as np
+from hostile import runner
 
 
 class Case(NamedTuple):
@@ -123,6 +124,7 @@ CASES = {
     "cut.off": Case(text("OFF", "900 1 0", "0 0 0"), 2, NOT_A_MESH),
     # values that no surface has
     "nan.vtk": Case(legacy([("nan", "nan", "nan")] * 4, *FACE), 2, "a mesh with finite points"),
+    "größe.vtk": Case(legacy(SQUARE, *FACE), 0, ""),
     "one-place.vtk": Case(legacy([(1, 1, 1)] * 4, *FACE), 0, "could not be lit"),
     "tiny.vtk": Case(legacy([[x * 1e-300 for x in p] for p in SQUARE], *FACE), 2, "a size from"),
     "huge.vtk": Case(legacy([[x * 1e300 for x in p] for p in SQUARE], *FACE), 2, "a size from"),
@@ -137,3 +139,32 @@ CASES = {
     ),
     "latin.vtp": Case(b'<VTKFile type="PolyData">\xff\xfe\xe9</VTKFile>', 2, NOT_A_MESH),
 }  # fmt: skip
+
+
+def faults(folder, **how):
+    """Light all files, in a way that ``runner.run`` takes, and return what is wrong, line by line.
+
+    A file is lit, or refused with one line; nothing else is left, and no file is changed.
+    """
+    made = folder / "made"
+    made.mkdir()
+    for name, case in CASES.items():
+        (folder / name).write_bytes(case.content)
+    outs = {name: made / f"{name}.vtk" for name in CASES}
+    commands = [["light", str(folder / name), "-o", str(out)] for name, out in outs.items()]
+    wrong = []
+    for (name, case), run in zip(CASES.items(), runner.run(commands, **how), strict=True):
+        lines = run.err.splitlines()
+        right = (
+            run.code == case.code
+            and case.words in run.err
+            and all(line.startswith("vizlight: ") for line in lines)
+            and (run.code == 0 or len(lines) == 1)
+            and outs[name].is_file() == (run.code == 0)
+            and (folder / name).read_bytes() == case.content
+            and not run.stray
+        )
+        if not right:
+            wrong.append(f"{name}: {run.code} {run.err}{run.stray}")
+    left = {path.name for path in made.iterdir()} - {out.name for out in outs.values()}
+    return wrong + [f"left behind: {name}" for name in sorted(left)]

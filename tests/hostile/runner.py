@@ -42,12 +42,15 @@ class Run(NamedTuple):
     stray: list[str]
 
 
-def run(commands, *, environment=None):
-    """Return the result of each command, a list of words after ``vizlight``, in their order."""
-    python = [sys.executable, *(["-O"] if sys.flags.optimize else []), str(Path(__file__))]
+def run(commands, *, options=(), environment=None):
+    """Return the result of each command, a list of words after ``vizlight``, in their order.
+
+    ``options`` are Python's, ``environment`` has variables that are added.
+    """
     server = subprocess.run(
-        python,
-        input=json.dumps(commands),
+        [sys.executable, *options, str(Path(__file__))],
+        # Bytes, since a locale may not have all characters.
+        input=json.dumps([[os.fsencode(word).hex() for word in words] for words in commands]),
         capture_output=True,
         text=True,
         check=True,
@@ -88,6 +91,7 @@ def _child(words, own, temporary):
     for number, name in ((1, "out"), (2, "err")):
         os.dup2(os.open(Path(own, name), os.O_CREAT | os.O_WRONLY), number)
     faulthandler.register(signal.SIGUSR1)
+    atexit._clear()  # what the server has to remove at its end
     code = 70
     try:
         from vizlight import _supervise, cli
@@ -141,7 +145,7 @@ def main():
     import importlib.util
 
     # Written once here, not by every fork.
-    commands = json.load(sys.stdin)
+    commands = [[os.fsdecode(bytes.fromhex(x)) for x in words] for words in json.load(sys.stdin)]
     for name in MODULES:
         if importlib.util.find_spec(name.partition(".")[0]):
             importlib.import_module(name)
