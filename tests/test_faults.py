@@ -101,7 +101,7 @@ def test_nobody_reads_the_output(ball, tmp_path):
 
 
 BROKEN = {
-    "no vendor": {"__EGL_VENDOR_LIBRARY_DIRS": "/nonexistent", "LIBGL_DRIVERS_PATH": "/nonexistent"},
+    "no vendor": {"__EGL_VENDOR_LIBRARY_DIRS": "/none", "LIBGL_DRIVERS_PATH": "/none"},
     "no such window": {"VTK_DEFAULT_OPENGL_WINDOW": "vtkNoOpenGLRenderWindow"},
     "no such device": {"VTK_DEFAULT_EGL_DEVICE_INDEX": "99"},
     "no display": {"DISPLAY": ":77", "VTK_DEFAULT_OPENGL_WINDOW": "vtkXOpenGLRenderWindow"},
