@@ -450,7 +450,8 @@ class _Shape:
             for i, bend in enumerate(bends):
                 at = rows[:, i]
                 own = normals[at].astype(np.float64)
-                np.minimum.at(least, at, _dots(own, faces))
+                with np.errstate(invalid="ignore"):
+                    np.minimum.at(least, at, _dots(own, faces))
                 np.add.at(bend, at, _dots(own, middle - self.away[at]))
         bend = bends[0] + bends[1] + bends[2]
         del bends
