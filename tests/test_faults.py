@@ -46,7 +46,7 @@ def small_disk(place, size):
 
 def test_a_disk_that_is_too_small_leaves_the_old_file(ball, tmp_path):
     size = runner_size(ball, tmp_path)
-    for share in np.arange(0.9, 1.65, 0.1):
+    for share in (0.9, 1.1, 1.3, 1.6):
         with small_disk(tmp_path / "disk", int(share * size) // 4096 * 4096) as disk:
             out = disk / "lit.vtp"
             out.write_bytes(b"old")
