@@ -87,6 +87,16 @@ def contradiction(mesh: object, /) -> str:
     """Return what a mesh lacks of what its cells or its dimensions count; empty for nothing.
 
     What works on such a mesh reads memory of others, or asks for more than there is.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet or pyvista.MultiBlock
+        Mesh as its reader returned it.
+
+    Returns
+    -------
+    str
+        Reason why the mesh cannot be used.
     """
     for block in blocks.all_blocks(mesh):
         if block.n_points > _MOST_POINTS:
