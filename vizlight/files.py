@@ -127,9 +127,12 @@ def read(path: str | Path, /, *, salvage: bool = False, isolated: bool = False) 
             found = foreign_files.read(path)
             if found is None:
                 found = pv.read(path)
+            if lacking := short_files.contradiction(found):
+                raise FileError(lacking)
             mesh = _one_grid(found) if isinstance(found, pv.MultiBlock) else found
         except Exception as error:  # noqa: BLE001 - readers raise exceptions of any type
-            reason = f"{type(error).__name__}: {_first_line(error)}"
+            kind = "" if isinstance(error, FileError) else f"{type(error).__name__}: "
+            reason = f"{kind}{_first_line(error)}"
         except SystemExit:  # meshio ends the process where one of its readers finds a fault
             reason = f"meshio: {_first_line(said.getvalue())}"
     if not isinstance(mesh, pv.DataSet) or mesh.n_points == 0:

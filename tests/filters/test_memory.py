@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 import pyvista as pv
@@ -84,3 +89,51 @@ def test_a_result_is_shared_where_that_is_asked_for():
     assert np.shares_memory(lit.points, mesh.points)
     assert "luminance" in lit.point_data
     assert "luminance" not in mesh.point_data
+
+
+PEAK = """
+import ctypes, gc, sys
+from pathlib import Path
+import numpy as np, pyvista as pv, vizlight
+from vizlight import Light, Scene, View
+
+def status(key):
+    lines = Path("/proc/self/status").read_text().splitlines()
+    return next(int(line.split()[1]) for line in lines if line.startswith(key))
+
+def line(n, each):
+    t = np.linspace(0, 9, n)
+    mesh = pv.PolyData()
+    mesh.points = np.stack([np.cos(t), np.sin(t), t], axis=1).astype(np.float32)
+    mesh.SetLines(pv.CellArray.from_arrays(np.arange(0, n + 1, each), np.arange(n)))
+    return mesh
+
+def surface(side):
+    mesh = pv.Plane(i_resolution=side, j_resolution=side).triangulate()
+    mesh.clear_data()
+    return mesh
+
+scene = Scene(lights=Light(direction=(0.3, 0.2, 1)), view=View(direction=(0, 0, 1)))
+for small in (line(100, 10), surface(9)):
+    vizlight.illuminate(small, scene, threads=1)
+mesh = {MAKE}
+gc.collect()
+ctypes.CDLL(None).malloc_trim(0)
+Path("/proc/self/clear_refs").write_text("5")
+before = status("VmRSS")
+vizlight.illuminate(mesh, scene, threads=1)
+print((status("VmHWM") - before) / mesh.actual_memory_size)
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/clear_refs").exists(), reason="Linux tells the peak")
+@pytest.mark.parametrize(
+    "make", ["line(2_000_000, 2_000_000)", "line(2_000_000, 10)", "surface(1100)"]
+)
+def test_light_takes_at_most_three_times_the_memory_of_the_mesh(make):
+    code = PEAK.replace("{MAKE}", make)
+    environment = {**os.environ, "VIZLIGHT_FAST": "0"}
+    run = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment
+    )
+    assert 1 < float(run.stdout) < 3.3

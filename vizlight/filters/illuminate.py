@@ -125,9 +125,9 @@ def light_mesh(
     """
     _check.instance("scene", scene, Scene)
     blocks.check(mesh)
-    # A refined mesh has points of its own.
-    deep = not options.refine
-    out = mesh if _check.boolean("inplace", inplace) else separate_copy(mesh, deep=deep)
+    # A refined mesh has points of its own; any other gets its own arrays when all is computed.
+    deep = not (_check.boolean("inplace", inplace) or options.refine)
+    out = mesh if inplace else separate_copy(mesh, deep=False)
     named = list(blocks.named_blocks(out))
     lighting.refuse_overwriting(
         named, options.name, components=options.components, colored=scene.colored,
@@ -164,8 +164,12 @@ def light_mesh(
     )
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
     sides = [part.sided for part in parts]
+    inputs.clear()
+    parts.clear()
     for (block, _), own, sided in zip(named, taken, sides, strict=True):
-        if own is not block:
+        if deep:
+            block.DeepCopy(own.copy(deep=False))
+        elif own is not block:
             block.ShallowCopy(own)
         if sided is not None:
             normals.keep(block, sided)
@@ -233,5 +237,5 @@ def separate_copy(mesh: MeshT, *, deep: bool = True) -> MeshT:
             None if block is None else separate_copy(block, deep=deep), mesh.get_block_name(i)
         )
     for key, value in mesh.field_data.items():
-        out.field_data[key] = np.array(value) if deep else value
+        out.field_data[key] = np.array(value)
     return out

@@ -74,8 +74,12 @@ def read(path: Path) -> pv.DataSet | None:
 def _tracts(path: Path) -> pv.PolyData:
     import nibabel
 
+    # The header as it is in the file; nibabel takes a cut between two streamlines for the end.
+    announced = nibabel.streamlines.load(path, lazy_load=True).header.get("nb_streamlines", 0)
     tracts: Any = nibabel.streamlines.load(path).tractogram
     lines = tracts.streamlines
+    if path.suffix.lower() == ".trk" and len(lines) < announced:
+        raise ValueError(f"{len(lines)} of {announced} streamlines are there")
     return _polylines(
         lines.get_data(),
         lines._offsets,

@@ -11,7 +11,7 @@ import pyvista as pv
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from vizlight import _check
+from vizlight import _check, _pool
 from vizlight._version import __version__
 from vizlight.mesh import point_arrays, records
 from vizlight.mesh.blocks import has_faces
@@ -20,6 +20,7 @@ from vizlight.mesh.point_arrays import unit_rows, vectors_of
 from vizlight.scene import View
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from typing import TypeVar
 
     from numpy.typing import NDArray
@@ -47,6 +48,8 @@ STAND_APART = 0.5
 #: They also are if of those above twice the angle, at least MANY_SHARP of all edges, there are more
 #: than of those between by this factor: corners stand apart from coarse arcs.
 CORNERS_APART = 0.7
+#: Number of points or triangles that are worked on at once, and of edges.
+BLOCK, EDGES = 1 << 16, 1 << 21
 #: Name of the point array in which normals that had to be computed stay with a result: three
 #: components of the normal, its lean, and 1 on an open piece.
 KEPT = "vizlight_normals"
@@ -101,21 +104,25 @@ class Sided:
             return self.vectors
         if facing == "auto" and not self.any_open:
             return self.vectors
-        averted = _averted(self.vectors, points, view, self.lean)
-        if facing == "auto":
-            averted &= self.open
-        turned: Array = np.where(averted[:, np.newaxis], -self.vectors, self.vectors)
+        turned = np.empty_like(self.vectors)
+        for block in _pool.blocks(len(turned), BLOCK):
+            own = self.vectors[block]
+            lean = None if self.lean is None else self.lean[block]
+            averted = _averted(own, points[block], view, lean)
+            if facing == "auto":
+                averted &= self.open[block] if isinstance(self.open, np.ndarray) else self.open
+            turned[block] = np.where(averted[:, np.newaxis], -own, own)
         return turned
 
 
-def _averted(vectors: Array, points: ArraySource, view: View, lean: Array | None) -> Bools:
+def _averted(vectors: Array, points: NDArray[np.generic], view: View, lean: Array | None) -> Bools:
     """Return the points whose normals point away from the eye, by more than they lean."""
     if view.parallel:
         toward = np.asarray(view.direction, dtype=np.float64)
         cosine = vectors @ toward / np.linalg.norm(toward)
         least: Array | float = 0.0 if lean is None else -lean
         return np.asarray(cosine < least, dtype=np.bool_)
-    away = np.asarray(view.position) - np.asarray(points[slice(None)], dtype=np.float64)
+    away = np.asarray(view.position) - np.asarray(points, dtype=np.float64)
     cosine = np.einsum("ij,ij->i", vectors, away)
     least = 0.0 if lean is None else -lean * np.sqrt(np.einsum("ij,ij->i", away, away))
     return np.asarray(cosine < least, dtype=np.bool_)
@@ -157,17 +164,19 @@ def _is_closed(surface: pv.PolyData) -> bool:
 
     The numbers of the edges, made from the coordinates of their ends, cancel by pairs.
     """
+    points, rows = np.asarray(surface.points), _triangles(surface)
+    number, odd = np.zeros(len(points), dtype=np.uint64), np.uint64(0)
     with np.errstate(all="ignore"):
-        # The sum with 0 makes one of the two zeros.
-        places = np.ascontiguousarray(np.asarray(surface.points, dtype=np.float64) + 0.0)
-        words = places.view(np.uint64)
-        number = np.zeros(len(words), dtype=np.uint64)
-        for axis, factor in zip(words.T, _FACTORS, strict=True):
-            number = _mixed(number ^ (axis * factor))
-        rows = _triangles(surface)
-        a, b = number[rows.ravel()], number[rows[:, [1, 2, 0]].ravel()]
-        edges = _mixed((a + b) ^ _mixed(a ^ b))
-        return not np.bitwise_xor.reduce(np.where(a == b, np.uint64(0), edges))
+        for block in _pool.blocks(len(points), BLOCK):
+            # The sum with 0 makes one of the two zeros.
+            places = np.ascontiguousarray(points[block].astype(np.float64) + 0.0)
+            for axis, factor in zip(places.view(np.uint64).T, _FACTORS, strict=True):
+                number[block] = _mixed(number[block] ^ (axis * factor))
+        for block in _pool.blocks(len(rows), BLOCK):
+            a, b = number[rows[block].ravel()], number[rows[block][:, [1, 2, 0]].ravel()]
+            edges = _mixed((a + b) ^ _mixed(a ^ b))
+            odd ^= np.bitwise_xor.reduce(np.where(a == b, np.uint64(0), edges))
+    return not odd
 
 
 #: Odd numbers of 64 bits, and those of the finaliser of splitmix64.
@@ -186,7 +195,7 @@ def _mixed(x: NDArray[np.uint64]) -> NDArray[np.uint64]:
 def _is_inward(surface: pv.PolyData, normals: Array) -> bool:
     """Return whether normals of a closed surface point to its inside, at its outermost points."""
     points = np.asarray(surface.points)
-    used = np.unique(_corners(surface)[0])
+    used = np.flatnonzero(_used(surface))
     used = used[np.isfinite(points[used]).all(axis=1) & np.isfinite(normals[used]).all(axis=1)]
     if not len(used):
         return False
@@ -296,10 +305,12 @@ def computed_normals(
         auto_orient_normals=False,
         non_manifold_traversal=False,
     )
-    vectors = np.array(found.point_data["Normals"])
-    used = np.zeros(len(vectors), dtype=np.bool_)
-    used[_corners(bare)[0]] = True
-    vectors[~used] = 0
+    vectors = np.array(found.point_data.pop("Normals"))
+    vectors[~_used(bare)] = 0
+    if _same_cells(bare, found):
+        # VTK's copy of the cells takes as much memory as the mesh.
+        found = bare
+    del bare
     shape = _Shape(found)
     if not as_wound:
         shape.orient(vectors, view)
@@ -327,43 +338,71 @@ def _skin(mesh: pv.DataSet) -> tuple[pv.PolyData | None, Indices | None]:
     return (surface if has_faces(surface) else None), origin
 
 
+def _same_cells(one: pv.PolyData, other: pv.PolyData) -> bool:
+    """Return whether two surfaces of polygons have equal cells."""
+    cells = [
+        pv.convert_array(get())
+        for surface in (one, other)
+        for get in (surface.GetPolys().GetConnectivityArray, surface.GetPolys().GetOffsetsArray)
+    ]
+    strips = one.GetNumberOfStrips() or other.GetNumberOfStrips()
+    return not strips and all(
+        np.array_equal(a, b) for a, b in zip(cells[:2], cells[2:], strict=True)
+    )
+
+
 class _Shape:
     """The triangles of a surface, its connected pieces, and which of those have a border.
 
     Coincident points are connected, so that triangles that share no point can form one piece.
+    What belongs to triangles is computed block by block, where it is needed.
     """
 
     def __init__(self, surface: pv.PolyData) -> None:
-        self.points = np.asarray(surface.points, dtype=np.float64)
-        self.finite: Bools = np.all(np.isfinite(self.points), axis=1)
-        self._same, self.piece = _pieces(surface)
+        self._points = points = np.asarray(surface.points)
+        self.finite: Bools = np.all(np.isfinite(points), axis=1)
+        same, self.piece = _pieces(surface)
         self.count = int(self.piece.max(initial=-1)) + 1
-        rows = _triangles(surface)
-        keys = np.sort(_edges(self._same[rows], len(self.points)))
-        single = np.ones(len(keys), dtype=np.bool_)
-        repeats = keys[1:] == keys[:-1]
-        single[1:] &= ~repeats
-        single[:-1] &= ~repeats
-        single &= keys >= 0
+        self.triangles = _triangles(surface)
         #: Whether each piece has an edge of one face only.
         self.open: Bools = np.zeros(self.count, dtype=np.bool_)
-        self.open[self.piece[(keys[single] // max(len(self.points), 1)).astype(np.intp)]] = True
-        self.triangles: Indices = rows[self.finite[rows].all(axis=1)]
+        for keys, _ in _edges(self.triangles, len(points), same):
+            keys.sort()
+            single = np.ones(len(keys), dtype=np.bool_)
+            repeats = keys[1:] == keys[:-1]
+            single[1:] &= ~repeats
+            single[:-1] &= ~repeats
+            self.open[self.piece[(keys[single] // len(points)).astype(np.intp)]] = True
+        del same
         self._measure()
 
     def _measure(self) -> None:
-        """Find the area vectors of the triangles, and area and volume of the pieces."""
+        """Place each piece about its centroid, and find the volumes of the pieces."""
         size = np.maximum(np.bincount(self.piece, self.finite, self.count), 1)
-        points = np.where(self.finite[:, np.newaxis], self.points, 0)
-        sums = [np.bincount(self.piece, axis * self.finite, self.count) for axis in points.T]
-        self.away: Array = points - (np.stack(sums, axis=1) / size[:, np.newaxis])[self.piece]
+        self.away: Array = np.where(self.finite[:, np.newaxis], self._points, 0).astype(np.float64)
+        sums = [np.bincount(self.piece, axis, self.count) for axis in self.away.T]
+        middle = np.stack(sums, axis=1) / size[:, np.newaxis]
+        for block in _pool.blocks(len(self.away), BLOCK):
+            self.away[block] -= middle[self.piece[block]]
         # Lengths are scaled, because products of tiny ones underflow and of huge ones overflow.
-        self.scale = np.abs(self.away).max(initial=0.0) or 1.0
-        a, b, c = (self.away[self.triangles[:, i]] / self.scale for i in range(3))
-        self.across: Array = np.cross(b - a, c - a)
-        self.owner: Indices = self.piece[self.triangles[:, 0]]
-        volume = np.bincount(self.owner, _dots(self.across, a), self.count)
-        self.volume: Array = volume.astype(np.float64)
+        low, high = self.away.min(initial=0.0), self.away.max(initial=0.0)
+        self.scale = np.maximum(-low, high) or 1.0
+        self.turned: Bools = np.zeros(self.count, dtype=np.bool_)
+        self.volume: Array = np.zeros(self.count)
+        for _, rows, across in self._parts():
+            height = _dots(across, self.away[rows[:, 0]] / self.scale)
+            np.add.at(self.volume, self.piece[rows[:, 0]], height)
+
+    def _parts(self) -> Iterator[tuple[Indices, Indices, Array]]:
+        """Yield the numbers, the corners and the area vectors of some finite triangles."""
+        for block in _pool.blocks(len(self.triangles), BLOCK):
+            rows = self.triangles[block]
+            known = np.flatnonzero(self.finite[rows].all(axis=1))
+            rows = rows[known]
+            a, b, c = (self.away[rows[:, i]] / self.scale for i in range(3))
+            across = np.cross(b - a, c - a)
+            across[self.turned[self.piece[rows[:, 0]]]] *= -1
+            yield known + block.start, rows, across
 
     def orient(self, normals: Array, view: View | None) -> None:
         """Flip the normals of each piece that point inward, or away from the eye.
@@ -374,35 +413,52 @@ class _Shape:
         cosine between N and the direction away from the centroid of the piece. Points that are
         not finite are ignored.
         """
-        good = self.finite & np.all(np.isfinite(normals), axis=1)
-        score = _dots(normals, unit_rows(self.away))
-        if view is not None and len(view.position or view.direction or ()) == 3:
-            toward = (
-                np.broadcast_to(np.asarray(view.direction), self.points.shape)
-                if view.parallel
-                else np.asarray(view.position) - self.points
-            )
-            score += 3 * _dots(normals, unit_rows(toward))
-        flipped = np.bincount(self.piece, np.where(good, score, 0), self.count) < 0
-        total = np.stack([np.bincount(self.owner, x, self.count) for x in self.across.T], axis=1)
-        area = np.bincount(self.owner, np.linalg.norm(self.across, axis=1), self.count)
+        flipped = np.bincount(self.piece, self._scores(normals, view), self.count) < 0
+        total, area = np.zeros((self.count, 3)), np.zeros(self.count)
+        for _, rows, across in self._parts():
+            owner = self.piece[rows[:, 0]]
+            for axis in range(3):
+                np.add.at(total[:, axis], owner, across[:, axis])
+            np.add.at(area, owner, np.linalg.norm(across, axis=1))
         around = ~self.open | (np.linalg.norm(total, axis=1) < NEARLY_CLOSED * area)
-        turned = np.where(around, self.volume < 0, flipped)
-        normals[turned[self.piece]] *= -1
-        self.across = np.where(turned[self.owner][:, np.newaxis], -self.across, self.across)
+        self.turned = np.where(around, self.volume < 0, flipped)
+        for block in _pool.blocks(len(normals), BLOCK):
+            normals[block][self.turned[self.piece[block]]] *= -1
+
+    def _scores(self, normals: Array, view: View | None) -> Array:
+        """Return how far the normal of each point agrees with the directions of a sheet."""
+        scores = np.zeros(len(normals))
+        seen = view is not None and len(view.position or view.direction or ()) == 3
+        for block in _pool.blocks(len(normals), BLOCK):
+            own, away = normals[block], self.away[block]
+            score = _dots(own, unit_rows(away))
+            if seen and view is not None:
+                score += 3 * _dots(own, unit_rows(self._toward(view, block)))
+            good = self.finite[block] & np.all(np.isfinite(own), axis=1)
+            scores[block] = np.where(good, score, 0)
+        return scores
+
+    def _toward(self, view: View, block: slice) -> Array:
+        """Return vectors from some points toward the eye."""
+        if view.parallel:
+            return np.broadcast_to(np.asarray(view.direction), self.away[block].shape)
+        return np.asarray(view.position) - np.asarray(self._points[block], dtype=np.float64)
 
     def lean(self, normals: Array) -> Array:
         """Return how far the normal of each point may lean away from the eye; see Sided."""
-        faces = unit_rows(self.across)
-        n = len(self.points)
-        middle = sum(self.away[self.triangles[:, i]] for i in range(3))
-        middle = np.asarray(middle) / 3
-        bend, least = np.zeros(n), np.ones(n)
-        for i in range(3):
-            at = self.triangles[:, i]
-            own = normals[at].astype(np.float64)
-            np.minimum.at(least, at, _dots(own, faces))
-            bend += np.bincount(at, _dots(own, middle - self.away[at]), n)
+        n = len(normals)
+        bends, least = np.zeros((3, n)), np.ones(n)
+        for _, rows, across in self._parts():
+            faces = unit_rows(across)
+            middle = np.asarray(sum(self.away[rows[:, i]] for i in range(3))) / 3
+            for i, bend in enumerate(bends):
+                at = rows[:, i]
+                own = normals[at].astype(np.float64)
+                with np.errstate(invalid="ignore"):
+                    np.minimum.at(least, at, _dots(own, faces))
+                np.add.at(bend, at, _dots(own, middle - self.away[at]))
+        bend = bends[0] + bends[1] + bends[2]
+        del bends
         sine = np.sqrt(np.clip(1 - least * least, 0, 1))
         found: Array = np.where(np.isfinite(bend), -np.sign(bend) * sine, 0)
         return found.astype(np.float32)
@@ -414,32 +470,56 @@ class _Shape:
         are more of those, and no edge is meant to be seen. Faces without area, which many meshes
         have at a pole, have no direction and no sharp edges.
         """
-        corners = self.away[self.triangles] / self.scale
-        sides = corners - np.roll(corners, -1, axis=1)
-        longest = np.einsum("ijk,ijk->ij", sides, sides).max(axis=1, initial=0.0)
-        full = np.linalg.norm(self.across, axis=1) > NARROWEST * longest
-        faces = unit_rows(self.across[full])
-        rows = self.triangles[full]
-        keys = _edges(rows, len(self.points))
-        order = np.argsort(keys)
-        keys = keys[order]
-        twice = np.flatnonzero((keys[1:] == keys[:-1]) & (keys[1:] >= 0))
-        if not len(twice):
+        faces, full = np.empty((len(self.triangles), 3)), np.zeros(len(self.triangles), np.bool_)
+        for numbers, rows, across in self._parts():
+            corners = self.away[rows] / self.scale
+            sides = corners - np.roll(corners, -1, axis=1)
+            longest = np.einsum("ijk,ijk->ij", sides, sides).max(axis=1, initial=0.0)
+            full[numbers] = np.linalg.norm(across, axis=1) > NARROWEST * longest
+            faces[numbers] = unit_rows(across)
+        least = np.cos(np.radians([2 * SHARP, SHARP, SHARP / 2]))
+        pairs, counts = 0, np.zeros(3, dtype=np.intp)
+        for keys, edges in _edges(self.triangles, len(self.away)):
+            there = full[edges // 3]
+            keys, edges = keys[there], edges[there]
+            order = np.argsort(keys, kind="stable")
+            keys, face = keys[order], edges[order] // 3
+            twice = np.flatnonzero(keys[1:] == keys[:-1])
+            pairs += len(twice)
+            for block in _pool.blocks(len(twice), BLOCK):
+                cosine = _dots(faces[face[twice[block]]], faces[face[twice[block] + 1]])
+                counts += [int(np.count_nonzero(cosine < limit)) for limit in least]
+        if not pairs:
             return 0.0
-        one, other = (faces[order[twice + i] // 3] for i in (0, 1))
-        cosine = _dots(one, other)
-        corner, least, nearly = np.cos(np.radians([2 * SHARP, SHARP, SHARP / 2]))
-        share, beyond = float(np.mean(cosine < least)), float(np.mean(cosine < corner))
-        below = float(np.mean((cosine >= least) & (cosine < nearly)))
+        beyond, share, nearly = (float(count / pairs) for count in counts)
         apart = beyond >= MANY_SHARP and share - beyond <= CORNERS_APART * beyond
-        return share if apart or below <= STAND_APART * share else 0.0
+        return share if apart or nearly - share <= STAND_APART * share else 0.0
 
 
-def _edges(triangles: Indices, count: int) -> Indices:
-    """Return a number for each of the three edges of triangles, -1 for edges of no length."""
-    a, b = triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
-    keys = np.minimum(a, b).astype(np.int64) * count + np.maximum(a, b)
-    return np.where(a == b, -1, keys)
+def _edges(
+    triangles: Indices, count: int, same: Indices | None = None
+) -> Iterator[tuple[Indices, Indices]]:
+    """Yield numbers of some edges of triangles, and their places among the corners.
+
+    An edge that several triangles have is yielded with all of them at once; edges of no length are
+    left out. ``same`` has the point that stands for each of the ``count`` points.
+    """
+    parts = -(-3 * len(triangles) // EDGES)
+    for part in range(parts):
+        # Edges whose lower point is in a range.
+        low, high = part * count // parts, (part + 1) * count // parts
+        keys, places = [], []
+        for block in _pool.blocks(len(triangles), BLOCK):
+            rows = triangles[block] if same is None else same[triangles[block]]
+            if parts > 1 and not (rows.min() < high and rows.max() >= low):
+                continue
+            a, b = rows.ravel(), rows[:, [1, 2, 0]].ravel()
+            lower = np.minimum(a, b)
+            own = np.flatnonzero((lower >= low) & (lower < high) & (a != b))
+            keys.append(lower[own].astype(np.int64) * count + np.maximum(a, b)[own])
+            places.append(own + 3 * block.start)
+        if keys:
+            yield np.concatenate(keys), np.concatenate(places)
 
 
 def _dots(a: Array, b: Array) -> Array:
@@ -463,31 +543,47 @@ class _Pieces(NamedTuple):
 
 def _pieces(surface: pv.PolyData) -> _Pieces:
     """Return for each point the first of those at its place, and the number of its piece."""
-    corners, last = _corners(surface)
     points = np.asarray(surface.points)
     n = len(points)
     order = np.lexsort(points.T)
     new = np.ones(n, dtype=np.bool_)
-    new[1:] = np.any(points[order[1:]] != points[order[:-1]], axis=1)
+    for block in _pool.blocks(max(n - 1, 0), BLOCK):
+        place = points[order[block.start : block.stop + 1]]
+        new[block.start + 1 : block.stop + 1] = np.any(place[1:] != place[:-1], axis=1)
+    first = np.where(new, np.arange(n), 0)
+    np.maximum.accumulate(first, out=first)
     same = np.empty(n, dtype=np.intp)
-    same[order] = order[np.maximum.accumulate(np.where(new, np.arange(n), 0))] if n else order
-    follows = np.flatnonzero(~last)
-    a, b = same[corners[follows]], same[corners[follows + 1]]
-    graph = coo_array((np.ones(len(a), np.float32), (a, b)), shape=(surface.n_points,) * 2)
-    _, piece = connected_components(graph, directed=False)
-    return _Pieces(same, np.asarray(piece, dtype=np.intp)[same])
+    same[order] = order[first]
+    del order, first
+    piece = np.arange(n, dtype=np.int32 if n < 2**31 else np.int64)
+    for ids, ends in _faces(surface):
+        last = np.zeros(len(ids), dtype=np.bool_)
+        last[ends - 1] = True
+        for block in _pool.blocks(len(ids), EDGES):
+            follows = np.flatnonzero(~last[block]) + block.start
+            a, b = piece[same[ids[follows]]], piece[same[ids[follows + 1]]]
+            # Edges between points of two pieces make one of them.
+            graph = coo_array(
+                (np.ones(len(a), np.float32), (a, b)), shape=(int(piece.max(initial=-1)) + 1,) * 2
+            )
+            piece = connected_components(graph, directed=False)[1][piece]
+    return _Pieces(same, np.asarray(piece[same], dtype=np.intp))
 
 
-def _corners(surface: pv.PolyData) -> tuple[Indices, Bools]:
-    """Return the corners of all faces, and a mask of those that are the last of their face."""
-    corners, last = [], []
+def _faces(surface: pv.PolyData) -> Iterator[tuple[Indices, Indices]]:
+    """Yield the corners of all polygons, of all strips, and the end of each face in them."""
     for cells in (surface.GetPolys(), surface.GetStrips()):
         ids = pv.convert_array(cells.GetConnectivityArray()).astype(np.intp, copy=False)
-        ends = np.zeros(len(ids), dtype=np.bool_)
-        ends[pv.convert_array(cells.GetOffsetsArray())[1:] - 1] = True
-        corners.append(ids)
-        last.append(ends)
-    return np.concatenate(corners), np.concatenate(last)
+        if len(ids):
+            yield ids, pv.convert_array(cells.GetOffsetsArray())[1:]
+
+
+def _used(surface: pv.PolyData) -> Bools:
+    """Return whether each point is a corner of a face."""
+    used = np.zeros(surface.n_points, dtype=np.bool_)
+    for ids, _ in _faces(surface):
+        used[ids] = True
+    return used
 
 
 def split_where_computed(mesh: SurfaceT, angle: FeatureAngle) -> SurfaceT | pv.PolyData:
@@ -567,9 +663,9 @@ def keep(mesh: pv.DataSet, normals: Sided) -> None:
     source = fingerprint(mesh)
     if source is None:
         return
-    border = np.broadcast_to(normals.open, len(normals.vectors))[:, np.newaxis]
-    rows = np.concatenate([normals.vectors, normals.lean[:, np.newaxis], border], axis=1)
-    point_arrays.attach_rows(mesh, KEPT, rows.astype(np.float32))
+    rows = np.empty((mesh.n_points, 5), dtype=np.float32)
+    rows[:, :3], rows[:, 3], rows[:, 4] = normals.vectors, normals.lean, normals.open
+    point_arrays.attach_rows(mesh, KEPT, rows)
     record: records.Record = {
         "vizlight": __version__, "filter": "normals", "source": source, "sharp": normals.sharp,
         "inside": normals.inside,

@@ -80,12 +80,19 @@ def _joined(mesh: pv.PolyData) -> tuple[Array, Indices, Indices]:
     """Return points, connectivity and offsets of polylines, consecutive segments joined."""
     lines = mesh.GetLines()
     ids, offsets = _cells(lines)
-    if np.any(np.diff(offsets) == 2) and len(np.unique(ids)) < len(ids):
+    if np.any(np.diff(offsets) == 2) and _shared(ids, mesh.n_points):
         bare = pv.PolyData()
         bare.SetPoints(mesh.GetPoints())
         bare.SetLines(lines)
         ids, offsets = _cells(bare.strip(join=True, max_length=mesh.n_points + 1).GetLines())
     return np.asarray(mesh.points), ids, offsets
+
+
+def _shared(ids: Indices, count: int) -> bool:
+    """Return whether two corners of lines are the same point."""
+    used = np.zeros(count, dtype=np.bool_)
+    used[ids] = True
+    return bool(np.count_nonzero(used) < len(ids))
 
 
 def direction_colors(mesh: pv.DataSet, /) -> Array:

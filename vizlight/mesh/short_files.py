@@ -1,13 +1,22 @@
-"""Files that end too early, of which VTK's reader invents the rest, or ends the process."""
+"""Files that end too early or contradict themselves, which VTK takes for whole or crashes on."""
 
 from __future__ import annotations
 
+import struct
 from typing import TYPE_CHECKING, BinaryIO
+
+import numpy as np
+import pyvista as pv
+from vtkmodules.vtkCommonDataModel import vtkGenericCell
+
+from vizlight.mesh import blocks
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = ["missing_part"]
+    from vtkmodules.vtkCommonDataModel import vtkCellArray
+
+__all__ = ["contradiction", "missing_part"]
 
 _SIZES = {
     **dict.fromkeys(("char", "uchar", "int8", "uint8"), 1),
@@ -40,10 +49,10 @@ _LONGEST_HEADER = 10_000
 
 
 def missing_part(path: Path, /) -> str:
-    """Return what a PLY file or a legacy VTK file of text lacks of what its headers count.
+    """Return what a PLY, STL, SU2 or legacy VTK file of text lacks of what it announces.
 
     A cut is not seen where it leaves out whole arrays, and in binary PLY files with faces of more
-    than three corners.
+    than three corners. A text of STL announces its end.
 
     Parameters
     ----------
@@ -56,10 +65,117 @@ def missing_part(path: Path, /) -> str:
         Reason why the file cannot be whole; empty if it may be, or is of another format.
     """
     suffix = path.suffix.lower()
-    if suffix not in (".ply", ".vtk"):
+    if suffix not in (".ply", ".stl", ".su2", ".vtk"):
         return ""
     with path.open("rb") as file:
+        if suffix == ".su2":
+            return _su2(file)
+        if suffix == ".stl":
+            return _stl(file, path)
         return _ply(file, path) if suffix == ".ply" else _legacy(file)
+
+
+#: Number of points of a cell, by VTK's number of its type; other types have any number.
+_POINTS = {
+    1: 1, 3: 2, 5: 3, 8: 4, 9: 4, 10: 4, 11: 8, 12: 8, 13: 6, 14: 5, 15: 10, 16: 12,
+    21: 3, 22: 6, 23: 8, 24: 10, 25: 20, 26: 15, 27: 13, 28: 9, 29: 27, 30: 6, 31: 12, 32: 18,
+    33: 24, 34: 7, 35: 4, 37: 19,
+}  # fmt: skip
+
+
+def contradiction(mesh: object, /) -> str:
+    """Return what a mesh lacks of what its cells or its dimensions count; empty for nothing.
+
+    What works on such a mesh reads memory of others, or asks for more than there is.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet or pyvista.MultiBlock
+        Mesh as its reader returned it.
+
+    Returns
+    -------
+    str
+        Reason why the mesh cannot be used.
+    """
+    for block in blocks.all_blocks(mesh):
+        if block.n_points > _MOST_POINTS:
+            return f"{block.n_points} points, more than memory holds"
+        if isinstance(block, pv.ImageData) and min(block.dimensions) < 1:
+            return f"no points: the dimensions are {block.dimensions}"
+        if isinstance(block, pv.UnstructuredGrid):
+            reason = _of_cells(block.GetCells(), block.n_points) or _of_types(block)
+        elif isinstance(block, pv.PolyData):
+            cells = (block.GetVerts(), block.GetLines(), block.GetPolys(), block.GetStrips())
+            reason = next(filter(None, (_of_cells(own, block.n_points) for own in cells)), "")
+        else:
+            continue
+        if reason:
+            return reason
+    return ""
+
+
+#: Largest number of points of a mesh: half of the addresses that processors have.
+_MOST_POINTS = 1 << 40
+
+
+def _of_cells(cells: vtkCellArray, count: int) -> str:
+    """Return how cells contradict their points, of which there are ``count``."""
+    ids = pv.convert_array(cells.GetConnectivityArray())
+    offsets = pv.convert_array(cells.GetOffsetsArray())
+    if ids.size and not 0 <= ids.min() <= ids.max() < count:
+        return f"cells of the points {ids.min()} to {ids.max()}, but {count} points are there"
+    ends = (offsets[0], offsets[-1]) if len(offsets) else (0, 0)
+    if ends != (0, len(ids)) or np.any(offsets[1:] < offsets[:-1]):
+        return f"cells that do not follow one another among {len(ids)} corners"
+    return ""
+
+
+def _of_types(grid: pv.UnstructuredGrid) -> str:
+    """Return how the types of cells contradict their sizes."""
+    kinds = np.asarray(grid.celltypes)
+    sizes = np.diff(pv.convert_array(grid.GetCells().GetOffsetsArray()))
+    if len(kinds) != len(sizes):
+        return f"{len(sizes)} cells of {len(kinds)} types"
+    for kind in np.flatnonzero(np.bincount(kinds, minlength=1)).tolist():
+        least = int(sizes[kinds == kind].min())
+        if kind and vtkGenericCell.InstantiateCell(kind) is None:
+            return f"cells of the unknown type {kind}"
+        if least < _POINTS.get(kind, 0):
+            return f"a cell of type {kind} with {least} points"
+    return ""
+
+
+def _su2(file: BinaryIO) -> str:
+    """Compare the lines after each count with it."""
+    name, expected, found = "", 0, 0
+    for line in file:
+        words = line.decode(errors="replace").split("%")[0].replace("=", " = ").split()
+        if "=" not in words:
+            found += bool(words)
+            continue
+        if found < expected:
+            break
+        name, number = words[0], words[2] if len(words) > 2 else ""
+        counts = name in ("NPOIN", "NELEM", "MARKER_ELEMS") and number.isdecimal()
+        expected, found = int(number) if counts else 0, 0
+    return f"{found} of {expected} lines of {name!r} are there" if found < expected else ""
+
+
+#: Bytes of the header of a binary STL file with its count, and of each triangle.
+_STL_HEAD, _STL_TRIANGLE = 84, 50
+
+
+def _stl(file: BinaryIO, path: Path) -> str:
+    head, size = file.read(_STL_HEAD), path.stat().st_size
+    if len(head) < _STL_HEAD:
+        return ""  # VTK's reader says so
+    if head.lstrip()[:5].lower() == b"solid" and b"\0" not in head:
+        file.seek(-min(size, 512), 2)
+        last = file.read().split()
+        return "" if any(b"endsolid" in word.lower() for word in last) else "its end is missing"
+    least = _STL_HEAD + _STL_TRIANGLE * struct.unpack("<I", head[-4:])[0]
+    return f"{size} of {least} bytes are there" if size < least else ""
 
 
 def _ply(file: BinaryIO, path: Path) -> str:

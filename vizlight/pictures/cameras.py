@@ -25,6 +25,8 @@ Mesh: TypeAlias = pv.DataSet | pv.MultiBlock
 VIEW_ANGLE = 30.0
 #: Factor by which the picture is larger than the mesh in it.
 MARGIN = 1.05
+#: Least and largest size of a box that a camera shows; VTK's are no nearer than 1e-20.
+SIZES = 1e-15, 1e100
 
 
 def camera_on(
@@ -76,6 +78,12 @@ def camera_on(
     zoom = _check.number("zoom", zoom, low=1e-6)
     box = _box(bounds)
     centre = box.mean(axis=1)
+    if np.any(box[:, 1] < box[:, 0]):
+        raise ValueError(_check.message("bounds", "a mesh with finite points", "none"))
+    size = float(np.max(box[:, 1] / 2 - box[:, 0] / 2)) * 2
+    if size and not SIZES[0] <= size <= SIZES[1]:
+        expected = f"a size from {SIZES[0]:g} to {SIZES[1]:g}"
+        raise ValueError(_check.message("bounds", expected, f"{size:g}", "scale the mesh"))
     radius = 0.5 * float(np.linalg.norm(box[:, 1] - box[:, 0])) or 1.0
     distance, height = radius / math.sin(math.radians(VIEW_ANGLE / 2)), radius
     if isinstance(bounds, Mesh):

@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 
 __all__ = ["polyline_tangents"]
 
+#: Number of vertices whose tangents are computed at once.
+BLOCK = 1 << 17
+
 
 def polyline_tangents(
     points: ArrayLike, /, *, connectivity: ArrayLike | None = None, offsets: ArrayLike | None = None
@@ -69,22 +72,73 @@ def polyline_tangents(
         starts = _check.indices("offsets", offsets, len(ids) + 1)
     if len(starts) == 0 or starts[0] != 0 or starts[-1] != len(ids) or np.any(np.diff(starts) < 0):
         raise ValueError(_check.message("offsets", f"rising indices from 0 to {len(ids)}", starts))
+    lines = _Lines(positions, ids, starts)
     tangents = np.zeros_like(positions)
-    line = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
-    place = positions[ids].astype(np.float64, copy=False)
-    # A point is a new vertex of its line unless it repeats the previous point.
-    fresh = np.ones(len(ids), dtype=np.bool_)
-    fresh[1:] = (line[1:] != line[:-1]) | np.any(place[1:] != place[:-1], axis=1)
-    vertex = np.cumsum(fresh) - 1
     with np.errstate(all="ignore"):
-        found = _vertex_tangents(place[fresh], line[fresh])
-    found[~np.all(np.isfinite(found), axis=1)] = 0
-    tangents[ids] = found[vertex]
+        for first in range(0, len(lines.vertices), BLOCK):
+            block = slice(first, min(first + BLOCK, len(lines.vertices)))
+            found = lines.tangents(block)
+            found[~np.all(np.isfinite(found), axis=1)] = 0
+            rows, vertex = lines.rows(block)
+            tangents[ids[rows]] = found[vertex]
     return tangents
 
 
+class _Lines:
+    """Lines by their vertices: the points in a line that do not repeat the previous one.
+
+    Memory beyond a number for each vertex does not grow with the lines.
+    """
+
+    def __init__(self, positions: Array, ids: Indices, starts: Indices) -> None:
+        self.positions, self.ids, self.starts = positions, ids, starts
+        fresh = np.empty(len(ids), dtype=np.bool_)
+        for i in range(0, len(ids), BLOCK):
+            place = positions[ids[max(i - 1, 0) : i + BLOCK]]
+            fresh[max(i, 1) : i + BLOCK] = np.any(place[1:] != place[:-1], axis=1)
+        filled = starts[:-1] < starts[1:]
+        fresh[starts[:-1][filled]] = True
+        #: Place of each vertex in ids.
+        self.vertices = np.flatnonzero(fresh)
+        first = np.searchsorted(self.vertices, starts[:-1][filled])
+        last = np.append(first, len(self.vertices))[1:] - 1
+        same = np.all(self.place(first) == self.place(last), axis=1)
+        closed = same & (last - first > 2)
+        #: First and last vertex of each closed line, in ascending order.
+        self.closed = first[closed], last[closed]
+
+    def place(self, vertices: Indices | slice) -> Array:
+        """Return the positions of vertices in float64."""
+        return self.positions[self.ids[self.vertices[vertices]]].astype(np.float64, copy=False)
+
+    def tangents(self, block: slice) -> Array:
+        """Return the tangents at a block of vertices."""
+        # Two more on each side decide on those of the block.
+        wide = slice(max(block.start - 2, 0), min(block.stop + 2, len(self.vertices)))
+        line = np.searchsorted(self.starts, self.vertices[wide], side="right")
+        inside = slice(block.start - wide.start, block.stop - wide.start)
+        found = _vertex_tangents(self.place(wide), line)[inside]
+        for end in self.closed:
+            low, high = np.searchsorted(end, (block.start, block.stop))
+            found[end[low:high] - block.start] = self._seams(slice(low, high))
+        return found
+
+    def _seams(self, lines: slice) -> Array:
+        """Return the tangents where closed lines begin and end."""
+        first, last = (end[lines] for end in self.closed)
+        corners = np.stack([last - 1, first, first + 1], axis=1).ravel()
+        return _vertex_tangents(self.place(corners), np.repeat(first, 3))[1::3]
+
+    def rows(self, block: slice) -> tuple[slice, Indices]:
+        """Return the places in ids of a block of vertices, and the vertex in the block of each."""
+        ends = np.append(self.vertices[block], len(self.ids))
+        if block.stop < len(self.vertices):
+            ends[-1] = self.vertices[block.stop]
+        return slice(ends[0], ends[-1]), np.repeat(np.arange(len(ends) - 1), np.diff(ends))
+
+
 def _vertex_tangents(place: Array, line: Indices) -> Array:
-    """Return the tangents at vertices of lines without repeated points."""
+    """Return the tangents at vertices of open lines without repeated points."""
     count = len(place)
     tangent = np.zeros_like(place)
     if count < 2:
@@ -100,14 +154,11 @@ def _vertex_tangents(place: Array, line: Indices) -> Array:
     before[1:][inside] = np.flatnonzero(inside)
     first = np.flatnonzero((before < 0) & (after >= 0))
     last = np.flatnonzero((after < 0) & (before >= 0))
-    closed = np.all(place[first] == place[last], axis=1) & (last - first > 2)
-    before[first[closed]] = before[last[closed]]
-    after[last[closed]] = after[first[closed]]
 
     both = np.flatnonzero((before >= 0) & (after >= 0))
     part = _share(size[before[both]], size[after[both]])
     tangent[both] = (1 - part) * unit[before[both]] + part * unit[after[both]]
-    _ends(tangent, unit, size, first[~closed], last[~closed])
+    _ends(tangent, unit, size, first, last)
     length = np.linalg.norm(tangent, axis=1, keepdims=True)
     return tangent / np.where(length > 0, length, 1)
 

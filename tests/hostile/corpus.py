@@ -1,0 +1,170 @@
+"""Hostile files, each with the exit code of ``vizlight light`` and a part of its line."""
+
+from __future__ import annotations
+
+import json
+import struct
+from typing import NamedTuple
+
+import numpy as np
+from hostile import runner
+
+
+class Case(NamedTuple):
+    """A file: its content, the exit code, and words on standard error (0 may have none)."""
+
+    content: bytes
+    code: int
+    words: str
+
+
+def text(*lines):
+    """Return lines of text as bytes."""
+    return "\n".join(lines).encode() + b"\n"
+
+
+def legacy(points, *cells, kind="POLYDATA"):
+    """Return a legacy VTK file of text with some points and cells."""
+    rows = [" ".join(str(x) for x in point) for point in points]
+    head = ("# vtk DataFile Version 3.0", "hostile", "ASCII", f"DATASET {kind}")
+    return text(*head, f"POINTS {len(points)} double", *rows, *cells)
+
+
+def image(*, extent="0 2 0 2 0 2", spacing="1 1 1", data=""):
+    """Return an XML image."""
+    return text(
+        '<VTKFile type="ImageData" version="1.0" byte_order="LittleEndian">',
+        f'<ImageData WholeExtent="{extent}" Origin="0 0 0" Spacing="{spacing}">',
+        f'<Piece Extent="{extent}"><PointData>{data}</PointData></Piece></ImageData></VTKFile>',
+    )
+
+
+def ply(*, points=3, faces=1, rows=("0 0 0", "1 0 0", "0 1 0", "3 0 1 2")):
+    """Return a PLY file of text that announces some points and faces."""
+    return text(
+        "ply", "format ascii 1.0", f"element vertex {points}",
+        *(f"property float {axis}" for axis in "xyz"), f"element face {faces}",
+        "property list uchar int vertex_indices", "end_header", *rows,
+    )  # fmt: skip
+
+
+def stl(count, triangles):
+    """Return a binary STL file that announces a number of triangles and holds another."""
+    one = np.array([0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0], "<f4").tobytes() + b"\0\0"
+    return b"\0" * 80 + struct.pack("<I", count) + one * triangles
+
+
+def gltf(**changes):
+    """Return a glTF file whose parts contradict each other."""
+    whole = {
+        "asset": {"version": "2.0"},
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AAAA"}],
+    }
+    return json.dumps(whole | changes).encode()
+
+
+SQUARE = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
+FACE = ("POLYGONS 1 5", "4 0 1 2 3")
+NOT_A_MESH = "file: expected a mesh that PyVista reads, got"
+DAMAGED = "file: expected a file that is not damaged, got"
+PAST = "but 4 points are there"
+
+CASES = {
+    # nothing in it
+    "empty.vtp": Case(b"", 2, NOT_A_MESH),
+    "empty.vtk": Case(b"", 2, NOT_A_MESH),
+    "empty.ply": Case(b"", 2, NOT_A_MESH),
+    "empty.stl": Case(b"", 2, NOT_A_MESH),
+    "empty.obj": Case(b"", 2, NOT_A_MESH),
+    "zeros.vtu": Case(b"\0" * 512, 2, NOT_A_MESH),
+    "zeros.glb": Case(b"\0" * 512, 2, NOT_A_MESH),
+    "zeros.vtkhdf": Case(b"\0" * 512, 2, NOT_A_MESH),
+    "zeros.trk": Case(b"\0" * 1000, 2, NOT_A_MESH),
+    "words.nothing": Case(b"what is this", 2, NOT_A_MESH),
+    "other.stl": Case(b"\x89PNG\r\n\x1a\n" + bytes(range(256)), 2, "file: expected"),
+    "no-points.vtk": Case(legacy([]), 2, "(no points"),
+    # counts that do not hold
+    "cut.vtk": Case(legacy(SQUARE, *FACE)[:-6], 2, "file: expected"),
+    "past.vtk": Case(legacy(SQUARE, "POLYGONS 1 5", "4 0 1 2 900"), 2, PAST),
+    "negative.vtk": Case(legacy(SQUARE, "POLYGONS 1 5", "4 0 1 2 -7"), 2, PAST),
+    "past-lines.vtk": Case(legacy(SQUARE, "LINES 1 4", "3 0 1 99999999"), 2, PAST),
+    "past-cells.vtk": Case(
+        legacy(SQUARE, "CELLS 1 5", "4 0 1 2 77", "CELL_TYPES 1", "9", kind="UNSTRUCTURED_GRID"),
+        2,
+        PAST,
+    ),
+    "points.ply": Case(ply(points=900), 2, DAMAGED),
+    "points-most.ply": Case(ply(points=2**63), 2, "file: expected"),
+    "faces.ply": Case(ply(faces=2**31), 2, DAMAGED),
+    "past.ply": Case(ply(rows=("0 0 0", "1 0 0", "0 1 0", "3 0 1 9999")), 2, "file: expected"),
+    "count.stl": Case(stl(2**32 - 1, 1), 2, DAMAGED),
+    "cut.stl": Case(stl(2, 1), 2, DAMAGED),
+    "no-end.stl": Case(
+        text("solid a" + " " * 80, "facet normal 0 0 1", "outer loop", "vertex 0 0 0",
+             "vertex 1 0 0", "vertex 0 1 0", "endloop", "endfacet"),
+        2, "its end is missing",
+    ),
+    "past.obj": Case(text("v 0 0 0", "v 1 0 0", "v 0 1 0", "f 1 2 99"), 2, "file: expected"),
+    "extent.vti": Case(image(extent="0 99999 0 99999 0 99999"), 2, ""),
+    "backward.vti": Case(image(extent="5 0 5 0 5 0"), 2, "file: expected"),
+    "data.vti": Case(
+        image(data='<DataArray type="Float32" Name="a" format="ascii">1 2</DataArray>'),
+        2, "file: expected",
+    ),
+    "short.gltf": Case(gltf(), 2, NOT_A_MESH),
+    "past.gltf": Case(gltf(bufferViews=[{"buffer": 7, "byteLength": 36}]), 2, NOT_A_MESH),
+    "cut.su2": Case(
+        text("NDIME= 2", "NPOIN= 4", "0 0 0", "1 0 1", "1 1 2"), 2, "3 of 4 lines of 'NPOIN'"
+    ),
+    "cut.off": Case(text("OFF", "900 1 0", "0 0 0"), 2, NOT_A_MESH),
+    # values that no surface has
+    "nan.vtk": Case(legacy([("nan", "nan", "nan")] * 4, *FACE), 2, "a mesh with finite points"),
+    "größe.vtk": Case(legacy(SQUARE, *FACE), 0, ""),
+    "one-place.vtk": Case(legacy([(1, 1, 1)] * 4, *FACE), 0, "could not be lit"),
+    "tiny.vtk": Case(legacy([[x * 1e-300 for x in p] for p in SQUARE], *FACE), 2, "a size from"),
+    "huge.vtk": Case(legacy([[x * 1e300 for x in p] for p in SQUARE], *FACE), 2, "a size from"),
+    "points.vtk": Case(legacy(SQUARE), 2, "without faces"),
+    "two-corners.vtk": Case(legacy(SQUARE, "POLYGONS 1 3", "2 0 1"), 0, "could not be lit"),
+    "same-corner.vtk": Case(legacy(SQUARE, "POLYGONS 1 4", "3 0 0 0"), 0, "could not be lit"),
+    # XML that is none
+    "not-closed.vtu": Case(b'<VTKFile type="UnstructuredGrid"><UnstructuredGrid>', 2, NOT_A_MESH),
+    "entities.vtp": Case(
+        b'<!DOCTYPE x [<!ENTITY a "aaaa"><!ENTITY b "&a;&a;">]><VTKFile>&b;</VTKFile>',
+        2, NOT_A_MESH,
+    ),
+    "latin.vtp": Case(b'<VTKFile type="PolyData">\xff\xfe\xe9</VTKFile>', 2, NOT_A_MESH),
+}  # fmt: skip
+
+
+def faults(folder, **how):
+    """Light all files, in a way that ``runner.run`` takes, and return what is wrong, line by line.
+
+    A file is lit, or refused with one line; nothing else is left, and no file is changed.
+    """
+    made = folder / "made"
+    made.mkdir()
+    for name, case in CASES.items():
+        (folder / name).write_bytes(case.content)
+    outs = {name: made / f"{name}.vtk" for name in CASES}
+    commands = [["light", str(folder / name), "-o", str(out)] for name, out in outs.items()]
+    wrong = []
+    for (name, case), run in zip(CASES.items(), runner.run(commands, **how), strict=True):
+        lines = run.err.splitlines()
+        right = (
+            run.code == case.code
+            and case.words in run.err
+            and all(line.startswith("vizlight: ") for line in lines)
+            and (run.code == 0 or len(lines) == 1)
+            and outs[name].is_file() == (run.code == 0)
+            and (folder / name).read_bytes() == case.content
+            and not run.stray
+        )
+        if not right:
+            wrong.append(f"{name}: {run.code} {run.err}{run.stray}")
+    left = {path.name for path in made.iterdir()} - {out.name for out in outs.values()}
+    return wrong + [f"left behind: {name}" for name in sorted(left)]

@@ -1,0 +1,160 @@
+"""Run the command line many times from one process: each run is a fork that has all imported.
+
+``run`` starts this file as a process of its own, which has no threads and forks once for each run;
+there the command line forks its own child, as it does when it is started from a shell.
+"""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import faulthandler
+import gc
+import json
+import os
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parents[2]
+#: Seconds that a run may take, and bytes that it may allocate.
+PATIENCE, MEMORY = 60.0, 4 << 30
+#: What the packages that read files need, loaded once.
+MODULES = (
+    "vizlight.cli.light", "vizlight.cli.script", "vizlight.accessor", "pyvista.plotting", "meshio",
+    "nibabel", "xarray", "netCDF4", "trx.trx_file_memmap", "scipy.spatial",
+)  # fmt: skip
+
+
+class Run(NamedTuple):
+    """What a run left behind: exit code (negative for a signal), streams, time, stray files."""
+
+    code: int
+    out: str
+    err: str
+    seconds: float
+    stray: list[str]
+
+
+def run(commands, *, options=(), environment=None):
+    """Return the result of each command, a list of words after ``vizlight``, in their order.
+
+    ``options`` are Python's, ``environment`` has variables that are added.
+    """
+    server = subprocess.run(
+        [sys.executable, *options, str(Path(__file__))],
+        # Bytes, since a locale may not have all characters.
+        input=json.dumps([[os.fsencode(word).hex() for word in words] for words in commands]),
+        capture_output=True,
+        text=True,
+        check=True,
+        env={
+            **os.environ,
+            "PYTHONPATH": str(ROOT),
+            "OMP_NUM_THREADS": "1",
+            "VTK_SMP_BACKEND_IN_USE": "Sequential",
+            "VIZLIGHT_FAST": "0",
+            "VIZLIGHT_READ_SECONDS": "5",
+            **(environment or {}),
+        },
+    )
+    return [Run(*json.loads(line)) for line in server.stdout.splitlines()]
+
+
+def _one(words):
+    """Run one command in a fork with a folder of its own for temporary files."""
+    # Not a TemporaryDirectory, which a fork that ends would remove.
+    own = tempfile.mkdtemp()
+    try:
+        temporary = Path(own, "tmp")
+        temporary.mkdir()
+        start = time.monotonic()
+        pid = os.fork()
+        if not pid:
+            _child(words, own, temporary)
+        code = _wait(pid, start + PATIENCE)
+        seconds = time.monotonic() - start
+        out, err = (Path(own, name).read_text(errors="replace") for name in ("out", "err"))
+        return Run(code, out, err, seconds, [path.name for path in temporary.iterdir()])
+    finally:
+        shutil.rmtree(own)
+
+
+def _child(words, own, temporary):
+    os.setsid()
+    for number, name in ((1, "out"), (2, "err")):
+        os.dup2(os.open(Path(own, name), os.O_CREAT | os.O_WRONLY), number)
+    faulthandler.register(signal.SIGUSR1)
+    atexit._clear()  # what the server has to remove at its end
+    code = 70
+    try:
+        from vizlight import _supervise, cli
+
+        tempfile.tempdir = os.environ["TMPDIR"] = str(temporary)
+        resource.setrlimit(resource.RLIMIT_DATA, (MEMORY, MEMORY))
+        code = _supervise.run(lambda: cli.main(words))
+        atexit._run_exitfuncs()
+        sys.stdout.flush()
+        sys.stderr.flush()
+    except BaseException:  # noqa: BLE001 - the fork must not return
+        import traceback
+
+        traceback.print_exc()
+    finally:
+        os._exit(code)
+
+
+def _wait(pid, end):
+    """Return the exit code of a child, negative for a signal; one that is late is killed."""
+    while True:
+        done, status = os.waitpid(pid, os.WNOHANG)
+        if done:
+            return os.waitstatus_to_exitcode(status)
+        if time.monotonic() > end:
+            os.killpg(pid, signal.SIGUSR1)  # each process says where it is
+            time.sleep(0.5)
+            os.killpg(pid, signal.SIGKILL)
+            os.waitpid(pid, 0)
+            return -signal.SIGKILL
+        time.sleep(0.002)
+
+
+def warm_up():
+    """Light a mesh, so that what is made at the first call is there before the forks."""
+    import pyvista as pv
+
+    from vizlight import cli
+
+    with tempfile.TemporaryDirectory() as folder:
+        pv.Sphere(theta_resolution=8, phi_resolution=8).save(f"{folder}/a.vtp")
+        with contextlib.redirect_stdout(None):
+            cli.main(["light", f"{folder}/a.vtp", "-o", f"{folder}/b.vtp"])
+    if len(list(Path("/proc/self/task").iterdir())) > 1:
+        raise RuntimeError("threads run, which a fork does not have")
+
+
+def main():
+    """Run the commands on standard input and print the results, one line each."""
+    import importlib
+    import importlib.util
+
+    # Written once here, not by every fork.
+    commands = [[os.fsdecode(bytes.fromhex(x)) for x in words] for words in json.load(sys.stdin)]
+    for name in MODULES:
+        if importlib.util.find_spec(name.partition(".")[0]):
+            importlib.import_module(name)
+    warm_up()
+    gc.freeze()  # else a collection in each fork copies all that was imported
+    for words in commands:
+        sys.stdout.write(f"{json.dumps(_one(words))}\n")
+        sys.stdout.flush()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,113 @@
+"""Kill the command line while it writes: ``python tests/kill_writers.py 89 --seed 1``.
+
+A run replaces an existing file. It is killed at a random time, by a signal to the process that was
+started. Afterwards the file is the old one or the new one, whole, and nothing else is left: not
+after SIGTERM, SIGINT and SIGHUP; SIGKILL may leave one hidden folder, which no other run takes for
+a result.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+import pyvista as pv
+from hostile.runner import ROOT
+
+SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGKILL)
+SUFFIXES = ("vtp", "vtk", "vtu")
+#: Points along one side of the surface, so that writing takes long enough to be hit.
+SIDE = 300
+
+
+def command(path, out):
+    """Return the command that lights a file."""
+    return [sys.executable, "-m", "vizlight", "light", str(path), "-o", str(out)]
+
+
+def light(path, out, *, wait=None, by=None, random=None):
+    """Run the command line; kill it as soon as it writes, after a share of the given time."""
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "VIZLIGHT_FAST": "0"}
+    started = subprocess.Popen(
+        command(path, out), stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment
+    )
+    if by is not None:
+        while started.poll() is None and not drafts(out.parent):
+            time.sleep(0.001)
+        time.sleep(wait * random.random())
+        started.send_signal(by)
+    _, error = started.communicate(timeout=120)
+    return started.returncode, error.decode()
+
+
+def drafts(folder):
+    """Return the folders in which files are written."""
+    return [path for path in folder.iterdir() if path.name.startswith(".vizlight-")]
+
+
+def fault(code, error, by, out, old, new):
+    """Return what is wrong after a kill, an empty text if nothing is."""
+    content = out.read_bytes()
+    if content not in (old, new):
+        return f"{len(content)} bytes, neither the old file nor the new one"
+    if by == signal.SIGKILL:
+        return "" if code in (0, -by) else f"exit code {code}"
+    if drafts(out.parent):
+        return f"left behind: {[path.name for path in drafts(out.parent)]}"
+    if code not in (0, 2) or len(error.splitlines()) != bool(code):
+        return f"exit code {code}: {error}"
+    return ""
+
+
+def run(total, seed, folder, *, suffixes=SUFFIXES, say=lambda text: None):
+    """Kill runs of the command line; return the number of those that failed, hit and missed."""
+    mesh = pv.Plane(i_resolution=SIDE, j_resolution=SIDE)
+    mesh.save(folder / "plane.vtp")
+    counts: Counter[str] = Counter()
+    news, waits = {}, {}
+    for suffix in suffixes:
+        out = folder / f"new.{suffix}"
+        start = time.monotonic()
+        code, error = light(folder / "plane.vtp", out)
+        if code:
+            raise SystemExit(error)
+        news[suffix], waits[suffix] = out.read_bytes(), 0.2 * (time.monotonic() - start)
+    for i in range(total):
+        random = np.random.default_rng([seed, i])
+        by, suffix = SIGNALS[i % len(SIGNALS)], suffixes[i % len(suffixes)]
+        place = folder / f"{i}"
+        place.mkdir()
+        out = place / f"a.{suffix}"
+        out.write_bytes(b"old")
+        code, error = light(folder / "plane.vtp", out, wait=waits[suffix], by=by, random=random)
+        wrong = fault(code, error, by, out, b"old", news[suffix])
+        counts["failed" if wrong else "too late" if code == 0 else "killed"] += 1
+        if wrong:
+            say(f"{i} {by.name} {suffix}: {wrong}")
+    return counts
+
+
+def main():
+    """Run as many kills as the command line says; the exit code is 1 if one failed."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("count", type=int, nargs="?", default=89)
+    parser.add_argument("--seed", type=int, default=1)
+    given = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        counts = run(
+            given.count, given.seed, Path(folder), say=lambda text: sys.stdout.write(f"{text}\n")
+        )
+    sys.stdout.write(", ".join(f"{n} {what}" for what, n in counts.items()) + "\n")
+    return int(bool(counts["failed"]))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
