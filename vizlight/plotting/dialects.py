@@ -131,3 +131,17 @@ VTK = Dialect(
     geometry=True,
     declares=False,
 )
+
+#: vtk.js. Tangents and normals are arrays of these names without "MC"; actors are not moved, so
+#: both turn by the same matrix. (``mat3(MCVCMatrix)`` has the scale of vtk.js's buffers in it.)
+VTK_JS = Dialect(
+    attribute="attribute",
+    output="varying",
+    input="varying",
+    normal="vizNormalMC",
+    tangent="vizTangentMC",
+    clip="MCPCMatrix",
+    turned="normalMatrix",
+    geometry=False,
+    declares=True,
+)

@@ -108,7 +108,8 @@ class Fragments:
     def __init__(self) -> None:
         self._key: object = None
         self._plan: Plan | None = None
-        self._tallest = 0.0
+        #: Height of the fur whose normal has the length 2.
+        self.tallest = 0.0
 
     def attach(self, live: Live) -> None:
         """Give the drawn mesh its tangents and normals, of unit length in float32."""
@@ -123,8 +124,8 @@ class Fragments:
         elif inputs.fur_height is not None:
             # The length of a normal, which light does not need, carries the height of the fur.
             height = np.asarray(inputs.fur_height[:], dtype=np.float64)
-            self._tallest = float(np.max(height, initial=0.0)) or 1.0
-            normals = normals * (1 + height[:, np.newaxis] / self._tallest)
+            self.tallest = float(np.max(height, initial=0.0)) or 1.0
+            normals = normals * (1 + height[:, np.newaxis] / self.tallest)
         elif live.source.sided is not None:
             normals = normals * _lean_lengths(live.source, len(normals))[:, np.newaxis]
         if normals is not None:
@@ -164,7 +165,7 @@ class Fragments:
         plan = exact_plan(scene, live.source) if renew or self._plan is None else self._plan
         # VTK has a specular colour only where it has lights of its own.
         shown = program.Shown(prop.GetAmbient(), prop.GetDiffuse(), prop.GetSpecularColor())
-        given = program.numbers(scene, lights, shown=shown, fur=plan.fur, tallest=self._tallest)
+        given = program.numbers(scene, lights, shown=shown, fur=plan.fur, tallest=self.tallest)
         if renew:
             written = program.write(plan, turned=live.source.sided is not None)
             _replace(actor, dialects.VTK.replacements(written, given))
