@@ -34,8 +34,7 @@ plotter = render.make_plotter(
 plotter.show()
 
 # %%
-# The lit bundle as an interactive scene. The light is stored with the fibres as data, so it does
-# not change with the view.
+# The lit bundle as an interactive scene, in which the light follows the eye.
 
-plotter = render.make_plotter(lit, camera=camera, size=(1000, 700), line_width=1, light="points")
+plotter = render.make_plotter(lit, camera=camera, size=(1000, 700), line_width=1)
 plotter.show()

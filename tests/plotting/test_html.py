@@ -30,7 +30,7 @@ MISSING = [name for name in ("playwright",) if importlib.util.find_spec(name) is
 MISSING += [] if CHROMIUM else ["chromium"]
 needs_browser = pytest.mark.skipif(bool(MISSING), reason=f"needs {', '.join(MISSING)}")
 #: sha256 of the viewer; CONTRIBUTING says how it is made again.
-VIEWER = "7bb55284a4d2b256bf0d8fbc2c4cee4904e2479804d7a5c63b48e5377e7d347b"
+VIEWER = "4c3896d6055f700bea11d99c7b2abfe2f7afa5d1465ebdc1d797f96991387cda"
 SIZE = {"width": 360, "height": 300}
 FAR = Light(direction=(1, 0.9, 0.5), intensity=0.8)
 NEAR = Light(position=(3, 4, 5), intensity=0.5, attenuation=(0.5, 0.1, 0.01), color=(1, 0.8, 0.5))

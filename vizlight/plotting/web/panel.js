@@ -137,6 +137,10 @@ export function buildPanel(app) {
     made.addEventListener('click', act);
     return made;
   };
+  const resetLight = () => {
+    app.resetLight();
+    show();
+  };
   const panel = document.getElementById('panel');
   panel.append(
     ...meshControls(app),
@@ -145,10 +149,7 @@ export function buildPanel(app) {
     element(
       'p',
       {},
-      button('Reset light', () => {
-        app.resetLight();
-        show();
-      }),
+      ...(shown.length ? [button('Reset light', resetLight)] : []),
       button('Reset view', app.resetView),
       button('Save picture', () => save(app)),
     ),
