@@ -142,6 +142,7 @@ export function buildPanel(app) {
     show();
   };
   const panel = document.getElementById('panel');
+  if (window.innerWidth < 600) panel.parentElement.open = false;
   panel.append(
     ...meshControls(app),
     ...lightControls(app, shown),

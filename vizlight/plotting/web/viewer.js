@@ -170,7 +170,7 @@ function notice(text) {
   line.setAttribute('role', 'alert');
   line.className = 'notice';
   line.textContent = text;
-  document.body.append(line);
+  document.getElementById('bottom').append(line);
 }
 
 // Arrow keys turn the camera, plus and minus move it; a canvas alone is closed to the keyboard.
@@ -203,6 +203,7 @@ function start() {
   const page = JSON.parse(document.getElementById('scene').textContent);
   const view = document.getElementById('view');
   if (!document.createElement('canvas').getContext('webgl2')) {
+    document.querySelector('details').remove();
     notice('This page needs WebGL 2 to draw, which this browser does not have or has switched off.');
     return;
   }
@@ -240,6 +241,8 @@ function start() {
   function resize() {
     const { width, height } = view.getBoundingClientRect();
     const ratio = window.devicePixelRatio || 1;
+    // In an upright window the angle of view is that from side to side.
+    camera.setUseHorizontalViewAngle(height > width);
     canvas.setSize(Math.max(1, Math.floor(width * ratio)), Math.max(1, Math.floor(height * ratio)));
     app.render();
   }
