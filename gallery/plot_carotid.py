@@ -33,18 +33,24 @@ camera = render.camera_on(flow.bounds, seen, zoom=1.36)
 scene = Scene(
     lights=Light(direction=(-0.6, -1, 0.8)),
     view=View.from_camera(camera),
-    material=Material(ambient=0.15, diffuse=0.75, specular=0.35, shininess=30),
+    material=Material(ambient=0.25, diffuse=1.1, specular=0.35, shininess=30),
 )
-lines = vizlight.streamlines(flow, scene, vectors=name, seeds=seeds, model="cylinder")
+lines = vizlight.streamlines(flow, scene, vectors=name, seeds=seeds)
 
-# Colour shows speed and light shows direction: their product shows both.
-speed = np.linalg.norm(lines[name], axis=1)
-top = float(np.percentile(speed, 99))
-colour = mpl.colormaps["viridis"](np.clip(0.25 + 0.75 * speed / top, 0, 1))[:, :3]
-luminance = np.asarray(lines["luminance"])[:, np.newaxis]
-lines["rgb"] = np.clip(colour * 1.6 * luminance, 0, 1)
-
-plotter = render.make_plotter(
-    render.Panel(lines, "rgb"), camera=camera, size=(1000, 800), line_width=1, background="black"
+# Colour shows speed and light shows direction: their product shows both. In the interactive scene
+# the light follows the eye.
+lines["speed"] = np.linalg.norm(lines[name], axis=1)
+plotter = pv.Plotter(off_screen=True, window_size=(1000, 800))
+plotter.background_color = "black"
+plotter.vizlight.add_mesh(
+    lines,
+    scene=scene,
+    tangents="Tangents",
+    scalars="speed",
+    cmap=mpl.colors.ListedColormap(mpl.colormaps["viridis"](np.linspace(0.25, 1, 256))),
+    clim=(0, float(np.percentile(lines["speed"], 99))),
+    line_width=1,
+    show_scalar_bar=False,
 )
+plotter.camera = camera
 plotter.show()

@@ -11,6 +11,7 @@ intersect itself.
 
 # sphinx_gallery_thumbnail_number = 2
 import numpy as np
+import pyvista as pv
 
 import vizlight
 from vizlight import Light, Material, Scene, View, render
@@ -41,9 +42,10 @@ plotter = render.make_plotter(panels, camera=camera, size=(2000, 560), backgroun
 plotter.show()
 
 # %%
-# One of them as an interactive scene in 3-space.
+# One of them as an interactive scene in 3-space. The eye that sees the light stays in 4-space.
 
-plotter = render.make_plotter(
-    panels[2], camera=camera, size=(1000, 700), background="#203048", light="points"
-)
+plotter = pv.Plotter(off_screen=True, window_size=(1000, 700))
+plotter.background_color = "#203048"
+plotter.vizlight.add_mesh(panels[2].mesh)
+plotter.camera = camera
 plotter.show()

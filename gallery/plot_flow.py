@@ -31,6 +31,6 @@ bright = lit.threshold(0.6, scalars="luminance")
 print(f"{bright.n_points} of {lit.n_points} points are brighter than 0.6;")
 print(f"their mean temperature is {bright['Temp'].mean():.0f}")
 
-# The scene of this page is drawn by the browser, from the light at the points.
-plotter = render.make_plotter(lit, camera=camera, size=(1000, 700), light="points")
+# In the interactive scene the light follows the eye.
+plotter = render.make_plotter(lit, camera=camera, size=(1000, 700))
 plotter.show()

@@ -75,7 +75,8 @@ def test_the_wheel_carries_the_data_and_the_marker(tmp_path):
     wheel = zipfile.ZipFile(tmp_path / run.stdout.split()[-1])
     names = wheel.namelist()
     data = ("datasets/rotating_disk.vtu", "datasets/LICENSE-mayavi.txt")
-    for name in (*data, "py.typed", "render.pyi", "cli/__init__.py"):
+    viewer = ("plotting/web/viewer.min.js", "plotting/web/page.html")
+    for name in (*data, *viewer, "py.typed", "render.pyi", "cli/__init__.py"):
         assert f"vizlight/{name}" in names
     info = f"vizlight-{vizlight.__version__}.dist-info"
     for name in ("LICENSE", "datasets/LICENSE-dipy.txt", "datasets/LICENSE-mayavi.txt"):

@@ -40,6 +40,8 @@ if TYPE_CHECKING:
     from vizlight.geometry.solids.primitives import Block, Frustum, Sphere, Torus, Truncus
     from vizlight.mesh.polylines import direction_colors
     from vizlight.mesh.records import provenance
+    from vizlight.plotting.gltf import save_gltf
+    from vizlight.plotting.html import live_html
     from vizlight.scene import DepthCue, Light, Material, Scene, View
     from vizlight.shading.options import Bundle
     from vizlight.verify.report import report
@@ -65,6 +67,7 @@ _HOMES = {
     "fur": "vizlight.filters",
     "illuminate": "vizlight.filters",
     "isoluminance": "vizlight.filters",
+    "live_html": "vizlight.plotting.html",
     "load_example": "vizlight.data",
     "manifold": "vizlight.filters",
     "pathlines": "vizlight.filters",
@@ -77,6 +80,7 @@ _HOMES = {
     "relief_shadow": "vizlight.filters",
     "report": "vizlight.verify.report",
     "satin": "vizlight.filters",
+    "save_gltf": "vizlight.plotting.gltf",
     "streamlines": "vizlight.filters",
     "tint": "vizlight.filters",
     "unlit_colors": "vizlight.filters",
@@ -110,6 +114,7 @@ __all__ = [
     "fur",
     "illuminate",
     "isoluminance",
+    "live_html",
     "load_example",
     "manifold",
     "pathlines",
@@ -121,6 +126,7 @@ __all__ = [
     "relief_shadow",
     "report",
     "satin",
+    "save_gltf",
     "streamlines",
     "tint",
     "to_polydata",

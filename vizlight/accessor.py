@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
 import pyvista as pv
 
 from vizlight import filters
-from vizlight.plotting import component
+from vizlight.plotting import component, gltf, html
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -43,7 +43,8 @@ class Accessor:
         self._mesh: Any = mesh
 
     def __repr__(self) -> str:
-        known = ", ".join(name for name in (*filters.__all__, "plot") if hasattr(self, name))
+        names = (*filters.__all__, "plot", "live_html", "save_gltf")
+        known = ", ".join(name for name in names if hasattr(self, name))
         return f"vizlight of {type(self._mesh).__name__}: {known}"
 
     bas_relief = _method(filters.bas_relief)
@@ -51,12 +52,14 @@ class Accessor:
     illuminate = _method(filters.illuminate)
     isoluminance = _method(filters.isoluminance)
     plot = _method(component.plot)
+    live_html = _method(html.live_html)
     project = _method(filters.project)
     provenance = _method(filters.provenance)
     refine = _method(filters.refine)
     relief_day = _method(filters.relief_day)
     relief_from_mesh = _method(filters.relief_from_mesh)
     relief_shadow = _method(filters.relief_shadow)
+    save_gltf = _method(gltf.save_gltf)
     satin = _method(filters.satin)
     streamlines = _method(filters.streamlines)
     tint = _method(filters.tint)

@@ -1,19 +1,19 @@
 """The output of the scripts: pictures, their thumbnails, and interactive scenes.
 
-PyVista's own viewer fetches its scene, which browsers do not allow for files on disk. Each scene is
-therefore written together with the viewer into a page of its own.
+PyVista's own scenes have the light of one eye, and its viewer fetches them, which browsers do not
+allow for files on disk. Each scene is therefore a page of its own with light that follows the eye.
 """
 
 from __future__ import annotations
 
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import matplotlib.pyplot as plt
 import pyvista as pv
 from PIL import Image, ImageOps
 from pyvista.plotting.utilities.sphinx_gallery import generate_images
 from sphinx_gallery.scrapers import figure_rst, matplotlib_scraper
-from trame_vtk.tools.vtksz2html import embed_data_to_viewer_file
 
 #: Scripts with an interactive scene: one view of one mesh, of a few megabytes.
 INTERACTIVE = ("plot_flow", "plot_carotid", "plot_complex_curve")
@@ -75,17 +75,26 @@ class Order:
         return (ORDER.index(stem) if stem in ORDER else len(ORDER), stem)
 
 
-_export = pv.Plotter._trame_component
+class _Export:
+    """What PyVista exports scenes by: a page, if one view of a plotter has live light."""
+
+    def __init__(self, plotter, wanted):
+        self.plotter, self.wanted = plotter, wanted
+
+    def export_vtksz(self, filename=None):  # noqa: ARG002 (as PyVista calls it)
+        """Return the page; PyVista takes an ImportError for a scene that cannot be exported."""
+        own = self.plotter.vizlight
+        if not self.wanted or len(self.plotter.renderers) != 1 or not own.has_live_light:
+            raise ImportError("this plotter has no interactive scene")
+        with TemporaryDirectory() as folder:
+            return own.export_html(Path(folder) / "scene.html", panel=False).read_bytes()
 
 
 def reset(_conf, script):
-    """Disable the export of scenes for scripts that show none: it takes time."""
-
-    def none(_plotter):
-        raise ImportError("this script has no interactive scene")
-
+    """Write pages for the scripts that have interactive scenes."""
     pv.close_all()
-    pv.Plotter._trame_component = _export if Path(script).stem in INTERACTIVE else none
+    wanted = Path(script).stem in INTERACTIVE
+    pv.Plotter._trame_component = lambda plotter: _Export(plotter, wanted)
 
 
 def scrape(block, block_vars, gallery_conf):
@@ -105,8 +114,7 @@ def _tabs(name, source):
         return picture
     scenes = source / "_static" / "scenes"
     scenes.mkdir(parents=True, exist_ok=True)
-    embed_data_to_viewer_file(name.read_bytes(), scenes / f"{name.stem}.html")
-    name.unlink()
+    name.replace(scenes / f"{name.stem}.html")
     address = f"../_static/scenes/{name.stem}.html"
     indented = "\n".join(f"      {line}" for line in picture.splitlines())
     return f"""

@@ -82,6 +82,22 @@ def test_outputs_by_ending(suffix, volume, tmp_path, capfd):
     assert not list(tmp_path.glob("*.png"))
 
 
+def test_gltf_has_the_colours_of_the_picture(volume, tmp_path, capfd):
+    grid = pv.read(volume)
+    grid["height"] = grid.points[:, 2]
+    grid.save(volume)
+    options = ("--contour", "r", "--light", "1,2,3")
+    for name, extra in (("a.glb", ()), ("B.GLB", ("--scalars", "height"))):
+        code, out, err = run(capfd, "light", volume, *options, *extra, "-o", name)
+        assert (code, err) == (0, "")
+        assert f"mesh     {name}" in out
+    plain, colored = ((tmp_path / name).read_bytes() for name in ("a.glb", "B.GLB"))
+    assert plain[:4] == b"glTF"
+    assert b"KHR_materials_unlit" in plain
+    assert len(plain) == len(colored)
+    assert plain != colored
+
+
 def test_all_points_of_a_volume(volume, capfd):
     code, _, err = run(capfd, "light", volume, "--no-surface", "--tangents", "V", "-o", "x.vti")
     assert (code, err) == (0, "")

@@ -171,7 +171,8 @@ class Output:
     Parameters
     ----------
     output
-        Picture .png, mesh .vtp, .vtu, .vtk, .vts, .vti or .vtr, or a folder.
+        Picture .png, mesh .vtp, .vtu, .vtk, .vts, .vti or .vtr, colours of ambient and diffuse
+        light .glb, or a folder.
     size
         Width and height of the picture in pixels.
     background

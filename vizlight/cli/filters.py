@@ -61,7 +61,7 @@ def streamlines(
         camera = look.camera(on.get("surface", mesh) if asked.confined else mesh)
         lit = _step("lit", "streamlines", mesh, look.scene(camera), given | on, common.out)
         made = Job(lit, asked.name, look, camera)
-        made.tint(scenes.tinted(lit, asked.name, mesh, color))
+        made.tint(scenes.tinted(lit, asked.name, mesh, color), color)
         return made
 
     return carry_out(files, job, common.out, "streamlines")

@@ -20,8 +20,12 @@ if TYPE_CHECKING:
 
     import pyvista as pv
 
-    from vizlight.cli.arguments import Output
+    from vizlight.cli.arguments import Color, Output
     from vizlight.cli.scenes import Look
+
+
+#: File name extension of glTF, which holds what of the light does not depend on the eye.
+GLTF = ".glb"
 
 
 @dataclass
@@ -48,6 +52,8 @@ class Job:
         Names of the blocks that are written to files of their own.
     suffix
         Format of the mesh where none is given, none to write only a picture.
+    color
+        Array and colour map of that mesh.
     hint
         Message about what else may have been meant.
     explain
@@ -64,15 +70,16 @@ class Job:
     kind: str = "PolyData"
     parts: Sequence[str] = ()
     suffix: str = ".vtp"
+    color: Color | None = None
     hint: Callable[[], str] = lambda: ""
     explain: Callable[[pv.DataSet], None] | None = None
     meshes: list[tuple[Step, Path]] = field(default_factory=list)
     pictures: list[Path] = field(default_factory=list)
 
-    def tint(self, shown: Step | None) -> None:
+    def tint(self, shown: Step | None, color: Color) -> None:
         """Show another mesh by its colours, if there is one."""
         if shown is not None:
-            self.shown, self.scalars = shown, TINT
+            self.shown, self.scalars, self.color = shown, TINT, color
 
     def of_parts(self, path: Path) -> list[tuple[Step, Path]]:
         """Return what is written for the path of a mesh: the mesh, or each part beside it."""
@@ -127,7 +134,7 @@ def _check_output(out: Output, *, several: bool) -> None:
         if several:
             expected = "a folder that exists, for several files"
             raise files.FileError(_check.message("output", expected, f"'{path}'"))
-        files.check_output(path, (".png", *files.SUFFIXES))
+        files.check_output(path, (".png", GLTF, *files.SUFFIXES))
 
 
 def _set_outputs(job: Job, file: Path, out: Output, stem: str) -> None:
@@ -149,13 +156,13 @@ def _check_paths(job: Job, inputs: Sequence[Path]) -> None:
     from vizlight import files
 
     for path in (*job.pictures, *(path for _, path in job.meshes)):
-        files.check_output(path, (".png", *files.SUFFIXES))
+        files.check_output(path, (".png", GLTF, *files.SUFFIXES))
         if any(path.exists() and file.exists() and path.samefile(file) for file in inputs):
             expected = "another file than the input"
             raise files.FileError(_check.message("output", expected, f"'{path}'"))
     formats = files.FORMATS.get(job.kind, files.SUFFIXES) if job.before is None else files.SUFFIXES
     for _, path in job.meshes:
-        if path.suffix.lower() not in formats:
+        if path.suffix.lower() not in (GLTF, *formats):
             expected = f"a name that ends in {', '.join(formats)} for {job.kind}"
             raise files.FileError(_check.message("output", expected, f"'{path.name}'"))
 
@@ -181,9 +188,18 @@ def _picture(job: Job, path: Path, out: Output) -> Step:
     )
 
 
+def _written(job: Job, mesh: Step, path: Path) -> Step:
+    """Return the step that writes a mesh."""
+    if path.suffix.lower() != GLTF:
+        return Step("", "files.write_mesh", mesh, path)
+    color = job.color
+    chosen = {} if color is None else {"scalars": color.scalars, "cmap": color.cmap}
+    return Step("", "vizlight.save_gltf", mesh, None, path, **chosen)
+
+
 def _last_steps(job: Job, out: Output) -> list[Step]:
     """Return the steps that leave something behind."""
-    written = [Step("", "files.write_mesh", mesh, path) for mesh, path in job.meshes]
+    written = [_written(job, mesh, path) for mesh, path in job.meshes]
     return [job.lit, *written, *(_picture(job, path, out) for path in job.pictures)]
 
 
@@ -193,16 +209,18 @@ def _run(job: Job, out: Output) -> int:
     if job.before is not None:
         mesh = job.before.run()
         for _, path in job.meshes:
-            files.check_format(mesh, path)
+            if path.suffix.lower() != GLTF:
+                files.check_format(mesh, path)
     lit = _light(job, out)
     for step, path in job.meshes:
-        files.check_format(step.run(), path)
+        if path.suffix.lower() != GLTF:
+            files.check_format(step.run(), path)
     if job.pictures:
         _count_white(lit, job.name)
     if job.explain is not None:
         job.explain(lit)
     for step, path in job.meshes:
-        say(f"mesh     {files.write_mesh(step.run(), path)}")
+        say(f"mesh     {_written(job, step, path).run()}")
     return max((draw(_picture(job, path, out).run) for path in job.pictures), default=OK)
 
 

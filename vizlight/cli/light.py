@@ -78,7 +78,7 @@ def light(
         lit = Step("lit", "vizlight.illuminate", mesh, look.scene(camera), **given, **progress)
         made = Job(lit, asked.name, look, camera, suffix=".vtp" if taken or asked.refine else "")
         made.before = None if asked.refine else mesh
-        made.tint(scenes.tinted(lit, asked.name, data, color))
+        made.tint(scenes.tinted(lit, asked.name, data, color), color)
         if not (target.contour or target.warp or target.slice):
             made.hint = lambda: _hint(data.run(), surface=target.surface)
         if explain:

@@ -26,6 +26,7 @@ from vizlight.pictures.backends import (
 from vizlight.pictures.cameras import Mesh, camera_on, common_bounds, over_shoulder
 from vizlight.plotting import strokes
 from vizlight.plotting.component import add_recorded
+from vizlight.plotting.program import Stroke
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -398,7 +399,7 @@ def _draw(
             show_scalar_bar=False,
         )
         if diameter is not None:
-            strokes.widen(actor, strokes.Stroke(diameter))
+            strokes.widen(actor, Stroke(diameter))
         if (records.read(mesh, panel.scalars) or {}).get("filter") == "tint":
             # The colours are drawn as they are; a scalar bar shows those before they were lit.
             actor.mapper.lookup_table = unlit_colors(mesh, panel.scalars)

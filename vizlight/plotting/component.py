@@ -4,22 +4,24 @@ from __future__ import annotations
 
 import dataclasses
 import weakref
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Any, get_args
 
-import numpy as np
 import pyvista as pv
 
 from vizlight import _check
 from vizlight.files import check_output
 from vizlight.filters import lighting, relight
-from vizlight.filters.tint import RGB, unlit_colors
+from vizlight.filters.tint import RGB
 from vizlight.mesh import blocks, records
 from vizlight.mesh.polylines import has_lines_only
 from vizlight.plotting.fragments import Fragments, unfit
-from vizlight.plotting.live import Live, colorless, headlight_scene, items, lifted
+from vizlight.plotting.html import write_page
+from vizlight.plotting.live import LightAt, Live, colorless, items
 from vizlight.plotting.notebook import guard, guard_exports
+from vizlight.plotting.page import Shown
 from vizlight.plotting.points import Points
-from vizlight.plotting.strokes import Stroke
+from vizlight.plotting.program import Stroke
+from vizlight.plotting.sources import sources_of, tinted
 from vizlight.scene import Scene
 from vizlight.shading.options import LightOptions
 
@@ -32,9 +34,7 @@ if TYPE_CHECKING:
     from vizlight._types import ColorLike
     from vizlight.filters.relight import Source
 
-__all__ = ["Component", "LightAt", "add_recorded", "plot"]
-
-LightAt = Literal["auto", "points", "fragments"]
+__all__ = ["Component", "add_recorded", "plot"]
 
 #: Options of light that a live light takes; an actor has a name of its own.
 LIGHT = {field.name for field in dataclasses.fields(LightOptions)} - {"name", "components"}
@@ -136,8 +136,9 @@ class Component:
 
         Notes
         -----
-        Exported scenes cannot hold live light: ``export_html``, ``export_gltf`` and the like raise
-        a ValueError with the remedy while there is any.
+        Scenes that PyVista exports cannot hold live light: ``plotter.export_html``,
+        ``export_gltf`` and the like raise a ValueError with the remedy while there is any.
+        :meth:`export_html` of this component can.
 
         Light at the points is bit-identical to that of the filter for the same camera. Light in
         fragments is within 4 of 255 of it on fine meshes.
@@ -153,7 +154,8 @@ class Component:
         _check_drawing(drawing, scene)
         if line_diameter is not None:
             line_diameter = _check.positive("line_diameter", line_diameter)
-        sources, used = _sources(mesh, scene, own)
+        sources, used = sources_of(mesh, scene, own)
+        names = [path.lstrip("/") for _, path in blocks.named_blocks(mesh)]
         if getattr(plotter, "notebook", False):
             guard()
         several = isinstance(mesh, pv.MultiBlock)
@@ -161,15 +163,76 @@ class Component:
         for number, source in enumerate(sources):
             if not source.mesh.n_points:
                 continue
-            chosen, colors = (scalars, {}) if scalars is not None else _tinted(source.mesh)
+            chosen, colors = (scalars, {}) if scalars is not None else tinted(source.mesh)
             keywords = colors | drawing
             if several and keywords.get("name") is not None:
                 keywords["name"] = f"{keywords['name']}-{number}"
             keywords["line_diameter"] = line_diameter
-            actors.append(self._add(plotter, source, used, light, chosen, keywords, follow=True))
+            name = names[number] or str(keywords.get("name") or "")
+            actor = self._add(plotter, source, used, light, chosen, keywords, follow=True)
+            live = self._live_of(actor)
+            assert live is not None
+            live.name = name
+            actors.append(actor)
         if not several and not actors:
             raise ValueError(_check.message("mesh", "a mesh with points", "none"))
         return actors if several else actors[0]
+
+    def export_html(self, path: str | Path, /, *, title: str = "", panel: bool = True) -> Path:
+        """Write one HTML file that shows the meshes, whose light follows the eye of the reader.
+
+        The page has the meshes of :meth:`add_mesh` that are visible, and the camera, the
+        background and the scalar bars of the plotter; see :func:`vizlight.live_html`.
+
+        Parameters
+        ----------
+        path : path
+            Path of the file, which ends in .html or .htm. An existing file is replaced.
+        title : str, default: ""
+            Title of the page.
+        panel : bool, default: True
+            Whether the panel of the sliders is open at first.
+
+        Returns
+        -------
+        pathlib.Path
+            Path of the file.
+
+        Raises
+        ------
+        FileError
+            If the file cannot be written.
+        RuntimeError
+            If the plotter is closed.
+        ValueError
+            If no mesh has live light.
+
+        Warns
+        -----
+        UserWarning
+            If the light of a mesh does not follow the eye, or what is drawn beside the meshes is
+            left out.
+        """
+        plotter = self._open_plotter()
+        shown: list[Shown] = []
+        others = 0
+        for actor in items(plotter.renderer.GetActors()):
+            live = self._live_of(actor)
+            if not actor.GetVisibility():
+                continue
+            if live is None or live.painter is None:
+                others += 1
+            else:
+                shown.append(Shown(live.name or f"mesh {len(shown) + 1}", live, actor))
+        if not shown:
+            remedy = "add a mesh by plotter.vizlight.add_mesh"
+            raise ValueError(_check.message("plotter", "a mesh with live light", "none", remedy))
+        if not plotter.camera_set:
+            plotter.renderer.view_isometric(render=False)
+        written = write_page(path, shown, plotter, title=title, panel=panel)
+        if others:
+            _check.warn(f"{others} actors without light of vizlight are not in the page")
+        return written
 
     def explain(self, actor: vtkActor, /) -> str:
         """Return where the light of an actor is computed and why, and what of it.
@@ -326,38 +389,6 @@ class _Holder:
 
 def _address(thing: vtkObject) -> str:
     return str(thing.GetAddressAsString(""))
-
-
-def _sources(
-    mesh: pv.DataSet | pv.MultiBlock, scene: Scene | None, options: dict[str, Any]
-) -> tuple[list[Source], Scene | None]:
-    """Return what is lit: by the record of the mesh, or by options."""
-    if not options and relight.is_lit(mesh):
-        return relight.from_record(mesh, scene)
-    asked = LightOptions(**options)
-    spaces = {
-        np.shape(block.point_data[asked.positions])[-1]
-        for block in blocks.all_blocks(mesh)
-        if asked.positions is not None and asked.positions in block.point_data
-    }
-    n = max(spaces, default=3)
-    provisional = headlight_scene(n) if scene is None else lifted(scene, n)
-    if provisional.view is None and provisional.n in (None, n):
-        # Which side of an open surface is lit is then the camera's to say.
-        provisional = provisional.replace(view=headlight_scene(n).view)
-    return relight.from_options(mesh, provisional, asked), scene
-
-
-def _tinted(mesh: pv.DataSet) -> tuple[str | None, dict[str, Any]]:
-    """Return the array and the colours of a mesh that tint returned."""
-    record = records.read(mesh, RGB) or {}
-    if record.get("filter") != "tint":
-        return None, {}
-    options = record["options"]
-    name = options["scalars"]
-    if name not in mesh.point_data:
-        return None, {}
-    return name, {"cmap": unlit_colors(mesh), "component": options["component"]}
 
 
 def _check_drawing(drawing: dict[str, Any], scene: Scene | None) -> None:

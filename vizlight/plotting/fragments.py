@@ -8,26 +8,26 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 
-from vizlight import _check
 from vizlight.filters import lighting
 from vizlight.mesh import hull, polylines
 from vizlight.mesh.point_arrays import unit_rows
-from vizlight.plotting import glsl, strokes
+from vizlight.plotting import dialects, glsl, program, strokes
 from vizlight.plotting.live import NORMALS, TANGENTS
-from vizlight.plotting.strokes import Stroke
+from vizlight.plotting.program import Stroke
 from vizlight.scene.light import NO_ATTENUATION, WHITE
 from vizlight.scene.vtk import LARGEST_POWER
 from vizlight.shading.decide import decide
 from vizlight.shading.inputs import Layout
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
-    from vizlight._types import Array, Indices, Vector
+    from vizlight._types import Array, Indices
     from vizlight.filters.relight import Source
     from vizlight.plotting.live import Live
+    from vizlight.plotting.program import Uniform
     from vizlight.scene import Light, Scene
     from vizlight.shading.inputs import ArraySource, ShadingInputs
     from vizlight.shading.options import ShadingOptions
@@ -35,8 +35,6 @@ if TYPE_CHECKING:
 
 #: Share of the edges along which the tangent may reverse before its sign counts as arbitrary.
 REVERSED = 0.02
-#: Number of lights for which a shader is written.
-MOST_LIGHTS = 16
 
 
 def unfit(
@@ -110,24 +108,6 @@ def _edges(mesh: pv.DataSet) -> tuple[Indices, Indices]:
     return starts, ends
 
 
-class _ViewSpace:
-    """Vectors of the scene in the coordinates of a camera."""
-
-    def __init__(self, renderer: vtkRenderer) -> None:
-        matrix = renderer.GetActiveCamera().GetViewTransformMatrix()
-        self._matrix = pv.array_from_vtkmatrix(matrix)
-
-    def direction(self, vector: Vector) -> list[float]:
-        """Return a unit direction."""
-        turned = self._matrix[:3, :3] @ np.asarray(vector, dtype=np.float64)
-        return [float(x) for x in turned / np.linalg.norm(turned)]
-
-    def position(self, vector: Vector) -> list[float]:
-        """Return a position."""
-        moved = self._matrix[:3, :3] @ np.asarray(vector, dtype=np.float64) + self._matrix[:3, 3]
-        return [float(x) for x in moved]
-
-
 class Fragments:
     """Light computed in each fragment, from tangents and normals that VTK interpolates.
 
@@ -141,7 +121,8 @@ class Fragments:
         self._stroke = stroke
         self._key: object = None
         self._plan: Plan | None = None
-        self._tallest = 0.0
+        #: Height of the fur whose normal has the length 2.
+        self.tallest = 0.0
 
     def attach(self, live: Live) -> None:
         """Give the drawn mesh its tangents and normals, of unit length in float32."""
@@ -158,8 +139,8 @@ class Fragments:
         elif inputs.fur_height is not None:
             # The length of a normal, which light does not need, carries the height of the fur.
             height = np.asarray(inputs.fur_height[:], dtype=np.float64)
-            self._tallest = float(np.max(height, initial=0.0)) or 1.0
-            normals = normals * (1 + height[:, np.newaxis] / self._tallest)
+            self.tallest = float(np.max(height, initial=0.0)) or 1.0
+            normals = normals * (1 + height[:, np.newaxis] / self.tallest)
         elif live.source.sided is not None:
             normals = normals * _lean_lengths(live.source, len(normals))[:, np.newaxis]
         if normals is not None:
@@ -194,69 +175,29 @@ class Fragments:
         """Write the shader of a scene if it is another one, and set its uniforms."""
         scene = lighting.fit_depth_cue(scene, [live.placed(actor)])
         lights = [light.seen_from(scene.view) for light in scene.lights if light.intensity > 0]
-        if len(lights) > MOST_LIGHTS:
-            got = str(len(lights))
-            raise ValueError(_check.message("lights", f"at most {MOST_LIGHTS} lights", got))
-        key = _structure(scene, lights, live.source)
-        if key != self._key or self._plan is None:
-            self._plan = _plan(scene, live.source, self._stroke)
+        key, prop = _structure(scene, lights, live.source), actor.GetProperty()
+        stroke, renew = self._stroke, key != self._key or self._plan is None
+        plan = self._plan
+        if renew or plan is None:
+            plan = exact_plan(scene, live.source, stroke)
+        # VTK has a specular colour only where it has lights of its own.
+        shown = program.Shown(prop.GetAmbient(), prop.GetDiffuse(), prop.GetSpecularColor())
+        given = program.numbers(scene, lights, shown=shown, fur=plan.fur, tallest=self.tallest)
+        if renew:
             turned = live.source.sided is not None
-            code = glsl.fragment(self._plan, turned=turned)
-            _replace(actor, *code, self._plan, self._stroke, turned=turned)
-            self._key = key
-        self._set_uniforms(self._plan, scene.replace(lights=lights), renderer, actor)
+            written = program.write(plan, turned=turned, stroke=stroke)
+            texts = dialects.VTK.replacements(written, given)
+            if stroke != Stroke():
+                texts = strokes.widened(actor, texts, stroke)
+            strokes.replace(actor, texts)
+            self._key, self._plan = key, plan
+        _set_uniforms(given, renderer, actor)
 
     def explain(self, live: Live, scene: Scene) -> str:
         """Return what is computed in each fragment."""
         fitted = lighting.fit_depth_cue(scene, [live.source.inputs])
         plan = decide(fitted, *_drawn_as(live.source, self._stroke))
         return f"light in each fragment\n{plan.explain()}"
-
-    def _set_uniforms(
-        self, plan: Plan, scene: Scene, renderer: vtkRenderer, actor: vtkActor
-    ) -> None:
-        """Set what the shader does not hold as a constant."""
-        prop, space = actor.GetProperty(), _ViewSpace(renderer)
-        uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
-        for i, light in enumerate(scene.lights):
-            if light.position is not None:
-                uniforms.SetUniform3f(f"vizLight{i}", space.position(light.position))
-                uniforms.SetUniform3f(f"vizFade{i}", list(light.attenuation))
-            elif light.direction is not None:
-                uniforms.SetUniform3f(f"vizLight{i}", space.direction(light.direction))
-            color = [light.intensity * c for c in light.color or WHITE]
-            uniforms.SetUniform3f(f"vizColor{i}", color)
-        view = scene.view
-        eye = [0.0, 0.0, 1.0, 0.0]
-        if view is not None and view.parallel and view.direction is not None:
-            eye = [*space.direction(view.direction), 0.0]
-        elif view is not None and view.position is not None:
-            eye = [*space.position(view.position), 1.0]
-        uniforms.SetUniform4f("vizEye", eye)
-        material = scene.material
-        ambient = scene.ambient_intensity * _ratio(material.ambient, prop.GetAmbient())
-        color = [ambient * c for c in scene.ambient_color or WHITE]
-        uniforms.SetUniform3f("vizAmbientGain", color)
-        diffuse = _ratio(material.diffuse, prop.GetDiffuse())
-        uniforms.SetUniformf("vizDiffuseGain", diffuse)
-        # VTK has a specular colour only where it has lights of its own.
-        shine = [material.specular * c for c in prop.GetSpecularColor()]
-        uniforms.SetUniform3f("vizSpecularGain", shine)
-        if plan.fur:
-            # Fur of density 1 lets through what is less than any float.
-            uniforms.SetUniformf("vizFurRate", float(np.log1p(-min(plan.fur, 1 - 1e-12))))
-            uniforms.SetUniformf("vizTallest", self._tallest)
-        cue = scene.depth_cue
-        if cue is None or view is None or cue.front is None or cue.back is None:
-            return
-        axis = [0.0, 0.0, 0.0, 1.0]
-        if view.direction is not None:
-            axis = [*space.direction(view.direction), 0.0]
-        uniforms.SetUniform4f("vizAxis", axis)
-        uniforms.SetUniform3f("vizFrom", space.position(view.position or (0.0, 0.0, 0.0)))
-        ends = [cue.front, cue.back, cue.front_scale, cue.back_scale]
-        uniforms.SetUniform4f("vizCueEnds", ends)
-        uniforms.SetUniform3f("vizCue", [cue.cue * c for c in cue.color or WHITE])
 
 
 def _drawn_as(source: Source, stroke: Stroke) -> tuple[Layout, ShadingOptions]:
@@ -266,7 +207,7 @@ def _drawn_as(source: Source, stroke: Stroke) -> tuple[Layout, ShadingOptions]:
     return source.inputs.layout, source.options
 
 
-def _plan(scene: Scene, source: Source, stroke: Stroke) -> Plan:
+def exact_plan(scene: Scene, source: Source, stroke: Stroke = Stroke()) -> Plan:  # noqa: B008
     """Return the plan of a source in its exact form."""
     layout, options = _drawn_as(source, stroke)
     options = dataclasses.replace(options, tolerance=0.0, highlight_error=0.0, components=False)
@@ -278,15 +219,10 @@ def _structure(scene: Scene, lights: Sequence[Light], source: Source) -> tuple[o
     material, cue = scene.material, scene.depth_cue
     return (
         [(light.position is None, light.attenuation == NO_ATTENUATION) for light in lights],
-        material.diffuse > 0, material.specular > 0, material.shininess,
+        material.diffuse > 0, material.specular > 0, glsl.is_plain(material.shininess),
         None if cue is None else cue.smooth,
         source.inputs.layout, source.options, source.sided is None,
     )  # fmt: skip
-
-
-def _ratio(wanted: float, shown: float) -> float:
-    """Return what a coefficient of VTK, which is 1 at most, must be multiplied by."""
-    return wanted / shown if shown > 0 else 0.0
 
 
 def _rows(inputs: ShadingInputs, rows: ArraySource | None) -> Array | None:
@@ -310,56 +246,17 @@ def _lean_lengths(source: Source, count: int) -> Array:
     return np.where(turned, 1.5 + 0.5 * np.clip(lean, -1.0, 0.98), 2.0)
 
 
-def _replace(
-    actor: vtkActor, functions: str, body: str, plan: Plan, stroke: Stroke, *, turned: bool = False
-) -> None:
-    """Put the light of a plan in place of VTK's, in every shader of the pipeline."""
-    names = [("vizP", "vec3", "(MCVCMatrix * vertexMC).xyz")]
-    of_cylinder = stroke.round
-    normal = (plan.surface and not of_cylinder) or plan.conditioned or bool(plan.fur)
-    attributes = ""
-    if normal:
-        attributes += "in vec3 normalMC;\n"
-        names.append(("vizN", "vec3", "normalMatrix * normalMC"))
-    elif stroke != Stroke():
-        attributes += "in vec3 normalMC;\n"
-        names.append(strokes.ALONG)
-    if plan.fur or turned:
-        names.append(("vizH", "float", "length(normalMC) - 1.0"))
-    if of_cylinder or not plan.surface:
-        attributes += "in vec3 tangentMC;\n"
-        # Tangents turn with the model, of whose matrix the normal matrix is the inverse transpose.
-        names.append(("vizT", "vec3", "transpose(inverse(normalMatrix)) * tangentMC"))
-    if of_cylinder:
-        names.append(("vizX", "float", "0.0"))
-    shader = actor.GetShaderProperty()
-    shader.ClearAllShaderReplacements()
-    strokes.pass_on(actor, names, attributes, stroke)
-    given = "".join(f"in {kind} {name}VSOutput;\n" for name, kind, _ in names)
-    if of_cylinder:
-        given += "uniform mat4 MCDCMatrix;\n"
-    read = "  vec3 vizP = vizPVSOutput;\n  bool vizGood = true;\n"
-    for name in ("vizN", "vizT"):
-        if f"{name}VSOutput" in given:
-            read += (
-                f"  float {name}Size = length({name}VSOutput);\n"
-                f"  vizGood = vizGood && {name}Size > 1e-6;\n"
-                f"  vec3 {name} = {name}VSOutput / max({name}Size, 1e-6);\n"
-            )
-    if of_cylinder:
-        read += strokes.CYLINDER_NORMAL
-    if turned:
-        read += "  float vizLean = 2.0 * vizHVSOutput - 1.0;\n"
-    if plan.fur:
-        read += "  float vizHeight = vizTallest * max(vizHVSOutput, 0.0);\n"
-    pixel = {
-        "//VTK::Normal::Dec": given,
-        "//VTK::Normal::Impl": "",
-        "//VTK::Light::Dec": functions + "\n",
-        "//VTK::Light::Impl": f"{read}{body}\n  gl_FragData[0] = vec4(vizColor, opacity);\n",
-    }
-    if stroke != Stroke():
-        # The depth of VTK's own tubes.
-        pixel["//VTK::Depth::Impl"] = ""
-    for mark, text in pixel.items():
-        shader.AddFragmentShaderReplacement(mark, True, text, False)
+def _set_uniforms(given: Iterable[Uniform], renderer: vtkRenderer, actor: vtkActor) -> None:
+    """Set what a program is given, in the coordinates of the camera."""
+    view = pv.array_from_vtkmatrix(renderer.GetActiveCamera().GetViewTransformMatrix())
+    uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
+    for name, kind, value, space in given:
+        numbers = list(value)
+        if space:
+            moved = view[:3, :3] @ np.asarray(value[:3], dtype=np.float64)
+            moved = moved / np.linalg.norm(moved) if space == "direction" else moved + view[:3, 3]
+            numbers[:3] = moved.tolist()
+        if kind == "float":
+            uniforms.SetUniformf(name, numbers[0])
+        else:
+            getattr(uniforms, f"SetUniform{len(numbers)}f")(name, numbers)

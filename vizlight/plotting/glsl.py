@@ -130,6 +130,11 @@ def number(value: float) -> str:
     return text if any(c in text for c in ".einf") else f"{text}.0"
 
 
+def is_plain(shininess: float) -> bool:
+    """Return whether the power of GLSL serves for a shininess."""
+    return 0 < shininess <= LARGEST_PLAIN
+
+
 class _Writer:
     """Lines of a fragment shader and the formulas that they call."""
 
@@ -160,7 +165,7 @@ def fragment(plan: Plan, *, turned: bool = False) -> tuple[str, str]:
     -------
     declarations, body : str
         The body sets ``vizColor`` from ``vizT``, ``vizN``, ``vizP`` and ``vizHeight`` in view
-        coordinates, VTK's ``ambientColor`` and ``diffuseColor``, and uniforms.
+        coordinates, the renderer's ``ambientColor`` and ``diffuseColor``, and uniforms.
     """
     w = _Writer()
     w.add("vec3 vizToEye = vizEye.xyz - vizEye.w * vizP;")
@@ -181,7 +186,7 @@ def fragment(plan: Plan, *, turned: bool = False) -> tuple[str, str]:
     w.add("vec3 vizColor = vizAmbientGain * ambientColor + vizSpecularGain * vizSpecular;")
     w.add("vizColor += vizDiffuseGain * diffuseColor * vizDiffuse;")
     _cue(w, plan)
-    plain = all(0 < h.shininess <= LARGEST_PLAIN for h in plan.highlights)
+    plain = all(is_plain(highlight.shininess) for highlight in plan.highlights)
     return functions(w.used, plain=plain and plan.exponent > 0), "\n".join(w.lines)
 
 
@@ -205,7 +210,7 @@ def _light(w: _Writer, plan: Plan, i: int) -> None:
     if plan.fur:
         ways = [w.call("fur_path", "vizHeight", f"abs({name})") for name in ("cosine", "vizNo")]
         w.add(f"scale *= {w.call('fur_passes', ' + '.join(ways), 'vizFurRate')};")
-    shininess, exponent = number(highlight.shininess), number(plan.exponent)
+    shininess, exponent = "vizShininess", number(plan.exponent)
     if plan.surface:
         lit = w.call(side, "cosine")
         kept = lit if plan.exponent == 1 else w.call("surface_diffuse", lit, exponent)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import warnings
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 import numpy as np
 import pyvista as pv
@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from vizlight._types import Array, Indices, Vector
     from vizlight.shading.inputs import ShadingInputs
 
+#: Place where the light is computed.
+LightAt = Literal["auto", "points", "fragments"]
 #: Names of the arrays that the drawn copy of a mesh has beside those of the mesh.
 LUMINANCE, COLORS, VALUES = "vizlight luminance", "vizlight colors", "vizlight values"
 TANGENTS, NORMALS = "vizlight tangents", "vizlight normals"
@@ -81,6 +83,8 @@ class Live:
         self.drawn: pv.DataSet = pv.PolyData() if self._by_surface else source.mesh.copy(deep=False)
         self._redraw()
         self.painter: Painter | None = None
+        #: Name of the mesh, for a page.
+        self.name = ""
         #: Name of the array that gives the colours, or None.
         self.scalars: str | None = None
         self._given: str | None = None
@@ -95,6 +99,12 @@ class Live:
     def n(self) -> int:
         """Dimension of the space of the light."""
         return int(self.source.inputs.points.shape[1])
+
+    @property
+    def own_eye(self) -> bool:
+        """Whether the scene has an eye in n-space, which is not that of the camera."""
+        scene = self.scene
+        return scene is not None and scene.view is not None and scene.n == self.n > 3
 
     def _redraw(self) -> None:
         """Draw the mesh as it is now."""
@@ -221,8 +231,7 @@ class Live:
                 # They were given when the mesh was added.
                 warnings.simplefilter("ignore", UserWarning)
                 return lifted(scene_of(renderer, actor, self.source.options.model), self.n)
-        if self.scene.view is not None and self.n > 3 and self.scene.n == self.n:
-            # An eye in n-space is not that of the camera.
+        if self.own_eye:
             return self.scene
         if self.scene.n in (None, 3):
             return lifted(self.scene.replace(view=view), self.n)

@@ -84,10 +84,11 @@ class _Export:
         plotter, owner = self._plotter(), self._owner()
         if plotter is not None and is_live(plotter):
             remedy = (
-                "draw the result of vizlight.illuminate or vizlight.tint by "
-                "plotter.add_mesh(lighting=False), or pass light='points' to vizlight.render"
+                "call plotter.vizlight.export_html or vizlight.live_html for a page whose light "
+                "follows the eye, or draw the result of vizlight.illuminate or vizlight.tint by "
+                "plotter.add_mesh(lighting=False)"
             )
-            expected = "a scene without light that follows the camera, which a file cannot hold"
+            expected = "a scene without light that follows the camera, which this file cannot hold"
             # PyVista's gallery keeps the picture of a plotter whose scene it cannot export.
             kind = ImportError if pv.BUILDING_GALLERY else ValueError
             raise kind(_check.message(self.name, expected, "live light", remedy))

@@ -13,6 +13,7 @@ from vizlight.filters.tint import light_factors, map_colors, times_light
 from vizlight.mesh import point_arrays, polylines
 from vizlight.plotting import strokes
 from vizlight.plotting.live import COLORS, LUMINANCE, NORMALS
+from vizlight.plotting.program import Stroke
 from vizlight.shading.decide import decide
 
 if TYPE_CHECKING:
@@ -74,7 +75,7 @@ class Points:
         """Let an actor draw lit colours as they are, in place of those of the data."""
         prop = actor.GetProperty()
         if self._diameter is not None:
-            strokes.widen(actor, strokes.Stroke(self._diameter))
+            strokes.widen(actor, Stroke(self._diameter))
         if live.scene is None:
             # Without lights VTK multiplies by the sum of both coefficients, which are the material.
             actor.GetShaderProperty().AddFragmentShaderReplacement(

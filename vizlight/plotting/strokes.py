@@ -2,37 +2,24 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from vizlight.plotting import glsl
+from vizlight.plotting import dialects, glsl
+from vizlight.plotting.dialects import Replacement
+from vizlight.plotting.program import ALONG, suffixed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from vtkmodules.vtkRenderingCore import vtkActor
 
+    from vizlight.plotting.program import Stroke
+
 #: Width in pixels above 1, as VTK draws no quads for narrower lines; also the least width of lines
 #: of a diameter, so that none breaks up.
 LEAST = 1.01
 #: Cosine of the angle between a segment and the tangent of the line up to which ends are mitred.
 SHARPEST = 0.5
-#: Direction of the line at a vertex in clip coordinates; its array takes the place of normals.
-ALONG = ("vizD", "vec4", "MCDCMatrix * vec4(normalMC, 0.0)")
-
-
-class Stroke(NamedTuple):
-    """How wide lines are drawn, and whether light is that of a cylinder across them.
-
-    Attributes
-    ----------
-    diameter : float or None
-        Diameter in the unit of the mesh; None for a width in pixels.
-    round : bool
-        Whether each fragment has the normal of the cylinder that the line stands for.
-    """
-
-    diameter: float | None = None
-    round: bool = False
 
 
 def widen(actor: vtkActor, stroke: Stroke) -> None:
@@ -41,58 +28,56 @@ def widen(actor: vtkActor, stroke: Stroke) -> None:
     The active normals of what is drawn are the tangents of its lines.
     """
     actor.GetProperty().SetInterpolationToGouraud()
-    pass_on(actor, [ALONG], "in vec3 normalMC;\n", stroke)
-    for mark in ("//VTK::Normal::Dec", "//VTK::Normal::Impl", "//VTK::Depth::Impl"):
-        actor.GetShaderProperty().AddFragmentShaderReplacement(mark, True, "", False)
+    passed = widened(actor, dialects.VTK.passing([ALONG]), stroke)
+    unlit = [
+        Replacement("Fragment", mark, "") for mark in ("//VTK::Normal::Dec", "//VTK::Normal::Impl")
+    ]
+    replace(actor, [*passed, *unlit])
 
 
-def pass_on(
-    actor: vtkActor, names: Iterable[tuple[str, str, str]], attributes: str, stroke: Stroke
-) -> None:
-    """Pass values from the vertices of an actor to its fragments, through quads of lines.
+def replace(actor: vtkActor, replacements: Iterable[Replacement]) -> None:
+    """Put texts in place of VTK's, in every shader of the pipeline."""
+    shader = actor.GetShaderProperty()
+    shader.ClearAllShaderReplacements()
+    for stage, mark, text in replacements:
+        getattr(shader, f"Add{stage}ShaderReplacement")(mark, True, text, False)
+
+
+def widened(
+    actor: vtkActor, replacements: Iterable[Replacement], stroke: Stroke
+) -> list[Replacement]:
+    """Return replacements that draw lines as quads of a width, which the actor is set to.
 
     Parameters
     ----------
     actor : vtkActor
-        Actor whose shaders are changed.
-    names : iterable of (str, str, str)
-        Name, type and value of what is passed on; with ``ALONG`` the quads of a line join.
-    attributes : str
-        Declarations of the vertex attributes that the values need.
+        Actor of lines.
+    replacements : iterable of Replacement
+        What passes values to the fragments, and their light; with ``ALONG`` the quads of a line
+        join.
     stroke : Stroke
         Width of the lines.
     """
-    names, shader = list(names), actor.GetShaderProperty()
-    if stroke != Stroke():
-        # Lines as tubes are quads that VTK makes in a shader, whatever width a driver can draw.
-        prop = actor.GetProperty()
-        prop.SetRenderLinesAsTubes(True)
-        prop.SetLineWidth(LEAST if stroke.diameter else max(prop.GetLineWidth(), LEAST))
-    out = "".join(f"out {kind} {name}VSOutput;\n" for name, kind, _ in names)
-    vertex = {
-        "//VTK::Camera::Dec": "uniform mat4 MCDCMatrix;\nuniform mat4 MCVCMatrix;\n",
-        "//VTK::Normal::Dec": f"uniform mat3 normalMatrix;\n{attributes}{out}",
-        "//VTK::Normal::Impl": "".join(
-            f"  {name}VSOutput = {value};\n" for name, _, value in names
-        ),
-    }
-    geometry = {
-        "//VTK::Normal::Dec": "uniform mat4 MCDCMatrix;\nuniform mat4 MCVCMatrix;\n"
-        + "".join(
-            f"in {kind} {name}VSOutput[];\nout {kind} {name}GSOutput;\n" for name, kind, _ in names
-        ),
-        "//VTK::Normal::Impl": "".join(
-            f"  {name}GSOutput = {name}VSOutput[i];\n" for name, _, _ in names
-        ),
-    }
-    if stroke != Stroke():
-        # Normals of VTK's own tubes.
-        geometry["//VTK::Normal::Start"] = ""
-        geometry["//VTK::PositionVC::Impl"] = _quad(stroke, joined=ALONG in names)
-    for mark, text in vertex.items():
-        shader.AddVertexShaderReplacement(mark, True, text, False)
-    for mark, text in geometry.items():
-        shader.AddGeometryShaderReplacement(mark, True, text, False)
+    # Lines as tubes are quads that VTK makes in a shader, whatever width a driver can draw.
+    prop = actor.GetProperty()
+    prop.SetRenderLinesAsTubes(True)
+    prop.SetLineWidth(LEAST if stroke.diameter else max(prop.GetLineWidth(), LEAST))
+    matrices = "uniform mat4 MCDCMatrix;\nuniform mat4 MCVCMatrix;\n"
+    found = []
+    for stage, mark, text in replacements:
+        if mark == "//VTK::Normal::Dec" and stage == "Geometry":
+            text = matrices + text
+        if mark == "//VTK::Normal::Dec" and stage == "Fragment" and stroke.round:
+            text += "uniform mat4 MCDCMatrix;\n"
+        found.append(Replacement(stage, mark, text))
+    joined = any(suffixed(ALONG.name) in text for _, _, text in found)
+    return [
+        *found,
+        # Normals of VTK's own tubes, and their depth.
+        Replacement("Geometry", "//VTK::Normal::Start", ""),
+        Replacement("Fragment", "//VTK::Depth::Impl", ""),
+        Replacement("Geometry", "//VTK::PositionVC::Impl", _quad(stroke, joined=joined)),
+    ]
 
 
 def _quad(stroke: Stroke, *, joined: bool) -> str:
@@ -134,13 +119,3 @@ def _quad(stroke: Stroke, *, joined: bool) -> str:
     # What VTK writes after this place.
     lines += ["#define lineWidthNVC vizAcross", "#define normal 1.0", ""]
     return "\n".join(lines)
-
-
-#: Normal of the cylinder at a fragment, from the tangent and the place across the line.
-CYLINDER_NORMAL = """  vec3 vizLast = vec3(MCDCMatrix[0][3], MCDCMatrix[1][3], MCDCMatrix[2][3]);
-  vec3 vizFront = vizLast == vec3(0.0) ? vec3(0.0, 0.0, 1.0) : -vizP;
-  vizFront -= dot(vizFront, vizT) * vizT;
-  vizFront *= inversesqrt(max(dot(vizFront, vizFront), 1e-30));
-  float vizX = clamp(vizXVSOutput, -1.0, 1.0);
-  vec3 vizN = sqrt(1.0 - vizX * vizX) * vizFront + vizX * cross(vizFront, vizT);
-"""

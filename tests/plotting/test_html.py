@@ -1,0 +1,396 @@
+"""A page by itself shows the light of the engine as the eye moves, and says what it cannot."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import importlib.util
+import io
+import json
+import re
+import shutil
+import zlib
+from importlib import resources
+
+import numpy as np
+import pytest
+import pyvista as pv
+from PIL import Image
+
+import vizlight
+from vizlight import DepthCue, Light, Material, Scene, View
+from vizlight.files import FileError
+
+pytestmark = pytest.mark.opengl
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+SOFTWARE = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader"]
+SOFTWARE += ["--enable-unsafe-swiftshader"]
+MISSING = [name for name in ("playwright",) if importlib.util.find_spec(name) is None]
+MISSING += [] if CHROMIUM else ["chromium"]
+needs_browser = pytest.mark.skipif(bool(MISSING), reason=f"needs {', '.join(MISSING)}")
+#: sha256 of the viewer; CONTRIBUTING says how it is made again.
+VIEWER = "6dbffd6ee1f8b8558919e43136d23f94a60b14e164f2fa41d1d03b1e6ae2c3d8"
+SIZE = {"width": 300, "height": 250}
+FAR = Light(direction=(1, 0.9, 0.5), intensity=0.8)
+NEAR = Light(position=(3, 4, 5), intensity=0.5, attenuation=(0.5, 0.1, 0.01), color=(1, 0.8, 0.5))
+CUE = DepthCue(back_scale=0.3, cue=0.1, color=(0.3, 0.4, 1.0))
+
+
+def torus(centre=(0.0, 0.0, 0.0)):
+    """Return a surface in float64 with a field of tangents."""
+    angles = np.linspace(0, 2 * np.pi, 181)
+    u, v = (np.ravel(x) for x in np.meshgrid(angles, angles, indexing="ij"))
+    ring = 1 + 0.4 * np.cos(v)
+    rows = np.stack([ring * np.cos(u), ring * np.sin(u), 0.4 * np.sin(v)], 1) + centre
+    grid = pv.StructuredGrid()
+    grid.points, grid.dimensions = rows, (181, 181, 1)
+    mesh = grid.extract_surface(algorithm=None)
+    mesh["n"] = np.stack([np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)], 1)
+    mesh["around"] = np.stack([-np.sin(u), np.cos(u), 0 * u], 1)
+    mesh["height"] = np.asarray(mesh.points)[:, 2] - centre[2]
+    return mesh
+
+
+def winding():
+    """Return lines on the same torus, with its normals."""
+    u = np.linspace(0, 2 * np.pi * 40, 12001)
+    ring, v = 1 + 0.4 * np.cos(u / 40), u / 40
+    mesh = pv.MultipleLines(np.stack([ring * np.cos(u), ring * np.sin(u), 0.4 * np.sin(v)], 1))
+    mesh["n"] = np.stack([np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)], 1)
+    return mesh
+
+
+AWAY = (5e6, -5e6, 2e6)
+CASES = {
+    "lines": (winding, Scene(lights=FAR), {}),
+    "conditioned lines": (winding, Scene(lights=FAR), {"conditioned": True, "normals": "n"}),
+    "surface with a field": (
+        torus, Scene(lights=FAR), {"tangents": "around", "conditioned": True, "normals": "n"}
+    ),
+    "compensated with colours": (torus, Scene(lights=FAR), {"tangents": "around"}),
+    "two lights, one near, in fog": (
+        torus, Scene(lights=[FAR, NEAR], depth_cue=CUE, ambient_color=(0.7, 0.8, 1)),
+        {"normals": "n", "model": "blinn"},
+    ),
+    "far from the origin": (
+        lambda: torus(AWAY),
+        Scene(lights=[FAR, Light(position=np.add(AWAY, (3, 4, 5)), intensity=0.2)]),
+        {"normals": "n"},
+    ),
+}  # fmt: skip
+COLORED = {"compensated with colours": {"scalars": "height", "cmap": "plasma"}}
+
+
+@pytest.fixture(scope="module")
+def chromium():
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as play:
+        yield play.chromium
+
+
+@pytest.fixture(scope="module")
+def browser(chromium):
+    made = chromium.launch(executable_path=CHROMIUM, args=SOFTWARE)
+    yield made
+    made.close()
+
+
+def opened(browser, path, **options):
+    """Return a page without its panel, and what it has asked for and complained of."""
+    page = browser.new_page(viewport=SIZE, **options)
+    seen = []
+    page.on("request", lambda request: seen.append(request.url))
+    page.on("console", lambda message: seen.append(message.text))
+    page.on("pageerror", lambda error: seen.append(str(error)))
+    page.goto(path.as_uri())
+    page.add_style_tag(content="details, h1, #bottom { display: none }")
+    return page, seen
+
+
+def opened_panel(page):
+    """Open the panel, which narrow windows close, without drawing it over the picture."""
+    page.add_style_tag(content="details { display: block !important; opacity: 0 }")
+    page.evaluate("() => { document.querySelector('details').open = true; }")
+
+
+def shot(page):
+    page.evaluate("() => new Promise((done) => requestAnimationFrame(() => done()))")
+    return np.array(Image.open(io.BytesIO(page.screenshot())).convert("RGB"), dtype=np.int16)
+
+
+def turn(page, degrees):
+    page.evaluate(f"() => {{ vizlight.camera.azimuth({degrees}); vizlight.render(); }}")
+
+
+def first_camera(centre=(0.0, 0.0, 0.0)):
+    camera = pv.Camera()
+    camera.position, camera.up = np.add(centre, (2.6, 1.6, 2.1)), (0, 0, 1)
+    camera.focal_point, camera.view_angle = centre, 40
+    return camera
+
+
+def scene_in(path):
+    text = path.read_text("utf-8")
+    found = re.search(r'<script type="application/json" id="scene">(.*?)</script>', text, re.S)
+    return text, found[1], json.loads(found[1])
+
+
+def baked(path, colors):
+    """Return the page with colours of the points in place of light that follows."""
+    text, given, content = scene_in(path)
+    data = base64.b64encode(zlib.compress(colors.tobytes())).decode()
+    for mesh in content["meshes"]:
+        mesh |= {"live": False, "colors": {"data": data, "kind": "u1"}, "color": [1, 1, 1]}
+    made = path.with_name("baked.html")
+    made.write_text(text.replace(given, json.dumps(content)), "utf-8")
+    return made
+
+
+def recolor(page, colors):
+    """Give a baked page other colours."""
+    page.evaluate(
+        """(text) => {
+        const values = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+        const { mapper } = vizlight.meshes[0];
+        mapper.getInputData().getPointData().getScalars().setData(values, 4);
+        mapper.getInputData().modified();
+        vizlight.render();
+        }""",
+        base64.b64encode(colors.tobytes()).decode(),
+    )
+
+
+def engine_colors(mesh, scene, camera, options, colored):
+    """Return the colours of the filters for an eye, in bytes."""
+    seen = scene.replace(view=View.from_camera(camera))
+    lit = vizlight.illuminate(mesh, seen, **options)
+    if colored:
+        found = vizlight.tint(lit, colored["scalars"], cmap=colored["cmap"])["rgb"]
+        return np.column_stack([found[:, :3], np.full(len(found), 255, np.uint8)])
+    rgb = lit["rgb"] if "rgb" in lit.point_data else np.repeat(lit["luminance"][:, None], 3, axis=1)
+    return np.insert(np.clip(rgb, 0, 1) * 255 + 0.5, 3, 255, axis=1).astype(np.uint8)
+
+
+@needs_browser
+@pytest.mark.parametrize("case", CASES)
+def test_page_has_the_light_of_the_engine_before_and_after_turning(case, browser, tmp_path):
+    """The browser draws both: the light that follows, and the numbers of the filters as colours.
+
+    Another renderer's lines have other edges, whatever their light.
+    """
+    make, scene, options = CASES[case]
+    mesh, colored = make(), COLORED.get(case, {})
+    centre = AWAY if case == "far from the origin" else (0.0, 0.0, 0.0)
+    camera = first_camera(centre)
+    path = vizlight.live_html(
+        mesh, scene, tmp_path / "live.html", camera=camera, background="black", panel=False,
+        line_width=2, **options, **colored,
+    )  # fmt: skip
+    live, seen = opened(browser, path)
+    other, _ = opened(browser, baked(path, engine_colors(mesh, scene, camera, options, colored)))
+    pictures = []
+    for degrees in (0, 60):
+        camera.azimuth += degrees
+        turn(live, degrees)
+        turn(other, degrees)
+        recolor(other, engine_colors(mesh, scene, camera, options, colored))
+        got, expected = shot(live), shot(other)
+        pictures.append(got)
+        error = np.abs(got - expected)
+        assert expected.std() > 10
+        assert error.mean() <= 1
+        assert np.quantile(error.max(axis=-1)[expected.max(axis=-1) > 0], 0.99) <= 4
+    assert seen == [path.as_uri()]
+    assert np.abs(pictures[1] - pictures[0]).mean() > 1
+    live.close()
+    other.close()
+
+
+@needs_browser
+def test_page_has_the_picture_of_the_plotter(browser, tmp_path):
+    mesh, scene = torus(), Scene(lights=[FAR, NEAR])
+    plotter = pv.Plotter(off_screen=True, window_size=list(SIZE.values()))
+    plotter.background_color = "black"
+    plotter.render_window.SetMultiSamples(4)
+    plotter.vizlight.add_mesh(mesh, scene=scene, normals="n", light="points")
+    plotter.camera = first_camera()
+    path = vizlight.live_html(
+        mesh, scene, tmp_path / "a.html", normals="n", camera=plotter.camera, background="black"
+    )
+    page, _ = opened(browser, path)
+    for degrees in (0, 60):
+        plotter.camera.azimuth += degrees
+        plotter.renderer.reset_camera_clipping_range()
+        turn(page, degrees)
+        plotter.render()
+        expected = np.array(plotter.screenshot(None, return_img=True), dtype=np.int16)
+        error = np.abs(shot(page) - expected)
+        assert error.mean() <= 1
+        assert np.quantile(error.max(axis=-1), 0.99) <= 4
+    plotter.close()
+    page.close()
+
+
+def plain_page(tmp_path, **options):
+    ball = pv.Sphere(theta_resolution=60, phi_resolution=60)
+    scene = Scene(lights=Light(direction=(1, 0.2, 0.3)))
+    return vizlight.live_html(ball, scene, tmp_path / "ball.html", background="black", **options)
+
+
+@needs_browser
+def test_panel_moves_light_and_material_and_back(browser, tmp_path):
+    page, _ = opened(browser, plain_page(tmp_path, title="A <ball> & more"))
+    assert page.title() == "A <ball> & more"
+    opened_panel(page)
+    first = shot(page)
+    for label, value in (
+        ("azimuth", -120), ("altitude", 60), ("intensity", 0.3), ("ambient", 0.6),
+        ("diffuse", 0.1), ("specular", 0), ("shininess", 0.4),
+    ):  # fmt: skip
+        slider = page.get_by_label(label)
+        slider.evaluate(
+            "(input, x) => { input.value = x; input.dispatchEvent(new Event('input')); }", value
+        )
+        assert np.abs(shot(page) - first).max() > 20, label
+        page.get_by_role("button", name="Reset light").click()
+        np.testing.assert_array_equal(shot(page), first)
+    page.get_by_label("follows the eye").check()
+    held = shot(page)
+    assert np.abs(held - first).max() > 20
+    turn(page, 90)
+    # A headlight makes every side of a ball alike.
+    assert np.abs(shot(page) - held).mean() < 0.2
+    page.get_by_role("button", name="Reset view").click()
+    np.testing.assert_array_equal(shot(page), held)
+    with page.expect_download() as saved:
+        page.get_by_role("button", name="Save picture").click()
+    picture = np.array(Image.open(saved.value.path()).convert("RGB"), dtype=np.int16)
+    assert np.abs(picture - held).mean() < 1
+    page.close()
+
+
+@needs_browser
+def test_keys_and_fingers_turn_the_page(browser, tmp_path):
+    page, _ = opened(browser, plain_page(tmp_path), has_touch=True)
+    where = "() => [vizlight.camera.getPosition(), vizlight.camera.getDistance()]"
+    first, far = page.evaluate(where)
+    page.keyboard.press("Tab")
+    page.keyboard.press("ArrowLeft")
+    turned, same = page.evaluate(where)
+    assert np.linalg.norm(np.subtract(turned, first)) > 0.02 * far
+    assert same == pytest.approx(far)
+    page.keyboard.press("+")
+    assert page.evaluate(where)[1] == pytest.approx(far / 1.1)
+    page.evaluate("vizlight.resetView()")
+    wire = page.context.new_cdp_session(page)
+
+    def touch(kind, *points):
+        rows = [{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(points)]
+        wire.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": rows})
+
+    touch("touchStart", (100, 150))
+    for i in range(10):
+        touch("touchMove", (100 + 8 * i, 150))
+    touch("touchEnd")
+    turned, same = page.evaluate(where)
+    assert np.linalg.norm(np.subtract(turned, first)) > 0.1 * far
+    assert same == pytest.approx(far)
+    touch("touchStart", (150, 150), (200, 150))
+    for i in range(10):
+        touch("touchMove", (150 - 5 * i, 150), (200 + 5 * i, 150))
+    touch("touchEnd")
+    assert page.evaluate(where)[1] < 0.8 * far
+    page.close()
+
+
+@needs_browser
+def test_several_meshes_can_be_switched_off_each(browser, tmp_path):
+    both = pv.MultiBlock({"ball": pv.Sphere(), "ring": torus().translate((0, 0, 1))})
+    path = vizlight.live_html(both, Scene(lights=FAR), tmp_path / "a.html", background="black")
+    page, _ = opened(browser, path)
+    opened_panel(page)
+    every = shot(page)
+    seen = []
+    for name in ("ball", "ring"):
+        page.get_by_label(name).uncheck()
+        seen.append(shot(page))
+        assert np.abs(seen[-1] - every).max() > 30
+    assert seen[-1].max() == 0
+    page.close()
+
+
+@needs_browser
+def test_page_without_webgl_says_so(chromium, tmp_path):
+    path = plain_page(tmp_path)
+    bare = chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", "--disable-3d-apis"])
+    page = bare.new_page(viewport=SIZE)
+    page.goto(path.as_uri())
+    assert "needs WebGL 2" in page.get_by_role("alert").inner_text()
+    bare.close()
+
+
+def test_light_that_cannot_follow_is_fixed_and_said_to_be(tmp_path):
+    mesh, scene = torus(), Scene(lights=FAR)
+    with pytest.warns(UserWarning, match="does not follow the eye, because .*cylinder.*ambient"):
+        path = vizlight.live_html(
+            mesh, scene, tmp_path / "a.html", tangents="around", model="cylinder"
+        )
+    _, _, content = scene_in(path)
+    assert "does not follow the eye" in content["notices"][0]
+    assert not content["meshes"][0]["live"]
+    with pytest.warns(UserWarning, match="does not follow the eye; ambient and diffuse"):
+        path = vizlight.live_html(pv.Sphere(), scene, path, light="points")
+    _, _, content = scene_in(path)
+    packed = content["meshes"][0]["colors"]["data"]
+    colors = np.frombuffer(zlib.decompress(base64.b64decode(packed)), np.uint8).reshape(-1, 4)
+    bare = Scene(lights=FAR, material=Material(specular=0))
+    expected = vizlight.illuminate(pv.Sphere(), bare)["luminance"]
+    assert np.abs(colors[:, 0] - 255 * np.clip(expected, 0, 1)).max() <= 1
+
+
+def test_plotter_writes_its_meshes_with_their_own_light(tmp_path):
+    plotter = pv.Plotter(off_screen=True)
+    with pytest.raises(ValueError, match="plotter: expected a mesh with live light"):
+        plotter.vizlight.export_html(tmp_path / "a.html")
+    plotter.vizlight.add_mesh(torus(), scene=Scene(lights=FAR), scalars="height")
+    plotter.vizlight.add_mesh(winding(), scene=Scene(), line_width=3, name="coil")
+    plotter.add_mesh(pv.Cube())
+    with pytest.warns(UserWarning, match="1 actors without light of vizlight"):
+        path = plotter.vizlight.export_html(tmp_path / "a.html", title="Both")
+    plotter.close()
+    _, _, content = scene_in(path)
+    assert [mesh["name"] for mesh in content["meshes"]] == ["mesh 1", "coil"]
+    assert [light["eye"] for (light,) in content["lights"]] == [False, True]
+    assert content["bars"][0]["title"] == "height"
+    assert content["meshes"][1]["lineWidth"] == 3
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"path": "lit.png"}, "output: expected a name that ends in .html, .htm"),
+        ({"path": "none/lit.html"}, "output: expected a folder that exists"),
+        ({"tangents": "height"}, "tangents: expected .*'height'"),
+        ({"scalars": "nothing"}, "scalars: expected .*'nothing'"),
+        ({"pbr": True}, "pbr: expected no such keyword"),
+        ({"title": 3}, "title: expected"),
+    ],
+)
+def test_what_does_not_fit_is_refused_and_nothing_is_written(options, message, tmp_path):
+    path = tmp_path / options.pop("path", "lit.html")
+    with pytest.raises((FileError, TypeError, ValueError), match=message):
+        vizlight.live_html(torus(), Scene(lights=FAR), path, **options)
+    assert not list(tmp_path.iterdir())
+
+
+def test_viewer_is_the_one_of_the_recipe():
+    web = resources.files("vizlight.plotting").joinpath("web")
+    assert hashlib.sha256(web.joinpath("viewer.min.js").read_bytes()).hexdigest() == VIEWER
+    lock = json.loads(web.joinpath("package-lock.json").read_text())["packages"]
+    licences = web.joinpath("LICENSES.txt").read_text("utf-8")
+    version = lock["node_modules/@kitware/vtk.js"]["version"]
+    assert f"@kitware/vtk.js {version} (BSD-3-Clause)" in licences
+    assert "Redistributions in binary form must reproduce" in licences
+    assert all("resolved" not in package for package in lock.values())

@@ -1,0 +1,51 @@
+"""What a caller asks to be lit: sources by the record of a mesh or by options, and its colours."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from vizlight.filters import relight
+from vizlight.filters.tint import RGB, unlit_colors
+from vizlight.mesh import blocks, records
+from vizlight.plotting.live import headlight_scene, lifted
+from vizlight.shading.options import LightOptions
+
+if TYPE_CHECKING:
+    import pyvista as pv
+
+    from vizlight.filters.relight import Source
+    from vizlight.scene import Scene
+
+
+def sources_of(
+    mesh: pv.DataSet | pv.MultiBlock, scene: Scene | None, options: dict[str, Any]
+) -> tuple[list[Source], Scene | None]:
+    """Return what is lit: by the record of the mesh, or by options."""
+    if not options and relight.is_lit(mesh):
+        return relight.from_record(mesh, scene)
+    asked = LightOptions(**options)
+    spaces = {
+        np.shape(block.point_data[asked.positions])[-1]
+        for block in blocks.all_blocks(mesh)
+        if asked.positions is not None and asked.positions in block.point_data
+    }
+    n = max(spaces, default=3)
+    provisional = headlight_scene(n) if scene is None else lifted(scene, n)
+    if provisional.view is None and provisional.n in (None, n):
+        # Which side of an open surface is lit is then the camera's to say.
+        provisional = provisional.replace(view=headlight_scene(n).view)
+    return relight.from_options(mesh, provisional, asked), scene
+
+
+def tinted(mesh: pv.DataSet) -> tuple[str | None, dict[str, Any]]:
+    """Return the array and the colours of a mesh that tint returned."""
+    record = records.read(mesh, RGB) or {}
+    if record.get("filter") != "tint":
+        return None, {}
+    options = record["options"]
+    name = options["scalars"]
+    if name not in mesh.point_data:
+        return None, {}
+    return name, {"cmap": unlit_colors(mesh), "component": options["component"]}
