@@ -41,11 +41,13 @@ REASONS = {
     "ruff": "command",
     "scipy-stubs": "types of SciPy, which mypy reads",
     "sphinx-design": "extension of Sphinx, named in gallery/pages/conf.py",
+    "trame-vtk": "trame.widgets.vtk is of it",
+    "trame-vuetify": "trame.widgets.vuetify3 is of it",
     "tomli": "read above on Python 3.10 only",
 }
 #: Extras whose packages the files of a folder may import, besides the dependencies.
 ALLOWED = {
-    "vizlight": ["fast", "formats", "movie", "rays", "scale", "solids", "tracts", "test"],
+    "vizlight": ["fast", "formats", "movie", "rays", "scale", "solids", "tracts", "test", "view"],
     "tests": ["test", "docs", "tracts", "formats", "scale"],
     "gallery": ["docs"],
 }

@@ -357,7 +357,8 @@ def _draw(
         if lines and not all(of_lines):
             # Assigning to shown.points would move the points that it shares with the mesh.
             shown.SetPoints(pv.vtk_points(_lifted(np.asarray(mesh.points), camera, size)))
-        if fragments and add_recorded(plotter, shown, panel.scalars, line_width=line_width):
+        drawing = {"line_width": line_width, "show_scalar_bar": False}
+        if fragments and add_recorded(plotter, shown, panel.scalars, **drawing):
             continue
         of_points = panel.scalars in mesh.point_data
         values = np.asarray((mesh.point_data if of_points else mesh.cell_data)[panel.scalars])

@@ -1,0 +1,57 @@
+"""``vizlight view FILE``: tune a picture by eye on a page of this machine."""
+
+from __future__ import annotations
+
+import importlib.util
+from pathlib import Path  # noqa: TC003 - cyclopts reads the annotations
+
+from vizlight import _check, _supervise
+from vizlight.cli.arguments import Flag  # noqa: TC001
+from vizlight.cli.output import LACKING, OK, complain
+
+#: Packages of the extra.
+NEEDED = ("trame", "trame_vuetify", "trame_vtk", "aiohttp")
+
+
+def view(file: Path, /, *, port: int = 0, browser: bool = True, salvage: Flag = False) -> int:
+    """Tune array, colours, light and material by eye, on a page of this machine alone.
+
+    The page copies its picture as a Python script. Ctrl-C ends it.
+
+    Parameters
+    ----------
+    file
+        Mesh to show.
+    port
+        Port of the page. Default: a free one.
+    browser
+        Open the page in the browser; otherwise only print its address.
+    salvage
+        Use what could be read of a damaged file.
+    """
+    missing = [name for name in NEEDED if importlib.util.find_spec(name) is None]
+    if missing:
+        expected, got = f"the package {missing[0]}", "none"
+        remedy = "install it by: pip install 'vizlight[view]'"
+        raise ValueError(_check.message("view", expected, got, remedy))
+    if not 0 <= port < 65536:
+        raise ValueError(_check.message("--port", "a number from 0 to 65535", port))
+    from vizlight.view.worker import Worker
+
+    worker = Worker(file, salvage=salvage)
+    worker.begin()
+    try:
+        # The file is read meanwhile.
+        from vizlight.pictures.backends import BackendError
+        from vizlight.view import serving
+        from vizlight.view.stage import Stage
+
+        try:
+            stage = Stage()
+        except BackendError as error:
+            complain(error)
+            return LACKING
+        serving.run(worker, worker.facts(), stage, port=port, browser=browser)
+    finally:
+        worker.stop()
+    return _supervise.leave(OK)
