@@ -156,6 +156,11 @@ def leave(code: int) -> int:
     """End a supervised process at once, in which nothing is open any more; else return the code.
 
     The end of an interpreter that has drawn takes so long that Ctrl-C would kill it meanwhile.
+
+    Parameters
+    ----------
+    code : int
+        Exit code.
     """
     if _channel is None:
         return code
@@ -178,7 +183,13 @@ def _open_standard_streams() -> None:
 
 
 def end_with(parent: int) -> None:
-    """Let the kernel kill this process when its parent is killed."""
+    """Let the kernel kill this process when its parent is killed.
+
+    Parameters
+    ----------
+    parent : int
+        Number of the process that is the parent.
+    """
     with contextlib.suppress(OSError, AttributeError):
         ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, int(signal.SIGKILL))
     if os.getppid() != parent:

@@ -131,6 +131,22 @@ def test_light_follows_the_eye_until_it_is_moved(stage):
     assert np.abs(stage.screenshot().astype(int) - lit).mean() > 5
 
 
+def test_window_of_another_shape_shows_all_until_the_camera_is_moved(stage):
+    mesh = vizlight.illuminate(pv.Sphere(), Scene(view=View(direction=(1, 1, 1))))
+    stage.show(mesh, State(), framed=True)
+
+    def width():
+        columns = np.nonzero((stage.screenshot() < 250).any(axis=(0, 2)))[0]
+        return columns.min(), columns.max()
+
+    stage.plotter.window_size = [120, 400]
+    low, high = width()
+    assert 0 < low < high < 119
+    stage.plotter.camera.azimuth = 10
+    stage.plotter.window_size = [100, 400]
+    assert width() == (0, 99)
+
+
 def test_mesh_that_cannot_be_drawn_leaves_the_picture(stage):
     mesh = vizlight.illuminate(pv.Sphere(), Scene(view=View(direction=(1, 1, 1))))
     stage.show(mesh, State(), framed=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, get_args
 
 from trame.ui.vuetify3 import VAppLayout
-from trame.widgets import html, vtk
+from trame.widgets import client, html, vtk
 from trame.widgets import vuetify3 as v3
 
 from vizlight.shading.options import Model
@@ -27,7 +27,13 @@ MOST_LINES = 2000
 
 
 def lay_out(page: Page) -> None:
-    """Make the page."""
+    """Make the widgets of a page.
+
+    Parameters
+    ----------
+    page : Page
+        Page, whose functions the widgets call.
+    """
     server, name = page.server, page.worker.file.name
     server.state.trame__title = f"{name} - vizlight"
     with VAppLayout(server):
@@ -43,6 +49,8 @@ def lay_out(page: Page) -> None:
                     page.stage.plotter.render_window, interactive_ratio=1, still_ratio=1,
                     interactive_quality=70, still_quality=95,
                 )  # fmt: skip
+        # In a second window of another shape the picture is not stretched.
+        client.Style("main canvas, main img { object-fit: contain; }")
         page.redraw = view.update
         _script(name)
 
@@ -105,7 +113,7 @@ def _controls(page: Page) -> None:
         _number("level", "exact level", v_show=(iso,))
     if facts.flat and facts.scalars:
         _select("heights", "Heights", [("flat", ""), *_named(list(facts.scalars))])
-        _number("factor", "times", v_show=("!!heights",))
+        _number("factor", "exaggeration", v_show=("!!heights",))
     lines = "show == 'streamlines'"
     if "streamlines" in facts.shows:
         _select("vectors", "along", _named(facts.vectors), v_show=(lines,))
@@ -118,9 +126,9 @@ def _controls(page: Page) -> None:
             v_show=(f"!!tangents && !({lines})",),
         )  # fmt: skip
     _slider("line_width", "line width", (0.5, 6), 0.5, v_show=("lined",))
-    _heading("Colour")
     arrays = [*facts.scalars, *facts.vectors]
     if arrays:
+        _heading("Colour")
         items = [("light alone", ""), *_named(arrays)]
         page.server.state.colors = [{"title": title, "value": value} for title, value in items]
         # An isosurface is not coloured by its own constant.
@@ -174,6 +182,6 @@ def _slider(
 def _number(name: str, label: str, **options: Any) -> None:
     v3.VTextField(
         model_value=(name,), label=label, type="number", variant="underlined",
-        classes=f"px-4 number-{name}", **SMALL, **options,
+        classes=f"px-4 pt-2 number-{name}", **SMALL, **options,
         change=f"{name} = Number($event.target.value)",
     )  # fmt: skip

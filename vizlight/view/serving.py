@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import os
 import secrets
 import signal
@@ -72,7 +73,9 @@ def run(worker: Worker, facts: Facts, stage: Stage, *, port: int = 0, browser: b
     ValueError
         If the port is taken.
     """
-    asyncio.run(_serve(worker, facts, stage, port, browser=browser))
+    # Where an event loop has no signals Ctrl-C is an exception.
+    with contextlib.suppress(KeyboardInterrupt):
+        asyncio.run(_serve(worker, facts, stage, port, browser=browser))
     # Ctrl-C once more must not disturb the end of the process.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
@@ -110,7 +113,8 @@ async def _serve(worker: Worker, facts: Facts, stage: Stage, port: int, *, brows
     ended = asyncio.Event()
     loop = asyncio.get_running_loop()
     for name in (signal.SIGINT, signal.SIGTERM):
-        loop.add_signal_handler(name, ended.set)
+        with contextlib.suppress(NotImplementedError):
+            loop.add_signal_handler(name, ended.set)
     try:
         await _until(server, ended, port)
     finally:

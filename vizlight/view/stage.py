@@ -48,6 +48,8 @@ class Stage:
         self._mesh: pv.DataSet | None = None
         self._actor: pv.Actor | None = None
         self._lit_from: tuple[object, ...] = ()
+        #: Size of the picture and camera by which the whole mesh was framed last.
+        self._framed: tuple[object, steps.Eye] | None = None
         #: Called before a frame in which the light over the shoulder is another one.
         self.on_move: Callable[[], None] | None = None
         # Before the light of the mesh is computed, which has no priority.
@@ -86,9 +88,7 @@ class Stage:
         TypeError, ValueError
             If it cannot be drawn; then the former picture stays.
         """
-        camera = self.plotter.camera
-        if framed:
-            camera = camera_on(mesh, VIEW, aspect=self.size[0] / self.size[1])
+        camera = self._whole(mesh) if framed else self.plotter.camera
         lines = all(has_lines_only(block) for block in all_blocks(mesh))
         options: dict[str, Any] = {"line_width": state.line_width}
         if state.color:
@@ -104,7 +104,7 @@ class Stage:
         assert isinstance(actor, pv.Actor)
         self._actor, self._mesh, self._state = actor, mesh, state
         if framed:
-            self.plotter.camera = camera
+            self.frame_all()
         self.plotter.background_color = pv.Color("black" if lines else "white")
         self.plotter.reset_camera_clipping_range()
         self._lit_from = ()
@@ -127,7 +127,11 @@ class Stage:
     def frame_all(self) -> None:
         """Set the camera so that the whole mesh is seen."""
         if self._mesh is not None:
-            self.plotter.camera = camera_on(self._mesh, VIEW, aspect=self.size[0] / self.size[1])
+            self.plotter.camera = self._whole(self._mesh)
+            self._framed = (self.size, self.eye)
+
+    def _whole(self, mesh: pv.DataSet) -> pv.Camera:
+        return camera_on(mesh, VIEW, aspect=self.size[0] / self.size[1])
 
     def screenshot(self) -> NDArray[Any]:
         """Return the picture as it is shown."""
@@ -142,6 +146,13 @@ class Stage:
         """Put in the light of the state, and that over the shoulder where the camera moved."""
         if self._state is None or self._actor is None:
             return
+        if self._framed is not None and self._framed != (self.size, self.eye):
+            moved = self.eye != self._framed[1]
+            self._framed = None
+            if not moved:
+                # The window has another shape, and the camera is where it was put.
+                self.frame_all()
+                self.plotter.reset_camera_clipping_range()
         seen = (self._state, self.eye if self._state.shoulder else None)
         if seen != self._lit_from:
             self._lit_from = seen

@@ -183,7 +183,13 @@ class State:
 
 
 def facts_of(mesh: pv.DataSet) -> Facts:
-    """Return what a mesh offers; its cells' arrays where its points have none."""
+    """Return what a mesh offers; its cells' arrays where its points have none.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh of the file.
+    """
     averaged = bool(len(mesh.cell_data)) and not len(mesh.point_data)
     data = mesh.cell_data_to_point_data().point_data if averaged else mesh.point_data
     scalars = {}
@@ -208,8 +214,16 @@ def _active_first(active: str | None, names: list[str]) -> list[str]:
 
 
 def first(facts: Facts) -> State:
-    """Return the state in which a file is opened: that of ``vizlight light``, but of a volume an
-    isosurface or streamlines, and a flat field raised by its heights."""  # noqa: D205, D209
+    """Return the state in which a file is opened.
+
+    It is that of ``vizlight light``, but of a volume an isosurface or streamlines, and a flat field
+    raised by its heights.
+
+    Parameters
+    ----------
+    facts : Facts
+        What the file offers.
+    """
     array = next(iter(facts.scalars), "")
     low, high = facts.scalars.get(array, (0.0, 0.0))
     vectors = next(iter(facts.vectors), "")
@@ -234,8 +248,15 @@ def middle(low: float, high: float) -> float:
 def fitted(state: State, before: State, facts: Facts) -> State:
     """Return a state with what depends on its other values put right.
 
-    Another array has another level, lines have no conditioning surface, and an isosurface is not
+    Another array has another level, only lines are lit as cylinders, and an isosurface is not
     coloured by its own constant.
+
+    Parameters
+    ----------
+    state, before : State
+        State that is asked for, and the one before it.
+    facts : Facts
+        What the file offers.
 
     Raises
     ------

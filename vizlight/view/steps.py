@@ -57,12 +57,28 @@ class Eye:
 
 
 def data(read: Step, facts: Facts) -> Step:
-    """Return the step whose mesh has the arrays at its points, after the one that reads it."""
+    """Return the step whose mesh has the arrays at its points, after the one that reads it.
+
+    Parameters
+    ----------
+    read : Step
+        Step that reads the file.
+    facts : Facts
+        What the file offers.
+    """
     return Step("averaged", ".cell_data_to_point_data", read) if facts.averaged else read
 
 
 def scene(state: State, camera: Step) -> Step:
-    """Return the step that makes the scene as a camera sees it."""
+    """Return the step that makes the scene as a camera sees it.
+
+    Parameters
+    ----------
+    state : State
+        State of the page.
+    camera : Step
+        Step that makes the camera.
+    """
     toward: object = Step("", "render.over_shoulder", camera)
     if not state.shoulder:
         toward = arguments.toward(state.azimuth, state.altitude)
@@ -86,7 +102,15 @@ def any_scene() -> Step:
 
 
 def lit(state: State, facts: Facts, mesh: Step, seen: Step) -> Step:
-    """Return the step that lights what is shown of a mesh, in a scene."""
+    """Return the step that lights what is shown of a mesh.
+
+    Parameters
+    ----------
+    state, facts
+        State of the page, and what the file offers.
+    mesh, seen : Step
+        Steps that make the mesh and the scene.
+    """
     given: dict[str, object] = {} if state.model == "phong" else {"model": state.model}
     if state.show == "streamlines":
         given = {"vectors": state.vectors, "seeds": state.lines} | given
@@ -109,7 +133,21 @@ def lit(state: State, facts: Facts, mesh: Step, seen: Step) -> Step:
 def picture(
     state: State, facts: Facts, mesh: Step, eye: Eye, size: tuple[int, int], path: Path
 ) -> list[Step]:
-    """Return the steps that light a mesh and save its picture."""
+    """Return the steps that light a mesh and save its picture.
+
+    Parameters
+    ----------
+    state, facts
+        State of the page, and what the file offers.
+    mesh : Step
+        Step that makes the mesh.
+    eye : Eye
+        Camera.
+    size : (int, int)
+        Width and height in pixels.
+    path : pathlib.Path
+        Path of the picture.
+    """
     camera = eye.step()
     light = lit(state, facts, mesh, scene(state, camera))
     shown, scalars = light, "luminance"
