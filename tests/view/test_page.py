@@ -20,6 +20,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from vizlight import cli
 from vizlight.data import example_path
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
@@ -180,6 +181,14 @@ def test_bad_input_is_one_line(arguments, words):
     assert err.startswith(f"vizlight: {words.format(taken=port)}")
     assert err.count("\n") == 1
     assert processes(process.pid) == []
+
+
+def test_missing_extra_is_one_line_with_the_command(monkeypatch, capfd):
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    assert cli.main(["view", str(example_path())]) == 2
+    err = capfd.readouterr().err
+    assert err.startswith("vizlight: view: expected the package trame, got none")
+    assert err.endswith("pip install 'vizlight[view]'\n")
 
 
 @pytest.fixture(scope="module")

@@ -111,6 +111,7 @@ class Page:
         """Return the bytes of the picture that the script makes, None if there is none."""
         state, eye, size = self.state, self.stage.eye, self.stage.size
         answer = await self._ask("drawing the picture", self.worker.picture, state, eye, size)
+        self._busy("")
         if answer.error:
             self._push(notice=answer.error)
         made: bytes | None = answer.result
@@ -212,6 +213,7 @@ class Page:
                     self._push(notice=" ".join(answer.warnings))
         finally:
             self._task = None
+            self._busy("")
             self._draw_soon()
 
     def _show(self, mesh: Any, state: State) -> str:
@@ -224,7 +226,7 @@ class Page:
         now = dataclasses.replace(self.state, show=state.show, **built)
         try:
             self.stage.show(mesh, now, framed=framed)
-        except (TypeError, ValueError) as error:
+        except Exception as error:  # noqa: BLE001 - the page shows it and keeps its picture
             return one_line(error)
         self._shown = now
         return ""
@@ -246,10 +248,7 @@ class Page:
         """Let the worker do one thing after the other while the page goes on."""
         async with self._lock:
             self._busy(doing)
-            try:
-                return await asyncio.to_thread(ask, *arguments)
-            finally:
-                self._busy("")
+            return await asyncio.to_thread(ask, *arguments)
 
     def _busy(self, doing: str) -> None:
         with self.server.state as shared:

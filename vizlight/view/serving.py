@@ -16,8 +16,8 @@ from aiohttp import web
 from trame.app import get_server
 from trame_client.module import vue3
 
-from vizlight import _check
 from vizlight.cli.output import say
+from vizlight.view.command import HOST
 from vizlight.view.layout import lay_out
 from vizlight.view.page import Page
 
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
 
 __all__ = ["run"]
 
-HOST = "127.0.0.1"
 #: Names by which a browser may know this machine; others are those of other sites that a name
 #: server sends here.
 HOSTS = {HOST, "localhost"}
@@ -70,7 +69,7 @@ def run(worker: Worker, facts: Facts, stage: Stage, *, port: int = 0, browser: b
 
     Raises
     ------
-    ValueError
+    OSError
         If the port is taken.
     """
     # Where an event loop has no signals Ctrl-C is an exception.
@@ -134,9 +133,4 @@ async def _until(server: Any, ended: asyncio.Event, port: int) -> None:
     if not serving.done():
         await server.stop()
     waiting.cancel()
-    try:
-        await serving
-    except OSError as error:
-        remedy = "leave it out for a free one"
-        expected, got = "a port that can be listened on", f"{port} ({error.strerror})"
-        raise ValueError(_check.message("--port", expected, got, remedy)) from error
+    await serving
