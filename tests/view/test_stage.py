@@ -171,8 +171,6 @@ def test_worker_that_ends_is_replaced(worker):
     own._process.join()
     assert own._answer("the process was").error == "the process was ended by SIGKILL"
     assert own.light(first(facts)).error == ""
-    own.stop()
-    assert own.light(first(facts)).error == ""
 
 
 def test_facts_travel(worker):

@@ -10,9 +10,8 @@ from pathlib import Path  # noqa: TC003 - cyclopts reads the annotations
 from vizlight import _check, _supervise
 from vizlight.cli.arguments import Flag  # noqa: TC001
 from vizlight.cli.output import LACKING, OK, complain
+from vizlight.view import HOST
 
-#: Address of this machine that no other one reaches.
-HOST = "127.0.0.1"
 #: Packages of the extra.
 NEEDED = ("trame", "trame_vuetify", "trame_vtk", "aiohttp")
 

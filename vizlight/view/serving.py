@@ -17,7 +17,7 @@ from trame.app import get_server
 from trame_client.module import vue3
 
 from vizlight.cli.output import say
-from vizlight.view.command import HOST
+from vizlight.view import HOST
 from vizlight.view.layout import lay_out
 from vizlight.view.page import Page
 
