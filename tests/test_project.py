@@ -23,7 +23,7 @@ EXTRAS = PROJECT["optional-dependencies"]
 #: Packages whose modules have another name.
 MODULES = {"pillow": {"PIL"}, "trx-python": {"trx"}, "vtk": {"vtk", "vtkmodules"}}
 #: Modules of packages that a declared package brings, and that package.
-BROUGHT = {"docutils": "sphinx", "trame_vtk": "pyvista[jupyter]"}
+BROUGHT = {"docutils": "sphinx"}
 #: Declared packages that no file imports, and what uses them.
 REASONS = {
     "check-jsonschema": "command: checks .github/workflows",
@@ -40,11 +40,12 @@ REASONS = {
     "ruff": "command",
     "scipy-stubs": "types of SciPy, which mypy reads",
     "sphinx-design": "extension of Sphinx, named in gallery/pages/conf.py",
+    "trame-vuetify": "trame.widgets.vuetify3 is of it",
     "tomli": "read above on Python 3.10 only",
 }
 #: Extras whose packages the files of a folder may import, besides the dependencies.
 ALLOWED = {
-    "vizlight": ["fast", "formats", "movie", "rays", "scale", "solids", "tracts", "test"],
+    "vizlight": ["fast", "formats", "movie", "rays", "scale", "solids", "tracts", "test", "view"],
     "tests": ["test", "docs", "tracts", "formats", "scale"],
     "gallery": ["docs"],
 }

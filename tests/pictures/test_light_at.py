@@ -58,6 +58,23 @@ def test_light_is_that_of_the_record_whatever_the_camera():
         assert 0 < error.max() <= 4
 
 
+def test_tinted_pictures_are_right_between_the_points():
+    shown = []
+    for count, light in ((6001, "points"), (61, "auto"), (61, "points")):
+        mesh = helix(count)
+        mesh["height"] = np.array(mesh.points[:, 2])
+        tinted = vizlight.tint(vizlight.illuminate(mesh, SCENE), "height", cmap="viridis")
+        shown.append(picture(tinted, scalars="rgb", camera=CAMERA, light=light))
+    fine, *coarse = shown
+    both = np.min([found.max(axis=-1) for found in shown], axis=0) > 0
+    errors = [np.abs(found - fine)[both].mean() for found in coarse]
+    assert errors[0] < 0.5 * errors[1]
+    tinted["rgb"] = 255 - np.asarray(tinted["rgb"])
+    options = {"scalars": "rgb", "camera": CAMERA}
+    kept = [picture(tinted, light=light, **options) for light in ("auto", "points")]
+    np.testing.assert_array_equal(*kept)
+
+
 def test_an_array_that_is_not_that_of_its_record_is_drawn_as_it_is():
     lit = vizlight.illuminate(helix(61), SCENE)
     lit["luminance"] = 0.3 * np.asarray(lit["luminance"])

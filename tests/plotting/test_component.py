@@ -131,6 +131,30 @@ def test_tinted_light_is_that_of_tint(plotter):
         np.testing.assert_array_equal(picture(plotter), baked(lit, plotter.camera, "rgb"))
 
 
+@pytest.mark.parametrize("light", ["points", "fragments"])
+def test_another_scene_is_that_of_a_new_mesh(plotter, light):
+    dark = SCENE.replace(material=Material(ambient=0.0, diffuse=0.0, specular=0.3))
+    bright = SCENE.replace(
+        lights=[LAMP, Light(direction=(-1, 0, 0.2))],
+        material=Material(ambient=0.2, diffuse=0.5, specular=0.3, shininess=40),
+        depth_cue=DepthCue(back_scale=0.5),
+    )
+    actor = plotter.vizlight.add_mesh(ball(), scene=dark, light=light)
+    plotter.show(auto_close=False)
+    before = picture(plotter)
+    plotter.vizlight.set_scene(actor, bright)
+    after = picture(plotter)
+    plotter.remove_actor(actor)
+    plotter.vizlight.add_mesh(ball(), scene=bright, light=light)
+    np.testing.assert_array_equal(after, picture(plotter))
+    assert np.abs(after.astype(int) - before).max() > 50
+    with pytest.raises(TypeError, match="scene: expected"):
+        plotter.vizlight.set_scene(actor, "bright")
+    bare = plotter.add_mesh(pv.Sphere())
+    with pytest.raises(ValueError, match="actor: expected one of plotter.vizlight.add_mesh"):
+        plotter.vizlight.set_scene(bare, bright)
+
+
 VIEWED = Scene(lights=LAMP, view=View(direction=(1, 1, 1)))
 LIT = {
     "illuminate": lambda: vizlight.illuminate(ball(), VIEWED, tangents="around", conditioned=True),

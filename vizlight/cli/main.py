@@ -163,6 +163,11 @@ for _name, (_module, _help, _example) in LIGHTING.items():
         help=_help,
         help_epilogue=f"Example: vizlight {_name} {_example}",
     )
+app.command(
+    "vizlight.view.command:view",
+    name="view",
+    help="Tune a picture by eye, on a page of this machine.",
+)
 app.register_install_completion_command(help="Install shell completion.")
 
 

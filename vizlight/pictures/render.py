@@ -409,8 +409,9 @@ def _add_in_fragments(
     plotter: pv.Plotter, mesh: pv.DataSet, name: str, width: dict[str, Any]
 ) -> bool:
     """Add a mesh whose light is computed in each fragment; lines that cannot be round are flat."""
-    flat = width | {"render_lines_as_tubes": False}
-    return any(add_recorded(plotter, mesh, name, **options) for options in (width, flat))
+    drawing = width | {"show_scalar_bar": False}
+    flat = drawing | {"render_lines_as_tubes": False}
+    return any(add_recorded(plotter, mesh, name, **options) for options in (drawing, flat))
 
 
 def _lifted(points: NDArray[np.floating[Any]], camera: pv.Camera, by: float) -> Any:

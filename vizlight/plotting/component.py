@@ -251,19 +251,42 @@ class Component:
         ValueError
             If the actor has no live light.
         """
+        live = self._lit_by_us(actor)
+        assert live.painter is not None
+        plotter = self._open_plotter()
+        return live.painter.explain(live, live.scene_of(plotter.renderer, actor))
+
+    def set_scene(self, actor: vtkActor, scene: Scene, /) -> None:
+        """Light an actor by another scene, from the next frame on; nothing else is computed again.
+
+        Parameters
+        ----------
+        actor : pyvista.Actor
+            Actor that :meth:`add_mesh` returned.
+        scene : Scene
+            Lights, material and depth cue, as for :meth:`add_mesh`.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If it is no scene, or the actor has no live light.
+        """
+        _check.instance("scene", scene, Scene)
+        self._lit_by_us(actor).set_scene(scene, actor)
+
+    @property
+    def has_live_light(self) -> bool:
+        """Whether the plotter shows a mesh whose light follows the camera."""
+        return any(holder.live is not None for holder in self._holders.values())
+
+    def _lit_by_us(self, actor: vtkActor) -> Live:
         expected = "one of plotter.vizlight.add_mesh"
         if not hasattr(actor, "GetAddressAsString"):
             raise TypeError(_check.message("actor", expected, _check.describe(actor)))
         live = self._live_of(actor)
         if live is None or live.painter is None:
             raise ValueError(_check.message("actor", expected, actor))
-        plotter = self._open_plotter()
-        return live.painter.explain(live, live.scene_of(plotter.renderer, actor))
-
-    @property
-    def has_live_light(self) -> bool:
-        """Whether the plotter shows a mesh whose light follows the camera."""
-        return any(holder.live is not None for holder in self._holders.values())
+        return live
 
     def _live_of(self, actor: vtkActor) -> Live | None:
         holder = self._holders.get(_address(actor))
@@ -441,7 +464,7 @@ def add_recorded(
     mesh : pyvista.DataSet
         Mesh with the light of a filter; not changed.
     name : str
-        Name of the light, or ``"rgb"`` for its colours.
+        Name of the light, or ``"rgb"`` for its colours or those of :func:`vizlight.tint`.
     **drawing
         Keywords of ``pyvista.Plotter.add_mesh``, and ``line_diameter``.
 
@@ -454,7 +477,9 @@ def add_recorded(
     blocks.check(mesh)
     _check.text("name", name, expected="the name of the light")
     light = lighting.DEFAULT_NAME if name == RGB else name
-    if not relight.is_lit(mesh, light) or name not in records.made(mesh, light):
+    scalars, colors = tinted(mesh) if name == RGB else (None, {})
+    maker = light if scalars is None else RGB
+    if not relight.is_lit(mesh, light) or name not in records.made(mesh, maker):
         return None
     try:
         (source,), scene = relight.from_record(mesh, name=light)
@@ -465,7 +490,7 @@ def add_recorded(
         return None
     used = scene if name == RGB else colorless(scene)
     own: Component = plotter.vizlight
-    return own._add(plotter, source, used, "auto", None, drawing, follow=False)
+    return own._add(plotter, source, used, "auto", scalars, colors | drawing, follow=False)
 
 
 def plot(

@@ -153,6 +153,12 @@ class Live:
         assert self.painter is not None
         self.painter.paint(self, self.scene_of(renderer, actor), renderer, actor)
 
+    def set_scene(self, scene: Scene, actor: vtkActor) -> None:
+        """Take another scene, by which the next frame is lit."""
+        assert self.painter is not None
+        self.scene, self._state = scene, ()
+        self.painter.start(self, actor)
+
     def invalid(self) -> int:
         """Return the number of points whose vectors have no direction."""
         good = np.ones(self.source.inputs.rows, dtype=np.bool_)
