@@ -41,6 +41,7 @@ REASONS = {
     "scipy-stubs": "types of SciPy, which mypy reads",
     "sphinx-design": "extension of Sphinx, named in gallery/pages/conf.py",
     "trame-vuetify": "trame.widgets.vuetify3 is of it",
+    "trame-vtk": "trame.widgets.vtk, which shows the picture of vizlight view, is in it",
     "tomli": "read above on Python 3.10 only",
 }
 #: Extras whose packages the files of a folder may import, besides the dependencies.

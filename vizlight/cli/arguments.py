@@ -171,8 +171,7 @@ class Output:
     Parameters
     ----------
     output
-        Picture .png, mesh .vtp, .vtu, .vtk, .vts, .vti or .vtr, colours of ambient and diffuse
-        light .glb, or a folder.
+        Picture .png, mesh .vtp .vtu .vtk .vts .vti .vtr, glTF .glb, or a folder.
     size
         Width and height of the picture in pixels.
     background
