@@ -173,6 +173,9 @@ class Output:
     output
         Picture .png, mesh .vtp, .vtu, .vtk, .vts, .vti or .vtr, colours of ambient and diffuse
         light .glb, or a folder.
+    paraview
+        Script .py that shows the mesh in ParaView with light in each fragment, which follows the
+        camera; the mesh goes beside it as .vtp. Run it by paraview --script=FILE.
     size
         Width and height of the picture in pixels.
     background
@@ -190,6 +193,7 @@ class Output:
     """
 
     output: Outputs | None = None
+    paraview: Path | None = None
     size: str = "1200x800"
     background: str | None = None
     line_width: float = 1.0
