@@ -260,10 +260,10 @@ def test_save_writes_both_files_or_says_why(tmp_path):
     before = mesh.copy()
     path = paraview.save(mesh, scene, tmp_path / "a.py", tangents="around", scalars="around")
     assert mesh == before
-    kept = pv.read(tmp_path / "a.vtp")
+    kept = pv.read(tmp_path / "a-paraview.vtp")
     name = re.search(r"'SelectNormalArray': '(.*)'", path.read_text())[1]
     np.testing.assert_allclose(kept[name], mesh["around"], atol=1e-7)
-    assert repr(str((tmp_path / "a.vtp").resolve())) in path.read_text()
+    assert repr(str((tmp_path / "a-paraview.vtp").resolve())) in path.read_text()
     lit = vizlight.illuminate(mesh, scene, normals="Normals")
     assert paraview.save(lit, None, tmp_path / "b.py").exists()
     blocks = pv.MultiBlock([mesh, mesh])

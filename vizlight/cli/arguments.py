@@ -175,7 +175,7 @@ class Output:
         light .glb, or a folder.
     paraview
         Script .py that shows the mesh in ParaView with light in each fragment, which follows the
-        camera; the mesh goes beside it as .vtp. Run it by paraview --script=FILE.
+        camera; the mesh goes to a .vtp beside it. Run it by paraview --script=FILE.
     size
         Width and height of the picture in pixels.
     background

@@ -165,6 +165,10 @@ def _check_paths(job: Job, inputs: Sequence[Path]) -> None:
 
     for path in (*job.pictures, *(path for _, path in job.meshes)):
         files.check_output(path, (".png", *SHOWN, *files.SUFFIXES))
+        if path.suffix.lower() == ".py":
+            from vizlight.plotting.paraview import beside
+
+            path = beside(path)
         if any(path.exists() and file.exists() and path.samefile(file) for file in inputs):
             expected = "another file than the input"
             raise files.FileError(_check.message("output", expected, f"'{path}'"))

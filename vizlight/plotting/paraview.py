@@ -194,7 +194,7 @@ def save(
         As for :func:`shader`. None for the record of a lit mesh.
     path : path
         Path of the script, which ends in .py. The mesh, with the tangents and normals of its
-        light, is the .vtp of the same name beside it. Existing files are replaced.
+        light, is beside it: ``NAME-paraview.vtp`` for ``NAME.py``. Existing files are replaced.
     scalars : str, optional
         Name of the point array that gives the colours, by ParaView's colour map. Default: the
         colour of the material.
@@ -234,9 +234,14 @@ def save(
     painter.attach(live)
     written = program.write(plan, turned=source.sided is not None)
     made = _made(used, plan, written, TANGENTS, NORMALS, tallest=painter.tallest)
-    data = files.write_mesh(live.drawn, path.with_suffix(".vtp"))
+    data = files.write_mesh(live.drawn, beside(path))
     text = made.script(data.resolve(), scalars=scalars)
     return files.replace_file(path, lambda draft: Path(draft).write_text(text, "utf-8"))
+
+
+def beside(path: Path) -> Path:
+    """Return the path of the mesh that a script shows."""
+    return path.with_name(f"{path.stem}-paraview.vtp")
 
 
 def _named(name: str, value: object) -> str | None:
