@@ -15,6 +15,7 @@ from vizlight._version import __version__ as __version__
 if TYPE_CHECKING:
     from vizlight import engine as engine
     from vizlight import movie as movie
+    from vizlight import paraview as paraview
     from vizlight import pieces as pieces
     from vizlight import render as render
     from vizlight import testing as testing
@@ -87,8 +88,8 @@ _HOMES = {
     "to_polydata": "vizlight.filters",
 }
 _MODULES = (
-    "accessor", "engine", "filters", "geometry", "model", "movie", "pieces", "render", "studies",
-    "testing",
+    "accessor", "engine", "filters", "geometry", "model", "movie", "paraview", "pieces", "render",
+    "studies", "testing",
 )  # fmt: skip
 
 _aliases.install()

@@ -31,6 +31,7 @@ ALIASES = {
     "vizlight.engine": "vizlight.shading.engine",
     "vizlight.light": "vizlight.scene.light",
     "vizlight.movie": "vizlight.pictures.movie",
+    "vizlight.paraview": "vizlight.plotting.paraview",
     "vizlight.plan": "vizlight.shading.engine",
     "vizlight.render": "vizlight.pictures.render",
     "vizlight.testing": "vizlight.pictures.testing",

@@ -296,7 +296,16 @@ def path(name: str, value: object) -> Path:
     if not isinstance(value, str | os.PathLike):
         raise TypeError(message(name, expected, describe(value)))
     given = os.fspath(value)
-    if not text(name, given, expected=expected):
+    if not isinstance(given, str):
+        raise TypeError(message(name, expected, describe(value)))
+    try:
+        # Bytes that are no characters of the locale are those of files all the same.
+        valid = "\0" not in os.fsencode(given).decode("latin-1")
+    except UnicodeEncodeError:
+        valid = False
+    if not valid:
+        raise ValueError(message(name, f"{expected} of valid characters", describe(value)))
+    if not given:
         raise ValueError(message(name, expected, "an empty text"))
     return Path(given)
 

@@ -98,6 +98,27 @@ def test_gltf_has_the_colours_of_the_picture(volume, tmp_path, capfd):
     assert plain != colored
 
 
+def test_script_for_paraview(volume, tmp_path, capfd):
+    options = ("light", volume, "--contour", "r", "--tangents", "V", "--paraview")
+    code, out, err = run(capfd, *options, "a.py")
+    assert (code, err) == (0, "")
+    assert "mesh     a.py" in out
+    assert sorted(path.name for path in tmp_path.glob("a*")) == ["a-paraview.vtp", "a.py"]
+    assert not list(tmp_path.glob("*.png"))
+    assert str(tmp_path / "a-paraview.vtp") in (tmp_path / "a.py").read_text()
+    code, out, _ = run(capfd, *options, "a.py", "--script")
+    assert code == 0
+    assert 'paraview.save(lit, None, "a.py")' in out
+    # The light of a cylinder is no program of fragments, and a script is named as one.
+    for more, words in ((("b.py", "--model", "cylinder"), "integral"), (("b.txt",), ".py")):
+        code, _, err = run(capfd, *options, *more)
+        assert code == 2
+        assert words in err
+    again = ("light", tmp_path / "a-paraview.vtp", "--paraview", "a.py")
+    assert "another file than the input" in run(capfd, *again)[2]
+    assert not list(tmp_path.glob("b*"))
+
+
 def test_all_points_of_a_volume(volume, capfd):
     code, _, err = run(capfd, "light", volume, "--no-surface", "--tangents", "V", "-o", "x.vti")
     assert (code, err) == (0, "")

@@ -172,6 +172,8 @@ class Output:
     ----------
     output
         Picture .png, mesh .vtp .vtu .vtk .vts .vti .vtr, glTF .glb, or a folder.
+    paraview
+        Script .py that shows it in ParaView, lit in each fragment, and a .vtp beside it.
     size
         Width and height of the picture in pixels.
     background
@@ -189,6 +191,7 @@ class Output:
     """
 
     output: Outputs | None = None
+    paraview: Path | None = None
     size: str = "1200x800"
     background: str | None = None
     line_width: float = 1.0

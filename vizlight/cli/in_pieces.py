@@ -108,6 +108,7 @@ def _refuse(target: Target, color: Color, out: Output) -> None:
         "--salvage": target.salvage,
         "--scalars": color.scalars,
         "--report": out.report,
+        "--paraview": out.paraview,
     }
     for option, value in unknown.items():
         if value:

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 #: File name extension of glTF, which holds what of the light does not depend on the eye.
 GLTF = ".glb"
+#: Files that no writer of meshes writes, and the functions that do.
+SHOWN = {GLTF: "vizlight.save_gltf", ".py": "paraview.save"}
 
 
 @dataclass
@@ -135,12 +137,16 @@ def _check_output(out: Output, *, several: bool) -> None:
             expected = "a folder that exists, for several files"
             raise files.FileError(_check.message("output", expected, f"'{path}'"))
         files.check_output(path, (".png", GLTF, *files.SUFFIXES))
+    if out.paraview and several:
+        raise ValueError(_check.message("paraview", "one file to light", "several"))
+    if out.paraview:
+        files.check_output(out.paraview, (".py",))
 
 
 def _set_outputs(job: Job, file: Path, out: Output, stem: str) -> None:
     """Set the files of meshes and of pictures."""
     paths: list[Path] = []
-    for path in out.output or [Path()]:
+    for path in out.output or ([] if out.paraview else [Path()]):
         endings = (job.suffix, ".png") if job.suffix else (".png",)
         folder = path.is_dir()
         paths += [path / f"{file.stem}-{stem}{end}" for end in endings] if folder else [path]
@@ -149,6 +155,8 @@ def _set_outputs(job: Job, file: Path, out: Output, stem: str) -> None:
             job.pictures.append(path)
         else:
             job.meshes += job.of_parts(path)
+    if out.paraview:
+        job.meshes += job.of_parts(out.paraview)
 
 
 def _check_paths(job: Job, inputs: Sequence[Path]) -> None:
@@ -156,13 +164,17 @@ def _check_paths(job: Job, inputs: Sequence[Path]) -> None:
     from vizlight import files
 
     for path in (*job.pictures, *(path for _, path in job.meshes)):
-        files.check_output(path, (".png", GLTF, *files.SUFFIXES))
+        files.check_output(path, (".png", *SHOWN, *files.SUFFIXES))
+        if path.suffix.lower() == ".py":
+            from vizlight.plotting.paraview import beside
+
+            path = beside(path)
         if any(path.exists() and file.exists() and path.samefile(file) for file in inputs):
             expected = "another file than the input"
             raise files.FileError(_check.message("output", expected, f"'{path}'"))
     formats = files.FORMATS.get(job.kind, files.SUFFIXES) if job.before is None else files.SUFFIXES
     for _, path in job.meshes:
-        if path.suffix.lower() not in (GLTF, *formats):
+        if path.suffix.lower() not in (*SHOWN, *formats):
             expected = f"a name that ends in {', '.join(formats)} for {job.kind}"
             raise files.FileError(_check.message("output", expected, f"'{path.name}'"))
 
@@ -190,11 +202,14 @@ def _picture(job: Job, path: Path, out: Output) -> Step:
 
 def _written(job: Job, mesh: Step, path: Path) -> Step:
     """Return the step that writes a mesh."""
-    if path.suffix.lower() != GLTF:
+    writer = SHOWN.get(path.suffix.lower())
+    if writer is None:
         return Step("", "files.write_mesh", mesh, path)
     color = job.color
-    chosen = {} if color is None else {"scalars": color.scalars, "cmap": color.cmap}
-    return Step("", "vizlight.save_gltf", mesh, None, path, **chosen)
+    chosen = {} if color is None else {"scalars": color.scalars}
+    if color is not None and path.suffix.lower() == GLTF:
+        chosen["cmap"] = color.cmap
+    return Step("", writer, mesh, None, path, **chosen)
 
 
 def _last_steps(job: Job, out: Output) -> list[Step]:
@@ -209,11 +224,11 @@ def _run(job: Job, out: Output) -> int:
     if job.before is not None:
         mesh = job.before.run()
         for _, path in job.meshes:
-            if path.suffix.lower() != GLTF:
+            if path.suffix.lower() not in SHOWN:
                 files.check_format(mesh, path)
     lit = _light(job, out)
     for step, path in job.meshes:
-        if path.suffix.lower() != GLTF:
+        if path.suffix.lower() not in SHOWN:
             files.check_format(step.run(), path)
     if job.pictures:
         _count_white(lit, job.name)

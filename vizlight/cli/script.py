@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 #: First names of paths: modules in groups, and modules of vizlight.
 MODULES = (("json", "pathlib"), ("numpy", "pyvista"), ("vizlight",))
-OWN = ("files", "render")
+OWN = ("files", "paraview", "render")
 INDENT, WIDTH = 4, 88
 #: Indentation at which nothing is broken.
 ONE_LINE = -(10**6)

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
-from vizlight.plotting.program import suffixed
+from vizlight.plotting import glsl
+from vizlight.plotting.program import Varying, suffixed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from vizlight.plotting.program import Program, Uniform, Varying
+    from vizlight.plotting.program import Program, Uniform
+
+#: Matrix from the coordinates of a buffer of VTK to those of the world.
+WORLD = "MCWCMatrix"
 
 
 class Replacement(NamedTuple):
@@ -40,6 +45,9 @@ class Dialect:
         Whether there may be a geometry shader between the two others.
     declares : bool
         Whether the text declares its uniforms; otherwise the renderer does.
+    constant : bool, default: False
+        Whether the text holds the numbers, because the renderer takes none. Those that do not turn
+        with the camera are turned in the vertex shader.
     """
 
     attribute: str
@@ -51,6 +59,7 @@ class Dialect:
     turned: str
     geometry: bool
     declares: bool
+    constant: bool = False
 
     def declare(self, uniform: Uniform) -> str:
         """Return the declaration of a uniform in the fragment shader, a line or nothing."""
@@ -75,6 +84,8 @@ class Dialect:
             attributes += f"{self.attribute} vec3 {self.tangent};\n"
         out = "".join(f"{self.output} {kind} {name};\n" for kind, name in names)
         matrices = f"uniform mat4 {self.clip};\nuniform mat4 MCVCMatrix;\n"
+        if WORLD in read:
+            matrices += f"uniform mat4 {WORLD};\n"
         found = [
             Replacement("Vertex", "//VTK::Camera::Dec", matrices),
             Replacement(
@@ -109,16 +120,45 @@ class Dialect:
         -------
         list of Replacement
         """
-        into = "".join(f"{self.input} {v.kind} {suffixed(v.name)};\n" for v in program.varyings)
-        uniforms = "".join(map(self.declare, numbers))
-        written = f"{program.body}\n  gl_FragData[0] = vec4(vizColor, opacity);\n"
+        given, varyings = list(numbers), list(program.varyings)
+        constants = ""
+        if self.constant:
+            varyings += [_turned(uniform) for uniform in given if uniform.space]
+            constants = "".join(map(_constant, given))
+        into = "".join(f"{self.input} {v.kind} {suffixed(v.name)};\n" for v in varyings)
+        uniforms = "".join(map(self.declare, given))
+        written = f"{constants}{program.body}\n  gl_FragData[0] = vec4(vizColor, opacity);\n"
         return [
-            *self.passing(program.varyings),
+            *self.passing(varyings),
             Replacement("Fragment", "//VTK::Normal::Dec", into),
             Replacement("Fragment", "//VTK::Normal::Impl", ""),
             Replacement("Fragment", "//VTK::Light::Dec", f"{uniforms}{program.functions}\n"),
             Replacement("Fragment", "//VTK::Light::Impl", written),
         ]
+
+
+def _constant(uniform: Uniform) -> str:
+    """Return the statement that gives a number its value in the fragment shader."""
+    name, kind, value, space = uniform
+    text = glsl.vector(value)
+    if name == "vizEye":
+        text = f"cameraParallel == 1 ? {text} : vec4(0.0, 0.0, 0.0, 1.0)"
+    elif space:
+        text = suffixed(name) if space == "position" else f"normalize({suffixed(name)})"
+    return f"  {kind} {name} = {text};\n"
+
+
+def _turned(uniform: Uniform) -> Varying:
+    """Return a vector as the vertex shader turns it to view coordinates.
+
+    The matrices are those from the coordinates of the buffer, which VTK may have moved and scaled;
+    the origin of the buffer has the one position that is known in both.
+    """
+    text = glsl.vector(uniform.value)
+    if uniform.space == "position":
+        text = f"({text} - {WORLD}[3].xyz)"
+        return Varying(uniform.name, "vec3", f"MCVCMatrix[3].xyz + normalMatrix * {text}")
+    return Varying(uniform.name, "vec3", f"normalMatrix * {text}")
 
 
 #: VTK 9.6 and later, on the desktop. It declares uniforms itself.
@@ -148,3 +188,10 @@ VTK_JS = Dialect(
     geometry=False,
     declares=True,
 )
+
+#: ParaView 5.11, which has VTK 9.1 and takes text alone. The eye is that of its camera.
+PARAVIEW = dataclasses.replace(VTK, constant=True)
+
+#: The same with tangents. VTK 9.1 takes an array of any type as the normals, but as the tangents
+#: only one of float32, as ParaView's filters make normals: so the two change places.
+PARAVIEW_TANGENTS = dataclasses.replace(PARAVIEW, normal="tangentMC", tangent="normalMC")

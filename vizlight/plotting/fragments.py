@@ -62,6 +62,18 @@ def unfit(
     alone = layout._replace(normals=False, dimmed=False, occluded=False) == Layout(k=1)
     if stroke.round and (options.conditioned or not alone):
         return "only lines that are lit by their tangents alone can be round"
+    reason = unfit_layout(layout, options, stroke)
+    if not reason and inputs.tangents is not None and _reverses(inputs, mesh):
+        return "the tangents reverse from point to point, so their sign is arbitrary"
+    return reason
+
+
+def unfit_layout(
+    layout: Layout,
+    options: ShadingOptions,
+    stroke: Stroke = Stroke(),  # noqa: B008
+) -> str:
+    """Return why inputs of a layout cannot be lit in each fragment, or an empty string."""
     if layout.n != 3:
         return f"light in {layout.n}-space has no direction in the picture"
     if layout.k not in (None, 1):
@@ -74,8 +86,6 @@ def unfit(
         return "the shares of light inside a bundle are known at the points"
     if layout.base:
         return "base tangents span a plane, which is not interpolated"
-    if inputs.tangents is not None and _reverses(inputs, mesh):
-        return "the tangents reverse from point to point, so their sign is arbitrary"
     return ""
 
 

@@ -11,7 +11,7 @@ from vizlight.scene.light import NO_ATTENUATION
 from vizlight.shading import formulas
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from vizlight.shading.plan import Plan
 
@@ -128,6 +128,12 @@ def number(value: float) -> str:
     """Return a number as GLSL writes it, rounded to float32's digits."""
     text = f"{float(value):.9g}"
     return text if any(c in text for c in ".einf") else f"{text}.0"
+
+
+def vector(values: Sequence[float]) -> str:
+    """Return a number or a vector as GLSL writes it."""
+    texts = ", ".join(map(number, values))
+    return f"vec{len(values)}({texts})" if len(values) > 1 else texts
 
 
 def is_plain(shininess: float) -> bool:

@@ -110,12 +110,30 @@ class Shown(NamedTuple):
     specular_color: tuple[float, float, float] = WHITE
 
 
+#: Statements that turn the normal where its length does not say how.
+_TOWARD = {
+    "": "",
+    "eye": "  if (dot(vizN, vizEye.xyz - vizEye.w * vizP) < 0.0) vizN = -vizN;\n",
+    "face": (
+        "  vec3 vizFace = cross(dFdx(vizP), dFdy(vizP));\n"
+        "  if (dot(vizFace, vizEye.xyz - vizEye.w * vizP) * dot(vizFace, vizN) < 0.0)\n"
+        "    vizN = -vizN;\n"
+    ),
+}
+
+
 def suffixed(name: str) -> str:
     """Return the name of a varying as a fragment shader reads it."""
     return f"{name}VSOutput"
 
 
-def write(plan: Plan, *, turned: bool, stroke: Stroke = Stroke()) -> Program:  # noqa: B008
+def write(
+    plan: Plan,
+    *,
+    turned: bool,
+    toward: Literal["", "eye", "face"] = "",
+    stroke: Stroke = Stroke(),  # noqa: B008
+) -> Program:
     """Return the program of a plan.
 
     Parameters
@@ -125,6 +143,9 @@ def write(plan: Plan, *, turned: bool, stroke: Stroke = Stroke()) -> Program:  #
     turned : bool
         Whether the normal is turned to the eye, unless it leans away by what its length says: from
         1 for a lean of -1 to 2 for one of 1.
+    toward : {"", "eye", "face"}
+        Where normals have no such length: whether they are turned to the eye, or to the side of
+        the face that is seen, which may lean away between the corners. A line has no face.
     stroke : Stroke
         Width of lines; the plan of round ones is that of the surface of their cylinders.
 
@@ -137,7 +158,7 @@ def write(plan: Plan, *, turned: bool, stroke: Stroke = Stroke()) -> Program:  #
     read = f"  vec3 vizP = {suffixed('vizP')};\n  bool vizGood = true;\n"
     if (plan.surface and not stroke.round) or plan.conditioned or plan.fur:
         names.append(Varying("vizN", "vec3", "{normal}"))
-        read += _unit("vizN")
+        read += _unit("vizN") + _TOWARD[toward]
     elif stroke != Stroke():
         names.append(ALONG)
     if plan.fur or turned:

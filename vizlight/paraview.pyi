@@ -1,0 +1,1 @@
+from vizlight.plotting.paraview import *
