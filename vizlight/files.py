@@ -106,6 +106,9 @@ def read(path: str | Path, /, *, salvage: bool = False, isolated: bool = False) 
         raise FileError(_check.message("file", "a file", f"'{path}' ({what})"))
     if not os.access(path, os.R_OK):
         raise FileError(_check.message("file", "a readable file", f"'{path}'"))
+    if str(path).encode("utf-8", "replace") != os.fsencode(path):
+        expected, remedy = "a name in the characters of the locale", "set PYTHONUTF8=1"
+        raise FileError(_check.message("file", expected, ascii(str(path)), remedy))
     reason = "no points"
     mesh: pv.DataSet | None = None
     limit = _supervise.read_limit(path.stat().st_size)

@@ -144,8 +144,10 @@ CASES = {
 def faults(folder, **how):
     """Light all files, in a way that ``runner.run`` takes, and return what is wrong, line by line.
 
-    A file is lit, or refused with one line; nothing else is left, and no file is changed.
+    A file is lit, or refused with one line; nothing else is left, and no file is changed. In the C
+    locale VTK has no words for a name with other letters, which one line says.
     """
+    plain = how.get("environment", {}).get("LC_ALL") == "C"
     made = folder / "made"
     made.mkdir()
     for name, case in CASES.items():
@@ -155,6 +157,8 @@ def faults(folder, **how):
     wrong = []
     for (name, case), run in zip(CASES.items(), runner.run(commands, **how), strict=True):
         lines = run.err.splitlines()
+        if plain and not name.isascii():
+            case = case._replace(code=2, words="PYTHONUTF8=1")
         right = (
             run.code == case.code
             and case.words in run.err
