@@ -57,10 +57,11 @@ class StreamlineOptions(LightOptions):
     Parameters
     ----------
     vectors : str or tuple of 2 str, optional
-        Name of a point array of 3 components, or of 6 or 9: a symmetric tensor (XX, YY, ZZ, XY, YZ,
-        XZ, as in VTK) or a matrix, whose first eigenvector is traced as a line field. Default: the
-        active vectors. Names of two arrays of 3 components, with ``line_field=True``: a cross
-        field, such as both principal directions, in which lines of either direction are traced.
+        Name of a point array of 3, 6 or 9 components, or two names. 6 components are a symmetric
+        tensor (XX, YY, ZZ, XY, YZ, XZ, as in VTK) and 9 a matrix, whose first eigenvector is traced
+        as a line field. Two names, of arrays of 3 components and with ``line_field=True``, are a
+        cross field, such as both principal directions: lines of either direction are traced. On the
+        command line they are ``u,v``. Default: the active vectors.
     line_field : bool, default: False
         Whether the vectors are directions without sign, such as principal directions. Each vector
         is then aligned with the one before it on the line. Tensors are always line fields. Of a
