@@ -32,6 +32,7 @@ def folder(tmp_path, monkeypatch):
     x, y, z = (grid.points - 5.5).T
     grid["r"] = np.sqrt(x * x + y * y + z * z)
     grid["V"] = np.stack([-y - 0.1, x + 0.1, 0.2 * z + 1], axis=1).astype(np.float32)
+    grid["W"] = np.cross(grid["V"], (1, 0, 0)).astype(np.float32)
     grid.save("flow.vti")
     terrain = pv.ImageData(dimensions=(20, 16, 1))
     terrain["height"] = 3 * np.sin(terrain.points[:, 0] / 3) * np.cos(terrain.points[:, 1] / 4)
@@ -84,6 +85,7 @@ COMMANDS = {
     "lines by their bundle": "light tract.vtp --scalars bundle",
     "streamlines on a surface": "streamlines flow.vti --vectors V --contour r --confined --seeds 9",
     "evenly spaced": "streamlines flow.vti --vectors V --contour r --confined --spacing 1.5",
+    "a cross field": "streamlines flow.vti --vectors V,W --line-field --seeds 9",
     "lines without sign": "streamlines flow.vti --vectors V --line-field --seeds 9",
     "relief": "relief terrain.vti --light 315,20 --depth 0.5 --border wall",
     "relief, lit": "relief terrain.vti --lit --color white --factor 2 --elevation height",

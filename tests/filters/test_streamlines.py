@@ -560,6 +560,100 @@ def test_the_surface_of_lines_is_split_at_sharp_edges():
     np.testing.assert_allclose(lines.length, round_.length, rtol=1e-2)
 
 
+def wheel(n=72):
+    """Return a torus with meridians and parallels in random order and of any signs and lengths."""
+    theta, phi = np.meshgrid(2 * np.pi * np.arange(n) / n, 2 * np.pi * np.arange(n) / n)
+    # The first row and column again: vertices at one position.
+    theta, phi = (np.pad(angle, (0, 1), mode="wrap") for angle in (theta, phi))
+    ring = 1 + 0.4 * np.cos(theta)
+    mesh = pv.StructuredGrid(ring * np.cos(phi), ring * np.sin(phi), 0.4 * np.sin(theta))
+    theta, phi = theta.ravel("F"), phi.ravel("F")
+    u = [-np.sin(theta) * np.cos(phi), -np.sin(theta) * np.sin(phi), np.cos(theta)]
+    v = [-np.sin(phi), np.cos(phi), 0 * phi]
+    random = np.random.default_rng(3)
+    pairs = np.stack([np.stack(u, axis=1), np.stack(v, axis=1)], axis=1)
+    swap = random.random(len(pairs)) < 0.5
+    pairs[swap] = pairs[swap][:, ::-1]
+    pairs *= random.choice([-1, 1], (len(pairs), 2, 1)) * random.uniform(0.1, 9, (len(pairs), 2, 1))
+    mesh["u"], mesh["v"] = pairs[:, 0], pairs[:, 1]
+    return mesh
+
+
+def families(lines):
+    """Return lengths of lines of a torus, whether they are parallels, and their largest error."""
+    found = []
+    for p in parts(lines):
+        length = np.linalg.norm(np.diff(p, axis=0), axis=1).sum()
+        phi, theta = np.arctan2(p[:, 1], p[:, 0]), np.arctan2(p[:, 2], np.hypot(*p[:, :2].T) - 1)
+        across, along = (np.abs(np.angle(np.exp(1j * (a - a[0])))).max() for a in (phi, theta))
+        found.append((length, 0.4 * along < across, min(across, 0.4 * along)))
+    return np.array(found).T
+
+
+def test_both_families_of_a_cross_field_are_evenly_spaced():
+    mesh = wheel()
+    before = mesh.copy()
+    lines = streamlines(mesh, SCENE, vectors=("u", "v"), line_field=True, spacing=0.2)
+    assert mesh == before
+    length, parallel, error = families(lines)
+    assert error.max() < 0.01
+    for family in (parallel == 1, parallel == 0):
+        # One line per spacing covers the torus.
+        assert length[family].sum() * 0.2 == pytest.approx(1.6 * np.pi**2, rel=0.15)
+    assert lines.field_data["largest_gap"][0] < 1.22
+    assert lines.field_data["nearest"][0] > 0.5
+    assert lines.field_data["closed"][0] > 10
+    assert not {"u", "v"} & set(lines.point_data)
+    told = vizlight.provenance(lines)["options"]
+    assert (told["vectors"], told["line_field"]) == (["u", "v"], True)
+
+
+def test_two_lines_of_a_cross_field_start_at_a_point():
+    seeds = np.array([[1.39, 0, 0.1], [0, 0.98, 0.4]])
+    cross = {"vectors": ["u", "v"], "line_field": True, "max_length": 1.0}
+    lines = streamlines(wheel(), SCENE, seeds=seeds, **cross)
+    _, parallel, error = families(lines)
+    assert error.max() < 0.01
+    np.testing.assert_array_equal(np.sort(parallel.reshape(2, 2), axis=1), [[0, 1], [0, 1]])
+    assert streamlines(wheel(), SCENE, seeds=9, **cross).n_lines == 9
+
+
+def test_a_cross_field_in_a_volume():
+    grid = pv.ImageData(dimensions=(9, 9, 9), spacing=(0.125, 0.125, 0.125))
+    random = np.random.default_rng(0)
+    swap = random.random((grid.n_points, 1)) < 0.5
+    x, y = np.array([1.0, 0, 0]), np.array([0.3, 2.0, 0])
+    grid["u"], grid["v"] = np.where(swap, x, -y), np.where(swap, y, -x)
+    seeds = [[0.3, 0.4, 0.52]]
+    lines = streamlines(grid, SCENE, vectors=("u", "v"), line_field=True, seeds=seeds)
+    ends = np.sort([np.abs(p[-1] - p[0]) for p in parts(lines)], axis=0)
+    np.testing.assert_allclose(ends, [[0.15, 0, 0], [1, 1, 0]], atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("options", "error", "words"),
+    [
+        ({"vectors": ("u", "v")}, ValueError, "line_field: expected True .* pass line_field=True"),
+        ({"vectors": ("u", "v", "u")}, ValueError, "vectors: expected one name .*, got 3 names"),
+        ({"vectors": ("u", "w")}, ValueError, "vectors: expected the name .*'u', 'v'.*got 'w'"),
+        ({"vectors": ("u", "u")}, ValueError, "vectors: expected two different arrays, got 'u'"),
+        ({"vectors": ("u", 3)}, TypeError, "vectors: expected the names of two point arrays"),
+        ({"vectors": ("u", "D")}, ValueError, "vectors: expected .*3 components"),
+        (
+            {"vectors": ("u", "v"), "surface": pv.Sphere(), "confined": True},
+            ValueError,
+            "vectors: expected two point arrays of the surface, got 'u'; attach both",
+        ),
+    ],
+)
+def test_bad_cross_fields(options, error, words):
+    mesh = wheel(9)
+    mesh["D"] = np.ones((mesh.n_points, 6))
+    signless = {} if "pass" in words else {"line_field": True}
+    with pytest.raises(error, match=words):
+        streamlines(mesh, SCENE, **signless, **options)
+
+
 @pytest.mark.parametrize("options", [{}, {"line_field": True}, {"spacing": 0.5}])
 def test_progress_is_shown_on_standard_error(options, capfd):
     lines = streamlines(vortex(), SCENE, vectors="V", seeds=9, progress_bar=True, **options)

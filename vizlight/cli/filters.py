@@ -53,6 +53,8 @@ def streamlines(
     scenes.check_color(color)
     look = scenes.Look(common)
     given = options.keywords(how)
+    if given.get("line_field") and "," in given.get("vectors", ""):
+        given["vectors"] = tuple(given["vectors"].split(","))
     asked = StreamlineOptions(**given)
 
     def job(path: Path) -> Job:

@@ -14,13 +14,13 @@ from vizlight.filters.illuminate import light_mesh
 from vizlight.mesh import blocks, hull, point_arrays, polylines, records, surfaces, tracers
 from vizlight.mesh.normals import onlooker
 from vizlight.mesh.records import all_made
-from vizlight.mesh.tracers import TRACED
+from vizlight.mesh.tracers import TRACED, Vectors
 from vizlight.model import line_fields
 from vizlight.scene import Scene
 from vizlight.shading.options import LightKeywords, LightOptions, accepts
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import ArrayLike
     from typing_extensions import Unpack
@@ -36,7 +36,7 @@ OWN_TANGENTS = "vizlight tangents"
 class StreamlineKeywords(LightKeywords, total=False):
     """The fields of :class:`StreamlineOptions` as keyword arguments."""
 
-    vectors: str | None
+    vectors: str | tuple[str, str] | None
     line_field: bool
     surface: pv.PolyData | None
     confined: bool | None
@@ -56,13 +56,17 @@ class StreamlineOptions(LightOptions):
 
     Parameters
     ----------
-    vectors : str, optional
-        Name of a point array of 3 components, or of 6 or 9: a symmetric tensor (XX, YY, ZZ, XY, YZ,
-        XZ, as in VTK) or a matrix, whose first eigenvector is traced as a line field. Default: the
-        active vectors.
+    vectors : str or tuple of 2 str, optional
+        Name of a point array of 3, 6 or 9 components, or two names. 6 components are a symmetric
+        tensor (XX, YY, ZZ, XY, YZ, XZ, as in VTK) and 9 a matrix, whose first eigenvector is traced
+        as a line field. Two names, of arrays of 3 components and with ``line_field=True``, are a
+        cross field, such as both principal directions: lines of either direction are traced. On the
+        command line they are ``u,v``. Default: the active vectors.
     line_field : bool, default: False
         Whether the vectors are directions without sign, such as principal directions. Each vector
-        is then aligned with the one before it on the line. Tensors are always line fields.
+        is then aligned with the one before it on the line. Tensors are always line fields. Of a
+        cross field each of the two is continued by whichever of the next two is nearest to it:
+        signs, order and lengths do not matter.
     surface : pyvista.PolyData, optional
         Surface whose normals condition the light of the lines near it (Banks 6), and on which
         confined lines stay. Default for a mesh that is a surface: the mesh itself.
@@ -72,12 +76,14 @@ class StreamlineOptions(LightOptions):
     seeds : int or array_like, shape (M, 3), or mesh, default: 200
         Points at which lines start. A number is that of the lines, from points of the mesh drawn
         without repetition, or, for confined lines and line fields, from random places, uniform in
-        area or volume. Has no effect as a number with ``spacing``.
+        area or volume. At a given point of a cross field two lines start. Has no effect as a number
+        with ``spacing``.
     seed : int, default: 0
         Seed of the random numbers.
     spacing : float, optional
         Distance between evenly spaced lines, in the unit of the mesh, at which they cover the whole
-        surface or volume.
+        surface or volume; in a cross field once along each of the two directions. Lines of a cross
+        field keep their distance where the angle between them is below 45 degrees.
     separation : float, default: 0.5
         Share of the spacing at which a line ends before another.
     shortest : float, default: 2.0
@@ -95,7 +101,7 @@ class StreamlineOptions(LightOptions):
         :func:`vizlight.illuminate`. Default: whether there is a surface.
     """
 
-    vectors: str | None = None
+    vectors: str | tuple[str, str] | None = None
     line_field: bool = False
     surface: pv.PolyData | None = None
     confined: bool | None = None
@@ -124,10 +130,33 @@ class StreamlineOptions(LightOptions):
         if surface is not None and not isinstance(surface, pv.DataSet):
             expected, got = "a PyVista surface", _check.describe(surface)
             raise TypeError(_check.message("surface", expected, got))
-        point_arrays.refuse_unnamed("vectors", self.vectors)
+        given: object = self.vectors
+        if isinstance(given, list | tuple):
+            _check.set_fields(self, vectors=_pair(given, line_field=self.line_field))
+        else:
+            point_arrays.refuse_unnamed("vectors", given)
         _check.integer("seed", self.seed, low=0)
         if self.spacing is not None:
             _check.set_fields(self, spacing=_check.positive("spacing", self.spacing))
+
+
+def _pair(names: Sequence[object], *, line_field: bool) -> tuple[str, str]:
+    """Return the names of the arrays of a cross field."""
+    if len(names) != 2:
+        expected = "one name of a point array, or the two of a cross field"
+        raise ValueError(_check.message("vectors", expected, f"{len(names)} names"))
+    one, other = (
+        _check.text("vectors", name, expected="the names of two point arrays") for name in names
+    )
+    if one == other:
+        remedy = "for a single line field pass its name alone"
+        raise ValueError(_check.message("vectors", "two different arrays", repr(one), remedy))
+    if not line_field:
+        remedy = "pass line_field=True"
+        raise ValueError(
+            _check.message("line_field", "True for two arrays, a cross field", line_field, remedy)
+        )
+    return one, other
 
 
 @accepts(StreamlineOptions)
@@ -157,7 +186,8 @@ def streamlines(
     pyvista.PolyData
         The lines that left their seed, one per seed, with the point array ``luminance``, the point
         arrays of the mesh, and ``Tangents``, the directions that were integrated and are lit; with
-        a surface ``Normals``. Vectors of a line field have the sign of ``Tangents``. The array
+        a surface ``Normals``. Vectors of a line field have the sign of ``Tangents``; the two arrays
+        of a cross field, which have no order, are left out. The array
         ``Tangents_valid`` marks points at which a tensor has a first eigenvector, where it is
         isotropic at some. Confined lines have the field array ``drift``, the largest distance
         from the surface; evenly spaced ones ``largest_gap``, the largest distance of any place
@@ -183,7 +213,8 @@ def streamlines(
     line is of order ``step^2``, and a confined line lies on its triangles to rounding. Lines end
     where vectors are less than a millionth of the median, zero or not finite, where a tensor has no
     first eigenvector, at the boundary, and where a line turns by more than a right angle from one
-    step to the next, as it does at a wall.
+    step to the next, as it does at a wall. Lines of a cross field also end in the cells of
+    singularities of index 1/4; around them they go on, each as a line of the other direction.
 
     Evenly spaced lines start a spacing beside others and end where they come nearer to one than
     ``separation``; lines that meet their own start are closed. With the default ``shortest`` the
@@ -245,7 +276,7 @@ def _check_mesh(mesh: object) -> None:
 
 def _resolved(mesh: pv.DataSet, options: StreamlineOptions) -> StreamlineOptions:
     """Return the options with vectors, surface and whether lines are confined put in."""
-    vectors, tensor = _vectors_name(mesh, options.vectors)
+    vectors, unsigned = _vectors_name(mesh, options.vectors)
     surface, confined = _as_surface(options.surface), options.confined
     own = _as_surface(mesh)
     is_surface = isinstance(own, pv.PolyData) and blocks.has_faces(own)
@@ -261,7 +292,7 @@ def _resolved(mesh: pv.DataSet, options: StreamlineOptions) -> StreamlineOptions
         vectors=vectors,
         surface=surface,
         confined=confined,
-        line_field=options.line_field or tensor,
+        line_field=options.line_field or unsigned,
     )
 
 
@@ -313,11 +344,12 @@ def _traced(
         # Where a line comes to rest it has the direction in which it came.
         tangents[resting] = polylines.line_tangents(lines)[resting]
     lines.point_data[name] = tangents.astype(np.float32)
-    rows = np.asarray(lines.point_data[options.vectors or ""])
-    if rows.ndim == 2 and rows.shape[1] in (6, 9):
-        isotropic = ~np.any(tracers.principal_directions(rows), axis=1)
-        if isotropic.any():
-            lines.point_data[f"{name}_valid"] = ~isotropic
+    if isinstance(options.vectors, str):
+        rows = np.asarray(lines.point_data[options.vectors])
+        if rows.ndim == 2 and rows.shape[1] in (6, 9):
+            isotropic = ~np.any(tracers.principal_directions(rows), axis=1)
+            if isotropic.any():
+                lines.point_data[f"{name}_valid"] = ~isotropic
     far = np.any(origin) or not 1e-30 < size < 1e30
     exact = size * places + origin
     lines.points = exact.astype(np.float64 if far else np.float32)
@@ -399,20 +431,25 @@ def _warn_of_fewer(lines: pv.PolyData, wanted: int | None) -> None:
         )
 
 
-def _vectors_name(mesh: pv.DataSet, vectors: str | None) -> tuple[str, bool]:
-    """Return the name of the array that is traced, and whether it holds tensors."""
-    point_arrays.refuse_unnamed("vectors", vectors)
+def _vectors_name(mesh: pv.DataSet, vectors: Vectors | None) -> tuple[Vectors, bool]:
+    """Return the names of what is traced, and whether it is tensors or a cross field."""
     if vectors is None:
         vectors = mesh.point_data.active_vectors_name
         if vectors is None:
             raise _no_vectors(mesh, None)
-    if vectors not in mesh.point_data and vectors not in mesh.cell_data:
-        raise _no_vectors(mesh, vectors)
-    array = point_arrays.array_of(mesh, "vectors", vectors)
-    if array.shape[1] in (6, 9):
-        return vectors, True
-    point_arrays.vectors_of(mesh, "vectors", vectors, 3)
-    return vectors, False
+    pair = isinstance(vectors, tuple)
+    for name in _names(vectors):
+        if name not in mesh.point_data and name not in mesh.cell_data:
+            raise _no_vectors(mesh, name)
+        array = point_arrays.array_of(mesh, "vectors", name)
+        if array.shape[1] in (6, 9) and not pair:
+            return name, True
+        point_arrays.vectors_of(mesh, "vectors", name, 3)
+    return vectors, pair
+
+
+def _names(vectors: Vectors) -> tuple[str, ...]:
+    return (vectors,) if isinstance(vectors, str) else vectors
 
 
 def _no_vectors(mesh: pv.DataSet, got: str | None) -> ValueError:
@@ -441,14 +478,27 @@ def _field(mesh: pv.DataSet, surface: pv.PolyData | None, options: StreamlineOpt
     """Return the vectors that are traced; on a surface their tangential part.
 
     They are sampled from the mesh where the surface lacks them, those without sign as tensors. The
-    surface then gets the array that was sampled.
+    surface then gets the array that was sampled. A cross field has 6 components.
     """
-    name = options.vectors or ""
+    names = _names(options.vectors or "")
     if surface is None:
-        return _directions(np.asarray(mesh.point_data[name]))
+        return np.hstack([_directions(np.asarray(mesh.point_data[name])) for name in names])
+    return np.hstack([_on_surface(mesh, surface, name, options) for name in names])
+
+
+def _on_surface(
+    mesh: pv.DataSet, surface: pv.PolyData, name: str, options: StreamlineOptions
+) -> Array:
+    """Return the tangential part of vectors on a surface; see :func:`_field`."""
+    pair = isinstance(options.vectors, tuple)
+    if pair and name not in surface.point_data:
+        remedy = "attach both directions of the cross field to the surface"
+        raise ValueError(
+            _check.message("vectors", "two point arrays of the surface", repr(name), remedy)
+        )
     if name in surface.point_data:
         rows = point_arrays.array_of(surface, "vectors", name)
-        if rows.shape[1] not in (3, 6, 9):
+        if rows.shape[1] not in ((3,) if pair else (3, 6, 9)):
             point_arrays.vectors_of(surface, "vectors", name, 3)
         array = _directions(rows)
     else:

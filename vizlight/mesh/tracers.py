@@ -12,10 +12,10 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 from vtkmodules.vtkFiltersFlowPaths import vtkStreamTracer
 
 from vizlight import _check
-from vizlight.geometry.lines import even, fur, samples
+from vizlight.geometry.lines import crosses, even, fur, samples
 from vizlight.geometry.lines.simplices import Places, Simplices
-from vizlight.geometry.lines.tracing import Curves, Flow, trace
-from vizlight.mesh import polylines
+from vizlight.geometry.lines.tracing import AT_REST, Curves, Flow, trace
+from vizlight.mesh import point_arrays, polylines
 from vizlight.model import kernels, line_fields
 
 if TYPE_CHECKING:
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array
 
+#: Name of the array that is traced, or of the two of a cross field.
+Vectors = str | tuple[str, str]
 #: Name of the array that is traced; no array of a user has it.
 TRACED = "vizlight vectors"
 #: Largest number of samples of evenly spaced curves.
@@ -86,7 +88,7 @@ class CellTracer:
     Parameters
     ----------
     mesh : pyvista.PolyData or pyvista.UnstructuredGrid
-        Triangles, or tetrahedra, with the point array TRACED.
+        Triangles, or tetrahedra, with the point array TRACED; one of 6 components is a cross field.
     normals : str, optional
         Name of the point normals of a surface.
     line_field : bool
@@ -103,21 +105,36 @@ class CellTracer:
         else:
             cells = np.asarray(mesh.regular_faces)
         points = np.asarray(mesh.points, dtype=np.float64)
-        self.cells = Simplices(points, cells)
-        self.flow = Flow(self.cells, np.asarray(mesh.point_data[TRACED]), line_field=line_field)
+        rows: Array = np.asarray(mesh.point_data[TRACED])
+        self.sheets = rows.shape[1] // 3
+        if self.sheets == 2:
+            self.cells, rows = crosses.double_cover(points, cells, rows.reshape(-1, 2, 3))
+        else:
+            self.cells = Simplices(points, cells)
+        self.flow = Flow(self.cells, rows, line_field=line_field)
         self.normals = None
         if normals is not None:
-            self.normals = np.asarray(mesh.point_data[normals], dtype=np.float64)
+            self.normals = self._rows(normals).astype(np.float64)
+
+    def _rows(self, name: str) -> Array:
+        """Return a point array, on each sheet."""
+        array = np.asarray(self.mesh.point_data[name])
+        return array if self.sheets == 1 else np.concatenate([array, array])
 
     def located(self, points: Array) -> Places:
-        """Return places: the closest on a surface; in a volume only those inside."""
+        """Return places: the closest on a surface; in a volume only those inside.
+
+        On two sheets there are two for each point, one after the other.
+        """
         if isinstance(self.mesh, pv.PolyData):
             found: Any = self.mesh.find_closest_cell(points, return_closest_point=True)  # type: ignore[arg-type]
             cell, points = np.atleast_1d(found[0]), np.atleast_2d(found[1])
         else:
             cell = np.atleast_1d(self.mesh.find_containing_cell(points))  # type: ignore[arg-type]
-        inside = np.flatnonzero(cell >= 0)
-        return self.cells.locate(cell[inside], points[inside])
+        inside = np.repeat(np.flatnonzero(cell >= 0), self.sheets)
+        sheet = np.arange(len(inside)) % self.sheets
+        on = cell[inside] + sheet * (len(self.cells.cells) // self.sheets)
+        return self.cells.locate(on, points[inside])
 
     def random(self, count: int, seed: int) -> Places:
         """Return random places, uniform in area or volume."""
@@ -180,18 +197,20 @@ class CellTracer:
         gap, near = even.gaps(self.flow, self.normals, asked, curves)
         return curves, {"largest_gap": gap, "nearest": near, "closed": closed}
 
-    def lines(self, curves: Curves, unsigned: str | None = None) -> pv.PolyData:
+    def lines(self, curves: Curves, unsigned: Vectors | None = None) -> pv.PolyData:
         """Return curves as polylines with the point arrays of the mesh, TRACED of length 1.
 
         Vectors without sign, of the array ``unsigned``, are interpolated with the signs of the
-        direction of the curve.
+        direction of the curve. A cross field's arrays, without order, are left out.
         """
         lines = polylines.polydata(self.cells.positions(curves.places), curves.offsets)
         for name, array in self.mesh.point_data.items():
+            if isinstance(unsigned, tuple) and name in unsigned:
+                continue
             if name == unsigned and np.shape(array)[1:] == (3,):
                 rows = self._along(np.asarray(array), curves)
             else:
-                rows = self.cells.interpolated(np.asarray(array), curves.places)
+                rows = self.cells.interpolated(self._rows(name), curves.places)
             kind = array.dtype if array.dtype.kind == "f" else np.float64
             lines.point_data[name] = rows.astype(kind)
         # Interpolated without a regard to signs they would cancel in a line field.
@@ -218,12 +237,17 @@ def check_spacing(tracer: CellTracer, spacing: float, size: float) -> None:
 def scaled(mesh: pv.DataSet, vectors: Array) -> pv.DataSet:
     """Attach vectors as TRACED, scaled to a median length of 1, zero where they are not finite.
 
-    Below a millionth of that a line has come to rest.
+    Below a millionth of that a line has come to rest. Those of a cross field, shape (N, 6), get
+    length 1 or, below a millionth, 0.
     """
-    array = np.array(vectors, dtype=np.float64)
+    array: Array = np.array(vectors, dtype=np.float64).reshape(-1, 3)
     array[~np.all(np.isfinite(array), axis=1)] = 0
     speed = kernels.length(np.ascontiguousarray(array.T))
     moving = speed[(speed > 0) & np.isfinite(speed)]
     scale = float(np.median(moving)) if len(moving) else 1.0
-    mesh.point_data[TRACED] = np.clip(array / scale, -1e30, 1e30)
+    array = np.clip(array / scale, -1e30, 1e30)
+    if vectors.shape[1] == 6:
+        array[speed <= AT_REST * scale] = 0
+        array = point_arrays.unit_rows(array)
+    mesh.point_data[TRACED] = array.reshape(vectors.shape)
     return mesh

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import cKDTree
 
-from vizlight.geometry.lines.samples import SAMPLES, Samples
+from vizlight.geometry.lines.samples import SAMPLES, Samples, parallel
 from vizlight.geometry.lines.simplices import Places
 from vizlight.geometry.lines.tracing import Curves, Flow, Trail, Walkers
 
@@ -70,6 +70,8 @@ class Growth:
     ) -> None:
         self.flow, self.normals, self.asked, self.random = flow, normals, asked, random
         self.samples, self.trail = Samples(), Trail()
+        #: Whether there are two families of curves that do not stop each other.
+        self.crossing = flow.mesh.sheets is not None
         #: Number of the last step that is kept, by curve and sign, where some are not.
         self.last: dict[tuple[int, int], int] = {}
         self.closed: set[int] = set()
@@ -101,7 +103,10 @@ class Growth:
     def distances(self, places: Places, radius: float) -> Array:
         """Return the distance of places from the nearest sample; infinite beyond a radius."""
         embedded = self.embedded(places, self.flow.mesh.positions(places))
-        return np.asarray(self.samples.near(embedded, radius, 4)[0].min(axis=1))
+        along = None
+        if self.crossing:
+            along = self.flow.directions(places, None, np.ones(len(places.cell)))[0]
+        return np.asarray(self.samples.near(embedded, radius, 4, along)[0].min(axis=1))
 
     def start(self, seeds: Places) -> Bools:
         """Let curves grow from seeds that are apart from each other; return which were taken."""
@@ -174,7 +179,7 @@ class Growth:
         """
         samples, spacing = self.samples, self.asked.spacing
         d = self.asked.separation * spacing
-        distance, row = samples.near(embedded, d, 16)
+        distance, row = samples.near(embedded, d, 16, ahead.along if self.crossing else None)
         sign = ahead.sign[:, np.newaxis]
         own = samples.curve[row] == ahead.curve[:, np.newaxis]
         between = np.abs(
@@ -267,11 +272,9 @@ class Growth:
 
     def widest(self, places: Places) -> Places:
         """Return the places in wide gaps, those farthest from all curves first."""
-        embedded = self.embedded(places, self.flow.mesh.positions(places))
-        tree, least = self.samples.tree(), WIDE * self.asked.spacing
-        wide = np.flatnonzero(tree.query(embedded, distance_upper_bound=least)[0] >= least)
-        distance = np.asarray(tree.query(embedded[wide])[0])
-        return places[wide[np.argsort(-distance, kind="stable")]]
+        least = WIDE * self.asked.spacing
+        wide = places[self.distances(places, least) >= least]
+        return wide[np.argsort(-self.distances(wide, 4 * least), kind="stable")]
 
 
 def evenly_spaced(
@@ -309,7 +312,8 @@ def evenly_spaced(
     -----
     Curves start a spacing beside others and stop where they come nearer than ``separation`` to
     another or to themselves. Where no place beside a curve is free, random places that are a
-    spacing from all curves are tried until none is left: so every part is reached. Source: Jobard
+    spacing from all curves are tried until none is left: so every part is reached. On the double
+    cover of a cross field only curves that are nearly parallel count. Source: Jobard
     and Lefer, Creating evenly-spaced streamlines of arbitrary density (1997), with all curves
     growing at the same time.
     """
@@ -369,23 +373,32 @@ def gaps(
     growth = Growth(flow, normals, asked, random)
     places = places_of(flow, asked.spacing, random, DENSER**flow.mesh.k)
     # The field has no curve where it has no direction.
-    places = places[flow.directions(places, None, np.ones(len(places.cell)))[1]]
+    along, moving = flow.directions(places, None, np.ones(len(places.cell)))
+    places, along = places[moving], along[moving]
     there = growth.embedded(curves.places, flow.mesh.positions(curves.places))
     tree = cKDTree(there)
-    gap = np.asarray(tree.query(growth.embedded(places, flow.mesh.positions(places)))[0])
     own = np.repeat(np.arange(len(curves.offsets) - 1), np.diff(curves.offsets))
     picked = random.choice(len(there), min(len(there), 4000), replace=False)
-    nearest = np.full(len(picked), np.inf)
-    # Neighbours are looked for in larger and larger sets until one is of another curve.
-    left, count = np.arange(len(picked)), 32
-    while len(left) and count <= max(len(there), 32):
-        distance, row = tree.query(there[picked[left]], k=min(count, len(there)))
-        distance = np.where(own[row] != own[picked[left]][:, np.newaxis], distance, np.inf)
-        nearest[left] = distance.min(axis=1)
-        left, count = left[~np.isfinite(nearest[left])], 4 * count
-        if count > 4096:
-            break
-    found = nearest[np.isfinite(nearest)]
+
+    def nearest(at: Array, along: Array, curve: Indices, count: int) -> Array:
+        """Return distances from other curves of the same family; infinite where none is found."""
+        found, left = np.full(len(at), np.inf), np.arange(len(at))
+        # Neighbours are looked for in larger and larger sets until one is of such a curve.
+        while len(left) and len(there) and count <= 4096:
+            ranks = np.arange(1, min(count, len(there)) + 1)
+            distance, row = tree.query(at[left], k=ranks)
+            counted = own[row] != curve[left][:, np.newaxis]
+            if growth.crossing:
+                counted &= parallel(curves.along[row], along[left][:, np.newaxis])
+            found[left] = np.where(counted, distance, np.inf).min(axis=1)
+            left = left[~np.isfinite(found[left])]
+            count = 4 * count if count < len(there) else 4097
+        return found
+
+    at = growth.embedded(places, flow.mesh.positions(places))
+    gap = nearest(at, along, np.full(len(at), -1), 1)
+    found = nearest(there[picked], curves.along[picked], own[picked], 32)
+    found = found[np.isfinite(found)]
     near = float(np.percentile(found, 5)) if len(found) else np.inf
     return float(gap.max(initial=0)) / asked.spacing, near / asked.spacing
 

@@ -15,8 +15,17 @@ if TYPE_CHECKING:
 
 #: Samples of curves per spacing.
 SAMPLES = 4
+#: Cosine above which lines of a cross field are of one family.
+PARALLEL = 0.7
+#: Number of samples that are looked at in addition in a cross field, for curves that cross.
+CROSSING = 24
 #: Number of samples in the small tree, which is made again at every step.
 RECENT = 1500
+
+
+def parallel(a: Array, b: Array) -> Bools:
+    """Return whether unit directions, shape (..., 3), are of one family of a cross field."""
+    return np.asarray(np.abs(np.einsum("...i,...i->...", a, b)) > PARALLEL)
 
 
 class Samples:
@@ -90,12 +99,16 @@ class Samples:
         rows = np.flatnonzero(self.curve[: self._size] == curve)[:: SAMPLES // 2]
         return Places(self._cell[rows], self._weights[rows]), self.along[rows]
 
-    def tree(self) -> cKDTree:
-        """Return a tree of all samples."""
-        return cKDTree(self._embedded[: self._size][self._used[: self._size]])
+    def near(
+        self, embedded: Array, radius: float, count: int, along: Array | None = None
+    ) -> tuple[Array, Indices]:
+        """Return distances and rows of samples within a radius, shape (N, K); infinity for none.
 
-    def near(self, embedded: Array, radius: float, count: int) -> tuple[Array, Indices]:
-        """Return distances and rows of samples within a radius, shape (N, K); infinity for none."""
+        With directions ``along`` samples of curves that cross them do not count.
+        """
+        if along is not None:
+            # Curves of the other family, which are not counted, can be nearer.
+            count += CROSSING
         if self._size - self._whole > RECENT or self._stale > RECENT:
             self._rows = np.flatnonzero(self._used[: self._size])
             self._old = cKDTree(self._embedded[self._rows], balanced_tree=False)
@@ -113,7 +126,10 @@ class Samples:
             found = tree.query(embedded, k=count, distance_upper_bound=radius)
             distance = np.asarray(found[0]).reshape(-1, count)
             row = rows[np.minimum(np.asarray(found[1]).reshape(-1, count), len(rows) - 1)]
-            distances.append(np.where(self._used[row], distance, np.inf))
+            counted = self._used[row]
+            if along is not None:
+                counted &= parallel(self.along[row], along[:, np.newaxis])
+            distances.append(np.where(counted, distance, np.inf))
             numbers.append(row)
         if not distances:
             empty = np.zeros((len(embedded), 1))

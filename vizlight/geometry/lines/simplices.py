@@ -47,6 +47,17 @@ class Places:
         )
 
 
+def numbered(points: Array) -> Indices:
+    """Return one number for each position, from 0 on, shape (N,)."""
+    order = np.lexsort(points.T)
+    ranked = points[order]
+    fresh = np.ones(len(order), dtype=np.intp)
+    fresh[1:] = np.any(ranked[1:] != ranked[:-1], axis=1)
+    number = np.empty(len(order), dtype=np.intp)
+    number[order] = np.cumsum(fresh) - 1
+    return number
+
+
 class Simplices:
     """Triangles or tetrahedra in 3-space, and which of them share a side.
 
@@ -57,10 +68,13 @@ class Simplices:
     cells : ndarray of int, shape (M, k + 1)
         Vertices of each cell, k = 2 for triangles and 3 for tetrahedra. Vertices at the same
         position count as one; cells without extent have no neighbours.
+    sheets : ndarray of bool, shape (N,), optional
+        Sheets of the vertices, where there are two that lie on one another: vertices at the same
+        position count as one only on the same sheet.
     """
 
-    def __init__(self, points: Array, cells: Indices) -> None:
-        self.points = np.asarray(points, dtype=np.float64)
+    def __init__(self, points: Array, cells: Indices, sheets: Bools | None = None) -> None:
+        self.points, self.sheets = np.asarray(points, dtype=np.float64), sheets
         self.cells = np.asarray(cells, dtype=np.intp)
         self.k = self.cells.shape[1] - 1
         corners = self.points[self.cells]
@@ -80,12 +94,9 @@ class Simplices:
     @cached_property
     def merged(self) -> Indices:
         """Vertices of each cell with one number for each position, shape (M, k + 1)."""
-        order = np.lexsort(self.points.T)
-        ranked = self.points[order]
-        fresh = np.ones(len(order), dtype=np.intp)
-        fresh[1:] = np.any(ranked[1:] != ranked[:-1], axis=1)
-        number = np.empty(len(order), dtype=np.intp)
-        number[order] = np.cumsum(fresh) - 1
+        number = numbered(self.points)
+        if self.sheets is not None:
+            number = 2 * number + self.sheets
         return np.asarray(number[self.cells])
 
     @cached_property
