@@ -130,7 +130,7 @@ def calls(name):
         Call(name, argument, label, value)
         for argument, text in parameters(function).items()
         if argument in table.ONLY.get(name, (argument,)) and (name, argument) not in table.SKIPPED
-        for label, value in values.of(text, valid.get(argument))
+        for label, value in values.of(table.KINDS.get((name, argument), text), valid.get(argument))
     ]
 
 
@@ -275,7 +275,7 @@ def _bad(place, call, given):
         return False
     meshes = [value for value in given.values() if isinstance(value, pv.DataSet | pv.MultiBlock)]
     kept = {"points", *(f"point_data[{name}]" for mesh in meshes for name in names_of(mesh))}
-    return re.sub(r"^(\[\d+\])*", "", place) not in (kept if meshes else ())
+    return re.sub(r"^(\[\d+\]|\.mesh)*", "", place) not in (kept if meshes else ())
 
 
 def _timed(function, args, keywords, name):
@@ -287,7 +287,7 @@ def _timed(function, args, keywords, name):
     try:
         result = function(*args, **keywords)
         if inspect.isgenerator(result):
-            return next(result)
+            return next(result, None)
         if isinstance(result, contextlib.AbstractContextManager) and not isinstance(result, Path):
             with result as entered:
                 return entered

@@ -68,10 +68,10 @@ def one_of(names: Sequence[str]) -> str:
     return f"one of {list(names)}" if names else "but the mesh has none"
 
 
-def choice(name: str, value: object, allowed: Sequence[str]) -> None:
-    """Check that a value is one of the allowed strings."""
-    if not (isinstance(value, str) and value in allowed):
-        *others, last = (repr(text) for text in allowed)
+def choice(name: str, value: object, allowed: Sequence[str], *, optional: bool = False) -> None:
+    """Check that a value is one of the allowed strings, or with ``optional=True`` None."""
+    if not (isinstance(value, str) and value in allowed) and not (optional and value is None):
+        *others, last = (repr(text) for text in (*allowed, *([None] if optional else [])))
         raise ValueError(message(name, f"{', '.join(others)} or {last}", describe(value)))
 
 
@@ -308,6 +308,13 @@ def path(name: str, value: object) -> Path:
     if not given:
         raise ValueError(message(name, expected, "an empty text"))
     return Path(given)
+
+
+def iterable(name: str, value: object, expected: str) -> None:
+    """Check that a value holds others, as a text and a dict do not; ``expected`` says which."""
+    flat = getattr(value, "ndim", 1) != 0
+    if isinstance(value, str | bytes | dict) or not (flat and hasattr(value, "__iter__")):
+        raise TypeError(message(name, expected, describe(value), "put a single one in a list"))
 
 
 def function(name: str, value: object, *, optional: bool = False) -> None:

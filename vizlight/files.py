@@ -346,7 +346,7 @@ def check_output(path: str | Path, /, formats: tuple[str, ...], *, name: str = "
     FileError
         If the extension is not allowed, or the folder is missing or not writable.
     """
-    path = _path("output", path)
+    path = _path(name, path)
     if path.suffix.lower() not in formats:
         raise FileError(
             _check.message(name, f"a name that ends in {', '.join(formats)}", f"'{path}'")

@@ -294,12 +294,12 @@ def test_without_opengl_the_mesh_is_written_and_the_exit_code_is_1(
     monkeypatch.setattr(
         backends, "_PROBE", "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"
     )
-    render.probe.cache_clear()
+    backends._probe_window.cache_clear()
     try:
         code, _, err = run(capfd, "light", volume, "--tangents", "V")
         doctor = run(capfd, "doctor")
     finally:
-        render.probe.cache_clear()
+        backends._probe_window.cache_clear()
     assert code == 1
     assert "apt-get install -y libegl1 libgl1-mesa-dri" in err
     assert err.count("\n") == 1

@@ -218,14 +218,14 @@ def broken_gl(monkeypatch, tmp_path):
     fake.chmod(0o755)
     monkeypatch.setattr(sys, "executable", str(fake))
     monkeypatch.delenv("VTK_DEFAULT_OPENGL_WINDOW", raising=False)
-    render.probe.cache_clear()
+    backends._probe_window.cache_clear()
 
 
 @pytest.fixture
 def no_gl(monkeypatch, tmp_path):
     broken_gl(monkeypatch, tmp_path)
     yield
-    render.probe.cache_clear()
+    backends._probe_window.cache_clear()
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="backends are chosen on Linux")
@@ -246,7 +246,6 @@ def test_no_opengl_is_an_error_with_the_apt_line(no_gl, tmp_path):
 @pytest.mark.parametrize("window", ["vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow", "nonsense"])
 def test_a_window_class_that_the_environment_names_is_probed(no_gl, monkeypatch, window):
     monkeypatch.setenv("VTK_DEFAULT_OPENGL_WINDOW", f"{window}")
-    backends._check_variable.cache_clear()
     with pytest.raises(render.BackendError, match=f"WINDOW={window} is not available .try: unset"):
         render.choose_backend()
 

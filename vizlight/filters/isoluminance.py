@@ -16,7 +16,7 @@ from vizlight.geometry.contours import banding, facets, refinement, spacing
 from vizlight.geometry.contours import isoluminance as closed
 from vizlight.geometry.solids import exact_surfaces, tessellation, triangle_mesh
 from vizlight.geometry.solids.primitives import Frustum, Solid, Sphere
-from vizlight.mesh import hull, normals, point_arrays, records
+from vizlight.mesh import blocks, hull, normals, point_arrays, records
 from vizlight.mesh.inputs import inputs_of
 from vizlight.mesh.point_arrays import unit_rows
 from vizlight.scene import Scene
@@ -209,6 +209,7 @@ def _make(
         raise TypeError(
             _check.message("mesh", "a PyVista mesh or a solid", type(mesh).__name__, remedy)
         )
+    blocks.check(given)
     joined = mesh.combine() if isinstance(mesh, pv.MultiBlock) else mesh
     if not joined.n_points:
         joined = pv.PolyData()
@@ -348,8 +349,8 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
     record = records.of_light(lit, "isoluminance", fitted, options)
     if scene.colored and options.tangents is None:
         rgb = _rgb(bands, light)
-    blocks = _blocks(bands, options.name, record, rgb, patches=False)
-    bands_block = blocks["bands"]
+    made = _blocks(bands, options.name, record, rgb, patches=False)
+    bands_block = made["bands"]
     assert isinstance(bands_block, pv.PolyData)
     # The carried values are the last columns of the points.
     last = bands.points.shape[1]
@@ -359,7 +360,7 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
         kind = surface.point_data[name].dtype
         shape = (len(found), *surface.point_data[name].shape[1:])
         bands_block.point_data[name] = np.ascontiguousarray(found.reshape(shape), dtype=kind)
-    return blocks, bands, light
+    return made, bands, light
 
 
 def _on_surface(

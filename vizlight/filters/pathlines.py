@@ -85,6 +85,11 @@ class PathlineOptions(LightOptions):
             step=_check.number("step", self.step, low=1e-3),
             seed=_check.integer("seed", self.seed, low=0),
         )
+        point_arrays.refuse_unnamed("vectors", self.vectors)
+        point_arrays.refuse_unnamed("tangents", self.tangents)
+        if self.conditioned and not isinstance(self.conditioned, str) and self.normals is None:
+            expected = "the name of normals by normals= beside it, for lines have no surface"
+            raise ValueError(_check.message("conditioned", expected, "none"))
         if self.tail is not None:
             _check.set_fields(self, tail=_check.positive("tail", self.tail))
 
@@ -239,7 +244,8 @@ def _lines(
         lines = rows.lines(name, TIMES)
         if i == 1 and not lines.n_points:
             expected = "points inside the mesh where the vectors are not zero"
-            raise ValueError(_check.message("seeds", expected, "no line"))
+            name = "seeds" if options.tail is None else "seeds, tail"
+            raise ValueError(_check.message(name, expected, "no line"))
         if light.tangents in (TANGENTS, OWN_TANGENTS):
             point_arrays.attach_rows(lines, str(light.tangents), np.asarray(lines.point_data[name]))
         lines.field_data[TIME] = [float(times[i])]

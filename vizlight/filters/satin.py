@@ -110,7 +110,9 @@ def satin(
         flip_normals=False,
         facing="auto",
     )
-    curves = light_lines(traced, scene, lines, threads=threads, progress_bar=progress_bar)
+    curves = light_lines(
+        traced, scene, lines, threads=threads, progress_bar=progress_bar, argument="surface"
+    )
     made = {
         name: light_mesh(surface, scene, panel, threads=threads, progress_bar=progress_bar)
         for name, panel in panels.items()

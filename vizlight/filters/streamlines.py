@@ -119,7 +119,7 @@ class StreamlineOptions(LightOptions):
         super().__post_init__()
         _check.set_fields(
             self,
-            step=_check.number("step", self.step, low=1e-6),
+            step=_check.number("step", self.step, low=1e-6, high=1e3),
             max_steps=int(_check.number("max_steps", self.max_steps, low=1, high=1e9)),
             separation=_check.number("separation", self.separation, low=0.05, high=0.95),
             shortest=_check.number("shortest", self.shortest, low=0.0),
@@ -245,13 +245,17 @@ def light_lines(
     *,
     threads: int | None,
     progress_bar: bool,
+    argument: str = "mesh",
 ) -> pv.PolyData:
-    """Trace and light lines by options that are checked; see :func:`streamlines`."""
-    _check_mesh(mesh)
+    """Trace and light lines by options that are checked; see :func:`streamlines`.
+
+    Errors name the mesh by ``argument``.
+    """
+    _check_mesh(mesh, argument)
     _check.instance("scene", scene, Scene)
     made = _resolved(mesh, options)
     with _progress.progress("trace", 100, show=progress_bar) as report:
-        lines, tangents = _traced(mesh, scene, made, report)
+        lines, tangents = _traced(mesh, scene, made, report, argument)
     conditioned = made.surface is not None if made.conditioned is None else made.conditioned
     normals = "Normals" if conditioned is True and made.normals is None else made.normals
     light = dataclasses.replace(made, conditioned=conditioned, normals=normals)
@@ -263,15 +267,15 @@ def light_lines(
     return lit
 
 
-def _check_mesh(mesh: object) -> None:
+def _check_mesh(mesh: object, argument: str) -> None:
     """Refuse what lines cannot be traced in."""
     if not isinstance(mesh, pv.DataSet):
         remedy = "join its blocks by mesh.combine()" if isinstance(mesh, pv.MultiBlock) else ""
-        raise TypeError(_check.message("mesh", "a PyVista dataset", type(mesh).__name__, remedy))
+        raise TypeError(_check.message(argument, "a PyVista dataset", type(mesh).__name__, remedy))
     if isinstance(mesh, pv.PointSet):
         remedy = "interpolate its vectors onto a grid, between points there are none"
-        raise TypeError(_check.message("mesh", "a dataset with cells", "PointSet", remedy))
-    blocks.check_whole(mesh, "mesh")
+        raise TypeError(_check.message(argument, "a dataset with cells", "PointSet", remedy))
+    blocks.check_whole(mesh, argument)
 
 
 def _resolved(mesh: pv.DataSet, options: StreamlineOptions) -> StreamlineOptions:
@@ -305,7 +309,11 @@ def _as_surface(mesh: object) -> pv.PolyData | None:
 
 
 def _traced(
-    mesh: pv.DataSet, scene: Scene, options: StreamlineOptions, report: Callable[[int], None]
+    mesh: pv.DataSet,
+    scene: Scene,
+    options: StreamlineOptions,
+    report: Callable[[int], None],
+    argument: str,
 ) -> tuple[pv.PolyData, str]:
     """Return the lines, and the name of their array of tangents."""
     confined = bool(options.confined)
@@ -321,10 +329,11 @@ def _traced(
     if surface is not None:
         surface = blocks.moved(surface, -origin, 1 / size)
     traced = tracers.scaled(blocks.moved(_bare(traced, own), -origin, 1 / size), vectors)
-    lines = _lines(traced, options, origin, size, report)
+    lines = _lines(traced, options, origin, size, report, argument)
     if not lines.n_points:
         expected = "points inside the mesh where the vectors are not zero"
-        raise ValueError(_check.message("seeds", expected, "no line"))
+        name = "seeds" if options.max_length is None else "seeds, max_length"
+        raise ValueError(_check.message(name, expected, "no line"))
     places: Array = np.asarray(lines.points, dtype=np.float64)
     tangents: Array = np.array(lines.point_data[TRACED], dtype=np.float64)
     if surface is not None:
@@ -365,6 +374,7 @@ def _lines(
     origin: Array,
     size: float,
     report: Callable[[int], None],
+    argument: str,
 ) -> pv.PolyData:
     """Return the lines of TRACED in a mesh that was moved to the origin and scaled to size 1."""
     seed = _check.integer("seed", options.seed, low=0)
@@ -379,6 +389,9 @@ def _lines(
     )
     normals = surfaces.NORMALS if options.confined else None
     tracer = tracers.CellTracer(cells, normals, line_field=options.line_field)
+    if not tracer.cells.extent > 0:
+        expected = "cells of some area or volume between finite points"
+        raise ValueError(_check.message(argument, expected, "none"))
     unsigned = options.vectors if options.line_field else None
     given = None if places is None else tracer.located(places)
     if options.spacing is None:
@@ -560,8 +573,8 @@ def _seeds(seeds: object, origin: Array, size: float) -> tuple[int, Array | None
         _check.holds("seeds", (count, 3))
         return count, None
     places = (_check.vectors("seeds", given, n=3) - origin) / size
-    if places.ndim != 2 or not np.all(np.isfinite(places)):
-        what = "finite points of shape (M, 3)"
+    if places.ndim != 2 or not len(places) or not np.all(np.isfinite(places)):
+        what = "finite points of shape (M, 3), one or more"
         raise ValueError(_check.message("seeds", what, _check.describe(seeds)))
     return len(places), places
 

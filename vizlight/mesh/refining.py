@@ -139,7 +139,9 @@ def _named(mesh: pv.PolyData, between: Between, options: LightOptions) -> dict[s
             rows = between.rows(name).reshape(len(between.points), -1)
             rows = between.scales.get(name, 1.0) * rows
             known = np.asarray(mesh.point_data[key], dtype=np.float64)
-            if name == "normals" and np.nansum(rows[: len(known)] * known) < 0:
+            with np.errstate(invalid="ignore", over="ignore"):
+                along = rows[: len(known)] * known
+            if name == "normals" and np.sum(along, where=np.isfinite(along)) < 0:
                 # Outward normals of a mesh whose own point inward.
                 rows = -rows
             found[key] = rows[len(known) :]

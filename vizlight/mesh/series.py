@@ -38,7 +38,12 @@ class Series:
         self._meshes: Sequence[Any] | None = None
         self._reader: Any = None
         if isinstance(source, str | Path):
-            source = pv.get_reader(source)  # type: ignore[no-untyped-call]
+            path = _check.path("series", source)
+            try:
+                source = pv.get_reader(path)  # type: ignore[no-untyped-call]
+            except (OSError, ValueError) as error:
+                expected, got = "the path of a file that PyVista reads", f"'{path}' ({error})"
+                raise ValueError(_check.message("series", expected, got)) from error
         if hasattr(source, "time_values") and hasattr(source, "set_active_time_value"):
             if times is not None:
                 remedy = "leave times= out"
@@ -100,12 +105,12 @@ class Series:
         ValueError
             If the step has no such point array of 3 components.
         """
-        mesh = self.mesh(step)
+        mesh, name = self.mesh(step), f"vectors, {self.name(step)}"
         if array not in mesh.point_data:
             there = ", ".join(map(repr, mesh.point_data)) or "none"
             expected = f"the point array {array!r} ({there})"
-            raise ValueError(_check.message(self.name(step), expected, "none of that name"))
-        rows = point_arrays.vectors_of(mesh, self.name(step), array, 3)
+            raise ValueError(_check.message(name, expected, "none of that name"))
+        rows = point_arrays.vectors_of(mesh, name, array, 3)
         return np.where(np.isfinite(rows), rows, 0.0).astype(np.float64)
 
     def name(self, step: int) -> str:

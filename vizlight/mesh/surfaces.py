@@ -8,6 +8,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight.mesh import blocks, normals
+from vizlight.mesh.point_arrays import unit_rows
 
 if TYPE_CHECKING:
     from vizlight._types import Array
@@ -22,7 +23,7 @@ NORMALS = "vizlight normals"
 def with_normals(
     surface: object, view: View | None, angle: FeatureAngle = None, name: str = "surface"
 ) -> pv.PolyData:
-    """Return the triangles of a surface as a new mesh with the point normals ``NORMALS``.
+    """Return the triangles of a surface as a new mesh with the unit point normals ``NORMALS``.
 
     Points are split at edges sharper than the angle; without one a warning is given if normals
     were averaged across many sharp edges.
@@ -43,7 +44,9 @@ def with_normals(
     for key, array in own.point_data.items():
         if np.asarray(array).dtype.kind in "biuf":
             triangles.point_data[key] = np.asarray(array)
-    triangles.point_data[NORMALS] = normals.normals_of(own, None, 3, view, warn=angle is None)
+    found = normals.normals_of(own, None, 3, view, warn=angle is None)
+    kind = np.result_type(found.dtype, np.float32)
+    triangles.point_data[NORMALS] = unit_rows(found).astype(kind, copy=False)
     return triangles if triangles.is_all_triangles else triangles.triangulate()
 
 

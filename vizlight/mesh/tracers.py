@@ -29,6 +29,8 @@ Vectors = str | tuple[str, str]
 TRACED = "vizlight vectors"
 #: Largest number of samples of evenly spaced curves.
 MOST_SAMPLES = 20_000_000
+#: Largest spacing of curves in a mesh of size 1, in which there is room for one.
+MOST_SPACING = 1e6
 #: Order of the 6 components of a symmetric tensor in VTK: XX, YY, ZZ, XY, YZ, XZ.
 SYMMETRIC = [[0, 3, 5], [3, 1, 4], [5, 4, 2]]
 
@@ -204,6 +206,8 @@ class CellTracer:
         direction of the curve. A cross field's arrays, without order, are left out.
         """
         lines = polylines.polydata(self.cells.positions(curves.places), curves.offsets)
+        if not lines.n_points:
+            return lines
         for name, array in self.mesh.point_data.items():
             if isinstance(unsigned, tuple) and name in unsigned:
                 continue
@@ -226,11 +230,12 @@ class CellTracer:
 
 
 def check_spacing(tracer: CellTracer, spacing: float, size: float) -> None:
-    """Refuse a spacing that gives more curves than memory holds."""
+    """Refuse a spacing that gives more curves than memory holds, or is beyond the mesh."""
     k = tracer.cells.k
     least = (tracer.cells.extent * samples.SAMPLES / MOST_SAMPLES) ** (1 / k)
-    if spacing < least:
-        expected = f"at least {size * least:.3g} for a mesh of this size"
+    if not least <= spacing <= MOST_SPACING:
+        ends = f"from {size * least:.3g} to {size * MOST_SPACING:.3g}"
+        expected = f"a number {ends} for a mesh of this size"
         raise ValueError(_check.message("spacing", expected, f"{size * spacing:.3g}"))
 
 

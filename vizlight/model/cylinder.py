@@ -129,7 +129,7 @@ def diffuse_gradient(wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike, /) -> Gra
     -------
     Gradient
         Derivatives; 0 where the value has none: light or eye along the line, or a vector that is
-        zero or not finite.
+        zero or not finite. By tiny vectors they end at the largest number of their type.
 
     Raises
     ------
@@ -165,6 +165,7 @@ def specular_gradient(
     -------
     Gradient
         Derivatives; 0 where the value has none: light or eye along the line, or no half vector.
+        By tiny vectors they end at the largest number of their type.
 
     Raises
     ------
@@ -251,10 +252,12 @@ class _Invariants:
             by_q * line + by_m * light,
             by_p * light + by_q * eye,
         )
-        found = []
+        found, largest = [], np.finfo(self.dtype).max
         for part, own, size in zip(parts, self.vectors, self.sizes, strict=True):
             across = part - kernels.dot(part, own) * own
-            across = np.where(self.good, across / np.where(self.good, size, 1), 0)
+            with np.errstate(over="ignore"):
+                across = np.where(self.good, across / np.where(self.good, size, 1), 0)
+            across = np.clip(across, -largest, largest)
             found.append(across.T.reshape(*self.shape, 3).astype(self.dtype, copy=False))
         return Gradient(*found)
 

@@ -184,7 +184,7 @@ def max_pixel_error(
     angle = _angles("light_eye_angle", light_eye_angle)
     r, factor = _powers("r", r), _powers("factor", factor)
     beta, r, factor = _check.together(light_eye_angle=angle / 2, r=r, factor=factor)
-    more, less, at_more, at_less = extremes(beta, r, factor, lit=lit)
+    more, less, at_more, at_less = extremes(beta, r, factor, lit=_check.boolean("lit", lit))
     phong_wins = more >= less
     theta = np.where(phong_wins, np.pi / 2 - np.arcsin(np.sqrt(at_more)), np.pi / 2)
     phi = np.pi / 2 - beta + np.where(phong_wins, 0, np.arcsin(np.sqrt(at_less)))
@@ -497,7 +497,7 @@ def terminator_error(
     safe = np.where(width > 0, width, 1)
 
     def log_loss(cosine: Array) -> Array:
-        with np.errstate(divide="ignore", invalid="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             t = np.minimum(cosine / safe, 1)
             base = np.maximum(np.cos(times * (np.arccos(cosine) - beta)), 0)
             power = np.where(s == 0, 0, s * np.log(base))

@@ -54,7 +54,6 @@ class Probe:
     detail: str
 
 
-@functools.cache
 def probe(backend: Backend) -> Probe:
     """Test in a separate process whether a backend can draw.
 
@@ -76,8 +75,9 @@ def probe(backend: Backend) -> Probe:
     return _probe_window(backend, _WINDOWS[backend], f"try: {_INSTALL[backend]}")
 
 
+@functools.cache
 def _probe_window(name: str, window: str, remedy: str) -> Probe:
-    """Test whether VTK can draw with a window class."""
+    """Test whether VTK can draw with a window class, once for each."""
     try:
         run = subprocess.run(
             [sys.executable, "-c", _PROBE],
@@ -94,7 +94,6 @@ def _probe_window(name: str, window: str, remedy: str) -> Probe:
     return Probe(name, works=False, detail=f"not available ({remedy})")
 
 
-@functools.cache
 def _check_variable(window: str) -> None:
     """Check that VTK can draw with the window class that the environment names."""
     found = _probe_window(_VARIABLE, window, f"try: unset {_VARIABLE}")
@@ -121,8 +120,7 @@ def choose_backend(backend: Backend | None = None) -> Backend | None:
     BackendError
         If no backend can draw, or the class that the variable names cannot.
     """
-    if backend is not None:
-        _check.choice("backend", backend, get_args(Backend))
+    _check.choice("backend", backend, get_args(Backend), optional=True)
     if backend is None and (window := os.environ.get(_VARIABLE)):
         _check_variable(window)
         return None

@@ -67,13 +67,11 @@ def camera_on(
         If a value does not fit.
     """
     aspect = _check.number("aspect", aspect, low=1e-3)
-    toward = np.array(_check.vector("direction", direction, direction=True))
-    if toward.size != 3:
-        raise ValueError(_check.message("direction", "3 components", toward.size))
-    toward /= np.linalg.norm(toward)
+    toward = _unit("direction", direction)
     if up is None:
         up = (0.0, 1.0, 0.0) if abs(toward[2]) > 0.999 else (0.0, 0.0, 1.0)
-    if np.linalg.norm(np.cross(_check.vector("up", up, direction=True), toward)) < 1e-6:
+    upward = _unit("up", up)
+    if np.linalg.norm(np.cross(upward, toward)) < 1e-6:
         raise ValueError(_check.message("up", "a direction across the view", tuple(up)))
     zoom = _check.number("zoom", zoom, low=1e-6)
     box = _box(bounds)
@@ -87,25 +85,35 @@ def camera_on(
     radius = 0.5 * float(np.linalg.norm(box[:, 1] - box[:, 0])) or 1.0
     distance, height = radius / math.sin(math.radians(VIEW_ANGLE / 2)), radius
     if isinstance(bounds, Mesh):
-        shift, distance, height = _fit(bounds, centre, toward, np.asarray(up), aspect)
+        shift, distance, height = _fit(bounds, centre, toward, upward, aspect)
         centre = centre + shift
     camera = pv.Camera()  # type: ignore[no-untyped-call]
     camera.view_angle = VIEW_ANGLE
     distance /= zoom
     camera.focal_point = tuple(centre)
     camera.position = tuple(centre + distance * toward)
-    camera.up = tuple(up)
-    camera.parallel_projection = parallel
+    camera.up = tuple(upward)
+    camera.parallel_projection = _check.boolean("parallel", parallel)
     camera.parallel_scale = height / zoom
     camera.clipping_range = (max(distance - 2 * radius, distance * 1e-3), distance + 2 * radius)
     return camera
 
 
+def _unit(name: str, value: object) -> Array:
+    """Return one vector of 3 components, of any length, with length 1."""
+    vector = np.array(_check.vector(name, value, direction=True))
+    if vector.size != 3:
+        raise ValueError(_check.message(name, "3 components", vector.size))
+    # By a power of 2, which rounds nothing: squares of the components might overflow.
+    vector = np.ldexp(vector, -np.frexp(np.abs(vector).max())[1])
+    return np.asarray(vector / np.linalg.norm(vector))
+
+
 def _box(bounds: Mesh | ArrayLike) -> Array:
     """Return the bounds of a mesh, or validated bounds, as an array of shape (3, 2)."""
     given = common_bounds("bounds", [bounds]) if isinstance(bounds, Mesh) else bounds
-    box = _check.floats("bounds", given).astype(np.float64)
-    if box.shape != (6,) or not np.all(np.isfinite(box)):
+    box = _check.coordinates("bounds", given)
+    if box.shape != (6,):
         expected = "a mesh or six finite numbers"
         raise ValueError(_check.message("bounds", expected, _check.describe(bounds)))
     return box.reshape(3, 2)

@@ -88,6 +88,7 @@ def save(
         As for :func:`turn`; also if there is no frame.
     """
     path = _check_movie(path)
+    _check.iterable("frames", frames, "an iterable of meshes or Panels")
     drawing = _drawing(picture)
     writer = _writer(path, _check.number("fps", fps, low=0.01, high=100.0), drawing["size"])
     if camera is None:

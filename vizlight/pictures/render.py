@@ -73,6 +73,11 @@ class Panel:
     scalars: str = "luminance"
     title: str = ""
 
+    def __post_init__(self) -> None:
+        _check.text("scalars", self.scalars, expected="the name of an array")
+        if not isinstance(self.title, str):
+            raise TypeError(_check.message("title", "a string", _check.describe(self.title)))
+
 
 class PlotterKeywords(TypedDict, total=False):
     """Keyword options of :func:`make_plotter`."""
@@ -231,15 +236,18 @@ def _check_panels(panels: Mesh | Panel | Sequence[Mesh | Panel], scalars: str) -
             raise TypeError(
                 _check.message("panels", "PyVista meshes or Panels", _check.describe(panel.mesh))
             )
-        if not isinstance(panel.title, str):
-            raise TypeError(_check.message("title", "a string", _check.describe(panel.title)))
         check(panel.mesh)
-        _check.text("scalars", panel.scalars, expected="the name of an array")
         for mesh in all_blocks(panel.mesh):
             if panel.scalars not in mesh.point_data and panel.scalars not in mesh.cell_data:
                 known = ", ".join(map(repr, [*mesh.point_data, *mesh.cell_data])) or "none"
                 expected = f"a point array or a cell array ({known})"
                 raise ValueError(_check.message("scalars", expected, repr(panel.scalars)))
+            data = mesh.point_data if panel.scalars in mesh.point_data else mesh.cell_data
+            array = data[panel.scalars]
+            if array.dtype.kind not in "biuf" or array.shape[1:] not in ((), (1,), (3,), (4,)):
+                expected = "real numbers of 1 component, or colours of 3 or 4"
+                got = f"{panel.scalars!r} of shape {array.shape} and type {array.dtype}"
+                raise ValueError(_check.message("scalars", expected, got))
     return shown
 
 
@@ -255,8 +263,7 @@ def _check_options(camera: object, cmap: str, clim: object, anti_aliasing: objec
     except (TypeError, ValueError) as error:
         got = _check.describe(cmap)
         raise ValueError(_check.message("cmap", "the name of a colour map", got)) from error
-    if anti_aliasing is not None:
-        _check.choice("anti_aliasing", anti_aliasing, get_args(AntiAliasing))
+    _check.choice("anti_aliasing", anti_aliasing, get_args(AntiAliasing), optional=True)
 
 
 def _background_of(shown: Sequence[Panel], background: ColorLike | None) -> pv.Color:
@@ -336,6 +343,7 @@ def pictures(
     BackendError, TypeError, ValueError
         As for :func:`make_plotter`.
     """
+    _check.iterable("sequence", sequence, "an iterable of meshes, Panels or lists of them")
     for panels in sequence:
         plotter = make_plotter(panels, **options)
         try:
@@ -353,7 +361,7 @@ def pixels_of(size: object) -> list[int]:
     TypeError, ValueError
         If the size is not two positive integers within the limits of anti-aliasing.
     """
-    if not isinstance(size, list | tuple | np.ndarray) or np.shape(size)[:1] != (2,):
+    if _check.reals("size", size).shape != (2,):
         raise ValueError(_check.message("size", "(width, height) in pixels", _check.describe(size)))
     sides = _check.vector("size", size)
     pixels = [_check.integer("size", int(p) if p == int(p) else p, low=1) for p in sides]

@@ -114,6 +114,7 @@ def pictures(
     >>> next(vizlight.pieces.pictures([lit], camera=camera, size=(60, 40), workers=1)).shape
     (40, 60, 3)
     """
+    _check.iterable("sequence", sequence, "an iterable of Lit, paths or lists of them")
     known = ("scalars", "cmap", "clim", "background", "line_width", "backend")
     for name in options:
         if name not in known:
@@ -199,7 +200,7 @@ def draw(piece: FilePiece, shot: Shot) -> Layer:
 def _parts(shown: Lit | str | Path | list[str | Path]) -> list[FilePiece]:
     if isinstance(shown, Lit):
         return [FilePiece(str(path), path) for path in shown.files]
-    found = [piece for piece in pieces_of(shown, 1e9) if isinstance(piece, FilePiece)]
+    found = [piece for piece in pieces_of(shown, 1e9, "sequence") if isinstance(piece, FilePiece)]
     if not found:
         expected = "files of surfaces, lines or cells"
         raise PieceError(_check.message("sequence", expected, _check.describe(shown)))

@@ -9,7 +9,6 @@ import re
 import shutil
 from collections import Counter
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,6 +25,7 @@ from vizlight.shading.options import LightOptions, unknown_option
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
+    from pathlib import Path
 
     from vizlight.pieces.kinds import Piece
     from vizlight.pieces.task import Done, Job, Survey
@@ -176,7 +176,7 @@ def light(
     (2, 1684)
     """
     _check.instance("scene", scene, Scene)
-    path = files.check_output(Path(out), tuple(task.INDEX.values()), name="out")
+    path = files.check_output(_check.path("out", out), tuple(task.INDEX.values()), name="out")
     ghost = _check.integer("ghost", ghost, low=0)
     job = task.Job(
         scene=scene,
@@ -191,6 +191,8 @@ def light(
     if level is not None and contour is None:
         raise ValueError(_check.message("level", "contour= beside it", level))
     retries = _check.integer("retries", retries, low=0)
+    if workers is not None:
+        workers = _check.integer("workers", workers, low=1)
     if client is not None or workers != 1:
         # Workers share the processors.
         job = dataclasses.replace(job, options={"threads": 1} | dict(job.options))
@@ -248,9 +250,9 @@ def bounding_box(
 
 
 def _name(argument: str, value: object) -> str:
-    if not isinstance(value, str) or not value:
-        raise TypeError(_check.message(argument, "the name of a point array", repr(value)))
-    return value
+    if not _check.text(argument, value, expected="the name of a point array"):
+        raise ValueError(_check.message(argument, "the name of a point array", repr(value)))
+    return str(value)
 
 
 def _common_options(

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from vizlight.pieces.kinds import Extent
 
 
-def pieces_of(sources: object, slab: float) -> list[Piece]:
+def pieces_of(sources: object, slab: float, name: str = "sources") -> list[Piece]:
     """Return the pieces of files, indices, folders of patterns, and arrays.
 
     Parameters
@@ -44,6 +44,8 @@ def pieces_of(sources: object, slab: float) -> list[Piece]:
         Files; patterns such as ``"run/*.vtu"``; indices; grids.
     slab : float
         Largest size in MB of a slab of a structured grid.
+    name : str
+        Name of the argument in messages.
 
     Raises
     ------
@@ -51,38 +53,43 @@ def pieces_of(sources: object, slab: float) -> list[Piece]:
         If a source is of no known kind, or a file is missing.
     """
     given = [sources] if isinstance(sources, str | Path | Slabs) else sources
-    if isinstance(given, Mapping | pv.DataSet | pv.MultiBlock) or not hasattr(given, "__iter__"):
+    wrong = isinstance(given, Mapping | pv.DataSet | pv.MultiBlock)
+    if wrong or not hasattr(given, "__iter__") or getattr(given, "ndim", 1) == 0:
         expected = "paths, patterns, or grids as vizlight.pieces.Slabs"
         remedy = "wrap arrays: Slabs({name: array})"
-        raise TypeError(_check.message("sources", expected, type(sources).__name__, remedy))
+        raise TypeError(_check.message(name, expected, type(sources).__name__, remedy))
     found: list[Piece] = []
     for source in given:
         if isinstance(source, Slabs):
             found += _slabs(source, slab)
         elif isinstance(source, str | Path):
-            for path in _paths(source):
+            for path in _paths(source, name):
                 found += _of_file(path, slab)
         else:
             expected = "a path, a pattern or a vizlight.pieces.Slabs"
-            raise TypeError(_check.message("sources", expected, type(source).__name__))
+            raise TypeError(_check.message(name, expected, type(source).__name__))
     if not found:
-        raise PieceError(_check.message("sources", "at least one piece", "none"))
+        raise PieceError(_check.message(name, "at least one piece", "none"))
     return found
 
 
-def _paths(source: str | Path) -> list[Path]:
+def _paths(source: str | Path, name: str) -> list[Path]:
     """Return the files of a path or a pattern, in the order of their names."""
     text = str(source)
-    if Path(text).is_file():
+    try:
+        is_file, is_folder = Path(text).is_file(), Path(text).is_dir()
+    except (OSError, ValueError):  # such as a name of more characters than the system takes
+        is_file = is_folder = False
+    if is_file:
         return [Path(text)]
     if any(sign in text for sign in "*?["):
-        found = sorted(Path(name) for name in glob.glob(text, recursive=True))  # noqa: PTH207
+        found = sorted(Path(file) for file in glob.glob(text, recursive=True))  # noqa: PTH207
         if found:
             return found
-        raise PieceError(_check.message("sources", "a pattern that files match", repr(text)))
-    what = "a folder" if Path(text).is_dir() else "no such file"
-    remedy = f"name its files, as '{text}/*.vtu'" if Path(text).is_dir() else ""
-    raise PieceError(_check.message("sources", "a file", f"'{text}' ({what})", remedy))
+        raise PieceError(_check.message(name, "a pattern that files match", repr(text)))
+    what = "a folder" if is_folder else "no such file"
+    remedy = f"name its files, as '{text}/*.vtu'" if is_folder else ""
+    raise PieceError(_check.message(name, "a file", f"{_check.describe(text)} ({what})", remedy))
 
 
 def _of_file(path: Path, slab: float) -> list[Piece]:

@@ -285,7 +285,7 @@ class Component:
             raise TypeError(_check.message("actor", expected, _check.describe(actor)))
         live = self._live_of(actor)
         if live is None or live.painter is None:
-            raise ValueError(_check.message("actor", expected, actor))
+            raise ValueError(_check.message("actor", expected, _check.describe(actor)))
         return live
 
     def _live_of(self, actor: vtkActor) -> Live | None:
@@ -474,6 +474,9 @@ def add_recorded(
         None, and nothing is added, if the mesh has no such light, the record does not suffice, or
         the light cannot be computed in each fragment.
     """
+    if not isinstance(plotter, pv.BasePlotter):
+        got = _check.describe(plotter)
+        raise TypeError(_check.message("plotter", "a pyvista.Plotter", got))
     blocks.check(mesh)
     _check.text("name", name, expected="the name of the light")
     light = lighting.DEFAULT_NAME if name == RGB else name

@@ -167,9 +167,9 @@ def _check_lights(lights: Lights, view: AnyView) -> tuple[Light, ...]:
 
 
 def _check_model(model: str) -> str:
-    if model not in ("phong", "blinn"):
+    if not (isinstance(model, str) and model in ("phong", "blinn")):
         expected = "'phong' or 'blinn', which VTK can approximate"
-        raise ValueError(_check.message("model", expected, repr(model)))
+        raise ValueError(_check.message("model", expected, _check.describe(model)))
     return model
 
 

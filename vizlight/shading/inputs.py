@@ -263,5 +263,5 @@ def _check_tangents(name: str, shape: tuple[int, ...], counts: set[int], n: int)
         k = shape[1] // n
     if not 0 < k < n:
         count = " or ".join(str(number) for number in sorted(counts))
-        expected = f"shape ({count}, k, {n}) or ({count}, {n} k) with k < {n}"
+        expected = f"shape ({count}, k, {n}) or ({count}, {n} k) with k < {n}, as points has {n}"
         raise ValueError(_check.message(name, expected, f"shape {shape}"))

@@ -1,0 +1,265 @@
+"""Small, valid calls of what takes meshes, scenes, files or plotters, for the same walk."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pyvista as pv
+from adversary_arrays import UP, unit
+
+import vizlight
+from vizlight import Light, Material, Scene, View, engine, studies
+from vizlight.geometry import manifolds
+from vizlight.shading.inputs import ShadingInputs
+
+SCENE = Scene(
+    lights=(Light(direction=UP), Light(position=(3.0, 2.0, 4.0))),
+    view=View(position=(5.0, 4.0, 6.0)),
+    material=Material(color=(1.0, 0.5, 0.2)),
+)  # fmt: skip
+SCENE4 = Scene(lights=Light(direction=(0.7, 0.6, 0.4, 0.1)), view=View(direction=(0, 0.3, 1, 0.2)))
+SUN = Scene(lights=Light(direction=UP), view=View(direction=(0, 0, 1)))
+
+
+def ball():
+    """Return a small sphere with tangents and scalars."""
+    mesh = pv.Sphere(theta_resolution=8, phi_resolution=7)
+    mesh.point_data["V"] = np.cross(mesh.points, (0.1, 0.2, 1.0)) + 1e-3
+    mesh.point_data["s"] = np.linspace(0.0, 1.0, mesh.n_points)
+    return mesh
+
+
+def flow():
+    """Return a small field of vectors in a volume."""
+    mesh = pv.ImageData(dimensions=(5, 5, 5), spacing=(0.25, 0.25, 0.25))
+    x, y, z = mesh.points.T
+    mesh.point_data["V"] = np.stack([1 - y, x, 0.2 + 0 * z], axis=1)
+    return mesh
+
+
+def hills():
+    """Return a small height field."""
+    x = np.linspace(0.0, 1.0, 8)
+    mesh = pv.ImageData(dimensions=(8, 8, 1), spacing=(1 / 7, 1 / 7, 1.0))
+    mesh.point_data["h"] = (0.2 * np.sin(5 * x)[:, None] * np.cos(4 * x)).ravel()
+    return mesh
+
+
+def lit():
+    """Return a small sphere that is lit."""
+    return vizlight.illuminate(ball(), SCENE)
+
+
+def torus():
+    """Return a small torus in 4-space as a mesh."""
+    return vizlight.manifold(manifolds.torus(1.0, 1.0, resolution=(6, 5)))
+
+
+def study():
+    """Return a study of two rows."""
+    rows = [studies.Row("a", 1.0, 0.1, 1.0), studies.Row("a", 2.0, 0.05, 2.0)]
+    return studies.Study(
+        approximates="a", reference="b", parameter="p", error="e", cost="c",
+        steps=lambda quick: [lambda: rows], verdict=lambda rows: "rely on it",
+    )  # fmt: skip
+
+
+def result():
+    """Return the result of that study."""
+    rows = list(study().steps(True)[0]())
+    return studies.Result("a", study(), rows, "rely on it")
+
+
+def saved():
+    """Return the path of a mesh that is saved."""
+    ball().save("ball.vtp")
+    return Path("ball.vtp")
+
+
+def plotter():
+    """Return a plotter with a mesh."""
+    made = pv.Plotter(off_screen=True, window_size=(60, 40))
+    made.add_mesh(pv.Sphere(theta_resolution=6, phi_resolution=6))
+    return made
+
+
+#: Plotter of the last call of `shown`.
+LAST = []
+
+
+def shown():
+    """Return an actor that has live light."""
+    LAST[:] = [plotter()]
+    return LAST[0].vizlight.add_mesh(ball(), scene=SCENE)
+
+
+def inputs():
+    """Return inputs of the engine."""
+    return ShadingInputs(points=unit(6, 3), normals=unit(6, 3))
+
+
+FILTERS = {
+    "bas_relief": lambda: {"mesh": ball(), "resolution": 8},
+    "fur": lambda: {"surface": ball(), "scene": SCENE, "fibres": 20, "length": 0.1, "density": 0.3},
+    "illuminate": lambda: {"mesh": ball(), "scene": SCENE, "tangents": "V"},
+    "isoluminance": lambda: {"mesh": ball(), "scene": SUN, "levels": 4},
+    "project": lambda: {"mesh": torus(), "scene": SCENE4, "distance": 4.0},
+    "provenance": lambda: {"mesh": lit()},
+    "refine": lambda: {"mesh": ball(), "scene": SCENE, "error": 0.2},
+    "relief_day": lambda: {
+        "mesh": hills(), "latitude": 0.8, "day": 100.0, "hours": [10.0, 12.0], "depth": 0.1,
+        "elevation": "h",
+    },
+    "relief_shadow": lambda: {"mesh": hills(), "scene": SUN, "depth": 0.1, "elevation": "h"},
+    "satin": lambda: {
+        "surface": ball(), "scene": SCENE, "tangents": "V", "seeds": 5, "max_steps": 20,
+    },
+    "streamlines": lambda: {
+        "mesh": flow(), "scene": SCENE, "vectors": "V", "seeds": 5, "max_steps": 20,
+    },
+    "tint": lambda: {"lit": lit(), "scalars": "s"},
+}  # fmt: skip
+
+
+def plotting():
+    """Return the arguments of `plot`."""
+    return {"mesh": ball(), "scene": SCENE, "off_screen": True, "window_size": (60, 40)}
+
+
+def series():
+    """Return two steps of a flow that changes with time, and how its lines are made."""
+    steps = [flow(), flow()]
+    for time, step in enumerate(steps):
+        step.field_data["TimeValue"] = [float(time)]
+        step.point_data["V"] *= 0.2 * (1 + time)
+    return {"series": steps, "scene": SCENE, "vectors": "V", "seeds": 4}
+
+
+def in_pieces(**more):
+    """Return the path of a lit mesh in pieces, and how it is drawn."""
+    lit().save("piece.vtp")
+    picture = {"camera": pv.Camera(), "size": (60, 40), "samples": 1, "workers": 1}
+    return {**more, **picture}
+
+
+def drawn(**more):
+    """Return arguments of a small picture."""
+    return {"panels": lit(), "size": (60, 40), "anti_aliasing": None, **more}
+
+
+#: Arguments of a valid call by the name of the callable; positional ones by name too.
+CALLS = {
+    "data.example_path": dict,
+    "data.load_example": dict,
+    "files.read": lambda: {"path": saved()},
+    "files.surface_of": lambda: {"mesh": flow(), "contour": None},
+    "files.warped": lambda: {"mesh": hills(), "name": "h", "factor": 1.0},
+    "files.write_mesh": lambda: {"mesh": ball(), "path": Path("out.vtp")},
+    **{f"filters.{name}.{name}": make for name, make in FILTERS.items() if name != "provenance"},
+    **{f"accessor.Accessor.{name}": make for name, make in FILTERS.items()},
+    "accessor.Accessor.relief_from_mesh": FILTERS["bas_relief"],
+    "accessor.Accessor.plot": plotting,
+    "filters.manifold.manifold": lambda: {
+        "shape": manifolds.torus(1.0, 1.0, resolution=(6, 5)),
+        "scene": SCENE4,
+        "distance": 4.0,
+    },
+    "filters.solids.to_polydata": lambda: {"solid": vizlight.Sphere(), "tolerance": 0.1},
+    "mesh.polylines.direction_colors": lambda: {"mesh": pv.Spline(np.cumsum(unit(5, 3), 0), 8)},
+    "mesh.records.provenance": FILTERS["provenance"],
+    "filters.pathlines.pathlines": series,
+    "pictures.backends.choose_backend": dict,
+    "pictures.backends.probe": lambda: {"backend": "egl"},
+    "pictures.cameras.camera_on": lambda: {"bounds": (0.0, 1.0, 0.0, 1.0, 0.0, 1.0)},
+    "pictures.cameras.over_shoulder": lambda: {"camera": pv.Camera()},
+    "pictures.movie.save": lambda: {
+        "frames": [lit(), lit()],
+        "path": Path("movie.gif"),
+        "picture": {"size": (60, 40), "anti_aliasing": None},
+    },
+    "pictures.movie.turn": lambda: {
+        "mesh": torus(),
+        "path": Path("movie.gif"),
+        "scene": SCENE4,
+        "frames": 2,
+        "picture": {"size": (60, 40), "anti_aliasing": None},
+    },
+    "pictures.render.Panel": lambda: {"mesh": lit()},
+    "pictures.render.make_plotter": drawn,
+    "pictures.render.pictures": lambda: {
+        "sequence": [lit()],
+        "size": (60, 40),
+        "anti_aliasing": None,
+    },
+    "pictures.render.save_png": lambda: drawn(path=Path("picture.png")),
+    "pictures.testing.assert_same_picture": lambda: {
+        "got": np.zeros((20, 20, 3), np.uint8),
+        "expected": np.zeros((20, 20, 3), np.uint8),
+    },
+    "pictures.testing.difference": lambda: {
+        "got": np.zeros((20, 20, 3), np.uint8),
+        "expected": np.zeros((20, 20, 3), np.uint8),
+    },
+    "pieces.drawing.pictures": lambda: in_pieces(sequence=["piece.vtp"]),
+    "pieces.drawing.save_png": lambda: in_pieces(shown="piece.vtp", path=Path("picture.png")),
+    "pieces.kinds.Slabs": lambda: {"arrays": {"a": np.zeros((3, 4, 5))}},
+    "pieces.run.bounding_box": lambda: {"sources": saved(), "workers": 1},
+    "pieces.run.light": lambda: {
+        "sources": saved(),
+        "scene": SCENE,
+        "out": Path("lit.pvtp"),
+        "workers": 1,
+        "tangents": "V",
+    },
+    "plotting.component.Component.add_mesh": lambda: {"mesh": ball(), "scene": SCENE},
+    "plotting.component.Component.explain": lambda: {"actor": shown()},
+    "plotting.component.add_recorded": lambda: {
+        "plotter": plotter(),
+        "mesh": lit(),
+        "name": "luminance",
+    },
+    "plotting.component.plot": plotting,
+    "scene.light.Light": lambda: {"position": (3.0, 0.0, 0.0)},
+    "scene.light.Light.headlight": dict,
+    "scene.light.Light.seen_from": lambda: {"view": View(direction=(0, 0, 1))},
+    "scene.material.Material": dict,
+    "scene.material.Material.from_property": lambda: {"source": pv.Property()},
+    "scene.material.Material.to_property": dict,
+    "scene.scene.Scene": lambda: {"lights": Light(direction=UP), "view": View(direction=UP)},
+    "scene.scene.Scene.from_dict": lambda: {"values": SCENE.to_dict()},
+    "scene.scene.Scene.from_plotter": lambda: {"plotter": plotter()},
+    "scene.scene.Scene.moved": lambda: {"offset": (1.0, 0.0, 0.0)},
+    "scene.scene.Scene.replace": dict,
+    "scene.view.DepthCue": lambda: {"front": 0.0, "back": 1.0},
+    "scene.view.View": lambda: {"position": (3.0, 0.0, 0.0)},
+    "scene.view.View.from_camera": lambda: {"camera": pv.Camera()},
+    "shading.decide.plan": lambda: {"scene": SCENE, "k": 1},
+    "shading.engine.depth_range": lambda: {"points": unit(6, 3), "scene": SCENE},
+    "shading.engine.observed": lambda: {"observer": None},
+    "shading.engine.run": lambda: {
+        "inputs": inputs(),
+        "scene": SCENE,
+        "options": engine.ShadingOptions(),
+    },
+    "shading.engine.shade": lambda: {
+        "points": unit(6, 3),
+        "tangents": unit(6, 3, seed=2),
+        "scene": SCENE,
+        "normals": unit(6, 3, seed=3),
+    },
+    "shading.inputs.ShadingInputs.check": lambda: {"lights": 2},
+    "shading.options.Bundle": dict,
+    "shading.options.ShadingOptions": dict,
+    "studies._framework.cheapest": lambda: {"rows": result().rows},
+    "studies._framework.holding": lambda: {"rows": result().rows},
+    "studies._framework.order": lambda: {"rows": result().rows},
+    "studies._results.Result.draw": lambda: {"path": Path("figure.png")},
+    "studies._results.Result.write_csv": lambda: {"path": Path("rows.csv")},
+    "studies._results.print_list": lambda: {"studies": {"a": study()}},
+    "studies._results.print_result": lambda: {"result": result()},
+    "studies._results.run": lambda: {"name": "a", "study": study()},
+    "studies.load": lambda: {"name": "frames"},
+    "studies.names": dict,
+    "verify.report.report": dict,
+}
