@@ -474,8 +474,9 @@ def add_recorded(
         None, and nothing is added, if the mesh has no such light, the record does not suffice, or
         the light cannot be computed in each fragment.
     """
-    if not isinstance(plotter, pv.BasePlotter):
-        got = _check.describe(plotter)
+    given: object = plotter
+    if not isinstance(given, pv.BasePlotter):
+        got = _check.describe(given)
         raise TypeError(_check.message("plotter", "a pyvista.Plotter", got))
     blocks.check(mesh)
     _check.text("name", name, expected="the name of the light")
