@@ -143,6 +143,11 @@ def in_pieces(**more):
     return {**more, **picture}
 
 
+def written(name):
+    """Return arguments of a function that writes a lit mesh to a file."""
+    return {"mesh": ball(), "scene": SCENE, "path": Path(name)}
+
+
 def drawn(**more):
     """Return arguments of a small picture."""
     return {"panels": lit(), "size": (60, 40), "anti_aliasing": None, **more}
@@ -159,7 +164,9 @@ CALLS = {
     **{f"filters.{name}.{name}": make for name, make in FILTERS.items() if name != "provenance"},
     **{f"accessor.Accessor.{name}": make for name, make in FILTERS.items()},
     "accessor.Accessor.relief_from_mesh": FILTERS["bas_relief"],
+    "accessor.Accessor.live_html": lambda: written("page.html"),
     "accessor.Accessor.plot": plotting,
+    "accessor.Accessor.save_gltf": lambda: written("mesh.glb"),
     "filters.manifold.manifold": lambda: {
         "shape": manifolds.torus(1.0, 1.0, resolution=(6, 5)),
         "scene": SCENE4,
@@ -214,12 +221,18 @@ CALLS = {
     },
     "plotting.component.Component.add_mesh": lambda: {"mesh": ball(), "scene": SCENE},
     "plotting.component.Component.explain": lambda: {"actor": shown()},
+    "plotting.component.Component.export_html": lambda: {
+        "path": shown() and Path("page.html"),
+    },
+    "plotting.component.Component.set_scene": lambda: {"actor": shown(), "scene": SCENE},
     "plotting.component.add_recorded": lambda: {
         "plotter": plotter(),
         "mesh": lit(),
         "name": "luminance",
     },
     "plotting.component.plot": plotting,
+    "plotting.gltf.save_gltf": lambda: written("mesh.glb"),
+    "plotting.html.live_html": lambda: written("page.html"),
     "scene.light.Light": lambda: {"position": (3.0, 0.0, 0.0)},
     "scene.light.Light.headlight": dict,
     "scene.light.Light.seen_from": lambda: {"view": View(direction=(0, 0, 1))},

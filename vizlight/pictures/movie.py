@@ -201,13 +201,14 @@ def turn(
             notes.extend(str(warning.message) for warning in caught[:1])
             yield step
 
-    with progress("turn", count if camera else 2 * count, show=progress_bar) as report:
+    with progress("turn", 2 * count if camera is None else count, show=progress_bar) as report:
         done = 0
         if camera is None:
             # The light does not affect the positions, so the camera is found without it.
             placing = {name: value for name, value in options.items() if name in PLACING}
             unlit = _counted(steps(placing, None), report, done)
-            camera = render.camera_on(common_bounds("mesh", unlit))
+            bounds = _check.coordinates("mesh", common_bounds("mesh", unlit))
+            camera = render.camera_on(bounds)
             done = count
             notes.clear()
         drawing["camera"] = camera

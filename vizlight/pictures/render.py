@@ -276,7 +276,7 @@ def _background_of(shown: Sequence[Panel], background: ColorLike | None) -> pv.C
 
 def _camera_on_all(shown: Sequence[Panel], aspect: float) -> pv.Camera:
     """Return a camera that shows the meshes of all panels."""
-    common_bounds("panels", [panel.mesh for panel in shown])
+    _check.coordinates("panels", common_bounds("panels", [panel.mesh for panel in shown]))
     meshes = pv.MultiBlock([block for panel in shown for block in all_blocks(panel.mesh)])
     return camera_on(meshes, aspect=aspect)
 

@@ -200,7 +200,8 @@ class _File:
         self, rows: NDArray[np.generic], kind: str, shape: str, target: int, **extra: bool
     ) -> int:
         """Append an array to the buffer and return the index of its accessor."""
-        data = np.ascontiguousarray(rows, kind)
+        with np.errstate(over="ignore"):  # coordinates beyond float32
+            data = np.ascontiguousarray(rows, kind)
         self.views.append(
             {
                 "buffer": 0, "byteOffset": len(self.buffer), "byteLength": data.nbytes,

@@ -113,6 +113,10 @@ def live_html(
         plotter.vizlight.add_mesh(
             mesh, scene=scene, light=light, scalars=scalars, render=False, **options
         )
+        given: object = camera
+        if given is not None and not isinstance(given, pv.Camera):
+            got = _check.describe(given)
+            raise TypeError(_check.message("camera", "a pyvista.Camera", got))
         if camera is not None:
             plotter.camera = camera.copy()  # type: ignore[no-untyped-call]
         return plotter.vizlight.export_html(path, title=title, panel=panel)  # type: ignore[no-any-return]
@@ -151,7 +155,8 @@ def write_page(
         If the file cannot be written.
     """
     path = files.check_output(path, SUFFIXES)
-    _check.instance("title", title, str)
+    _check.text("title", title)
+    panel = _check.boolean("panel", panel)
     renderer = plotter.renderer
     page = Page(renderer)
     for one in shown:

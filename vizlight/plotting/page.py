@@ -98,8 +98,9 @@ class Page:
         if prop.GetEdgeVisibility():
             self.notices.append(f"{shown.name}: the page does not draw the edges of cells")
         matrix: Array = np.asarray(pv.array_from_vtkmatrix(actor.GetMatrix()), np.float64)
-        points = np.asarray(surface.points, dtype=np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
-        made["points"] = _packed(points - self.origin, "f4")
+        with np.errstate(invalid="ignore", over="ignore"):  # points that are not finite
+            points = np.asarray(surface.points, dtype=np.float64) @ matrix[:3, :3].T
+            made["points"] = _packed(points + matrix[:3, 3] - self.origin, "f4")
         for key, name in _CELLS.items():
             cells = np.asarray(getattr(surface, name))
             if len(cells):
@@ -243,7 +244,8 @@ def _ended(cue: DepthCue | None) -> DepthCue | None:
 
 def _packed(values: NDArray[np.generic], kind: str) -> dict[str, object]:
     """Return numbers, compressed and as text."""
-    data = zlib.compress(np.ascontiguousarray(values, f"<{kind}").tobytes(), 6)
+    with np.errstate(over="ignore"):  # coordinates beyond float32
+        data = zlib.compress(np.ascontiguousarray(values, f"<{kind}").tobytes(), 6)
     return {"data": base64.b64encode(data).decode(), "kind": kind}
 
 

@@ -113,9 +113,9 @@ def rotation(n: int, turns: object, /) -> Array:
 
 def _is_row(part: object) -> bool:
     """Return whether an element of a list is a row of numbers rather than a rotation."""
-    return isinstance(part, list | tuple | np.ndarray) and all(
-        isinstance(number, numbers.Real) for number in part
-    )
+    if isinstance(part, np.ndarray):
+        return part.ndim == 1 and part.dtype.kind in "iuf"
+    return isinstance(part, list | tuple) and all(isinstance(one, numbers.Real) for one in part)
 
 
 def _special_orthogonal(n: int, value: object) -> Array:
