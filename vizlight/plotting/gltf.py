@@ -170,13 +170,13 @@ class _File:
         surface, ids = hull.outer_surface(mesh)
         flat = surface.triangulate(pass_verts=True, pass_lines=True)
         points = np.asarray(surface.points, dtype=np.float64)
-        good = np.all(np.isfinite(points), axis=1)
+        good = np.all(np.abs(points) < 1e38, axis=1)
         drawn = points[good] if np.any(good) else np.zeros((1, 3))
         centre = (drawn.min(axis=0) + drawn.max(axis=0)) / 2
         # A control point of a curved cell, which has no index, is not lit.
         shown = np.where(ids[:, np.newaxis] >= 0, colors[ids], np.uint8(0))
         self.clear |= bool(np.any(shown[:, 3] < 255))
-        # glTF knows no number that is not finite; no cell with one is drawn.
+        # glTF knows no number that is not finite in float32; no cell with one is drawn.
         rows = np.where(good[:, np.newaxis], points - centre, 0.0)
         attributes = {
             "POSITION": self.put(rows, "<f4", "VEC3", _VERTICES, ends=True),
@@ -200,8 +200,7 @@ class _File:
         self, rows: NDArray[np.generic], kind: str, shape: str, target: int, **extra: bool
     ) -> int:
         """Append an array to the buffer and return the index of its accessor."""
-        with np.errstate(over="ignore"):  # coordinates beyond float32
-            data = np.ascontiguousarray(rows, kind)
+        data = np.ascontiguousarray(rows, kind)
         self.views.append(
             {
                 "buffer": 0, "byteOffset": len(self.buffer), "byteLength": data.nbytes,
