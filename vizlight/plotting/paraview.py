@@ -225,6 +225,8 @@ def save(
         remedy = "pass a Scene, or a mesh that a filter has lit"
         raise ValueError(_check.message("scene", "a scene or the record of one", None, remedy))
     (source,) = sources
+    if scalars is not None:
+        _check.text("scalars", scalars, expected="the name of a point array")
     if scalars is not None and scalars not in source.mesh.point_data:
         raise ValueError(_check.message("scalars", "the name of a point array", repr(scalars)))
     if reason := unfit(source.inputs, source.options, source.mesh):
@@ -264,6 +266,8 @@ def _plan(scene: Scene, layout: Layout, options: ShadingOptions) -> Plan:
     TypeError, ValueError
         If the scene does not fit, or the light cannot be computed in each fragment.
     """
+    if scene.n not in (None, 3):
+        raise ValueError(_check.message("scene", "vectors of 3 components", scene.n))
     _check.instance("scene", scene, Scene)
     if reason := unfit_layout(layout, options):
         raise ValueError(_unfit(reason))
