@@ -266,6 +266,7 @@ def _plan(scene: Scene, layout: Layout, options: ShadingOptions) -> Plan:
     TypeError, ValueError
         If the scene does not fit, or the light cannot be computed in each fragment.
     """
+    _check.instance("scene", scene, Scene)
     if scene.n not in (None, 3):
         raise ValueError(_check.message("scene", "vectors of 3 components", scene.n))
     _check.instance("scene", scene, Scene)
