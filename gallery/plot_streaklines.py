@@ -58,5 +58,6 @@ for lines in frames:
     plotter.add_mesh(
         lit, scalars="rgb", rgb=True, lighting=False, line_width=1.6, name="smoke", render=False
     )
-    plotter.write_frame()
+    if lines.field_data["TimeValue"][0] > 3:  # before, there is little smoke
+        plotter.write_frame()
 plotter.show()
