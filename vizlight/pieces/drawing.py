@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -17,6 +18,7 @@ from vizlight.pieces.run import Lit
 from vizlight.pieces.sources import pieces_of
 from vizlight.pieces.task import survey
 from vizlight.pieces.workers import runner
+from vizlight.shading.options import unknown_option
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -57,7 +59,7 @@ def pictures(
     sequence: Iterable[Lit | str | Path | list[str | Path]],
     /,
     *,
-    camera: pv.Camera,
+    camera: pv.Camera | None = None,
     size: tuple[int, int] = (1200, 800),
     samples: int = SAMPLES,
     client: Any = None,
@@ -70,8 +72,9 @@ def pictures(
     ----------
     sequence : iterable of Lit, path or list of paths
         Results of :func:`light`, indices or files of each picture.
-    camera : pyvista.Camera
-        Camera of all pictures; :func:`vizlight.render.camera_on` of a coarse mesh is one.
+    camera : pyvista.Camera, optional
+        Camera of all pictures. Default: :func:`vizlight.render.camera_on` the bounding box of the
+        first.
     size : (int, int), default: (1200, 800)
         Width and height in pixels.
     samples : int, default: 2
@@ -115,12 +118,14 @@ def pictures(
     (40, 60, 3)
     """
     _check.iterable("sequence", sequence, "an iterable of Lit, paths or lists of them")
-    known = ("scalars", "cmap", "clim", "background", "line_width", "backend")
+    known = [
+        *inspect.signature(pictures).parameters,
+        *("scalars", "cmap", "clim", "background", "line_width", "backend"),
+    ]
     for name in options:
         if name not in known:
-            text = _check.message(name, "an option of pictures", "none", f"it has {known}")
-            raise TypeError(text)
-    if not hasattr(camera, "GetPosition"):
+            raise TypeError(unknown_option("pictures", name, known))
+    if camera is not None and not hasattr(camera, "GetPosition"):
         raise TypeError(_check.message("camera", "a pyvista.Camera", _check.describe(camera)))
     samples = _check.integer("samples", samples, low=1)
     width, height = render.pixels_of(size)
@@ -132,6 +137,8 @@ def pictures(
         for one in sequence:
             parts = _parts(one)
             bounds = _bounds(one, parts, run)
+            if camera is None:
+                camera = render.camera_on(pv.Box(bounds), aspect=width / height)
             shot = Shot(
                 camera={name: getattr(camera, name) for name in CAMERA},
                 clipping=_clipping(camera, bounds),

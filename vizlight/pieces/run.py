@@ -158,7 +158,8 @@ def light(
 
     Notes
     -----
-    Light of a piece equals that of the whole within 1e-6, normals on borders included. The
+    Light of a piece equals that of the whole by the same options (``facing="eye"``, unless it is
+    given) within 1e-6, normals on borders included. Processes take some seconds to start. The
     memory of a process is bounded by its piece with its ghost cells, one neighbour at a time, and
     the result. Each file is written under another name and moved to its place, so that a worker
     that is killed leaves no part of one; its piece is then lit by another, with the same bits.

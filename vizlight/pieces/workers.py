@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import importlib.util
+import sys
 from typing import TYPE_CHECKING, Any
 
 from vizlight import _check, _pool, _progress
@@ -41,6 +42,7 @@ def runner(
 
     with contextlib.ExitStack() as stack:
         if client is None:
+            stack.enter_context(_main_apart())
             cluster = stack.enter_context(
                 distributed.LocalCluster(
                     n_workers=number,
@@ -63,6 +65,25 @@ def runner(
             expected = "a distributed.Client or the address of a scheduler"
             raise TypeError(_check.message("client", expected, type(client).__name__))
         yield _on_cluster(client, retries)
+
+
+@contextlib.contextmanager
+def _main_apart() -> Iterator[None]:
+    """Keep a script from being run again by each process that it starts.
+
+    Processes are spawned, and each would import the script, which need not be guarded by
+    ``if __name__ == "__main__"``: what they call is in this package.
+    """
+    main = sys.modules["__main__"]
+    path = getattr(main, "__file__", None)
+    if path is None or getattr(main, "__spec__", None) is not None:
+        yield
+        return
+    del main.__file__
+    try:
+        yield
+    finally:
+        main.__file__ = path
 
 
 def _has_dask() -> bool:
