@@ -135,7 +135,7 @@ OF_NUMBERS = {
         "geometry/lines/tracing.py", "np.where(turned[:, :, np.newaxis], -corners, corners)",
         "corners",
     ),
-    "camera: up is not set": ("pictures/cameras.py", "    camera.up = tuple(up)\n", ""),
+    "camera: up is not set": ("pictures/cameras.py", "    camera.up = tuple(upward)\n", ""),
     "camera: fitted with another up": (
         "pictures/cameras.py", "right = np.cross(up, toward)",
         "right = np.cross((0.1, 1.0, 0.2), toward)",

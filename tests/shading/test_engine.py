@@ -594,8 +594,10 @@ before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
 engine.shade(*vectors, scene, threads=1)
 print(resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before)
 """
+    # Dask leaves settings of the library behind, which a process reads when it starts.
+    kept = {name: value for name, value in os.environ.items() if not name.startswith("MALLOC_")}
     run = subprocess.run(
-        [sys.executable, "-c", script], env={**os.environ, "VIZLIGHT_FAST": "0"},
+        [sys.executable, "-c", script], env={**kept, "VIZLIGHT_FAST": "0"},
         capture_output=True, text=True, check=True,
     )  # fmt: skip
     # 2500 pages of output; without the memory kept 78,000 were seen.
