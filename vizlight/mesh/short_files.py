@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import struct
 from typing import TYPE_CHECKING, BinaryIO
 
@@ -83,6 +84,10 @@ _POINTS = {
 }  # fmt: skip
 
 
+#: Last type of linear cells; those in the table have no more points than that.
+_LAST_LINEAR = 16
+
+
 def contradiction(mesh: object, /) -> str:
     """Return what a mesh lacks of what its cells or its dimensions count; empty for nothing.
 
@@ -108,6 +113,11 @@ def contradiction(mesh: object, /) -> str:
         elif isinstance(block, pv.PolyData):
             cells = (block.GetVerts(), block.GetLines(), block.GetPolys(), block.GetStrips())
             reason = next(filter(None, (_of_cells(own, block.n_points) for own in cells)), "")
+        elif isinstance(block, pv.StructuredGrid):
+            there = block.GetPoints().GetNumberOfPoints() if block.GetPoints() else 0
+            reason = ""
+            if there != math.prod(block.dimensions):
+                reason = f"{there} points for the dimensions {tuple(block.dimensions)}"
         else:
             continue
         if reason:
@@ -138,11 +148,14 @@ def _of_types(grid: pv.UnstructuredGrid) -> str:
     if len(kinds) != len(sizes):
         return f"{len(sizes)} cells of {len(kinds)} types"
     for kind in np.flatnonzero(np.bincount(kinds, minlength=1)).tolist():
-        least = int(sizes[kinds == kind].min())
+        own = sizes[kinds == kind]
+        least, most = int(own.min()), int(own.max())
         if kind and vtkGenericCell.InstantiateCell(kind) is None:
             return f"cells of the unknown type {kind}"
         if least < _POINTS.get(kind, 0):
             return f"a cell of type {kind} with {least} points"
+        if kind in _POINTS and kind <= _LAST_LINEAR and most > _POINTS[kind]:
+            return f"a cell of type {kind} with {most} points"
     return ""
 
 
