@@ -72,7 +72,7 @@ def _buttons(page: Page) -> None:
 
 
 def _messages(page: Page) -> None:
-    top = "position: absolute; z-index: 2; left: var(--v-layout-left, 0px); right: 0"
+    top = "position: absolute; z-index: 2; left: 0; right: 0"
     with html.Div(style=top):
         with html.Div(v_if=("!!busy",), classes="busy d-flex align-center bg-surface"):
             v3.VProgressLinear(indeterminate=True, color="primary", height=6)
