@@ -13,7 +13,7 @@ from vtkmodules.vtkRenderingCore import vtkRenderer
 
 from vizlight import _check, files
 from vizlight.pictures import render
-from vizlight.pieces.kinds import FilePiece, PieceError
+from vizlight.pieces.kinds import FilePiece, PieceError, union
 from vizlight.pieces.run import Lit
 from vizlight.pieces.sources import pieces_of
 from vizlight.pieces.task import survey
@@ -217,9 +217,7 @@ def _parts(shown: Lit | str | Path | list[str | Path]) -> list[FilePiece]:
 def _bounds(shown: object, parts: list[FilePiece], run: Any) -> tuple[float, ...]:
     if isinstance(shown, Lit):
         return shown.bounds
-    boxes = np.array([one.bounds for _, one in run(survey, [(piece, None) for piece in parts])])
-    both = np.where(np.arange(6) % 2, boxes.max(axis=0), boxes.min(axis=0))
-    return tuple(float(x) for x in both)
+    return union([one.bounds for _, one in run(survey, [(piece, None) for piece in parts])])
 
 
 def _clipping(camera: pv.Camera, bounds: tuple[float, ...]) -> tuple[float, float]:

@@ -17,6 +17,8 @@ from vizlight import _check, files
 from vizlight.pieces.ghosts import GHOST, own_cells, with_layer, without_ghosts
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from vizlight._types import VectorLike
 
     Extent = tuple[int, int, int, int, int, int]
@@ -72,6 +74,13 @@ class Piece:
         """Return the bounding box, from no more of the data than it needs; empty without points."""
         mesh = self.read(0)
         return tuple(mesh.bounds) if mesh.n_points else ()
+
+
+def union(boxes: ArrayLike) -> tuple[float, ...]:
+    """Return the bounding box of bounding boxes, each a row."""
+    rows = np.asarray(boxes, dtype=np.float64).reshape(-1, 6)
+    both = np.where(np.arange(6) % 2, rows.max(axis=0), rows.min(axis=0))
+    return tuple(both.tolist())
 
 
 def stamp_of(path: Path) -> Stamp:
@@ -361,23 +370,18 @@ def index_files(path: Path) -> list[Path]:
 def structured(path: Path) -> Any:
     """Return a reader of a structured grid that knows the grid's extent."""
     suffix = path.suffix.lower()
-    if suffix in HDF:
-        return hdf(path)
-    reader: Any = STRUCTURED[suffix]()
-    reader.SetFileName(str(path))
-    with files.captured_errors() as errors:
-        reader.UpdateInformation()
-    if errors:
-        got = f"'{path}' ({errors[0]})"
-        raise PieceError(_check.message("sources", "a file that can be read", got))
-    return reader
+    return hdf(path) if suffix in HDF else _informed(STRUCTURED[suffix](), path)
 
 
 def hdf(path: Path) -> Any:
     """Return a reader of a VTKHDF file that knows what is in it."""
     from vtkmodules.vtkIOHDF import vtkHDFReader
 
-    reader: Any = vtkHDFReader()
+    return _informed(vtkHDFReader(), path)
+
+
+def _informed(reader: Any, path: Path) -> Any:
+    """Return a reader that has read what a file holds, but no data."""
     reader.SetFileName(str(path))
     with files.captured_errors() as errors:
         reader.UpdateInformation()

@@ -17,7 +17,7 @@ import pyvista as pv
 from vizlight import _check, _compiled, files
 from vizlight.filters.lighting import unlit
 from vizlight.pieces import index, task
-from vizlight.pieces.kinds import FilePiece, PieceError
+from vizlight.pieces.kinds import FilePiece, PieceError, union
 from vizlight.pieces.sources import pieces_of
 from vizlight.pieces.workers import collected, runner
 from vizlight.scene import Scene
@@ -247,7 +247,7 @@ def bounding_box(
     rows = np.array([box for box in boxes if box]).reshape(-1, 6)
     if not len(rows):
         raise PieceError(_check.message("sources", "pieces with points", "none"))
-    return pv.Box(np.where(np.arange(6) % 2, rows.max(axis=0), rows.min(axis=0)).tolist())
+    return pv.Box(union(rows))
 
 
 def _name(argument: str, value: object) -> str:
@@ -394,14 +394,12 @@ def _result(path: Path, folder: Path, done: Sequence[Done], job: Job) -> Lit:
         if 2 * count > len(full):
             _check.warn(f"{note} ({count} of {len(done)} pieces)")
     names = {name for one in full for name in one.ranges}
-    boxes = np.array([one.bounds for one in full])
-    both = np.where(np.arange(6) % 2, boxes.max(axis=0), boxes.min(axis=0))
     return Lit(
         path=path,
         files=tuple(folder / one.file for one in full),
         points=points,
         cells=sum(one.cells for one in full),
-        bounds=tuple(float(x) for x in both),
+        bounds=union([one.bounds for one in full]),
         ranges={
             name: (
                 min(one.ranges[name][0] for one in full if name in one.ranges),
