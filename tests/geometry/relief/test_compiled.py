@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fields import hills, places, sun
+from fields import by_cells, hills, places, sun
 
 from vizlight import _compiled
 from vizlight.geometry import relief
@@ -16,13 +16,6 @@ pytestmark = pytest.mark.skipif(not _compiled.active(), reason="numba is not ava
 @pytest.fixture(autouse=True)
 def _compile(monkeypatch):
     monkeypatch.setenv("VIZLIGHT_FAST", "1")
-
-
-def by_cells(field, start, way):
-    """Return lengths by NumPy, through every cell."""
-    count = start.shape[1]
-    ways = np.repeat(way[:, None], count, axis=1)
-    return marching.march(field, start, ways, np.full(count, marching.FAR), coarse=False)
 
 
 @pytest.mark.parametrize("way", [sun(0.01, 12), sun(90, 0), sun(88, 40), sun(-30, 250)])

@@ -6,11 +6,11 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from fields import hills, places, sun
+from fields import by_cells, hills, places, sun
 
 from vizlight import _compiled
 from vizlight.geometry import relief
-from vizlight.geometry.relief import height_field, marching, strips
+from vizlight.geometry.relief import height_field, strips
 
 pytestmark = pytest.mark.skipif(not _compiled.active(), reason="numba is not available")
 
@@ -18,13 +18,6 @@ pytestmark = pytest.mark.skipif(not _compiled.active(), reason="numba is not ava
 @pytest.fixture(autouse=True)
 def _compile(monkeypatch):
     monkeypatch.setenv("VIZLIGHT_FAST", "1")
-
-
-def by_cells(field, start, way):
-    """Return lengths by NumPy, through every cell."""
-    count = start.shape[1]
-    ways = np.repeat(way[:, None], count, axis=1)
-    return marching.march(field, start, ways, np.full(count, marching.FAR), coarse=False)
 
 
 def by_strips(field, start, way, below):
