@@ -223,12 +223,13 @@ def seen(page):
 
 
 def settled(page, good):
-    """Return the picture once nothing is computed, it is good and it stays."""
-    last = None
+    """Return the picture once nothing is computed, it is good and it stays for a second."""
+    last, still = None, 0
     for _ in range(LIMIT // 250):
         picture = seen(page)
-        still = last is not None and np.abs(picture - last).mean() < 0.2
-        if still and page.locator(".busy").count() == 0 and good(picture):
+        same = last is not None and np.abs(picture - last).mean() < 0.2
+        still = still + 1 if same and page.locator(".busy").count() == 0 else 0
+        if still >= 4 and good(picture):
             return picture
         last = picture
         page.wait_for_timeout(250)

@@ -43,8 +43,9 @@ def lay_out(page: Page) -> None:
         with v3.VNavigationDrawer(width=300, permanent=True):
             _controls(page)
         with v3.VMain(style="height: 100vh"):
-            _messages(page)
             with html.Div(style="position: relative; width: 100%; height: 100%"):
+                # Beside the controls, not under them.
+                _messages(page)
                 view = vtk.VtkRemoteView(
                     page.stage.plotter.render_window, interactive_ratio=1, still_ratio=1,
                     interactive_quality=70, still_quality=95,
