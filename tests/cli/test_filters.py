@@ -326,7 +326,7 @@ def test_report_stands_in_the_script_too(folder, capfd):
         ("light flow.vti --threshold r:3:1", "--threshold: expected NAME:LOW:HIGH"),
         ("light flow.vti --threshold q:3:4", "--threshold: expected the name of an array, one of"),
         ("light flow.vti --threshold r:99:", "--threshold: expected a value that leaves"),
-        ("light flow.vti --scalars V", "--scalars: expected an array of one component, one"),
+        ("light flow.vti --scalars U", "--scalars: expected an array, one"),
         ("light flow.vti --scalars r --cmap no", "--cmap: expected the name of a colour map"),
         ("light flow.vti --scene no.json", "--scene: expected a JSON file, got 'no.json' (No such"),
         ("light flow.vti --scene flow.vti", "--scene: expected a JSON file"),
@@ -444,11 +444,15 @@ def test_colours_of_data_are_multiplied_by_the_light(folder, capfd):
     assert code == 0
     space = {}
     exec(script, space)
-    lit, colors = (
-        space["lit"],
-        pv.LookupTable("viridis", scalar_range=space["lit"].get_data_range("r")),
-    )
-    expected = np.array([colors(float(r))[:3] for r in lit["r"]]) * lit["luminance"][:, np.newaxis]
-    np.testing.assert_allclose(space["shown"]["tint"], expected, atol=1 / 255)
+    lit, ends = space["lit"], space["lit"].get_data_range("r")
+    table = pv.LookupTable("viridis", scalar_range=ends)
+    colors = np.array([table(float(r))[:3] for r in lit["r"]])
+    # The highlight keeps the colour of the light.
+    scene = vizlight.Scene.from_dict(vizlight.provenance(lit)["scene"])
+    terms = vizlight.illuminate(lit, scene, components=True, name="again")
+    specular = np.asarray(terms["again_specular"])[:, np.newaxis]
+    without = lit["luminance"][:, np.newaxis] - specular
+    expected = np.clip(colors * without + specular, 0, 1)
+    np.testing.assert_allclose(space["shown"]["tint"] / 255, expected, atol=1.5 / 255)
     picture = np.asarray(pv.read("a.png")["PNGImage"], dtype=int)
     assert np.ptp(picture, axis=1).max() > 50

@@ -127,27 +127,19 @@ def tinted(lit: Step, name: str, data: Step, color: Color) -> Step | None:
     if color.scalars is None:
         return None
     found = data.run()
-    light = Step("", "numpy.expand_dims", Step("", "[]", lit, name), 1)
-    there = [
-        key
-        for part in (found.point_data, found.cell_data)
-        for key, array in part.items()
-        if array.ndim == 1
-    ]
+    there = [*found.point_data, *found.cell_data]
     if color.scalars in there:
         # Data of cells are put at their points: the light is there.
-        of_points = color.scalars in found.point_data
-        source = lit if of_points else Step("", ".cell_data_to_point_data", lit)
-        values = Step("values", "[]", source, color.scalars)
-        ends = Step("", ".get_data_range", lit, color.scalars)
-        table = Step("colors", "pyvista.LookupTable", color.cmap, scalar_range=ends)
-        rgb = Step("", "numpy.delete", Step("", "()", table, values), 3, axis=1)
-    elif color.scalars == DIRECTION:
-        rgb = Step("", "vizlight.direction_colors", lit)
-    else:
-        expected = f"an array of one component, {_check.one_of(there)}, or {DIRECTION!r} for lines"
+        values: object = color.scalars
+        if color.scalars not in found.point_data:
+            values = Step("values", "[]", Step("", ".cell_data_to_point_data", lit), color.scalars)
+        return Step("shown", "vizlight.tint", lit, values, cmap=color.cmap, light=name, name=TINT)
+    if color.scalars != DIRECTION:
+        expected = f"an array, {_check.one_of(there)}, or {DIRECTION!r} for lines"
         raise ValueError(_check.message("--scalars", expected, repr(color.scalars)))
+    light = Step("", "numpy.expand_dims", Step("", "[]", lit, name), 1)
     shown = Step("shown", ".copy", lit, deep=False)
+    rgb = Step("", "vizlight.direction_colors", lit)
     shown.items = {TINT: Step("", "numpy.multiply", rgb, light)}
     return shown
 
