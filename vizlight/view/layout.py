@@ -42,14 +42,14 @@ def lay_out(page: Page) -> None:
             _buttons(page)
         with v3.VNavigationDrawer(width=300, permanent=True):
             _controls(page)
-        with v3.VMain(style="height: 100vh"):
-            with html.Div(style="position: relative; width: 100%; height: 100%"):
-                # Beside the controls, not under them.
-                _messages(page)
-                view = vtk.VtkRemoteView(
-                    page.stage.plotter.render_window, interactive_ratio=1, still_ratio=1,
-                    interactive_quality=70, still_quality=95,
-                )  # fmt: skip
+        whole = "position: relative; width: 100%; height: 100%"
+        with v3.VMain(style="height: 100vh"), html.Div(style=whole):
+            # Beside the controls, not under them.
+            _messages(page)
+            view = vtk.VtkRemoteView(
+                page.stage.plotter.render_window, interactive_ratio=1, still_ratio=1,
+                interactive_quality=70, still_quality=95,
+            )  # fmt: skip
         # In a second window of another shape the picture is not stretched.
         client.Style("main canvas, main img { object-fit: contain; }")
         page.redraw = view.update
