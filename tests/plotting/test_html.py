@@ -394,3 +394,11 @@ def test_viewer_is_the_one_of_the_recipe():
     assert f"@kitware/vtk.js {version} (BSD-3-Clause)" in licences
     assert "Redistributions in binary form must reproduce" in licences
     assert all("resolved" not in package for package in lock.values())
+
+
+@pytest.mark.parametrize(
+    ("mesh", "colour"), [(pv.Line(), "0, 0, 0"), (pv.Plane(), "255, 255, 255")]
+)
+def test_lines_alone_stand_before_black(mesh, colour, tmp_path):
+    path = vizlight.live_html(mesh, Scene(lights=FAR), tmp_path / "a.html")
+    assert f"rgb({colour})" in path.read_text(encoding="utf-8")

@@ -12,7 +12,7 @@ from vizlight.geometry.lines.curves import polyline_tangents
 from vizlight.mesh import blocks, hull
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
     from numpy.typing import NDArray
     from vtkmodules.vtkCommonDataModel import vtkCellArray
@@ -35,6 +35,11 @@ def has_lines_only(mesh: pv.DataSet) -> bool:
         kinds = set(np.unique(mesh.celltypes).tolist())
         return bool(kinds & LINES) and kinds <= LINES | POINTS
     return False
+
+
+def backdrop(meshes: Iterable[pv.DataSet]) -> str:
+    """Return the colour before which meshes stand out: lines alone before black, else white."""
+    return "black" if all(has_lines_only(mesh) for mesh in meshes) else "white"
 
 
 def line_tangents(mesh: pv.DataSet) -> Array:

@@ -14,7 +14,7 @@ from vizlight.files import check_output, replace_file
 from vizlight.filters.tint import unlit_colors
 from vizlight.mesh import polylines, records
 from vizlight.mesh.blocks import all_blocks, check
-from vizlight.mesh.polylines import has_lines_only
+from vizlight.mesh.polylines import backdrop, has_lines_only
 from vizlight.pictures.backends import (
     Backend,
     BackendError,
@@ -270,8 +270,7 @@ def _background_of(shown: Sequence[Panel], background: ColorLike | None) -> pv.C
     """Return the requested background, otherwise the one on which the meshes stand out."""
     if (channels := _check.color("background", background)) is not None:
         return pv.Color(channels)
-    lines = all(has_lines_only(mesh) for panel in shown for mesh in all_blocks(panel.mesh))
-    return pv.Color("black" if lines else "white")
+    return pv.Color(backdrop(mesh for panel in shown for mesh in all_blocks(panel.mesh)))
 
 
 def _camera_on_all(shown: Sequence[Panel], aspect: float) -> pv.Camera:

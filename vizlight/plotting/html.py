@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 import pyvista as pv
 
 from vizlight import _check, files
+from vizlight.mesh.blocks import all_blocks
+from vizlight.mesh.polylines import backdrop
 from vizlight.plotting.page import Page
 
 if TYPE_CHECKING:
@@ -69,7 +71,7 @@ def live_html(
     camera : pyvista.Camera, optional
         First camera. Default: one that shows the whole mesh.
     background : colour, optional
-        Background colour. Default: that of PyVista's theme.
+        Background colour. Default: black for lines alone, otherwise white.
     panel : bool, default: True
         Whether the panel of the sliders is open at first.
     **options
@@ -108,11 +110,11 @@ def live_html(
     path = files.check_output(path, SUFFIXES)
     plotter: Any = pv.Plotter(off_screen=True, notebook=False)
     try:
-        if background is not None:
-            plotter.background_color = _check.color("background", background)
+        chosen = _check.color("background", background)
         plotter.vizlight.add_mesh(
             mesh, scene=scene, light=light, scalars=scalars, render=False, **options
         )
+        plotter.background_color = chosen or backdrop(all_blocks(mesh))
         given: object = camera
         if given is not None and not isinstance(given, pv.Camera):
             got = _check.describe(given)
