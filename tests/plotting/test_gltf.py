@@ -84,6 +84,20 @@ def test_what_depends_on_the_eye_is_fixed_and_said_to_be(tmp_path):
     assert "the headlight" in content(path)[0]["asset"]["extras"]["light"]
 
 
+@pytest.mark.parametrize("height", [0.2, -0.2])
+def test_a_terrain_is_lit_on_one_side_as_a_whole(height, tmp_path):
+    x = np.linspace(-3, 3, 40)
+    z = np.sin(2 * x)[:, np.newaxis] * np.cos(2 * x)
+    hills = pv.StructuredGrid(*np.meshgrid(x, x), z).extract_surface(algorithm="dataset_surface")
+    light = Light(direction=(0, 0, np.sign(height)))
+    scene = Scene(lights=light, view=View(direction=(1, 0.3, height)))
+    with pytest.warns(UserWarning, match="the lit side of open surfaces"):
+        path = vizlight.save_gltf(hills, scene, tmp_path / "lit.glb")
+    normals = hills.compute_normals(cell_normals=False)["Normals"]
+    expected = 0.1 + 0.5 * np.abs(normals[:, 2])
+    np.testing.assert_allclose(seen(content(path)[1][1])[:, 0], expected, atol=1 / 255)
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [

@@ -541,6 +541,16 @@ def onlooker(scene: Scene) -> View | None:
     return View(position=light.position, direction=light.direction)
 
 
+def piece_numbers(mesh: pv.DataSet) -> Indices:
+    """Return for each point the number of its connected piece; 0 where it is on no surface."""
+    numbers = np.zeros(mesh.n_points, dtype=np.intp)
+    surface, origin = _skin(mesh)
+    if surface is not None:
+        own = np.arange(mesh.n_points) if origin is None else origin
+        numbers[own[own >= 0]] = _pieces(surface).piece[own >= 0]
+    return numbers
+
+
 class _Pieces(NamedTuple):
     same: Indices
     piece: Indices

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight.filters.tint import light_factors
+from vizlight.mesh.normals import piece_numbers
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vizlight._types import Array
     from vizlight.filters.relight import Source
-    from vizlight.scene import Scene
+    from vizlight.scene import Scene, View
 
 #: What is left out, for a page, a file and its reader.
 LEFT_OUT = "ambient and diffuse light only: the highlight and the depth cue depend on the eye"
@@ -50,8 +51,25 @@ def fixed_light(source: Source, scene: Scene) -> tuple[Array, str]:
         depth_cue=None,
         view=scene.view if seen else None,
     )
-    ((factors, _),) = light_factors([source], bare)
+    ((factors, _),) = light_factors([_on_one_side(source, bare.view)], bare)
     return factors, " and ".join(seen)
+
+
+def _on_one_side(source: Source, view: View | None) -> Source:
+    """Return a source whose open pieces are lit on the side that most of their points show.
+
+    Turned point by point they would be dark where the eye of the file's reader is not expected.
+    """
+    own = source.inputs.normals
+    turned = source.seen_from(view, source.inputs).normals
+    if source.sided is None or own is None or turned is None:
+        return source
+    vectors = np.asarray(own[:])
+    piece = piece_numbers(source.mesh)
+    same = np.sign(np.einsum("ij,ij->i", vectors, np.asarray(turned[:])))
+    averted = np.bincount(piece, same)[piece] < 0
+    sides = np.where(averted[:, np.newaxis], -vectors, vectors)
+    return source._replace(inputs=dataclasses.replace(source.inputs, normals=sides), sided=None)
 
 
 def lit_colors(colors: Array, factors: Array, rest: Array | float = 0.0) -> NDArray[np.uint8]:
