@@ -7,6 +7,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 import pyvista as pv
+from pyvista.plotting.colors import color_synonyms, hex_colors
 
 from vizlight import _check
 
@@ -98,3 +99,8 @@ def test_masked_elements_are_nan(dtype):
 def test_a_masked_number_is_none():
     with pytest.raises(TypeError, match="x: expected a number, got an array"):
         _check.number("x", np.ma.masked)
+
+
+def test_colours_have_the_names_of_pyvista():
+    for name in [*hex_colors, *color_synonyms, "Alice-Blue", "#12aBcd", "0x102030", "11223344"]:
+        assert _check.color("color", name) == pv.Color(name).float_rgb, name

@@ -354,10 +354,10 @@ def color(name: str, value: object) -> Color | None:
     if value is None:
         return None
     if isinstance(value, str):
-        import pyvista as pv
+        from vizlight import _colors
 
         try:
-            value = pv.Color(value).float_rgb
+            value = _colors.named(value)
         except ValueError as error:
             expected = "a colour's name, '#rrggbb' or (r, g, b)"
             raise ValueError(message(name, expected, describe(value))) from error

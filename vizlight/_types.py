@@ -3,10 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol, TypeAlias
+from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import pyvista as pv
+    from vtkmodules.vtkCommonDataModel import vtkDataSet
+
+    #: A dataset of VTK, which one of PyVista is too; what reads it needs VTK alone.
+    Dataset: TypeAlias = vtkDataSet | pv.DataSet
 
 #: Real numbers, float32 or float64.
 Array: TypeAlias = NDArray[np.floating]

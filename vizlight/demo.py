@@ -10,8 +10,8 @@ import numpy as np
 from vizlight import files
 from vizlight.data import load_example
 from vizlight.filters import illuminate
-from vizlight.mesh.normals import sided_normals
 from vizlight.pictures import render
+from vizlight.reading.normals import sided_normals
 from vizlight.scene import Light, Scene, View
 from vizlight.shading import engine
 from vizlight.studies import reference

@@ -21,7 +21,8 @@ import pyvista as pv
 from vtkmodules import vtkIOXML
 
 from vizlight import _check, _supervise
-from vizlight.mesh import blocks, foreign_files, hull, short_files
+from vizlight.mesh import foreign_files, hull, short_files
+from vizlight.reading.cells import check_whole
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -168,7 +169,7 @@ def _dataset(mesh: object) -> None:
     if not isinstance(mesh, pv.DataSet):
         remedy = "join its blocks by mesh.combine()" if isinstance(mesh, pv.MultiBlock) else ""
         raise TypeError(_check.message("mesh", "a PyVista dataset", type(mesh).__name__, remedy))
-    blocks.check_whole(mesh, "mesh")
+    check_whole(mesh, "mesh")
 
 
 def _damaged(path: Path, reason: str) -> FileError:

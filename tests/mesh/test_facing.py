@@ -7,7 +7,7 @@ import pytest
 import pyvista as pv
 
 import vizlight
-from vizlight import Light, Material, Scene, View, illuminate
+from vizlight import Light, Material, Scene, View, illuminate, reading
 from vizlight.mesh import normals
 
 HEAD = Scene(lights=Light.headlight(), view=View(position=(2.0, 3.0, 4.0)))
@@ -270,7 +270,7 @@ def test_light_again_takes_the_normals_that_stayed(kind, monkeypatch, tmp_path):
     again = pv.read(tmp_path / f"lit.{suffix}")
     other = HEAD.replace(view=View(position=(-3, 1, -4)))
     expected = illuminate(mesh, other)
-    monkeypatch.setattr(normals, "computed_normals", None)
+    monkeypatch.setattr(reading.normals, "computed_normals", None)
     for start in (lit, again):
         found = illuminate(start, other)
         for block, own in zip(

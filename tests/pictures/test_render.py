@@ -16,8 +16,8 @@ import pyvista as pv
 
 import vizlight
 from vizlight import Light, Material, Scene, View, demo, render
-from vizlight.mesh import polylines
 from vizlight.pictures import backends
+from vizlight.reading import polylines
 
 pytestmark = pytest.mark.opengl
 

@@ -181,7 +181,7 @@ def _check_paths(job: Job, inputs: Sequence[Path]) -> None:
 
 def _picture(job: Job, path: Path, out: Output) -> Step:
     """Return the step that draws the picture."""
-    from vizlight.filters.lighting import part_name
+    from vizlight.shading.results import part_name
 
     scalars = job.scalars or (part_name(job.name, "rgb") if job.look.colored else job.name)
     options = {

@@ -15,9 +15,9 @@ from vizlight.geometry.lines import compiled
 from vizlight.geometry.lines import fur as geometry
 from vizlight.mesh import blocks, bundles, point_arrays, surfaces
 from vizlight.mesh.normals import onlooker, split_where_computed
-from vizlight.mesh.point_arrays import unit_rows
 from vizlight.mesh.strands import Grown, Room, Strands
 from vizlight.model import kernels
+from vizlight.reading.arrays import unit_rows, vectors_of
 from vizlight.scene import Scene
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import Bundle, ShadingOptions, accepts, check_sides, checked_bundle
@@ -350,7 +350,7 @@ class _Coat:
         self.normals = np.asarray(skin.point_data[surfaces.NORMALS], dtype=np.float32)
         self.vectors: Array | None = None
         if options.vectors is not None:
-            given = point_arrays.vectors_of(surface, "vectors", options.vectors, 3)
+            given = vectors_of(surface, "vectors", options.vectors, 3)
             lost = len(given) - int(np.count_nonzero(np.all(np.isfinite(given), axis=1)))
             if lost:
                 what = "the vectors are not finite: fibres there follow the normals"
@@ -485,7 +485,7 @@ def _toward(surface: pv.PolyData, toward: str | VectorLike | None) -> Array | No
     if toward is None:
         return None
     if isinstance(toward, str):
-        rows = point_arrays.vectors_of(surface, "toward", toward, 3)
+        rows = vectors_of(surface, "toward", toward, 3)
     else:
         direction = _check.vector("toward", toward, direction=True)
         if len(direction) != 3:

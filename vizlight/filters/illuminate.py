@@ -10,7 +10,8 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.filters import lighting
 from vizlight.mesh import blocks, bundles, normals, refining
-from vizlight.mesh.inputs import part_of, uses_normals
+from vizlight.mesh.inputs import part_of
+from vizlight.reading.inputs import uses_normals
 from vizlight.scene import Scene
 from vizlight.shading.options import Bundle, LightOptions, accepts
 
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from vizlight.mesh.blocks import MeshT
+    from vizlight.reading.normals import Sided
     from vizlight.shading.options import LightKeywords
 
 
@@ -206,7 +208,7 @@ def _split(mesh: pv.DataSet, path: str, options: LightOptions) -> pv.DataSet:
 
 
 def _warn_of_edges(
-    meshes: Sequence[pv.DataSet], sides: Sequence[normals.Sided | None], options: LightOptions
+    meshes: Sequence[pv.DataSet], sides: Sequence[Sided | None], options: LightOptions
 ) -> None:
     """Warn if normals were averaged across many sharp edges."""
     shares = [0.0 if sided is None else sided.sharp for sided in sides]

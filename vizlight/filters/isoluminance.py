@@ -16,12 +16,13 @@ from vizlight.geometry.contours import banding, facets, refinement, spacing
 from vizlight.geometry.contours import isoluminance as closed
 from vizlight.geometry.solids import exact_surfaces, tessellation, triangle_mesh
 from vizlight.geometry.solids.primitives import Frustum, Solid, Sphere
-from vizlight.mesh import blocks, hull, normals, point_arrays, records
+from vizlight.mesh import blocks, hull, normals, records
 from vizlight.mesh.inputs import inputs_of
-from vizlight.mesh.point_arrays import unit_rows
+from vizlight.reading.arrays import array_of, unit_rows
 from vizlight.scene import Scene
 from vizlight.shading import engine
 from vizlight.shading.options import LightOptions, accepts, check_sides
+from vizlight.shading.results import of_light, part_name, unlit
 from vizlight.verify import report
 
 if TYPE_CHECKING:
@@ -34,10 +35,10 @@ if TYPE_CHECKING:
     from vizlight.geometry.contours.banding import Bands, Laminae
     from vizlight.geometry.contours.spacing import Levels
     from vizlight.geometry.solids.triangle_mesh import Mesh
-    from vizlight.mesh.records import Record
     from vizlight.model.reflection import SpecularModel
     from vizlight.shading.engine import Shading
     from vizlight.shading.options import FeatureAngle
+    from vizlight.shading.results import Record
 
 
 class ContourKeywords(TypedDict, total=False):
@@ -254,7 +255,7 @@ class _Light:
     def record(self) -> Record:
         """Return the provenance of the bands."""
         last = self.last or self.lit(np.zeros((1, 3)), np.array([[0.0, 0, 1]]))
-        return records.of_light(last, "isoluminance", self.scene, self.options)
+        return of_light(last, "isoluminance", self.scene, self.options)
 
 
 def _of_solid(solid: Solid, light: _Light) -> Bands:
@@ -309,9 +310,9 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
         threads=light.threads,
         progress_bar=False,
     )
-    unlit = int(np.count_nonzero(~lit.valid[used]))
-    if unlit:
-        _check.warn(lighting.unlit(unlit, len(used)))
+    invalid = int(np.count_nonzero(~lit.valid[used]))
+    if invalid:
+        _check.warn(unlit(invalid, len(used)))
     points = np.array(surface.points, dtype=np.float64)
     carried = {
         str(name): np.asarray(value, dtype=np.float64).reshape(len(points), -1)
@@ -346,7 +347,7 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
         if lit.rgb is not None:
             middles = cut.middles()
             rgb = _as_bright(middles[:, 4:7], middles[:, 3], bands)
-    record = records.of_light(lit, "isoluminance", fitted, options)
+    record = of_light(lit, "isoluminance", fitted, options)
     if scene.colored and options.tangents is None:
         rgb = _rgb(bands, light)
     made = _blocks(bands, options.name, record, rgb, patches=False)
@@ -369,7 +370,7 @@ def _on_surface(
     """Return values of a mesh as those of its outer surface; the name of an array stays."""
     if value is None or isinstance(value, str):
         return value
-    rows = point_arrays.array_of(mesh, name, value, average_cells=False)
+    rows = array_of(mesh, name, value, average_cells=False)
     return np.where(ids[:, np.newaxis] < 0, 0, rows[ids])
 
 
@@ -449,11 +450,11 @@ def _blocks(
     size = np.diff(bands.offsets)
     cells = np.insert(bands.corners, bands.offsets[:-1], size)
     surface = pv.PolyData(points, faces=cells) if len(size) else pv.PolyData()
-    surface.cell_data[lighting.part_name(name, "band")] = bands.band
+    surface.cell_data[part_name(name, "band")] = bands.band
     if patches:
-        surface.cell_data[lighting.part_name(name, "patch")] = bands.patch
+        surface.cell_data[part_name(name, "patch")] = bands.patch
     if rgb is not None and len(rgb):
-        surface.cell_data[lighting.part_name(name, "rgb")] = rgb
+        surface.cell_data[part_name(name, "rgb")] = rgb
     surface.cell_data[name] = bands.values
     surface.cell_data.active_scalars_name = name
     surface.field_data[f"{name}_error"] = [bands.error]

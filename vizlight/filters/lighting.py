@@ -10,22 +10,19 @@ import numpy as np
 from vizlight import _check, _progress
 from vizlight.mesh import bundles, records
 from vizlight.shading import engine
+from vizlight.shading.results import PARTS, VALID, arrays_of, of_light, part_name, unlit
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     import pyvista as pv
-    from numpy.typing import NDArray
 
     from vizlight.mesh.bundles import Dimming
-    from vizlight.mesh.records import Record
     from vizlight.scene import Scene
     from vizlight.shading.inputs import ShadingInputs
     from vizlight.shading.options import Bundle, ShadingOptions
+    from vizlight.shading.results import Record
 
-DEFAULT_NAME = "luminance"
-VALID = "_valid"
-PARTS = ("ambient", "diffuse", "specular", "rgb")
 BUNDLE_PARTS = (bundles.TRANSMITTANCE, bundles.OCCLUSION)
 
 
@@ -76,11 +73,6 @@ def fit_depth_cue(scene: Scene, inputs: Sequence[ShadingInputs]) -> Scene:
     if back is None:
         back = far if far > front else front + 1.0
     return scene.replace(depth_cue=dataclasses.replace(cue, front=front, back=back))
-
-
-def part_name(name: str, part: str) -> str:
-    """Return the name of an array that comes with the light."""
-    return part if name == DEFAULT_NAME else f"{name}_{part}"
 
 
 def refuse_overwriting(
@@ -142,20 +134,12 @@ def finish(
     Points inside volumes, of which there are ``inside``, have no normal and are not counted.
     """
     for i, (mesh, shading) in enumerate(zip(meshes, results, strict=True)):
-        record = records.of_light(shading, filter_name, scene, options)
+        record = of_light(shading, filter_name, scene, options)
         attach(mesh, shading, name, record, dimmings[i] if dimmings else None)
     invalid = sum(shading.invalid for shading in results) - inside
     if invalid > 0:
         total = sum(shading.luminance.size for shading in results) - inside
         _check.warn(f"{unlit(invalid, total)}; the point array {name + VALID!r} marks them")
-
-
-def unlit(invalid: int, total: int) -> str:
-    """Return how many points could not be lit, and why, for a warning."""
-    return (
-        f"{invalid} of {total} points could not be lit (a zero, infinite or NaN vector, "
-        "dependent tangents, or no surface normal there) and have the ambient light"
-    )
 
 
 def attach(
@@ -166,22 +150,13 @@ def attach(
     dimming: Dimming | None = None,
 ) -> None:
     """Attach the light to a mesh, in place of what it has under the name."""
-    parts: dict[str, NDArray[np.generic]] = {}
-    if shading.diffuse is not None and shading.specular is not None:
-        ambient = np.full_like(shading.luminance, shading.plan.ambient)
-        if dimming is not None and dimming.occlusion is not None:
-            ambient *= dimming.occlusion
-        parts = {"ambient": ambient, "diffuse": shading.diffuse, "specular": shading.specular}
-    if shading.rgb is not None:
-        parts["rgb"] = shading.rgb
+    occlusion = None if dimming is None else dimming.occlusion
+    arrays = arrays_of(shading, name, occlusion=occlusion)
     if dimming is not None:
-        parts |= {
-            part: array
+        arrays |= {
+            part_name(name, part): array
             for part, array in zip(BUNDLE_PARTS, dimming[:2], strict=True)
             if array is not None and array.size
         }
         record = record | {"bundle": dimming.record}
-    arrays = {part_name(name, part): array for part, array in parts.items()}
-    if shading.invalid:
-        arrays[name + VALID] = shading.valid
-    records.attach(mesh, name, arrays | {name: shading.luminance}, record)
+    records.attach(mesh, name, arrays, record)

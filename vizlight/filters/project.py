@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from vizlight._types import VectorLike
-    from vizlight.mesh.records import Record
+    from vizlight.shading.results import Record
 
 LightWhen = Literal["before", "after"]
 #: Options of the projection alone.

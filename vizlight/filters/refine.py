@@ -10,6 +10,7 @@ from vizlight import _check
 from vizlight.filters.illuminate import light_mesh
 from vizlight.mesh import blocks, records
 from vizlight.shading.options import FINEST, LightKeywords, LightOptions, accepts
+from vizlight.shading.results import plain
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -129,7 +130,7 @@ def refine(
         progress_bar=progress_bar,
         max_points=asked.max_points,
     )
-    recorded = {key: value for key, value in records.plain(asked).items() if key != "refine"}
+    recorded = {key: value for key, value in plain(asked).items() if key != "refine"}
     for block in blocks.all_blocks(lit):
         records.amend(block, asked.name, "refine", recorded)
     return lit

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight import _check
-from vizlight.filters.lighting import VALID
 from vizlight.filters.relief_shadow import ReliefOptions, relief_shadow
 from vizlight.geometry.relief import sun as sky
 from vizlight.mesh import point_arrays, records
 from vizlight.scene import Light, Material, Scene
 from vizlight.shading.options import accepts
+from vizlight.shading.results import VALID, plain
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -104,7 +104,7 @@ def relief_day(
     record["filter"] = "relief_day"
     for other in ("lit", "components"):
         del record["options"][other]
-    record["options"] |= records.plain(own)
+    record["options"] |= plain(own)
     records.attach(found, name, arrays, record)
     point_arrays.activate(found, mean)
     return found

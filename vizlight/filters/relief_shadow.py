@@ -10,14 +10,16 @@ import numpy as np
 
 from vizlight import _check, _progress
 from vizlight.filters.illuminate import separate_copy
-from vizlight.filters.lighting import DEFAULT_NAME, PARTS, VALID, attach, refuse_overwriting
+from vizlight.filters.lighting import attach, refuse_overwriting
 from vizlight.geometry.relief import sun as sky
-from vizlight.mesh import blocks, point_arrays, records
+from vizlight.mesh import point_arrays, records
 from vizlight.mesh.casters import CasterKeywords, CasterOptions, caster
 from vizlight.mesh.normals import split_where_computed
+from vizlight.reading.cells import check_whole
 from vizlight.scene import Light, Material, Scene
 from vizlight.shading import engine
 from vizlight.shading.options import accepts
+from vizlight.shading.results import DEFAULT_NAME, PARTS, VALID, of_filter, of_light
 from vizlight.verify.report import note_ratio
 
 if TYPE_CHECKING:
@@ -145,7 +147,7 @@ def relief_shadow(
     """
     asked = ReliefOptions(**options)
     inplace = _check.boolean("inplace", inplace)
-    blocks.check_whole(mesh, "mesh")
+    check_whole(mesh, "mesh")
     if sun is not None:
         lit_by = Light(direction=sun_direction(sun))
         base = Scene(material=Material(specular=0.0)) if scene is None else scene
@@ -165,7 +167,7 @@ def relief_shadow(
         )
     t = _ratios(shadow, lights, asked, progress_bar=progress_bar)
     weight = np.array([light.intensity for light in lights])
-    record = records.of_filter(
+    record = of_filter(
         "relief_shadow", scene, asked, precision="float64", points=len(t),
         invalid=int(np.count_nonzero(~shadow.valid)), depth=shadow.depth,
     )  # fmt: skip
@@ -182,7 +184,7 @@ def relief_shadow(
     if inplace and own is not mesh:
         mesh.ShallowCopy(own)
     if shading is not None:
-        light = records.of_light(shading, "relief_shadow", scene, asked)
+        light = of_light(shading, "relief_shadow", scene, asked)
         attach(out, shading, DEFAULT_NAME, light)
     arrays: dict[str, NDArray[np.generic]] = {one: t[:, i].copy() for i, one in enumerate(each)}
     arrays[name] = t @ (weight / weight.sum())

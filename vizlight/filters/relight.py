@@ -15,16 +15,18 @@ from vizlight.filters.project import ProjectOptions
 from vizlight.filters.relief_shadow import ReliefOptions, relief_shadow
 from vizlight.filters.streamlines import OWN_TANGENTS, TANGENTS
 from vizlight.mesh import blocks, bundles, records
-from vizlight.mesh.inputs import part_of, shown_side
+from vizlight.mesh.inputs import part_of
 from vizlight.mesh.nspace import PROJECTED
+from vizlight.reading.inputs import shown_side
 from vizlight.scene import Scene
 from vizlight.shading import engine
 from vizlight.shading.options import Bundle, LightOptions
+from vizlight.shading.results import DEFAULT_NAME, part_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from vizlight.mesh.normals import Sided
+    from vizlight.reading.normals import Sided
     from vizlight.scene import View
     from vizlight.shading.inputs import ShadingInputs
     from vizlight.shading.options import Facing, ShadingOptions
@@ -97,7 +99,7 @@ def _dimmed(
 ) -> ShadingInputs:
     """Return inputs with the shares of light inside a bundle, which do not depend on the eye."""
     _refuse_headlight(scene, bundled=True)
-    names = [lighting.part_name(name, part) for part in lighting.BUNDLE_PARTS]
+    names = [part_name(name, part) for part in lighting.BUNDLE_PARTS]
     (own,) = bundles.dim([mesh], [inputs], scene, bundle, (name, names[0], names[1]))
     return dataclasses.replace(inputs, transmittance=own.transmittance, occlusion=own.occlusion)
 
@@ -109,7 +111,7 @@ def _refuse_headlight(scene: Scene, *, bundled: bool) -> None:
         raise ValueError(_check.message("bundle", expected, "a headlight", remedy))
 
 
-def is_lit(mesh: pv.DataSet | pv.MultiBlock, name: str = lighting.DEFAULT_NAME) -> bool:
+def is_lit(mesh: pv.DataSet | pv.MultiBlock, name: str = DEFAULT_NAME) -> bool:
     """Return whether each block of a mesh has the record of a light."""
     every = list(blocks.all_blocks(mesh))
     return bool(every) and all(
@@ -120,7 +122,7 @@ def is_lit(mesh: pv.DataSet | pv.MultiBlock, name: str = lighting.DEFAULT_NAME) 
 def from_record(
     mesh: pv.DataSet | pv.MultiBlock,
     scene: Scene | None = None,
-    name: str = lighting.DEFAULT_NAME,
+    name: str = DEFAULT_NAME,
 ) -> tuple[list[Source], Scene]:
     """Return what a filter lit on the meshes that it returned, and the scene.
 

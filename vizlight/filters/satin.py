@@ -12,6 +12,7 @@ from vizlight import _check
 from vizlight.filters.illuminate import light_mesh
 from vizlight.filters.streamlines import StreamlineOptions, light_lines
 from vizlight.mesh import point_arrays
+from vizlight.reading.arrays import tangents_of, vectors_of
 from vizlight.shading.options import LightOptions, accepts
 
 if TYPE_CHECKING:
@@ -83,10 +84,10 @@ def satin(
         averaged = asked.average_cells and name not in surface.point_data
         if averaged and name in surface.cell_data:
             # Means over cells have no sign.
-            rows = point_arrays.tangents_of(surface, name, 3, average_cells=True)
+            rows = tangents_of(surface, name, 3, average_cells=True)
             traced = surface.copy(deep=False)
             traced.point_data[name] = rows
-        point_arrays.vectors_of(traced, "tangents", name, 3)
+        vectors_of(traced, "tangents", name, 3)
     light = {f.name: getattr(asked, f.name) for f in dataclasses.fields(LightOptions)}
     field = LightOptions(**light | {"conditioned": False, "terminator": 0.0})
     panels = {

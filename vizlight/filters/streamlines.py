@@ -11,11 +11,14 @@ import pyvista as pv
 
 from vizlight import _check, _progress
 from vizlight.filters.illuminate import light_mesh
-from vizlight.mesh import blocks, hull, point_arrays, polylines, records, surfaces, tracers
+from vizlight.mesh import blocks, hull, point_arrays, records, surfaces, tracers
 from vizlight.mesh.normals import onlooker
 from vizlight.mesh.records import all_made
 from vizlight.mesh.tracers import TRACED, Vectors
 from vizlight.model import line_fields
+from vizlight.reading import polylines
+from vizlight.reading.arrays import array_of, unit_rows, vectors_of
+from vizlight.reading.cells import check_whole, has_faces
 from vizlight.scene import Scene
 from vizlight.shading.options import LightKeywords, LightOptions, accepts
 
@@ -275,7 +278,7 @@ def _check_mesh(mesh: object, argument: str) -> None:
     if isinstance(mesh, pv.PointSet):
         remedy = "interpolate its vectors onto a grid, between points there are none"
         raise TypeError(_check.message(argument, "a dataset with cells", "PointSet", remedy))
-    blocks.check_whole(mesh, argument)
+    check_whole(mesh, argument)
 
 
 def _resolved(mesh: pv.DataSet, options: StreamlineOptions) -> StreamlineOptions:
@@ -283,7 +286,7 @@ def _resolved(mesh: pv.DataSet, options: StreamlineOptions) -> StreamlineOptions
     vectors, unsigned = _vectors_name(mesh, options.vectors)
     surface, confined = _as_surface(options.surface), options.confined
     own = _as_surface(mesh)
-    is_surface = isinstance(own, pv.PolyData) and blocks.has_faces(own)
+    is_surface = isinstance(own, pv.PolyData) and has_faces(own)
     if confined is None:
         confined = is_surface and surface is None
     if surface is None and is_surface:
@@ -338,7 +341,7 @@ def _traced(
     tangents: Array = np.array(lines.point_data[TRACED], dtype=np.float64)
     if surface is not None:
         if confined:
-            normals = point_arrays.unit_rows(lines.point_data[surfaces.NORMALS])
+            normals = unit_rows(lines.point_data[surfaces.NORMALS])
             tangents -= np.einsum("ij,ij->i", tangents, normals)[:, np.newaxis] * normals
         else:
             normals = surfaces.closest(surface, places)[1]
@@ -347,7 +350,7 @@ def _traced(
         if key in lines.point_data:
             del lines.point_data[key]
     name = TANGENTS if TANGENTS not in mesh.point_data else OWN_TANGENTS
-    tangents = point_arrays.unit_rows(tangents)
+    tangents = unit_rows(tangents)
     resting = ~np.any(tangents, axis=1)
     if resting.any():
         # Where a line comes to rest it has the direction in which it came.
@@ -454,10 +457,10 @@ def _vectors_name(mesh: pv.DataSet, vectors: Vectors | None) -> tuple[Vectors, b
     for name in _names(vectors):
         if name not in mesh.point_data and name not in mesh.cell_data:
             raise _no_vectors(mesh, name)
-        array = point_arrays.array_of(mesh, "vectors", name)
+        array = array_of(mesh, "vectors", name)
         if array.shape[1] in (6, 9) and not pair:
             return name, True
-        point_arrays.vectors_of(mesh, "vectors", name, 3)
+        vectors_of(mesh, "vectors", name, 3)
     return vectors, pair
 
 
@@ -510,9 +513,9 @@ def _on_surface(
             _check.message("vectors", "two point arrays of the surface", repr(name), remedy)
         )
     if name in surface.point_data:
-        rows = point_arrays.array_of(surface, "vectors", name)
+        rows = array_of(surface, "vectors", name)
         if rows.shape[1] not in ((3,) if pair else (3, 6, 9)):
-            point_arrays.vectors_of(surface, "vectors", name, 3)
+            vectors_of(surface, "vectors", name, 3)
         array = _directions(rows)
     else:
         source = mesh.copy(deep=False)

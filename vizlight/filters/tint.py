@@ -14,6 +14,7 @@ from vizlight.filters import lighting, relight
 from vizlight.filters.illuminate import separate_copy
 from vizlight.mesh import blocks, point_arrays, records
 from vizlight.scene import DepthCue, Scene
+from vizlight.shading.results import DEFAULT_NAME, part_name
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,8 +23,8 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, ColorLike
     from vizlight.mesh.blocks import MeshT
-    from vizlight.mesh.records import Record
     from vizlight.shading import engine
+    from vizlight.shading.results import Record
 
     Bytes = NDArray[np.uint8]
     ColorMap = Any
@@ -48,7 +49,7 @@ def tint(
     nan_color: ColorLike | None = None,
     above_color: ColorLike | None = None,
     below_color: ColorLike | None = None,
-    light: str = lighting.DEFAULT_NAME,
+    light: str = DEFAULT_NAME,
     name: str = RGB,
     inplace: bool = False,
 ) -> MeshT:
@@ -343,7 +344,7 @@ def _stored_terms(mesh: pv.DataSet, light: str) -> tuple[Array, Array | float] |
     """Return factor and rest from stored terms; None where they do not suffice."""
     scene = Scene.from_dict((records.read(mesh, light) or {})["scene"])
     white = scene.replace(material=dataclasses.replace(scene.material, color=None))
-    names = [lighting.part_name(light, part) for part in ("ambient", "diffuse", "specular")]
+    names = [part_name(light, part) for part in ("ambient", "diffuse", "specular")]
     ours = records.made(mesh, light)
     if scene.depth_cue is not None or white.colored or not set(names) <= ours:
         return None

@@ -8,6 +8,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight.reading.cells import check_whole, has_faces
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -26,46 +27,6 @@ def check(mesh: object) -> None:
         raise TypeError(_check.message("mesh", "a PyVista mesh", type(mesh).__name__, remedy))
     for block, path in named_blocks(mesh):
         check_whole(block, "mesh", f"block {path}: " if path else "")
-
-
-def check_whole(mesh: object, name: str, where: str = "") -> None:
-    """Check that arrays have a row for each point, and that cells have points that exist.
-
-    VTK ends the process where they have not. Anything but a dataset passes.
-
-    Raises
-    ------
-    ValueError
-        If a cell or an array does not fit.
-    """
-    if not isinstance(mesh, pv.DataSet):
-        return
-    count = mesh.GetNumberOfPoints()
-    data = mesh.GetPointData()
-    for i in range(data.GetNumberOfArrays()):
-        array = data.GetAbstractArray(i)
-        if array is not None and array.GetNumberOfTuples() != count:
-            expected = f"point arrays of {count} rows, one per point"
-            got = f"{array.GetName()!r} with {array.GetNumberOfTuples()}"
-            raise ValueError(where + _check.message(name, expected, got, "remove the array"))
-    if isinstance(mesh, pv.PolyData):
-        kinds = [mesh.GetVerts(), mesh.GetLines(), mesh.GetPolys(), mesh.GetStrips()]
-    else:
-        kinds = [mesh.GetCells()] if isinstance(mesh, pv.UnstructuredGrid) else []
-    for cells in kinds:
-        if cells is not None and cells.GetNumberOfConnectivityIds():
-            ids = pv.convert_array(cells.GetConnectivityArray())
-            low, high = int(ids.min()), int(ids.max())
-            if not 0 <= low <= high < count:
-                expected = f"cells of the points 0 to {count - 1}"
-                remedy = "the file may be cut or damaged"
-                got = f"{low} to {high}"
-                raise ValueError(where + _check.message(name, expected, got, remedy))
-
-
-def has_faces(mesh: pv.PolyData) -> bool:
-    """Return whether a mesh has polygons or triangle strips."""
-    return bool(mesh.GetNumberOfPolys() or mesh.GetNumberOfStrips())
 
 
 def surface(mesh: object, name: str) -> pv.PolyData:

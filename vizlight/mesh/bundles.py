@@ -10,7 +10,8 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.geometry.lines import bundle as geometry
-from vizlight.mesh import blocks, polylines, records
+from vizlight.mesh import blocks, records
+from vizlight.reading import polylines
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -19,10 +20,10 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Indices
     from vizlight.geometry.lines.bundle import Medium
-    from vizlight.mesh.records import Record
     from vizlight.scene import Light, Scene
     from vizlight.shading.inputs import ShadingInputs
     from vizlight.shading.options import Bundle
+    from vizlight.shading.results import Record
 
 #: Share of the diagonal that the default diameter is at most.
 THICKEST = 1 / 500

@@ -10,7 +10,9 @@ from scipy.sparse import coo_array, csr_array
 
 from vizlight import _check, _pool
 from vizlight.geometry.nspace import slices
-from vizlight.mesh import blocks, point_arrays, polylines
+from vizlight.mesh import blocks, point_arrays
+from vizlight.reading import polylines
+from vizlight.reading.cells import has_faces
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -104,7 +106,7 @@ def _simplices(mesh: pv.DataSet) -> tuple[Indices, Indices]:
     """Return segments, triangles or tetrahedra, and the corners of the hexahedra that are split."""
     none = np.empty((0, 8), dtype=np.intp)
     if isinstance(mesh, pv.PolyData):
-        if blocks.has_faces(mesh):
+        if has_faces(mesh):
             return np.asarray(mesh.triangulate().regular_faces, dtype=np.intp), none
         segments = polylines.segments(mesh.GetLines())
         if len(segments):

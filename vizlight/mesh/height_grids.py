@@ -12,8 +12,8 @@ from scipy.interpolate import RegularGridInterpolator
 from vizlight import _check
 from vizlight.geometry.relief import height_field
 from vizlight.geometry.relief.depth_map import depth_map
-from vizlight.mesh import blocks, point_arrays
-from vizlight.mesh.point_arrays import GridPoints
+from vizlight.mesh import blocks
+from vizlight.reading.arrays import GridPoints, points_of
 
 if TYPE_CHECKING:
     from vizlight._types import Array, Bools, Indices
@@ -143,7 +143,7 @@ def _sampled(
     mesh: Grid | pv.PolyData, elevation: str | None, factor: float, spacing: float
 ) -> Raster:
     """Return the height field of a surface, sampled from above on an even grid."""
-    points: Array = np.asarray(point_arrays.points_of(mesh, None)[:], dtype=np.float64)
+    points: Array = np.asarray(points_of(mesh, None)[:], dtype=np.float64)
     if elevation is None and isinstance(mesh, pv.StructuredGrid | pv.PolyData):
         z = points[:, 2]
     else:
@@ -183,7 +183,7 @@ def _skin(grid: Grid) -> pv.PolyData:
         raise ValueError(_check.message("mesh", "a grid of one layer, nx x ny x 1", got))
     at = np.arange(nx * ny).reshape(ny, nx)
     faces = np.stack([at[:-1, :-1], at[:-1, 1:], at[1:, 1:], at[1:, :-1]], axis=-1).reshape(-1, 4)
-    points = np.asarray(point_arrays.points_of(grid, None)[:])
+    points = np.asarray(points_of(grid, None)[:])
     skin: pv.PolyData = pv.PolyData.from_regular_faces(points, faces)
     return skin
 

@@ -13,6 +13,8 @@ from vizlight._version import __version__
 from vizlight.geometry.nspace import projection, slices
 from vizlight.mesh import cutting, point_arrays, records
 from vizlight.model.frames import default_rtol
+from vizlight.reading.arrays import array_of
+from vizlight.shading.results import plain
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vizlight._types import Array, Bools, Indices, VectorLike
+    from vizlight.shading.results import Record
 
 POSITION, FRAME, PROJECTED, RECORD = "position", "frame", "projected_", "projection"
 #: Least gap of the eigenvalues of a mean of projections onto tangent spaces, from 0 to 1, at which
@@ -79,7 +82,7 @@ class Turning:
         done.add(mesh.n_points)
         return out
 
-    def _record(self, rotation: object, earlier: object) -> records.Record:
+    def _record(self, rotation: object, earlier: object) -> Record:
         """Return the record of the steps, given the rotation as a matrix and the earlier record."""
         plane = self.hyperplane
         exact = {
@@ -87,7 +90,7 @@ class Turning:
             "hyperplane": plane and [[float(x) for x in plane[0]], float(plane[1])],
             "earlier": earlier,
         }
-        return {"vizlight": __version__, "filter": "project"} | records.plain(self) | exact
+        return {"vizlight": __version__, "filter": "project"} | plain(self) | exact
 
     def _arrays(self, mesh: pv.DataSet) -> dict[str, Array]:
         """Check the arrays that are rotated, and return them by name."""
@@ -305,7 +308,7 @@ def _blocks(
 def _named(mesh: pv.DataSet, argument: str, name: object) -> Array:
     if not isinstance(name, str):
         raise TypeError(_check.message(argument, "the name of a point array", repr(name)))
-    return point_arrays.array_of(mesh, argument, name)
+    return array_of(mesh, argument, name)
 
 
 def _refuse_overwriting(mesh: pv.DataSet, names: list[str]) -> None:

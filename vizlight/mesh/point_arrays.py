@@ -1,122 +1,16 @@
-"""Point arrays of a mesh: read as rows for the engine, and attached."""
+"""Point arrays attached to a mesh, and the names of those that a filter takes."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.model import kernels, line_fields
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection
-
+    import numpy as np
     from numpy.typing import NDArray
-
-    from vizlight._types import Array, Indices
-    from vizlight.shading.inputs import ArraySource
-
-
-class GridPoints:
-    """Points of an image or a rectilinear grid, computed for each slice and not stored."""
-
-    dtype = np.dtype(np.float64)
-
-    def __init__(self, grid: pv.ImageData | pv.RectilinearGrid) -> None:
-        self.shape: tuple[int, ...] = (grid.n_points, 3)
-        self._dimensions = grid.dimensions
-        if isinstance(grid, pv.ImageData):
-            matrix = np.asarray(grid.index_to_physical_matrix, dtype=np.float64)
-            first = np.array(grid.extent[::2])
-            self._place: Callable[[Indices], Array] = lambda ijk: (
-                (ijk + first) @ matrix[:3, :3].T + matrix[:3, 3]
-            )
-        else:
-            axes = [np.asarray(axis, dtype=np.float64) for axis in (grid.x, grid.y, grid.z)]
-            self._place = lambda ijk: np.stack(
-                [axis[i] for axis, i in zip(axes, ijk.T, strict=True)], axis=1
-            )
-
-    def __getitem__(self, rows: slice, /) -> Array:
-        """Return a slice of the points; the first index varies fastest."""
-        flat = np.arange(*rows.indices(self.shape[0]))
-        ijk = np.stack(np.unravel_index(flat, self._dimensions, order="F"), axis=1)
-        return self._place(ijk)
-
-
-def points_of(mesh: pv.DataSet, positions: str | None) -> ArraySource:
-    """Return the points of a mesh, or a point array with positions in n-space."""
-    if positions is not None:
-        return array_of(mesh, "positions", positions)
-    if isinstance(mesh, pv.ImageData | pv.RectilinearGrid):
-        return GridPoints(mesh)
-    return np.asarray(mesh.points)
-
-
-def array_of(
-    mesh: pv.DataSet,
-    name: str,
-    value: object,
-    *,
-    average_cells: bool | None = None,
-    sizes: Collection[int] = (),
-) -> Array:
-    """Return a point array of real numbers, from its name or from an array with those values.
-
-    A cell array is an error; ``average_cells`` is None for a filter without that option. Errors
-    name the arrays whose number of components is among ``sizes``, if there are any.
-
-    Raises
-    ------
-    TypeError
-        If the array does not hold real numbers.
-    ValueError
-        If there is no such array, its shape is wrong, or it is a cell array.
-    """
-    if isinstance(value, str):
-        _check.text(name, value, expected="the name of a point array")
-        array = _named(mesh, name, value, average_cells, sizes)
-        what = f"{value!r} with "
-    else:
-        array, what = _check.floats(name, value), ""
-        if array.ndim == 3:
-            array = array.reshape(len(array), -1)
-        if array.ndim == 0 or len(array) != mesh.n_points:
-            expected = f"{mesh.n_points} rows, one per point"
-            raise ValueError(_check.message(name, expected, _check.describe(array)))
-    return _real_rows(name, array, what)
-
-
-def _real_rows(name: str, array: Array, what: str) -> Array:
-    """Return an array if it holds rows of real numbers; ``what`` names it in an error."""
-    if array.dtype.kind not in "iubf":
-        raise TypeError(_check.message(name, "real numbers", f"{what}type {array.dtype}"))
-    if array.ndim != 2:
-        expected = "vectors, an array of 2 or more components"
-        got = f"{what}1 component" if array.ndim == 1 else f"{what}shape {array.shape}"
-        raise ValueError(_check.message(name, expected, got, "name another array"))
-    return array
-
-
-def _named(
-    mesh: pv.DataSet, name: str, value: str, average_cells: bool | None, sizes: Collection[int]
-) -> Array:
-    if value in mesh.point_data:
-        return np.asarray(mesh.point_data[value])
-    if value in mesh.cell_data:
-        remedy = "call mesh.cell_data_to_point_data()"
-        if average_cells is not None:
-            remedy = f"pass average_cells=True or {remedy}"
-        raise ValueError(_check.message(name, "a point array", f"the cell array {value!r}", remedy))
-    fitting = [
-        repr(key)
-        for key, array in mesh.point_data.items()
-        if np.ndim(array) == 2 and (not sizes or np.shape(array)[1] in sizes)
-    ]
-    there = ", ".join(fitting) or "none"
-    raise ValueError(_check.message(name, f"the name of a point array ({there})", repr(value)))
 
 
 def refuse_unnamed(name: str, value: object) -> None:
@@ -127,20 +21,6 @@ def refuse_unnamed(name: str, value: object) -> None:
         raise TypeError(_check.message(name, "the name of a point array", got, remedy))
     if value is not None:
         _check.text(name, value, expected="the name of a point array")
-
-
-def vectors_of(mesh: pv.DataSet, name: str, value: object, n: int) -> Array:
-    """Return a point array of n components, from its name or an array."""
-    array = array_of(mesh, name, value, sizes=(n,))
-    if array.shape[1] != n:
-        got = _components(value, array)
-        raise ValueError(_check.message(name, f"{n} components", got, "pass another array"))
-    return array
-
-
-def _components(value: object, array: Array) -> str:
-    """Return the name of an array, if it has one, and its number of components, for a message."""
-    return (f"{value!r} with " if isinstance(value, str) else "") + str(array.shape[1])
 
 
 def attach_rows(mesh: pv.DataSet, name: str, array: NDArray[np.generic]) -> None:
@@ -156,46 +36,3 @@ def activate(mesh: pv.DataSet, name: str) -> None:
     mesh.point_data.active_scalars_name = name
     if mesh.n_points:
         mesh.set_active_scalars(name, preference="point")
-
-
-def tangents_of(
-    mesh: pv.DataSet, value: object, n: int, *, average_cells: bool, argument: str = "tangents"
-) -> Array:
-    """Return k tangents per point as an array of shape (n_points, k n), 0 < k < n."""
-    if isinstance(value, str):
-        _check.text(argument, value, expected="the name of a point array")
-    of_cells = isinstance(value, str) and value not in mesh.point_data and value in mesh.cell_data
-    if average_cells and of_cells:
-        return _averaged_tangents(mesh, argument, str(value), n)
-    array = array_of(mesh, argument, value, average_cells=False, sizes=range(n, n * n, n))
-    return _checked_tangents(argument, value, array, n)
-
-
-def _averaged_tangents(mesh: pv.DataSet, argument: str, value: str, n: int) -> Array:
-    """Return tangents of cells at the points: means of outer products, which have no sign."""
-    rows = _real_rows(argument, np.asarray(mesh.cell_data[value]), f"{value!r} with ")
-    k = _checked_tangents(argument, value, rows, n).shape[1] // n
-    only = mesh.copy(deep=False)
-    only.clear_data()
-    only.cell_data[value] = line_fields.outer(rows.reshape(-1, k, n)).reshape(-1, n * n)
-    products = np.asarray(only.cell_data_to_point_data().point_data[value])
-    found, _ = line_fields.principal(products.reshape(-1, n, n), k)
-    kind = rows.dtype if rows.dtype in (np.float32, np.float64) else np.float64
-    return found.reshape(-1, k * n).astype(kind)
-
-
-def _checked_tangents(argument: str, value: object, array: Array, n: int) -> Array:
-    """Return an array of k tangents per point, 0 < k < n."""
-    if array.shape[1] % n or not 0 < array.shape[1] // n < n:
-        allowed = " or ".join(str(k * n) for k in range(1, min(n, 5)))
-        expected = f"a point array of {allowed} components, rows of {n}"
-        remedy = "name another array, or name the positions in n-space by positions="
-        raise ValueError(_check.message(argument, expected, _components(value, array), remedy))
-    return array
-
-
-def unit_rows(vectors: Array) -> Array:
-    """Return vectors of any length as unit vectors in float64; zero where there is no direction."""
-    columns = np.ascontiguousarray(np.asarray(vectors, dtype=np.float64).T)
-    result: Array = kernels.unit(columns)[0].T
-    return result

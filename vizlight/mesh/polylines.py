@@ -1,4 +1,4 @@
-"""Lines of a mesh: their segments and tangents, and where they turn back."""
+"""Lines of a mesh: colours by direction, where they turn back, and lines from seeds."""
 
 from __future__ import annotations
 
@@ -8,96 +8,20 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.geometry.lines.curves import polyline_tangents
-from vizlight.mesh import blocks, hull
+from vizlight.reading.cells import connectivity
+from vizlight.reading.polylines import has_lines_only, line_tangents
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Iterable
 
     from numpy.typing import NDArray
-    from vtkmodules.vtkCommonDataModel import vtkCellArray
 
     from vizlight._types import Array, Indices
-
-
-LINES = {
-    pv.CellType.LINE, pv.CellType.POLY_LINE, pv.CellType.QUADRATIC_EDGE, pv.CellType.CUBIC_LINE,
-    pv.CellType.LAGRANGE_CURVE, pv.CellType.BEZIER_CURVE,
-}  # fmt: skip
-POINTS = {pv.CellType.VERTEX, pv.CellType.POLY_VERTEX}
-
-
-def has_lines_only(mesh: pv.DataSet) -> bool:
-    """Return whether a mesh has lines, possibly vertices, and no other cells."""
-    if isinstance(mesh, pv.PolyData):
-        return mesh.n_lines > 0 and not blocks.has_faces(mesh)
-    if isinstance(mesh, pv.UnstructuredGrid):
-        kinds = set(np.unique(mesh.celltypes).tolist())
-        return bool(kinds & LINES) and kinds <= LINES | POINTS
-    return False
 
 
 def backdrop(meshes: Iterable[pv.DataSet]) -> str:
     """Return the colour before which meshes stand out: lines alone before black, else white."""
     return "black" if all(has_lines_only(mesh) for mesh in meshes) else "white"
-
-
-def line_tangents(mesh: pv.DataSet) -> Array:
-    """Return the unit tangents of a mesh of lines; zero at points that no line uses.
-
-    Consecutive segments, such as those of contour lines, are joined first.
-    """
-    return of_points(mesh, _tangents)
-
-
-def _tangents(points: Array, ids: Indices, offsets: Indices) -> Array:
-    return polyline_tangents(points, connectivity=ids, offsets=offsets)
-
-
-def of_points(mesh: pv.DataSet, function: Callable[[Array, Indices, Indices], Array], /) -> Array:
-    """Return what a function of points, connectivity and offsets of lines gives for each point.
-
-    Points that no line uses have zero. Consecutive segments are joined first.
-    """
-    surface, origin = _flat(mesh)
-    found = function(*_joined(surface))
-    return found if origin is None else hull.scattered(found, origin, mesh.n_points)
-
-
-def cells_of(mesh: pv.DataSet, /) -> tuple[Array, Indices, Indices]:
-    """Return points, connectivity and offsets of the lines of a mesh, segments joined."""
-    return _joined(_flat(mesh)[0])
-
-
-def _flat(mesh: pv.DataSet) -> tuple[pv.PolyData, Indices | None]:
-    """Return the lines of a mesh as polylines, and the index of each of their points in it."""
-    if isinstance(mesh, pv.PolyData):
-        return mesh, None
-    surface, origin = hull.outer_surface(mesh)
-    if mesh.has_nonlinear_cells:
-        # VTK turns each curve into a polyline; segments let the curves be joined below.
-        ends = np.asarray(segments(surface.GetLines()), dtype=int)
-        surface.SetLines(pv.CellArray.from_regular_cells(ends))
-    return surface, origin
-
-
-def _joined(mesh: pv.PolyData) -> tuple[Array, Indices, Indices]:
-    """Return points, connectivity and offsets of polylines, consecutive segments joined."""
-    lines = mesh.GetLines()
-    ids, offsets = _cells(lines)
-    if np.any(np.diff(offsets) == 2) and _shared(ids, mesh.n_points):
-        bare = pv.PolyData()
-        bare.SetPoints(mesh.GetPoints())
-        bare.SetLines(lines)
-        ids, offsets = _cells(bare.strip(join=True, max_length=mesh.n_points + 1).GetLines())
-    return np.asarray(mesh.points), ids, offsets
-
-
-def _shared(ids: Indices, count: int) -> bool:
-    """Return whether two corners of lines are the same point."""
-    used = np.zeros(count, dtype=np.bool_)
-    used[ids] = True
-    return bool(np.count_nonzero(used) < len(ids))
 
 
 def direction_colors(mesh: pv.DataSet, /) -> Array:
@@ -134,22 +58,13 @@ def direction_colors(mesh: pv.DataSet, /) -> Array:
     return np.abs(line_tangents(mesh))
 
 
-def segments(lines: vtkCellArray) -> Indices:
-    """Return the two points of each segment of all lines, shape (M, 2)."""
-    ids, offsets = _cells(lines)
-    inside = np.ones(len(ids), dtype=np.bool_)
-    inside[offsets[1:] - 1] = False
-    start = np.flatnonzero(inside)
-    return np.stack([ids[start], ids[start + 1]], axis=1)
-
-
 def before_turning_back(mesh: pv.PolyData) -> pv.PolyData:
     """Return each line up to the point where it turns back or its last points coincide.
 
     A line turns back where the angle between two consecutive steps is a right angle or more.
     Lines without a step are left out. Each point must belong to exactly one line.
     """
-    ids, offsets = _cells(mesh.GetLines())
+    ids, offsets = connectivity(mesh.GetLines())
     size = np.diff(offsets)
     line = np.repeat(np.arange(len(size)), size)
     place = np.asarray(mesh.points, dtype=np.float64)[ids]
@@ -203,7 +118,7 @@ def joined_at_seeds(mesh: pv.PolyData) -> pv.PolyData:
     """
     if not mesh.n_lines:
         return mesh
-    ids, offsets = _cells(mesh.GetLines())
+    ids, offsets = connectivity(mesh.GetLines())
     seed = np.asarray(mesh.cell_data["SeedIds"])
     time = np.asarray(mesh.point_data["IntegrationTime"])[ids]
     back = np.minimum.reduceat(time, offsets[:-1]) < 0
@@ -223,11 +138,3 @@ def joined_at_seeds(mesh: pv.PolyData) -> pv.PolyData:
     for name, array in mesh.cell_data.items():
         out.cell_data[name] = np.asarray(array)[[*first.values()]]
     return out
-
-
-def _cells(cells: vtkCellArray) -> tuple[Indices, Indices]:
-    """Return the points of all cells, and the offset of each cell in them."""
-    return (
-        pv.convert_array(cells.GetConnectivityArray()).astype(np.intp, copy=False),
-        pv.convert_array(cells.GetOffsetsArray()).astype(np.intp, copy=False),
-    )

@@ -1,40 +1,24 @@
-"""Records of how arrays were made, kept as field data, so that a saved file can be reproduced."""
+"""Records of how arrays were made, as field data of a mesh: written, read and checked."""
 
 from __future__ import annotations
 
-import dataclasses
 import json
 import math
-import zlib
-from collections.abc import Mapping
-from fractions import Fraction
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight._version import __version__
 from vizlight.mesh import blocks, point_arrays
+from vizlight.shading.results import digest, plain, record_key
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
+    import numpy as np
     from numpy.typing import NDArray
 
-    from vizlight.scene import Scene
-    from vizlight.shading.engine import Shading
-
-#: What JSON holds: the scene, the options and facts about the result.
-Record: TypeAlias = dict[str, object]
-
-#: Largest number of values of an array that is written out in full.
-WRITTEN_OUT = 100
-
-
-def key(name: str) -> str:
-    """Return the name of the field array that holds the record of a point array."""
-    return f"{name}_provenance"
+    from vizlight.shading.results import Record
 
 
 def attach(
@@ -52,13 +36,7 @@ def attach(
 def write(mesh: pv.DataSet, name: str, record: Record, arrays: Iterable[str] = ()) -> None:
     """Attach the record of an array, with digests of the point arrays that it tells of."""
     digests = {own: digest(mesh.point_data[own]) for own in sorted(arrays)}
-    mesh.field_data[key(name)] = [json.dumps(record | {"arrays": digests})]
-
-
-def digest(array: NDArray[np.generic]) -> str:
-    """Return a digest of the shape and the bytes of an array."""
-    rows = np.ascontiguousarray(array)
-    return f"{'x'.join(str(n) for n in rows.shape)}:{zlib.crc32(rows.view(np.uint8).data):08x}"
+    mesh.field_data[record_key(name)] = [json.dumps(record | {"arrays": digests})]
 
 
 def read(mesh: pv.DataSet, name: str) -> dict[str, Any] | None:
@@ -68,7 +46,7 @@ def read(mesh: pv.DataSet, name: str) -> dict[str, Any] | None:
     taken for true that the mesh itself does not confirm.
     """
     try:
-        record = json.loads(str(mesh.field_data[key(name)][0]))
+        record = json.loads(str(mesh.field_data[record_key(name)][0]))
     except (KeyError, IndexError, ValueError, RecursionError):
         return None
     return record if _is_record(record) else None
@@ -120,7 +98,7 @@ def all_made(mesh: pv.DataSet) -> set[str]:
 def _names(mesh: pv.DataSet) -> list[str]:
     """Return the names of the arrays of which a mesh has records."""
     fields = getattr(mesh, "field_data", ())
-    return [name.removesuffix(key("")) for name in fields if name.endswith(key(""))]
+    return [name.removesuffix(record_key("")) for name in fields if name.endswith(record_key(""))]
 
 
 def carry(mesh: pv.DataSet, derived: pv.DataSet) -> None:
@@ -146,64 +124,11 @@ def refuse_overwriting(
                 raise ValueError(_check.message("name", expected, got, remedy))
 
 
-def of_light(shading: Shading, filter_name: str, scene: Scene, options: object) -> Record:
-    """Return the record of light that the engine computed."""
-    plan = shading.plan
-    return of_filter(
-        filter_name, scene, options,
-        precision=plan.dtype.name,
-        terms=list(plan.terms),
-        exponent=plan.exponent,
-        highlight_error=plan.highlight_error,
-        error_bound=plan.choice.bound if np.isfinite(plan.choice.bound) else None,
-        points=int(shading.luminance.size),
-        invalid=shading.invalid,
-    )  # fmt: skip
-
-
-def of_filter(filter_name: str, scene: Scene, options: object, **facts: object) -> Record:
-    """Return the record of an array that a filter computed."""
-    return {
-        "vizlight": __version__,
-        "filter": filter_name,
-        **facts,
-        "options": plain(options),
-        "scene": scene.to_dict(),
-    }
-
-
 def amend(mesh: pv.DataSet, name: str, filter_name: str, *options: object) -> None:
     """Replace the filter and the options in the record of an array; options are merged."""
     own = {key: value for each in options for key, value in plain(each).items()}
     record = (read(mesh, name) or {}) | {"filter": filter_name, "options": own}
     write(mesh, name, record, made(mesh, name))
-
-
-def plain(options: object) -> Record:
-    """Return options, a dataclass or a dict, as values that JSON can hold."""
-    if not isinstance(options, Mapping):
-        names = [field.name for field in dataclasses.fields(options)]  # type: ignore[arg-type]
-        options = {name: getattr(options, name) for name in names}
-    return {str(name): _plain(value) for name, value in options.items()}
-
-
-def _plain(value: object) -> object:
-    """Return a value that JSON can hold, with a description of a mesh or a long array."""
-    if value is None or isinstance(value, str | bool | int | float):
-        return value
-    if isinstance(value, pv.DataObject):
-        return f"{type(value).__name__} of {getattr(value, 'n_points', 0)} points"
-    if isinstance(value, Fraction):
-        return float(value)
-    if isinstance(value, list | tuple) and len(value) <= WRITTEN_OUT:
-        return [_plain(part) for part in value]
-    if dataclasses.is_dataclass(value):
-        return plain(value)
-    array: NDArray[np.generic] = np.asarray(value)
-    if array.size <= WRITTEN_OUT and array.dtype.kind in "biufU":
-        # JSON holds at most the digits of float64.
-        return (array.astype(np.float64) if array.dtype.kind == "f" else array).tolist()
-    return _check.describe(array)
 
 
 def provenance(mesh: pv.DataSet | pv.MultiBlock, /, name: str = "luminance") -> dict[str, Any]:

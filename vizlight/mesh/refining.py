@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from vizlight import _check
-from vizlight.mesh import blocks, records, splitting
+from vizlight.mesh import records, splitting
 from vizlight.mesh.splitting import Cells
+from vizlight.reading.cells import has_faces
 from vizlight.shading import engine
 from vizlight.verify.between import Between, Places, columns, interpolated, random_places
 
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     import pyvista as pv
 
     from vizlight._types import Array, Bools, Indices
-    from vizlight.mesh.inputs import Part
+    from vizlight.reading.inputs import Part
     from vizlight.scene import Scene
     from vizlight.shading.engine import Shading
     from vizlight.shading.inputs import ArraySource
@@ -107,7 +108,7 @@ def refined(
             raise
         raise ValueError(f"block {path}: {error}") from error
     origin: Indices | None = None
-    if blocks.has_faces(flat):
+    if has_faces(flat):
         parents, origin = splitting.triangles(flat)
     else:
         parents = splitting.simplices(flat)

@@ -10,7 +10,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.mesh import point_arrays
+from vizlight.reading.arrays import vectors_of
 
 __all__ = ["Series"]
 
@@ -110,7 +110,7 @@ class Series:
             there = ", ".join(map(repr, mesh.point_data)) or "none"
             expected = f"the point array {array!r} ({there})"
             raise ValueError(_check.message(name, expected, "none of that name"))
-        rows = point_arrays.vectors_of(mesh, name, array, 3)
+        rows = vectors_of(mesh, name, array, 3)
         return np.where(np.isfinite(rows), rows, 0.0).astype(np.float64)
 
     def name(self, step: int) -> str:

@@ -11,7 +11,9 @@ from scipy.sparse import csr_array, vstack
 from vizlight import _check
 from vizlight._version import __version__
 from vizlight.geometry.solids import triangle_mesh
-from vizlight.mesh import blocks, hull, normals, point_arrays, polylines, records
+from vizlight.mesh import hull, normals, point_arrays, records
+from vizlight.reading import polylines
+from vizlight.reading.cells import connectivity, has_faces
 from vizlight.verify.between import Places, are_unit, unit_rows
 
 if TYPE_CHECKING:
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
     from vtkmodules.vtkCommonDataModel import vtkCellArray
 
     from vizlight._types import Array, Bools, Indices
+    from vizlight.shading.results import Record
 
 #: Number of bits of the smaller number of a pair.
 HALF = 31
@@ -49,7 +52,7 @@ def simplices(mesh: pv.DataSet) -> Indices:
         surface, origin = mesh, None
     else:
         surface, origin = hull.outer_surface(mesh)
-    if blocks.has_faces(surface):
+    if has_faces(surface):
         found, _ = triangles(surface)
     else:
         found = polylines.segments(surface.GetLines())
@@ -86,7 +89,7 @@ def as_polydata(mesh: pv.DataSet) -> pv.PolyData:
             (surface.GetLines, found.SetLines),
             (surface.GetPolys, found.SetPolys),
         ):
-            ids, offsets = polylines._cells(get())
+            ids, offsets = connectivity(get())
             if len(offsets) > 1:
                 put(
                     pv.CellArray.from_arrays(
@@ -96,7 +99,7 @@ def as_polydata(mesh: pv.DataSet) -> pv.PolyData:
         for key, array in surface.cell_data.items():
             found.cell_data[key] = np.asarray(array)
         _copy(mesh, found)
-    if not (blocks.has_faces(found) or found.n_lines):
+    if not (has_faces(found) or found.n_lines):
         remedy = "between points alone there is no light to refine"
         raise ValueError(_check.message("mesh", "faces or lines", "points alone", remedy))
     return found
@@ -289,7 +292,7 @@ def rebuilt(
 
 def _split_lines(lines: vtkCellArray, parts: Cells, shares: csr_array) -> pv.CellArray:
     """Return polylines with the new points of their segments."""
-    ids, offsets = polylines._cells(lines)
+    ids, offsets = connectivity(lines)
     # The segments of a line stand one after the other; its last point follows.
     along = shares[parts.corners[:, 0], parts.parents[parts.parent, 1]]
     order = np.lexsort((np.asarray(along).ravel(), parts.parent))
@@ -339,7 +342,7 @@ def keep_tangents(mesh: pv.PolyData, tangents: Array) -> None:
     if TANGENTS in mesh.point_data and not ours:
         return
     point_arrays.attach_rows(mesh, TANGENTS, tangents)
-    record: records.Record = {
+    record: Record = {
         "vizlight": __version__, "filter": "refine", "source": normals.fingerprint(mesh),
     }  # fmt: skip
     records.write(mesh, TANGENTS, record, [TANGENTS])

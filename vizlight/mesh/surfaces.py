@@ -8,7 +8,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight.mesh import blocks, normals
-from vizlight.mesh.point_arrays import unit_rows
+from vizlight.reading.arrays import unit_rows
 
 if TYPE_CHECKING:
     from vizlight._types import Array

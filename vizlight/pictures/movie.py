@@ -16,12 +16,12 @@ from PIL import Image
 from vizlight import _check
 from vizlight._progress import progress
 from vizlight.files import check_output, replace_file
-from vizlight.filters.lighting import DEFAULT_NAME
 from vizlight.filters.project import ProjectOptions, project
 from vizlight.mesh.blocks import all_blocks
 from vizlight.pictures import render
 from vizlight.pictures.cameras import Mesh, common_bounds
 from vizlight.shading.options import accepts
+from vizlight.shading.results import DEFAULT_NAME
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator

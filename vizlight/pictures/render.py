@@ -12,9 +12,9 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.files import check_output, replace_file
 from vizlight.filters.tint import unlit_colors
-from vizlight.mesh import polylines, records
+from vizlight.mesh import records
 from vizlight.mesh.blocks import all_blocks, check
-from vizlight.mesh.polylines import backdrop, has_lines_only
+from vizlight.mesh.polylines import backdrop
 from vizlight.pictures.backends import (
     Backend,
     BackendError,
@@ -27,6 +27,8 @@ from vizlight.pictures.cameras import Mesh, camera_on, common_bounds, over_shoul
 from vizlight.plotting import strokes
 from vizlight.plotting.component import add_recorded
 from vizlight.plotting.program import Stroke
+from vizlight.reading import polylines
+from vizlight.reading.polylines import has_lines_only
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

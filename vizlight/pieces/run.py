@@ -15,13 +15,13 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check, _compiled, files
-from vizlight.filters.lighting import unlit
 from vizlight.pieces import index, task
 from vizlight.pieces.kinds import FilePiece, PieceError, union
 from vizlight.pieces.sources import pieces_of
 from vizlight.pieces.workers import collected, runner
 from vizlight.scene import Scene
 from vizlight.shading.options import LightOptions, unknown_option
+from vizlight.shading.results import unlit
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence

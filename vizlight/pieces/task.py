@@ -20,6 +20,7 @@ from vizlight.filters import illuminate, streamlines
 from vizlight.mesh import normals, records
 from vizlight.pieces.ghosts import GHOST
 from vizlight.pieces.kinds import FilePiece, Piece, PieceError
+from vizlight.shading.results import record_key
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -218,7 +219,7 @@ def _lit(mesh: pv.DataSet, piece: Piece, job: Job) -> Any:
     for stale in records.made(lit, normals.KEPT):
         # They are those of the piece with its ghost cells, and would be checked in vain.
         del lit.point_data[stale]
-        del lit.field_data[records.key(stale)]
+        del lit.field_data[record_key(stale)]
     own = piece.own(lit) if job.filter == "illuminate" else lit
     valid = f"{job.name}_valid"
     if valid not in own.point_data:

@@ -10,10 +10,9 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.files import check_output
-from vizlight.filters import lighting, relight
+from vizlight.filters import relight
 from vizlight.filters.tint import RGB
 from vizlight.mesh import blocks, records
-from vizlight.mesh.polylines import has_lines_only
 from vizlight.plotting.fragments import Fragments, unfit
 from vizlight.plotting.html import write_page
 from vizlight.plotting.live import LightAt, Live, colorless, items
@@ -22,8 +21,10 @@ from vizlight.plotting.page import Shown
 from vizlight.plotting.points import Points
 from vizlight.plotting.program import Stroke
 from vizlight.plotting.sources import sources_of, tinted
+from vizlight.reading.polylines import has_lines_only
 from vizlight.scene import Scene
 from vizlight.shading.options import LightOptions
+from vizlight.shading.results import DEFAULT_NAME, unlit
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -342,7 +343,7 @@ class Component:
             raise
         invalid = live.invalid() if follow else 0
         if invalid:
-            _check.warn(lighting.unlit(invalid, source.inputs.count))
+            _check.warn(unlit(invalid, source.inputs.count))
         self._keep(plotter, live, actor)
         if rendered:
             plotter.render()
@@ -480,7 +481,7 @@ def add_recorded(
         raise TypeError(_check.message("plotter", "a pyvista.Plotter", got))
     blocks.check(mesh)
     _check.text("name", name, expected="the name of the light")
-    light = lighting.DEFAULT_NAME if name == RGB else name
+    light = DEFAULT_NAME if name == RGB else name
     scalars, colors = tinted(mesh) if name == RGB else (None, {})
     maker = light if scalars is None else RGB
     if not relight.is_lit(mesh, light) or name not in records.made(mesh, maker):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight.filters.tint import light_factors
-from vizlight.mesh.normals import piece_numbers
+from vizlight.reading.normals import piece_numbers
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

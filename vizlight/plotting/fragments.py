@@ -9,11 +9,12 @@ import numpy as np
 import pyvista as pv
 
 from vizlight.filters import lighting
-from vizlight.mesh import hull, polylines
-from vizlight.mesh.point_arrays import unit_rows
+from vizlight.mesh import hull
 from vizlight.plotting import dialects, glsl, program, strokes
 from vizlight.plotting.live import NORMALS, TANGENTS
 from vizlight.plotting.program import Stroke
+from vizlight.reading import polylines
+from vizlight.reading.arrays import unit_rows
 from vizlight.scene.light import NO_ATTENUATION, WHITE
 from vizlight.scene.vtk import LARGEST_POWER
 from vizlight.shading.decide import decide

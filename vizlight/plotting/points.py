@@ -10,10 +10,11 @@ import numpy as np
 from vizlight import _check
 from vizlight.filters import lighting
 from vizlight.filters.tint import light_factors, map_colors, times_light
-from vizlight.mesh import point_arrays, polylines
+from vizlight.mesh import point_arrays
 from vizlight.plotting import strokes
 from vizlight.plotting.live import COLORS, LUMINANCE, NORMALS
 from vizlight.plotting.program import Stroke
+from vizlight.reading import polylines
 from vizlight.shading.decide import decide
 
 if TYPE_CHECKING:

@@ -10,10 +10,10 @@ import pyvista as pv
 
 from vizlight.cli.scenes import VIEW
 from vizlight.mesh.blocks import all_blocks
-from vizlight.mesh.polylines import has_lines_only
 from vizlight.pictures.backends import choose_backend, window_class
 from vizlight.pictures.cameras import camera_on, over_shoulder
 from vizlight.plotting.component import Component  # noqa: TC001 - loads plotter.vizlight
+from vizlight.reading.polylines import has_lines_only
 from vizlight.view import steps
 
 if TYPE_CHECKING:

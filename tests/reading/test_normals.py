@@ -8,7 +8,8 @@ import pyvista as pv
 
 import vizlight
 from vizlight import Light, Material, Scene, View
-from vizlight.mesh import normals
+from vizlight.mesh.normals import onlooker, split_edges
+from vizlight.reading import normals
 
 
 @pytest.mark.parametrize("winding", [1, -1])
@@ -17,7 +18,7 @@ def test_normals_of_a_closed_surface_are_outward(winding):
     mesh.clear_data()
     faces = mesh.regular_faces[:, ::winding]
     mesh = pv.PolyData.from_regular_faces(mesh.points, faces)
-    found = normals.surface_normals(mesh, None)
+    found = normals.computed_normals(mesh).vectors
     outward = np.asarray(mesh.points) / 0.5
     assert np.einsum("ij,ij->i", found, outward).min() > 0.99
 
@@ -28,14 +29,14 @@ def test_normals_of_open_pieces_turn_outward_and_to_the_eye(winding):
     cup.clear_data()
     both = cup.merge(cup.translate((3, 0, 0), inplace=False), merge_points=False)
     mesh = pv.PolyData.from_regular_faces(both.points, both.regular_faces[:, ::winding])
-    found = normals.surface_normals(mesh, None)
+    found = normals.computed_normals(mesh).vectors
     centre = np.where(np.asarray(mesh.points)[:, :1] > 1.5, [[3.0, 0, 0]], [[0.0, 0, 0]])
     assert np.einsum("ij,ij->i", found, mesh.points - centre).min() > 0.45
     sheet = pv.Plane(i_resolution=3, j_resolution=3)
     sheet.clear_data()
     for side in (1.0, -1.0):
         for view in (View(direction=(0, 0.1, side)), View(position=(0, 0, 5 * side))):
-            up = normals.surface_normals(sheet, view)[:, 2]
+            up = normals.computed_normals(sheet, view=view).vectors[:, 2]
             np.testing.assert_allclose(up, side)
 
 
@@ -43,7 +44,7 @@ def test_a_bowl_faces_the_eye_that_looks_into_it():
     bowl = pv.Sphere(end_phi=90, theta_resolution=40, phi_resolution=40)
     bowl.clear_data()
     for side in (1, -1):
-        found = normals.surface_normals(bowl, View(direction=(0, 0.3, side)))
+        found = normals.computed_normals(bowl, view=View(direction=(0, 0.3, side))).vectors
         outward = np.einsum("ij,ij->i", found, np.asarray(bowl.points)) / 0.5
         assert (side * outward).min() > 0.9
 
@@ -53,7 +54,9 @@ def test_a_point_that_is_nowhere_has_no_say():
     z = 5 * np.exp(-((x - 20) ** 2 + (y - 15) ** 2) / 50)
     z[10, 10] = np.nan
     for side in (1, -1):
-        found = normals.surface_normals(pv.StructuredGrid(x, y, z), View(direction=(0, 0, side)))
+        found = normals.computed_normals(
+            pv.StructuredGrid(x, y, z), view=View(direction=(0, 0, side))
+        ).vectors
         known = np.isfinite(found).all(axis=1) & found.any(axis=1)
         assert known.sum() > 1150
         assert (side * found[known, 2]).min() > 0
@@ -66,7 +69,7 @@ def test_what_is_nearly_closed_faces_outward_wherever_the_eye_is(winding, eye):
     kept = slab.regular_faces[slab.cell_centers().points[:, 0] < 1.99]
     open_end = pv.PolyData.from_regular_faces(slab.points, kept[:, ::winding])
     assert open_end.n_open_edges > 0
-    found = normals.surface_normals(open_end, View(position=eye))
+    found = normals.computed_normals(open_end, view=View(position=eye)).vectors
     flat = np.all(np.abs(open_end.points[:, :2]) < (1.6, 0.4), axis=1)
     assert flat.sum() > 10
     assert (np.sign(open_end.points[flat, 2]) * found[flat, 2]).min() > 0.99
@@ -80,23 +83,23 @@ def test_without_a_view_the_light_is_looked_from():
             scene = Scene(lights=Light(**where), material=Material(specular=0))
             lit = vizlight.illuminate(sheet, scene)
             assert lit["luminance"].min() > 0.3
-    assert normals.onlooker(Scene(lights=Light.headlight())) is None
+    assert onlooker(Scene(lights=Light.headlight())) is None
 
 
 def test_separate_triangles_of_a_closed_surface_face_outward():
     soup = pv.Sphere().separate_cells().extract_surface(algorithm="geometry")
     soup.clear_data()
-    found = normals.surface_normals(soup, View(direction=(0, 0, 1)))
+    found = normals.computed_normals(soup, view=View(direction=(0, 0, 1))).vectors
     assert np.einsum("ij,ij->i", found, np.asarray(soup.points)).min() > 0.4
 
 
 def test_strips_and_loose_points_have_their_piece():
     strip = pv.Plane(i_resolution=4, j_resolution=4).triangulate().strip()
     strip.clear_data()
-    found = normals.surface_normals(strip, View(direction=(0, 0, -1)))
+    found = normals.computed_normals(strip, view=View(direction=(0, 0, -1))).vectors
     np.testing.assert_allclose(found[:, 2], -1)
     loose = pv.PolyData.from_regular_faces(np.vstack([np.eye(3), [[9.0, 9, 9]]]), [[0, 1, 2]])
-    found = normals.surface_normals(loose, View(direction=(1, 1, 1)))
+    found = normals.computed_normals(loose, view=View(direction=(1, 1, 1))).vectors
     np.testing.assert_allclose(found[:3], 3**-0.5, rtol=1e-6)
     np.testing.assert_array_equal(found[3], 0)
 
@@ -114,5 +117,5 @@ def test_faces_without_area_have_no_sharp_edges():
     doubled = np.column_stack([np.full(len(around), pole), extra, beside])
     mesh = pv.PolyData.from_regular_faces(points, np.concatenate([faces, doubled]))
     assert normals.computed_normals(mesh).sharp == 0
-    assert normals.split_edges(mesh, "auto") is mesh
+    assert split_edges(mesh, "auto") is mesh
     assert normals.computed_normals(pv.Cube().triangulate().clean()).sharp > 0.5

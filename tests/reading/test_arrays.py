@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pyvista as pv
 
-from vizlight.mesh import point_arrays
+from vizlight.reading import arrays
 
 
 def test_points_of_a_turned_image_with_an_extent():
@@ -17,14 +17,14 @@ def test_points_of_a_turned_image_with_an_extent():
         [0, 0, 1],
     ]
     grid.extent = (2, 5, -1, 3, 0, 5)
-    rows = point_arrays.GridPoints(grid)
+    rows = arrays.GridPoints(grid)
     np.testing.assert_allclose(rows[0 : grid.n_points], grid.points, atol=1e-12)
     np.testing.assert_allclose(rows[7:23], grid.points[7:23], atol=1e-12)
 
 
 def test_points_of_a_rectilinear_grid():
     grid = pv.RectilinearGrid([0.0, 1, 4], [2.0, 3], [5.0, 7, 8, 9])
-    rows = point_arrays.GridPoints(grid)
+    rows = arrays.GridPoints(grid)
     assert rows.shape == (24, 3)
     np.testing.assert_array_equal(rows[0:24], grid.points)
     np.testing.assert_array_equal(rows[5:9], grid.points[5:9])

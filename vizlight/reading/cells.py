@@ -1,0 +1,133 @@
+"""Cells of VTK's datasets as indices of points."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from vtkmodules.util import numpy_support
+from vtkmodules.vtkCommonCore import vtkDataArray, vtkStringArray, vtkUnsignedCharArray
+from vtkmodules.vtkCommonDataModel import vtkDataSet, vtkPolyData, vtkUnstructuredGrid
+from vtkmodules.vtkFiltersCore import vtkTriangleFilter
+
+from vizlight import _check
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+    from vtkmodules.vtkCommonCore import vtkAbstractArray
+    from vtkmodules.vtkCommonDataModel import vtkCellArray
+
+    from vizlight._types import Bools, Indices
+
+#: Has no types.
+_SUPPORT: Any = numpy_support
+
+
+def as_numpy(array: vtkAbstractArray) -> NDArray[Any]:
+    """Return the values of an array of VTK, without a copy where its memory has their order."""
+    if isinstance(array, vtkStringArray):
+        return np.array([array.GetValue(i) for i in range(array.GetNumberOfValues())], dtype=str)
+    own: Any = array
+    if not isinstance(array, vtkDataArray):
+        return np.empty((array.GetNumberOfTuples(), array.GetNumberOfComponents()), dtype=object)
+    if array.IsA("vtkBitArray"):
+        own = vtkUnsignedCharArray()
+        own.DeepCopy(array)
+    elif not array.HasStandardMemoryLayout():
+        own = vtkDataArray.CreateDataArray(array.GetDataType())
+        own.DeepCopy(array)
+    found: NDArray[Any] = _SUPPORT.vtk_to_numpy(own)
+    return found
+
+
+def as_vtk(rows: NDArray[Any], name: str = "") -> vtkDataArray:
+    """Return an array of VTK with a copy of some values."""
+    own = rows.view(np.uint8) if rows.dtype == np.bool_ else rows
+    array: vtkDataArray = _SUPPORT.numpy_to_vtk(np.ascontiguousarray(own), deep=True)
+    array.SetName(name)
+    return array
+
+
+def places(mesh: Any) -> NDArray[Any]:
+    """Return the points that a dataset stores."""
+    points = mesh.GetPoints()
+    return np.zeros((0, 3), np.float32) if points is None else as_numpy(points.GetData())
+
+
+def connectivity(cells: vtkCellArray) -> tuple[Indices, Indices]:
+    """Return the points of all cells, and the offset of each cell in them."""
+    return (
+        as_numpy(cells.GetConnectivityArray()).astype(np.intp, copy=False),
+        as_numpy(cells.GetOffsetsArray()).astype(np.intp, copy=False),
+    )
+
+
+def has_faces(mesh: vtkPolyData) -> bool:
+    """Return whether a mesh has polygons or triangle strips."""
+    return bool(mesh.GetNumberOfPolys() or mesh.GetNumberOfStrips())
+
+
+def faces(surface: vtkPolyData) -> Iterator[tuple[Indices, Indices]]:
+    """Yield the corners of all polygons, of all strips, and the end of each face in them."""
+    for cells in (surface.GetPolys(), surface.GetStrips()):
+        ids, offsets = connectivity(cells)
+        if len(ids):
+            yield ids, offsets[1:]
+
+
+def used(surface: vtkPolyData) -> Bools:
+    """Return whether each point is a corner of a face."""
+    found = np.zeros(surface.GetNumberOfPoints(), dtype=np.bool_)
+    for ids, _ in faces(surface):
+        found[ids] = True
+    return found
+
+
+def triangles(surface: vtkPolyData) -> Indices:
+    """Return the corners of the triangles of a surface."""
+    polys = surface.GetPolys()
+    if surface.GetNumberOfStrips() or (polys.GetNumberOfCells() and polys.IsHomogeneous() != 3):
+        split = vtkTriangleFilter()
+        split.PassVertsOff()
+        split.PassLinesOff()
+        split.SetInputData(surface)
+        split.Update()
+        polys = split.GetOutput().GetPolys()
+    return connectivity(polys)[0].reshape(-1, 3)
+
+
+def check_whole(mesh: object, name: str, where: str = "") -> None:
+    """Check that arrays have a row for each point, and that cells have points that exist.
+
+    VTK ends the process where they have not. Anything but a dataset passes.
+
+    Raises
+    ------
+    ValueError
+        If a cell or an array does not fit.
+    """
+    if not isinstance(mesh, vtkDataSet):
+        return
+    count = mesh.GetNumberOfPoints()
+    data = mesh.GetPointData()
+    for i in range(data.GetNumberOfArrays()):
+        array = data.GetAbstractArray(i)
+        if array is not None and array.GetNumberOfTuples() != count:
+            expected = f"point arrays of {count} rows, one per point"
+            got = f"{array.GetName()!r} with {array.GetNumberOfTuples()}"
+            raise ValueError(where + _check.message(name, expected, got, "remove the array"))
+    if isinstance(mesh, vtkPolyData):
+        kinds = [mesh.GetVerts(), mesh.GetLines(), mesh.GetPolys(), mesh.GetStrips()]
+    else:
+        kinds = [mesh.GetCells()] if isinstance(mesh, vtkUnstructuredGrid) else []
+    for cells in kinds:
+        if cells is not None and cells.GetNumberOfConnectivityIds():
+            ids = as_numpy(cells.GetConnectivityArray())
+            low, high = int(ids.min()), int(ids.max())
+            if not 0 <= low <= high < count:
+                expected = f"cells of the points 0 to {count - 1}"
+                remedy = "the file may be cut or damaged"
+                got = f"{low} to {high}"
+                raise ValueError(where + _check.message(name, expected, got, remedy))

@@ -1,0 +1,148 @@
+"""The arrays of a dataset that the engine lights, selected by the options of a filter."""
+
+from __future__ import annotations
+
+import dataclasses
+from functools import partial
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from vizlight import _check
+from vizlight.reading import polylines
+from vizlight.reading.arrays import points_of, tangents_of
+from vizlight.reading.normals import Sided, sided_normals
+from vizlight.shading.decide import not_a_line
+from vizlight.shading.inputs import ShadingInputs, Sides
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from vizlight._types import Array, Dataset
+    from vizlight.scene import Scene, View
+    from vizlight.shading.options import Facing, LightOptions
+
+
+class Part(NamedTuple):
+    """What one mesh is lit by: inputs of the engine, options, and its normals, None without."""
+
+    inputs: ShadingInputs
+    options: LightOptions
+    sided: Sided | None
+
+
+class Kept(NamedTuple):
+    """Functions of a mesh that return what an earlier result kept of it, or None."""
+
+    normals: Callable[[Any], Sided | None]
+    tangents: Callable[[Any], Array | None]
+
+
+def uses_normals(mesh: Dataset, options: LightOptions) -> bool:
+    """Return whether light depends on the normals of the surface."""
+    if isinstance(options.conditioned, str):
+        return False
+    lines = options.positions is None and polylines.has_lines_only(mesh)
+    return (options.tangents is None and not lines) or bool(options.conditioned)
+
+
+def part_of(
+    mesh: Dataset, path: str, scene: Scene, options: LightOptions, *, kept: Kept | None = None
+) -> Part:
+    """Return what one mesh is lit by; an error names the path of its block.
+
+    Without a view both sides of an open surface are lit alike, by ``two_sided`` in the options.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an array is missing or does not fit, or options contradict each other.
+    """
+    try:
+        points = points_of(mesh, options.positions)
+        n = int(points.shape[1])
+        tangents = _tangents(mesh, n, options, kept)
+        _check_options(tangents, n, options)
+        base = normals = sided = None
+        if isinstance(options.conditioned, str):
+            base = tangents_of(
+                mesh,
+                options.conditioned,
+                n,
+                average_cells=options.average_cells,
+                argument="conditioned",
+            )
+        elif tangents is None or options.conditioned:
+            known = None if kept is None else kept.normals
+            sided = sided_normals(mesh, options.normals, n, shown_side(options), kept=known)
+            normals = sided.facing(shown_side(options), points, scene.view)
+            if options.flip_normals:
+                normals = -normals
+            if scene.view is None and _alike(sided, options.facing):
+                options = dataclasses.replace(options, facing="auto", two_sided=True)
+    except (TypeError, ValueError) as error:
+        if not path:
+            raise
+        raise type(error)(f"block {path}: {error}") from error
+    inputs = ShadingInputs(
+        points=points,
+        tangents=tangents,
+        normals=normals,
+        base_tangents=base,
+        sides=None if sided is None else partial(_sides, sided, scene.view, options),
+    )
+    return Part(inputs, options, sided)
+
+
+def _sides(sided: Sided, view: View | None, options: LightOptions) -> Sides:
+    """Return normals before they are turned to the side that is seen, and what turns them."""
+
+    def turned(normals: Array, facts: Array, points: Array) -> Array:
+        own = Sided(normals, lean=facts[:, 0], open=facts[:, 1] > 0.5)
+        found = own.facing(shown_side(options), points, view)
+        return -found if options.flip_normals else found
+
+    return Sides(sided.vectors, sided.facts(), turned)
+
+
+def shown_side(options: LightOptions) -> Facing:
+    """Return the side that normals show; the older switches take the place of the eye."""
+    old = options.two_sided or options.flip_normals
+    return "outward" if old and options.facing == "auto" else options.facing
+
+
+def _alike(sided: Sided, facing: Facing) -> bool:
+    """Return whether both sides of a surface are lit alike where no eye sees one of them."""
+    return facing == "eye" or (facing == "auto" and sided.any_open)
+
+
+def _tangents(mesh: Dataset, n: int, options: LightOptions, kept: Kept | None) -> Array | None:
+    """Return the tangents in the options, or those of a mesh of lines."""
+    if options.tangents is not None:
+        return tangents_of(mesh, options.tangents, n, average_cells=options.average_cells)
+    if n == 3 and polylines.has_lines_only(mesh):
+        known = None if kept is None else kept.tangents(mesh)
+        return polylines.line_tangents(mesh) if known is None else known
+    return None
+
+
+def _check_options(tangents: Array | None, n: int, options: LightOptions) -> None:
+    """Check that the options fit a surface, or tangents if there are any."""
+    one_line = tangents is not None and n == 3 and tangents.shape[1:] == (3,)
+    if options.model == "cylinder" and not one_line:
+        components = "" if tangents is None else f"{n}-space, {tangents.shape[-1]} components"
+        raise ValueError(not_a_line(components or "a surface"))
+    if tangents is None:
+        if options.conditioned:
+            remedy = "leave it out: a surface without tangents has its attached shadow in any case"
+            raise ValueError(_check.message("conditioned", "tangents to condition", None, remedy))
+    elif not options.conditioned or isinstance(options.conditioned, str):
+        _refuse_sides(options)
+
+
+def _refuse_sides(options: LightOptions) -> None:
+    """Raise ValueError if an option fits only a surface, which has two sides."""
+    for name in ("normals", "two_sided", "flip_normals", "facing"):
+        value = getattr(options, name)
+        if not (value is None or value is False or (isinstance(value, str) and value == "auto")):
+            remedy = "pass conditioned=True, or leave one of them out"
+            expected = f"no {name} beside tangents, which have no sides"
+            raise ValueError(_check.message(name, expected, "both", remedy))

@@ -1,0 +1,295 @@
+"""Normals of a dataset: an array that it has or those of its surface, and the side that is seen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkPolyData
+from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
+
+from vizlight import _check, _pool
+from vizlight.reading.arrays import vectors_of
+from vizlight.reading.cells import as_numpy, connectivity, has_faces, places, triangles, used
+from vizlight.reading.hull import dimension, outer_surface, scattered
+from vizlight.reading.orientation import BLOCK, Shape, pieces
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from vizlight._types import Array, Bools, Dataset, Indices
+    from vizlight.scene import View
+    from vizlight.shading.inputs import ArraySource
+    from vizlight.shading.options import Facing
+
+
+@dataclass(frozen=True)
+class Sided:
+    """Normals of the points of a mesh, and what tells which side of them is seen.
+
+    Attributes
+    ----------
+    vectors : ndarray, shape (n_points, n)
+        Normals: outward on closed pieces, in agreement with each other on others.
+    lean : ndarray of float32, shape (n_points,), or None
+        Sine by which a normal may lean away from the eye while its own side is seen: faces around
+        a point are seen until the last of them is averted where the surface is convex, and no
+        longer than the first where it is concave (negative), but by
+        :data:`~vizlight.reading.orientation.MOST_LEAN` at most. None: 0 everywhere.
+    open : ndarray of bool, shape (n_points,), or bool
+        Points of pieces with a border, of which either side may be seen.
+    sharp : float
+        Share of edges that are creases, across which normals were averaged.
+    kept : bool
+        Whether the normals come from an earlier result.
+    computed : bool
+        Whether they are those of the surface, not an array of the user.
+    inside : int
+        Number of points of a volume that are not on its surface.
+    """
+
+    vectors: Array
+    lean: Array | None = None
+    open: Bools | bool = False
+    sharp: float = 0.0
+    kept: bool = False
+    computed: bool = False
+    inside: int = 0
+
+    @property
+    def any_open(self) -> bool:
+        """Whether a piece has a border."""
+        return bool(np.any(self.open))
+
+    def facts(self) -> Array:
+        """Return for each point its lean, and 1 on a piece with a border."""
+        lean = np.zeros(len(self.vectors)) if self.lean is None else self.lean
+        border = np.broadcast_to(self.open, len(self.vectors))
+        return np.stack([lean, border], axis=1).astype(np.float64)
+
+    def facing(self, facing: Facing, points: ArraySource, view: View | None) -> Array:
+        """Return the normals turned to a side; the normals themselves are not changed."""
+        if facing not in ("auto", "eye") or view is None or len(self.vectors) == 0:
+            return self.vectors
+        if facing == "auto" and not self.any_open:
+            return self.vectors
+        turned = np.empty_like(self.vectors)
+        for block in _pool.blocks(len(turned), BLOCK):
+            own = self.vectors[block]
+            lean = None if self.lean is None else self.lean[block]
+            averted = _averted(own, points[block], view, lean)
+            if facing == "auto":
+                averted &= self.open[block] if isinstance(self.open, np.ndarray) else self.open
+            turned[block] = np.where(averted[:, np.newaxis], -own, own)
+        return turned
+
+
+def _averted(vectors: Array, points: NDArray[np.generic], view: View, lean: Array | None) -> Bools:
+    """Return the points whose normals point away from the eye, by more than they lean."""
+    if view.parallel:
+        toward = np.asarray(view.direction, dtype=np.float64)
+        cosine = vectors @ toward / np.linalg.norm(toward)
+        least: Array | float = 0.0 if lean is None else -lean
+        return np.asarray(cosine < least, dtype=np.bool_)
+    away = np.asarray(view.position) - np.asarray(points, dtype=np.float64)
+    cosine = np.einsum("ij,ij->i", vectors, away)
+    least = 0.0 if lean is None else -lean * np.sqrt(np.einsum("ij,ij->i", away, away))
+    return np.asarray(cosine < least, dtype=np.bool_)
+
+
+def sided_normals(
+    mesh: Dataset,
+    value: object,
+    n: int,
+    facing: Facing,
+    *,
+    kept: Callable[[Any], Sided | None] | None = None,
+) -> Sided:
+    """Return normals with their sides: those in ``value``, of the mesh, or of its surface.
+
+    ``kept`` is a function of the mesh that returns normals of its surface which are known already,
+    or None.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If there are none, or an array does not fit.
+    """
+    given = given_normals(mesh, value, n)
+    if given is None:
+        if facing == "as given":
+            return computed_normals(mesh, as_wound=True, sides=False)
+        return (kept and kept(mesh)) or computed_normals(mesh)
+    if given.dtype.kind != "f":
+        given = given.astype(np.float64)
+    if facing in ("eye", "as given") or n != 3:
+        return Sided(given)
+    surface, origin = _skin(mesh)
+    if surface is None:
+        return Sided(given)
+    if not _is_closed(surface):
+        return Sided(given, open=True)
+    own = given if origin is None else np.where(origin[:, np.newaxis] < 0, 0, given[origin])
+    return Sided(-given if _is_inward(surface, own) else given)
+
+
+def _is_closed(surface: vtkPolyData) -> bool:
+    """Return whether each edge of a surface has an even number of faces; places make an edge.
+
+    The numbers of the edges, made from the coordinates of their ends, cancel by pairs.
+    """
+    points, rows = places(surface), triangles(surface)
+    number, odd = np.zeros(len(points), dtype=np.uint64), np.uint64(0)
+    with np.errstate(all="ignore"):
+        for block in _pool.blocks(len(points), BLOCK):
+            # The sum with 0 makes one of the two zeros.
+            where = np.ascontiguousarray(points[block].astype(np.float64) + 0.0)
+            for axis, factor in zip(where.view(np.uint64).T, _FACTORS, strict=True):
+                number[block] = _mixed(number[block] ^ (axis * factor))
+        for block in _pool.blocks(len(rows), BLOCK):
+            a, b = number[rows[block].ravel()], number[rows[block][:, [1, 2, 0]].ravel()]
+            edges = _mixed((a + b) ^ _mixed(a ^ b))
+            odd ^= np.bitwise_xor.reduce(np.where(a == b, np.uint64(0), edges))
+    return not odd
+
+
+#: Odd numbers of 64 bits, and those of the finaliser of splitmix64.
+_FACTORS = tuple(np.uint64(x) for x in (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9))
+_MIX = tuple(np.uint64(x) for x in (0xBF58476D1CE4E5B9, 0x94D049BB133111EB))
+
+
+def _mixed(x: NDArray[np.uint64]) -> NDArray[np.uint64]:
+    """Return numbers of 64 bits in which each bit of the given ones changes half of the others."""
+    x = (x ^ (x >> np.uint64(30))) * _MIX[0]
+    x = (x ^ (x >> np.uint64(27))) * _MIX[1]
+    mixed: NDArray[np.uint64] = x ^ (x >> np.uint64(31))
+    return mixed
+
+
+def _is_inward(surface: vtkPolyData, normals: Array) -> bool:
+    """Return whether normals of a closed surface point to its inside, at its outermost points."""
+    points = places(surface)
+    ids = np.flatnonzero(used(surface))
+    ids = ids[np.isfinite(points[ids]).all(axis=1) & np.isfinite(normals[ids]).all(axis=1)]
+    if not len(ids):
+        return False
+    outward = 0.0
+    for axis in range(3):
+        along = points[ids, axis]
+        outward += float(normals[ids[along.argmax()], axis])
+        outward -= float(normals[ids[along.argmin()], axis])
+    return outward < 0
+
+
+def given_normals(mesh: Dataset, value: object, n: int) -> Array | None:
+    """Return the normals in ``value`` or the active ones of the mesh, None if they are computed."""
+    if value is not None:
+        return vectors_of(mesh, "normals", value, n)
+    if n != 3:
+        expected = f"a point array of {n} components for {n}-space"
+        remedy = "without one pass tangents=, conditioned by the name of the surface's tangents"
+        raise ValueError(_check.message("normals", expected, None, remedy))
+    carried = mesh.GetPointData().GetNormals()
+    if carried is None:
+        return None
+    found = vectors_of(mesh, "normals", carried.GetName() or as_numpy(carried), 3)
+    known = np.all(np.isfinite(found), axis=1)
+    return found if known.all() else np.where(known[:, np.newaxis], found, 0)
+
+
+def computed_normals(
+    mesh: Dataset, *, view: View | None = None, as_wound: bool = False, sides: bool = True
+) -> Sided:
+    """Return the normals of a mesh's outer surface, zero at points that are not on it.
+
+    VTK computes them in float32 and orients them consistently. They point outward on a closed
+    surface and on a connected piece that is nearly closed. Any other piece has no outside: its
+    normals are flipped together if on average they point away from the eye, or toward the
+    centroid of the piece.
+
+    Parameters
+    ----------
+    mesh : vtkDataSet
+        Mesh with a surface.
+    view : View, optional
+        Eye to which open pieces are turned as a whole.
+    as_wound : bool
+        Whether the normals have the sides that the order of the corners of each face gives them.
+    sides : bool
+        Whether lean and share of sharp edges are found.
+
+    Raises
+    ------
+    ValueError
+        If the mesh has no surface.
+    """
+    count = mesh.GetNumberOfPoints()
+    if count == 0:
+        return Sided(np.zeros((0, 3), dtype=np.float32), computed=True)
+    surface, origin = _skin(mesh)
+    if surface is None:
+        expected, got = "a surface, whose normals are lit", f"a {type(mesh).__name__} without faces"
+        remedy = "name its tangent vectors by tangents= or its normals by normals="
+        raise ValueError(_check.message("mesh", expected, got, remedy))
+    bare = vtkPolyData()
+    bare.CopyStructure(surface)
+    found, vectors = _by_vtk(bare, consistent=not as_wound)
+    vectors[~used(bare)] = 0
+    if _same_cells(bare, found):
+        # VTK's copy of the cells takes as much memory as the mesh.
+        found = bare
+    del bare
+    shape = Shape(found)
+    if not as_wound:
+        shape.orient(vectors, view)
+    lean, border, sharp, inside = None, shape.open[shape.piece], 0.0, 0
+    if sides:
+        lean = shape.lean(vectors)
+        sharp = shape.sharp()
+    if origin is not None:
+        if dimension(mesh) == 3:
+            inside = count - int(np.count_nonzero(origin >= 0))
+        vectors = scattered(vectors, origin, count)
+        border = scattered(border.astype(np.float32), origin, count) > 0
+        lean = None if lean is None else scattered(lean, origin, count)
+    return Sided(vectors, lean, border, sharp, computed=True, inside=inside)
+
+
+def _by_vtk(surface: vtkPolyData, *, consistent: bool) -> tuple[vtkPolyData, Array]:
+    """Return a surface as VTK's filter gives it, without its normals, and those."""
+    normals = vtkPolyDataNormals()
+    normals.SplittingOff()
+    normals.NonManifoldTraversalOff()
+    normals.SetConsistency(consistent)
+    normals.SetInputData(surface)
+    normals.Update()
+    found = normals.GetOutput()
+    vectors = np.array(as_numpy(found.GetPointData().GetNormals()))
+    found.GetPointData().Initialize()
+    return found, vectors
+
+
+def piece_numbers(mesh: Dataset) -> Indices:
+    """Return for each point the number of its connected piece; 0 where it is on no surface."""
+    numbers = np.zeros(mesh.GetNumberOfPoints(), dtype=np.intp)
+    surface, origin = _skin(mesh)
+    if surface is not None:
+        own = np.arange(len(numbers)) if origin is None else origin
+        numbers[own[own >= 0]] = pieces(surface).piece[own >= 0]
+    return numbers
+
+
+def _skin(mesh: Dataset) -> tuple[vtkPolyData | None, Indices | None]:
+    """Return the outer surface of a mesh and its points' indices, None where it has no faces."""
+    surface, origin = (mesh, None) if isinstance(mesh, vtkPolyData) else outer_surface(mesh)
+    return (surface if has_faces(surface) else None), origin
+
+
+def _same_cells(one: vtkPolyData, other: vtkPolyData) -> bool:
+    """Return whether two surfaces of polygons have equal cells."""
+    strips = one.GetNumberOfStrips() or other.GetNumberOfStrips()
+    cells = [connectivity(surface.GetPolys()) for surface in (one, other)]
+    return not strips and all(np.array_equal(a, b) for a, b in zip(*cells, strict=True))

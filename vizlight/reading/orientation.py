@@ -1,0 +1,253 @@
+"""Triangles of a surface: connected pieces, their sides, and edges that are sharp."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from vizlight import _pool
+from vizlight.reading.arrays import unit_rows
+from vizlight.reading.cells import faces, places, triangles
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from vtkmodules.vtkCommonDataModel import vtkPolyData
+
+    from vizlight._types import Array, Bools, Indices
+    from vizlight.scene import View
+
+#: A piece counts as nearly closed if the sum of the area vectors of its faces is shorter than this
+#: share of its area.
+NEARLY_CLOSED = 0.2
+#: Angle in degrees between the normals of two faces above which their common edge is sharp.
+SHARP = 30.0
+#: Least height of a triangle that has a direction, as a share of its longest side.
+NARROWEST = 1e-5
+#: Share of sharp edges, of all edges of a mesh, from which a warning names the remedy.
+MANY_SHARP = 0.02
+#: Sharp edges are creases if at most this many times as many edges are half as sharp or more.
+STAND_APART = 0.5
+#: They also are if of those above twice the angle, at least MANY_SHARP of all edges, there are more
+#: than of those between by this factor: corners stand apart from coarse arcs.
+CORNERS_APART = 0.7
+#: Most that a normal may lean, as a sine. Where faces around a point differ by more, its surface is
+#: too rough or too coarse to tell bumps from hollows: without the limit 15 % of the corners that
+#: are visible on a noisy isosurface would be lit on the side that is not seen, with it 3 %.
+MOST_LEAN = 0.1
+#: Number of points or triangles that are worked on at once, and of edges.
+BLOCK, EDGES = 1 << 16, 1 << 21
+
+
+class Shape:
+    """The triangles of a surface, its connected pieces, and which of those have a border.
+
+    Coincident points are connected, so that triangles that share no point can form one piece.
+    What belongs to triangles is computed block by block, where it is needed.
+    """
+
+    def __init__(self, surface: vtkPolyData) -> None:
+        self._points = points = places(surface)
+        self.finite: Bools = np.all(np.isfinite(points), axis=1)
+        same, self.piece = pieces(surface)
+        self.count = int(self.piece.max(initial=-1)) + 1
+        self.triangles = triangles(surface)
+        #: Whether each piece has an edge of one face only.
+        self.open: Bools = np.zeros(self.count, dtype=np.bool_)
+        for keys, _ in _edges(self.triangles, len(points), same):
+            keys.sort()
+            single = np.ones(len(keys), dtype=np.bool_)
+            repeats = keys[1:] == keys[:-1]
+            single[1:] &= ~repeats
+            single[:-1] &= ~repeats
+            self.open[self.piece[(keys[single] // len(points)).astype(np.intp)]] = True
+        del same
+        self._measure()
+
+    def _measure(self) -> None:
+        """Place each piece about its centroid, and find the volumes of the pieces."""
+        size = np.maximum(np.bincount(self.piece, self.finite, self.count), 1)
+        self.away: Array = np.where(self.finite[:, np.newaxis], self._points, 0).astype(np.float64)
+        sums = [np.bincount(self.piece, axis, self.count) for axis in self.away.T]
+        middle = np.stack(sums, axis=1) / size[:, np.newaxis]
+        for block in _pool.blocks(len(self.away), BLOCK):
+            self.away[block] -= middle[self.piece[block]]
+        # Lengths are scaled, because products of tiny ones underflow and of huge ones overflow.
+        low, high = self.away.min(initial=0.0), self.away.max(initial=0.0)
+        self.scale = np.maximum(-low, high) or 1.0
+        self.turned: Bools = np.zeros(self.count, dtype=np.bool_)
+        self.volume: Array = np.zeros(self.count)
+        for _, rows, across in self._parts():
+            height = _dots(across, self.away[rows[:, 0]] / self.scale)
+            np.add.at(self.volume, self.piece[rows[:, 0]], height)
+
+    def _parts(self) -> Iterator[tuple[Indices, Indices, Array]]:
+        """Yield the numbers, the corners and the area vectors of some finite triangles."""
+        for block in _pool.blocks(len(self.triangles), BLOCK):
+            rows = self.triangles[block]
+            known = np.flatnonzero(self.finite[rows].all(axis=1))
+            rows = rows[known]
+            a, b, c = (self.away[rows[:, i]] / self.scale for i in range(3))
+            across = np.cross(b - a, c - a)
+            across[self.turned[self.piece[rows[:, 0]]]] *= -1
+            yield known + block.start, rows, across
+
+    def orient(self, normals: Array, view: View | None) -> None:
+        """Flip the normals of each piece that point inward, or away from the eye.
+
+        A piece is nearly closed if the area vectors of its faces almost cancel; then the sign of
+        the enclosed volume decides. For a sheet or a bowl the sign of a sum over its points
+        decides, of three times the cosine between N and the direction toward the eye plus the
+        cosine between N and the direction away from the centroid of the piece. Points that are
+        not finite are ignored.
+        """
+        flipped = np.bincount(self.piece, self._scores(normals, view), self.count) < 0
+        total, area = np.zeros((self.count, 3)), np.zeros(self.count)
+        for _, rows, across in self._parts():
+            owner = self.piece[rows[:, 0]]
+            for axis in range(3):
+                np.add.at(total[:, axis], owner, across[:, axis])
+            np.add.at(area, owner, np.linalg.norm(across, axis=1))
+        around = ~self.open | (np.linalg.norm(total, axis=1) < NEARLY_CLOSED * area)
+        self.turned = np.where(around, self.volume < 0, flipped)
+        for block in _pool.blocks(len(normals), BLOCK):
+            normals[block][self.turned[self.piece[block]]] *= -1
+
+    def _scores(self, normals: Array, view: View | None) -> Array:
+        """Return how far the normal of each point agrees with the directions of a sheet."""
+        scores = np.zeros(len(normals))
+        seen = view is not None and len(view.position or view.direction or ()) == 3
+        for block in _pool.blocks(len(normals), BLOCK):
+            own, away = normals[block], self.away[block]
+            score = _dots(own, unit_rows(away))
+            if seen and view is not None:
+                score += 3 * _dots(own, unit_rows(self._toward(view, block)))
+            good = self.finite[block] & np.all(np.isfinite(own), axis=1)
+            scores[block] = np.where(good, score, 0)
+        return scores
+
+    def _toward(self, view: View, block: slice) -> Array:
+        """Return vectors from some points toward the eye."""
+        if view.parallel:
+            return np.broadcast_to(np.asarray(view.direction), self.away[block].shape)
+        return np.asarray(view.position) - np.asarray(self._points[block], dtype=np.float64)
+
+    def lean(self, normals: Array) -> Array:
+        """Return how far the normal of each point may lean away from the eye; see Sided."""
+        n = len(normals)
+        bends, least = np.zeros((3, n)), np.ones(n)
+        for _, rows, across in self._parts():
+            faces = unit_rows(across)
+            middle = np.asarray(sum(self.away[rows[:, i]] for i in range(3))) / 3
+            for i, bend in enumerate(bends):
+                at = rows[:, i]
+                own = normals[at].astype(np.float64)
+                with np.errstate(invalid="ignore"):
+                    np.minimum.at(least, at, _dots(own, faces))
+                np.add.at(bend, at, _dots(own, middle - self.away[at]))
+        bend = bends[0] + bends[1] + bends[2]
+        del bends
+        sine = np.sqrt(np.clip(1 - least * least, 0, MOST_LEAN * MOST_LEAN))
+        found: Array = np.where(np.isfinite(bend), -np.sign(bend) * sine, 0)
+        return found.astype(np.float32)
+
+    def sharp(self) -> float:
+        """Return the share of sharp edges where these are creases, else 0.
+
+        Creases stand apart: few edges are nearly as sharp. On a coarse mesh of a smooth shape there
+        are more of those, and no edge is meant to be seen. Faces without area, which many meshes
+        have at a pole, have no direction and no sharp edges.
+        """
+        faces, full = np.empty((len(self.triangles), 3)), np.zeros(len(self.triangles), np.bool_)
+        for numbers, rows, across in self._parts():
+            corners = self.away[rows] / self.scale
+            sides = corners - np.roll(corners, -1, axis=1)
+            longest = np.einsum("ijk,ijk->ij", sides, sides).max(axis=1, initial=0.0)
+            full[numbers] = np.linalg.norm(across, axis=1) > NARROWEST * longest
+            faces[numbers] = unit_rows(across)
+        least = np.cos(np.radians([2 * SHARP, SHARP, SHARP / 2]))
+        pairs, counts = 0, np.zeros(3, dtype=np.intp)
+        for keys, edges in _edges(self.triangles, len(self.away)):
+            there = full[edges // 3]
+            keys, edges = keys[there], edges[there]
+            order = np.argsort(keys, kind="stable")
+            keys, face = keys[order], edges[order] // 3
+            twice = np.flatnonzero(keys[1:] == keys[:-1])
+            pairs += len(twice)
+            for block in _pool.blocks(len(twice), BLOCK):
+                cosine = _dots(faces[face[twice[block]]], faces[face[twice[block] + 1]])
+                counts += [int(np.count_nonzero(cosine < limit)) for limit in least]
+        if not pairs:
+            return 0.0
+        beyond, share, nearly = (float(count / pairs) for count in counts)
+        apart = beyond >= MANY_SHARP and share - beyond <= CORNERS_APART * beyond
+        return share if apart or nearly - share <= STAND_APART * share else 0.0
+
+
+def _edges(
+    triangles: Indices, count: int, same: Indices | None = None
+) -> Iterator[tuple[Indices, Indices]]:
+    """Yield numbers of some edges of triangles, and their places among the corners.
+
+    An edge that several triangles have is yielded with all of them at once; edges of no length are
+    left out. ``same`` has the point that stands for each of the ``count`` points.
+    """
+    parts = -(-3 * len(triangles) // EDGES)
+    for part in range(parts):
+        # Edges whose lower point is in a range.
+        low, high = part * count // parts, (part + 1) * count // parts
+        keys, places = [], []
+        for block in _pool.blocks(len(triangles), BLOCK):
+            rows = triangles[block] if same is None else same[triangles[block]]
+            if parts > 1 and not (rows.min() < high and rows.max() >= low):
+                continue
+            a, b = rows.ravel(), rows[:, [1, 2, 0]].ravel()
+            lower = np.minimum(a, b)
+            own = np.flatnonzero((lower >= low) & (lower < high) & (a != b))
+            keys.append(lower[own].astype(np.int64) * count + np.maximum(a, b)[own])
+            places.append(own + 3 * block.start)
+        if keys:
+            yield np.concatenate(keys), np.concatenate(places)
+
+
+def _dots(a: Array, b: Array) -> Array:
+    return np.asarray(np.einsum("ij,ij->i", a, b))
+
+
+class Pieces(NamedTuple):
+    """For each point the first of those at its place, and the number of its connected piece."""
+
+    same: Indices
+    piece: Indices
+
+
+def pieces(surface: vtkPolyData) -> Pieces:
+    """Return the connected pieces of the points of a surface."""
+    points = places(surface)
+    n = len(points)
+    order = np.lexsort(points.T)
+    new = np.ones(n, dtype=np.bool_)
+    for block in _pool.blocks(max(n - 1, 0), BLOCK):
+        place = points[order[block.start : block.stop + 1]]
+        new[block.start + 1 : block.stop + 1] = np.any(place[1:] != place[:-1], axis=1)
+    first = np.where(new, np.arange(n), 0)
+    np.maximum.accumulate(first, out=first)
+    same = np.empty(n, dtype=np.intp)
+    same[order] = order[first]
+    del order, first
+    piece = np.arange(n, dtype=np.int32 if n < 2**31 else np.int64)
+    for ids, ends in faces(surface):
+        last = np.zeros(len(ids), dtype=np.bool_)
+        last[ends - 1] = True
+        for block in _pool.blocks(len(ids), EDGES):
+            follows = np.flatnonzero(~last[block]) + block.start
+            a, b = piece[same[ids[follows]]], piece[same[ids[follows + 1]]]
+            # Edges between points of two pieces make one of them.
+            graph = coo_array(
+                (np.ones(len(a), np.float32), (a, b)), shape=(int(piece.max(initial=-1)) + 1,) * 2
+            )
+            piece = connected_components(graph, directed=False)[1][piece]
+    return Pieces(same, np.asarray(piece[same], dtype=np.intp))

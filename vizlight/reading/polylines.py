@@ -1,0 +1,108 @@
+"""Lines of a dataset: their cells, segments and tangents."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkUnstructuredGrid
+from vtkmodules.vtkFiltersCore import vtkStripper
+
+from vizlight.geometry.lines.curves import polyline_tangents
+from vizlight.reading import hull
+from vizlight.reading.cells import as_vtk, connectivity, has_faces, places
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from vizlight._types import Array, Dataset, Indices
+
+#: VTK's types of cells: lines, polylines, quadratic edges, cubic lines, and curves of any degree
+#: by Lagrange and by Bezier.
+LINES = {3, 4, 21, 35, 68, 75}
+#: Vertices and their sets.
+POINTS = {1, 2}
+
+
+def has_lines_only(mesh: Dataset) -> bool:
+    """Return whether a mesh has lines, possibly vertices, and no other cells."""
+    if isinstance(mesh, vtkPolyData):
+        return mesh.GetNumberOfLines() > 0 and not has_faces(mesh)
+    if isinstance(mesh, vtkUnstructuredGrid) and mesh.GetNumberOfCells():
+        kinds = hull.cell_types(mesh)
+        return bool(kinds & LINES) and kinds <= LINES | POINTS
+    return False
+
+
+def line_tangents(mesh: Dataset) -> Array:
+    """Return the unit tangents of a mesh of lines; zero at points that no line uses.
+
+    Consecutive segments, such as those of contour lines, are joined first.
+    """
+    return of_points(mesh, _tangents)
+
+
+def _tangents(points: Array, ids: Indices, offsets: Indices) -> Array:
+    return polyline_tangents(points, connectivity=ids, offsets=offsets)
+
+
+def of_points(mesh: Dataset, function: Callable[[Array, Indices, Indices], Array], /) -> Array:
+    """Return what a function of points, connectivity and offsets of lines gives for each point.
+
+    Points that no line uses have zero. Consecutive segments are joined first.
+    """
+    surface, origin = _flat(mesh)
+    found = function(*_joined(surface))
+    return found if origin is None else hull.scattered(found, origin, mesh.GetNumberOfPoints())
+
+
+def cells_of(mesh: Dataset, /) -> tuple[Array, Indices, Indices]:
+    """Return points, connectivity and offsets of the lines of a mesh, segments joined."""
+    return _joined(_flat(mesh)[0])
+
+
+def _flat(mesh: Dataset) -> tuple[vtkPolyData, Indices | None]:
+    """Return the lines of a mesh as polylines, and the index of each of their points in it."""
+    if isinstance(mesh, vtkPolyData):
+        return mesh, None
+    surface, origin = hull.outer_surface(mesh)
+    if hull.is_curved(mesh):
+        # VTK turns each curve into a polyline; segments let the curves be joined below.
+        ends = segments(surface.GetLines())
+        lines = vtkCellArray()
+        lines.SetData(2, as_vtk(ends.ravel()))
+        surface.SetLines(lines)
+    return surface, origin
+
+
+def _joined(mesh: vtkPolyData) -> tuple[Array, Indices, Indices]:
+    """Return points, connectivity and offsets of polylines, consecutive segments joined."""
+    lines = mesh.GetLines()
+    ids, offsets = connectivity(lines)
+    if np.any(np.diff(offsets) == 2) and _shared(ids, mesh.GetNumberOfPoints()):
+        bare = vtkPolyData()
+        bare.SetPoints(mesh.GetPoints())
+        bare.SetLines(lines)
+        join = vtkStripper()
+        join.JoinContiguousSegmentsOn()
+        join.SetMaximumLength(mesh.GetNumberOfPoints() + 1)
+        join.SetInputData(bare)
+        join.Update()
+        ids, offsets = connectivity(join.GetOutput().GetLines())
+    return places(mesh), ids, offsets
+
+
+def _shared(ids: Indices, count: int) -> bool:
+    """Return whether two corners of lines are the same point."""
+    used = np.zeros(count, dtype=np.bool_)
+    used[ids] = True
+    return bool(np.count_nonzero(used) < len(ids))
+
+
+def segments(lines: vtkCellArray) -> Indices:
+    """Return the two points of each segment of all lines, shape (M, 2)."""
+    ids, offsets = connectivity(lines)
+    inside = np.ones(len(ids), dtype=np.bool_)
+    inside[offsets[1:] - 1] = False
+    start = np.flatnonzero(inside)
+    return np.stack([ids[start], ids[start + 1]], axis=1)

@@ -1,0 +1,271 @@
+"""A filter of VTK that lights a dataset, in a pipeline, block by block and piece by piece."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
+from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringArray
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSet
+from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
+
+from vizlight import _check
+from vizlight.reading.cells import as_vtk, check_whole
+from vizlight.reading.inputs import Part, part_of, uses_normals
+from vizlight.scene import Scene
+from vizlight.shading import engine
+from vizlight.shading.inputs import ShadingInputs
+from vizlight.shading.options import LightOptions, documented, unknown_option
+from vizlight.shading.results import arrays_of, digest, of_light, record_key, unlit
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["Illuminate"]
+
+#: Options that are names of arrays: a pipeline has no others.
+_NAMES = ("tangents", "normals", "positions")
+#: Cell array in which VTK marks cells of other pieces.
+_GHOSTS = "vtkGhostType"
+_NO_GHOSTS = (
+    "light at the borders of the pieces is computed without their neighbours; give the pieces a "
+    "layer of ghost cells before they are contoured, or normals as a point array"
+)
+
+
+class _Option:
+    """An option of light as a property that marks the filter as modified if it changes."""
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+        self.__doc__ = documented(LightOptions)[name]
+        words = "".join(word.capitalize() for word in name.split("_"))
+        setattr(owner, f"Get{words}", lambda own: getattr(own, name))
+        setattr(owner, f"Set{words}", lambda own, value: setattr(own, name, value))
+
+    def __get__(self, own: Illuminate | None, owner: type) -> Any:
+        return self if own is None else getattr(own.options, self.name)
+
+    def __set__(self, own: Illuminate, value: object) -> None:
+        if self.name in _NAMES and value is not None:
+            _check.text(self.name, value, expected="the name of a point array")
+        changes: dict[str, Any] = {self.name: value}
+        own._change("_options", dataclasses.replace(own.options, **changes))
+
+
+class Illuminate(VTKPythonAlgorithmBase):
+    """Filter of VTK that lights datasets; the light is a point array of its output.
+
+    Parameters
+    ----------
+    scene : Scene, optional
+        Lights, material and view, in the unit of the data. A depth cue has both ends.
+    **options
+        Values of the properties below.
+
+    Attributes
+    ----------
+    scene : Scene or None
+        As above.
+    tangents, positions, normals, facing, conditioned, average_cells, model, compensate, \
+terminator, components, precision, tolerance, highlight_error, name
+        Options of :func:`vizlight.illuminate`; arrays are given by name.
+    options : LightOptions
+        All of them.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a value does not fit, when it is set. What does not fit the data is an error of VTK
+        (``ErrorEvent``) when they come, and the output is then empty.
+
+    See Also
+    --------
+    vizlight.illuminate : The same light for meshes of PyVista.
+
+    Notes
+    -----
+    The filter takes any ``vtkDataSet`` and gives one of the same type that shares the arrays of
+    its input; composite data are lit block by block. It needs VTK 9.1, and no PyVista. It computes
+    when its output is asked for, and only if the input or a property has changed. Each property
+    has a pair of methods too, such as ``SetTangents`` and ``GetTangents``. ``facing`` is ignored
+    where tangents are lit without a surface.
+
+    Where a pipeline runs in several pieces, light does not depend on the cut: ``facing="auto"``
+    then means ``"eye"``, which lights both sides alike if the scene has no view, and ``"outward"``
+    is an error. Normals that are given, such as those of VTK's contour filters, need nothing
+    else. Those of faces need one layer of ghost cells, which a piece must have before it is
+    contoured: without any the filter warns.
+
+    Examples
+    --------
+    >>> from vtkmodules.vtkFiltersSources import vtkSphereSource
+    >>> import vizlight
+    >>> scene = vizlight.Scene(
+    ...     lights=vizlight.Light(direction=(1, 1, 1)), view=vizlight.View(direction=(0, 0, 1))
+    ... )
+    >>> source, lit = vtkSphereSource(), vizlight.vtk.Illuminate(scene, model="blinn")
+    >>> lit.SetInputConnection(source.GetOutputPort())
+    >>> done = lit.Update()
+    >>> lit.GetOutput().GetPointData().GetScalars().GetName()
+    'luminance'
+    """
+
+    tangents = _Option()
+    positions = _Option()
+    normals = _Option()
+    facing = _Option()
+    conditioned = _Option()
+    average_cells = _Option()
+    model = _Option()
+    compensate = _Option()
+    terminator = _Option()
+    components = _Option()
+    precision = _Option()
+    tolerance = _Option()
+    highlight_error = _Option()
+    name = _Option()
+
+    def __init__(self, scene: Scene | None = None, **options: Any) -> None:
+        super().__init__(  # type: ignore[no-untyped-call]
+            nInputPorts=1, nOutputPorts=1, inputType="vtkDataSet", outputType="vtkDataSet"
+        )
+        self._scene: Scene | None = None
+        self._options = LightOptions()
+        self.scene = scene
+        known = [key for key, value in vars(Illuminate).items() if isinstance(value, _Option)]
+        for key, value in options.items():
+            if key not in known:
+                raise TypeError(unknown_option("Illuminate", key, ["scene", *known]))
+            setattr(self, key, value)
+
+    @property
+    def scene(self) -> Scene | None:
+        """Lights, material and view."""
+        return self._scene
+
+    @scene.setter
+    def scene(self, scene: Scene | None) -> None:
+        _check.instance("scene", scene, Scene, optional=True)
+        cue = None if scene is None else scene.depth_cue
+        if cue is not None and (cue.front is None or cue.back is None):
+            expected, remedy = "both ends in a pipeline", "pass DepthCue(front=, back=), distances"
+            raise ValueError(_check.message("depth_cue", expected, "none or one", remedy))
+        self._change("_scene", scene)
+
+    def SetScene(self, scene: Scene | None) -> None:
+        """Set the scene."""
+        self.scene = scene
+
+    def GetScene(self) -> Scene | None:
+        """Return the scene."""
+        return self.scene
+
+    @property
+    def options(self) -> LightOptions:
+        """All options of light."""
+        return self._options
+
+    def SetInputData(self, data: vtkDataSet) -> None:
+        """Set the dataset that is lit, where no other filter gives it."""
+        self.SetInputDataObject(0, data)
+
+    def GetOutput(self) -> vtkDataSet:
+        """Return the dataset that is lit."""
+        output: vtkDataSet = self.GetOutputDataObject(0)
+        return output
+
+    def _change(self, name: str, value: object) -> None:
+        """Set an attribute; the filter runs again if its value has changed."""
+        if getattr(self, name) != value:
+            setattr(self, name, value)
+            self.Modified()
+
+    def RequestDataObject(self, _request: Any, given: Any, out: Any) -> int:
+        """Make an output of the type of the input."""
+        data, made = vtkDataSet.GetData(given[0]), vtkDataSet.GetData(out)
+        if data is not None and (made is None or made.GetClassName() != data.GetClassName()):
+            information = out.GetInformationObject(0)
+            information.Set(vtkDataObject.DATA_OBJECT(), data.NewInstance())
+        return 1
+
+    def RequestData(self, _request: Any, given: Any, out: Any) -> int:
+        """Light the input."""
+        data, made = vtkDataSet.GetData(given[0]), vtkDataSet.GetData(out)
+        asked = out.GetInformationObject(0)
+        pieces = asked.Get(vtkStreamingDemandDrivenPipeline.UPDATE_NUMBER_OF_PIECES()) or 1
+        try:
+            arrays, record = self._lit(data, pieces)
+        except (TypeError, ValueError) as error:
+            made.Initialize()
+            self.report("ErrorEvent", str(error))
+            return 0
+        made.ShallowCopy(data)
+        for name, array in arrays.items():
+            made.GetPointData().AddArray(as_vtk(array, name))
+        made.GetPointData().SetActiveScalars(self.name)
+        text = vtkStringArray()
+        text.SetName(record_key(self.name))
+        text.InsertNextValue(json.dumps(record))
+        made.GetFieldData().AddArray(text)
+        return 1
+
+    def _lit(
+        self, data: vtkDataSet, pieces: int
+    ) -> tuple[dict[str, NDArray[np.generic]], dict[str, object]]:
+        """Return the arrays that a dataset gets, by name, and their record."""
+        scene = self._scene
+        if scene is None:
+            raise ValueError(_check.message("scene", "a vizlight.Scene", None, "set it first"))
+        check_whole(data, "input")
+        part = self._part(data, scene, pieces)
+        shading = engine.run(part.inputs, scene, part.options)
+        arrays = arrays_of(shading, self.name, valid=pieces > 1)
+        if not data.GetFieldData().HasArray(record_key(self.name)):
+            for name in arrays:
+                if data.GetPointData().HasArray(name):
+                    expected, remedy = "one that the input has no array of", "pass another name="
+                    raise ValueError(_check.message("name", expected, repr(name), remedy))
+        inside = 0 if part.sided is None else part.sided.inside
+        if shading.invalid > inside:
+            count = shading.luminance.size - inside
+            self.report("WarningEvent", unlit(shading.invalid - inside, count))
+        digests = {name: digest(array) for name, array in arrays.items()}
+        record = of_light(shading, "illuminate", scene, self._options)
+        return arrays, record | {"arrays": digests}
+
+    def _part(self, data: vtkDataSet, scene: Scene, pieces: int) -> Part:
+        """Return what a dataset is lit by, which is the same in one piece and in several."""
+        options = self._options
+        if not data.GetNumberOfPoints():
+            # A piece without points may lack the arrays that the others have.
+            nothing = np.zeros((0, 3), np.float32)
+            plain = dataclasses.replace(options, model="phong", conditioned=False)
+            return Part(ShadingInputs(points=nothing, normals=nothing), plain, None)
+        if not uses_normals(data, options):
+            options = dataclasses.replace(options, facing="auto")
+        elif pieces > 1:
+            if options.facing == "outward":
+                expected = "'eye' or 'as given' where the pipeline runs in several pieces"
+                raise ValueError(_check.message("facing", expected, "'outward'"))
+            if options.facing == "auto":
+                options = dataclasses.replace(options, facing="eye")
+        part = part_of(data, "", scene, options)
+        own = options.tangents is None and part.inputs.tangents is not None
+        computed = part.sided is not None and part.sided.computed
+        if pieces > 1 and (own or computed) and not data.GetCellData().HasArray(_GHOSTS):
+            self.report("WarningEvent", _NO_GHOSTS)
+        return part
+
+    def report(self, event: str, text: str) -> None:
+        """Report an error (``ErrorEvent``) or a warning (``WarningEvent``) as filters of VTK do."""
+        words = f"{type(self).__name__}: {text}"
+        if self.HasObserver(event):
+            self.InvokeEvent(event, words)
+            return
+        window = vtkOutputWindow.GetInstance()
+        show = window.DisplayErrorText if event == "ErrorEvent" else window.DisplayWarningText
+        show(f"{words}\n")
