@@ -137,7 +137,17 @@ def errors(messages):
 
 @browser
 @pytest.mark.parametrize(
-    "name", ["index", "guide", "examples/index", "formulas", "architecture", "api", "studies"]
+    "name",
+    [
+        "index",
+        "guide/index",
+        "guide/lights",
+        "examples/index",
+        "formulas",
+        "architecture",
+        "api",
+        "studies",
+    ],
 )
 def test_a_page_opens_without_an_error(name, tmp_path):
     messages, picture = open_in_browser(PAGES / f"{name}.html", tmp_path / "a.png", tmp_path / "p")

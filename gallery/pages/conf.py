@@ -29,6 +29,7 @@ extensions = [
     "sphinx_gallery.gen_gallery",
     "numpydoc",
     "sphinx_design",
+    "_guide",
     "_mathml",
     "_scenes",
     "_studies",
@@ -51,7 +52,6 @@ html_theme_options = {
 html_show_sourcelink = False
 html_sidebars = {
     "index": [],
-    "guide": [],
     "formulas": [],
     "architecture": [],
     "studies": [],
