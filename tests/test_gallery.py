@@ -1,8 +1,9 @@
 """The built pages: no dead link, no missing picture, no error in a browser, no blank scene.
 
 The tests read the pages from the folder into which README's command builds them. Tests that need a
-browser use Debian's ``chromium``. Two notebooks are run, all if ``VIZLIGHT_NOTEBOOKS`` is "all". If ``VIZLIGHT_PAGES`` names the folder of the pages, a missing
-page or browser is an error; otherwise the tests are skipped.
+browser use Debian's ``chromium``. If ``VIZLIGHT_PAGES`` names the folder of the pages, a missing
+page or browser is an error; otherwise the tests are skipped. Of the notebooks two are run, or all
+if ``VIZLIGHT_NOTEBOOKS`` is "all".
 """
 
 from __future__ import annotations

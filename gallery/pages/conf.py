@@ -88,7 +88,7 @@ sphinx_gallery_conf = {
     "doc_module": ("vizlight",),
     "backreferences_dir": "examples/backreferences",
     "inspect_global_variables": False,
-    # A scene that turns needs a server, and more packages: a notebook shows pictures below its cells.
+    # Scenes that turn need a server and more packages: notebooks show pictures below their cells.
     "first_notebook_cell": (
         "# Needs vizlight, and for some examples its extra: pip install 'vizlight[solids]'\n"
         "import pyvista\n\n"
