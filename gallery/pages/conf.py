@@ -43,7 +43,13 @@ html_static_path = ["_static"]
 html_css_files = ["pages.css"]
 html_theme_options = {
     "show_prev_next": False,
-    "secondary_sidebar_items": {"**": ["page-toc"], "index": [], "examples/index": []},
+    "secondary_sidebar_items": {
+        "**": ["page-toc"],
+        "index": [],
+        "examples/index": [],
+        # The code needs the width.
+        "guide/**": [],
+    },
     "navbar_end": ["theme-switcher"],
     "footer_start": ["copyright"],
     "footer_end": [],
