@@ -10,7 +10,7 @@ pixel values of 255.
 Left: f = 4. Two bumps of 63.75 stand off the plane, on both sides of the highlight at phi = 45
 degrees, where Blinn's highlight falls off more rapidly; in the plane the two agree. Right: ``f = 4
 cos(beta) = 2.83``. The bumps are half as high, and two dents of the same depth lie in the plane.
-The spheres mark the largest error, as found by :func:`vizlight.model.highlights.max_pixel_error`.
+The spheres mark the largest error, as found by ``vizlight.model.highlights.max_pixel_error``.
 """
 
 import numpy as np

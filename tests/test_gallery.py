@@ -2,16 +2,22 @@
 
 The tests read the pages from the folder into which README's command builds them. Tests that need a
 browser use Debian's ``chromium``. If ``VIZLIGHT_PAGES`` names the folder of the pages, a missing
-page or browser is an error; otherwise the tests are skipped.
+page or browser is an error; otherwise the tests are skipped. Of the notebooks two are run, or all
+if ``VIZLIGHT_NOTEBOOKS`` is "all".
 """
 
 from __future__ import annotations
 
+import base64
 import functools
+import io
+import json
 import os
+import random
 import re
 import shutil
 import subprocess
+import zlib
 from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
@@ -104,6 +110,45 @@ def test_every_script_has_a_page_a_picture_and_no_error():
             assert np.asarray(picture.convert("L")).std() > 5, script.stem
 
 
+def notebooks():
+    """Return the notebooks to run; which two depends on the text of all, and on nothing else."""
+    found = sorted((PAGES / "_downloads").rglob("plot_*.ipynb"), key=lambda path: path.name)
+    if os.environ.get("VIZLIGHT_NOTEBOOKS") == "all" or not found:
+        return found
+    text = b"".join(path.read_bytes() for path in found)
+    return random.Random(zlib.crc32(text)).sample(found, 2)
+
+
+@pytest.mark.parametrize("path", notebooks(), ids=lambda path: path.stem)
+def test_a_notebook_runs_in_an_empty_folder_and_shows_its_pictures(path, tmp_path):
+    if not WANTED:
+        pytest.importorskip("nbclient")
+        pytest.importorskip("ipykernel")
+    import nbclient
+    import nbformat
+
+    made = nbformat.read(path, as_version=4)
+    where = {"metadata": {"path": tmp_path}}
+    nbclient.NotebookClient(made, timeout=600, kernel_name="python3", resources=where).execute()
+    for cell in made.cells:
+        if cell.cell_type == "code":
+            drawn = [o.data["image/png"] for o in cell.outputs if "image/png" in o.get("data", {})]
+            assert len(drawn) >= len(re.findall(r"\.show\(", cell.source)), cell.source
+            for picture in drawn:
+                with Image.open(io.BytesIO(base64.b64decode(picture))) as opened:
+                    assert np.asarray(opened.convert("L")).std() > 5
+    assert not list(tmp_path.iterdir())
+
+
+def test_notebooks_are_written_in_markdown():
+    found = list((PAGES / "_downloads").rglob("plot_*.ipynb"))
+    assert len(found) == len(list((ROOT / "gallery").glob("plot_*.py")))
+    for path in found:
+        for cell in json.loads(path.read_text(encoding="utf-8"))["cells"]:
+            text = "".join(cell["source"])
+            assert cell["cell_type"] == "code" or not re.search(r":\w+:`|^\.\. ", text, re.M), text
+
+
 def test_every_public_name_has_a_page():
     import vizlight
 
@@ -137,7 +182,17 @@ def errors(messages):
 
 @browser
 @pytest.mark.parametrize(
-    "name", ["index", "guide", "examples/index", "formulas", "architecture", "api", "studies"]
+    "name",
+    [
+        "index",
+        "guide/index",
+        "guide/lights",
+        "examples/index",
+        "formulas",
+        "architecture",
+        "api",
+        "studies",
+    ],
 )
 def test_a_page_opens_without_an_error(name, tmp_path):
     messages, picture = open_in_browser(PAGES / f"{name}.html", tmp_path / "a.png", tmp_path / "p")

@@ -23,11 +23,12 @@ EXTRAS = PROJECT["optional-dependencies"]
 #: Packages whose modules have another name.
 MODULES = {"pillow": {"PIL"}, "trx-python": {"trx"}, "vtk": {"vtk", "vtkmodules"}}
 #: Modules of packages that a declared package brings, and that package.
-BROUGHT = {"docutils": "sphinx"}
+BROUGHT = {"docutils": "sphinx", "nbformat": "nbclient"}
 #: Declared packages that no file imports, and what uses them.
 REASONS = {
     "check-jsonschema": "command: checks .github/workflows",
     "hatchling": "builds the wheel, which tests/test_data.py inspects in a second process",
+    "ipykernel": "kernel of the notebooks that tests/test_gallery.py runs",
     "mypy": "command",
     "netcdf4": "xarray reads netCDF 4 by it",
     "nest-asyncio2": "pyvista imports it to export scenes of the pages",

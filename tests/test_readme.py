@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import re
+import runpy
 import shlex
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 import pyvista as pv
+from PIL import Image
 from test_tiers import TIER, TIERS
 
 import vizlight
@@ -19,8 +22,10 @@ from vizlight import cli, studies
 ROOT = Path(__file__).parents[1]
 README = ROOT / "README.md"
 PAGES = ROOT / "gallery" / "pages"
-GUIDES = [README, PAGES / "guide.rst", PAGES / "index.rst"]
-DOCUMENTS = [README, *sorted(PAGES.glob("*.rst"))]
+GUIDE = sorted((PAGES / "guide").glob("*.rst"))
+DOCUMENTS = [README, *sorted(PAGES.glob("*.rst")), *GUIDE]
+#: The module that draws the guide where the pages are built.
+DRAWING = runpy.run_path(str(PAGES / "_guide.py"))
 
 
 def text_of(path):
@@ -32,9 +37,7 @@ def blocks(path, language):
     text = text_of(path)
     if path.suffix == ".md":
         return re.findall(rf"^```{language}\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
-    pattern = rf"^\.\. code-block:: {language}\n\n((?:   .*\n|\n)+)"
-    found = re.findall(pattern, text, re.MULTILINE)
-    return [re.sub(r"^   ", "", block, flags=re.MULTILINE) for block in found]
+    return DRAWING["blocks"](text, language)
 
 
 def lines(path):
@@ -50,7 +53,7 @@ def named_commands(path):
 
 
 @pytest.mark.opengl
-@pytest.mark.parametrize("path", GUIDES, ids=lambda path: path.name)
+@pytest.mark.parametrize("path", [README, PAGES / "index.rst"], ids=lambda path: path.name)
 def test_every_python_block_runs(path, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(pv, "OFF_SCREEN", True)
@@ -61,6 +64,47 @@ def test_every_python_block_runs(path, tmp_path, monkeypatch):
         exec(compile(block, f"{path.name}, block {i}", "exec"), space)
     assert float(space["lit"]["luminance"].max()) > 0.5
     pv.close_all()
+
+
+def mended(names):
+    """Assert that each symptom of the page on troubleshooting is there, and its remedy mends it."""
+    assert max(names["early"], names["behind"], names["faded"]) < 0.6 * names["right"]
+    assert names["outward"] < 0.11 < 0.4 < names["inward"]
+    assert names["dense"] < 0.2 < 0.3 < names["loose"]
+    exact = vizlight.illuminate(names["ball"], names["scene"])["luminance"]
+    off = [np.abs(names[mesh]["luminance"] - exact).mean() for mesh in ("given", "turned")]
+    assert off[1] < 1e-3 < 0.05 < off[0]
+    assert names["split"].n_points > names["bent"].n_points
+    assert names["refined"]["luminance"].max() > names["coarse"]["luminance"].max() + 0.05
+    # Light of a ball has no jumps from point to point.
+    roughness = [
+        np.abs(np.diff(mesh["luminance"][mesh.regular_faces], axis=1)).mean()
+        for mesh in (names["rough"], names["smooth"])
+    ]
+    assert roughness[1] < 0.5 * roughness[0]
+
+
+@pytest.mark.opengl
+@pytest.mark.parametrize("path", GUIDE, ids=lambda path: path.stem)
+def test_a_page_of_the_guide_runs_and_writes_its_pictures(path, tmp_path, monkeypatch):
+    monkeypatch.setattr(pv, "OFF_SCREEN", True)
+    names = DRAWING["run"](path, tmp_path)
+    shown = DRAWING["shown"](path)
+    assert {picture.name for picture in tmp_path.glob("*.png")} <= set(shown)
+    for name in shown:
+        if name.endswith(".png"):
+            with Image.open(tmp_path / name) as picture:
+                assert np.asarray(picture.convert("L")).std() > 5, name
+        else:
+            assert (tmp_path / name).stat().st_size, name
+    if path.stem == "troubleshooting":
+        mended(names)
+
+
+def test_every_page_of_the_guide_is_listed_and_short():
+    listed = re.findall(r"^- :doc:`(\w+)`", text_of(PAGES / "guide" / "index.rst"), re.M)
+    assert sorted([*listed, "index"]) == [path.stem for path in GUIDE]
+    assert not [path.stem for path in GUIDE if len(text_of(path).splitlines()) > 220]
 
 
 @pytest.mark.opengl
@@ -170,5 +214,6 @@ def test_the_filters_that_readme_and_guide_name_are_all():
     helpers = {"direction_colors", "example_path", "load_example", "provenance", "read", "report"}
     helpers |= {"to_polydata"}
     filters = {name for name in vizlight.__all__ if name.islower()} - helpers
-    assert not [name for name in filters if f"`{name}" not in text_of(PAGES / "guide.rst")]
+    guide = "".join(map(text_of, GUIDE))
+    assert not [name for name in filters if not re.search(rf"`(vizlight\.)?{name}\b", guide)]
     assert not [name for name in filters if name not in text_of(README)]

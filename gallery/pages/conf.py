@@ -29,6 +29,7 @@ extensions = [
     "sphinx_gallery.gen_gallery",
     "numpydoc",
     "sphinx_design",
+    "_guide",
     "_mathml",
     "_scenes",
     "_studies",
@@ -42,7 +43,13 @@ html_static_path = ["_static"]
 html_css_files = ["pages.css"]
 html_theme_options = {
     "show_prev_next": False,
-    "secondary_sidebar_items": {"**": ["page-toc"], "index": [], "examples/index": []},
+    "secondary_sidebar_items": {
+        "**": ["page-toc"],
+        "index": [],
+        "examples/index": [],
+        # The code needs the width.
+        "guide/**": [],
+    },
     "navbar_end": ["theme-switcher"],
     "footer_start": ["copyright"],
     "footer_end": [],
@@ -51,7 +58,6 @@ html_theme_options = {
 html_show_sourcelink = False
 html_sidebars = {
     "index": [],
-    "guide": [],
     "formulas": [],
     "architecture": [],
     "studies": [],
@@ -88,6 +94,12 @@ sphinx_gallery_conf = {
     "doc_module": ("vizlight",),
     "backreferences_dir": "examples/backreferences",
     "inspect_global_variables": False,
+    # Scenes that turn need a server and more packages: notebooks show pictures below their cells.
+    "first_notebook_cell": (
+        "# Needs vizlight, and for some examples its extra: pip install 'vizlight[solids]'\n"
+        "import pyvista\n\n"
+        'pyvista.set_jupyter_backend("static")'
+    ),
 }
 
 pv.global_theme.notebook = False

@@ -411,7 +411,8 @@ def _draw(
             strokes.widen(actor, Stroke(diameter))
         if (records.read(mesh, panel.scalars) or {}).get("filter") == "tint":
             # The colours are drawn as they are; a scalar bar shows those before they were lit.
-            actor.mapper.lookup_table = unlit_colors(mesh, panel.scalars)
+            table = unlit_colors(mesh, panel.scalars)
+            actor.mapper.lookup_table, actor.mapper.scalar_range = table, table.scalar_range
 
 
 def _add_in_fragments(
