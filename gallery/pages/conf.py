@@ -29,6 +29,7 @@ extensions = [
     "sphinx_gallery.gen_gallery",
     "numpydoc",
     "sphinx_design",
+    "_light",
     "_mathml",
     "_scenes",
     "_studies",
@@ -40,10 +41,13 @@ html_theme = "pydata_sphinx_theme"
 html_title = "vizlight"
 html_static_path = ["_static"]
 html_css_files = ["pages.css"]
+html_favicon = "_static/icon.svg"
 html_theme_options = {
     "show_prev_next": False,
     "secondary_sidebar_items": {"**": ["page-toc"], "index": [], "examples/index": []},
+    "navbar_align": "left",
     "navbar_end": ["theme-switcher"],
+    "navbar_persistent": ["search-button"],
     "footer_start": ["copyright"],
     "footer_end": [],
     "logo": {"text": "vizlight"},
