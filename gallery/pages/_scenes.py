@@ -164,9 +164,7 @@ def _tabs(name, source, about):
         path = scenes / f"{name.stem}_{number}.html"
         path.write_text(page.replace("</body>", f"<script>{LINK}</script>\n</body>"), "utf-8")
         label = html.escape(f"{about}: {title}" if title else about, quote=True)
-        frames.append(
-            f'<iframe src="../_static/scenes/{path.name}" title="{label}" loading="lazy"></iframe>'
-        )
+        frames.append(f'<iframe data-src="../_static/scenes/{path.name}" title="{label}"></iframe>')
     indented = "\n".join(f"      {line}" for line in picture.splitlines())
     return f"""
 .. tab-set::
@@ -185,7 +183,7 @@ def _tabs(name, source, about):
 
 
 def cut_thumbnails(app):
-    """Crop thumbnails of pictures that would be too small as a whole."""
+    """Crop thumbnails of pictures that would be too small as a whole, and shrink movies."""
     folder = Path(app.srcdir) / "examples" / "images"
     size = app.config.sphinx_gallery_conf["thumbnail_size"]
     for script, part in PARTS.items():
@@ -216,5 +214,7 @@ def _shrink(path):
 
 def setup(app):
     """Register with Sphinx, after the gallery is generated."""
+    # What is drawn after the scripts, for the studies, needs no page.
+    app.connect("builder-inited", lambda _: reset(None, ""))
     app.connect("builder-inited", cut_thumbnails, priority=900)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

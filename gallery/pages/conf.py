@@ -41,6 +41,7 @@ html_theme = "pydata_sphinx_theme"
 html_title = "vizlight"
 html_static_path = ["_static"]
 html_css_files = ["pages.css"]
+html_js_files = [("scenes.js", {"defer": "defer"})]
 html_favicon = "_static/icon.svg"
 html_theme_options = {
     "show_prev_next": False,
