@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 import html
 import json
+import re
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -139,13 +140,14 @@ def reset(_conf, script):
 
 def scrape(block, block_vars, gallery_conf):
     """Return reST for the pictures and scenes that a block of a script has drawn."""
-    if plt.get_fignums():
-        # The script shows a chart; what its study has drawn is not shown.
-        pv.close_all()
-        return matplotlib_scraper(block, block_vars, gallery_conf)
     # What a reader who does not see the picture is told: the title of the script.
     text = Path(block_vars["src_file"]).read_text("utf-8")
     about = ast.get_docstring(ast.parse(text)).partition("\n")[0]
+    if plt.get_fignums():
+        # The script shows a chart; what its study has drawn is not shown.
+        pv.close_all()
+        chart = matplotlib_scraper(block, block_vars, gallery_conf)
+        return re.sub(r"(?<=:alt: )plot [\w ]+$", about, chart, flags=re.MULTILINE)
     names = generate_images(block_vars["image_path_iterator"], dynamic=True)
     return "\n".join(_tabs(Path(name), Path(gallery_conf["src_dir"]), about) for name in names)
 

@@ -4,6 +4,6 @@ addEventListener('DOMContentLoaded', () => {
     if (!isIntersecting) return;
     seen.unobserve(target);
     target.src = target.dataset.src;
-  }));
+  }), { rootMargin: '400px' });
   document.querySelectorAll('iframe[data-src]').forEach((frame) => seen.observe(frame));
 });
