@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import subprocess
-import sys
-import zipfile
 from pathlib import Path
 
 import pytest
@@ -60,26 +57,3 @@ def test_unknown_data():
         r"'rotating_disk.vtu'\], got 'x'",
     ):
         vizlight.example_path("x")
-
-
-def test_the_wheel_carries_the_data_and_the_marker(tmp_path):
-    pytest.importorskip("hatchling", reason="pip install 'vizlight[dev]' for hatchling")
-    code = "from hatchling.build import build_wheel; import sys; print(build_wheel(sys.argv[1]))"
-    run = subprocess.run(
-        [sys.executable, "-c", code, str(tmp_path)],
-        cwd=DATASETS.parent,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    wheel = zipfile.ZipFile(tmp_path / run.stdout.split()[-1])
-    names = wheel.namelist()
-    data = ("datasets/rotating_disk.vtu", "datasets/LICENSE-mayavi.txt")
-    viewer = ("plotting/web/viewer.min.js", "plotting/web/page.html")
-    for name in (*data, *viewer, "py.typed", "render.pyi", "cli/__init__.py"):
-        assert f"vizlight/{name}" in names
-    info = f"vizlight-{vizlight.__version__}.dist-info"
-    for name in ("LICENSE", "datasets/LICENSE-dipy.txt", "datasets/LICENSE-mayavi.txt"):
-        assert f"{info}/licenses/{name}" in names
-    metadata = wheel.read(f"{info}/METADATA").decode()
-    assert "\nLicense-Expression: MIT AND BSD-3-Clause\n" in metadata

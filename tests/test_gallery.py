@@ -180,24 +180,111 @@ def errors(messages):
     return [text for _, text in messages if not HARMLESS.search(text)]
 
 
+@pytest.fixture(scope="module")
+def chromium():
+    """A browser that pages are steered in."""
+    driver = pytest.importorskip("playwright.sync_api", reason="pip install 'vizlight[docs]'")
+    with driver.sync_playwright() as play:
+        options = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+        yield play.chromium.launch(executable_path=CHROMIUM, args=options)
+
+
+def visit(context, name):
+    """Open a page; return it, the files it has read, and its messages that tell of an error."""
+    page, read_files, said = context.new_page(), set(), []
+    page.on("request", lambda request: read_files.add(request.url))
+    page.on("console", lambda message: said.append((message.type, message.text)))
+    page.goto((PAGES / f"{name}.html").as_uri())
+    return page, read_files, errors(said)
+
+
+FIRST = [
+    "index",
+    "guide/index",
+    "guide/lights",
+    "examples/index",
+    "formulas",
+    "architecture",
+    "api",
+    "studies",
+]
+LONGEST = "api/vizlight.geometry.isoluminance"
+
+
 @browser
-@pytest.mark.parametrize(
-    "name",
-    [
-        "index",
-        "guide/index",
-        "guide/lights",
-        "examples/index",
-        "formulas",
-        "architecture",
-        "api",
-        "studies",
-    ],
-)
-def test_a_page_opens_without_an_error(name, tmp_path):
-    messages, picture = open_in_browser(PAGES / f"{name}.html", tmp_path / "a.png", tmp_path / "p")
-    assert not errors(messages)
-    assert picture.std() > 5
+@pytest.mark.parametrize(("width", "scheme"), [(1280, "light"), (1280, "dark"), (400, "light")])
+def test_pages_fit_and_load_nothing_from_elsewhere(chromium, width, scheme):
+    with chromium.new_context(
+        viewport={"width": width, "height": 900}, color_scheme=scheme
+    ) as context:
+        for name in [*FIRST, LONGEST]:
+            page, read_files, said = visit(context, name)
+            assert not said, name
+            outside = [u for u in read_files if urlsplit(u).scheme not in ("file", "data", "blob")]
+            assert not outside, name
+            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), name
+            # One row of the header; titles end within the page.
+            assert page.evaluate("document.querySelector('.bd-header').offsetHeight") < 90, name
+            widths = "[...document.querySelectorAll('h1')].map(h => h.scrollWidth <= h.clientWidth)"
+            assert all(page.evaluate(widths)), name
+            # Pictures have their own light in dark pages too.
+            filters = "[...document.images].map(image => getComputedStyle(image).filter)"
+            assert set(page.evaluate(filters)) <= {"none"}, name
+            page.close()
+
+
+@browser
+def test_the_first_page_is_light(chromium):
+    with chromium.new_context() as context:
+        page, read_files, _ = visit(context, "index")
+        page.wait_for_load_state("networkidle")
+        paths = {unquote(urlsplit(url).path) for url in read_files if url.startswith("file:")}
+        assert sum(Path(path).stat().st_size for path in paths) < 1e6
+
+
+@browser
+def test_keys_reach_the_content_and_the_search_finds(chromium):
+    with chromium.new_context() as context:
+        page, _, _ = visit(context, "index")
+        page.keyboard.press("Tab")
+        assert page.evaluate("document.activeElement.textContent.trim()") == "Skip to main content"
+        page.keyboard.press("Control+k")
+        page.keyboard.type("streamlines")
+        page.keyboard.press("Enter")
+        page.wait_for_selector("#search-results li a")
+        assert "streamlines" in page.inner_text("#search-results").lower()
+
+
+@browser
+def test_views_of_a_scene_turn_together(chromium):
+    """Each has its title, and those beside it take on its camera."""
+    with chromium.new_context() as context:
+        page, _, said = visit(context, "examples/plot_complex_curve")
+        scene = page.locator("div.scene").first
+        assert scene.locator("iframe[src]").count() == 0  # loaded when their tab is opened
+        page.locator("label.sd-tab-label", has_text="Interactive scene").first.click()
+        scene.scroll_into_view_if_needed()
+        frames = [f.element_handle().content_frame() for f in scene.locator("iframe").all()]
+        assert len(frames) == 4
+        for frame in frames:
+            frame.wait_for_function("window.vizlight")
+        assert [f.inner_text("h1") for f in frames] == [f"{a} degrees" for a in (0, 30, 60, 90)]
+        place = "JSON.stringify(window.vizlight.camera.getPosition())"
+        before = frames[0].evaluate(place)
+        frames[1].focus("#view")
+        page.keyboard.press("ArrowLeft")
+        after = frames[1].evaluate(place)
+        assert after != before
+        for frame in frames:
+            frame.wait_for_function(f"{place} === {after!r}")
+        assert not said
+
+
+def test_every_picture_has_a_description():
+    """A name of a file is none. Thumbnails stand beside their titles and need none."""
+    bare = re.compile(r'<img(?![^>]* alt=)[^>]*>|<img[^>]* alt="(?:plot )?\w+(?:\.\w+)?"')
+    for page in pages():
+        assert not bare.findall(page.read_text(encoding="utf-8")), page.name
 
 
 @browser

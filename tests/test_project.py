@@ -27,7 +27,9 @@ BROUGHT = {"docutils": "sphinx", "nbformat": "nbclient"}
 #: Declared packages that no file imports, and what uses them.
 REASONS = {
     "check-jsonschema": "command: checks .github/workflows",
-    "hatchling": "builds the wheel, which tests/test_data.py inspects in a second process",
+    "check-wheel-contents": "command",
+    "codespell": "command",
+    "hatchling": "builds what tests/test_release.py inspects, in a second process",
     "ipykernel": "kernel of the notebooks that tests/test_gallery.py runs",
     "mypy": "command",
     "netcdf4": "xarray reads netCDF 4 by it",
@@ -41,6 +43,8 @@ REASONS = {
     "ruff": "command",
     "scipy-stubs": "types of SciPy, which mypy reads",
     "sphinx-design": "extension of Sphinx, named in gallery/pages/conf.py",
+    "twine": "command",
+    "uv": "command: installs the lowest versions",
     "trame-vuetify": "trame.widgets.vuetify3 is of it",
     "trame-vtk": "trame.widgets.vtk, which shows the picture of vizlight view, is in it",
     "tomli": "read above on Python 3.10 only",

@@ -144,9 +144,26 @@ def test_readme_is_short():
 
 
 def test_every_link_of_readme_is_a_file():
+    """Links into the repository are absolute, because an index of packages shows README alone."""
     targets = re.findall(r"\]\(([^)#]+)\)", text_of(README))
-    assert len(targets) > 5
-    assert not [t for t in targets if "://" not in t and not (ROOT / t).exists()]
+    places = (
+        r"https://(?:raw\.githubusercontent\.com/(\w+/\w+)|github\.com/(\w+/\w+)/blob)/main/(.+)"
+    )
+    paths = [match[3] for t in targets if (match := re.fullmatch(places, t))]
+    assert len(paths) > 5
+    assert not [path for path in paths if not (ROOT / path).exists()]
+    assert not [t for t in targets if "://" not in t]
+
+
+def test_the_landing_page_has_the_install_lines_of_readme():
+    """The page takes them from README, between words that README still has."""
+    found = re.findall(
+        r"literalinclude:: (\S+)\n.*\n   :start-at: (.*)\n", text_of(PAGES / "index.rst")
+    )
+    assert len(found) == 2
+    for path, start in found:
+        assert (PAGES / path).resolve() == README
+        assert [line for line in lines(README) if line.startswith(start)]
 
 
 def folder_map():

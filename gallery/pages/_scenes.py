@@ -6,17 +6,26 @@ allow for files on disk. Each scene is therefore a page of its own with light th
 
 from __future__ import annotations
 
+import ast
+import html
+import json
+import re
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import matplotlib.pyplot as plt
 import pyvista as pv
-from PIL import Image, ImageOps
+from PIL import Image, ImageOps, ImageSequence
 from pyvista.plotting.utilities.sphinx_gallery import generate_images
 from sphinx_gallery.scrapers import figure_rst, matplotlib_scraper
+from vtkmodules.vtkRenderingAnnotation import vtkCornerAnnotation
 
-#: Scripts with an interactive scene: one view of one mesh, of a few megabytes.
+import vizlight
+
+#: Scripts with an interactive scene: views of meshes of a few megabytes.
 INTERACTIVE = ("plot_flow", "plot_carotid", "plot_complex_curve")
+#: What the page of one view runs: it tells the others beside it how its camera was moved.
+LINK = (Path(__file__).parent / "link.js").read_text("utf-8")
 
 # Lines and flows, then surfaces, terrain, 4-space, formulas and their errors; scripts that are not
 # listed come last.
@@ -60,6 +69,9 @@ PARTS = {
     "plot_turning": (0.4, 0.06, 0.61, 0.5),
 }
 
+#: Width of the thumbnails of movies in pixels.
+MOVIE = 240
+
 
 class Order:
     """Sort scripts in the order of ``ORDER``."""
@@ -76,18 +88,47 @@ class Order:
 
 
 class _Export:
-    """What PyVista exports scenes by: a page, if one view of a plotter has live light."""
+    """What PyVista exports scenes by: a page for each view of a plotter that has live light."""
 
     def __init__(self, plotter, wanted):
         self.plotter, self.wanted = plotter, wanted
 
     def export_vtksz(self, filename=None):  # noqa: ARG002 (as PyVista calls it)
-        """Return the page; PyVista takes an ImportError for a scene that cannot be exported."""
-        own = self.plotter.vizlight
-        if not self.wanted or len(self.plotter.renderers) != 1 or not own.has_live_light:
+        """Return titles and pages; PyVista takes an ImportError for what cannot be exported."""
+        if not self.wanted:
             raise ImportError("this plotter has no interactive scene")
         with TemporaryDirectory() as folder:
-            return own.export_html(Path(folder) / "scene.html", panel=False).read_bytes()
+            path = Path(folder) / "scene.html"
+            pages = []
+            for renderer in self.plotter.renderers:
+                title = _title(renderer)
+                _export(self.plotter, renderer, path, title)
+                pages.append((title, path.read_text("utf-8")))
+        return json.dumps(pages).encode()
+
+
+def _export(plotter, renderer, path, title):
+    """Write the page of one view."""
+    views, figures = plotter.renderers, pv.plotting.plotter._ALL_PLOTTERS
+    active, known = views.active_index, list(figures)
+    views.set_active_renderer(*views.index_to_loc(list(views).index(renderer)))
+    try:
+        plotter.vizlight.export_html(path, title=title, panel=False)
+    except ValueError:
+        # The view shows light as it is kept with the mesh, such as that for an eye in 4-space.
+        (actor,) = (one for one in renderer.actors.values() if isinstance(one, pv.Actor))
+        look = {"camera": renderer.camera, "background": renderer.background_color}
+        vizlight.live_html(actor.mapper.dataset, None, path, title=title, panel=False, **look)
+    finally:
+        views.set_active_renderer(*views.index_to_loc(active))
+        for made in set(figures) - set(known):
+            del figures[made]
+
+
+def _title(renderer):
+    """Return the text at the upper edge of a view."""
+    texts = [prop for prop in renderer.actors.values() if isinstance(prop, pv.CornerAnnotation)]
+    return " ".join(text.GetText(vtkCornerAnnotation.UpperEdge) for text in texts)
 
 
 def reset(_conf, script):
@@ -99,23 +140,33 @@ def reset(_conf, script):
 
 def scrape(block, block_vars, gallery_conf):
     """Return reST for the pictures and scenes that a block of a script has drawn."""
+    # What a reader who does not see the picture is told: the title of the script.
+    text = Path(block_vars["src_file"]).read_text("utf-8")
+    about = ast.get_docstring(ast.parse(text)).partition("\n")[0]
     if plt.get_fignums():
         # The script shows a chart; what its study has drawn is not shown.
         pv.close_all()
-        return matplotlib_scraper(block, block_vars, gallery_conf)
+        chart = matplotlib_scraper(block, block_vars, gallery_conf)
+        return re.sub(r"(?<=:alt: )plot [\w ]+$", about, chart, flags=re.MULTILINE)
     names = generate_images(block_vars["image_path_iterator"], dynamic=True)
-    return "\n".join(_tabs(Path(name), Path(gallery_conf["src_dir"])) for name in names)
+    return "\n".join(_tabs(Path(name), Path(gallery_conf["src_dir"]), about) for name in names)
 
 
-def _tabs(name, source):
+def _tabs(name, source, about):
     kind = ".gif" if name.suffix == ".gif" else ".png"
-    picture = figure_rst([str(name.with_suffix(kind))], str(source))
+    picture = figure_rst([str(name.with_suffix(kind))], str(source), about)
     if name.suffix != ".vtksz":
         return picture
     scenes = source / "_static" / "scenes"
     scenes.mkdir(parents=True, exist_ok=True)
-    name.replace(scenes / f"{name.stem}.html")
-    address = f"../_static/scenes/{name.stem}.html"
+    pages = json.loads(name.read_text("utf-8"))
+    name.unlink()
+    frames = []
+    for number, (title, page) in enumerate(pages):
+        path = scenes / f"{name.stem}_{number}.html"
+        path.write_text(page.replace("</body>", f"<script>{LINK}</script>\n</body>"), "utf-8")
+        label = html.escape(f"{about}: {title}" if title else about, quote=True)
+        frames.append(f'<iframe data-src="../_static/scenes/{path.name}" title="{label}"></iframe>')
     indented = "\n".join(f"      {line}" for line in picture.splitlines())
     return f"""
 .. tab-set::
@@ -128,13 +179,13 @@ def _tabs(name, source):
 
       .. raw:: html
 
-         <iframe class="scene" src="{address}" title="scene" loading="lazy"></iframe>
+         <div class="scene">{"".join(frames)}</div>
 
 """
 
 
 def cut_thumbnails(app):
-    """Crop thumbnails of pictures that would be too small as a whole."""
+    """Crop thumbnails of pictures that would be too small as a whole, and shrink movies."""
     folder = Path(app.srcdir) / "examples" / "images"
     size = app.config.sphinx_gallery_conf["thumbnail_size"]
     for script, part in PARTS.items():
@@ -146,9 +197,26 @@ def cut_thumbnails(app):
             ends = [x * side for x, side in zip(part, whole.size * 2, strict=True)]
             cut = whole.convert("RGB").crop([round(x) for x in ends])
         ImageOps.pad(cut, size, color=cut.getpixel((1, 1))).save(thumbnail)
+    for thumbnail in folder.glob("thumb/*.gif"):
+        _shrink(thumbnail)
+
+
+def _shrink(path):
+    """Draw a movie as small as its thumbnail is shown; sphinx-gallery copies it as it is."""
+    with Image.open(path) as movie:
+        if movie.width <= MOVIE:
+            return
+        size = (MOVIE, round(movie.height * MOVIE / movie.width))
+        frames = [frame.convert("RGB").resize(size) for frame in ImageSequence.Iterator(movie)]
+        times = movie.info.get("duration", 100)
+    # Every second frame, for twice the time.
+    first, *rest = frames[::2]
+    first.save(path, save_all=True, append_images=rest, duration=2 * times, loop=0)
 
 
 def setup(app):
     """Register with Sphinx, after the gallery is generated."""
+    # What is drawn after the scripts, for the studies, needs no page.
+    app.connect("builder-inited", lambda _: reset(None, ""))
     app.connect("builder-inited", cut_thumbnails, priority=900)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

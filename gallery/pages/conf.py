@@ -30,6 +30,7 @@ extensions = [
     "numpydoc",
     "sphinx_design",
     "_guide",
+    "_light",
     "_mathml",
     "_scenes",
     "_studies",
@@ -41,6 +42,8 @@ html_theme = "pydata_sphinx_theme"
 html_title = "vizlight"
 html_static_path = ["_static"]
 html_css_files = ["pages.css"]
+html_js_files = [("scenes.js", {"defer": "defer"})]
+html_favicon = "_static/icon.svg"
 html_theme_options = {
     "show_prev_next": False,
     "secondary_sidebar_items": {
@@ -50,7 +53,9 @@ html_theme_options = {
         # The code needs the width.
         "guide/**": [],
     },
+    "navbar_align": "left",
     "navbar_end": ["theme-switcher"],
+    "navbar_persistent": ["search-button"],
     "footer_start": ["copyright"],
     "footer_end": [],
     "logo": {"text": "vizlight"},

@@ -136,6 +136,8 @@ def sources(image, folder, kind):
         grid.save(folder / f"grid.{kind}")
         return folder / f"grid.{kind}"
     if kind == "vtkhdf":
+        if pv.vtk_version_info < (9, 5):
+            pytest.skip("VTK 9.4 does not write images in this format")
         from vtkmodules.vtkIOHDF import vtkHDFWriter
 
         writer = vtkHDFWriter()
@@ -198,9 +200,11 @@ def test_partitions_of_a_file_and_indices_are_pieces(tmp_path):
     writer.SetFileName(str(tmp_path / "balls.vtkhdf"))
     writer.Write()
     lit = pieces.light(tmp_path / "balls.vtkhdf", PLAIN, out=tmp_path / "a.pvtu", workers=1)
-    assert len(lit.files) == 3
+    # VTK 9.4 joins the partitions as it reads them.
+    count = 3 if pv.vtk_version_info >= (9, 5) else 1
+    assert len(lit.files) == count
     again = pieces.light(lit.path, PLAIN, out=tmp_path / "b.pvtu", workers=1, name="second")
-    assert (again.points, len(again.files)) == (lit.points, 3)
+    assert (again.points, len(again.files)) == (lit.points, count)
     pv.MultiBlock(balls).save(tmp_path / "balls.vtm")
     third = pieces.light(tmp_path / "balls.vtm", PLAIN, out=tmp_path / "c.pvtu", workers=1)
     assert third.points == lit.points

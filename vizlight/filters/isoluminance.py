@@ -211,10 +211,9 @@ def _make(
             _check.message("mesh", "a PyVista mesh or a solid", type(mesh).__name__, remedy)
         )
     blocks.check(given)
-    joined = mesh.combine() if isinstance(mesh, pv.MultiBlock) else mesh
-    if not joined.n_points:
-        joined = pv.PolyData()
-    return _of_mesh(joined, light)
+    if not any(block.n_points for block in blocks.all_blocks(mesh)):
+        return _of_mesh(pv.PolyData(), light)
+    return _of_mesh(mesh.combine() if isinstance(mesh, pv.MultiBlock) else mesh, light)
 
 
 class _Light:

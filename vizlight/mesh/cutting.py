@@ -102,12 +102,22 @@ def _mean_frames(array: Array, between: csr_array, n: int) -> Array:
     return found
 
 
+def _triangles(mesh: pv.PolyData) -> Indices:
+    """Return the triangles of faces."""
+    if np.ptp(mesh.points, axis=0).any():
+        return np.asarray(mesh.triangulate().regular_faces, dtype=np.intp)
+    # A manifold that is not projected yet has all points in one place; VTK 9.4 finds nothing there.
+    faces = np.asarray(mesh.regular_faces, dtype=np.intp)
+    fan = [(0, i, i + 1) for i in range(1, faces.shape[1] - 1)]
+    return faces[:, fan].reshape(-1, 3)
+
+
 def _simplices(mesh: pv.DataSet) -> tuple[Indices, Indices]:
     """Return segments, triangles or tetrahedra, and the corners of the hexahedra that are split."""
     none = np.empty((0, 8), dtype=np.intp)
     if isinstance(mesh, pv.PolyData):
         if has_faces(mesh):
-            return np.asarray(mesh.triangulate().regular_faces, dtype=np.intp), none
+            return _triangles(mesh), none
         segments = polylines.segments(mesh.GetLines())
         if len(segments):
             return segments, none

@@ -156,7 +156,8 @@ def make_plotter(
         it cannot be computed in each fragment, as with ``light="points"``, on a surface that
         conditions it, or in a bundle.
     anti_aliasing : {"ssaa", "msaa", "fxaa"} or None, default: "ssaa"
-        Method of anti-aliasing: supersampling, multisampling, FXAA, or none.
+        Method of anti-aliasing: supersampling, multisampling, FXAA, or none. VTK before 9.7 draws
+        several supersampled panels in one place; they are multisampled there.
     backend : {"egl", "osmesa"}, optional
         OpenGL library; see :func:`choose_backend`.
     light : {"auto", "points"}
@@ -197,6 +198,8 @@ def make_plotter(
         plotter = pv.Plotter(
             off_screen=True, shape=(rows, columns), window_size=pixels, border=False
         )
+    if anti_aliasing == "ssaa" and len(shown) > 1 and pv.vtk_version_info < (9, 7):
+        anti_aliasing = "msaa"
     try:
         for number, panel in enumerate(shown):
             plotter.subplot(*divmod(number, columns))

@@ -1,0 +1,32 @@
+"""Lighter pages: what the theme loads and these pages do not use is left out of each."""
+
+from __future__ import annotations
+
+import re
+
+#: Scripts of every page that only the page of the search needs, and icons that are a font as well.
+UNUSED = re.compile(
+    r'\s*<script[^>]* src="[^"]*\b(?:fontawesome|searchtools|language_data|searchindex)\.js[^"]*">'
+    r"</script>"
+)
+#: Names of modules and functions, which are too long for one row of a telephone.
+TITLE = re.compile(r"(?<=<h1>)[\w.]+(?=<)")
+
+
+def lighten(text):
+    """Return a page without unused scripts, whose title may be broken after a dot."""
+    return TITLE.sub(lambda name: re.sub(r"([._])", r"\1<wbr>", name[0]), UNUSED.sub("", text))
+
+
+def lighten_all(app, error):
+    """Rewrite the pages that were built, but for that of the search."""
+    if error is None and app.builder.format == "html":
+        for page in app.outdir.rglob("*.html"):
+            if page.name != "search.html" and "_static" not in page.parts:
+                page.write_text(lighten(page.read_text("utf-8")), "utf-8")
+
+
+def setup(app):
+    """Register with Sphinx."""
+    app.connect("build-finished", lighten_all)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
