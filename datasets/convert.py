@@ -1,13 +1,15 @@
-"""Make the embedded data: ``python datasets/convert.py mayavi.whl dipy.whl etopo20.cdf``.
+"""Make the embedded data: ``python datasets/convert.py SOURCE ...``, in the order of the functions.
 
-The command ``pip download --no-deps mayavi==4.9.0 dipy==1.12.1`` fetches the wheels. The relief is
-the file ``usr/share/ferret-vis/data/etopo20.cdf`` of Debian's package ferret-datasets: the command
-``apt-get download ferret-datasets`` fetches the package, ``dpkg-deb -x`` unpacks it.
+The command ``pip download --no-deps mayavi==4.9.0 dipy==1.12.1 dm_control==1.0.50
+matplotlib==3.11.2`` fetches the wheels. Relief and winds are the files ``etopo20.cdf`` and
+``monthly_navy_winds.cdf`` in ``usr/share/ferret-vis/data`` of Debian's package ferret-datasets: the
+command ``apt-get download ferret-datasets`` fetches the package, ``dpkg-deb -x`` unpacks it.
 """
 
 from __future__ import annotations
 
 import hashlib
+import io
 import sys
 import tempfile
 import zipfile
@@ -19,8 +21,12 @@ import pyvista as pv
 from scipy.io import netcdf_file
 
 HERE = Path(__file__).parent
+#: Length of a degree of latitude in metres.
+DEGREE = 111_195
 DISK = "mayavi/tests/data/disk_out_ref.ex2"
 FIBRES = "dipy/data/files/tracks300.trk"
+DOG = "dm_control/suite/dog_assets/SKINbody.stl"
+FAULT = "matplotlib/mpl-data/sample_data/jacksboro_fault_dem.npz"
 
 
 def rotating_disk(wheel: Path) -> Path:
@@ -89,7 +95,65 @@ def earth_relief(source: Path) -> Path:
     return path
 
 
+def dog(wheel: Path) -> Path:
+    """Write the skin of the dog with its equal points merged."""
+    with tempfile.TemporaryDirectory() as folder, zipfile.ZipFile(wheel) as archive:
+        skin: Any = pv.read(archive.extract(DOG, folder))
+    path = HERE / "dog.vtp"
+    skin.clean().save(path)
+    return path
+
+
+def jacksboro_fault(wheel: Path) -> Path:
+    """Write the heights of the Jacksboro fault on a grid in metres, from south to north."""
+    with zipfile.ZipFile(wheel) as archive, np.load(io.BytesIO(archive.read(FAULT))) as source:
+        heights = source["elevation"][::-1]
+        latitude = np.radians(float(source["ymin"] + source["ymax"]) / 2)
+        degrees = float(source["dx"]), float(source["dy"])
+    out = pv.ImageData(
+        dimensions=(heights.shape[1], heights.shape[0], 1),
+        spacing=(DEGREE * np.cos(latitude) * degrees[0], DEGREE * degrees[1], 1.0),
+    )
+    out.point_data["elevation"] = heights.ravel()
+    path = HERE / "jacksboro_fault.vti"
+    out.save(path)
+    return path
+
+
+def winds_of_july(source: Path) -> Path:
+    """Write the mean wind of July on the unit sphere, as vectors in space."""
+    with netcdf_file(source, "r", mmap=False) as file:
+        east, north, *wind = (
+            np.array(file.variables[name].data) for name in ("FNOCX", "FNOCY", "UWND", "VWND")
+        )
+    # The first of the 132 months is January 1982.
+    wind = np.mean([part[6::12].astype(float) for part in wind], axis=1)
+    longitude, latitude = np.radians(np.meshgrid(east, north))
+    c, s = np.cos(longitude), np.sin(longitude)
+    up = np.stack([np.cos(latitude) * c, np.cos(latitude) * s, np.sin(latitude)], axis=-1)
+    eastward = np.stack([-s, c, 0 * s], axis=-1)
+    vectors = wind[0][..., np.newaxis] * eastward + wind[1][..., np.newaxis] * np.cross(
+        up, eastward
+    )
+    # One point at each pole, where the source has a row of them.
+    up[[0, -1]], vectors[[0, -1]] = up[[0, -1], :1], vectors[[0, -1]].mean(axis=1, keepdims=True)
+    rows, columns = longitude.shape
+    here = np.arange(rows * columns).reshape(rows, columns)
+    here[0], here[-1] = here[0, 0], here[-1, 0]
+    right = np.roll(here, -1, axis=1)
+    lower = np.stack([here[:-1], right[:-1], right[1:]], axis=-1)[1:]
+    upper = np.stack([here[:-1], right[1:], here[1:]], axis=-1)[:-1]
+    faces = np.concatenate([lower.reshape(-1, 3), upper.reshape(-1, 3)])
+    out: Any = pv.PolyData.from_regular_faces(up.reshape(-1, 3), faces)
+    out.points = out.points.astype(np.float32)
+    out.point_data["wind"] = vectors.reshape(-1, 3).astype(np.float32)
+    path = HERE / "winds_of_july.vtp"
+    out.clean(tolerance=0).save(path)
+    return path
+
+
 if __name__ == "__main__":
-    for make, source in zip((rotating_disk, fibre_bundle, earth_relief), sys.argv[1:], strict=True):
+    makers = (rotating_disk, fibre_bundle, earth_relief, dog, jacksboro_fault, winds_of_july)
+    for make, source in zip(makers, sys.argv[1:], strict=True):
         made = make(Path(source))
         sys.stdout.write(f"{hashlib.sha256(made.read_bytes()).hexdigest()}  {made.name}\n")

@@ -2,43 +2,37 @@
 A bas-relief under one light
 ============================
 
-The depth map of a statue, flattened onto a plate and lit by one nearby light. From left to right
-the light has three positions and the shadow three depths. The single number t contains the direct
-light, the shadow on the plate and the light that passes through thin parts. A larger depth lets
-more light through, as in the figures of the source on cos-theta shadows.
-
-The statue is Lucy if it can be downloaded, otherwise the ant that comes with PyVista.
+The depth map of a figure, flattened onto a plate and lit by one nearby light. Upper row: the light
+moves from left to right, the depth stays. Lower row: the light stays, and the depth of the shadow
+grows from left to right, which lets more light through, as in the figures of the source on
+cos-theta shadows. The single number t contains the direct light, the shadow on the plate and the
+light that passes through thin parts.
 """
-
-import numpy as np
-import pyvista as pv
 
 import vizlight
 from vizlight import Light, Material, Scene, render
 
-try:
-    statue, toward, up = pv.examples.download_lucy(), (0, -1, 0), (0, 0, 1)
-except Exception:  # noqa: BLE001 (a missing network raises many types)
-    statue = pv.examples.load_ant().subdivide(2, "butterfly")
-    toward, up = (0.25, 1, 0.3), (0, 0, 1)
-side = max(np.diff(np.reshape(statue.bounds, (3, 2))))[0]
+dog = vizlight.load_example("dog.vtp")
 relief = vizlight.bas_relief(
-    statue.triangulate(), direction=toward, up=up, resolution=500, height=0.12 * side, margin=0.12
+    dog, direction=(0.2, -1, 0.12), up=(0, 0, 1), resolution=700, height=0.06, margin=0.1
 )
-
 panels = []
-for x, depth in ((-0.6, 0.005), (0.0, 0.02), (0.7, 0.06)):
+for x, depth in (
+    (-0.8, 0.01), (0.0, 0.01), (0.8, 0.01),
+    (-0.8, 0.003), (-0.8, 0.02), (-0.8, 0.06),
+):  # fmt: skip
     scene = Scene(
-        lights=Light(position=(x * side, 0.5 * side, 0.45 * side)),
-        material=Material(ambient=0.0, diffuse=1.0, specular=0.0, color=(1.0, 0.87, 0.7)),
+        lights=Light(position=(x, 0.7, 0.55)),
+        material=Material(ambient=0.03, diffuse=1.1, specular=0.0, color=(1.0, 0.87, 0.7)),
     )
-    lit = vizlight.relief_shadow(relief, scene, depth=depth * side, lit=True)
+    lit = vizlight.relief_shadow(relief, scene, depth=depth, lit=True)
     panels.append(render.Panel(lit, "rgb", f"light at x = {x}, depth {depth}"))
 
 plotter = render.make_plotter(
     panels,
-    camera=render.camera_on(relief.bounds, (0, 0, 1), parallel=True, zoom=1.3),
-    size=(1800, 700),
+    camera=render.camera_on(relief.bounds, (0, 0, 1), parallel=True, aspect=1.25, zoom=1.36),
+    rows=2,
+    size=(1800, 1000),
     background="black",
 )
 plotter.show()

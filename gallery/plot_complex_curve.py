@@ -6,10 +6,11 @@ The graph of ``w = z^3 / 3 - z / 2``, a surface in 4-space (Re z, Im z, Re w, Im
 plane of x and w and lit in 4-space before it is projected to 3-space. The graph of Re w, on the
 left a sheet with two saddles, becomes the graph of the inverse function after a quarter turn. The
 three sheets of the inverse cross in the projection, although the surface in 4-space does not
-intersect itself.
+intersect itself. Colours show the phase of w, and meet at its three zeros.
 """
 
 # sphinx_gallery_thumbnail_number = 2
+import matplotlib.colors as colors
 import numpy as np
 import pyvista as pv
 
@@ -25,16 +26,27 @@ curve = vizlight.manifold(
         resolution=220,
     )
 )
+curve["phase of w"] = np.angle(np.asarray(curve["position"]) @ [0, 0, 1, 1j])
+hues = ["#e05a47", "#e8c34a", "#5bb06a", "#4aa3c8", "#7f6fd0", "#c65a9a", "#e05a47"]
+wheel = colors.LinearSegmentedColormap.from_list("wheel", hues)
 scene = Scene(
     lights=Light(direction=(-0.4, -0.9, 0.9, 0.4)),
     view=View(direction=(0.5, -1, 0.7, 0)),
-    material=Material(ambient=0.1, diffuse=0.6, specular=0.3, shininess=25),
+    material=Material(ambient=0.15, diffuse=0.8, specular=0.3, shininess=25),
 )
 camera = render.camera_on((-1.3, 1.3, -1.3, 1.3, -1.2, 1.2), (0.5, -1, 0.7), zoom=0.66)
 panels = [
     render.Panel(
-        vizlight.project(curve, rotation=("xw", np.radians(angle)), scene=scene, light="before"),
-        title=f"{angle} degrees",
+        vizlight.tint(
+            vizlight.project(
+                curve, rotation=("xw", np.radians(angle)), scene=scene, light="before"
+            ),
+            "phase of w",
+            cmap=wheel,
+            clim=(-np.pi, np.pi),
+        ),
+        "rgb",
+        f"{angle} degrees",
     )
     for angle in (0, 30, 60, 90)
 ]
@@ -46,6 +58,7 @@ plotter.show()
 
 plotter = pv.Plotter(off_screen=True, window_size=(1000, 700))
 plotter.background_color = "#203048"
-plotter.vizlight.add_mesh(panels[2].mesh)
+bar = {"color": "white", "vertical": True, "n_labels": 3, "height": 0.4, "position_y": 0.3}
+plotter.vizlight.add_mesh(panels[2].mesh, scalar_bar_args=bar)
 plotter.camera = camera
 plotter.show()

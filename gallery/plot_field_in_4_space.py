@@ -5,7 +5,7 @@ A tangent field on a surface in 4-space
 A Clifford torus in 4-space with a tangent field on it: unit vectors along curves that wind around
 both circles. Left: the light of the surface (k = 2). Middle: the light of the field alone (k = 1),
 which does not depend on the surface. Right: the light of the field times the brightness of the
-surface.
+surface. The colour is the fourth coordinate.
 
 In codimension 1 a field inherits the self-shadow of its surface, because the surface has an outer
 side. A surface in 4-space has codimension 2: its unit normals at a point form a circle, so there
@@ -27,11 +27,19 @@ torus["field"] = frame[:, 0] + frame[:, 1]
 scene = Scene(
     lights=Light(direction=(0.5, -0.7, 0.6, 0.2)),
     view=View(direction=(0.3, -1, 0.8, 0)),
-    material=Material(ambient=0.05, diffuse=0.55, specular=0.35),
+    material=Material(ambient=0.05, diffuse=0.75, specular=0.35),
 )
 where = {"positions": "position"}
 panels = [
-    render.Panel(vizlight.illuminate(torus, scene, **where, **options), title=title)
+    render.Panel(
+        vizlight.tint(
+            vizlight.illuminate(torus, scene, **where, **options),
+            np.asarray(torus["position"])[:, 3],
+            cmap="RdYlBu_r",
+        ),
+        "rgb",
+        title,
+    )
     for title, options in {
         "surface": {"tangents": "frame"},
         "field": {"tangents": "field"},

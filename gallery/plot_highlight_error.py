@@ -47,6 +47,10 @@ for column, factor in enumerate((4.0, float(highlights.simple_factor(ANGLE)))):
     worst = highlights.max_pixel_error(ANGLE, POWER, factor=factor)
     place = (np.rad2deg(worst.phi), np.rad2deg(worst.theta), worst.error)
     plotter.add_mesh(pv.Sphere(radius=3, center=place), color="black")
+    plotter.add_point_labels(
+        [place], [f"  largest error: {worst.error:.2f}"], shape=None, show_points=False,
+        text_color="black", font_size=18, always_visible=True, justification_vertical="center",
+    )  # fmt: skip
     plotter.show_bounds(
         axes_ranges=[0, 180, 0, 180, -64, 64], bounds=(0, 180, 0, 180, -64, 64),
         xtitle="phi, degrees", ytitle="theta, degrees", ztitle="error", color="black",

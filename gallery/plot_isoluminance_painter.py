@@ -33,7 +33,7 @@ def painted(eye):
 
 
 along, across = (0.94, -0.3, 0.15), (0.0, -1.0, 0.0)
-cameras = [render.camera_on(bands.bounds, eye, zoom=1.5) for eye in (along, across, across)]
+cameras = [render.camera_on(bands.bounds, eye, zoom=1.3) for eye in (along, across, across)]
 plotter = render.make_plotter(
     [
         render.Panel(painted(np.array(along)), title="laminae, from the light"),

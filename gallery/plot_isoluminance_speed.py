@@ -40,6 +40,9 @@ for shape, axis in zip(study.SHAPES, axes, strict=True):
     axis.xaxis.set_minor_formatter(NullFormatter())
     axis.grid(alpha=0.3)
 axes[0].set_ylabel("ms to model and to draw a picture")
-axes[0].legend()
+for area in (550, 9000, 55_000):
+    axes[0].scatter([], [], s=30 + area / 400, c="#888888", label=f"{area} pixels")
+axes[0].legend(loc="upper right")
+axes[0].set_ylim(top=1.7 * axes[0].get_ylim()[1])
 figure.tight_layout()
 plt.show()

@@ -11,6 +11,7 @@ conditioned by its normals; its dark side is as dark as that of B. All panels us
 law of the paper (``compensate=False``). In A a dark sphere hides the threads on the far side.
 """
 
+# sphinx_gallery_thumbnail_number = 1
 import numpy as np
 import pyvista as pv
 
@@ -30,32 +31,29 @@ scene = Scene(
     material=Material(ambient=0.1, diffuse=0.5, specular=1.0, color=(1.0, 0.25, 0.30)),
 )
 # Threads that start at even steps around the equator keep even steps on every circle of latitude.
-turn = np.linspace(0, 2 * np.pi, 220, endpoint=False)
+turn = np.linspace(0, 2 * np.pi, 120, endpoint=False)
 equator = 0.5 * np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1)
 panels = vizlight.satin(ball, scene, tangents="satin", seeds=equator, compensate=False)
-dark = pv.Sphere(radius=0.496, theta_resolution=120, phi_resolution=120)
+dark = pv.Sphere(radius=0.497, theta_resolution=120, phi_resolution=120)
 dark["rgb"] = np.full((dark.n_points, 3), 0.02)
 panels["curves"] = pv.MultiBlock([panels["curves"], dark])
-
-plotter = render.make_plotter(
-    [render.Panel(panel, "rgb", title) for panel, title in zip(panels, "ABCD", strict=True)],
-    camera=camera,
-    size=(1600, 440),
-    background="#101010",
-    line_diameter=0.009,
-)
-plotter.show()
-
-# %%
-# A and D as large as a page. Each thread has, across its width, the light of the cylinder that it
-# stands for.
+threads = {"background": "#101010", "line_diameter": 0.011}
 
 plotter = render.make_plotter(
     [render.Panel(panels[name], "rgb") for name in ("curves", "conditioned")],
     camera=render.camera_on(ball.bounds, (0.2, -1, 0.35), zoom=1.5),
     size=(1600, 800),
-    background="#101010",
-    line_diameter=0.01,
-    render_lines_as_tubes=True,
+    **threads,
+)
+plotter.show()
+
+# %%
+# The four panels. In A a dark sphere hides the threads on the far side.
+
+plotter = render.make_plotter(
+    [render.Panel(panel, "rgb", title) for panel, title in zip(panels, "ABCD", strict=True)],
+    camera=camera,
+    size=(1600, 440),
+    **threads,
 )
 plotter.show()

@@ -5,7 +5,8 @@ Shapes in 4-space
 Shapes from ``vizlight.geometry.manifolds``, lit in 4-space and projected to 3-space. From left to
 right: the Klein bottle and the Veronese surface (a projective plane), neither of which intersects
 itself in 4-space although its projection does; the graph of w = z^2; fibres of the Hopf map, which
-are disjoint circles of the 3-sphere; and the section of the 3-sphere by a hyperplane.
+are disjoint circles of the 3-sphere; and the section of the 3-sphere by a hyperplane. Colours show
+the fourth coordinate: where surfaces of different colours cross, they are apart in 4-space.
 """
 
 import numpy as np
@@ -47,9 +48,15 @@ shapes = {
     ),
 }
 
+
+def coloured(lit):
+    """Return a shape in the colours of its fourth coordinate, times its light."""
+    return vizlight.tint(lit, np.asarray(lit["position"])[:, 3], cmap="RdYlBu_r")
+
+
 plotter = render.make_plotter(
     [
-        render.Panel(vizlight.manifold(shape, scene=scene, **options), title=title)
+        render.Panel(coloured(vizlight.manifold(shape, scene=scene, **options)), "rgb", title)
         for title, (shape, options) in shapes.items()
     ],
     camera=camera,

@@ -21,7 +21,7 @@ from vizlight import Light, Material, Scene, View, engine, render
 
 os.environ["VIZLIGHT_FAST"] = "0"
 bundle = vizlight.load_example("fibre_bundle.vtp")
-camera = render.camera_on(bundle, (0.3, -1, 0.4), aspect=1.2)
+camera = render.camera_on(bundle, (0.3, -1, 0.4), aspect=1.07, zoom=1.35)
 scene = Scene(
     lights=Light.headlight(),
     view=View(direction=(0.3, -1, 0.4)),
@@ -44,7 +44,7 @@ plotter = render.make_plotter(
     ],
     camera=camera,
     size=(1800, 560),
-    line_width=1,
+    line_width=1.2,
 )
 plotter.show()
 

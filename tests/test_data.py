@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import vizlight
@@ -50,10 +51,44 @@ def test_the_relief_is_what_the_readme_tells():
     assert earth.bounds[:4] == pytest.approx((-179.8333, 179.8333, -89.8333, 89.8333), abs=1e-3)
 
 
+def test_the_dog_is_what_the_readme_tells():
+    """It is closed, so that the length of a ray inside it is defined."""
+    dog = vizlight.load_example("dog.vtp")
+    assert (dog.n_points, dog.n_cells, dog.n_open_edges) == (16952, 33900, 0)
+    assert dog.is_manifold
+
+
+def test_the_fault_is_what_the_readme_tells():
+    fault = vizlight.load_example("jacksboro_fault.vti")
+    assert fault.dimensions == (403, 344, 1)
+    assert fault.spacing[:2] == pytest.approx((74.40, 92.66), abs=0.01)
+    assert (fault["elevation"].min(), fault["elevation"].max()) == (236, 1076)
+
+
+def test_the_winds_are_what_the_readme_tells():
+    """They are tangent to the sphere; in July the Somali jet blows toward the north-east."""
+    air = vizlight.load_example("winds_of_july.vtp")
+    assert (air.n_points, air.n_cells, air.n_open_edges) == (10226, 20448, 0)
+    place, wind = np.asarray(air.points, dtype=float), np.asarray(air["wind"], dtype=float)
+    assert np.linalg.norm(place, axis=1) == pytest.approx(1, abs=1e-6)
+    assert np.abs(np.sum(place * wind, axis=1)).max() < 1e-5
+    longitude, latitude = np.radians([52.5, 10.0])
+    east = np.array([-np.sin(longitude), np.cos(longitude), 0])
+    up = np.array([*(np.cos(latitude) * np.array([east[1], -east[0]])), np.sin(latitude)])
+    here = np.argmax(place @ up)
+    assert wind[here] @ east > 5
+    assert wind[here] @ np.cross(up, east) > 5
+    outward = np.sum(
+        air.compute_normals(cell_normals=False, auto_orient_normals=False)["Normals"] * place,
+        axis=1,
+    )
+    assert outward.min() > 0.9
+
+
 def test_unknown_data():
     with pytest.raises(
         ValueError,
-        match=r"name: expected one of \['earth_relief.vti', 'fibre_bundle.vtp', "
-        r"'rotating_disk.vtu'\], got 'x'",
+        match=r"name: expected one of \['dog.vtp', 'earth_relief.vti', 'fibre_bundle.vtp', "
+        r"'jacksboro_fault.vti', 'rotating_disk.vtu', 'winds_of_july.vtp'\], got 'x'",
     ):
         vizlight.example_path("x")

@@ -49,7 +49,8 @@ def load_example(name: str = "rotating_disk.vtu") -> pv.DataSet:
     Parameters
     ----------
     name : str, default: "rotating_disk.vtu"
-        Name of the file; other files are "fibre_bundle.vtp" and "earth_relief.vti".
+        Name of the file; other files are "fibre_bundle.vtp", "dog.vtp", "winds_of_july.vtp",
+        "earth_relief.vti" and "jacksboro_fault.vti".
 
     Returns
     -------

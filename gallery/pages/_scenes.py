@@ -23,14 +23,14 @@ from vtkmodules.vtkRenderingAnnotation import vtkCornerAnnotation
 import vizlight
 
 #: Scripts with an interactive scene: views of meshes of a few megabytes.
-INTERACTIVE = ("plot_flow", "plot_carotid", "plot_complex_curve")
+INTERACTIVE = ("plot_flow", "plot_winds", "plot_complex_curve")
 #: What the page of one view runs: it tells the others beside it how its camera was moved.
 LINK = (Path(__file__).parent / "link.js").read_text("utf-8")
 
 # Lines and flows, then surfaces, terrain, 4-space, formulas and their errors; scripts that are not
 # listed come last.
 ORDER = [
-    "plot_flow", "plot_live", "plot_carotid", "plot_lines", "plot_bundle",
+    "plot_winds", "plot_flow", "plot_live", "plot_lines", "plot_bundle",
     "plot_principal_lines", "plot_streaklines", "plot_tubes", "plot_satin", "plot_fur",
     "plot_ambient", "plot_depth_cue", "plot_attenuation",
     "plot_terrain_day", "plot_terrain", "plot_earth", "plot_bas_relief", "plot_seeping_light",
@@ -42,15 +42,13 @@ ORDER = [
 
 #: Part of a wide picture that its thumbnail shows: left, top, right and bottom as shares of 1.
 PARTS = {
-    "plot_bas_relief": (0.335, 0.05, 0.665, 0.95),
-    "plot_carotid": (0.08, 0.12, 0.92, 0.88),
-    "plot_codimension": (0.25, 0.56, 0.5, 1.0),
+    "plot_bas_relief": (0.01, 0.045, 0.325, 0.46),
+    "plot_codimension": (0.25, 0.6, 0.5, 1.0),
     "plot_complex_curve": (0.1, 0.05, 0.9, 1.0),
     "plot_depth_cue": (0.67, 0.06, 1.0, 0.5),
     "plot_earth": (0.02, 0.1, 0.48, 0.9),
     "plot_errors": (0.0, 0.0, 0.5, 1.0),
     "plot_field_in_4_space": (0.667, 0.07, 1.0, 1.0),
-    "plot_fur": (0.67, 0.2, 1.0, 0.9),
     "plot_highlight_error": (0.0, 0.2, 0.45, 0.9),
     "plot_highlights": (0.15, 0.06, 0.9, 0.5),
     "plot_highlights_shapes": (0.0, 0.08, 0.5, 0.92),
@@ -59,11 +57,9 @@ PARTS = {
     "plot_line_models": (0.0, 0.0, 0.47, 1.0),
     "plot_lines": (0.5, 0.05, 1.0, 1.0),
     "plot_principal_lines": (0.5, 0.0, 1.0, 1.0),
-    "plot_satin": (0.0, 0.0, 0.5, 1.0),
-    "plot_seeping_light": (0.67, 0.05, 1.0, 0.95),
+    "plot_seeping_light": (0.67, 0.06, 1.0, 0.75),
     "plot_shapes": (0.2, 0.07, 0.4, 1.0),
-    "plot_terrain": (0.0, 0.08, 0.165, 0.92),
-    "plot_terrain_day": (0.4, 0.04, 0.61, 0.47),
+    "plot_terrain_day": (0.37, 0.05, 0.63, 0.49),
     "plot_tolerance": (0.0, 0.2, 0.335, 0.78),
     "plot_tubes": (0.37, 0.08, 1.0, 0.95),
     "plot_turning": (0.4, 0.06, 0.61, 0.5),

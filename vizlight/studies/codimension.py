@@ -35,7 +35,7 @@ MATTE = Material(ambient=0.0, diffuse=1.0, specular=0.0)
 #: The radii are not given either; these are those of illustration 3. The curve advances as fast
 #: along one circle as along the other, so its tangents have many directions.
 R1, R2 = 1.5, 0.75
-WINDING = Fraction(161, 80)
+WINDING = Fraction(81, 40)
 #: At this distance of the eye the projection is stereographic, and the torus has circular sections.
 DISTANCE = math.hypot(R1, R2)
 
