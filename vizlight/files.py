@@ -128,7 +128,7 @@ def read(path: str | Path, /, *, salvage: bool = False, isolated: bool = False) 
     ):
         warnings.simplefilter("ignore")
         try:
-            found = foreign_files.read(path)
+            found = foreign_files.read(path, errors)
             if found is None:
                 found = pv.read(path)
             if lacking := short_files.contradiction(found):
