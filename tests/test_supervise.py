@@ -54,6 +54,20 @@ def test_the_exit_code_and_output_of_the_child_are_kept(code):
     assert run(f"print('made'); return {code}") == (code, "made\n", "")
 
 
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
+def test_a_signal_after_the_end_of_the_child_is_too_late(name):
+    late = f"""
+parent = os.getpid()
+code = _supervise.run(main)
+if os.getpid() == parent:
+    os.kill(parent, signal.{name})
+sys.exit(code)
+"""
+    code = script("return 3")[2].replace("sys.exit(_supervise.run(main))", late)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
+    assert (done.returncode, done.stderr) == (3, b"")
+
+
 CRASH = "os.kill(os.getpid(), signal.{name})"
 
 

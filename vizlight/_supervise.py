@@ -117,7 +117,7 @@ class _Stage:
 
 
 def run(main: Callable[[], int]) -> int:
-    """Run a function in a child process and return its exit code.
+    """Run a function in a child process and return its exit code; signals are blocked after that.
 
     Only Linux starts a child; elsewhere, and where threads run already, the function is called.
 
@@ -227,6 +227,8 @@ class _Parent:
         try:
             status = self.listen()
         finally:
+            # The child has ended: what comes now would end the process while it reports that.
+            signal.pthread_sigmask(signal.SIG_BLOCK, _PASSED_ON)
             for name, handler in kept.items():
                 signal.signal(name, handler)
             os.close(self.reader)

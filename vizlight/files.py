@@ -12,6 +12,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import uuid
 import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -128,7 +129,7 @@ def read(path: str | Path, /, *, salvage: bool = False, isolated: bool = False) 
     ):
         warnings.simplefilter("ignore")
         try:
-            found = foreign_files.read(path)
+            found = foreign_files.read(path, errors)
             if found is None:
                 found = pv.read(path)
             if lacking := short_files.contradiction(found):
@@ -513,14 +514,19 @@ def replace_file(
     """
     path = _path("output", path)
     target = path.resolve()  # a symbolic link stays, and what it points to is replaced
+    # A parent knows of the folder before it is there and until it is gone.
+    folder = target.parent / f".vizlight-{uuid.uuid4().hex[:12]}"
     try:
-        with tempfile.TemporaryDirectory(prefix=".vizlight-", dir=target.parent) as folder:
-            draft = Path(folder) / f"{path.stem}{path.suffix.lower()}"
-            with _supervise.stage(doing, path, temporary=folder):
+        with _supervise.stage(doing, path, temporary=str(folder)):
+            folder.mkdir(mode=0o700)
+            try:
+                draft = folder / f"{path.stem}{path.suffix.lower()}"
                 write(str(draft))
-            if target.exists():
-                draft.chmod(target.stat().st_mode)
-            draft.replace(target)
+                if target.exists():
+                    draft.chmod(target.stat().st_mode)
+                draft.replace(target)
+            finally:
+                shutil.rmtree(folder)
     except OSError as error:
         raise FileError(
             _check.message("output", "a file that can be written", f"'{path}' ({error.strerror})")

@@ -33,6 +33,17 @@ def run(capfd, *arguments):
     return code, out, err
 
 
+def test_ctrl_c_is_one_line(volume, tmp_path, capfd, monkeypatch):
+    def interrupted(*_args, **_keywords):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(vizlight.files, "read", interrupted)
+    out = tmp_path / "lit.vtp"
+    assert cli.main(["light", str(volume), "-o", str(out)]) == 2
+    assert capfd.readouterr().err == "vizlight: interrupted\n"
+    assert not out.exists()
+
+
 @pytest.mark.opengl
 def test_light_writes_mesh_and_picture(volume, tmp_path, capfd):
     code, out, err = run(

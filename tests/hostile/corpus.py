@@ -30,6 +30,12 @@ def legacy(points, *cells, kind="POLYDATA"):
     return text(*head, f"POINTS {len(points)} double", *rows, *cells)
 
 
+def dem(columns, there):
+    """Return an elevation model with a part of the columns of its header."""
+    head = f"{'':852}{1:6d}{columns:6d}".ljust(1024)
+    return (head + f"{1:6d}{1:6d}{3:6d}{1:6d}".ljust(1024) * there).encode()
+
+
 def image(*, extent="0 2 0 2 0 2", spacing="1 1 1", data=""):
     """Return an XML image."""
     return text(
@@ -103,6 +109,8 @@ CASES = {
     "faces.ply": Case(ply(faces=2**31), 2, DAMAGED),
     "past.ply": Case(ply(rows=("0 0 0", "1 0 0", "0 1 0", "3 0 1 9999")), 2, "file: expected"),
     "count.stl": Case(stl(2**32 - 1, 1), 2, DAMAGED),
+    "narrow.dem": Case(dem(5, 5), 2, "5' columns in the header, VTK reads 100 or more"),
+    "cut.dem": Case(dem(100, 60), 2, "60 of 100 profiles are there"),
     "cut.stl": Case(stl(2, 1), 2, DAMAGED),
     "no-end.stl": Case(
         text("solid a" + " " * 80, "facet normal 0 0 1", "outer loop", "vertex 0 0 0",

@@ -168,9 +168,30 @@ def _netcdf(folder):
     file.to_netcdf(folder / "four.nc", engine="netcdf4")
 
 
+def _dem(folder):
+    """Write a digital elevation model of the U.S. Geological Survey, as narrow as VTK reads it."""
+
+    def record(*parts):
+        words = {int: "{:6d}", float: "{:24.15E}", str: "{:144}"}
+        text = "".join(words[type(part)].format(part) for part in parts)
+        # Words of numbers have the exponent of Fortran.
+        return text.replace("E", "D").ljust(1024)
+
+    columns, rows, step, low = 100, 4, 30.0, 3000.0
+    east, north = low + (columns - 1) * step, low + (rows - 1) * step
+    corners = [low, low, low, north, east, north, east, low]
+    head = record("hills", 1, 1, 1, 10, *[0.0] * 15, 2, 2, 4, *corners, 0.0, 999.0, 0.0, 0).rstrip()
+    head += f"{step:12.6E}{step:12.6E}{1:12.6E}{1:6d}{columns:6d}"
+    profiles = [
+        record(1, i + 1, rows, 1, low + i * step, low, 0.0, 0.0, 999.0, *range(i, i + rows))
+        for i in range(columns)
+    ]
+    (folder / "hills.dem").write_text(head.ljust(1024) + "".join(profiles))
+
+
 def write(folder):
     """Write all files whose packages are installed, and return their paths in order."""
-    for kind in (_vtk, _surfaces, _of_meshio, _tracts, _trx, _netcdf):
+    for kind in (_vtk, _surfaces, _dem, _of_meshio, _tracts, _trx, _netcdf):
         try:
             kind(folder)
         except ImportError:

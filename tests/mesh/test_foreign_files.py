@@ -98,11 +98,18 @@ def test_a_tractogram_without_lines_or_header(name):
         vizlight.read(tract(name))
 
 
-def test_a_tractogram_that_is_cut(tmp_path):
-    path = tmp_path / "a.trk"
-    path.write_bytes(tract("standard.trk").read_bytes()[:1100])
-    with pytest.raises(files.FileError, match=r"file: expected a mesh"):
+@pytest.mark.parametrize(("name", "cut"), [("standard.trk", 5), ("standard.tck", 19)])
+def test_the_whole_streamlines_of_a_cut_tractogram_are_salvaged(name, cut, tmp_path):
+    whole = vizlight.read(tract(name))
+    path = tmp_path / name
+    path.write_bytes(tract(name).read_bytes()[:-cut])
+    with pytest.raises(files.FileError, match="not damaged"):
         vizlight.read(path)
+    with pytest.warns(UserWarning, match="is damaged"):
+        mesh = vizlight.read(path, salvage=True)
+    assert mesh.n_cells == 119
+    np.testing.assert_array_equal(mesh.points, whole.points[: mesh.n_points])
+    assert set(mesh.point_data) == set(whole.point_data)
 
 
 @pytest.mark.filterwarnings("ignore:.*of the edges are sharper")

@@ -23,6 +23,7 @@ app = App(
     help="Light that makes scientific data legible.",
     version=__version__,
     result_action="return_value",
+    suppress_keyboard_interrupt=False,
 )
 
 

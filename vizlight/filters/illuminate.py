@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
-import numpy as np
 import pyvista as pv
 
 from vizlight import _check
 from vizlight.filters import lighting
-from vizlight.mesh import blocks, bundles, normals, refining
-from vizlight.mesh.inputs import part_of
+from vizlight.mesh import batches, blocks, bundles, normals, refining
 from vizlight.reading.inputs import uses_normals
 from vizlight.scene import Scene
 from vizlight.shading.options import Bundle, LightOptions, accepts
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
 
     from typing_extensions import Unpack
 
@@ -126,19 +124,18 @@ def light_mesh(
     With ``options.refine`` the result is a new mesh, also with ``inplace``.
     """
     _check.instance("scene", scene, Scene)
-    blocks.check(mesh)
-    # A refined mesh has points of its own; any other gets its own arrays when all is computed.
-    deep = not (_check.boolean("inplace", inplace) or options.refine)
-    out = mesh if inplace else separate_copy(mesh, deep=False)
-    named = list(blocks.named_blocks(out))
+    named = blocks.check(mesh)
+    inplace = _check.boolean("inplace", inplace)
     lighting.refuse_overwriting(
         named, options.name, components=options.components, colored=scene.colored,
         bundle=bool(options.bundle),
     )  # fmt: skip
     taken = [_split(block, path, options) for block, path in named]
-    parts = [
-        part_of(own, path, scene, options) for own, (_, path) in zip(taken, named, strict=True)
-    ]
+    # A refined mesh, and shares of light inside a bundle, are those of each mesh.
+    groups, parts = batches.parts_of(
+        taken, [path for _, path in named], scene, options,
+        join=not (options.refine or options.bundle),
+    )  # fmt: skip
     rest: list[refining.Left] = []
     if options.refine:
         fitted = lighting.fit_depth_cue(scene, [part.inputs for part in parts])
@@ -147,9 +144,7 @@ def light_mesh(
             for own, (_, path), part in zip(taken, named, parts, strict=True)
         ]
         refining.warn_of_rest(refined, options.refine)
-        out = _replaced(out, iter([one.mesh for one in refined]))
-        named = list(blocks.named_blocks(out))
-        taken = [block for block, _ in named]
+        taken = [one.mesh for one in refined]
         parts, rest = [one.part for one in refined], [one.left for one in refined]
     inputs = [part.inputs for part in parts]
     dimmings: list[bundles.Dimming] = []
@@ -158,33 +153,38 @@ def light_mesh(
             taken, inputs, scene, options.bundle, options.name, threads, show=progress_bar
         )
         inputs = lighting.dimmed(inputs, dimmings)
-    results, fitted = lighting.light(
+    shadings, fitted = lighting.light(
         [(given, part.options) for given, part in zip(inputs, parts, strict=True)],
         scene,
         threads=threads,
         progress_bar=progress_bar,
     )
+    results = batches.split(groups, shadings)
+    sides = batches.split(groups, [part.sided for part in parts])
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
-    sides = [part.sided for part in parts]
     inputs.clear()
     parts.clear()
-    for (block, _), own, sided in zip(named, taken, sides, strict=True):
-        if deep:
-            block.DeepCopy(own.copy(deep=False))
-        elif own is not block:
-            block.ShallowCopy(own)
+    groups.clear()
+    out, lit = mesh, taken
+    if not (inplace or options.refine):
+        lit = [own.copy() for own in taken]
+    elif not options.refine:
+        lit = [block for block, _ in named]
+        for block, own in zip(lit, taken, strict=True):
+            if own is not block:
+                block.ShallowCopy(own)
+    if options.refine or not inplace:
+        out = blocks.like(mesh, iter(lit))
+    for block, sided in zip(lit, sides, strict=True):
         if sided is not None:
             normals.keep(block, sided)
-    for block, _ in named:
         refining.forget(block, options.name)
-    inside = sum(sided.inside for sided in sides if sided is not None)
-    blocks_lit = [block for block, _ in named]
+    inside = sum(int(sided.inside) for sided in sides if sided is not None)
     lighting.finish(
-        blocks_lit, results, "illuminate", fitted, options, options.name, inside=inside,
-        dimmings=dimmings,
-    )  # fmt: skip
-    _warn_of_edges(blocks_lit, sides, options)
-    for block, left in zip(blocks_lit, rest, strict=False):
+        lit, results, "illuminate", fitted, options, options.name, inside=inside, dimmings=dimmings
+    )
+    _warn_of_edges(lit, sides, options)
+    for block, left in zip(lit, rest, strict=False):
         block.field_data[f"{options.name}{refining.LEFT}"] = [left.error, left.share]
     return out
 
@@ -211,33 +211,12 @@ def _warn_of_edges(
     meshes: Sequence[pv.DataSet], sides: Sequence[Sided | None], options: LightOptions
 ) -> None:
     """Warn if normals were averaged across many sharp edges."""
-    shares = [0.0 if sided is None else sided.sharp for sided in sides]
+    shares = [0.0 if sided is None else float(sided.sharp) for sided in sides]
     if options.feature_angle is None:
         splits = all(isinstance(mesh, pv.PolyData) for mesh in meshes)
         normals.warn_of_edges(max(shares, default=0.0), splits)
 
 
-def _replaced(mesh: MeshT, made: Iterator[pv.DataSet]) -> MeshT:
-    """Return the next of some datasets for a dataset, a MultiBlock of them for a MultiBlock."""
-    if not isinstance(mesh, pv.MultiBlock):
-        return cast("MeshT", next(made))
-    for i in range(mesh.n_blocks):
-        block = mesh[i]
-        if block is not None:
-            mesh.replace(i, _replaced(block, made))
-    return mesh
-
-
-def separate_copy(mesh: MeshT, *, deep: bool = True) -> MeshT:
-    """Return a mesh that may get new arrays; its own are shared with the first if not ``deep``."""
-    if not isinstance(mesh, pv.MultiBlock):
-        return mesh.copy(deep=deep)
-    out = type(mesh)()
-    for i in range(mesh.n_blocks):
-        block = mesh[i]
-        out.append(
-            None if block is None else separate_copy(block, deep=deep), mesh.get_block_name(i)
-        )
-    for key, value in mesh.field_data.items():
-        out.field_data[key] = np.array(value)
-    return out
+def separate_copy(mesh: MeshT) -> MeshT:
+    """Return a copy of a mesh that shares no memory with it."""
+    return blocks.like(mesh, (block.copy() for block in blocks.all_blocks(mesh)))

@@ -45,12 +45,12 @@ def light(
     """
     fitted = fit_depth_cue(scene, [inputs for inputs, _ in parts if not inputs.generated])
     results: list[engine.Shading] = []
-    total = sum(inputs.count for inputs, _ in parts)
+    total, done = sum(inputs.count for inputs, _ in parts), 0
     with _progress.progress("light", total, show=progress_bar) as report:
         for inputs, options in parts:
-            done = sum(shading.luminance.size for shading in results)
             progress = _after(done, report)
             results.append(engine.run(inputs, fitted, options, threads=threads, progress=progress))
+            done += inputs.count
     return results, fitted
 
 
@@ -133,8 +133,12 @@ def finish(
 
     Points inside volumes, of which there are ``inside``, have no normal and are not counted.
     """
+    shared: dict[int, Record] = {}
     for i, (mesh, shading) in enumerate(zip(meshes, results, strict=True)):
-        record = of_light(shading, filter_name, scene, options)
+        plan = id(shading.plan)
+        if plan not in shared:
+            shared[plan] = of_light(shading, filter_name, scene, options)
+        record = shared[plan] | {"points": shading.valid.size, "invalid": shading.invalid}
         attach(mesh, shading, name, record, dimmings[i] if dimmings else None)
     invalid = sum(shading.invalid for shading in results) - inside
     if invalid > 0:

@@ -83,7 +83,7 @@ def read(mesh: pv.DataSet, path: str, scene: Scene, options: LightOptions) -> So
     inputs, sided = part.inputs, part.sided
     if isinstance(options.bundle, Bundle):
         inputs = _dimmed(mesh, inputs, scene, options.bundle, options.name)
-    inside = 0 if sided is None else sided.inside
+    inside = 0 if sided is None else int(sided.inside)
     source = Source(mesh, inputs, part.options, options, None, inside)
     turned = sided is not None and (
         source.facing == "eye" or (source.facing == "auto" and sided.any_open)

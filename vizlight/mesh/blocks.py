@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, TypeVar, cast
 
 import numpy as np
 import pyvista as pv
@@ -20,13 +20,15 @@ MeshT = TypeVar("MeshT", bound="pv.DataSet | pv.MultiBlock")
 DataSetT = TypeVar("DataSetT", bound=pv.DataSet)
 
 
-def check(mesh: object) -> None:
-    """Raise TypeError for anything but a dataset or a MultiBlock."""
+def check(mesh: object) -> list[tuple[pv.DataSet, str]]:
+    """Return the datasets with their paths; raise TypeError for anything else."""
     if not isinstance(mesh, pv.DataSet | pv.MultiBlock):
         remedy = "read files by pyvista.read, wrap VTK objects by pyvista.wrap"
         raise TypeError(_check.message("mesh", "a PyVista mesh", type(mesh).__name__, remedy))
-    for block, path in named_blocks(mesh):
+    named = list(named_blocks(mesh))
+    for block, path in named:
         check_whole(block, "mesh", f"block {path}: " if path else "")
+    return named
 
 
 def surface(mesh: object, name: str) -> pv.PolyData:
@@ -58,8 +60,23 @@ def named_blocks(mesh: object, path: str = "") -> Iterator[tuple[pv.DataSet, str
         yield mesh, path
         return
     for i in range(mesh.n_blocks):
-        if mesh[i] is not None:
-            yield from named_blocks(mesh[i], f"{path}/{mesh.get_block_name(i) or i}")
+        if (block := mesh[i]) is not None:
+            yield from named_blocks(block, f"{path}/{mesh.get_block_name(i) or i}")
+
+
+def like(mesh: MeshT, made: Iterator[pv.DataSet]) -> MeshT:
+    """Return the next of some datasets for a dataset, a MultiBlock of them for a MultiBlock."""
+    if not isinstance(mesh, pv.MultiBlock):
+        return cast("MeshT", next(made))
+    out = type(mesh)()
+    # Names and structure at once; one by one they take longer than the light of a small block.
+    out.CopyStructure(mesh)
+    for i in range(mesh.n_blocks):
+        if (block := mesh[i]) is not None:
+            out.SetBlock(i, like(block, made))
+    for key, value in mesh.field_data.items():
+        out.field_data[key] = np.array(value)
+    return out
 
 
 def box(mesh: pv.DataSet) -> tuple[Array, float]:

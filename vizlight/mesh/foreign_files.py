@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
+import io
+import re
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -35,6 +38,8 @@ PACKAGES = {
 )  # fmt: skip
 #: Name under which a package is imported, where that is another.
 MODULES = {"trx-python": "trx.trx_file_memmap"}
+#: Place of the number of columns in the header of an elevation model, and the least that VTK reads.
+_DEM_COLUMNS, _DEM_LEAST = slice(858, 864), 100
 #: Largest deviation from equal steps, as a share of a step, of the axes of an image.
 EQUAL = 1e-4
 
@@ -54,15 +59,20 @@ def missing(path: Path) -> str:
     return ""
 
 
-def read(path: Path) -> pv.DataSet | None:
-    """Return the mesh of a file that PyVista cannot read; None where it is left to PyVista."""
+def read(path: Path, faults: list[str]) -> pv.DataSet | None:
+    """Return the mesh of a file that PyVista cannot read; None where it is left to PyVista.
+
+    What is missing of a tractogram is appended to ``faults``; its whole streamlines are returned.
+    """
     suffix = path.suffix.lower()
     if suffix in (".trk", ".tck"):
-        return _tracts(path)
+        return _tracts(path, faults)
     if suffix == ".trx":
         return _tracts_of_trx(path)
     if suffix in (".nc", ".cdf"):
         return _grid(path)
+    if suffix == ".dem":
+        _refuse_narrow(path)
     if suffix == ".pvtp":
         reader = vtkXMLPPolyDataReader()
         reader.SetFileName(str(path))
@@ -71,15 +81,33 @@ def read(path: Path) -> pv.DataSet | None:
     return None
 
 
-def _tracts(path: Path) -> pv.PolyData:
+def _refuse_narrow(path: Path) -> None:
+    """Raise ValueError for an elevation model in which VTK's reader divides by zero."""
+    with path.open("rb") as file:
+        head = file.read(_DEM_COLUMNS.stop)
+    number = head[_DEM_COLUMNS].strip()
+    if not number.isdigit() or int(number) < _DEM_LEAST:
+        got = ascii(number.decode("latin-1"))
+        raise ValueError(f"{got} columns in the header, VTK reads {_DEM_LEAST} or more")
+
+
+def _tracts(path: Path, faults: list[str]) -> pv.PolyData:
     import nibabel
 
-    # The header as it is in the file; nibabel takes a cut between two streamlines for the end.
-    announced = nibabel.streamlines.load(path, lazy_load=True).header.get("nb_streamlines", 0)
-    tracts: Any = nibabel.streamlines.load(path).tractogram
+    tracts: Any
+    try:
+        tracts = nibabel.streamlines.load(path).tractogram
+    except nibabel.streamlines.tractogram_file.HeaderError:
+        raise
+    except Exception as error:  # noqa: BLE001 - of a cut file, of any type
+        tracts = _whole_streamlines(path)
+        faults.append(f"{type(error).__name__}: {error}")
     lines = tracts.streamlines
-    if path.suffix.lower() == ".trk" and len(lines) < announced:
-        raise ValueError(f"{len(lines)} of {announced} streamlines are there")
+    if path.suffix.lower() == ".trk":
+        # The header as it is in the file; nibabel takes a cut between two streamlines for the end.
+        header = nibabel.streamlines.load(path, lazy_load=True).header
+        if len(lines) < header["nb_streamlines"]:
+            faults.insert(0, f"{len(lines)} of {header['nb_streamlines']} streamlines are there")
     return _polylines(
         lines.get_data(),
         lines._offsets,
@@ -87,6 +115,41 @@ def _tracts(path: Path) -> pv.PolyData:
         {name: rows.get_data() for name, rows in tracts.data_per_point.items()},
         dict(tracts.data_per_streamline.items()),
     )
+
+
+def _whole_streamlines(path: Path) -> Any:
+    """Return the streamlines before the place where a file is cut, as nibabel's tractogram."""
+    import nibabel
+
+    data = path.read_bytes()
+    if start := re.match(rb"mrtrix tracks.*?^file: \. (\d+)", data, re.DOTALL | re.MULTILINE):
+        # nibabel reads no file of which a point, 12 bytes, is cut.
+        data = data[: len(data) - (len(data) - int(start[1])) % 12]
+    tracts = nibabel.streamlines.load(io.BytesIO(data), lazy_load=True).tractogram
+    found = _until_error(tracts)
+    first = found[0] if found else None
+    return nibabel.streamlines.Tractogram(
+        # Only these are in the space of the header.
+        _until_error(tracts.streamlines),
+        {
+            name: [line.data_for_streamline[name] for line in found]
+            for name in (first.data_for_streamline if first else ())
+        },
+        {
+            name: [line.data_for_points[name] for line in found]
+            for name in (first.data_for_points if first else ())
+        },
+    )
+
+
+def _until_error(values: Iterable[Any]) -> list[Any]:
+    """Return the values before an error."""
+    found = []
+    with contextlib.suppress(Exception):
+        # Extending the list would ask for the length, which is an error.
+        for value in values:
+            found.append(value)
+    return found
 
 
 def _tracts_of_trx(path: Path) -> pv.PolyData:

@@ -11,6 +11,7 @@ from vizlight.reading import inputs as reading
 if TYPE_CHECKING:
     import pyvista as pv
 
+    from vizlight._types import Indices
     from vizlight.reading.inputs import Part
     from vizlight.scene import Scene
     from vizlight.shading.inputs import ShadingInputs
@@ -24,8 +25,14 @@ def inputs_of(mesh: pv.DataSet, path: str, scene: Scene, options: LightOptions) 
     return part_of(mesh, path, scene, options).inputs
 
 
-def part_of(mesh: pv.DataSet, path: str, scene: Scene, options: LightOptions) -> Part:
+def part_of(
+    mesh: pv.DataSet,
+    path: str,
+    scene: Scene,
+    options: LightOptions,
+    starts: Indices | None = None,
+) -> Part:
     """Return what one mesh is lit by; see :func:`vizlight.reading.inputs.part_of`."""
-    part = reading.part_of(mesh, path, scene, options, kept=_KEPT)
+    part = reading.part_of(mesh, path, scene, options, kept=_KEPT, starts=starts)
     cells = lambda: splitting.simplices(mesh)  # noqa: E731
     return part._replace(inputs=dataclasses.replace(part.inputs, cells=cells))

@@ -52,7 +52,7 @@ def normals_of(
         return given
     found = computed_normals(mesh, view=view, sides=warn)
     if warn:
-        warn_of_edges(found.sharp, isinstance(mesh, pv.PolyData))
+        warn_of_edges(float(found.sharp), isinstance(mesh, pv.PolyData))
     return found.vectors
 
 
@@ -131,12 +131,15 @@ def fingerprint(mesh: pv.DataSet) -> str | None:
     digest = hashlib.sha256()
     arrays = [np.asarray(mesh.points)]
     for cell in cells:
-        arrays += [
-            np.asarray(pv.convert_array(cell.GetConnectivityArray())),
-            np.asarray(pv.convert_array(cell.GetOffsetsArray())),
-        ]
+        if cell.GetNumberOfCells():
+            arrays += [
+                pv.convert_array(cell.GetConnectivityArray()),
+                pv.convert_array(cell.GetOffsetsArray()),
+            ]
+        else:
+            arrays.append(np.empty(0))
     for array in arrays:
-        digest.update(f"{array.dtype}{array.shape}".encode())
+        digest.update(f"{array.dtype.str}{array.shape}".encode())
         digest.update(np.ascontiguousarray(array).data)
     return digest.hexdigest()
 
@@ -148,7 +151,7 @@ def keep(mesh: pv.DataSet, normals: Sided) -> None:
     """
     if not normals.computed or normals.kept or normals.lean is None or not mesh.n_points:
         return
-    if KEPT in mesh.point_data and KEPT not in records.made(mesh, KEPT):
+    if mesh.GetPointData().HasArray(KEPT) and KEPT not in records.made(mesh, KEPT):
         return
     source = fingerprint(mesh)
     if source is None:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pyvista as pv
 
 from vizlight import _check
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
 
@@ -24,15 +24,18 @@ def refuse_unnamed(name: str, value: object) -> None:
 
 
 def attach_rows(mesh: pv.DataSet, name: str, array: NDArray[np.generic]) -> None:
-    """Attach a point array; PyVista itself refuses an array without rows."""
-    if len(array):
-        mesh.point_data[name] = array
+    """Attach a point array; a part of a larger array is copied."""
+    if array.dtype in (np.float32, np.float64) or not len(array):
+        # By VTK itself: PyVista's way takes longer than the light of a small mesh, and refuses an
+        # array without rows.
+        part = array.base is not None and array.base.size > array.size
+        mesh.GetPointData().AddArray(pv.convert_array(array, name, deep=part))
     else:
-        mesh.GetPointData().AddArray(pv.convert_array(array, name))
+        mesh.point_data[name] = array
 
 
 def activate(mesh: pv.DataSet, name: str) -> None:
     """Make a point array the active scalars of a mesh, even if a cell array was active."""
-    mesh.point_data.active_scalars_name = name
-    if mesh.n_points:
+    mesh.GetPointData().SetActiveScalars(name)
+    if mesh.n_points and mesh.active_scalars_info.association != pv.FieldAssociation.POINT:
         mesh.set_active_scalars(name, preference="point")

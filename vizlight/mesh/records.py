@@ -7,6 +7,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import pyvista as pv
+from vtkmodules.vtkCommonCore import vtkStringArray
 
 from vizlight import _check
 from vizlight.mesh import blocks, point_arrays
@@ -35,8 +36,12 @@ def attach(
 
 def write(mesh: pv.DataSet, name: str, record: Record, arrays: Iterable[str] = ()) -> None:
     """Attach the record of an array, with digests of the point arrays that it tells of."""
-    digests = {own: digest(mesh.point_data[own]) for own in sorted(arrays)}
-    mesh.field_data[record_key(name)] = [json.dumps(record | {"arrays": digests})]
+    data = mesh.GetPointData()
+    digests = {own: digest(pv.convert_array(data.GetArray(own))) for own in sorted(arrays)}
+    text = vtkStringArray()
+    text.SetName(record_key(name))
+    text.InsertNextValue(json.dumps(record | {"arrays": digests}))
+    mesh.GetFieldData().AddArray(text)
 
 
 def read(mesh: pv.DataSet, name: str) -> dict[str, Any] | None:
@@ -45,6 +50,8 @@ def read(mesh: pv.DataSet, name: str) -> dict[str, Any] | None:
     The record may come from a file of unknown origin: its form is checked, and nothing in it is
     taken for true that the mesh itself does not confirm.
     """
+    if not mesh.GetFieldData().HasArray(record_key(name)):
+        return None
     try:
         record = json.loads(str(mesh.field_data[record_key(name)][0]))
     except (KeyError, IndexError, ValueError, RecursionError):

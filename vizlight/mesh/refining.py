@@ -188,7 +188,7 @@ def _joined(rows: ArraySource, added: Array) -> Array:
 
 def forget(mesh: pv.DataSet, name: str) -> None:
     """Remove the error of an earlier refinement, which new light does not have."""
-    if name + LEFT in mesh.field_data and records.read(mesh, name) is not None:
+    if mesh.GetFieldData().HasArray(name + LEFT) and records.read(mesh, name) is not None:
         del mesh.field_data[name + LEFT]
 
 

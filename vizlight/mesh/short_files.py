@@ -50,7 +50,7 @@ _LONGEST_HEADER = 10_000
 
 
 def missing_part(path: Path, /) -> str:
-    """Return what a PLY, STL, SU2 or legacy VTK file of text lacks of what it announces.
+    """Return what a DEM, PLY, STL, SU2 or legacy VTK file of text lacks of what it announces.
 
     A cut is not seen where it leaves out whole arrays, and in binary PLY files with faces of more
     than three corners. A text of STL announces its end.
@@ -66,9 +66,11 @@ def missing_part(path: Path, /) -> str:
         Reason why the file cannot be whole; empty if it may be, or is of another format.
     """
     suffix = path.suffix.lower()
-    if suffix not in (".ply", ".stl", ".su2", ".vtk"):
+    if suffix not in (".dem", ".ply", ".stl", ".su2", ".vtk"):
         return ""
     with path.open("rb") as file:
+        if suffix == ".dem":
+            return _dem(file.read())
         if suffix == ".su2":
             return _su2(file)
         if suffix == ".stl":
@@ -173,6 +175,29 @@ def _su2(file: BinaryIO) -> str:
         counts = name in ("NPOIN", "NELEM", "MARKER_ELEMS") and number.isdecimal()
         expected, found = int(number) if counts else 0, 0
     return f"{found} of {expected} lines of {name!r} are there" if found < expected else ""
+
+
+#: Bytes of a record of an elevation model, of the words before the elevations of a profile, and of
+#: an elevation; elevations in the first record of a profile, and in each that follows.
+_DEM_RECORD, _DEM_HEAD, _DEM_WORD, _DEM_FIRST, _DEM_NEXT = 1024, 144, 6, 146, 170
+
+
+def _dem(data: bytes) -> str:
+    """Compare the profiles of an elevation model with their number in the header."""
+
+    def number(at: int) -> int:
+        word = data[at : at + _DEM_WORD].strip()
+        return int(word) if word.isdigit() else 0
+
+    announced, found, at = number(858), 0, _DEM_RECORD
+    while found < announced and (count := number(at + 2 * _DEM_WORD)):
+        full, rest = divmod(max(count - _DEM_FIRST, 0), _DEM_NEXT)
+        last = _DEM_HEAD + _DEM_WORD * min(count, _DEM_FIRST)
+        at += _DEM_RECORD * (full + bool(rest))
+        if at + (_DEM_WORD * rest or last) > len(data):
+            break
+        found, at = found + 1, at + _DEM_RECORD
+    return f"{found} of {announced} profiles are there" if found < announced else ""
 
 
 #: Bytes of the header of a binary STL file with its count, and of each triangle.

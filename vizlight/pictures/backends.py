@@ -8,7 +8,7 @@ import os
 import subprocess
 import sys
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import TYPE_CHECKING, Literal, cast, get_args
 
 from vizlight import _check
 
@@ -72,7 +72,16 @@ def probe(backend: Backend) -> Probe:
         If the name is unknown.
     """
     _check.choice("backend", backend, get_args(Backend))
-    return _probe_window(backend, _WINDOWS[backend], f"try: {_INSTALL[backend]}")
+    remedy = f"try: {_INSTALL[backend]}"
+    found = _probe_window(backend, _WINDOWS[backend], remedy)
+    if found.works and _class_of(found) != _WINDOWS[backend]:
+        return Probe(backend, works=False, detail=f"not available ({remedy})")
+    return found
+
+
+def _class_of(found: Probe) -> str:
+    """Return the window class that draws: VTK takes another one for a class that cannot."""
+    return found.detail.partition(",")[0]
 
 
 @functools.cache
@@ -94,11 +103,17 @@ def _probe_window(name: str, window: str, remedy: str) -> Probe:
     return Probe(name, works=False, detail=f"not available ({remedy})")
 
 
-def _check_variable(window: str) -> None:
-    """Check that VTK can draw with the window class that the environment names."""
+def _named(window: str) -> Backend | None:
+    """Return the backend that VTK takes for a window class that the environment names, if another.
+
+    Named itself it draws without VTK's warnings about the class that cannot.
+    """
     found = _probe_window(_VARIABLE, window, f"try: unset {_VARIABLE}")
     if not found.works:
         raise BackendError(f"no picture: {_VARIABLE}={window} is {found.detail}")
+    taken = _class_of(found)
+    others = (name for name, own in _WINDOWS.items() if own == taken != window)
+    return cast("Backend | None", next(others, None))
 
 
 def choose_backend(backend: Backend | None = None) -> Backend | None:
@@ -113,7 +128,8 @@ def choose_backend(backend: Backend | None = None) -> Backend | None:
     -------
     {"egl", "osmesa"} or None
         None leaves the choice to VTK: on a platform other than Linux, or if the environment
-        variable ``VTK_DEFAULT_OPENGL_WINDOW`` names a window class, with which VTK can draw.
+        variable ``VTK_DEFAULT_OPENGL_WINDOW`` names a window class that can draw. For one that
+        cannot it is the backend that VTK takes in its place.
 
     Raises
     ------
@@ -122,8 +138,7 @@ def choose_backend(backend: Backend | None = None) -> Backend | None:
     """
     _check.choice("backend", backend, get_args(Backend), optional=True)
     if backend is None and (window := os.environ.get(_VARIABLE)):
-        _check_variable(window)
-        return None
+        return _named(window)
     if backend is None and not sys.platform.startswith("linux"):
         return None
     candidates: tuple[Backend, ...] = ("egl", "osmesa") if backend is None else (backend,)

@@ -141,7 +141,7 @@ def assert_same_picture(
         path = _check.path("expected", expected)
         path = check_output(path, (".png",)) if add_missing else path
         name = path.stem
-        if not path.exists() and add_missing:
+        if add_missing and not path.exists():
             replace_file(path, Image.fromarray(seen).save)
         if not os.path.exists(path):  # noqa: PTH110 - False for a name that is too long
             places = _keep(failed, name, {"got": seen})

@@ -578,4 +578,6 @@ def plot(
     except BaseException:
         plotter.close()
         raise
-    return plotter.show(screenshot=screenshot or False, jupyter_backend=jupyter_backend)
+    # Outside a notebook PyVista warns that it ignores the backend.
+    backend = jupyter_backend if plotter.notebook else None
+    return plotter.show(screenshot=screenshot or False, jupyter_backend=backend)

@@ -94,7 +94,9 @@ def triangles(surface: vtkPolyData) -> Indices:
         split.PassLinesOff()
         split.SetInputData(surface)
         split.Update()
-        polys = split.GetOutput().GetPolys()
+        found = connectivity(split.GetOutput().GetPolys())[0].reshape(-1, 3)
+        # VTK's are twice as long, and go with the filter.
+        return found.astype(np.int32 if surface.GetNumberOfPoints() < 2**31 else np.intp)
     return connectivity(polys)[0].reshape(-1, 3)
 
 

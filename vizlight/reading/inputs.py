@@ -16,7 +16,7 @@ from vizlight.shading.inputs import ShadingInputs, Sides
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vizlight._types import Array, Dataset
+    from vizlight._types import Array, Dataset, Indices
     from vizlight.scene import Scene, View
     from vizlight.shading.options import Facing, LightOptions
 
@@ -45,11 +45,18 @@ def uses_normals(mesh: Dataset, options: LightOptions) -> bool:
 
 
 def part_of(
-    mesh: Dataset, path: str, scene: Scene, options: LightOptions, *, kept: Kept | None = None
+    mesh: Dataset,
+    path: str,
+    scene: Scene,
+    options: LightOptions,
+    *,
+    kept: Kept | None = None,
+    starts: Indices | None = None,
 ) -> Part:
     """Return what one mesh is lit by; an error names the path of its block.
 
-    Without a view both sides of an open surface are lit alike, by ``two_sided`` in the options.
+    With ``starts`` the mesh is a batch, see :mod:`vizlight.mesh.batches`. Without a view both
+    sides of an open surface are lit alike, by ``two_sided`` in the options.
 
     Raises
     ------
@@ -72,7 +79,9 @@ def part_of(
             )
         elif tangents is None or options.conditioned:
             known = None if kept is None else kept.normals
-            sided = sided_normals(mesh, options.normals, n, shown_side(options), kept=known)
+            sided = sided_normals(
+                mesh, options.normals, n, shown_side(options), kept=known, starts=starts
+            )
             normals = sided.facing(shown_side(options), points, scene.view)
             if options.flip_normals:
                 normals = -normals

@@ -13,7 +13,7 @@ from vizlight import _check, _pool
 from vizlight.reading.arrays import vectors_of
 from vizlight.reading.cells import as_numpy, connectivity, has_faces, places, triangles, used
 from vizlight.reading.hull import dimension, outer_surface, scattered
-from vizlight.reading.orientation import BLOCK, Shape, pieces
+from vizlight.reading.orientation import BLOCK, Owners, Shape, pieces
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -41,28 +41,41 @@ class Sided:
         :data:`~vizlight.reading.orientation.MOST_LEAN` at most. None: 0 everywhere.
     open : ndarray of bool, shape (n_points,), or bool
         Points of pieces with a border, of which either side may be seen.
-    sharp : float
-        Share of edges that are creases, across which normals were averaged.
+    sharp : float or ndarray
+        Share of edges that are creases, across which normals were averaged; one for each mesh of
+        a batch.
     kept : bool
         Whether the normals come from an earlier result.
     computed : bool
         Whether they are those of the surface, not an array of the user.
-    inside : int
-        Number of points of a volume that are not on its surface.
+    inside : int or ndarray
+        Number of points of a volume that are not on its surface; one for each mesh of a batch.
     """
 
     vectors: Array
     lean: Array | None = None
     open: Bools | bool = False
-    sharp: float = 0.0
+    sharp: float | Array = 0.0
     kept: bool = False
     computed: bool = False
-    inside: int = 0
+    inside: int | Indices = 0
 
     @property
     def any_open(self) -> bool:
         """Whether a piece has a border."""
         return bool(np.any(self.open))
+
+    def part(self, i: int, rows: slice, /) -> Sided:
+        """Return what belongs to a mesh of a batch, by its number and its points."""
+        return Sided(
+            self.vectors[rows],
+            None if self.lean is None else self.lean[rows],
+            self.open[rows] if isinstance(self.open, np.ndarray) else self.open,
+            float(self.sharp[i]) if isinstance(self.sharp, np.ndarray) else self.sharp,
+            self.kept,
+            self.computed,
+            int(self.inside[i]) if isinstance(self.inside, np.ndarray) else self.inside,
+        )
 
     def facts(self) -> Array:
         """Return for each point its lean, and 1 on a piece with a border."""
@@ -107,11 +120,12 @@ def sided_normals(
     facing: Facing,
     *,
     kept: Callable[[Any], Sided | None] | None = None,
+    starts: Indices | None = None,
 ) -> Sided:
     """Return normals with their sides: those in ``value``, of the mesh, or of its surface.
 
-    ``kept`` is a function of the mesh that returns normals of its surface which are known already,
-    or None.
+    With ``starts`` the mesh is a batch, whose members are told apart. ``kept`` is a function of
+    the mesh that returns normals of its surface which are known already, or None.
 
     Raises
     ------
@@ -121,8 +135,8 @@ def sided_normals(
     given = given_normals(mesh, value, n)
     if given is None:
         if facing == "as given":
-            return computed_normals(mesh, as_wound=True, sides=False)
-        return (kept and kept(mesh)) or computed_normals(mesh)
+            return computed_normals(mesh, as_wound=True, sides=False, starts=starts)
+        return (kept and kept(mesh)) or computed_normals(mesh, starts=starts)
     if given.dtype.kind != "f":
         given = given.astype(np.float64)
     if facing in ("eye", "as given") or n != 3:
@@ -130,19 +144,24 @@ def sided_normals(
     surface, origin = _skin(mesh)
     if surface is None:
         return Sided(given)
-    if not _is_closed(surface):
-        return Sided(given, open=True)
     own = given if origin is None else np.where(origin[:, np.newaxis] < 0, 0, given[origin])
-    return Sided(-given if _is_inward(surface, own) else given)
+    owners = Owners(starts, origin)
+    closed = _closed(surface, owners)
+    inward = closed & _inward(surface, own, owners)
+    if starts is None:
+        return Sided(-given if inward[0] else given, open=not closed[0])
+    signs = np.repeat(np.where(inward, -1, 1).astype(given.dtype), np.diff(starts))
+    return Sided(signs[:, np.newaxis] * given, open=np.repeat(~closed, np.diff(starts)))
 
 
-def _is_closed(surface: vtkPolyData) -> bool:
-    """Return whether each edge of a surface has an even number of faces; places make an edge.
+def _closed(surface: vtkPolyData, owners: Owners) -> Bools:
+    """Return of each mesh whether each of its edges has an even number of faces.
 
-    The numbers of the edges, made from the coordinates of their ends, cancel by pairs.
+    Places make an edge. The numbers of the edges, made from the coordinates of their ends,
+    cancel by pairs.
     """
     points, rows = places(surface), triangles(surface)
-    number, odd = np.zeros(len(points), dtype=np.uint64), np.uint64(0)
+    number, odd = np.zeros(len(points), dtype=np.uint64), np.zeros(owners.count, np.uint64)
     with np.errstate(all="ignore"):
         for block in _pool.blocks(len(points), BLOCK):
             # The sum with 0 makes one of the two zeros.
@@ -152,8 +171,12 @@ def _is_closed(surface: vtkPolyData) -> bool:
         for block in _pool.blocks(len(rows), BLOCK):
             a, b = number[rows[block].ravel()], number[rows[block][:, [1, 2, 0]].ravel()]
             edges = _mixed((a + b) ^ _mixed(a ^ b))
-            odd ^= np.bitwise_xor.reduce(np.where(a == b, np.uint64(0), edges))
-    return not odd
+            edges = np.where(a == b, np.uint64(0), edges)
+            if owners.of is None:
+                odd ^= np.bitwise_xor.reduce(edges)
+            else:
+                np.bitwise_xor.at(odd, np.repeat(owners.of[rows[block][:, 0]], 3), edges)
+    return np.asarray(odd == 0)
 
 
 #: Odd numbers of 64 bits, and those of the finaliser of splitmix64.
@@ -169,18 +192,24 @@ def _mixed(x: NDArray[np.uint64]) -> NDArray[np.uint64]:
     return mixed
 
 
-def _is_inward(surface: vtkPolyData, normals: Array) -> bool:
-    """Return whether normals of a closed surface point to its inside, at its outermost points."""
+def _inward(surface: vtkPolyData, normals: Array, owners: Owners) -> Bools:
+    """Return of each closed mesh whether its normals at its outermost points point inside."""
     points = places(surface)
     ids = np.flatnonzero(used(surface))
     ids = ids[np.isfinite(points[ids]).all(axis=1) & np.isfinite(normals[ids]).all(axis=1)]
+    outward = np.zeros(owners.count)
     if not len(ids):
-        return False
-    outward = 0.0
+        return outward < 0
     for axis in range(3):
-        along = points[ids, axis]
-        outward += float(normals[ids[along.argmax()], axis])
-        outward -= float(normals[ids[along.argmin()], axis])
+        for sign in (1, -1):
+            along = sign * points[ids, axis]
+            if owners.of is None:
+                outward += sign * normals[ids[along.argmax()], axis]
+                continue
+            # The first of the farthest points of each.
+            order = np.lexsort((-along, owners.of[ids]))
+            own, first = np.unique(owners.of[ids][order], return_index=True)
+            outward[own] += sign * normals[ids[order[first]], axis]
     return outward < 0
 
 
@@ -201,7 +230,12 @@ def given_normals(mesh: Dataset, value: object, n: int) -> Array | None:
 
 
 def computed_normals(
-    mesh: Dataset, *, view: View | None = None, as_wound: bool = False, sides: bool = True
+    mesh: Dataset,
+    *,
+    view: View | None = None,
+    as_wound: bool = False,
+    sides: bool = True,
+    starts: Indices | None = None,
 ) -> Sided:
     """Return the normals of a mesh's outer surface, zero at points that are not on it.
 
@@ -220,6 +254,8 @@ def computed_normals(
         Whether the normals have the sides that the order of the corners of each face gives them.
     sides : bool
         Whether lean and share of sharp edges are found.
+    starts : ndarray of int, optional
+        First point of each mesh of a batch, and the number of points.
 
     Raises
     ------
@@ -242,20 +278,25 @@ def computed_normals(
         # VTK's copy of the cells takes as much memory as the mesh.
         found = bare
     del bare
-    shape = Shape(found)
+    owners = Owners(starts, origin)
+    shape = Shape(found, owners)
     if not as_wound:
         shape.orient(vectors, view)
-    lean, border, sharp, inside = None, shape.open[shape.piece], 0.0, 0
+    sharp: Array = np.zeros(owners.count)
+    lean, border = None, shape.open[shape.piece]
+    inside = np.zeros(owners.count, dtype=np.intp)
     if sides:
         lean = shape.lean(vectors)
         sharp = shape.sharp()
     if origin is not None:
         if dimension(mesh) == 3:
-            inside = count - int(np.count_nonzero(origin >= 0))
+            size = [count] if starts is None else np.diff(starts)
+            inside = size - owners.counts(np.flatnonzero(origin >= 0))
         vectors = scattered(vectors, origin, count)
         border = scattered(border.astype(np.float32), origin, count) > 0
         lean = None if lean is None else scattered(lean, origin, count)
-    return Sided(vectors, lean, border, sharp, computed=True, inside=inside)
+    all_of = Sided(vectors, lean, border, sharp, computed=True, inside=inside)
+    return all_of.part(0, slice(None)) if starts is None else all_of
 
 
 def _by_vtk(surface: vtkPolyData, *, consistent: bool) -> tuple[vtkPolyData, Array]:
@@ -278,7 +319,7 @@ def piece_numbers(mesh: Dataset) -> Indices:
     surface, origin = _skin(mesh)
     if surface is not None:
         own = np.arange(len(numbers)) if origin is None else origin
-        numbers[own[own >= 0]] = pieces(surface).piece[own >= 0]
+        numbers[own[own >= 0]] = pieces(surface, Owners()).piece[own >= 0]
     return numbers
 
 

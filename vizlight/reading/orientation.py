@@ -42,6 +42,31 @@ MOST_LEAN = 0.1
 BLOCK, EDGES = 1 << 16, 1 << 21
 
 
+class Owners:
+    """Which mesh of a batch each point of a surface belongs to; of one mesh all do.
+
+    Parameters
+    ----------
+    starts : ndarray of int, or None
+        First point of each mesh of a batch, followed by the number of points.
+    origin : ndarray of int, or None
+        Point of the batch that each point of the surface is.
+    """
+
+    def __init__(self, starts: Indices | None = None, origin: Indices | None = None) -> None:
+        self.count = 1 if starts is None else len(starts) - 1
+        self.of: Indices | None = None
+        if starts is not None:
+            self.of = np.repeat(np.arange(self.count), np.diff(starts))
+            self.of = self.of if origin is None else self.of[origin]
+
+    def counts(self, points: Indices) -> Indices:
+        """Return how many of some points belong to each mesh."""
+        if self.of is None:
+            return np.array([len(points)])
+        return np.bincount(self.of[points], minlength=self.count)
+
+
 class Shape:
     """The triangles of a surface, its connected pieces, and which of those have a border.
 
@@ -49,10 +74,11 @@ class Shape:
     What belongs to triangles is computed block by block, where it is needed.
     """
 
-    def __init__(self, surface: vtkPolyData) -> None:
+    def __init__(self, surface: vtkPolyData, owners: Owners) -> None:
         self._points = points = places(surface)
         self.finite: Bools = np.all(np.isfinite(points), axis=1)
-        same, self.piece = pieces(surface)
+        self.owners = owners
+        same, self.piece = pieces(surface, owners)
         self.count = int(self.piece.max(initial=-1)) + 1
         self.triangles = triangles(surface)
         #: Whether each piece has an edge of one face only.
@@ -76,13 +102,26 @@ class Shape:
         for block in _pool.blocks(len(self.away), BLOCK):
             self.away[block] -= middle[self.piece[block]]
         # Lengths are scaled, because products of tiny ones underflow and of huge ones overflow.
-        low, high = self.away.min(initial=0.0), self.away.max(initial=0.0)
-        self.scale = np.maximum(-low, high) or 1.0
+        if self.owners.of is None:
+            low, high = self.away.min(initial=0.0), self.away.max(initial=0.0)
+            self.scale = np.array([np.maximum(-low, high)])
+        else:
+            self.scale = np.zeros(self.owners.count)
+            np.maximum.at(self.scale, self.owners.of, np.abs(self.away).max(axis=1))
+        self.scale[self.scale == 0] = 1.0
         self.turned: Bools = np.zeros(self.count, dtype=np.bool_)
         self.volume: Array = np.zeros(self.count)
         for _, rows, across in self._parts():
-            height = _dots(across, self.away[rows[:, 0]] / self.scale)
+            height = _dots(across, self._corners(rows[:, 0]))
             np.add.at(self.volume, self.piece[rows[:, 0]], height)
+
+    def _corners(self, points: Indices) -> Array:
+        """Return places of some points about the centroids of their pieces, at most of size 1."""
+        if self.owners.of is None:
+            scale = self.scale
+        else:
+            scale = self.scale[self.owners.of[points]][..., np.newaxis]
+        return np.asarray(self.away[points] / scale)
 
     def _parts(self) -> Iterator[tuple[Indices, Indices, Array]]:
         """Yield the numbers, the corners and the area vectors of some finite triangles."""
@@ -90,7 +129,7 @@ class Shape:
             rows = self.triangles[block]
             known = np.flatnonzero(self.finite[rows].all(axis=1))
             rows = rows[known]
-            a, b, c = (self.away[rows[:, i]] / self.scale for i in range(3))
+            a, b, c = (self._corners(rows[:, i]) for i in range(3))
             across = np.cross(b - a, c - a)
             across[self.turned[self.piece[rows[:, 0]]]] *= -1
             yield known + block.start, rows, across
@@ -154,37 +193,40 @@ class Shape:
         found: Array = np.where(np.isfinite(bend), -np.sign(bend) * sine, 0)
         return found.astype(np.float32)
 
-    def sharp(self) -> float:
-        """Return the share of sharp edges where these are creases, else 0.
+    def sharp(self) -> Array:
+        """Return of each mesh the share of sharp edges where these are creases, else 0.
 
         Creases stand apart: few edges are nearly as sharp. On a coarse mesh of a smooth shape there
         are more of those, and no edge is meant to be seen. Faces without area, which many meshes
         have at a pole, have no direction and no sharp edges.
         """
-        faces, full = np.empty((len(self.triangles), 3)), np.zeros(len(self.triangles), np.bool_)
+        faces = np.empty((len(self.triangles), 3), dtype=np.float32)
+        full = np.zeros(len(self.triangles), dtype=np.bool_)
         for numbers, rows, across in self._parts():
-            corners = self.away[rows] / self.scale
+            corners = self._corners(rows)
             sides = corners - np.roll(corners, -1, axis=1)
             longest = np.einsum("ijk,ijk->ij", sides, sides).max(axis=1, initial=0.0)
             full[numbers] = np.linalg.norm(across, axis=1) > NARROWEST * longest
             faces[numbers] = unit_rows(across)
         least = np.cos(np.radians([2 * SHARP, SHARP, SHARP / 2]))
-        pairs, counts = 0, np.zeros(3, dtype=np.intp)
+        pairs = np.zeros(self.owners.count, dtype=np.intp)
+        counts = np.zeros((3, self.owners.count), dtype=np.intp)
         for keys, edges in _edges(self.triangles, len(self.away)):
             there = full[edges // 3]
             keys, edges = keys[there], edges[there]
             order = np.argsort(keys, kind="stable")
             keys, face = keys[order], edges[order] // 3
             twice = np.flatnonzero(keys[1:] == keys[:-1])
-            pairs += len(twice)
             for block in _pool.blocks(len(twice), BLOCK):
-                cosine = _dots(faces[face[twice[block]]], faces[face[twice[block] + 1]])
-                counts += [int(np.count_nonzero(cosine < limit)) for limit in least]
-        if not pairs:
-            return 0.0
-        beyond, share, nearly = (float(count / pairs) for count in counts)
-        apart = beyond >= MANY_SHARP and share - beyond <= CORNERS_APART * beyond
-        return share if apart or nearly - share <= STAND_APART * share else 0.0
+                one = face[twice[block]]
+                cosine = _dots(faces[one], faces[face[twice[block] + 1]])
+                corner = self.triangles[one, 0]
+                pairs += self.owners.counts(corner)
+                for count, limit in zip(counts, least, strict=True):
+                    count += self.owners.counts(corner[cosine < limit])
+        beyond, share, nearly = counts / np.maximum(pairs, 1)
+        apart = (beyond >= MANY_SHARP) & (share - beyond <= CORNERS_APART * beyond)
+        return np.where(apart | (nearly - share <= STAND_APART * share), share, 0.0)
 
 
 def _edges(
@@ -224,15 +266,19 @@ class Pieces(NamedTuple):
     piece: Indices
 
 
-def pieces(surface: vtkPolyData) -> Pieces:
+def pieces(surface: vtkPolyData, owners: Owners) -> Pieces:
     """Return the connected pieces of the points of a surface."""
     points = places(surface)
     n = len(points)
-    order = np.lexsort(points.T)
+    order = np.lexsort((*points.T,) if owners.of is None else (*points.T, owners.of))
     new = np.ones(n, dtype=np.bool_)
     for block in _pool.blocks(max(n - 1, 0), BLOCK):
-        place = points[order[block.start : block.stop + 1]]
-        new[block.start + 1 : block.stop + 1] = np.any(place[1:] != place[:-1], axis=1)
+        rows = order[block.start : block.stop + 1]
+        place = points[rows]
+        own = new[block.start + 1 : block.stop + 1]
+        own[:] = np.any(place[1:] != place[:-1], axis=1)
+        if owners.of is not None:
+            own |= owners.of[rows[1:]] != owners.of[rows[:-1]]
     first = np.where(new, np.arange(n), 0)
     np.maximum.accumulate(first, out=first)
     same = np.empty(n, dtype=np.intp)

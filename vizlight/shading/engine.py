@@ -96,6 +96,18 @@ class Shading:
         """Number of points that could not be lit."""
         return self.valid.size - int(np.count_nonzero(self.valid))
 
+    def part(self, _: int, rows: slice, /) -> Shading:
+        """Return the light of some points, with a share of the time."""
+        return Shading(
+            luminance=self.luminance[rows],
+            valid=self.valid[rows],
+            diffuse=None if self.diffuse is None else self.diffuse[rows],
+            specular=None if self.specular is None else self.specular[rows],
+            rgb=None if self.rgb is None else self.rgb[rows],
+            plan=self.plan,
+            seconds=self.seconds * (rows.stop - rows.start) / max(self.luminance.size, 1),
+        )
+
 
 _OBSERVER: contextvars.ContextVar[Observer | None] = contextvars.ContextVar(
     "observer", default=None

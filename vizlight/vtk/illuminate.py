@@ -229,7 +229,7 @@ terminator, components, precision, tolerance, highlight_error, name
                 if data.GetPointData().HasArray(name):
                     expected, remedy = "one that the input has no array of", "pass another name="
                     raise ValueError(_check.message("name", expected, repr(name), remedy))
-        inside = 0 if part.sided is None else part.sided.inside
+        inside = 0 if part.sided is None else int(part.sided.inside)
         if shading.invalid > inside:
             count = shading.luminance.size - inside
             self.report("WarningEvent", unlit(shading.invalid - inside, count))

@@ -1,0 +1,235 @@
+"""Small meshes of like arrays, joined to one mesh, so that many are lit at the cost of one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeAlias, TypeVar
+
+import numpy as np
+import pyvista as pv
+from vtkmodules.vtkCommonCore import vtkPoints
+
+from vizlight.mesh import normals, splitting
+from vizlight.mesh.inputs import part_of
+from vizlight.reading import polylines
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from typing_extensions import Self
+    from vtkmodules.vtkCommonCore import vtkDataArray
+    from vtkmodules.vtkCommonDataModel import vtkCellArray
+
+    from vizlight._types import Indices
+    from vizlight.reading.inputs import Part
+    from vizlight.scene import Scene
+    from vizlight.shading.options import LightOptions
+
+    SplitsT = TypeVar("SplitsT", bound="Splits | None")
+    #: What meshes have in common that can be joined: their kind, their kinds of cells, and the
+    #: types and the components of the arrays that light depends on.
+    Key: TypeAlias = tuple[object, ...]
+
+#: Largest number of points of a mesh that is joined with others, and of what they are joined to.
+SMALL, LARGEST = 1 << 12, 1 << 18
+#: Arrays that an earlier result keeps with a mesh; what they hold is of that mesh alone.
+_KEPT = (normals.KEPT, splitting.TANGENTS)
+
+#: Types of the cells of grids that are joined: all linear ones but lines and polyhedra.
+_JOINED = frozenset(range(1, 17)) - polylines.LINES
+
+
+class Batch(NamedTuple):
+    """One mesh that is lit in place of some.
+
+    Attributes
+    ----------
+    mesh : pyvista.DataSet
+        Mesh that is lit; without ``starts`` the only member itself.
+    members : list of int
+        Numbers of the meshes.
+    starts : ndarray of int, shape (len(members) + 1,), or None
+        First point of each member in the mesh, followed by the number of its points.
+    """
+
+    mesh: pv.DataSet
+    members: list[int]
+    starts: Indices | None = None
+
+
+def parts_of(
+    meshes: Sequence[pv.DataSet],
+    paths: Sequence[str],
+    scene: Scene,
+    options: LightOptions,
+    *,
+    join: bool,
+) -> tuple[list[Batch], list[Part]]:
+    """Return what meshes are lit by, small ones joined; an error names the path of a mesh."""
+    groups = _batches(meshes, options) if join else _alone(meshes, range(len(meshes)))
+    made, parts = [], []
+    while groups:
+        group = groups.pop()
+        try:
+            part = part_of(group.mesh, paths[group.members[0]], scene, options, group.starts)
+        except (TypeError, ValueError):
+            if group.starts is None:
+                raise
+            # One by one they tell which of them is wrong.
+            groups += _alone(meshes, group.members)
+            continue
+        if group.starts is not None and _differ(part, scene):
+            groups += _alone(meshes, group.members)
+            continue
+        made.append(group)
+        parts.append(part)
+    return made, parts
+
+
+def _alone(meshes: Sequence[pv.DataSet], members: Iterable[int]) -> list[Batch]:
+    """Return some meshes, each by itself, the last one first."""
+    return [Batch(meshes[i], [i]) for i in reversed(list(members))]
+
+
+def _differ(part: Part, scene: Scene) -> bool:
+    """Return whether some of the meshes have two sides, which only counts without a view."""
+    sided = part.sided
+    return scene.view is None and sided is not None and sided.any_open and not np.all(sided.open)
+
+
+class Splits(Protocol):
+    """What belongs to the points of a batch."""
+
+    def part(self, i: int, rows: slice, /) -> Self:
+        """Return what belongs to a member, by its number in the batch and its points."""
+
+
+def split(groups: Sequence[Batch], of_groups: Sequence[SplitsT]) -> list[SplitsT]:
+    """Return what belongs to each mesh, from what belongs to each batch."""
+    found: dict[int, SplitsT] = {}
+    for group, whole in zip(groups, of_groups, strict=True):
+        if group.starts is None or whole is None:
+            found |= dict.fromkeys(group.members, whole)
+            continue
+        ends = group.starts.tolist()
+        for i, (member, start, stop) in enumerate(
+            zip(group.members, ends[:-1], ends[1:], strict=True)
+        ):
+            found[member] = whole.part(i, slice(start, stop))
+    return [found[i] for i in range(len(found))]
+
+
+def _batches(meshes: Sequence[pv.DataSet], options: LightOptions) -> list[Batch]:
+    """Return small meshes of like arrays joined, and all others by themselves, the last one first.
+
+    Points of two meshes stay apart, also at one place: what depends on neighbours is to be told
+    of ``starts``.
+    """
+    found: dict[Key, list[int]] = {}
+    size: dict[Key, int] = {}
+    alone, made = [], []
+    for i, mesh in enumerate(meshes):
+        key = _key(mesh, options) if len(meshes) > 1 else None
+        if key is None:
+            alone.append(i)
+            continue
+        size[key] = size.get(key, 0) + mesh.GetNumberOfPoints()
+        if size[key] > LARGEST:
+            made.append(_joined(meshes, found.pop(key), options))
+            size[key] = mesh.GetNumberOfPoints()
+        found.setdefault(key, []).append(i)
+    made += [_joined(meshes, members, options) for members in found.values()]
+    return made + _alone(meshes, alone)
+
+
+def _names(options: LightOptions) -> list[str | None] | None:
+    """Return the names of the arrays that light depends on, None if one of them has no name."""
+    conditioned = options.conditioned if isinstance(options.conditioned, str) else None
+    given = [options.tangents, options.positions, options.normals, conditioned]
+    names = [name for name in given if name is None or isinstance(name, str)]
+    return names if len(names) == len(given) else None
+
+
+def _key(mesh: pv.DataSet, options: LightOptions) -> Key | None:
+    """Return what a mesh must have in common with those it is joined with, None for no others."""
+    count, names = mesh.GetNumberOfPoints(), _names(options)
+    if names is None or not 0 < count <= SMALL:
+        return None
+    data = mesh.GetPointData()
+    if any(data.HasArray(name) for name in _KEPT):
+        return None
+    kinds = _kinds(mesh)
+    arrays = [data.GetArray(name) for name in names if name is not None]
+    if kinds is None or any(array is None for array in arrays):
+        return None
+    arrays += [mesh.GetPoints().GetData()]
+    if data.GetNormals() is not None:
+        arrays.append(data.GetNormals())
+    forms = ((a.GetName(), a.GetDataType(), a.GetNumberOfComponents()) for a in arrays)
+    return (*kinds, *forms)
+
+
+def _kinds(mesh: pv.DataSet) -> Key | None:
+    """Return the kinds of the cells of a mesh, None for a mesh that cannot be joined."""
+    if isinstance(mesh, pv.PolyData):
+        if mesh.GetNumberOfStrips():
+            return None
+        counts = (mesh.GetNumberOfVerts(), mesh.GetNumberOfLines(), mesh.GetNumberOfPolys())
+        # Where there are segments, lines are joined at their ends.
+        sizes = np.diff(pv.convert_array(mesh.GetLines().GetOffsetsArray())) if counts[1] else ()
+        return ("polydata", *(count > 0 for count in counts), 2 in sizes)
+    if isinstance(mesh, pv.UnstructuredGrid):
+        kinds = pv.convert_array(mesh.GetDistinctCellTypesArray()).tolist()
+        return ("grid", *kinds) if kinds and _JOINED.issuperset(kinds) else None
+    return None
+
+
+def _joined(meshes: Sequence[pv.DataSet], members: list[int], options: LightOptions) -> Batch:
+    """Return some meshes of one key as one mesh."""
+    if len(members) == 1:
+        return Batch(meshes[members[0]], members)
+    own = [meshes[i] for i in members]
+    starts = np.concatenate([[0], np.cumsum([mesh.GetNumberOfPoints() for mesh in own])])
+    out = type(own[0])()
+    points = vtkPoints()
+    points.SetData(_end_to_end([mesh.GetPoints().GetData() for mesh in own], starts))
+    out.SetPoints(points)
+    if isinstance(out, pv.PolyData):
+        for get, put in (
+            ("GetVerts", "SetVerts"),
+            ("GetLines", "SetLines"),
+            ("GetPolys", "SetPolys"),
+        ):
+            cells = [getattr(mesh, get)() for mesh in own]
+            if cells[0].GetNumberOfCells():
+                getattr(out, put)(_cells(cells, starts))
+    else:
+        kinds = np.concatenate([np.asarray(mesh.celltypes) for mesh in own])
+        of_all = _cells([mesh.GetCells() for mesh in own], starts)
+        out.SetCells(pv.convert_array(kinds), of_all)
+    data = out.GetPointData()
+    for name in _names(options) or ():
+        if name is not None:
+            data.AddArray(_end_to_end([mesh.GetPointData().GetArray(name) for mesh in own], starts))
+    carried = [mesh.GetPointData().GetNormals() for mesh in own]
+    if carried[0] is not None:
+        data.SetNormals(_end_to_end(carried, starts))
+    return Batch(out, members, starts)
+
+
+def _end_to_end(arrays: Sequence[vtkDataArray], starts: Indices) -> vtkDataArray:
+    """Return arrays of one type as one array."""
+    out = arrays[0].NewInstance()
+    out.SetName(arrays[0].GetName())
+    out.SetNumberOfComponents(arrays[0].GetNumberOfComponents())
+    out.SetNumberOfTuples(int(starts[-1]))
+    for array, start in zip(arrays, starts.tolist(), strict=False):
+        out.InsertTuples(start, array.GetNumberOfTuples(), 0, array)
+    return out
+
+
+def _cells(cells: Sequence[vtkCellArray], starts: Indices) -> vtkCellArray:
+    """Return cells of meshes as those of one, whose points follow each other."""
+    out = pv.CellArray()
+    for own, start in zip(cells, starts.tolist(), strict=False):
+        out.Append(own, start)
+    return out
