@@ -59,7 +59,9 @@ import vizlight_eye
 vizlight_eye.follow(view=view)
 for i, position in enumerate(CAMERAS):
     view.CameraPosition, view.CameraFocalPoint, view.CameraViewUp = position, [0, 0, 5], [0, 0, 1]
+    ResetCamera(view)  # which moves and updates
     SaveScreenshot(f"{i}.png", view, ImageResolution=[SIZE, SIZE])
+    print("camera", *view.CameraPosition, *view.CameraFocalPoint)
 print("alone", "pyvista" not in sys.modules)
 """
 #: On any number of ranks: rank 0 has all of the disk, of which `parts` gives each a share.
@@ -124,7 +126,10 @@ def test_light_is_that_of_vizlight_and_follows_the_eye(tmp_path, files):
                 np.testing.assert_allclose(found[part], mine[part], atol=1e-6)
         assert np.std(found["luminance"]) > 0.02, name
     surface = vizlight.load_example().contour([600], scalars="Temp")
-    for i, position in enumerate(CAMERAS):
+    places = re.findall(r"^camera (.*)$", said, re.M)
+    assert len(places) == len(CAMERAS)
+    for i, place in enumerate(places):
+        position, focal = np.reshape([float(x) for x in place.split()], (2, 3)).tolist()
         scene = Scene(lights=far, view=View(position=position))
         mine = vizlight.illuminate(surface, scene, tangents="V", conditioned=True, facing="eye")
         plotter = pv.Plotter(off_screen=True, window_size=[SIZE, SIZE])
@@ -134,7 +139,7 @@ def test_light_is_that_of_vizlight_and_follows_the_eye(tmp_path, files):
             mine, scalars="luminance", cmap="gray", clim=(0, 1), lighting=False,
             show_scalar_bar=False,
         )  # fmt: skip
-        plotter.camera.position, plotter.camera.focal_point = position, (0, 0, 5)
+        plotter.camera.position, plotter.camera.focal_point = position, focal
         plotter.camera.up = (0, 0, 1)
         plotter.renderer.ResetCameraClippingRange()
         ours = np.asarray(plotter.screenshot(return_img=True), dtype=float)

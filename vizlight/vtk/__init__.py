@@ -9,9 +9,9 @@ Python find vizlight, and none of the packages beside it::
     PYTHONPATH=FOLDER paraview
 
 Load ``FOLDER/vizlight_plugin.py`` in the plugin manager. The script ``FOLDER/vizlight_eye.py`` ties
-the eye of the filters to the active view, so that the light follows the camera. Colour the result by
-``luminance`` from 0 to 1 with the preset *Grayscale*, and switch ParaView's own light off by Ambient
-1 and Diffuse 0. In a script of ``pvpython``:
+the eye of the filters to the active view, so that the light follows the camera. Colour the result
+by ``luminance`` from 0 to 1 with the preset *Grayscale*, and switch ParaView's own light off by
+Ambient 1 and Diffuse 0. In a script of ``pvpython``:
 
 .. code-block:: python
 

@@ -8,7 +8,7 @@ from paraview.simple import GetActiveViewOrCreate, GetSources
 
 
 def follow(filters=None, view=None):
-    """Set the eye of filters to that of a view now, and before each picture that stays.
+    """Set the eye of filters to that of a view now, and before each picture.
 
     Parameters
     ----------
@@ -31,9 +31,13 @@ def follow(filters=None, view=None):
         parallel = int(camera.GetParallelProjection())
         away = [-x for x in camera.GetDirectionOfProjection()]
         eye = away if parallel else [*camera.GetPosition()]
-        for one in filters:
-            if one.ParallelProjection != parallel or [*one.Eye] != eye:
-                one.ParallelProjection, one.Eye = parallel, eye
+        late = [one for one in filters if (one.ParallelProjection, [*one.Eye]) != (parallel, eye)]
+        if late:
+            # Where the camera was reset, the view takes for new what it has shown already, and a
+            # change now would be lost.
+            view.SMProxy.Update()
+        for one in late:
+            one.ParallelProjection, one.Eye = parallel, eye
 
     look()
     return view.SMProxy.AddObserver("StartEvent", look)
