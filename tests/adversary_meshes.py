@@ -250,6 +250,7 @@ CALLS = {
     "scene.view.DepthCue": lambda: {"front": 0.0, "back": 1.0},
     "scene.view.View": lambda: {"position": (3.0, 0.0, 0.0)},
     "scene.view.View.from_camera": lambda: {"camera": pv.Camera()},
+    "vtk.illuminate.Illuminate": lambda: {"scene": SCENE},
     "shading.decide.plan": lambda: {"scene": SCENE, "k": 1},
     "shading.engine.depth_range": lambda: {"points": unit(6, 3), "scene": SCENE},
     "shading.engine.observed": lambda: {"observer": None},

@@ -92,7 +92,8 @@ def methods(kind):
         method = inspect.getattr_static(kind, name)
         made = isinstance(method, classmethod | staticmethod)
         function = method.__func__ if made else method
-        if name[0] == "_" or not inspect.isfunction(function):
+        # Methods of VTK's form are called by it, or set what the constructor takes too.
+        if name[0] == "_" or name[0].isupper() or not inspect.isfunction(function):
             continue
         if issubclass(kind, Solid) and name in PROTOCOL:
             continue

@@ -61,13 +61,6 @@ def test_mathematics_and_engine_load_no_pyvista_and_no_report():
         assert not {name for name in names if "verify" in name} or module not in ENGINE, module
 
 
-def test_what_reads_datasets_of_vtk_and_colours_by_name_loads_no_pyvista():
-    code = "import vizlight.vtk, vizlight; vizlight.Material(color='gold')"
-    (names,) = loaded(code)
-    assert "vtkmodules" in names
-    assert "pyvista" not in names
-
-
 @pytest.mark.parametrize("name", [*ALIASES, "vizlight.geometry.relief", "vizlight.geometry.solids"])
 def test_public_names_of_modules_are_the_modules(name):
     code = (

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from vizlight import pieces as pieces
     from vizlight import render as render
     from vizlight import testing as testing
+    from vizlight import vtk as vtk
     from vizlight.data import example_path, load_example
     from vizlight.files import read
     from vizlight.filters.bas_relief import bas_relief
@@ -89,7 +90,7 @@ _HOMES = {
 }
 _MODULES = (
     "accessor", "engine", "filters", "geometry", "model", "movie", "paraview", "pieces", "render",
-    "studies", "testing",
+    "studies", "testing", "vtk",
 )  # fmt: skip
 
 _aliases.install()

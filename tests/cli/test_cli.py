@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -288,6 +289,18 @@ def test_demo(tmp_path, monkeypatch, capfd):
     assert {p.name for p in (tmp_path / "vizlight-demo").iterdir()} == {"flow.vtp", "flow.png"}
     lit = pv.read("vizlight-demo/flow.vtp")
     assert {"surface_light", "flow_light"} <= set(lit.point_data)
+
+
+def test_paths_of_the_plugin_for_paraview(capfd):
+    code, out, _ = run(capfd, "paraview")
+    assert code == 0
+    *files, start = (line.split(maxsplit=1)[1] for line in out.splitlines())
+    paths = [Path(file) for file in files]
+    names = ["vizlight_plugin.py", "sitecustomize.py", "vizlight_eye.py"]
+    assert [path.name for path in paths] == names
+    for path in paths:
+        compile(path.read_text(encoding="utf-8"), path, "exec")
+        assert start == f"PYTHONPATH={path.parent} paraview"
 
 
 def test_doctor(capfd):

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import json
-import os
 import re
-import shutil
-import subprocess
 
 import numpy as np
 import pytest
 import pyvista as pv
+import real_paraview
 from PIL import Image
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View, paraview
 
-PVPYTHON, XVFB = shutil.which("pvpython"), shutil.which("xvfb-run")
 SIZE = 240
 FAR = Light(direction=(1, 0.9, 0.5), intensity=0.8)
 CUE = DepthCue(front=3, back=7, back_scale=0.3, cue=0.1, color=(0.3, 0.4, 1.0))
@@ -127,7 +124,7 @@ def drawn(mesh, scene, options, camera):
 
 
 @pytest.mark.opengl
-@pytest.mark.skipif(not (PVPYTHON and XVFB), reason="needs pvpython of ParaView and xvfb-run")
+@real_paraview.needed
 def test_pixels_are_those_of_a_plotter(tmp_path):
     """The one text, drawn by ParaView: 99 % of the pixels within 2 of 255, and most within 1."""
     todo, meshes = [], {}
@@ -144,15 +141,9 @@ def test_pixels_are_those_of_a_plotter(tmp_path):
         options = {"tangents": "around", "conditioned": True, "normals": normals}
         todo.append([normals, paraview.shader(Scene(lights=FAR), **options).script(field), []])
     (tmp_path / "todo.json").write_text(json.dumps([SIZE, todo]))
-    (tmp_path / "draw.py").write_text(DRAW)
-    command = [XVFB, "-a", "-s", "-screen 0 640x480x24", PVPYTHON, "draw.py", "todo.json"]
-    space = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
-    run = subprocess.run(
-        command, cwd=tmp_path, env=space, capture_output=True, text=True, check=False, timeout=500
-    )
-    assert run.returncode == 0, run.stderr[-2000:]
-    assert "wide: wide: ParaView passes an array of float32 alone" in run.stdout
-    assert "none: the source has no point array 'none'" in run.stdout
+    said = real_paraview.run(tmp_path, DRAW, "todo.json")
+    assert "wide: wide: ParaView passes an array of float32 alone" in said
+    assert "none: the source has no point array 'none'" in said
     for name, (_, scene, options) in CASES.items():
         pictures = []
         for i, camera in enumerate(cameras(meshes[name])):

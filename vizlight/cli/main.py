@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import shlex
 import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, TextIO
@@ -190,6 +191,24 @@ def doctor() -> int:
     except render.BackendError as error:
         complain(error)
         return LACKING
+    return OK
+
+
+@app.command
+def paraview() -> int:
+    """Print the paths of the plugin for ParaView and of its scripts, and how to start ParaView.
+
+    PYTHONPATH is the folder of the plugin, whose sitecustomize.py lets ParaView's Python find
+    vizlight alone.
+    """
+    folder = Path(__file__).resolve().parents[1] / "vtk" / "paraview"
+    for part, name in (
+        ("plugin", "vizlight_plugin.py"),
+        ("startup", "sitecustomize.py"),
+        ("eye", "vizlight_eye.py"),
+    ):
+        say(f"{part:8} {folder / name}")
+    say(f"start    PYTHONPATH={shlex.quote(str(folder))} paraview")
     return OK
 
 

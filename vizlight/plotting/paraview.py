@@ -152,6 +152,7 @@ def shader(scene: Scene, /, **options: Any) -> Shader:
     See Also
     --------
     save : A mesh with the arrays that its light needs, and the script that shows it.
+    vizlight.vtk : The plugin that lights points in ParaView.
 
     Notes
     -----

@@ -399,7 +399,8 @@ def accepts(
                     _check.warn(f"{old}= is replaced by {new}", DeprecationWarning)
             for name in keywords:
                 if name not in known:
-                    raise TypeError(unknown_option(function.__name__, name, known))
+                    owner = function.__qualname__.removesuffix(".__init__")
+                    raise TypeError(unknown_option(owner.rpartition(".")[2], name, known))
             for name in required - keywords.keys():
                 raise TypeError(_check.message(name, f"a value for {function.__name__}", "none"))
             return function(*arguments, **keywords)

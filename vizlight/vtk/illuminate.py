@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import inspect
 import json
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +19,7 @@ from vizlight.reading.inputs import Part, part_of, uses_normals
 from vizlight.scene import Scene
 from vizlight.shading import engine
 from vizlight.shading.inputs import ShadingInputs
-from vizlight.shading.options import LightOptions, documented, unknown_option
+from vizlight.shading.options import LightOptions, accepts, documented
 from vizlight.shading.results import arrays_of, digest, of_light, record_key, unlit
 
 if TYPE_CHECKING:
@@ -28,6 +29,8 @@ __all__ = ["Illuminate"]
 
 #: Options that are names of arrays: a pipeline has no others.
 _NAMES = ("tangents", "normals", "positions")
+#: Options that give a mesh new points, need PyVista, or have been replaced.
+_WITHOUT = ("two_sided", "flip_normals", "feature_angle", "refine", "bundle")
 #: Cell array in which VTK marks cells of other pieces.
 _GHOSTS = "vtkGhostType"
 _NO_GHOSTS = (
@@ -41,7 +44,7 @@ class _Option:
 
     def __set_name__(self, owner: type, name: str) -> None:
         self.name = name
-        self.__doc__ = documented(LightOptions)[name]
+        self.__doc__ = inspect.cleandoc(documented(LightOptions)[name].partition("\n")[2])
         words = "".join(word.capitalize() for word in name.split("_"))
         setattr(owner, f"Get{words}", lambda own: getattr(own, name))
         setattr(owner, f"Set{words}", lambda own, value: setattr(own, name, value))
@@ -64,17 +67,8 @@ class Illuminate(VTKPythonAlgorithmBase):
     scene : Scene, optional
         Lights, material and view, in the unit of the data. A depth cue has both ends.
     **options
-        Values of the properties below.
-
-    Attributes
-    ----------
-    scene : Scene or None
-        As above.
-    tangents, positions, normals, facing, conditioned, average_cells, model, compensate, \
-terminator, components, precision, tolerance, highlight_error, name
-        Options of :func:`vizlight.illuminate`; arrays are given by name.
-    options : LightOptions
-        All of them.
+        Properties of the filter, which are options of :func:`vizlight.illuminate`. Arrays are
+        given by name.
 
     Raises
     ------
@@ -92,13 +86,15 @@ terminator, components, precision, tolerance, highlight_error, name
     its input; composite data are lit block by block. It needs VTK 9.1, and no PyVista. It computes
     when its output is asked for, and only if the input or a property has changed. Each property
     has a pair of methods too, such as ``SetTangents`` and ``GetTangents``. ``facing`` is ignored
-    where tangents are lit without a surface.
+    where tangents are lit without a surface. Points that could not be lit are a warning of VTK
+    (``WarningEvent``), with their count.
 
     Where a pipeline runs in several pieces, light does not depend on the cut: ``facing="auto"``
-    then means ``"eye"``, which lights both sides alike if the scene has no view, and ``"outward"``
-    is an error. Normals that are given, such as those of VTK's contour filters, need nothing
-    else. Those of faces need one layer of ghost cells, which a piece must have before it is
-    contoured: without any the filter warns.
+    then means ``"eye"``, which lights both sides alike if the scene has no view, ``"outward"`` is
+    an error, and ``luminance_valid`` is always there. Normals that come from data, such as the
+    gradient of a contoured field, need nothing else. Those of faces, which contours of
+    unstructured grids have too, need a layer of ghost cells that the pieces have before they are
+    contoured: where the filter itself computes them without any, it warns.
 
     Examples
     --------
@@ -129,6 +125,7 @@ terminator, components, precision, tolerance, highlight_error, name
     highlight_error = _Option()
     name = _Option()
 
+    @accepts(LightOptions, without=_WITHOUT)
     def __init__(self, scene: Scene | None = None, **options: Any) -> None:
         super().__init__(  # type: ignore[no-untyped-call]
             nInputPorts=1, nOutputPorts=1, inputType="vtkDataSet", outputType="vtkDataSet"
@@ -136,11 +133,8 @@ terminator, components, precision, tolerance, highlight_error, name
         self._scene: Scene | None = None
         self._options = LightOptions()
         self.scene = scene
-        known = [key for key, value in vars(Illuminate).items() if isinstance(value, _Option)]
-        for key, value in options.items():
-            if key not in known:
-                raise TypeError(unknown_option("Illuminate", key, ["scene", *known]))
-            setattr(self, key, value)
+        for name, value in options.items():
+            setattr(self, name, value)
 
     @property
     def scene(self) -> Scene | None:
@@ -178,6 +172,9 @@ terminator, components, precision, tolerance, highlight_error, name
         output: vtkDataSet = self.GetOutputDataObject(0)
         return output
 
+    def prepare(self) -> None:
+        """Set what depends on others before the input is lit; here there is nothing."""
+
     def _change(self, name: str, value: object) -> None:
         """Set an attribute; the filter runs again if its value has changed."""
         if getattr(self, name) != value:
@@ -198,10 +195,11 @@ terminator, components, precision, tolerance, highlight_error, name
         asked = out.GetInformationObject(0)
         pieces = asked.Get(vtkStreamingDemandDrivenPipeline.UPDATE_NUMBER_OF_PIECES()) or 1
         try:
+            self.prepare()
             arrays, record = self._lit(data, pieces)
         except (TypeError, ValueError) as error:
             made.Initialize()
-            self.report("ErrorEvent", str(error))
+            self._tell("ErrorEvent", str(error))
             return 0
         made.ShallowCopy(data)
         for name, array in arrays.items():
@@ -232,7 +230,7 @@ terminator, components, precision, tolerance, highlight_error, name
         inside = 0 if part.sided is None else int(part.sided.inside)
         if shading.invalid > inside:
             count = shading.luminance.size - inside
-            self.report("WarningEvent", unlit(shading.invalid - inside, count))
+            self._tell("WarningEvent", unlit(shading.invalid - inside, count))
         digests = {name: digest(array) for name, array in arrays.items()}
         record = of_light(shading, "illuminate", scene, self._options)
         return arrays, record | {"arrays": digests}
@@ -257,10 +255,10 @@ terminator, components, precision, tolerance, highlight_error, name
         own = options.tangents is None and part.inputs.tangents is not None
         computed = part.sided is not None and part.sided.computed
         if pieces > 1 and (own or computed) and not data.GetCellData().HasArray(_GHOSTS):
-            self.report("WarningEvent", _NO_GHOSTS)
+            self._tell("WarningEvent", _NO_GHOSTS)
         return part
 
-    def report(self, event: str, text: str) -> None:
+    def _tell(self, event: str, text: str) -> None:
         """Report an error (``ErrorEvent``) or a warning (``WarningEvent``) as filters of VTK do."""
         words = f"{type(self).__name__}: {text}"
         if self.HasObserver(event):

@@ -1,0 +1,47 @@
+"""Script for ParaView that ties the eye of Vizlight's filters to a view: the light follows it.
+
+Run it by Run Script in the Python shell or as a macro, for all filters that are there and the
+active view; in a script of pvpython: ``import vizlight_eye; vizlight_eye.follow(filters, view)``.
+"""
+
+from paraview.simple import GetActiveViewOrCreate, GetSources
+
+
+def follow(filters=None, view=None):
+    """Set the eye of filters to that of a view now, and before each picture.
+
+    Parameters
+    ----------
+    filters : list of proxies, optional
+        Filters Vizlight Illuminate. Default: all that are there.
+    view : proxy, optional
+        View with a camera. Default: the active one.
+
+    Returns
+    -------
+    int
+        Number of the observer of the view, by which ``view.SMProxy.RemoveObserver`` ends it.
+    """
+    view = view or GetActiveViewOrCreate("RenderView")
+    if filters is None:
+        filters = [one for one in GetSources().values() if hasattr(one, "ParallelProjection")]
+
+    def look(*_):
+        camera = view.GetActiveCamera()
+        parallel = int(camera.GetParallelProjection())
+        away = [-x for x in camera.GetDirectionOfProjection()]
+        eye = away if parallel else [*camera.GetPosition()]
+        late = [one for one in filters if (one.ParallelProjection, [*one.Eye]) != (parallel, eye)]
+        if late:
+            # Where the camera was reset, the view takes for new what it has shown already, and a
+            # change now would be lost.
+            view.SMProxy.Update()
+        for one in late:
+            one.ParallelProjection, one.Eye = parallel, eye
+
+    look()
+    return view.SMProxy.AddObserver("StartEvent", look)
+
+
+if __name__ == "__main__":
+    follow()
