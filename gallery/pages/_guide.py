@@ -30,8 +30,10 @@ def run(page, folder):
     What block number 3 prints is written to the file ``3.txt``.
     """
     names = {"__name__": "guide"}
-    before = Path.cwd()
+    before, gallery = Path.cwd(), pv.BUILDING_GALLERY
     os.chdir(folder)
+    # In a gallery PyVista writes a scene of each plotter that is shown, by a server.
+    pv.BUILDING_GALLERY = False
     try:
         for i, block in enumerate(blocks(page.read_text(encoding="utf-8")), 1):
             with contextlib.redirect_stdout(io.StringIO()) as printed:
@@ -40,6 +42,7 @@ def run(page, folder):
                 Path(f"{i}.txt").write_text(printed.getvalue(), encoding="utf-8")
     finally:
         os.chdir(before)
+        pv.BUILDING_GALLERY = gallery
         pv.close_all()
     return names
 

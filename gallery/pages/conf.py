@@ -50,8 +50,8 @@ html_theme_options = {
         "**": ["page-toc"],
         "index": [],
         "examples/index": [],
-        # The code needs the width.
-        "guide/**": [],
+        # Code needs the width; a second pattern that matches a page would be a warning.
+        **{f"guide/{page.stem}": [] for page in (HERE / "guide").glob("*.rst")},
     },
     "navbar_align": "left",
     "navbar_end": ["theme-switcher"],
@@ -101,7 +101,7 @@ sphinx_gallery_conf = {
     "inspect_global_variables": False,
     # Scenes that turn need a server and more packages: notebooks show pictures below their cells.
     "first_notebook_cell": (
-        "# Needs vizlight, and for some examples its extra: pip install 'vizlight[solids]'\n"
+        "# Needs vizlight, and for some examples its extras: pip install 'vizlight[movie,solids]'\n"
         "import pyvista\n\n"
         'pyvista.set_jupyter_backend("static")'
     ),
