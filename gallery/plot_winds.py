@@ -36,10 +36,10 @@ camera = render.camera_on((-1, 1, -1, 1, -1, 1), (0.42, 1, 0.2), aspect=1.25, zo
 scene = Scene(
     lights=Light(direction=(0.3, 1, 0.8)),
     view=View.from_camera(camera),
-    material=Material(ambient=0.3, diffuse=0.9, specular=0.45, shininess=25),
+    material=Material(ambient=0.3, diffuse=0.8, specular=0.15, shininess=25),
 )
 air = vizlight.load_example("winds_of_july.vtp").scale(1.022)
-wind = vizlight.streamlines(air, scene, vectors="wind", spacing=0.023, model="cylinder")
+wind = vizlight.streamlines(air, scene, vectors="wind", spacing=0.023)
 wind["m/s"] = np.linalg.norm(wind["wind"], axis=1)
 
 ramp = colors.LinearSegmentedColormap.from_list
@@ -52,7 +52,7 @@ plotter.vizlight.add_mesh(
     earth, scene=scene.replace(material=Material(ambient=0.2, diffuse=0.8, specular=0)),
     scalars="metres", cmap=ramp("ground", ground), clim=(-6000, 7000), show_scalar_bar=False,
 )  # fmt: skip
-bar = {"color": "white", "n_labels": 3, "fmt": "%.0f", "vertical": True, "height": 0.25}
+bar = {"title": "m/s\n", "color": "white", "n_labels": 3, "fmt": "%.0f", "vertical": True}
 plotter.vizlight.add_mesh(
     wind, scalars="m/s", cmap=warm, clim=(0, 12), line_diameter=0.008, scalar_bar_args=bar
 )

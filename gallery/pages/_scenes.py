@@ -40,29 +40,43 @@ ORDER = [
     "plot_tolerance", "plot_isoluminance_speed",
 ]  # fmt: skip
 
-#: Part of a wide picture that its thumbnail shows: left, top, right and bottom as shares of 1.
+#: Scripts whose thumbnail is made from the first picture; others have it from the last.
+FIRST = (
+    "plot_bundle", "plot_fur", "plot_lines", "plot_principal_lines", "plot_satin", "plot_terrain",
+)  # fmt: skip
+
+#: Part of a picture that its thumbnail shows: left, top, right and bottom as shares of 1. Other
+#: thumbnails show the whole.
 PARTS = {
+    "plot_ambient": (0.36, 0.32, 0.91, 0.78),
+    "plot_attenuation": (0.05, 0.0, 0.66, 0.62),
     "plot_bas_relief": (0.01, 0.045, 0.325, 0.46),
+    "plot_bundle": (0.5, 0.08, 1.0, 0.92),
     "plot_codimension": (0.25, 0.6, 0.5, 1.0),
     "plot_complex_curve": (0.1, 0.05, 0.9, 1.0),
     "plot_depth_cue": (0.67, 0.06, 1.0, 0.5),
-    "plot_earth": (0.02, 0.1, 0.48, 0.9),
+    "plot_earth": (0.03, 0.12, 0.28, 0.75),
     "plot_errors": (0.0, 0.0, 0.5, 1.0),
     "plot_field_in_4_space": (0.667, 0.07, 1.0, 1.0),
+    "plot_flow": (0.05, 0.2, 0.95, 1.0),
     "plot_highlight_error": (0.0, 0.2, 0.45, 0.9),
     "plot_highlights": (0.15, 0.06, 0.9, 0.5),
     "plot_highlights_shapes": (0.0, 0.08, 0.5, 0.92),
     "plot_isoluminance": (0.25, 0.56, 0.5, 1.0),
+    "plot_isoluminance_painter": (0.34, 0.0, 1.0, 1.0),
     "plot_isoluminance_speed": (0.0, 0.0, 0.51, 1.0),
     "plot_line_models": (0.0, 0.0, 0.47, 1.0),
     "plot_lines": (0.5, 0.05, 1.0, 1.0),
     "plot_principal_lines": (0.5, 0.0, 1.0, 1.0),
+    "plot_satin": (0.0, 0.08, 0.5, 0.75),
     "plot_seeping_light": (0.67, 0.06, 1.0, 0.75),
     "plot_shapes": (0.2, 0.07, 0.4, 1.0),
     "plot_terrain_day": (0.37, 0.05, 0.63, 0.49),
+    "plot_terrain": (0.05, 0.08, 0.95, 0.98),
     "plot_tolerance": (0.0, 0.2, 0.335, 0.78),
     "plot_tubes": (0.37, 0.08, 1.0, 0.95),
     "plot_turning": (0.4, 0.06, 0.61, 0.5),
+    "plot_winds": (0.08, 0.1, 0.92, 0.8),
 }
 
 #: Width of the thumbnails of movies in pixels.
@@ -181,15 +195,16 @@ def _tabs(name, source, about):
 
 
 def cut_thumbnails(app):
-    """Crop thumbnails of pictures that would be too small as a whole, and shrink movies."""
+    """Make thumbnails from parts of the pictures, with a border in their colour; shrink movies."""
     folder = Path(app.srcdir) / "examples" / "images"
     size = app.config.sphinx_gallery_conf["thumbnail_size"]
-    for script, part in PARTS.items():
+    for script in ORDER:
         thumbnail = folder / "thumb" / f"sphx_glr_{script}_thumb.png"
         pictures = sorted(folder.glob(f"sphx_glr_{script}_[0-9]*.png"))
         if not thumbnail.exists() or not pictures:
             continue
-        with Image.open(pictures[-1]) as whole:
+        with Image.open(pictures[0 if script in FIRST else -1]) as whole:
+            part = PARTS.get(script, (0, 0, 1, 1))
             ends = [x * side for x, side in zip(part, whole.size * 2, strict=True)]
             cut = whole.convert("RGB").crop([round(x) for x in ends])
         ImageOps.pad(cut, size, color=cut.getpixel((1, 1))).save(thumbnail)
