@@ -32,6 +32,7 @@ extensions = [
     "_guide",
     "_light",
     "_mathml",
+    "_peers",
     "_scenes",
     "_studies",
 ]
@@ -68,6 +69,7 @@ html_sidebars = {
     "studies": [],
     "studies/**": [],
     "sources": [],
+    "peers": [],
     "examples/**": [],
 }
 html_math_renderer = "mathml"

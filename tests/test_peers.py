@@ -1,0 +1,87 @@
+"""The page on peers: its scripts still run, and its table and pictures are those of the scripts."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import runpy
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import pyvista as pv
+from PIL import Image
+
+PAGES = Path(__file__).parents[1] / "gallery" / "pages"
+SIDE = 160
+
+
+def module(name):
+    """Return a module of the folder ``peers``."""
+    sys.path.insert(0, str(PAGES))
+    try:
+        return importlib.import_module(f"peers.{name}")
+    finally:
+        sys.path.remove(str(PAGES))
+
+
+kept = module("kept")
+#: ParaView's scripts run in ParaView alone; see CONTRIBUTING.
+OWN = [script for scene, script in kept.todo() if kept.tool(script) != "paraview"]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    made = tmp_path_factory.mktemp("peers")
+    module("data").prepare(made, share=0.1)
+    return made
+
+
+@pytest.mark.opengl
+@pytest.mark.filterwarnings("ignore:.*could not be lit")
+@pytest.mark.parametrize("script", sorted(set(OWN)), ids=lambda path: path.stem)
+def test_a_script_draws(script, folder, monkeypatch):
+    """Much of the picture is drawn, in many tones, by no more lines than were counted."""
+    monkeypatch.chdir(folder)
+    monkeypatch.setattr(pv, "OFF_SCREEN", True)
+    measure = module("measure")
+    scene = script.parent.name
+    view = json.loads((folder / "cameras.json").read_text())[scene]
+    view["size"] = [SIDE, SIDE]
+    space = runpy.run_path(str(script))
+    way = next(way for name, way in measure.WAYS.items() if name in space)
+    frame, count = way(space, view, "picture.png")
+    points, pieces = count()
+    if frame is not None:
+        frame()
+        space["plotter"].close()
+        assert pieces > 1000
+    assert points > 1000
+    picture = np.asarray(Image.open("picture.png").convert("RGB"), dtype=float)
+    seen = np.any(np.abs(picture - 255 * np.array(view["background"])) > 8, axis=2)
+    assert seen.mean() > 0.1
+    assert picture[seen].std() > 20
+
+
+def test_the_table_is_that_of_the_scripts():
+    rows = kept.read()
+    assert set(rows) == {(scene, p.relative_to(kept.HERE).as_posix()) for scene, p in kept.todo()}
+    for (_, name), row in rows.items():
+        assert tuple(row) == kept.COLUMNS
+        # A script that has changed is measured again.
+        assert int(row["code_lines"]) == kept.code_lines(kept.HERE / name), name
+        assert int(row["points"]) > 1000
+        assert 50 < int(row["memory_mb"]) < 5000
+        assert 0.1 < float(row["cpu_s"]) < 100
+        assert row["frame_cpu_s"] or row["tool"].startswith("matplotlib")
+        assert row["date"].count("-") == 2
+
+
+def test_each_picture_is_kept_and_no_other():
+    pictures = {kept.picture(scene, script) for scene, script in kept.todo()}
+    assert pictures == set(kept.HERE.glob("*/*.png"))
+    for path in pictures:
+        assert path.stat().st_size <= 150_000, path
+        with Image.open(path) as picture:
+            assert np.asarray(picture.convert("RGB")).std() > 20, path
