@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import threading
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,27 +13,35 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 from vtkmodules import vtkIOXML
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkImageData
+from vtkmodules.vtkFiltersExtraction import vtkExtractGrid, vtkExtractRectilinearGrid
+from vtkmodules.vtkImagingCore import vtkExtractVOI
 
 from vizlight import _check, files
 from vizlight.pieces.ghosts import GHOST, own_cells, with_layer, without_ghosts
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from numpy.typing import ArrayLike
 
     from vizlight._types import VectorLike
 
-    Extent = tuple[int, int, int, int, int, int]
+    Extent = tuple[int, ...]
     Stamp = list[str | int | float]
 
+#: Suffix of a piece by its type of mesh, and that of an index of pieces by the suffix of those.
+SUFFIX = {kind: formats[0] for kind, formats in files.FORMATS.items()}
+INDEX = {suffix: f".p{suffix[1:]}" for suffix in SUFFIX.values()}
 #: Readers of structured grids, which read any box of nodes out of a file.
 STRUCTURED = {
-    ".vti": vtkIOXML.vtkXMLImageDataReader,
-    ".vtr": vtkIOXML.vtkXMLRectilinearGridReader,
-    ".vts": vtkIOXML.vtkXMLStructuredGridReader,
+    **{suffix: files.READERS[suffix] for suffix in (".vti", ".vtr", ".vts")},
     ".pvti": vtkIOXML.vtkXMLPImageDataReader,
     ".pvtr": vtkIOXML.vtkXMLPRectilinearGridReader,
     ".pvts": vtkIOXML.vtkXMLPStructuredGridReader,
 }
+#: Last reader of a structured grid, of each thread.
+_LAST = threading.local()
 #: Files that name the files of their pieces.
 INDICES = (".pvtu", ".pvtp", ".vtm")
 HDF = (".vtkhdf", ".hdf")
@@ -60,7 +69,7 @@ class Piece:
 
     def own(self, mesh: pv.DataSet) -> pv.DataSet:
         """Return the part of a mesh, read with ghost cells, that belongs to the piece."""
-        raise NotImplementedError
+        return own_cells(mesh)
 
     def stamp(self) -> Stamp | None:
         """Return what changes with the data; None where that is not known."""
@@ -131,14 +140,10 @@ class FilePiece(Piece):
         if not ghost:
             return mesh
         mesh = mesh if isinstance(mesh, pv.PolyData) else mesh.cast_to_unstructured_grid()
-        layers = [piece.load() for piece in self.beside]
-        for _ in range(ghost):
-            mesh, layers = with_layer(mesh, layers)
+        others: Iterable[pv.DataSet] = (piece.load() for piece in self.beside)
+        for more in reversed(range(ghost)):
+            mesh, others = with_layer(mesh, others, keep=more > 0)
         return mesh
-
-    def own(self, mesh: pv.DataSet) -> pv.DataSet:
-        """See :class:`Piece`."""
-        return own_cells(mesh)
 
     def stamp(self) -> Stamp | None:
         """See :class:`Piece`."""
@@ -150,44 +155,88 @@ class FilePiece(Piece):
 
 
 @dataclass(frozen=True)
-class BoxPiece(Piece):
+class GridPiece(Piece):
+    """A box of nodes of a structured grid.
+
+    Attributes
+    ----------
+    extent, whole : tuple of 6 int
+        First and last node of the piece and of the grid, along x, y and z.
+    """
+
+    extent: Extent
+    whole: Extent
+
+    def nodes(self, extent: Extent) -> Any:
+        """Return a box of nodes."""
+        raise NotImplementedError
+
+    def read(self, ghost: int) -> pv.DataSet:
+        """See :class:`Piece`."""
+        grown = [
+            min(node + ghost, self.whole[i]) if i % 2 else max(node - ghost, self.whole[i])
+            for i, node in enumerate(self.extent)
+        ]
+        mesh = self.nodes(tuple(grown))
+        found = mesh.GetExtent()
+        outside = np.ones([max(found[i + 1] - found[i], 1) for i in (4, 2, 0)], dtype=np.uint8)
+        own = [(self.extent[i] - found[i], self.extent[i + 1] - found[i]) for i in (4, 2, 0)]
+        outside[tuple(slice(low, max(high, 1)) for low, high in own)] = 0
+        mesh.cell_data[GHOST] = outside.ravel()
+        return mesh  # type: ignore[no-any-return]
+
+    def own(self, mesh: Any) -> pv.DataSet:
+        """See :class:`Piece`."""
+        if not hasattr(mesh, "GetExtent"):
+            return own_cells(mesh)
+        if tuple(mesh.GetExtent()) != self.extent:
+            kinds = {pv.ImageData: vtkExtractVOI, pv.RectilinearGrid: vtkExtractRectilinearGrid}
+            cutter: Any = kinds.get(type(mesh), vtkExtractGrid)()
+            cutter.SetInputDataObject(mesh)
+            cutter.SetVOI(self.extent)
+            cutter.Update()
+            own = pv.wrap(cutter.GetOutput())
+            for name in mesh.field_data:
+                own.field_data[name] = mesh.field_data[name]
+            mesh = own
+        mesh.cell_data.pop(GHOST, None)
+        return mesh  # type: ignore[no-any-return]
+
+
+@dataclass(frozen=True)
+class BoxPiece(GridPiece):
     """A box of nodes of a structured grid in a file.
 
     Attributes
     ----------
     path : pathlib.Path
         Path of the file.
-    extent, whole : tuple of 6 int
-        First and last node of the piece and of the file, along x, y and z.
     """
 
     path: Path
-    extent: Extent
-    whole: Extent
 
-    def read(self, ghost: int) -> pv.DataSet:
-        """See :class:`Piece`."""
+    def nodes(self, extent: Extent) -> Any:
+        """See :class:`GridPiece`."""
         reader = structured(self.path)
-        reader.UpdateExtent(_grown(self.extent, self.whole, ghost))
+        reader.UpdateExtent(extent)
         mesh = pv.wrap(reader.GetOutputDataObject(0))
-        return _marked(without_ghosts(mesh), self.extent)
+        reader.GetOutputDataObject(0).ReleaseData()
+        return without_ghosts(mesh)
 
     def bounds(self) -> tuple[float, ...]:
         """See :class:`Piece`."""
-        reader = structured(self.path)
-        for selection in (reader.GetPointDataArraySelection(), reader.GetCellDataArraySelection()):
-            selection.DisableAllArrays()
-        reader.UpdateExtent(self.extent)
-        return tuple(reader.GetOutputDataObject(0).GetBounds())
-
-    def own(self, mesh: pv.DataSet) -> pv.DataSet:
-        """See :class:`Piece`."""
-        return _own_box(mesh, self.extent)
+        info = structured(self.path).GetOutputInformation(0)
+        if not info.Has(vtkDataObject.SPACING()):  # its places are coordinates in the file
+            return super().bounds()
+        grid = vtkImageData()
+        grid.CopyInformationFromPipeline(info)
+        grid.SetExtent(*self.extent)
+        return tuple(grid.GetBounds())
 
     def stamp(self) -> Stamp | None:
         """See :class:`Piece`."""
         found: Stamp = [*stamp_of(self.path), *self.extent]
-        if self.path.suffix.lower() in (".pvti", ".pvtr", ".pvts"):
+        if self.path.suffix.lower() in INDEX.values():
             for path in index_files(self.path):
                 found += stamp_of(path)
         return found
@@ -201,7 +250,7 @@ class Slabs:
     arrays : dict of str to array_like
         Point arrays by name, of shape (nz, ny, nx) or (nz, ny, nx, components): memory-mapped
         arrays, Zarr or Dask arrays, h5py datasets that can be pickled, or anything else of that
-        shape whose slices ``[z0:z1]`` are arrays.
+        shape whose slices ``[z0:z1]``, and ``[z0:z1, y0:y1]`` of wide grids, are arrays.
     spacing : vector of 3 components, default: (1, 1, 1)
         Distances between the nodes along x, y and z, in the unit of the mesh.
     origin : vector of 3 components, default: (0, 0, 0)
@@ -285,60 +334,50 @@ class _Mapped:
             return cls(shape, array.dtype, None, str(array.filename), base.offset + first)
         return cls(shape, array.dtype, array)
 
-    def rows(self, low: int, high: int) -> Any:
-        """Return the slices from low up to but not including high."""
+    def box(self, low: int, high: int, first: int, last: int) -> Any:
+        """Return rows from ``first`` up to ``last`` of the slices from ``low`` up to ``high``."""
         if self.kept is None:
             each = math.prod(self.shape[1:]) * np.dtype(self.dtype).itemsize
             mapped = np.memmap(
                 self.path, self.dtype, "r", self.offset + low * each, (high - low, *self.shape[1:])
             )
-            return np.array(mapped)
-        part = self.kept[low:high]
+            return np.array(mapped[:, first:last])
+        whole = last - first == self.shape[1]
+        part = self.kept[low:high] if whole else self.kept[low:high, first:last]
         return np.asarray(part.compute(scheduler="sync") if hasattr(part, "compute") else part)
-
-    def stamp(self) -> Stamp | None:
-        """See :class:`Piece`."""
-        return None if self.kept is not None else [*stamp_of(Path(self.path)), self.offset]
 
 
 @dataclass(frozen=True)
-class SlabPiece(Piece):
+class SlabPiece(GridPiece):
     """Slices of nodes of a grid in arrays."""
 
     grid: Slabs
-    extent: Extent
 
-    def read(self, ghost: int) -> pv.DataSet:
-        """See :class:`Piece`."""
-        x0, x1, y0, y1, low, high = _grown(self.extent, self.grid.extent, ghost)
-        mesh = pv.ImageData(spacing=self.grid.spacing, origin=self.grid.origin)
-        mesh.extent = (x0, x1, y0, y1, low, high)
+    def nodes(self, extent: Extent) -> pv.ImageData:
+        """See :class:`GridPiece`."""
+        mesh = self.empty(extent)
         for name, array in self.grid.arrays.items():
-            mesh.point_data[name] = array.rows(low, high + 1).reshape(-1, *array.shape[3:])
-        return _marked(mesh, self.extent)
+            box = array.box(extent[4], extent[5] + 1, extent[2], extent[3] + 1)
+            mesh.point_data[name] = box.reshape(-1, *array.shape[3:])
+        return mesh
+
+    def empty(self, extent: Extent) -> pv.ImageData:
+        """Return a box of nodes without arrays."""
+        mesh = pv.ImageData(spacing=self.grid.spacing, origin=self.grid.origin)
+        mesh.extent = extent
+        return mesh
 
     def bounds(self) -> tuple[float, ...]:
         """See :class:`Piece`."""
-        first = zip(self.grid.origin, self.grid.spacing, strict=True)
-        ends = [
-            (o + step * self.extent[2 * i], o + step * self.extent[2 * i + 1])
-            for i, (o, step) in enumerate(first)
-        ]
-        return (*ends[0], *ends[1], *ends[2])
-
-    def own(self, mesh: pv.DataSet) -> pv.DataSet:
-        """See :class:`Piece`."""
-        return _own_box(mesh, self.extent)
+        return tuple(self.empty(self.extent).bounds)
 
     def stamp(self) -> Stamp | None:
         """See :class:`Piece`."""
-        stamps = [array.stamp() for array in self.grid.arrays.values()]
-        if None in stamps:
-            return None
-        named = zip(self.grid.arrays, stamps, strict=True)
         found: Stamp = [*self.extent, *self.grid.spacing, *self.grid.origin]
-        for name, stamp in named:
-            found += [name, *(stamp or ())]
+        for name, array in self.grid.arrays.items():
+            if array.kept is not None:
+                return None
+            found += [name, *stamp_of(Path(array.path)), array.offset]
         return found
 
 
@@ -368,9 +407,17 @@ def index_files(path: Path) -> list[Path]:
 
 
 def structured(path: Path) -> Any:
-    """Return a reader of a structured grid that knows the grid's extent."""
-    suffix = path.suffix.lower()
-    return hdf(path) if suffix in HDF else _informed(STRUCTURED[suffix](), path)
+    """Return a reader of a structured grid that knows the grid's extent.
+
+    A thread keeps the last one: to find what a file holds a reader may have to go through all of
+    it, which would take longer than to read a slab.
+    """
+    stamp = stamp_of(path)
+    if getattr(_LAST, "stamp", None) != stamp:
+        suffix = path.suffix.lower()
+        _LAST.reader = hdf(path) if suffix in HDF else _informed(STRUCTURED[suffix](), path)
+        _LAST.stamp = stamp
+    return _LAST.reader
 
 
 def hdf(path: Path) -> Any:
@@ -389,45 +436,3 @@ def _informed(reader: Any, path: Path) -> Any:
         got = f"'{path}' ({errors[0]})"
         raise PieceError(_check.message("sources", "a file that can be read", got))
     return reader
-
-
-def _grown(extent: Extent, whole: Extent, ghost: int) -> Extent:
-    """Return a box of nodes with layers of others around it, as far as there are any."""
-    low = [max(extent[2 * i] - ghost, whole[2 * i]) for i in range(3)]
-    high = [min(extent[2 * i + 1] + ghost, whole[2 * i + 1]) for i in range(3)]
-    return (low[0], high[0], low[1], high[1], low[2], high[2])
-
-
-def _marked(mesh: Any, extent: Extent) -> pv.DataSet:
-    """Mark the cells of a structured grid that are outside a box of nodes."""
-    found = mesh.GetExtent()
-    cells = [max(found[2 * i + 1] - found[2 * i], 1) for i in range(3)]
-    outside = np.ones(cells[::-1], dtype=np.uint8)
-    inner = [
-        slice(extent[2 * i] - found[2 * i], max(extent[2 * i + 1] - found[2 * i], 1))
-        for i in (2, 1, 0)
-    ]
-    outside[tuple(inner)] = 0
-    mesh.cell_data[GHOST] = outside.ravel()
-    return mesh  # type: ignore[no-any-return]
-
-
-def _own_box(mesh: Any, extent: Extent) -> pv.DataSet:
-    """Return the part of a result that belongs to a box of nodes."""
-    if not hasattr(mesh, "GetExtent"):
-        return own_cells(mesh)
-    if tuple(mesh.GetExtent()) != tuple(extent):
-        from vtkmodules.vtkFiltersExtraction import vtkExtractGrid, vtkExtractRectilinearGrid
-        from vtkmodules.vtkImagingCore import vtkExtractVOI
-
-        kinds = {pv.ImageData: vtkExtractVOI, pv.RectilinearGrid: vtkExtractRectilinearGrid}
-        cutter: Any = kinds.get(type(mesh), vtkExtractGrid)()
-        cutter.SetInputDataObject(mesh)
-        cutter.SetVOI(extent)
-        cutter.Update()
-        own = pv.wrap(cutter.GetOutput())
-        for name in mesh.field_data:
-            own.field_data[name] = mesh.field_data[name]
-        mesh = own
-    mesh.cell_data.pop(GHOST, None)
-    return mesh  # type: ignore[no-any-return]

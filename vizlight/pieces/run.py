@@ -16,19 +16,20 @@ import pyvista as pv
 
 from vizlight import _check, _compiled, files
 from vizlight.pieces import index, task
-from vizlight.pieces.kinds import FilePiece, PieceError, union
+from vizlight.pieces.kinds import INDEX, FilePiece, PieceError, union
 from vizlight.pieces.sources import pieces_of
-from vizlight.pieces.workers import collected, runner
+from vizlight.pieces.workers import collected, workers_of
 from vizlight.scene import Scene
 from vizlight.shading.options import LightOptions, unknown_option
 from vizlight.shading.results import unlit
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Sequence
     from pathlib import Path
 
     from vizlight.pieces.kinds import Piece
-    from vizlight.pieces.task import Done, Job, Survey
+    from vizlight.pieces.task import Done, Job
+    from vizlight.pieces.workers import Workers
 
 #: Options of light that depend on a mesh as a whole.
 WHOLE = {
@@ -59,6 +60,8 @@ class Lit:
         Value of the contoured array on the isosurface.
     empty, reused : int
         Numbers of pieces that have no point, and of those that an earlier run had made.
+    seconds : dict of str to float
+        Processor seconds of all pieces by stage: "read", "contour", "light" and "write".
     """
 
     path: Path
@@ -71,6 +74,7 @@ class Lit:
     level: float | None
     empty: int
     reused: int
+    seconds: dict[str, float] = field(repr=False)
 
 
 def light(
@@ -126,7 +130,8 @@ def light(
     retries : int, default: 2
         Number of times that a piece is tried again after an error of the operating system.
     slab : float, default: 64.0
-        Largest size in MB of a slab of a structured grid, ghost cells apart.
+        Largest size in MB of a slab of a structured grid, ghost cells apart. A layer of cells that
+        is larger is cut across y too.
     progress_bar : bool, default: False
         Whether progress is shown on standard error.
     **options
@@ -160,10 +165,11 @@ def light(
     -----
     Light of a piece equals that of the whole by the same options (``facing="eye"``, unless it is
     given) within 1e-6, normals on borders included. Processes take some seconds to start. The
-    memory of a process is bounded by its piece with its ghost cells, one neighbour at a time, and
-    the result. Each file is written under another name and moved to its place, so that a worker
-    that is killed leaves no part of one; its piece is then lit by another, with the same bits.
-    Compiled code is used only with ``VIZLIGHT_FAST=1``, so that every worker computes alike.
+    memory of a process is bounded by its piece with its ghost cells, one neighbour at a time (all
+    of them with ``ghost`` above 1), and the result: 0.55 GB for slabs of 64 MB of a file of any
+    size. Each file is written under another name and moved to its place, so that a worker that is
+    killed leaves no part of one; its piece is then lit by another, with the same bits. Compiled
+    code is used only with ``VIZLIGHT_FAST=1``, so that every worker computes alike.
 
     Examples
     --------
@@ -177,7 +183,7 @@ def light(
     (2, 1684)
     """
     _check.instance("scene", scene, Scene)
-    path = files.check_output(_check.path("out", out), tuple(task.INDEX.values()), name="out")
+    path = files.check_output(_check.path("out", out), tuple(INDEX.values()), name="out")
     ghost = _check.integer("ghost", ghost, low=0)
     job = task.Job(
         scene=scene,
@@ -186,7 +192,7 @@ def light(
         contour=contour if contour is None else _name("contour", contour),
         level=None if level is None else _check.number("level", level),
         ghost=ghost if filter == "illuminate" else 0,
-        suffix={own: suffix for suffix, own in task.INDEX.items()}[path.suffix.lower()],
+        suffix={own: suffix for suffix, own in INDEX.items()}[path.suffix.lower()],
         compiled="1" if _compiled.wanted() == "1" else "0",
     )
     if level is not None and contour is None:
@@ -202,17 +208,20 @@ def light(
     files.make_folder("out", folder)
     with contextlib.ExitStack() as stack:
         stack.callback(_clear, folder)
-        run = stack.enter_context(runner(client, workers, retries, len(parts)))
-        parts, job = _prepared(parts, job, run, show=progress_bar)
+        pool = stack.enter_context(workers_of(client, workers, retries, len(parts)))
+        parts, job = _prepared(parts, job, pool, show=progress_bar)
         targets = [folder / f"{path.stem}_{i:04d}" for i in range(len(parts))]
         calls = [(piece, job, target) for piece, target in zip(parts, targets, strict=True)]
-        done = collected(run(task.light, calls), len(calls), "light", show=progress_bar)
-    full = [one for one in done if one.file]
+        done = collected(pool.run(task.light, calls), len(calls), "light", show=progress_bar)
+    full = [(piece, one) for piece, one in zip(parts, done, strict=True) if one.file]
     if not full:
         what = f"contour {contour!r} at {job.level:g}" if contour is not None else "points"
         raise PieceError(_check.message("sources", "pieces with something to light", f"no {what}"))
-    index.write(path, full, folder.name, job.name)
-    _remove_stale(folder, path.stem, {one.file for one in full}, {t.name for t in targets})
+    first, made = full[0]
+    for piece, one in full[1:]:
+        _check_alike(piece, one.arrays | one.grid, first, made.arrays | made.grid)
+    index.write(path, [one for _, one in full], folder.name, job.name)
+    _remove_stale(folder, path.stem, {one.file for _, one in full}, {t.name for t in targets})
     return _result(path, folder, done, job)
 
 
@@ -241,9 +250,9 @@ def bounding_box(
         As for :func:`light`.
     """
     parts = pieces_of(sources, 64.0)
-    with runner(client, workers, 0, len(parts)) as run:
+    with workers_of(client, workers, 0, len(parts)) as pool:
         calls = [(piece,) for piece in parts]
-        boxes = collected(run(task.bounds, calls), len(calls), "bounds", show=progress_bar)
+        boxes = collected(pool.run(task.bounds, calls), len(calls), "bounds", show=progress_bar)
     rows = np.array([box for box in boxes if box]).reshape(-1, 6)
     if not len(rows):
         raise PieceError(_check.message("sources", "pieces with points", "none"))
@@ -288,15 +297,11 @@ def _common_options(
         raise ValueError(_check.message("ghost", "1 at least beside normals='gradient'", ghost))
     sided = asked.tangents is None or asked.conditioned is True
     older = asked.two_sided or asked.flip_normals
-    return (
-        dict(options)
-        | ({"facing": "eye"} if sided and not older else {})
-        | ({"facing": options["facing"]} if "facing" in options else {})
-    )
+    return ({"facing": "eye"} if sided and not older else {}) | options
 
 
 def _prepared(
-    parts: list[Piece], job: Job, run: Callable[..., Iterator[tuple[int, Any]]], *, show: bool
+    parts: list[Piece], job: Job, pool: Workers, *, show: bool
 ) -> tuple[list[Piece], Job]:
     """Return pieces that know their neighbours, and a job without a question left open."""
     cue = job.scene.depth_cue
@@ -305,7 +310,7 @@ def _prepared(
     if not (loose or open_cue or (job.contour is not None and job.level is None)):
         return parts, job
     calls = [(piece, job.contour) for piece in parts]
-    found: list[Survey] = collected(run(task.survey, calls), len(calls), "survey", show=show)
+    found = collected(pool.run(task.survey, calls), len(calls), "survey", show=show)
     pairs = [(piece, one) for piece, one in zip(parts, found, strict=True) if one.points]
     if not pairs:
         raise PieceError(_check.message("sources", "pieces with points", "none"))
@@ -330,14 +335,15 @@ def _prepared(
 
 
 def _check_alike(
-    piece: Piece, arrays: dict[str, str], first: Piece, expected: dict[str, str]
+    piece: Piece, found: dict[str, Any], first: Piece, expected: dict[str, Any]
 ) -> None:
-    """Check that a piece has the arrays of the first."""
-    for name in expected | arrays:
-        here, there = arrays.get(name), expected.get(name)
+    """Check that a piece has the arrays of the first, and the grid of which both are boxes."""
+    for name in expected | found:
+        here, there = found.get(name), expected.get(name)
         if here != there:
             kind, _, own = name.partition(" ")
-            wanted = f"the {kind} array {own!r} of {there}" if there else f"no {kind} array {own!r}"
+            what = f"{kind} array {own!r}" if own else kind
+            wanted = f"the {what} of {there}" if there else f"no {what}"
             text = _check.message("sources", f"{wanted} as in {first.name}", here or "none")
             raise PieceError(f"piece {piece.name}: {text}")
 
@@ -411,4 +417,5 @@ def _result(path: Path, folder: Path, done: Sequence[Done], job: Job) -> Lit:
         level=job.level,
         empty=len(done) - len(full),
         reused=sum(one.reused for one in done),
+        seconds={name: sum(one.seconds[name] for one in done) for name in done[0].seconds},
     )

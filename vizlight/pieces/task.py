@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
+import itertools
 import json
+import time
 import warnings
 from dataclasses import dataclass, field
 from functools import partial
@@ -19,7 +21,8 @@ from vizlight._version import __version__
 from vizlight.filters import illuminate, streamlines
 from vizlight.mesh import normals, records
 from vizlight.pieces.ghosts import GHOST
-from vizlight.pieces.kinds import FilePiece, Piece, PieceError
+from vizlight.pieces.kinds import INDEX, SUFFIX, FilePiece, Piece, PieceError
+from vizlight.reading.polylines import has_lines_only
 from vizlight.shading.results import record_key
 
 if TYPE_CHECKING:
@@ -33,12 +36,6 @@ T = TypeVar("T")
 FILTERS = {"illuminate": illuminate, "streamlines": streamlines}
 #: Name of the gradient of the contoured array, which gives normals that no cut changes.
 GRADIENT = "gradient"
-#: Suffix of the index of pieces, by the suffix of the pieces.
-INDEX = {".vtp": ".pvtp", ".vtu": ".pvtu", ".vti": ".pvti", ".vtr": ".pvtr", ".vts": ".pvts"}
-SUFFIX = {
-    "PolyData": ".vtp", "UnstructuredGrid": ".vtu", "ImageData": ".vti", "RectilinearGrid": ".vtr",
-    "StructuredGrid": ".vts",
-}  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,6 +93,7 @@ class Done:
     arrays: dict[str, list[Any]] = field(default_factory=dict)
     invalid: int = 0
     notes: list[str] = field(default_factory=list)
+    seconds: dict[str, float] = field(default_factory=dict)
     size: int = 0
     key: str = ""
     reused: bool = False
@@ -109,15 +107,17 @@ def survey(piece: Piece, contour: str | None) -> Survey:
     PieceError
         If it cannot be read, or is empty and named by itself.
     """
-    mesh = _read(piece, 0)
+    mesh = read(piece, 0)
     if not mesh.n_points:
         return Survey(0, (), {})
-    arrays = {}
+    arrays = {"type ": type(mesh).__name__}
     for kind, data in (("point", mesh.point_data), ("cell", mesh.cell_data)):
         for name, array in data.items():
             if name != GHOST:
                 components = "" if array.ndim == 1 else f" x {array.shape[1]}"
                 arrays[f"{kind} {name}"] = f"{array.dtype}{components}"
+    if isinstance(mesh, pv.PolyData | pv.UnstructuredGrid | pv.StructuredGrid):
+        arrays["points "] = str(np.asarray(mesh.points).dtype)
     values = (np.inf, -np.inf)
     if contour is not None and contour in mesh.point_data and mesh.point_data[contour].ndim == 1:
         rows = np.asarray(mesh.point_data[contour], dtype=np.float64)
@@ -131,14 +131,15 @@ def bounds(piece: Piece) -> tuple[float, ...]:
     return _tried(piece, piece.bounds) or ()
 
 
-def _read(piece: Piece, ghost: int) -> pv.DataSet:
+def read(piece: Piece, ghost: int) -> pv.DataSet:
+    """Return the mesh of a piece, without points where an index names such a one."""
     return _tried(piece, partial(piece.read, ghost)) or pv.PolyData()
 
 
-def _tried(piece: Piece, read: Callable[[], T]) -> T | None:
+def _tried(piece: Piece, found: Callable[[], T]) -> T | None:
     """Return what a function reads, None where an index names a piece without points."""
     try:
-        return read()
+        return found()
     except (OSError, ValueError, TypeError, KeyError) as error:
         empty = isinstance(error, files.FileError) and "(no points)" in str(error)
         if empty and isinstance(piece, FilePiece) and piece.may_be_empty:
@@ -179,16 +180,22 @@ def light(piece: Piece, job: Job, target: Path) -> Done:
     PieceError
         If the piece cannot be read, lit or written.
     """
-    wanted = key(piece, job)
+    wanted = _tried(piece, partial(key, piece, job)) or ""
     if done := kept(target, wanted):
         return done
-    mesh = _read(piece, job.ghost)
+    laps: dict[str, float] = {"": time.process_time()}
+    mesh = read(piece, job.ghost)
+    laps["read"] = time.process_time()
     try:
         with warnings.catch_warnings(record=True) as caught, _compiled.setting(job.compiled):
             warnings.simplefilter("always", UserWarning)
+            if mesh.n_points and job.contour is not None:
+                mesh = _contour(mesh, job)
+            laps["contour"] = time.process_time()
             lit = _lit(mesh, piece, job)
         del mesh
         done = _described(lit, job)
+        laps["light"] = time.process_time()
         done.key = wanted
         said = [str(one.message) for one in caught if issubclass(one.category, UserWarning)]
         # Points that could not be lit are counted without ghost cells.
@@ -200,8 +207,10 @@ def light(piece: Piece, job: Job, target: Path) -> Done:
                 raise ValueError(_check.message("out", expected, f"*{INDEX[job.suffix]}"))
             path = files.write_mesh(lit, target.with_suffix(suffix))
             done.file, done.size = path.name, path.stat().st_size
+        laps["write"] = time.process_time()
     except (OSError, ValueError, TypeError) as error:
         raise PieceError(f"piece {piece.name}: {error}") from error
+    done.seconds = {name: laps[name] - laps[before] for before, name in itertools.pairwise(laps)}
     text = json.dumps(dataclasses.asdict(done))
     note = target.with_suffix(".json")
     files.replace_file(note, lambda draft: Path(draft).write_text(text, encoding="utf-8"))
@@ -210,11 +219,12 @@ def light(piece: Piece, job: Job, target: Path) -> Done:
 
 def _lit(mesh: pv.DataSet, piece: Piece, job: Job) -> Any:
     """Return the own part of a piece, lit."""
-    if mesh.n_points and job.contour is not None:
-        mesh = _contour(mesh, job)
     if not mesh.n_points:
         return mesh
-    lit: Any = FILTERS[job.filter](mesh, job.scene, **job.options)  # type: ignore[operator]
+    options = dict(job.options)
+    if options.get("tangents") is None and has_lines_only(mesh):
+        options.pop("facing", None)  # lines have no sides
+    lit: Any = FILTERS[job.filter](mesh, job.scene, **options)  # type: ignore[operator]
     record, made = records.read(lit, job.name), records.made(lit, job.name)
     for stale in records.made(lit, normals.KEPT):
         # They are those of the piece with its ghost cells, and would be checked in vain.
