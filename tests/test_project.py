@@ -125,7 +125,8 @@ def test_what_is_imported_is_declared(folder):
     known = modules(declared(*ALLOWED[folder])) | {"paraview"}  # which only its own Python has
     if folder != "vizlight":
         # A folder's own files and packages; the pages use the stability suite of the tests.
-        known |= {path.stem for path in files} | {"hostile", "stability"} | set(BROUGHT)
+        packages = {path.parent.name for path in files}
+        known |= {path.stem for path in files} | packages | {"stability"} | set(BROUGHT)
     assert undeclared(files, known) == []
 
 

@@ -9,13 +9,21 @@ UNUSED = re.compile(
     r'\s*<script[^>]* src="[^"]*\b(?:fontawesome|searchtools|language_data|searchindex)\.js[^"]*">'
     r"</script>"
 )
+#: What lays out cards and tabs.
+DESIGN = re.compile(
+    r'\s*<(?:link|script)[^>]* (?:href|src)="[^"]*\b(?:sphinx-design\.min\.css|'
+    r'design-tabs\.js)[^"]*"[^>]*>(?:</script>)?'
+)
 #: Names of modules and functions, which are too long for one row of a telephone.
 TITLE = re.compile(r"(?<=<h1>)[\w.]+(?=<)")
 
 
 def lighten(text):
     """Return a page without unused scripts, whose title may be broken after a dot."""
-    return TITLE.sub(lambda name: re.sub(r"([._])", r"\1<wbr>", name[0]), UNUSED.sub("", text))
+    text = UNUSED.sub("", text)
+    if 'class="sd-' not in text:
+        text = DESIGN.sub("", text)
+    return TITLE.sub(lambda name: re.sub(r"([._])", r"\1<wbr>", name[0]), text)
 
 
 def lighten_all(app, error):
