@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from vizlight import _check
 from vizlight.cli.output import OK, complain, draw, say
 from vizlight.cli.script import Step, source
+from vizlight.pieces.kinds import INDEX
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -15,8 +16,7 @@ if TYPE_CHECKING:
     from vizlight.cli.arguments import Color, Common, Output, Pieces, Target
     from vizlight.cli.scenes import Look
 
-#: Suffixes of the indices of pieces.
-INDICES = (".pvtp", ".pvtu", ".pvti", ".pvtr", ".pvts")
+INDICES = tuple(INDEX.values())
 
 
 def are_asked(out: Output, pieces: Pieces) -> bool:

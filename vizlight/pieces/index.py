@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vizlight import files
-from vizlight.pieces.task import INDEX, SUFFIX
+from vizlight.pieces.kinds import SUFFIX
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
     from vizlight.pieces.task import Done
 
@@ -42,11 +42,11 @@ def write(path: Path, pieces: Sequence[Done], folder: str, scalars: str) -> Path
     FileError
         If it cannot be written.
     """
-    suffix = {index: own for own, index in INDEX.items()}[path.suffix.lower()]
-    kind = "P" + {own: kind for kind, own in SUFFIX.items()}[suffix]
+    first = pieces[0]
+    suffix = Path(first.file).suffix
+    kind = "P" + next(kind for kind, own in SUFFIX.items() if own == suffix)
     root = ET.Element("VTKFile", type=kind, version="1.0", byte_order="LittleEndian")
     grid = ET.SubElement(root, kind, GhostLevel="0")
-    first = pieces[0]
     for name, data in (("point", "PPointData"), ("cell", "PCellData")):
         element = ET.SubElement(grid, data, {"Scalars": scalars} if name == "point" else {})
         for own, (kind_of, components) in first.arrays.items():

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 from vtkmodules import vtkIOXML
+from vtkmodules.vtkFiltersExtraction import vtkExtractGrid, vtkExtractRectilinearGrid
+from vtkmodules.vtkImagingCore import vtkExtractVOI
 
 from vizlight import _check, files
 from vizlight.pieces.ghosts import GHOST, own_cells, with_layer, without_ghosts
@@ -21,14 +23,15 @@ if TYPE_CHECKING:
 
     from vizlight._types import VectorLike
 
-    Extent = tuple[int, int, int, int, int, int]
+    Extent = tuple[int, ...]
     Stamp = list[str | int | float]
 
+#: Suffix of a piece by its type of mesh, and that of an index of pieces by the suffix of those.
+SUFFIX = {kind: formats[0] for kind, formats in files.FORMATS.items()}
+INDEX = {suffix: f".p{suffix[1:]}" for suffix in SUFFIX.values()}
 #: Readers of structured grids, which read any box of nodes out of a file.
 STRUCTURED = {
-    ".vti": vtkIOXML.vtkXMLImageDataReader,
-    ".vtr": vtkIOXML.vtkXMLRectilinearGridReader,
-    ".vts": vtkIOXML.vtkXMLStructuredGridReader,
+    **{suffix: files.READERS[suffix] for suffix in (".vti", ".vtr", ".vts")},
     ".pvti": vtkIOXML.vtkXMLPImageDataReader,
     ".pvtr": vtkIOXML.vtkXMLPRectilinearGridReader,
     ".pvts": vtkIOXML.vtkXMLPStructuredGridReader,
@@ -60,7 +63,7 @@ class Piece:
 
     def own(self, mesh: pv.DataSet) -> pv.DataSet:
         """Return the part of a mesh, read with ghost cells, that belongs to the piece."""
-        raise NotImplementedError
+        return own_cells(mesh)
 
     def stamp(self) -> Stamp | None:
         """Return what changes with the data; None where that is not known."""
@@ -136,10 +139,6 @@ class FilePiece(Piece):
             mesh, layers = with_layer(mesh, layers)
         return mesh
 
-    def own(self, mesh: pv.DataSet) -> pv.DataSet:
-        """See :class:`Piece`."""
-        return own_cells(mesh)
-
     def stamp(self) -> Stamp | None:
         """See :class:`Piece`."""
         return [*stamp_of(self.path), self.partition, self.partitions]
@@ -150,27 +149,71 @@ class FilePiece(Piece):
 
 
 @dataclass(frozen=True)
-class BoxPiece(Piece):
+class GridPiece(Piece):
+    """A box of nodes of a structured grid.
+
+    Attributes
+    ----------
+    extent, whole : tuple of 6 int
+        First and last node of the piece and of the grid, along x, y and z.
+    """
+
+    extent: Extent
+    whole: Extent
+
+    def nodes(self, extent: Extent) -> Any:
+        """Return a box of nodes."""
+        raise NotImplementedError
+
+    def read(self, ghost: int) -> pv.DataSet:
+        """See :class:`Piece`."""
+        grown = [
+            min(node + ghost, self.whole[i]) if i % 2 else max(node - ghost, self.whole[i])
+            for i, node in enumerate(self.extent)
+        ]
+        mesh = self.nodes(tuple(grown))
+        found = mesh.GetExtent()
+        outside = np.ones([max(found[i + 1] - found[i], 1) for i in (4, 2, 0)], dtype=np.uint8)
+        own = [(self.extent[i] - found[i], self.extent[i + 1] - found[i]) for i in (4, 2, 0)]
+        outside[tuple(slice(low, max(high, 1)) for low, high in own)] = 0
+        mesh.cell_data[GHOST] = outside.ravel()
+        return mesh  # type: ignore[no-any-return]
+
+    def own(self, mesh: Any) -> pv.DataSet:
+        """See :class:`Piece`."""
+        if not hasattr(mesh, "GetExtent"):
+            return own_cells(mesh)
+        if tuple(mesh.GetExtent()) != self.extent:
+            kinds = {pv.ImageData: vtkExtractVOI, pv.RectilinearGrid: vtkExtractRectilinearGrid}
+            cutter: Any = kinds.get(type(mesh), vtkExtractGrid)()
+            cutter.SetInputDataObject(mesh)
+            cutter.SetVOI(self.extent)
+            cutter.Update()
+            own = pv.wrap(cutter.GetOutput())
+            for name in mesh.field_data:
+                own.field_data[name] = mesh.field_data[name]
+            mesh = own
+        mesh.cell_data.pop(GHOST, None)
+        return mesh  # type: ignore[no-any-return]
+
+
+@dataclass(frozen=True)
+class BoxPiece(GridPiece):
     """A box of nodes of a structured grid in a file.
 
     Attributes
     ----------
     path : pathlib.Path
         Path of the file.
-    extent, whole : tuple of 6 int
-        First and last node of the piece and of the file, along x, y and z.
     """
 
     path: Path
-    extent: Extent
-    whole: Extent
 
-    def read(self, ghost: int) -> pv.DataSet:
-        """See :class:`Piece`."""
+    def nodes(self, extent: Extent) -> Any:
+        """See :class:`GridPiece`."""
         reader = structured(self.path)
-        reader.UpdateExtent(_grown(self.extent, self.whole, ghost))
-        mesh = pv.wrap(reader.GetOutputDataObject(0))
-        return _marked(without_ghosts(mesh), self.extent)
+        reader.UpdateExtent(extent)
+        return without_ghosts(pv.wrap(reader.GetOutputDataObject(0)))
 
     def bounds(self) -> tuple[float, ...]:
         """See :class:`Piece`."""
@@ -180,14 +223,10 @@ class BoxPiece(Piece):
         reader.UpdateExtent(self.extent)
         return tuple(reader.GetOutputDataObject(0).GetBounds())
 
-    def own(self, mesh: pv.DataSet) -> pv.DataSet:
-        """See :class:`Piece`."""
-        return _own_box(mesh, self.extent)
-
     def stamp(self) -> Stamp | None:
         """See :class:`Piece`."""
         found: Stamp = [*stamp_of(self.path), *self.extent]
-        if self.path.suffix.lower() in (".pvti", ".pvtr", ".pvts"):
+        if self.path.suffix.lower() in INDEX.values():
             for path in index_files(self.path):
                 found += stamp_of(path)
         return found
@@ -296,49 +335,38 @@ class _Mapped:
         part = self.kept[low:high]
         return np.asarray(part.compute(scheduler="sync") if hasattr(part, "compute") else part)
 
-    def stamp(self) -> Stamp | None:
-        """See :class:`Piece`."""
-        return None if self.kept is not None else [*stamp_of(Path(self.path)), self.offset]
-
 
 @dataclass(frozen=True)
-class SlabPiece(Piece):
+class SlabPiece(GridPiece):
     """Slices of nodes of a grid in arrays."""
 
     grid: Slabs
-    extent: Extent
 
-    def read(self, ghost: int) -> pv.DataSet:
-        """See :class:`Piece`."""
-        x0, x1, y0, y1, low, high = _grown(self.extent, self.grid.extent, ghost)
-        mesh = pv.ImageData(spacing=self.grid.spacing, origin=self.grid.origin)
-        mesh.extent = (x0, x1, y0, y1, low, high)
+    def nodes(self, extent: Extent) -> pv.ImageData:
+        """See :class:`GridPiece`."""
+        mesh = self.empty(extent)
         for name, array in self.grid.arrays.items():
-            mesh.point_data[name] = array.rows(low, high + 1).reshape(-1, *array.shape[3:])
-        return _marked(mesh, self.extent)
+            rows = array.rows(extent[4], extent[5] + 1)
+            mesh.point_data[name] = rows.reshape(-1, *array.shape[3:])
+        return mesh
+
+    def empty(self, extent: Extent) -> pv.ImageData:
+        """Return a box of nodes without arrays."""
+        mesh = pv.ImageData(spacing=self.grid.spacing, origin=self.grid.origin)
+        mesh.extent = extent
+        return mesh
 
     def bounds(self) -> tuple[float, ...]:
         """See :class:`Piece`."""
-        first = zip(self.grid.origin, self.grid.spacing, strict=True)
-        ends = [
-            (o + step * self.extent[2 * i], o + step * self.extent[2 * i + 1])
-            for i, (o, step) in enumerate(first)
-        ]
-        return (*ends[0], *ends[1], *ends[2])
-
-    def own(self, mesh: pv.DataSet) -> pv.DataSet:
-        """See :class:`Piece`."""
-        return _own_box(mesh, self.extent)
+        return tuple(self.empty(self.extent).bounds)
 
     def stamp(self) -> Stamp | None:
         """See :class:`Piece`."""
-        stamps = [array.stamp() for array in self.grid.arrays.values()]
-        if None in stamps:
-            return None
-        named = zip(self.grid.arrays, stamps, strict=True)
         found: Stamp = [*self.extent, *self.grid.spacing, *self.grid.origin]
-        for name, stamp in named:
-            found += [name, *(stamp or ())]
+        for name, array in self.grid.arrays.items():
+            if array.kept is not None:
+                return None
+            found += [name, *stamp_of(Path(array.path)), array.offset]
         return found
 
 
@@ -389,45 +417,3 @@ def _informed(reader: Any, path: Path) -> Any:
         got = f"'{path}' ({errors[0]})"
         raise PieceError(_check.message("sources", "a file that can be read", got))
     return reader
-
-
-def _grown(extent: Extent, whole: Extent, ghost: int) -> Extent:
-    """Return a box of nodes with layers of others around it, as far as there are any."""
-    low = [max(extent[2 * i] - ghost, whole[2 * i]) for i in range(3)]
-    high = [min(extent[2 * i + 1] + ghost, whole[2 * i + 1]) for i in range(3)]
-    return (low[0], high[0], low[1], high[1], low[2], high[2])
-
-
-def _marked(mesh: Any, extent: Extent) -> pv.DataSet:
-    """Mark the cells of a structured grid that are outside a box of nodes."""
-    found = mesh.GetExtent()
-    cells = [max(found[2 * i + 1] - found[2 * i], 1) for i in range(3)]
-    outside = np.ones(cells[::-1], dtype=np.uint8)
-    inner = [
-        slice(extent[2 * i] - found[2 * i], max(extent[2 * i + 1] - found[2 * i], 1))
-        for i in (2, 1, 0)
-    ]
-    outside[tuple(inner)] = 0
-    mesh.cell_data[GHOST] = outside.ravel()
-    return mesh  # type: ignore[no-any-return]
-
-
-def _own_box(mesh: Any, extent: Extent) -> pv.DataSet:
-    """Return the part of a result that belongs to a box of nodes."""
-    if not hasattr(mesh, "GetExtent"):
-        return own_cells(mesh)
-    if tuple(mesh.GetExtent()) != tuple(extent):
-        from vtkmodules.vtkFiltersExtraction import vtkExtractGrid, vtkExtractRectilinearGrid
-        from vtkmodules.vtkImagingCore import vtkExtractVOI
-
-        kinds = {pv.ImageData: vtkExtractVOI, pv.RectilinearGrid: vtkExtractRectilinearGrid}
-        cutter: Any = kinds.get(type(mesh), vtkExtractGrid)()
-        cutter.SetInputDataObject(mesh)
-        cutter.SetVOI(extent)
-        cutter.Update()
-        own = pv.wrap(cutter.GetOutput())
-        for name in mesh.field_data:
-            own.field_data[name] = mesh.field_data[name]
-        mesh = own
-    mesh.cell_data.pop(GHOST, None)
-    return mesh  # type: ignore[no-any-return]

@@ -16,7 +16,7 @@ import pyvista as pv
 
 from vizlight import _check, _compiled, files
 from vizlight.pieces import index, task
-from vizlight.pieces.kinds import FilePiece, PieceError, union
+from vizlight.pieces.kinds import INDEX, FilePiece, PieceError, union
 from vizlight.pieces.sources import pieces_of
 from vizlight.pieces.workers import collected, runner
 from vizlight.scene import Scene
@@ -177,7 +177,7 @@ def light(
     (2, 1684)
     """
     _check.instance("scene", scene, Scene)
-    path = files.check_output(_check.path("out", out), tuple(task.INDEX.values()), name="out")
+    path = files.check_output(_check.path("out", out), tuple(INDEX.values()), name="out")
     ghost = _check.integer("ghost", ghost, low=0)
     job = task.Job(
         scene=scene,
@@ -186,7 +186,7 @@ def light(
         contour=contour if contour is None else _name("contour", contour),
         level=None if level is None else _check.number("level", level),
         ghost=ghost if filter == "illuminate" else 0,
-        suffix={own: suffix for suffix, own in task.INDEX.items()}[path.suffix.lower()],
+        suffix={own: suffix for suffix, own in INDEX.items()}[path.suffix.lower()],
         compiled="1" if _compiled.wanted() == "1" else "0",
     )
     if level is not None and contour is None:

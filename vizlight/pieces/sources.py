@@ -131,7 +131,7 @@ def _boxes(path: Path, slab: float) -> list[Piece]:
     nodes = math.prod(whole[2 * i + 1] - whole[2 * i] + 1 for i in range(3))
     size = _uncompressed(path, reader, nodes)
     return [
-        BoxPiece(f"{path}[{box[4]}:{box[5]}]", path, box, tuple(whole))
+        BoxPiece(f"{path}[{box[4]}:{box[5]}]", box, tuple(whole), path)
         for box in _cuts(tuple(whole), size / nodes, slab)
     ]
 
@@ -155,7 +155,7 @@ def _uncompressed(path: Path, reader: Any, nodes: int) -> float:
 
 def _slabs(grid: Slabs, slab: float) -> list[Piece]:
     cuts = _cuts(grid.extent, grid.bytes_per_node(), slab)
-    return [SlabPiece(f"slices {box[4]} to {box[5]}", grid, box) for box in cuts]
+    return [SlabPiece(f"slices {box[4]} to {box[5]}", box, grid.extent, grid) for box in cuts]
 
 
 def _cuts(whole: Extent, bytes_per_node: float, slab: float) -> Iterable[Extent]:

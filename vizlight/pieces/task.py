@@ -19,7 +19,7 @@ from vizlight._version import __version__
 from vizlight.filters import illuminate, streamlines
 from vizlight.mesh import normals, records
 from vizlight.pieces.ghosts import GHOST
-from vizlight.pieces.kinds import FilePiece, Piece, PieceError
+from vizlight.pieces.kinds import INDEX, SUFFIX, FilePiece, Piece, PieceError
 from vizlight.shading.results import record_key
 
 if TYPE_CHECKING:
@@ -33,12 +33,6 @@ T = TypeVar("T")
 FILTERS = {"illuminate": illuminate, "streamlines": streamlines}
 #: Name of the gradient of the contoured array, which gives normals that no cut changes.
 GRADIENT = "gradient"
-#: Suffix of the index of pieces, by the suffix of the pieces.
-INDEX = {".vtp": ".pvtp", ".vtu": ".pvtu", ".vti": ".pvti", ".vtr": ".pvtr", ".vts": ".pvts"}
-SUFFIX = {
-    "PolyData": ".vtp", "UnstructuredGrid": ".vtu", "ImageData": ".vti", "RectilinearGrid": ".vtr",
-    "StructuredGrid": ".vts",
-}  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
