@@ -313,3 +313,34 @@ def test_frames_of_pathlines_become_pictures(tmp_path):
     assert 0 < ink[0] < ink[1] < ink[2]
     with pytest.raises(ValueError, match="frames: expected"):
         movie.save([], tmp_path / "none.png")
+
+
+def test_pictures_are_written_as_they_come(tmp_path):
+    rng = np.random.default_rng(3)
+    given = rng.integers(0, 256, (3, 20, 30, 3), dtype=np.uint8)
+    files = movie.save(iter(given), tmp_path / "a.png")
+    np.testing.assert_array_equal([np.asarray(Image.open(file)) for file in files], given)
+    (file,) = movie.save(given, tmp_path / "a.gif", progress_bar=True)
+    with Image.open(file) as found:
+        assert found.n_frames == 3
+
+    def broken():
+        yield given[0]
+        raise OSError("gone")
+
+    with pytest.raises(FileError, match="output: "):
+        movie.save(broken(), tmp_path / "b.gif")
+    for frames, options, message in (
+        ([given[0], given[1, :9]], {}, r"pictures of one shape, \(20, 30, 3\)"),
+        ([given[0], pv.Sphere()], {}, "frames: expected pictures, each an array of uint8"),
+        (given[0], {}, "frames: expected pictures, each an array of uint8"),
+        ([given[0] / 255], {}, "frames: expected pictures, each an array of uint8"),
+        ([given[0, :, :0]], {}, "frames: expected pictures, each an array of uint8"),
+        ([given[0, :9]], {"path": "b.mp4"}, "size: expected an even width and height"),
+        ([given[0]], {"camera": pv.Camera()}, "camera: expected none beside pictures"),
+        ([given[0]], {"picture": SMALL}, "picture: expected none beside pictures"),
+    ):
+        path = tmp_path / options.pop("path", "b.gif")
+        with pytest.raises(ValueError, match=message):
+            movie.save(frames, path, **options)
+    assert {path.stem for path in tmp_path.iterdir()} == {"a", "a_0000", "a_0001", "a_0002"}

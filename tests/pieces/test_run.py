@@ -343,30 +343,23 @@ def test_bad_slabs(arrays, options, message):
         pieces.Slabs(arrays, **options)
 
 
-def test_a_killed_worker_leaves_nothing_and_the_result_is_the_same(tmp_path, image):
-    distributed = pytest.importorskip("distributed")
+def test_a_killed_worker_leaves_nothing_and_the_result_is_the_same(tmp_path, image, client):
     source = sources(image, tmp_path, "memmap")
     options = {"contour": "s", "level": LEVEL, "normals": "gradient", "slab": 0.03}
     expected = pieces.light(source, PLAIN, out=tmp_path / "one.pvtp", workers=1, **options)
-    with (
-        distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50
-        ) as cluster,
-        distributed.Client(cluster) as client,
-    ):
-        pids = list(client.run(os.getpid).values())
+    pids = list(client.run(os.getpid).values())
 
-        def kill():
-            while len(list((tmp_path / "two").glob("*.vtp"))) < 2:
-                time.sleep(0.01)
-            os.kill(pids[0], signal.SIGKILL)
+    def kill():
+        while len(list((tmp_path / "two").glob("*.vtp"))) < 2:
+            time.sleep(0.01)
+        os.kill(pids[0], signal.SIGKILL)
 
-        killer = threading.Thread(target=kill)
-        killer.start()
-        lit = pieces.light(source, PLAIN, out=tmp_path / "two.pvtp", client=client, **options)
-        killer.join()
-        assert pids[0] not in client.run(os.getpid).values()
-        with pytest.raises(pieces.PieceError, match="slices 0 to .*tangents: expected the name"):
-            pieces.light(source, PLAIN, out=tmp_path / "three.pvtp", client=client, tangents="W")
+    killer = threading.Thread(target=kill)
+    killer.start()
+    lit = pieces.light(source, PLAIN, out=tmp_path / "two.pvtp", client=client, **options)
+    killer.join()
+    assert pids[0] not in client.run(os.getpid).values()
+    with pytest.raises(pieces.PieceError, match="slices 0 to .*tangents: expected the name"):
+        pieces.light(source, PLAIN, out=tmp_path / "three.pvtp", client=client, tangents="W")
     assert digests(lit) == digests(expected)
     assert not list((tmp_path / "two").glob(".*"))

@@ -6,7 +6,7 @@ import importlib
 import itertools
 import os
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sized
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -50,7 +50,7 @@ class MovieError(RuntimeError):
 
 
 def save(
-    frames: Iterable[Mesh | render.Panel],
+    frames: Iterable[Mesh | render.Panel | Picture],
     path: str | Path,
     /,
     *,
@@ -63,17 +63,18 @@ def save(
 
     Parameters
     ----------
-    frames : iterable of meshes or Panels
-        Meshes to draw, one after the other.
+    frames : iterable of meshes or Panels, or of pictures
+        Meshes to draw, one after the other; or pictures, arrays of uint8 of one shape (height,
+        width, 3), such as :func:`vizlight.pieces.pictures` yields. They are written as they come.
     path : path
         Path of a movie or of a sequence of PNGs, as for :func:`turn`.
     fps : float, default: 24.0
         Frames per second of a movie, up to 100.
     camera : pyvista.Camera, optional
         Camera of all frames. Default: one that shows them all; the frames are then kept in memory
-        until the last is there.
+        until the last is there. Pictures have theirs.
     picture : mapping, optional
-        Further options of :func:`vizlight.render.make_plotter`.
+        Further options of :func:`vizlight.render.make_plotter`, for meshes.
     progress_bar : bool, default: False
         Show progress on standard error.
 
@@ -88,20 +89,33 @@ def save(
         As for :func:`turn`; also if there is no frame.
     """
     path = _check_movie(path)
-    _check.iterable("frames", frames, "an iterable of meshes or Panels")
+    _check.iterable("frames", frames, "an iterable of meshes or Panels, or of pictures")
     drawing = _drawing(picture)
-    writer = _writer(path, _check.number("fps", fps, low=0.01, high=100.0), drawing["size"])
-    if camera is None:
-        frames = list(frames)
-        meshes = [frame.mesh if isinstance(frame, render.Panel) else frame for frame in frames]
-        camera = render.camera_on(common_bounds("frames", meshes))
-    drawing["camera"] = camera
-    known = len(frames) if isinstance(frames, list) else 0
+    fps = _check.number("fps", fps, low=0.01, high=100.0)
+    writer = _writer(path, fps, drawing["size"])
+    known = len(frames) if isinstance(frames, Sized) else 0
+    rest: Iterator[Any] = iter(frames)
+    first = next(rest, None)
+    if first is None:
+        raise ValueError(_check.message("frames", "one mesh, Panel or picture or more", "none"))
+    rest = itertools.chain([first], rest)
+    if isinstance(first, np.ndarray):
+        for name, value in (("camera", camera), ("picture", picture)):
+            if value is not None:
+                raise ValueError(_check.message(name, "none beside pictures", "one"))
+        _check_picture(first, first.shape)
+        writer = _writer(path, fps, first.shape[1::-1])
+        drawn: Iterator[Picture] = (_check_picture(each, first.shape) for each in rest)
+    else:
+        if camera is None:
+            meshes = list(rest)
+            known, rest = len(meshes), iter(meshes)
+            bare = [mesh.mesh if isinstance(mesh, render.Panel) else mesh for mesh in meshes]
+            camera = render.camera_on(common_bounds("frames", bare))
+        drawing["camera"] = camera
+        drawn = render.pictures(rest, **drawing)
     with progress("draw", known, show=progress_bar) as report:
-        files = writer(_counted(render.pictures(frames, **drawing), report, 0))
-    if not files:
-        raise ValueError(_check.message("frames", "one mesh or more", "none"))
-    return files
+        return writer(_counted(drawn, report, 0))
 
 
 @accepts(ProjectOptions)
@@ -223,6 +237,18 @@ def _check_movie(path: object) -> Path:
     if not isinstance(path, str | os.PathLike):
         raise TypeError(_check.message("path", "the path of a file", _check.describe(path)))
     return check_output(Path(path), FORMATS)
+
+
+def _check_picture(picture: object, shape: tuple[int, ...]) -> Picture:
+    """Return a picture of a movie whose pictures all have one shape."""
+    own = picture if isinstance(picture, np.ndarray) else None
+    if own is None or own.dtype != np.uint8 or own.ndim != 3 or own.shape[2] != 3 or not own.size:
+        expected = "pictures, each an array of uint8 of shape (height, width, 3)"
+        raise ValueError(_check.message("frames", expected, _check.describe(picture)))
+    if own.shape != shape:
+        expected = f"pictures of one shape, {shape} as the first"
+        raise ValueError(_check.message("frames", expected, own.shape))
+    return own
 
 
 def _drawing(picture: render.PlotterKeywords | None) -> render.PlotterKeywords:

@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
+import dataclasses
 import inspect
-from dataclasses import dataclass
+import itertools
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkFloatArray
-from vtkmodules.vtkRenderingCore import vtkRenderer
 
-from vizlight import _check, files
+from vizlight import _check, _pool, files
 from vizlight.pictures import render
+from vizlight.pieces import task
 from vizlight.pieces.kinds import FilePiece, PieceError, union
 from vizlight.pieces.run import Lit
 from vizlight.pieces.sources import pieces_of
-from vizlight.pieces.task import survey
-from vizlight.pieces.workers import runner
+from vizlight.pieces.workers import workers_of
 from vizlight.shading.options import unknown_option
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vizlight._types import Array
+    from vizlight.pieces.workers import Workers
 
     Picture = NDArray[np.uint8]
 
@@ -39,20 +41,42 @@ CAMERA = (
 
 
 class Layer(NamedTuple):
-    """Picture of one piece, and the depth of each of its pixels, 1 where nothing is drawn."""
+    """Picture of some pieces, and the depth of each of its pixels, 1 where nothing is drawn."""
 
     color: Picture
     depth: Array
+    last: bool
+
+    def over(self, other: Layer | None) -> Layer:
+        """Return both layers in one: of equal depths that of this one is seen."""
+        if other is None:
+            return self
+        nearer = self.depth <= other.depth
+        color = np.where(nearer[..., np.newaxis], self.color, other.color)
+        return Layer(color, np.where(nearer, self.depth, other.depth), self.last)
+
+
+@dataclass(frozen=True)
+class Group:
+    """Pieces that one task draws and puts together; ``last`` if the picture is then whole."""
+
+    parts: tuple[FilePiece, ...]
+    last: bool
+
+    @property
+    def name(self) -> str:
+        """Name in messages."""
+        return " to ".join(dict.fromkeys((self.parts[0].name, self.parts[-1].name)))
 
 
 @dataclass(frozen=True, kw_only=True)
 class Shot:
     """How each piece is drawn."""
 
-    camera: Mapping[str, Any]
-    clipping: tuple[float, float]
     size: tuple[int, int]
     options: Mapping[str, Any]
+    camera: Mapping[str, Any] = field(default_factory=dict)
+    bounds: tuple[float, ...] = ()
 
 
 def pictures(
@@ -71,7 +95,8 @@ def pictures(
     Parameters
     ----------
     sequence : iterable of Lit, path or list of paths
-        Results of :func:`light`, indices or files of each picture.
+        Results of :func:`light`, indices or files of each picture. Of an iterator no more is taken
+        ahead than keeps the workers busy.
     camera : pyvista.Camera, optional
         Camera of all pictures. Default: :func:`vizlight.render.camera_on` the bounding box of the
         first.
@@ -80,7 +105,8 @@ def pictures(
     samples : int, default: 2
         Number of samples along each side of a pixel, averaged after the pieces are put together.
     client, workers
-        What draws, as for :func:`light`. Every worker needs an OpenGL library.
+        What draws, as for :func:`light`: a step in one piece is one task. No more local processes
+        are started than there are processors. Every worker needs an OpenGL library.
     **options
         ``scalars``, ``cmap``, ``clim``, ``background`` and ``line_width`` of
         :func:`vizlight.render.make_plotter`; the background is white by default.
@@ -100,9 +126,16 @@ def pictures(
 
     Notes
     -----
-    No pixel differs from that of a picture of the whole mesh, drawn with the same samples. Of
-    fragments at the same depth the last piece's is seen, as the last mesh's is in one picture.
-    A worker needs the memory of one piece; the client that of the picture, 7 bytes per sample.
+    No pixel differs from that of a picture of the whole mesh, drawn with the same samples. That
+    holds for the edges of lines too: their samples are opaque, and are averaged after the pieces
+    are put together, so that no edge is transparent before. Of fragments at the same depth the
+    last piece's is seen, as the last mesh's is in one picture. VTK's own anti-aliasing ("ssaa")
+    also weighs samples of the neighbouring pixels, so a picture of :mod:`vizlight.render` has
+    softer edges.
+
+    A task draws one or more pieces, one after the other, and sends their picture. A worker needs
+    the memory of one piece and two pictures, the client that of two: 7 bytes per sample each. The
+    pieces of a worker that is killed are drawn by another.
 
     Examples
     --------
@@ -133,20 +166,31 @@ def pictures(
     render.pixels_of(large)
     options = {"background": "white", "line_width": 1.0} | options
     options["line_width"] = samples * _check.number("line_width", options["line_width"], low=0.1)
-    with runner(client, workers, 0, 1 << 20) as run:
-        for one in sequence:
-            parts = _parts(one)
-            bounds = _bounds(one, parts, run)
-            if camera is None:
-                camera = render.camera_on(pv.Box(bounds), aspect=width / height)
-            shot = Shot(
-                camera={name: getattr(camera, name) for name in CAMERA},
-                clipping=_clipping(camera, bounds),
-                size=large,
-                options=options,
-            )
-            layers = run(draw, [(piece, shot) for piece in parts])
-            yield _smaller(_together(layers, len(parts)), samples)
+    aspect = width / height
+    with workers_of(client, workers, 0, _pool.workers(None)) as pool:
+        shots = _shots(sequence, pool, camera, aspect, Shot(size=large, options=options))
+        whole = None
+        for layer in pool.run(draw, shots, 2 * pool.number):
+            whole = layer.over(whole)
+            if layer.last:
+                yield _smaller(whole.color, samples)
+                whole = None
+
+
+def _shots(
+    sequence: Iterable[Any], pool: Workers, camera: pv.Camera | None, aspect: float, shot: Shot
+) -> Iterator[tuple[Group, Shot]]:
+    """Yield the pieces of each picture in groups, so many that all workers draw."""
+    for one in sequence:
+        parts, bounds = _parts(one, pool, camera)
+        if camera is None:
+            camera = render.camera_on(pv.Box(bounds), aspect=aspect)
+        own = {name: getattr(camera, name) for name in CAMERA}
+        now = dataclasses.replace(shot, camera=own, bounds=bounds)
+        count = min(len(parts), 2 * pool.number)
+        ends = [len(parts) * i // count for i in range(count + 1)]
+        for low, high in itertools.pairwise(ends):
+            yield Group(tuple(parts[low:high]), high == len(parts)), now
 
 
 def save_png(
@@ -179,73 +223,51 @@ def save_png(
     return files.replace_file(path, lambda draft: Image.fromarray(picture).save(draft))
 
 
-def draw(piece: FilePiece, shot: Shot) -> Layer:
-    """Return the picture of one piece."""
-    mesh = piece.load()
+def draw(group: Group, shot: Shot) -> Layer:
+    """Return the picture of the pieces of a group."""
     camera: Any = pv.Camera()  # type: ignore[no-untyped-call]
     for name, value in shot.camera.items():
         setattr(camera, name, value)
-    try:
-        plotter = render.make_plotter(
-            mesh, camera=camera, size=shot.size, anti_aliasing=None, light="points", **shot.options
-        )
-    except (TypeError, ValueError) as error:
-        raise PieceError(f"piece {piece.name}: {error}") from error
-    try:
-        plotter.camera.clipping_range = shot.clipping
-        color = np.array(plotter.screenshot(return_img=True))
-        width, height = shot.size
-        depths = vtkFloatArray()
-        window: Any = plotter.render_window
-        window.GetZbufferData(0, 0, width - 1, height - 1, depths)
-        depth = pv.convert_array(depths).reshape(height, width)[::-1].copy()
-    finally:
-        plotter.close()
-    return Layer(color, depth)
+    whole = None
+    for piece in group.parts:
+        mesh = task.read(piece, 0)
+        try:
+            plotter = render.make_plotter(
+                mesh, camera=camera, size=shot.size, anti_aliasing=None, light="points",
+                **shot.options,
+            )  # fmt: skip
+        except (TypeError, ValueError) as error:
+            raise PieceError(f"piece {piece.name}: {error}") from error
+        try:
+            plotter.renderer.ResetCameraClippingRange(shot.bounds or mesh.bounds)
+            color = np.array(plotter.screenshot(return_img=True))
+            width, height = shot.size
+            depths = vtkFloatArray()
+            window: Any = plotter.render_window
+            window.GetZbufferData(0, 0, width - 1, height - 1, depths)
+            depth = pv.convert_array(depths).reshape(height, width)[::-1].copy()
+        finally:
+            plotter.close()
+        whole = Layer(color, depth, group.last).over(whole)
+    assert whole is not None
+    return whole
 
 
-def _parts(shown: Lit | str | Path | list[str | Path]) -> list[FilePiece]:
+def _parts(
+    shown: Any, pool: Workers, camera: pv.Camera | None
+) -> tuple[list[FilePiece], tuple[float, ...]]:
+    """Return the pieces with points of one picture, and their bounding box where it is needed."""
     if isinstance(shown, Lit):
-        return [FilePiece(str(path), path) for path in shown.files]
+        return [FilePiece(str(path), path) for path in shown.files], shown.bounds
     found = [piece for piece in pieces_of(shown, 1e9, "sequence") if isinstance(piece, FilePiece)]
-    if not found:
+    if len(found) == 1 and camera is not None:
+        return found, ()
+    boxes = list(pool.run(task.bounds, [(piece,) for piece in found]))
+    full = [piece for piece, box in zip(found, boxes, strict=True) if box]
+    if not full:
         expected = "files of surfaces, lines or cells"
         raise PieceError(_check.message("sequence", expected, _check.describe(shown)))
-    return found
-
-
-def _bounds(shown: object, parts: list[FilePiece], run: Any) -> tuple[float, ...]:
-    if isinstance(shown, Lit):
-        return shown.bounds
-    return union([one.bounds for _, one in run(survey, [(piece, None) for piece in parts])])
-
-
-def _clipping(camera: pv.Camera, bounds: tuple[float, ...]) -> tuple[float, float]:
-    """Return the range of depths that a camera needs for a box."""
-    own, renderer = camera.copy(), vtkRenderer()  # type: ignore[no-untyped-call]
-    renderer.SetActiveCamera(own)
-    renderer.ResetCameraClippingRange(bounds)
-    near, far = own.clipping_range
-    return float(near), float(far)
-
-
-def _together(layers: Iterator[tuple[int, Layer]], count: int) -> Picture:
-    """Return one picture of several, in the order of the pieces, whenever they come."""
-    waiting: dict[int, Layer] = {}
-    color: Picture = np.zeros((0, 0, 3), np.uint8)
-    depth: Array = np.zeros((0, 0))
-    wanted = 0
-    for i, layer in layers:
-        waiting[i] = layer
-        while wanted in waiting:
-            own = waiting.pop(wanted)
-            if not wanted:
-                color, depth = own.color.copy(), own.depth.copy()
-            nearer = own.depth <= depth
-            color[nearer], depth[nearer] = own.color[nearer], own.depth[nearer]
-            wanted += 1
-    assert wanted == count
-    return color
+    return full, union([box for box in boxes if box])
 
 
 def _smaller(picture: Picture, samples: int) -> Picture:

@@ -18,17 +18,18 @@ from vizlight import _check, _compiled, files
 from vizlight.pieces import index, task
 from vizlight.pieces.kinds import INDEX, FilePiece, PieceError, union
 from vizlight.pieces.sources import pieces_of
-from vizlight.pieces.workers import collected, runner
+from vizlight.pieces.workers import collected, workers_of
 from vizlight.scene import Scene
 from vizlight.shading.options import LightOptions, unknown_option
 from vizlight.shading.results import unlit
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Sequence
     from pathlib import Path
 
     from vizlight.pieces.kinds import Piece
-    from vizlight.pieces.task import Done, Job, Survey
+    from vizlight.pieces.task import Done, Job
+    from vizlight.pieces.workers import Workers
 
 #: Options of light that depend on a mesh as a whole.
 WHOLE = {
@@ -202,11 +203,11 @@ def light(
     files.make_folder("out", folder)
     with contextlib.ExitStack() as stack:
         stack.callback(_clear, folder)
-        run = stack.enter_context(runner(client, workers, retries, len(parts)))
-        parts, job = _prepared(parts, job, run, show=progress_bar)
+        pool = stack.enter_context(workers_of(client, workers, retries, len(parts)))
+        parts, job = _prepared(parts, job, pool, show=progress_bar)
         targets = [folder / f"{path.stem}_{i:04d}" for i in range(len(parts))]
         calls = [(piece, job, target) for piece, target in zip(parts, targets, strict=True)]
-        done = collected(run(task.light, calls), len(calls), "light", show=progress_bar)
+        done = collected(pool.run(task.light, calls), len(calls), "light", show=progress_bar)
     full = [one for one in done if one.file]
     if not full:
         what = f"contour {contour!r} at {job.level:g}" if contour is not None else "points"
@@ -241,9 +242,9 @@ def bounding_box(
         As for :func:`light`.
     """
     parts = pieces_of(sources, 64.0)
-    with runner(client, workers, 0, len(parts)) as run:
+    with workers_of(client, workers, 0, len(parts)) as pool:
         calls = [(piece,) for piece in parts]
-        boxes = collected(run(task.bounds, calls), len(calls), "bounds", show=progress_bar)
+        boxes = collected(pool.run(task.bounds, calls), len(calls), "bounds", show=progress_bar)
     rows = np.array([box for box in boxes if box]).reshape(-1, 6)
     if not len(rows):
         raise PieceError(_check.message("sources", "pieces with points", "none"))
@@ -288,15 +289,11 @@ def _common_options(
         raise ValueError(_check.message("ghost", "1 at least beside normals='gradient'", ghost))
     sided = asked.tangents is None or asked.conditioned is True
     older = asked.two_sided or asked.flip_normals
-    return (
-        dict(options)
-        | ({"facing": "eye"} if sided and not older else {})
-        | ({"facing": options["facing"]} if "facing" in options else {})
-    )
+    return ({"facing": "eye"} if sided and not older else {}) | options
 
 
 def _prepared(
-    parts: list[Piece], job: Job, run: Callable[..., Iterator[tuple[int, Any]]], *, show: bool
+    parts: list[Piece], job: Job, pool: Workers, *, show: bool
 ) -> tuple[list[Piece], Job]:
     """Return pieces that know their neighbours, and a job without a question left open."""
     cue = job.scene.depth_cue
@@ -305,7 +302,7 @@ def _prepared(
     if not (loose or open_cue or (job.contour is not None and job.level is None)):
         return parts, job
     calls = [(piece, job.contour) for piece in parts]
-    found: list[Survey] = collected(run(task.survey, calls), len(calls), "survey", show=show)
+    found = collected(pool.run(task.survey, calls), len(calls), "survey", show=show)
     pairs = [(piece, one) for piece, one in zip(parts, found, strict=True) if one.points]
     if not pairs:
         raise PieceError(_check.message("sources", "pieces with points", "none"))

@@ -18,6 +18,7 @@ from vizlight import _check, _compiled, files
 from vizlight._version import __version__
 from vizlight.filters import illuminate, streamlines
 from vizlight.mesh import normals, records
+from vizlight.mesh.polylines import has_lines_only
 from vizlight.pieces.ghosts import GHOST
 from vizlight.pieces.kinds import INDEX, SUFFIX, FilePiece, Piece, PieceError
 from vizlight.shading.results import record_key
@@ -103,7 +104,7 @@ def survey(piece: Piece, contour: str | None) -> Survey:
     PieceError
         If it cannot be read, or is empty and named by itself.
     """
-    mesh = _read(piece, 0)
+    mesh = read(piece, 0)
     if not mesh.n_points:
         return Survey(0, (), {})
     arrays = {}
@@ -125,14 +126,15 @@ def bounds(piece: Piece) -> tuple[float, ...]:
     return _tried(piece, piece.bounds) or ()
 
 
-def _read(piece: Piece, ghost: int) -> pv.DataSet:
+def read(piece: Piece, ghost: int) -> pv.DataSet:
+    """Return the mesh of a piece, without points where an index names such a one."""
     return _tried(piece, partial(piece.read, ghost)) or pv.PolyData()
 
 
-def _tried(piece: Piece, read: Callable[[], T]) -> T | None:
+def _tried(piece: Piece, found: Callable[[], T]) -> T | None:
     """Return what a function reads, None where an index names a piece without points."""
     try:
-        return read()
+        return found()
     except (OSError, ValueError, TypeError, KeyError) as error:
         empty = isinstance(error, files.FileError) and "(no points)" in str(error)
         if empty and isinstance(piece, FilePiece) and piece.may_be_empty:
@@ -176,7 +178,7 @@ def light(piece: Piece, job: Job, target: Path) -> Done:
     wanted = key(piece, job)
     if done := kept(target, wanted):
         return done
-    mesh = _read(piece, job.ghost)
+    mesh = read(piece, job.ghost)
     try:
         with warnings.catch_warnings(record=True) as caught, _compiled.setting(job.compiled):
             warnings.simplefilter("always", UserWarning)
@@ -208,7 +210,10 @@ def _lit(mesh: pv.DataSet, piece: Piece, job: Job) -> Any:
         mesh = _contour(mesh, job)
     if not mesh.n_points:
         return mesh
-    lit: Any = FILTERS[job.filter](mesh, job.scene, **job.options)  # type: ignore[operator]
+    options = dict(job.options)
+    if options.get("tangents") is None and has_lines_only(mesh):
+        options.pop("facing", None)  # lines have no sides
+    lit: Any = FILTERS[job.filter](mesh, job.scene, **options)  # type: ignore[operator]
     record, made = records.read(lit, job.name), records.made(lit, job.name)
     for stale in records.made(lit, normals.KEPT):
         # They are those of the piece with its ghost cells, and would be checked in vain.

@@ -5,26 +5,75 @@ from __future__ import annotations
 import contextlib
 import importlib.util
 import sys
-from typing import TYPE_CHECKING, Any
+from collections import deque
+from concurrent.futures import CancelledError
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from vizlight import _check, _pool, _progress
 from vizlight.pieces.kinds import PieceError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator
+
+T = TypeVar("T")
 
 #: Number of workers that a piece may end before it counts as the cause.
 LOST = 3
 
 
-@contextlib.contextmanager
-def runner(
-    client: Any, workers: int | None, retries: int, count: int
-) -> Iterator[Callable[..., Iterator[tuple[int, Any]]]]:
-    """Yield a function that calls another for many arguments, and yields results as they come.
+@dataclass(frozen=True)
+class Workers:
+    """What calls functions, each with a piece first: a cluster, or this process without one.
 
-    They come with the index of their arguments; an error names the piece, the first argument.
+    Attributes
+    ----------
+    client : distributed.Client or None
+        Client of the cluster.
+    retries : int
+        Number of times that a call is repeated after an error of the operating system.
     """
+
+    client: Any
+    retries: int
+
+    @property
+    def number(self) -> int:
+        """Number of calls that run at a time."""
+        return 1 if self.client is None else max(sum(self.client.nthreads().values()), 1)
+
+    def run(
+        self, function: Callable[..., T], calls: Iterable[tuple[Any, ...]], ahead: int | None = None
+    ) -> Iterator[T]:
+        """Yield the results of calls in their order; an error names the piece.
+
+        Calls are taken from the iterable no more than ``ahead`` before the first whose result
+        has not been taken; None: all at once.
+        """
+        if self.client is None:
+            for arguments in calls:
+                yield tried(function, self.retries, *arguments)
+            return
+        waiting: deque[tuple[str, Any]] = deque()
+        try:
+            for arguments in calls:
+                future = self.client.submit(tried, function, self.retries, *arguments, pure=False)
+                waiting.append((arguments[0].name, future))
+                if len(waiting) == ahead:
+                    yield _result(*waiting[0])
+                    waiting.popleft()
+            while waiting:
+                yield _result(*waiting[0])
+                waiting.popleft()
+        finally:
+            if waiting:
+                with contextlib.suppress(Exception):  # a cluster that is gone cancels nothing
+                    self.client.cancel([future for _, future in waiting], force=True)
+
+
+@contextlib.contextmanager
+def workers_of(client: Any, workers: int | None, retries: int, count: int) -> Iterator[Workers]:
+    """Yield what works on at most so many pieces at a time: a cluster or processes of its own."""
     if workers is not None and client is not None:
         raise ValueError(_check.message("workers", "client= or workers=", "both"))
     if client is None:
@@ -33,7 +82,7 @@ def runner(
         )
         number = min(number, count)
         if number == 1 or (workers is None and not _has_dask()):
-            yield _one_by_one(retries)
+            yield Workers(None, retries)
             return
     if not _has_dask():
         what = "workers" if client is None else "client"
@@ -64,7 +113,7 @@ def runner(
         elif not isinstance(client, distributed.Client):
             expected = "a distributed.Client or the address of a scheduler"
             raise TypeError(_check.message("client", expected, type(client).__name__))
-        yield _on_cluster(client, retries)
+        yield Workers(client, retries)
 
 
 @contextlib.contextmanager
@@ -90,14 +139,6 @@ def _has_dask() -> bool:
     return importlib.util.find_spec("distributed") is not None
 
 
-def _one_by_one(retries: int) -> Callable[..., Iterator[tuple[int, Any]]]:
-    def run(function: Callable[..., Any], calls: Sequence[Any]) -> Iterator[tuple[int, Any]]:
-        for i, arguments in enumerate(calls):
-            yield i, tried(function, retries, *arguments)
-
-    return run
-
-
 def tried(function: Callable[..., Any], retries: int, *arguments: Any) -> Any:
     """Call a function, again after an error of the operating system."""
     for _ in range(retries):
@@ -109,47 +150,29 @@ def tried(function: Callable[..., Any], retries: int, *arguments: Any) -> Any:
     return function(*arguments)
 
 
-def _on_cluster(client: Any, retries: int) -> Callable[..., Iterator[tuple[int, Any]]]:
+def _result(name: str, future: Any) -> Any:
+    """Return the result of a call, or raise an error that names its piece."""
     import distributed
 
-    def run(function: Callable[..., Any], calls: Sequence[Any]) -> Iterator[tuple[int, Any]]:
-        futures = [client.submit(tried, function, retries, *one, pure=False) for one in calls]
-        order = {future.key: i for i, future in enumerate(futures)}
-        try:
-            for future in distributed.as_completed(futures):
-                i = order[future.key]
-                if future.status == "finished":
-                    yield i, future.result()
-                    continue
-                raise _fault(calls[i][0].name, future)
-        finally:
-            with contextlib.suppress(Exception):  # a cluster that went away has nothing to cancel
-                client.cancel(futures, force=True)
-
-    return run
-
-
-def _fault(name: str, future: Any) -> Exception:
-    """Return the error of a piece that was not done."""
-    if future.status != "error":
-        text = "the cluster went away before it was done; the same call goes on from here"
-        return PieceError(f"piece {name}: {text}")
-    error = future.exception()
-    if isinstance(error, ValueError | TypeError):
-        return error
-    if type(error).__name__ == "KilledWorker":
+    try:
+        return future.result()
+    except (ValueError, TypeError):
+        raise
+    except distributed.KilledWorker as error:
         text = f"{LOST + 1} workers ended while they did it, perhaps for lack of memory"
-        return PieceError(f"piece {name}: {text}; cut it smaller")
-    return PieceError(f"piece {name}: {type(error).__name__}: {error}")
+        raise PieceError(f"piece {name}: {text}; cut it smaller") from error
+    except (CancelledError, OSError) as error:
+        text = "the cluster went away before it was done; the same call goes on from here"
+        raise PieceError(f"piece {name}: {text}") from error
+    except Exception as error:
+        raise PieceError(f"piece {name}: {type(error).__name__}: {error}") from error
 
 
-def collected(
-    results: Iterator[tuple[int, Any]], count: int, what: str, *, show: bool
-) -> list[Any]:
-    """Return results in the order of the calls, with progress shown as they come."""
-    found: list[Any] = [None] * count
+def collected(results: Iterable[T], count: int, what: str, *, show: bool) -> list[T]:
+    """Return results, with progress shown as they come."""
+    found: list[T] = []
     with _progress.progress(what, count, show=show) as report:
-        for number, (i, value) in enumerate(results, start=1):
-            found[i] = value
-            report(number)
+        for value in results:
+            found.append(value)
+            report(len(found))
     return found
