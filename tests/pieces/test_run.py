@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import os
-import signal
-import threading
-import time
 
 import numpy as np
 import pytest
@@ -271,6 +268,51 @@ def test_a_damaged_piece_is_named_and_the_rest_is_kept(balls):
     assert digests(first) == before
 
 
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda ball: ball.cast_to_unstructured_grid(), "the type of PolyData as in .*ball0"),
+        (lambda ball: pv.PolyData(np.asarray(ball.points, float), ball.faces), "points of float32"),
+        (lambda ball: ball.compute_normals(), "no point array 'Normals' as in .*ball0"),
+    ],
+)  # fmt: skip
+def test_pieces_of_another_kind_are_named(balls, change, message):
+    other = change(pv.read(balls / "ball1.vtp"))
+    suffix = "vtp" if isinstance(other, pv.PolyData) else "vtu"
+    other.save(balls / f"other.{suffix}")
+    with pytest.raises(pieces.PieceError, match=rf"piece .*other\.{suffix}: sources: .*{message}"):
+        run(balls, [balls / "ball0.vtp", balls / f"other.{suffix}"])
+
+
+@pytest.mark.parametrize("what", ["grid", "array"])
+def test_boxes_of_another_grid_are_named(image, tmp_path, what):
+    image.save(tmp_path / "a.vti")
+    other = image.copy()
+    other.origin = (0, 0, 0) if what == "grid" else other.origin
+    if what == "array":
+        other["W"] = other["s"]
+    other.save(tmp_path / "b.vti")
+    both = [tmp_path / "a.vti", tmp_path / "b.vti"]
+    message = r"piece .*b\.vti\[0:22\]: sources: expected " + (
+        "the Origin of" if what == "grid" else "no point array 'W'"
+    )
+    with pytest.raises(pieces.PieceError, match=message):
+        pieces.light(both, PLAIN, tangents="V", out=tmp_path / "lit.pvti", workers=1)
+    assert not (tmp_path / "lit.pvti").exists()
+    text = (tmp_path / "a.vti").read_bytes()
+    (tmp_path / "none.vti").write_bytes(text.replace(b'"0 20 0 17 0 22"', b'"0 -1 0 -1 0 -1"'))
+    with pytest.raises(pieces.PieceError, match=r"expected a grid with nodes, got '.*none\.vti'"):
+        pieces.light(tmp_path / "none.vti", PLAIN, out=tmp_path / "lit.pvti", workers=1)
+
+
+def test_lines_in_pieces_are_lit_as_the_whole(tmp_path):
+    whole = pv.lines_from_points(np.random.default_rng(2).random((20, 3)))
+    whole.save(tmp_path / "a.vtp")
+    lit = run(tmp_path, tmp_path / "a.vtp")
+    expected = vizlight.illuminate(whole, PLAIN)["luminance"]
+    np.testing.assert_array_equal(pv.read(lit.files[0])["luminance"], expected)
+
+
 def test_an_empty_file_is_an_error_but_not_where_an_index_names_it(balls):
     first = run(balls)
     text = first.path.read_text(encoding="utf-8")
@@ -317,6 +359,7 @@ def test_an_empty_file_is_an_error_but_not_where_an_index_names_it(balls):
         ({"filter": "fur"}, r"filter: expected 'illuminate' or 'streamlines'"),
         ({"out": "lit.vtp"}, r"out: expected a name that ends in \.pvtp"),
         ({"out": "no/lit.pvtp"}, r"out: expected a folder that exists"),
+        ({"out": "lit.pvtu"}, r"piece .*ball0\.vtp: out: expected a name that ends in \.pvtp"),
     ],
     ids=str,
 )
@@ -341,25 +384,3 @@ def test_bad_input(balls, options, message):
 def test_bad_slabs(arrays, options, message):
     with pytest.raises((ValueError, TypeError), match=message):
         pieces.Slabs(arrays, **options)
-
-
-def test_a_killed_worker_leaves_nothing_and_the_result_is_the_same(tmp_path, image, client):
-    source = sources(image, tmp_path, "memmap")
-    options = {"contour": "s", "level": LEVEL, "normals": "gradient", "slab": 0.03}
-    expected = pieces.light(source, PLAIN, out=tmp_path / "one.pvtp", workers=1, **options)
-    pids = list(client.run(os.getpid).values())
-
-    def kill():
-        while len(list((tmp_path / "two").glob("*.vtp"))) < 2:
-            time.sleep(0.01)
-        os.kill(pids[0], signal.SIGKILL)
-
-    killer = threading.Thread(target=kill)
-    killer.start()
-    lit = pieces.light(source, PLAIN, out=tmp_path / "two.pvtp", client=client, **options)
-    killer.join()
-    assert pids[0] not in client.run(os.getpid).values()
-    with pytest.raises(pieces.PieceError, match="slices 0 to .*tangents: expected the name"):
-        pieces.light(source, PLAIN, out=tmp_path / "three.pvtp", client=client, tangents="W")
-    assert digests(lit) == digests(expected)
-    assert not list((tmp_path / "two").glob(".*"))

@@ -1,4 +1,4 @@
-"""A grid is lit slab by slab in less memory than it takes."""
+"""Data are lit slab by slab, and piece by piece, in less memory than they take."""
 
 from __future__ import annotations
 
@@ -9,55 +9,88 @@ import textwrap
 
 import numpy as np
 import pytest
+import pyvista as pv
 
 resource = pytest.importorskip("resource")
-SIDE = 300
-#: Memory in MB beyond that of the imported packages: the grid takes 108.
+SIDE, SURFACES = 300, 30
+#: Memory in MB beyond that of the imported packages: the grid takes 108, the surfaces 141.
 LIMIT = 80
 
 CODE = """
-    import re, resource, sys
+    import os, re, resource
     import numpy as np, pyvista as pv, vizlight
     from pathlib import Path
     from vizlight import pieces
 
     scene = vizlight.Scene(view=vizlight.View(direction=(0, 0, 1)))
-    step = 2 / ({side} - 1)
+    grid = {"contour": "s", "level": 0.5, "slab": 2}
+
+    def slab_by_slab(kind):
+        source = {
+            "slabs": lambda: pieces.Slabs({"s": np.load("s.npy", mmap_mode="r")}),
+            "surfaces": lambda: "surface*.vtp",
+        }.get(kind, lambda: f"grid.{kind}")()
+        lit = pieces.light(source, scene, threads=1, workers=1, out=f"{kind}.pvtp",
+                           **({} if kind == "surfaces" else grid))
+        assert len(lit.files) > 20 and lit.points > 80_000, lit
+        return lit.points
+
+    def whole(kind):
+        if kind == "slabs":
+            mesh = pv.ImageData(dimensions=(%d,) * 3)
+            mesh["s"] = np.load("s.npy").ravel()
+        elif kind == "surfaces":
+            mesh = pv.merge([pv.read(path) for path in sorted(Path().glob("surface*.vtp"))])
+        else:
+            mesh = pv.read(f"grid.{kind}")
+        mesh = mesh.contour([0.5], scalars="s") if kind != "surfaces" else mesh
+        assert vizlight.illuminate(mesh, scene, threads=1).n_points > 80_000
+
     small = pv.ImageData(dimensions=(9, 9, 9))
     small["s"] = np.arange(729.0)
     vizlight.illuminate(small.contour([300.0], scalars="s"), scene, threads=1)  # all is imported
-    array = np.load("s.npy", mmap_mode="r")
     used = int(re.search(r"VmData:\\s+(\\d+)", Path("/proc/self/status").read_text())[1]) * 1024
-    resource.setrlimit(resource.RLIMIT_DATA, (used + {limit} * 10**6,) * 2)
-    {work}
+    resource.setrlimit(resource.RLIMIT_DATA, (used + %d * 10**6,) * 2)
+    for kind in ("slabs", "vti", "vtkhdf", "surfaces"):
+        child = os.fork()
+        if not child:
+            try:
+                whole(kind)
+                os._exit(0)
+            except BaseException:
+                os._exit(1)
+        fails = os.waitpid(child, 0)[1] != 0
+        print(kind, slab_by_slab(kind), fails)
 """
-SLABS = """lit = pieces.light(
-        pieces.Slabs({"s": array}, spacing=(step,) * 3, origin=(-1, -1, -1)), scene, contour="s",
-        level=0.5, slab=2, threads=1, workers=1, out="lit.pvtp")
-    print(lit.points, len(lit.files))"""
-WHOLE = """grid = pv.ImageData(dimensions=array.shape, spacing=(step,) * 3, origin=(-1, -1, -1))
-    grid["s"] = np.array(array).ravel()
-    print(vizlight.illuminate(grid.contour([0.5], scalars="s"), scene, threads=1).n_points, 1)"""
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
-def test_slabs_fit_where_the_whole_does_not(tmp_path):
-    axis = np.linspace(-1, 1, SIDE, dtype=np.float32)
-    squares = axis[:, None, None] ** 2 + axis[:, None] ** 2 + axis**2
+def test_pieces_fit_where_the_whole_does_not(tmp_path):
+    from vtkmodules.vtkIOHDF import vtkHDFWriter
+
+    axis = np.linspace(0, 1, SIDE, dtype=np.float32)
+    squares = axis[:, None, None] + axis[:, None] ** 2 + axis**2
     np.save(tmp_path / "s.npy", squares)
-
-    def run(work):
-        code = textwrap.dedent(CODE.format(side=SIDE, limit=LIMIT, work=work))
-        # Dask leaves settings of the C library behind, which a process reads when it starts.
-        kept = {name: value for name, value in os.environ.items() if not name.startswith("MALLOC_")}
-        return subprocess.run(
-            [sys.executable, "-c", code], cwd=tmp_path, env=kept, capture_output=True, text=True,
-            check=False,
-        )  # fmt: skip
-
-    slabs = run(SLABS)
-    assert slabs.returncode == 0, slabs.stderr
-    points, files = map(int, slabs.stdout.split())
-    assert points > 100_000
-    assert files > 20
-    assert run(WHOLE).returncode != 0
+    grid = pv.ImageData(dimensions=squares.shape)
+    grid["s"] = squares.ravel()
+    grid.save(tmp_path / "grid.vti")
+    hdf = vtkHDFWriter()
+    hdf.SetInputDataObject(grid)
+    hdf.SetFileName(str(tmp_path / "grid.vtkhdf"))
+    hdf.Write()
+    for i in range(SURFACES):
+        plane = pv.Plane(center=(0, 0, i), i_resolution=SIDE, j_resolution=SIDE)
+        plane.clear_data()
+        plane.save(tmp_path / f"surface{i:02d}.vtp")
+    # Dask leaves settings of the C library behind, which a process reads when it starts.
+    kept = {name: value for name, value in os.environ.items() if not name.startswith("MALLOC_")}
+    run = subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(CODE % (SIDE, LIMIT))], cwd=tmp_path, env=kept,
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert run.returncode == 0, run.stderr
+    lines = [line.split() for line in run.stdout.splitlines()]
+    assert [(kind, fails) for kind, _, fails in lines] == [
+        (kind, "True") for kind in ("slabs", "vti", "vtkhdf", "surfaces")
+    ]
+    assert len({points for _, points, _ in lines[:3]}) == 1

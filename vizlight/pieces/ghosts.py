@@ -9,7 +9,7 @@ import pyvista as pv
 from vtkmodules.vtkFiltersCore import vtkAppendFilter, vtkAppendPolyData
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from vizlight._types import Array, Bools, Indices
 
@@ -60,9 +60,11 @@ def without_ghosts(mesh: pv.DataSet) -> pv.DataSet:
 
 
 def with_layer(
-    mesh: pv.DataSet, others: Sequence[pv.DataSet]
+    mesh: pv.DataSet, others: Iterable[pv.DataSet], *, keep: bool
 ) -> tuple[pv.DataSet, list[pv.DataSet]]:
     """Return a mesh with the cells of others that share a place with it, and the rest of those.
+
+    The rest is kept only where it is asked for: others are then in memory one at a time.
 
     Points of the mesh keep their indices; those of the layer follow, and cells of the layer use
     the mesh's own points where their places are the same bit for bit.
@@ -79,7 +81,8 @@ def with_layer(
             layer = some_cells(other, touched)
             layer.cell_data[GHOST] = np.ones(layer.n_cells, dtype=np.uint8)
             layers.append(layer)
-        rest.append(some_cells(other, ~touched) if touched.any() else other)
+        if keep:
+            rest.append(some_cells(other, ~touched) if touched.any() else other)
     return (_joined(mesh, layers) if layers else mesh), rest
 
 

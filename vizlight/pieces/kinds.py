@@ -19,6 +19,8 @@ from vizlight import _check, files
 from vizlight.pieces.ghosts import GHOST, own_cells, with_layer, without_ghosts
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from numpy.typing import ArrayLike
 
     from vizlight._types import VectorLike
@@ -134,9 +136,9 @@ class FilePiece(Piece):
         if not ghost:
             return mesh
         mesh = mesh if isinstance(mesh, pv.PolyData) else mesh.cast_to_unstructured_grid()
-        layers = [piece.load() for piece in self.beside]
-        for _ in range(ghost):
-            mesh, layers = with_layer(mesh, layers)
+        others: Iterable[pv.DataSet] = (piece.load() for piece in self.beside)
+        for more in reversed(range(ghost)):
+            mesh, others = with_layer(mesh, others, keep=more > 0)
         return mesh
 
     def stamp(self) -> Stamp | None:

@@ -107,12 +107,14 @@ def survey(piece: Piece, contour: str | None) -> Survey:
     mesh = read(piece, 0)
     if not mesh.n_points:
         return Survey(0, (), {})
-    arrays = {}
+    arrays = {"type ": type(mesh).__name__}
     for kind, data in (("point", mesh.point_data), ("cell", mesh.cell_data)):
         for name, array in data.items():
             if name != GHOST:
                 components = "" if array.ndim == 1 else f" x {array.shape[1]}"
                 arrays[f"{kind} {name}"] = f"{array.dtype}{components}"
+    if isinstance(mesh, pv.PolyData | pv.UnstructuredGrid | pv.StructuredGrid):
+        arrays["points "] = str(np.asarray(mesh.points).dtype)
     values = (np.inf, -np.inf)
     if contour is not None and contour in mesh.point_data and mesh.point_data[contour].ndim == 1:
         rows = np.asarray(mesh.point_data[contour], dtype=np.float64)
@@ -175,7 +177,7 @@ def light(piece: Piece, job: Job, target: Path) -> Done:
     PieceError
         If the piece cannot be read, lit or written.
     """
-    wanted = key(piece, job)
+    wanted = _tried(piece, partial(key, piece, job)) or ""
     if done := kept(target, wanted):
         return done
     mesh = read(piece, job.ghost)

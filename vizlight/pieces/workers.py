@@ -57,14 +57,16 @@ class Workers:
         waiting: deque[tuple[str, Any]] = deque()
         try:
             for arguments in calls:
-                future = self.client.submit(tried, function, self.retries, *arguments, pure=False)
-                waiting.append((arguments[0].name, future))
+                name = arguments[0].name
+                with _naming(name):
+                    future = self.client.submit(
+                        tried, function, self.retries, *arguments, pure=False
+                    )
+                waiting.append((name, future))
                 if len(waiting) == ahead:
-                    yield _result(*waiting[0])
-                    waiting.popleft()
+                    yield _next(waiting)
             while waiting:
-                yield _result(*waiting[0])
-                waiting.popleft()
+                yield _next(waiting)
         finally:
             if waiting:
                 with contextlib.suppress(Exception):  # a cluster that is gone cancels nothing
@@ -145,17 +147,30 @@ def tried(function: Callable[..., Any], retries: int, *arguments: Any) -> Any:
         try:
             return function(*arguments)
         except PieceError as error:
-            if not isinstance(error.__cause__, OSError):
+            cause: BaseException | None = error
+            while cause is not None and not isinstance(cause, OSError):
+                cause = cause.__cause__
+            if cause is None:
                 raise
     return function(*arguments)
 
 
-def _result(name: str, future: Any) -> Any:
-    """Return the result of a call, or raise an error that names its piece."""
+def _next(waiting: deque[tuple[str, Any]]) -> Any:
+    """Return the result of the first call that waits, which then waits no more."""
+    name, future = waiting[0]
+    with _naming(name):
+        result = future.result()
+    waiting.popleft()
+    return result
+
+
+@contextlib.contextmanager
+def _naming(name: str) -> Iterator[None]:
+    """Turn the errors of a cluster into one that names the piece."""
     import distributed
 
     try:
-        return future.result()
+        yield
     except (ValueError, TypeError):
         raise
     except distributed.KilledWorker as error:
