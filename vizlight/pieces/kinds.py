@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import threading
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 from vtkmodules import vtkIOXML
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkImageData
 from vtkmodules.vtkFiltersExtraction import vtkExtractGrid, vtkExtractRectilinearGrid
 from vtkmodules.vtkImagingCore import vtkExtractVOI
 
@@ -38,6 +40,8 @@ STRUCTURED = {
     ".pvtr": vtkIOXML.vtkXMLPRectilinearGridReader,
     ".pvts": vtkIOXML.vtkXMLPStructuredGridReader,
 }
+#: Last reader of a structured grid, of each thread.
+_LAST = threading.local()
 #: Files that name the files of their pieces.
 INDICES = (".pvtu", ".pvtp", ".vtm")
 HDF = (".vtkhdf", ".hdf")
@@ -215,15 +219,19 @@ class BoxPiece(GridPiece):
         """See :class:`GridPiece`."""
         reader = structured(self.path)
         reader.UpdateExtent(extent)
-        return without_ghosts(pv.wrap(reader.GetOutputDataObject(0)))
+        mesh = pv.wrap(reader.GetOutputDataObject(0))
+        reader.GetOutputDataObject(0).ReleaseData()
+        return without_ghosts(mesh)
 
     def bounds(self) -> tuple[float, ...]:
         """See :class:`Piece`."""
-        reader = structured(self.path)
-        for selection in (reader.GetPointDataArraySelection(), reader.GetCellDataArraySelection()):
-            selection.DisableAllArrays()
-        reader.UpdateExtent(self.extent)
-        return tuple(reader.GetOutputDataObject(0).GetBounds())
+        info = structured(self.path).GetOutputInformation(0)
+        if not info.Has(vtkDataObject.SPACING()):  # its places are coordinates in the file
+            return super().bounds()
+        grid = vtkImageData()
+        grid.CopyInformationFromPipeline(info)
+        grid.SetExtent(*self.extent)
+        return tuple(grid.GetBounds())
 
     def stamp(self) -> Stamp | None:
         """See :class:`Piece`."""
@@ -398,9 +406,17 @@ def index_files(path: Path) -> list[Path]:
 
 
 def structured(path: Path) -> Any:
-    """Return a reader of a structured grid that knows the grid's extent."""
-    suffix = path.suffix.lower()
-    return hdf(path) if suffix in HDF else _informed(STRUCTURED[suffix](), path)
+    """Return a reader of a structured grid that knows the grid's extent.
+
+    A thread keeps the last one: to find what a file holds a reader may have to go through all of
+    it, which would take longer than to read a slab.
+    """
+    stamp = stamp_of(path)
+    if getattr(_LAST, "stamp", None) != stamp:
+        suffix = path.suffix.lower()
+        _LAST.reader = hdf(path) if suffix in HDF else _informed(STRUCTURED[suffix](), path)
+        _LAST.stamp = stamp
+    return _LAST.reader
 
 
 def hdf(path: Path) -> Any:

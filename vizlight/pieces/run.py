@@ -60,6 +60,8 @@ class Lit:
         Value of the contoured array on the isosurface.
     empty, reused : int
         Numbers of pieces that have no point, and of those that an earlier run had made.
+    seconds : dict of str to float
+        Processor seconds of all pieces by stage: "read", "contour", "light" and "write".
     """
 
     path: Path
@@ -72,6 +74,7 @@ class Lit:
     level: float | None
     empty: int
     reused: int
+    seconds: dict[str, float] = field(repr=False)
 
 
 def light(
@@ -413,4 +416,5 @@ def _result(path: Path, folder: Path, done: Sequence[Done], job: Job) -> Lit:
         level=job.level,
         empty=len(done) - len(full),
         reused=sum(one.reused for one in done),
+        seconds={name: sum(one.seconds[name] for one in done) for name in done[0].seconds},
     )

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
+import itertools
 import json
+import time
 import warnings
 from dataclasses import dataclass, field
 from functools import partial
@@ -91,6 +93,7 @@ class Done:
     arrays: dict[str, list[Any]] = field(default_factory=dict)
     invalid: int = 0
     notes: list[str] = field(default_factory=list)
+    seconds: dict[str, float] = field(default_factory=dict)
     size: int = 0
     key: str = ""
     reused: bool = False
@@ -180,13 +183,19 @@ def light(piece: Piece, job: Job, target: Path) -> Done:
     wanted = _tried(piece, partial(key, piece, job)) or ""
     if done := kept(target, wanted):
         return done
+    laps: dict[str, float] = {"": time.process_time()}
     mesh = read(piece, job.ghost)
+    laps["read"] = time.process_time()
     try:
         with warnings.catch_warnings(record=True) as caught, _compiled.setting(job.compiled):
             warnings.simplefilter("always", UserWarning)
+            if mesh.n_points and job.contour is not None:
+                mesh = _contour(mesh, job)
+            laps["contour"] = time.process_time()
             lit = _lit(mesh, piece, job)
         del mesh
         done = _described(lit, job)
+        laps["light"] = time.process_time()
         done.key = wanted
         said = [str(one.message) for one in caught if issubclass(one.category, UserWarning)]
         # Points that could not be lit are counted without ghost cells.
@@ -198,8 +207,10 @@ def light(piece: Piece, job: Job, target: Path) -> Done:
                 raise ValueError(_check.message("out", expected, f"*{INDEX[job.suffix]}"))
             path = files.write_mesh(lit, target.with_suffix(suffix))
             done.file, done.size = path.name, path.stat().st_size
+        laps["write"] = time.process_time()
     except (OSError, ValueError, TypeError) as error:
         raise PieceError(f"piece {piece.name}: {error}") from error
+    done.seconds = {name: laps[name] - laps[before] for before, name in itertools.pairwise(laps)}
     text = json.dumps(dataclasses.asdict(done))
     note = target.with_suffix(".json")
     files.replace_file(note, lambda draft: Path(draft).write_text(text, encoding="utf-8"))
@@ -208,8 +219,6 @@ def light(piece: Piece, job: Job, target: Path) -> Done:
 
 def _lit(mesh: pv.DataSet, piece: Piece, job: Job) -> Any:
     """Return the own part of a piece, lit."""
-    if mesh.n_points and job.contour is not None:
-        mesh = _contour(mesh, job)
     if not mesh.n_points:
         return mesh
     options = dict(job.options)
