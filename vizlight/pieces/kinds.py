@@ -250,7 +250,7 @@ class Slabs:
     arrays : dict of str to array_like
         Point arrays by name, of shape (nz, ny, nx) or (nz, ny, nx, components): memory-mapped
         arrays, Zarr or Dask arrays, h5py datasets that can be pickled, or anything else of that
-        shape whose slices ``[z0:z1]`` are arrays.
+        shape whose slices ``[z0:z1]``, and ``[z0:z1, y0:y1]`` of wide grids, are arrays.
     spacing : vector of 3 components, default: (1, 1, 1)
         Distances between the nodes along x, y and z, in the unit of the mesh.
     origin : vector of 3 components, default: (0, 0, 0)
@@ -334,15 +334,16 @@ class _Mapped:
             return cls(shape, array.dtype, None, str(array.filename), base.offset + first)
         return cls(shape, array.dtype, array)
 
-    def rows(self, low: int, high: int) -> Any:
-        """Return the slices from low up to but not including high."""
+    def box(self, low: int, high: int, first: int, last: int) -> Any:
+        """Return rows from ``first`` up to ``last`` of the slices from ``low`` up to ``high``."""
         if self.kept is None:
             each = math.prod(self.shape[1:]) * np.dtype(self.dtype).itemsize
             mapped = np.memmap(
                 self.path, self.dtype, "r", self.offset + low * each, (high - low, *self.shape[1:])
             )
-            return np.array(mapped)
-        part = self.kept[low:high]
+            return np.array(mapped[:, first:last])
+        whole = last - first == self.shape[1]
+        part = self.kept[low:high] if whole else self.kept[low:high, first:last]
         return np.asarray(part.compute(scheduler="sync") if hasattr(part, "compute") else part)
 
 
@@ -356,8 +357,8 @@ class SlabPiece(GridPiece):
         """See :class:`GridPiece`."""
         mesh = self.empty(extent)
         for name, array in self.grid.arrays.items():
-            rows = array.rows(extent[4], extent[5] + 1)
-            mesh.point_data[name] = rows.reshape(-1, *array.shape[3:])
+            box = array.box(extent[4], extent[5] + 1, extent[2], extent[3] + 1)
+            mesh.point_data[name] = box.reshape(-1, *array.shape[3:])
         return mesh
 
     def empty(self, extent: Extent) -> pv.ImageData:

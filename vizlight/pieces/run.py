@@ -130,7 +130,8 @@ def light(
     retries : int, default: 2
         Number of times that a piece is tried again after an error of the operating system.
     slab : float, default: 64.0
-        Largest size in MB of a slab of a structured grid, ghost cells apart.
+        Largest size in MB of a slab of a structured grid, ghost cells apart. A layer of cells that
+        is larger is cut across y too.
     progress_bar : bool, default: False
         Whether progress is shown on standard error.
     **options

@@ -30,8 +30,6 @@ from vizlight.pieces.kinds import (
 )  # fmt: skip
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from vizlight.pieces.kinds import Extent
 
 
@@ -131,8 +129,8 @@ def _boxes(path: Path, slab: float) -> list[Piece]:
     nodes = math.prod(whole[2 * i + 1] - whole[2 * i] + 1 for i in range(3))
     size = _uncompressed(path, reader, nodes)
     return [
-        BoxPiece(f"{path}[{box[4]}:{box[5]}]", box, tuple(whole), path)
-        for box in _cuts(tuple(whole), size / nodes, slab)
+        BoxPiece(f"{path}[{place}]", box, tuple(whole), path)
+        for box, place in _cuts(tuple(whole), size / nodes, slab)
     ]
 
 
@@ -154,16 +152,29 @@ def _uncompressed(path: Path, reader: Any, nodes: int) -> float:
 
 
 def _slabs(grid: Slabs, slab: float) -> list[Piece]:
-    cuts = _cuts(grid.extent, grid.bytes_per_node(), slab)
-    return [SlabPiece(f"slices {box[4]} to {box[5]}", box, grid.extent, grid) for box in cuts]
+    return [
+        SlabPiece(f"slices [{place}]", box, grid.extent, grid)
+        for box, place in _cuts(grid.extent, grid.bytes_per_node(), slab)
+    ]
 
 
-def _cuts(whole: Extent, bytes_per_node: float, slab: float) -> Iterable[Extent]:
-    """Yield slabs of at most so many MB, cut across z; neighbours share a slice of nodes."""
+def _cuts(whole: Extent, bytes_per_node: float, slab: float) -> list[tuple[Extent, str]]:
+    """Return boxes of at most so many MB, and their place in words; they share nodes on borders.
+
+    They are slabs across z; where one layer of cells is larger, they are cut across y too.
+    """
     x0, x1, y0, y1, z0, z1 = whole
-    each = (x1 - x0 + 1) * (y1 - y0 + 1) * bytes_per_node
-    thick = max(int(slab * 1e6 / each), 1)
-    count = max(math.ceil((z1 - z0) / thick), 1)
-    ends = [z0 + (z1 - z0) * i // count for i in range(count + 1)]
-    for low, high in itertools.pairwise(ends):
-        yield (x0, x1, y0, y1, low, high)
+    row = (x1 - x0 + 1) * bytes_per_node
+    thick = int(slab * 1e6 / (row * (y1 - y0 + 1)))
+    layers = _parts(z0, z1, max(thick, 1))
+    if thick:
+        return [((x0, x1, y0, y1, *z), f"{z[0]}:{z[1]}") for z in layers]
+    rows = _parts(y0, y1, max(int(slab * 1e6 / row), 1))
+    return [((x0, x1, *y, *z), f"{z[0]}:{z[1]}, {y[0]}:{y[1]}") for z in layers for y in rows]
+
+
+def _parts(first: int, last: int, most: int) -> list[tuple[int, int]]:
+    """Return the ends of parts of at most so many steps."""
+    count = max(math.ceil((last - first) / most), 1)
+    ends = [first + (last - first) * i // count for i in range(count + 1)]
+    return list(itertools.pairwise(ends))

@@ -94,9 +94,9 @@ def measure(side: int, repeats: int) -> list[Row]:
     try:
         import dask
         import distributed
-    except ImportError as error:
+    except ImportError as missing:
         text = "the study of pieces needs Dask: run pip install 'vizlight[scale]'"
-        raise ImportError(text) from error
+        raise ImportError(text) from missing
     grids = cases(side)
     runs: dict[tuple[str, int], list[dict[str, float]]] = {}
     composite = _composite(repeats)
