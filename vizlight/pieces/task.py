@@ -20,9 +20,9 @@ from vizlight import _check, _compiled, files
 from vizlight._version import __version__
 from vizlight.filters import illuminate, streamlines
 from vizlight.mesh import normals, records
-from vizlight.mesh.polylines import has_lines_only
 from vizlight.pieces.ghosts import GHOST
 from vizlight.pieces.kinds import INDEX, SUFFIX, FilePiece, Piece, PieceError
+from vizlight.reading.polylines import has_lines_only
 from vizlight.shading.results import record_key
 
 if TYPE_CHECKING:
