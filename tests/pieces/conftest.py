@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import pytest
 
+from vizlight.pieces.workers import local_cluster
+
 
 @pytest.fixture(scope="session")
-def client():
+def _client():
     distributed = pytest.importorskip("distributed")
-    with (
-        distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50
-        ) as cluster,
-        distributed.Client(cluster) as client,
-    ):
+    with local_cluster(2) as cluster, distributed.Client(cluster) as client:
         yield client
+
+
+@pytest.fixture
+def client(_client):
+    """Return a client of two workers; one that a test killed has been started again."""
+    _client.wait_for_workers(2)
+    return _client

@@ -10,8 +10,8 @@ from vizlight.studies import pieces as study
 
 #: Processor seconds for one node, point, piece or sample.
 TRUE = {
-    "read": {"nodes": 2e-9, "pieces": 3e-3},
-    "contour": {"nodes": 4e-8, "points": 1e-6},
+    "read": {"nodes read": 2e-9, "pieces": 3e-3},
+    "contour": {"nodes read": 4e-8, "points": 1e-6},
     "light": {"points": 6e-7, "pieces": 1e-2},
     "write": {"points": 5e-7, "pieces": 2e-2},
     "client": {"pieces": 5e-3},
@@ -26,7 +26,7 @@ def rows(noise=0.0):
     for name, case in study.cases(64).items():
         nodes = case.side**2 * case.height
         counts = {
-            "nodes": nodes * 1.2, "pieces": case.pieces,
+            "nodes read": nodes * 1.2, "pieces": case.pieces,
             "points": 30 * case.waves * case.side**2 * case.height / case.side,
         }  # fmt: skip
         samples = {"layer samples": case.pieces * np.prod(study.PICTURE)}
@@ -78,5 +78,5 @@ def test_a_grid_in_pieces_is_measured(tmp_path):
     runs = {("grid", count): [found] for count in (1, 2)}
     row = study._row(case, "grid", 2, runs, {"error": 0.0, "composite": study._composite(1)})
     assert (row.way, row.parameter, row.more["wall of 1 / this"]) == ("grid, 2 workers", 3920, 1)
-    assert row.more["nodes"] == 14**2 * (20 + 2 * 3 + 2 - 2)  # shared slices, ghosts, ends
+    assert row.more["nodes read"] == 14**2 * (20 + 2 * 3 + 2 - 2)  # shared slices, ghosts, ends
     assert 0 < row.more["composite"] < 1

@@ -94,16 +94,9 @@ def workers_of(client: Any, workers: int | None, retries: int, count: int) -> It
     with contextlib.ExitStack() as stack:
         if client is None:
             stack.enter_context(_main_apart())
-            cluster = stack.enter_context(
-                distributed.LocalCluster(
-                    n_workers=number,
-                    threads_per_worker=1,
-                    processes=True,
-                    dashboard_address=None,
-                    silence_logs=50,
-                )
+            client = stack.enter_context(
+                distributed.Client(stack.enter_context(local_cluster(number)))
             )
-            client = stack.enter_context(distributed.Client(cluster))
         elif isinstance(client, str):
             try:
                 client = stack.enter_context(distributed.Client(client, timeout=10))
@@ -116,6 +109,16 @@ def workers_of(client: Any, workers: int | None, retries: int, count: int) -> It
             expected = "a distributed.Client or the address of a scheduler"
             raise TypeError(_check.message("client", expected, type(client).__name__))
         yield Workers(client, retries)
+
+
+def local_cluster(count: int) -> Any:
+    """Return a cluster of so many processes, without a dashboard, beside any others here."""
+    import distributed
+
+    return distributed.LocalCluster(
+        n_workers=count, threads_per_worker=1, processes=True, dashboard_address=None,
+        scheduler_kwargs={"dashboard_address": ":0"}, silence_logs=50,
+    )  # fmt: skip
 
 
 @contextlib.contextmanager

@@ -29,6 +29,7 @@ from vizlight.filters import illuminate
 from vizlight.pictures.backends import BackendError
 from vizlight.pictures.cameras import camera_on
 from vizlight.pieces.drawing import Layer
+from vizlight.pieces.workers import local_cluster
 from vizlight.scene import Scene, View
 from vizlight.studies._framework import Row, Study, words
 
@@ -41,8 +42,8 @@ TOWARD = (1.0, 0.4, 0.7)
 SCENE = Scene(view=View(direction=TOWARD))
 #: What the processor time of each stage is proportional to.
 STAGES = {
-    "read": ("nodes", "pieces"),
-    "contour": ("nodes", "points"),
+    "read": ("nodes read", "pieces"),
+    "contour": ("nodes read", "points"),
     "light": ("points", "pieces"),
     "write": ("points", "pieces"),
     "client": ("pieces",),
@@ -102,9 +103,7 @@ def measure(side: int, repeats: int) -> list[Row]:
     composite = _composite(repeats)
     with (
         tempfile.TemporaryDirectory(prefix="vizlight-") as place,
-        distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50
-        ) as cluster,
+        local_cluster(2) as cluster,
         distributed.Client(cluster) as client,
     ):
         sources = {name: _slabs(case, Path(place, f"{i}.npy"))
@@ -215,7 +214,7 @@ def _row(
     stages = {stage: found[stage] for stage in STAGES if stage in found}
     stages["composite"] = more["composite"] * found["pieces"] * math.prod(PICTURE)
     columns = {
-        "nodes": nodes, "points": found["points"], "pieces": found["pieces"], **stages,
+        "nodes read": nodes, "points": found["points"], "pieces": found["pieces"], **stages,
         "wall s": float(np.median([run["s"] for run in own])),
         "wall of 1 / this": float(np.median(pairs)),
         "load": float(np.median([run["load"] for run in own])),
@@ -228,7 +227,7 @@ def _row(
 
 def _counts(row: Row) -> dict[str, float]:
     """Return what the processor times of a row are proportional to."""
-    found = {name: float(row.more[name]) for name in ("nodes", "points", "pieces")}
+    found = {name: float(row.more[name]) for name in ("nodes read", "points", "pieces")}
     return found | {"layer samples": found["pieces"] * math.prod(PICTURE)}
 
 
@@ -296,7 +295,8 @@ def predicted(rows: Sequence[Row], amplification: float = 1.0) -> dict[str, floa
         for row in rows if row.way.startswith("grid")
     ])  # fmt: skip
     counts = {
-        "nodes": NODES * amplification, "points": share * NODES ** (2 / 3), "pieces": NODES / SLAB,
+        "nodes read": NODES * amplification, "points": share * NODES ** (2 / 3),
+        "pieces": NODES / SLAB,
     }  # fmt: skip
     times = modelled(fit(rows), counts | {"layer samples": NODES / SLAB * SAMPLES})
     times["composite"] = times["composite"] * LAYERS * WORKERS / (NODES / SLAB)
