@@ -19,7 +19,8 @@ needed = pytest.mark.skipif(
 def screen():
     """Start an X server on a display that no other has, and yield its name."""
     told, tell = os.pipe()
-    command = [TOOLS["Xvfb"], "-displayfd", str(tell), "-screen", "0", "640x480x24"]
+    # A server that starts over when its last client leaves refuses the next one meanwhile.
+    command = [TOOLS["Xvfb"], "-displayfd", str(tell), "-noreset", "-screen", "0", "640x480x24"]
     with subprocess.Popen(
         command, pass_fds=(tell,), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
     ) as server:
