@@ -51,6 +51,7 @@ html_theme_options = {
         "**": ["page-toc"],
         "index": [],
         "examples/index": [],
+        "peers": [],
         # Code needs the width; a second pattern that matches a page would be a warning.
         **{f"guide/{page.stem}": [] for page in (HERE / "guide").glob("*.rst")},
     },

@@ -1,9 +1,9 @@
 """Draw the pictures of the page on peers, and measure what each took.
 
 ``python gallery/pages/peers`` runs each script of the folders beside this file in a process of its
-own, three times, and writes the pictures beside them and ``measurements.csv``. It needs ParaView's
-``pvpython`` and ``xvfb-run``, and the terrain that PyVista downloads. With names of scripts, as in
-``lines/pyvista_lines.py``, only these are done again.
+own, ``--repeats`` times, and writes the pictures beside them and ``measurements.csv``. It needs
+ParaView's ``pvpython`` and ``xvfb-run``, and the terrain that PyVista downloads. With names of
+scripts, as in ``lines/pyvista_lines.py``, only these are done again.
 """
 
 from __future__ import annotations
@@ -67,9 +67,8 @@ def keep(picture, path):
         small = red
     small.save(path, optimize=True)
     if path.stat().st_size > LARGEST:
-        small.quantize(256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(
-            path, optimize=True
-        )
+        small = small.quantize(256, Image.Quantize.MEDIANCUT, kmeans=4, dither=Image.Dither.NONE)
+        small.save(path, optimize=True)
     if path.stat().st_size > LARGEST:
         raise RuntimeError(f"{path.name}: {path.stat().st_size} bytes, at most {LARGEST} are kept")
 
@@ -112,7 +111,7 @@ def main():
     """Do what the docstring of this file says."""
     parser = argparse.ArgumentParser(prog="gallery/pages/peers", description=__doc__)
     parser.add_argument("scripts", nargs="*", help="scripts to run again; default: all")
-    parser.add_argument("--repeats", type=int, default=3, help="runs of each script")
+    parser.add_argument("--repeats", type=int, default=1, help="runs of each script")
     options = parser.parse_args()
     order = [(scene, path.relative_to(HERE).as_posix()) for scene, path in kept.todo()]
     rows = kept.read() if options.scripts else {}

@@ -9,6 +9,8 @@ HERE = Path(__file__).resolve().parent
 TABLE = HERE / "measurements.csv"
 #: Tools in the order of the page: the first words of the names of scripts.
 TOOLS = ("pyvista", "paraview", "matplotlib", "vizlight")
+#: Scripts of the first row of a scene, to which the others are compared.
+FIRST = ("pyvista_lines", "pyvista_smooth")
 #: Scenes with the scripts of another folder, seen by another camera.
 SEEN_AGAIN = {
     "near": ("lines/pyvista_as_tubes.py", "lines/pyvista_tubes.py", "lines/vizlight_as_tubes.py"),
@@ -21,7 +23,10 @@ COLUMNS = (
 
 def todo():
     """Return pairs of a scene and a script, in the order of the page."""
-    scripts = sorted(HERE.glob("*/*.py"), key=lambda path: (TOOLS.index(tool(path)), path.stem))
+    scripts = sorted(
+        HERE.glob("*/*.py"),
+        key=lambda path: (TOOLS.index(tool(path)), path.stem not in FIRST, path.stem),
+    )
     own = [(path.parent.name, path) for path in scripts]
     return own + [(scene, HERE / name) for scene, names in SEEN_AGAIN.items() for name in names]
 
