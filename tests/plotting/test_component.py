@@ -131,6 +131,13 @@ def test_tinted_light_is_that_of_tint(plotter):
         np.testing.assert_array_equal(picture(plotter), baked(lit, plotter.camera, "rgb"))
 
 
+def test_colours_that_cannot_be_found_again_are_said_to_be_missing(plotter):
+    mesh = ball()
+    lit = vizlight.tint(vizlight.illuminate(mesh, seen_by(plotter)), np.arange(mesh.n_points))
+    with pytest.warns(UserWarning, match="without colours: they are those of an array of shape"):
+        plotter.vizlight.add_mesh(lit)
+
+
 @pytest.mark.parametrize("light", ["points", "fragments"])
 def test_another_scene_is_that_of_a_new_mesh(plotter, light):
     dark = SCENE.replace(material=Material(ambient=0.0, diffuse=0.0, specular=0.3))

@@ -482,7 +482,7 @@ def add_recorded(
     blocks.check(mesh)
     _check.text("name", name, expected="the name of the light")
     light = DEFAULT_NAME if name == RGB else name
-    scalars, colors = tinted(mesh) if name == RGB else (None, {})
+    scalars, colors = tinted(mesh, warn=False) if name == RGB else (None, {})
     maker = light if scalars is None else RGB
     if not relight.is_lit(mesh, light) or name not in records.made(mesh, maker):
         return None

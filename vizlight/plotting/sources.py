@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from vizlight import _check
 from vizlight.filters import relight
 from vizlight.filters.tint import RGB, unlit_colors
 from vizlight.mesh import blocks, records
@@ -39,13 +40,21 @@ def sources_of(
     return relight.from_options(mesh, provisional, asked), scene
 
 
-def tinted(mesh: pv.DataSet) -> tuple[str | None, dict[str, Any]]:
-    """Return the array and the colours of a mesh that tint returned."""
+def tinted(mesh: pv.DataSet, *, warn: bool = True) -> tuple[str | None, dict[str, Any]]:
+    """Return the array and the colours of a mesh that tint returned.
+
+    With ``warn`` a warning is given where the mesh has no such array.
+    """
     record = records.read(mesh, RGB) or {}
     if record.get("filter") != "tint":
         return None, {}
     options = record["options"]
     name = options["scalars"]
     if name not in mesh.point_data:
+        if warn:
+            _check.warn(
+                f"the light is shown without colours: they are those of {name}, which the mesh has "
+                "no point array of; attach it, and pass its name to vizlight.tint"
+            )
         return None, {}
     return name, {"cmap": unlit_colors(mesh), "component": options["component"]}
