@@ -37,7 +37,7 @@ panels = vizlight.satin(ball, scene, tangents="satin", seeds=equator, compensate
 dark = pv.Sphere(radius=0.497, theta_resolution=120, phi_resolution=120)
 dark["rgb"] = np.full((dark.n_points, 3), 0.02)
 panels["curves"] = pv.MultiBlock([panels["curves"], dark])
-threads = {"background": "#101010", "line_diameter": 0.011}
+threads = {"background": "#101010", "line_diameter": 0.007}
 
 plotter = render.make_plotter(
     [render.Panel(panels[name], "rgb") for name in ("curves", "conditioned")],
