@@ -71,6 +71,8 @@ html_sidebars = {
     "studies/**": [],
     "sources": [],
     "peers": [],
+    "scaling": [],
+    "robustness": [],
     "examples/**": [],
 }
 html_math_renderer = "mathml"
