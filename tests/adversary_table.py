@@ -18,6 +18,7 @@ from vizlight.accessor import Accessor
 from vizlight.geometry.solids.primitives import Solid
 from vizlight.pictures.render import PlotterKeywords
 from vizlight.scene.scene import SceneKeywords
+from vizlight.shading.engine import Shading
 
 PAGES = Path(__file__).parent.parent / "gallery" / "pages" / "api.rst"
 #: Public modules that have no page of their own.
@@ -50,8 +51,12 @@ RETURNED = {
     "geometry.solids.base.Primitive": "a base class",
     "accessor.Accessor": "made by PyVista for each mesh",
 }
-#: Parts of the protocol between solids, which take arrays that `contains` and `tessellate` checked.
-PROTOCOL = {"combine", "moved", "inside", "box", "surfaces", "primitives"}
+#: Parts of the protocol between solids, which take arrays that `contains` and `tessellate` checked, and
+#: of that of meshes that are lit together.
+PROTOCOLS = {
+    Solid: {"combine", "moved", "inside", "box", "surfaces", "primitives"},
+    Shading: {"part"},
+}
 TYPED_DICTS = {"PlotterKeywords": lambda: PlotterKeywords, "SceneKeywords": lambda: SceneKeywords}
 
 
@@ -95,7 +100,7 @@ def methods(kind):
         # Methods of VTK's form are called by it, or set what the constructor takes too.
         if name[0] == "_" or name[0].isupper() or not inspect.isfunction(function):
             continue
-        if issubclass(kind, Solid) and name in PROTOCOL:
+        if any(issubclass(kind, whole) and name in parts for whole, parts in PROTOCOLS.items()):
             continue
         if kind is Accessor:
             found[f"vizlight.accessor.Accessor.{name}"] = of_accessor(function)
