@@ -51,7 +51,7 @@ RETURNED = {
     "geometry.solids.base.Primitive": "a base class",
     "accessor.Accessor": "made by PyVista for each mesh",
 }
-#: Parts of the protocol between solids, which take arrays that `contains` and `tessellate` checked, and
+#: Parts of the protocol between solids, whose arrays `contains` and `tessellate` checked, and
 #: of that of meshes that are lit together.
 PROTOCOLS = {
     Solid: {"combine", "moved", "inside", "box", "surfaces", "primitives"},
