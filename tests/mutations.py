@@ -151,8 +151,8 @@ OF_NUMBERS = {
         "distance * 1e-3), distance)",
     ),
     "surface: Bezier's control points taken as nodes": (
-        "mesh/hull.py",
-        "np.where(off <= 1e-5 * np.abs(surface.points).max(initial=0), ids, -1)", "ids",
+        "reading/hull.py",
+        "np.where(off <= 1e-5 * np.abs(skin).max(initial=0), ids, -1)", "ids",
     ),
     "between: tangents added whatever their signs": (
         "verify/between.py", "best = np.argmax(scores, axis=0)", "best = np.zeros(m, int)",

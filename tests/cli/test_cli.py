@@ -38,7 +38,9 @@ def test_ctrl_c_is_one_line(volume, tmp_path, capfd, monkeypatch):
     def interrupted(*_args, **_keywords):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(vizlight.files, "read", interrupted)
+    # The package keeps the name of what it has loaded.
+    for module in (vizlight, vizlight.files):
+        monkeypatch.setattr(module, "read", interrupted)
     out = tmp_path / "lit.vtp"
     assert cli.main(["light", str(volume), "-o", str(out)]) == 2
     assert capfd.readouterr().err == "vizlight: interrupted\n"

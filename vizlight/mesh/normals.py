@@ -84,7 +84,23 @@ def split_where_computed(mesh: SurfaceT, angle: FeatureAngle) -> SurfaceT | pv.P
     """
     if angle is None or not isinstance(mesh, pv.PolyData):
         return mesh
-    return mesh if mesh.point_data.active_normals is not None else split_edges(mesh, angle)
+    if mesh.point_data.active_normals is None:
+        return split_edges(mesh, angle)
+    if has_faces(mesh) and split_edges(_bare(mesh), angle).n_points > mesh.n_points:
+        _check.warn(
+            "feature_angle has no effect on normals that the mesh has, and sharp edges look round; "
+            "clear them by mesh.point_data.active_normals_name = None"
+        )
+    return mesh
+
+
+def _bare(mesh: pv.PolyData) -> pv.PolyData:
+    """Return the points and faces of a surface."""
+    bare = pv.PolyData()
+    bare.SetPoints(mesh.GetPoints())
+    bare.SetPolys(mesh.GetPolys())
+    bare.SetStrips(mesh.GetStrips())
+    return bare
 
 
 def split_edges(mesh: pv.PolyData, angle: float | Literal["auto"]) -> pv.PolyData:
@@ -102,6 +118,12 @@ def split_edges(mesh: pv.PolyData, angle: float | Literal["auto"]) -> pv.PolyDat
     own = mesh.copy(deep=False)
     if "Normals" in own.point_data:
         own.point_data[_OWN] = own.point_data.pop("Normals")
+    # VTK takes the faces of a mesh that has vertices or lines for others.
+    others = (mesh.n_verts or mesh.n_lines) and not mesh.n_strips
+    if others:
+        own.SetVerts(None)
+        own.SetLines(None)
+        own.cell_data.clear()
     found: pv.PolyData = own.compute_normals(
         cell_normals=False,
         split_vertices=True,
@@ -113,6 +135,11 @@ def split_edges(mesh: pv.PolyData, angle: float | Literal["auto"]) -> pv.PolyDat
     if found.n_points == mesh.n_points:
         return mesh
     del found.point_data["Normals"]
+    if others:
+        # Points that were split stand behind those of the mesh.
+        found.SetVerts(mesh.GetVerts())
+        found.SetLines(mesh.GetLines())
+        found.cell_data.update(mesh.cell_data)
     if _OWN in found.point_data:
         found.point_data["Normals"] = found.point_data.pop(_OWN)
         found.point_data.active_normals_name = None

@@ -126,8 +126,8 @@ def pictures(
 
     Notes
     -----
-    No pixel differs from that of a picture of the whole mesh, drawn with the same samples. That
-    holds for the edges of lines too: their samples are opaque, and are averaged after the pieces
+    A picture is that of the whole mesh, drawn with the same samples, but for the rounding of VTK:
+    single pixels may differ by 1 of 255 where a triangle is cut. That holds for the edges of lines too: their samples are opaque, and are averaged after the pieces
     are put together, so that no edge is transparent before. Of fragments at the same depth the
     last piece's is seen, as the last mesh's is in one picture. VTK's own anti-aliasing ("ssaa")
     also weighs samples of the neighbouring pixels, so a picture of :mod:`vizlight.render` has
