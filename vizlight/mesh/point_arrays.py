@@ -6,11 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
+from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 from vizlight import _check
+from vizlight.reading.cells import as_vtk
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+#: Number of values below which an array is sooner copied than shared.
+_SMALL = 1 << 12
 
 
 def refuse_unnamed(name: str, value: object) -> None:
@@ -29,13 +34,18 @@ def attach_rows(mesh: pv.DataSet, name: str, array: NDArray[np.generic]) -> None
         # By VTK itself: PyVista's way takes longer than the light of a small mesh, and refuses an
         # array without rows.
         part = array.base is not None and array.base.size > array.size
-        mesh.GetPointData().AddArray(pv.convert_array(array, name, deep=part))
+        copied = part or array.size < _SMALL
+        own = as_vtk(array, name) if copied else pv.convert_array(array, name)
+        vtkDataSet.GetPointData(mesh).AddArray(own)
     else:
         mesh.point_data[name] = array
 
 
 def activate(mesh: pv.DataSet, name: str) -> None:
     """Make a point array the active scalars of a mesh, even if a cell array was active."""
-    mesh.GetPointData().SetActiveScalars(name)
-    if mesh.n_points and mesh.active_scalars_info.association != pv.FieldAssociation.POINT:
+    vtkDataSet.GetPointData(mesh).SetActiveScalars(name)
+    if (
+        mesh.GetNumberOfPoints()
+        and mesh.active_scalars_info.association != pv.FieldAssociation.POINT
+    ):
         mesh.set_active_scalars(name, preference="point")

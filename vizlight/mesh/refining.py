@@ -7,6 +7,7 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from vizlight import _check
 from vizlight.mesh import records, splitting
@@ -188,7 +189,8 @@ def _joined(rows: ArraySource, added: Array) -> Array:
 
 def forget(mesh: pv.DataSet, name: str) -> None:
     """Remove the error of an earlier refinement, which new light does not have."""
-    if mesh.GetFieldData().HasArray(name + LEFT) and records.read(mesh, name) is not None:
+    there = vtkDataObject.GetFieldData(mesh).HasArray(name + LEFT)
+    if there and records.read(mesh, name) is not None:
         del mesh.field_data[name + LEFT]
 
 

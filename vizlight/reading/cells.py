@@ -45,8 +45,15 @@ def as_numpy(array: vtkAbstractArray) -> NDArray[Any]:
 def as_vtk(rows: NDArray[Any], name: str = "") -> vtkDataArray:
     """Return an array of VTK with a copy of some values."""
     own = rows.view(np.uint8) if rows.dtype == np.bool_ else rows
-    array: vtkDataArray = _SUPPORT.numpy_to_vtk(np.ascontiguousarray(own), deep=True)
+    kind = own.dtype.newbyteorder("=")
+    # Twice as fast as VTK's own way, which counts where there are many small meshes.
+    array: vtkDataArray = vtkDataArray.CreateDataArray(_SUPPORT.get_vtk_array_type(kind))
     array.SetName(name)
+    array.SetNumberOfComponents(1 if own.ndim == 1 else own.shape[1])
+    array.SetNumberOfTuples(len(own))
+    if own.size:
+        values: NDArray[Any] = np.frombuffer(array, dtype=kind)
+        values.reshape(own.shape)[...] = own
     return array
 
 
@@ -100,6 +107,15 @@ def triangles(surface: vtkPolyData) -> Indices:
     return connectivity(polys)[0].reshape(-1, 3)
 
 
+#: Number of each kind of cells of a vtkPolyData, and those cells.
+POLYDATA = (
+    (vtkPolyData.GetNumberOfVerts, vtkPolyData.GetVerts),
+    (vtkPolyData.GetNumberOfLines, vtkPolyData.GetLines),
+    (vtkPolyData.GetNumberOfPolys, vtkPolyData.GetPolys),
+    (vtkPolyData.GetNumberOfStrips, vtkPolyData.GetStrips),
+)
+
+
 def check_whole(mesh: object, name: str, where: str = "") -> None:
     """Check that arrays have a row for each point, and that cells have points that exist.
 
@@ -112,8 +128,9 @@ def check_whole(mesh: object, name: str, where: str = "") -> None:
     """
     if not isinstance(mesh, vtkDataSet):
         return
+    # Methods of the class: a look-up on a mesh of PyVista takes longer than the call.
     count = mesh.GetNumberOfPoints()
-    data = mesh.GetPointData()
+    data = vtkDataSet.GetPointData(mesh)
     for i in range(data.GetNumberOfArrays()):
         array = data.GetAbstractArray(i)
         if array is not None and array.GetNumberOfTuples() != count:
@@ -121,7 +138,7 @@ def check_whole(mesh: object, name: str, where: str = "") -> None:
             got = f"{array.GetName()!r} with {array.GetNumberOfTuples()}"
             raise ValueError(where + _check.message(name, expected, got, "remove the array"))
     if isinstance(mesh, vtkPolyData):
-        kinds = [mesh.GetVerts(), mesh.GetLines(), mesh.GetPolys(), mesh.GetStrips()]
+        kinds = [kind(mesh) for number, kind in POLYDATA if number(mesh)]
     else:
         kinds = [mesh.GetCells()] if isinstance(mesh, vtkUnstructuredGrid) else []
     for cells in kinds:
