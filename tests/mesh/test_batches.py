@@ -173,7 +173,6 @@ def test_lit_blocks_share_no_memory_and_are_lit_again():
     blocks = pv.MultiBlock([sheet(i) for i in range(3)])
     once = vizlight.illuminate(blocks, SCENE)
     for block, given in zip(once, blocks, strict=True):
-        assert normals.KEPT in block.point_data
         assert not np.shares_memory(block.points, given.points)
         assert np.asarray(block["luminance"]).base is None or block["luminance"].base.size < 99
     again = vizlight.illuminate(once, SCENE)
@@ -181,6 +180,15 @@ def test_lit_blocks_share_no_memory_and_are_lit_again():
     assert inplace is once
     for one, other in zip(once, again, strict=True):
         np.testing.assert_array_equal(one["luminance"], other["luminance"])
+
+
+def test_small_meshes_keep_no_normals_and_are_joined_again():
+    large = pv.Plane(i_resolution=16, j_resolution=16)
+    large.clear_data()
+    lit = list(vizlight.illuminate(pv.MultiBlock([sheet(0), sheet(1), large]), SCENE))
+    assert [normals.KEPT in block.point_data for block in lit] == [False, False, True]
+    groups, _ = batches.parts_of(lit, [""] * 3, SCENE, LightOptions(), join=True)
+    assert sorted(group.members for group in groups) == [[0, 1], [2]]
 
 
 @pytest.mark.parametrize(("make", "factor"), [(sheet, 6), (vectors, 2)])

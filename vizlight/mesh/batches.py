@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeAlias, TypeVar
 import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkDataSet, vtkPointSet
 
 from vizlight.mesh import normals, splitting
 from vizlight.mesh.inputs import part_of
 from vizlight.reading import polylines
-from vizlight.reading.cells import POLYDATA, as_numpy
+from vizlight.reading.cells import POLYDATA, as_numpy, point_data, vtk_points
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -155,17 +154,16 @@ def _names(options: LightOptions) -> list[str] | None:
 
 def _key(mesh: pv.DataSet, names: Sequence[str]) -> Key | None:
     """Return what a mesh must have in common with those it is joined with, None for no others."""
-    # Methods of the classes: a look-up on a mesh of PyVista takes longer than the call.
     if not 0 < mesh.GetNumberOfPoints() <= SMALL:
         return None
-    data = vtkDataSet.GetPointData(mesh)
+    data = point_data(mesh)
     if any(data.HasArray(name) for name in _KEPT):
         return None
     kinds = _kinds(mesh)
     arrays = [data.GetArray(name) for name in names]
     if kinds is None or any(array is None for array in arrays):
         return None
-    arrays += [vtkPointSet.GetPoints(mesh).GetData()]
+    arrays += [vtk_points(mesh).GetData()]
     if (carried := data.GetNormals()) is not None:
         arrays.append(carried)
     forms = ((a.GetName(), a.GetDataType(), a.GetNumberOfComponents()) for a in arrays)
@@ -200,7 +198,7 @@ def _joined(meshes: Sequence[pv.DataSet], members: list[int], names: Iterable[st
     starts = np.concatenate([[0], np.cumsum([mesh.GetNumberOfPoints() for mesh in own])])
     out = pv.PolyData() if isinstance(own[0], pv.PolyData) else pv.UnstructuredGrid()
     points = vtkPoints()
-    points.SetData(_end_to_end([vtkPointSet.GetPoints(mesh).GetData() for mesh in own], starts))
+    points.SetData(_end_to_end([vtk_points(mesh).GetData() for mesh in own], starts))
     out.SetPoints(points)
     if isinstance(out, pv.PolyData):
         puts = (out.SetVerts, out.SetLines, out.SetPolys, out.SetStrips)
@@ -211,7 +209,7 @@ def _joined(meshes: Sequence[pv.DataSet], members: list[int], names: Iterable[st
         kinds = np.concatenate([np.asarray(mesh.celltypes) for mesh in own])
         of_all = _cells([mesh.GetCells() for mesh in own], starts)
         out.SetCells(pv.convert_array(kinds), of_all)
-    data, of_each = out.GetPointData(), [vtkDataSet.GetPointData(mesh) for mesh in own]
+    data, of_each = out.GetPointData(), [point_data(mesh) for mesh in own]
     for name in names:
         data.AddArray(_end_to_end([each.GetArray(name) for each in of_each], starts))
     carried = [each.GetNormals() for each in of_each]

@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import pyvista as pv
-from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 from vizlight import _check
 from vizlight._version import __version__
 from vizlight.mesh import point_arrays, records
-from vizlight.reading.cells import POLYDATA, as_numpy, has_faces, places
+from vizlight.reading.cells import POLYDATA, as_numpy, has_faces, places, point_data
 from vizlight.reading.normals import Sided, computed_normals, given_normals
 from vizlight.reading.orientation import MANY_SHARP, SHARP
 from vizlight.scene import View
@@ -34,6 +33,9 @@ _OWN = "vizlight own"
 #: Name of the point array in which normals that had to be computed stay with a result: three
 #: components of the normal, its lean, and 1 on an open piece.
 KEPT = "vizlight_normals"
+#: Number of points from which normals are kept. Those of smaller meshes are computed for many at
+#: once, sooner than what is kept is checked.
+FEWEST = 256
 _NONE = np.empty(0)
 
 
@@ -149,11 +151,13 @@ def fingerprint(mesh: pv.DataSet) -> str | None:
 def keep(mesh: pv.DataSet, normals: Sided) -> None:
     """Attach normals that were computed to a mesh, with a digest of what they were computed from.
 
-    Where the user has an array of that name nothing is attached.
+    Where the user has an array of that name nothing is attached, and nothing to a small mesh.
     """
-    if not normals.computed or normals.kept or normals.lean is None or not len(normals.vectors):
+    if not normals.computed or normals.kept or normals.lean is None:
         return
-    if vtkDataSet.GetPointData(mesh).HasArray(KEPT) and KEPT not in records.made(mesh, KEPT):
+    if len(normals.vectors) < FEWEST:
+        return
+    if point_data(mesh).HasArray(KEPT) and KEPT not in records.made(mesh, KEPT):
         return
     source = fingerprint(mesh)
     if source is None:
@@ -165,12 +169,12 @@ def keep(mesh: pv.DataSet, normals: Sided) -> None:
         "vizlight": __version__, "filter": "normals", "source": source, "sharp": normals.sharp,
         "inside": normals.inside,
     }  # fmt: skip
-    records.write(mesh, KEPT, record, [KEPT])
+    records.write(mesh, KEPT, record, {KEPT: rows})
 
 
 def kept(mesh: pv.DataSet) -> Sided | None:
     """Return the normals that an earlier result kept, if the mesh has not changed since."""
-    there = vtkDataSet.GetPointData(mesh).HasArray(KEPT)
+    there = point_data(mesh).HasArray(KEPT)
     record = records.read(mesh, KEPT) if there else None
     if record is None or KEPT not in records.made(mesh, KEPT):
         return None

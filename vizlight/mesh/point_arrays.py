@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import pyvista as pv
-from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 from vizlight import _check
-from vizlight.reading.cells import as_vtk
+from vizlight.reading.cells import as_vtk, point_data
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -36,14 +35,17 @@ def attach_rows(mesh: pv.DataSet, name: str, array: NDArray[np.generic]) -> None
         part = array.base is not None and array.base.size > array.size
         copied = part or array.size < _SMALL
         own = as_vtk(array, name) if copied else pv.convert_array(array, name)
-        vtkDataSet.GetPointData(mesh).AddArray(own)
+        point_data(mesh).AddArray(own)
+    elif array.dtype == np.bool_:
+        # Without the search for active scalars that assignment adds.
+        mesh.point_data.set_array(cast("Any", array), name)
     else:
         mesh.point_data[name] = array
 
 
 def activate(mesh: pv.DataSet, name: str) -> None:
     """Make a point array the active scalars of a mesh, even if a cell array was active."""
-    vtkDataSet.GetPointData(mesh).SetActiveScalars(name)
+    point_data(mesh).SetActiveScalars(name)
     if (
         mesh.GetNumberOfPoints()
         and mesh.active_scalars_info.association != pv.FieldAssociation.POINT

@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkStringArray
-from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSet
 
 from vizlight import _check
 from vizlight.mesh import blocks, point_arrays
-from vizlight.reading.cells import as_numpy
+from vizlight.reading.cells import as_numpy, field_data, point_data
 from vizlight.shading.results import digest, plain, record_key
 
 if TYPE_CHECKING:
@@ -41,19 +40,30 @@ def attach(
 
 
 def write(
-    mesh: pv.DataSet, name: str, record: Record, arrays: Iterable[str] = (), common: str = ""
+    mesh: pv.DataSet,
+    name: str,
+    record: Record,
+    arrays: Iterable[str] = (),
+    common: str = "",
 ) -> None:
     """Attach the record of an array, with digests of the point arrays that it tells of.
 
-    ``common`` is the JSON text of other entries, which many records have in common.
+    ``arrays`` has their names; a dict also has what they hold. ``common`` is the JSON text of other
+    entries, which many records have in common.
     """
-    data = vtkDataSet.GetPointData(mesh)
-    digests = {own: digest(as_numpy(data.GetAbstractArray(own))) for own in sorted(arrays)}
+    if not isinstance(arrays, dict):
+        data = point_data(mesh)
+        arrays = {own: as_numpy(data.GetAbstractArray(own)) for own in arrays}
+    # VTK has no columns of width 1.
+    digests = {
+        own: digest(rows[:, 0] if rows.shape[1:] == (1,) else rows)
+        for own, rows in sorted(arrays.items())
+    }
     text = json.dumps(record | {"arrays": digests})
     attached = vtkStringArray()
     attached.SetName(record_key(name))
     attached.InsertNextValue(f"{common[:-1]}, {text[1:]}" if common else text)
-    vtkDataObject.GetFieldData(mesh).AddArray(attached)
+    field_data(mesh).AddArray(attached)
 
 
 def read(mesh: pv.DataSet, name: str) -> dict[str, Any] | None:
@@ -62,7 +72,7 @@ def read(mesh: pv.DataSet, name: str) -> dict[str, Any] | None:
     The record may come from a file of unknown origin: its form is checked, and nothing in it is
     taken for true that the mesh itself does not confirm.
     """
-    if not vtkDataObject.GetFieldData(mesh).HasArray(record_key(name)):
+    if not field_data(mesh).HasArray(record_key(name)):
         return None
     try:
         record = json.loads(str(mesh.field_data[record_key(name)][0]))
@@ -102,7 +112,7 @@ def count(record: Mapping[str, object], name: str, most: int) -> int:
 def made(mesh: pv.DataSet, name: str) -> set[str]:
     """Return the names of the point arrays attached under a name that are unchanged since."""
     claimed: dict[str, str] = (read(mesh, name) or {}).get("arrays", {})
-    data = vtkDataSet.GetPointData(mesh)
+    data = point_data(mesh)
     return {
         own
         for own, made_as in claimed.items()
@@ -135,7 +145,7 @@ def refuse_overwriting(
     """Raise ValueError if a point array that vizlight did not make would be replaced."""
     for mesh, _ in named:
         ours = made(mesh, name)
-        data = vtkDataSet.GetPointData(mesh)
+        data = point_data(mesh)
         for array in arrays:
             if data.HasArray(array) and array not in ours:
                 expected = "one under which the mesh has no array of its own"

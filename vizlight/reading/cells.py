@@ -7,20 +7,30 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from vtkmodules.util import numpy_support
 from vtkmodules.vtkCommonCore import vtkDataArray, vtkStringArray, vtkUnsignedCharArray
-from vtkmodules.vtkCommonDataModel import vtkDataSet, vtkPolyData, vtkUnstructuredGrid
+from vtkmodules.vtkCommonDataModel import (
+    vtkDataObject,
+    vtkDataSet,
+    vtkPointSet,
+    vtkPolyData,
+    vtkUnstructuredGrid,
+)
 from vtkmodules.vtkFiltersCore import vtkTriangleFilter
 
 from vizlight import _check
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
-    from vtkmodules.vtkCommonCore import vtkAbstractArray
-    from vtkmodules.vtkCommonDataModel import vtkCellArray
+    from vtkmodules.vtkCommonCore import vtkAbstractArray, vtkPoints
+    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkFieldData, vtkPointData
 
     from vizlight._types import Bools, Indices
 
+#: Methods of the classes: on a mesh of PyVista the look-up of one takes longer than the call.
+point_data: Callable[[Any], vtkPointData] = vtkDataSet.GetPointData
+field_data: Callable[[Any], vtkFieldData] = vtkDataObject.GetFieldData
+vtk_points: Callable[[Any], vtkPoints] = vtkPointSet.GetPoints
 #: Has no types.
 _SUPPORT: Any = numpy_support
 
@@ -47,14 +57,15 @@ def as_vtk(rows: NDArray[Any], name: str = "") -> vtkDataArray:
     own = rows.view(np.uint8) if rows.dtype == np.bool_ else rows
     kind = own.dtype.newbyteorder("=")
     # Twice as fast as VTK's own way, which counts where there are many small meshes.
-    array: vtkDataArray = vtkDataArray.CreateDataArray(_SUPPORT.get_vtk_array_type(kind))
+    array: Any = vtkDataArray.CreateDataArray(_SUPPORT.get_vtk_array_type(kind))
     array.SetName(name)
     array.SetNumberOfComponents(1 if own.ndim == 1 else own.shape[1])
     array.SetNumberOfTuples(len(own))
     if own.size:
         values: NDArray[Any] = np.frombuffer(array, dtype=kind)
         values.reshape(own.shape)[...] = own
-    return array
+    made: vtkDataArray = array
+    return made
 
 
 def places(mesh: Any) -> NDArray[Any]:
@@ -108,7 +119,7 @@ def triangles(surface: vtkPolyData) -> Indices:
 
 
 #: Number of each kind of cells of a vtkPolyData, and those cells.
-POLYDATA = (
+POLYDATA: tuple[tuple[Callable[[Any], int], Callable[[Any], vtkCellArray]], ...] = (
     (vtkPolyData.GetNumberOfVerts, vtkPolyData.GetVerts),
     (vtkPolyData.GetNumberOfLines, vtkPolyData.GetLines),
     (vtkPolyData.GetNumberOfPolys, vtkPolyData.GetPolys),
@@ -128,9 +139,8 @@ def check_whole(mesh: object, name: str, where: str = "") -> None:
     """
     if not isinstance(mesh, vtkDataSet):
         return
-    # Methods of the class: a look-up on a mesh of PyVista takes longer than the call.
     count = mesh.GetNumberOfPoints()
-    data = vtkDataSet.GetPointData(mesh)
+    data = point_data(mesh)
     for i in range(data.GetNumberOfArrays()):
         array = data.GetAbstractArray(i)
         if array is not None and array.GetNumberOfTuples() != count:
@@ -144,9 +154,9 @@ def check_whole(mesh: object, name: str, where: str = "") -> None:
     for cells in kinds:
         if cells is not None and cells.GetNumberOfConnectivityIds():
             ids = as_numpy(cells.GetConnectivityArray())
-            low, high = int(ids.min()), int(ids.max())
-            if not 0 <= low <= high < count:
+            # Negative numbers are large ones without a sign.
+            if int(ids.view(f"u{ids.itemsize}").max()) >= count:
                 expected = f"cells of the points 0 to {count - 1}"
                 remedy = "the file may be cut or damaged"
-                got = f"{low} to {high}"
+                got = f"{ids.min()} to {ids.max()}"
                 raise ValueError(where + _check.message(name, expected, got, remedy))
