@@ -191,16 +191,19 @@ def test_small_meshes_keep_no_normals_and_are_joined_again():
     assert sorted(group.members for group in groups) == [[0, 1], [2]]
 
 
-@pytest.mark.parametrize(("make", "factor"), [(sheet, 6), (vectors, 2)])
+@pytest.mark.parametrize(("make", "factor"), [(sheet, 5), (vectors, 2)])
 def test_joined_meshes_take_a_fraction_of_the_time(make, factor):
-    """By processor time against the same call with meshes too large to be joined."""
+    """By the least processor time against the same call with meshes too large to be joined."""
     options = {"tangents": "V"} if make is vectors else {}
     blocks = pv.MultiBlock([make(i) for i in range(200)])
     seconds = []
     for small in (batches.SMALL, 0):
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(batches, "SMALL", small)
-            start = time.process_time()
-            lit(blocks, SCENE, options)
-            seconds.append(time.process_time() - start)
+            runs = []
+            for _ in range(3):
+                start = time.process_time()
+                lit(blocks, SCENE, options)
+                runs.append(time.process_time() - start)
+            seconds.append(min(runs))
     assert factor * seconds[0] < seconds[1]
