@@ -262,7 +262,7 @@ def test_light_again_takes_the_normals_that_stayed(kind, monkeypatch, tmp_path):
     if kind == "grid":
         mesh = mesh.cast_to_unstructured_grid()
     elif kind == "blocks":
-        mesh = pv.MultiBlock([mesh, pv.Plane()])
+        mesh = pv.MultiBlock([mesh, pv.Plane(i_resolution=16, j_resolution=16)])
         mesh[1].clear_data()
     lit = illuminate(mesh, HEAD)
     suffix = {"polydata": "vtp", "grid": "vtu", "blocks": "vtm"}[kind]

@@ -63,9 +63,10 @@ def illuminate(
         The mesh with the point array ``luminance`` (active scalars); ``rgb`` where the scene
         has a colour; ``luminance_valid`` where some point could not be lit; and the field array
         ``luminance_provenance``, which :func:`vizlight.provenance` reads. Normals that had to be
-        computed stay as ``vizlight_normals``, so that the result is lit again in a fraction of the
-        time; they are used as long as points and cells have not changed. With ``refine`` it
-        consists of triangles or polylines with more points, as :func:`vizlight.refine` returns it.
+        computed, for 256 points or more, stay as ``vizlight_normals``, so that the result is lit
+        again in a fraction of the time, as long as points and cells have not changed. With
+        ``refine`` it consists of triangles or polylines with more points, as
+        :func:`vizlight.refine` returns it.
 
     Raises
     ------

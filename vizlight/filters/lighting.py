@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -133,14 +134,16 @@ def finish(
 
     Points inside volumes, of which there are ``inside``, have no normal and are not counted.
     """
-    shared: dict[int, Record] = {}
+    shared: dict[int, str] = {}
+    invalid = -inside
     for i, (mesh, shading) in enumerate(zip(meshes, results, strict=True)):
         plan = id(shading.plan)
+        record: Record = {"points": shading.valid.size, "invalid": shading.invalid}
         if plan not in shared:
-            shared[plan] = of_light(shading, filter_name, scene, options)
-        record = shared[plan] | {"points": shading.valid.size, "invalid": shading.invalid}
-        attach(mesh, shading, name, record, dimmings[i] if dimmings else None)
-    invalid = sum(shading.invalid for shading in results) - inside
+            all_of = of_light(shading, filter_name, scene, options)
+            shared[plan] = json.dumps({k: v for k, v in all_of.items() if k not in record})
+        attach(mesh, shading, name, record, dimmings[i] if dimmings else None, shared[plan])
+        invalid += shading.invalid
     if invalid > 0:
         total = sum(shading.luminance.size for shading in results) - inside
         _check.warn(f"{unlit(invalid, total)}; the point array {name + VALID!r} marks them")
@@ -152,8 +155,9 @@ def attach(
     name: str,
     record: Record,
     dimming: Dimming | None = None,
+    common: str = "",
 ) -> None:
-    """Attach the light to a mesh, in place of what it has under the name."""
+    """Attach the light to a mesh, in place of what it has under the name; see `records.write`."""
     occlusion = None if dimming is None else dimming.occlusion
     arrays = arrays_of(shading, name, occlusion=occlusion)
     if dimming is not None:
@@ -163,4 +167,4 @@ def attach(
             if array is not None and array.size
         }
         record = record | {"bundle": dimming.record}
-    records.attach(mesh, name, arrays, record)
+    records.attach(mesh, name, arrays, record, common)

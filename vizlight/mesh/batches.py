@@ -11,6 +11,7 @@ from vtkmodules.vtkCommonCore import vtkPoints
 from vizlight.mesh import normals, splitting
 from vizlight.mesh.inputs import part_of
 from vizlight.reading import polylines
+from vizlight.reading.cells import POLYDATA, as_numpy, point_data, vtk_points
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -127,43 +128,44 @@ def _batches(meshes: Sequence[pv.DataSet], options: LightOptions) -> list[Batch]
     found: dict[Key, list[int]] = {}
     size: dict[Key, int] = {}
     alone, made = [], []
+    names = _names(options) if len(meshes) > 1 else None
     for i, mesh in enumerate(meshes):
-        key = _key(mesh, options) if len(meshes) > 1 else None
+        key = None if names is None else _key(mesh, names)
         if key is None:
             alone.append(i)
             continue
         size[key] = size.get(key, 0) + mesh.GetNumberOfPoints()
         if size[key] > LARGEST:
-            made.append(_joined(meshes, found.pop(key), options))
+            made.append(_joined(meshes, found.pop(key), names or ()))
             size[key] = mesh.GetNumberOfPoints()
         found.setdefault(key, []).append(i)
-    made += [_joined(meshes, members, options) for members in found.values()]
+    made += [_joined(meshes, members, names or ()) for members in found.values()]
     return made + _alone(meshes, alone)
 
 
-def _names(options: LightOptions) -> list[str | None] | None:
+def _names(options: LightOptions) -> list[str] | None:
     """Return the names of the arrays that light depends on, None if one of them has no name."""
     conditioned = options.conditioned if isinstance(options.conditioned, str) else None
     given = [options.tangents, options.positions, options.normals, conditioned]
-    names = [name for name in given if name is None or isinstance(name, str)]
+    given = [name for name in given if name is not None]
+    names = [name for name in given if isinstance(name, str)]
     return names if len(names) == len(given) else None
 
 
-def _key(mesh: pv.DataSet, options: LightOptions) -> Key | None:
+def _key(mesh: pv.DataSet, names: Sequence[str]) -> Key | None:
     """Return what a mesh must have in common with those it is joined with, None for no others."""
-    count, names = mesh.GetNumberOfPoints(), _names(options)
-    if names is None or not 0 < count <= SMALL:
+    if not 0 < mesh.GetNumberOfPoints() <= SMALL:
         return None
-    data = mesh.GetPointData()
+    data = point_data(mesh)
     if any(data.HasArray(name) for name in _KEPT):
         return None
     kinds = _kinds(mesh)
-    arrays = [data.GetArray(name) for name in names if name is not None]
+    arrays = [data.GetArray(name) for name in names]
     if kinds is None or any(array is None for array in arrays):
         return None
-    arrays += [mesh.GetPoints().GetData()]
-    if data.GetNormals() is not None:
-        arrays.append(data.GetNormals())
+    arrays += [vtk_points(mesh).GetData()]
+    if (carried := data.GetNormals()) is not None:
+        arrays.append(carried)
     forms = ((a.GetName(), a.GetDataType(), a.GetNumberOfComponents()) for a in arrays)
     return (*kinds, *forms)
 
@@ -171,46 +173,46 @@ def _key(mesh: pv.DataSet, options: LightOptions) -> Key | None:
 def _kinds(mesh: pv.DataSet) -> Key | None:
     """Return the kinds of the cells of a mesh, None for a mesh that cannot be joined."""
     if isinstance(mesh, pv.PolyData):
-        if mesh.GetNumberOfStrips():
+        verts, lines, polys, strips = (count(mesh) > 0 for count, _ in POLYDATA)
+        if strips:
             return None
-        counts = (mesh.GetNumberOfVerts(), mesh.GetNumberOfLines(), mesh.GetNumberOfPolys())
         # Where there are segments, lines are joined at their ends.
-        sizes = np.diff(pv.convert_array(mesh.GetLines().GetOffsetsArray())) if counts[1] else ()
-        return ("polydata", *(count > 0 for count in counts), 2 in sizes)
+        return ("polydata", verts, lines, polys, lines and _has_segments(mesh.GetLines()))
     if isinstance(mesh, pv.UnstructuredGrid):
-        kinds = pv.convert_array(mesh.GetDistinctCellTypesArray()).tolist()
+        kinds = as_numpy(mesh.GetDistinctCellTypesArray()).tolist()
         return ("grid", *kinds) if kinds and _JOINED.issuperset(kinds) else None
     return None
 
 
-def _joined(meshes: Sequence[pv.DataSet], members: list[int], options: LightOptions) -> Batch:
+def _has_segments(lines: vtkCellArray) -> bool:
+    """Return whether a line has two points."""
+    size = lines.IsHomogeneous()
+    return size == 2 if size > 0 else 2 in np.diff(as_numpy(lines.GetOffsetsArray()))
+
+
+def _joined(meshes: Sequence[pv.DataSet], members: list[int], names: Iterable[str]) -> Batch:
     """Return some meshes of one key as one mesh."""
     if len(members) == 1:
         return Batch(meshes[members[0]], members)
     own = [meshes[i] for i in members]
     starts = np.concatenate([[0], np.cumsum([mesh.GetNumberOfPoints() for mesh in own])])
-    out = type(own[0])()
+    out = pv.PolyData() if isinstance(own[0], pv.PolyData) else pv.UnstructuredGrid()
     points = vtkPoints()
-    points.SetData(_end_to_end([mesh.GetPoints().GetData() for mesh in own], starts))
+    points.SetData(_end_to_end([vtk_points(mesh).GetData() for mesh in own], starts))
     out.SetPoints(points)
     if isinstance(out, pv.PolyData):
-        for get, put in (
-            ("GetVerts", "SetVerts"),
-            ("GetLines", "SetLines"),
-            ("GetPolys", "SetPolys"),
-        ):
-            cells = [getattr(mesh, get)() for mesh in own]
-            if cells[0].GetNumberOfCells():
-                getattr(out, put)(_cells(cells, starts))
+        puts = (out.SetVerts, out.SetLines, out.SetPolys, out.SetStrips)
+        for (count, get), put in zip(POLYDATA, puts, strict=True):
+            if count(own[0]):
+                put(_cells([get(mesh) for mesh in own], starts))
     else:
         kinds = np.concatenate([np.asarray(mesh.celltypes) for mesh in own])
         of_all = _cells([mesh.GetCells() for mesh in own], starts)
         out.SetCells(pv.convert_array(kinds), of_all)
-    data = out.GetPointData()
-    for name in _names(options) or ():
-        if name is not None:
-            data.AddArray(_end_to_end([mesh.GetPointData().GetArray(name) for mesh in own], starts))
-    carried = [mesh.GetPointData().GetNormals() for mesh in own]
+    data, of_each = out.GetPointData(), [point_data(mesh) for mesh in own]
+    for name in names:
+        data.AddArray(_end_to_end([each.GetArray(name) for each in of_each], starts))
+    carried = [each.GetNormals() for each in of_each]
     if carried[0] is not None:
         data.SetNormals(_end_to_end(carried, starts))
     return Batch(out, members, starts)

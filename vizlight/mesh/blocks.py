@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, TypeVar, cast
 
 import numpy as np
 import pyvista as pv
+from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkMultiBlockDataSet
 
 from vizlight import _check
 from vizlight.reading.cells import check_whole, has_faces
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 #: Type of a mesh that a filter takes and returns.
 MeshT = TypeVar("MeshT", bound="pv.DataSet | pv.MultiBlock")
 DataSetT = TypeVar("DataSetT", bound=pv.DataSet)
+_NAME = vtkCompositeDataSet.NAME()
 
 
 def check(mesh: object) -> list[tuple[pv.DataSet, str]]:
@@ -60,8 +62,15 @@ def named_blocks(mesh: object, path: str = "") -> Iterator[tuple[pv.DataSet, str
         yield mesh, path
         return
     for i in range(mesh.n_blocks):
-        if (block := mesh[i]) is not None:
-            yield from named_blocks(block, f"{path}/{mesh.get_block_name(i) or i}")
+        if (block := _block(mesh, i)) is not None:
+            about = vtkMultiBlockDataSet.GetMetaData(mesh, i)
+            yield from named_blocks(block, f"{path}/{about.Get(_NAME) or i}")
+
+
+def _block(mesh: pv.MultiBlock, i: int) -> object:
+    """Return a block as PyVista does, without its look-up where it has wrapped the block."""
+    block = vtkMultiBlockDataSet.GetBlock(mesh, i)
+    return block if block is None or isinstance(block, pv.DataObject) else mesh[i]
 
 
 def like(mesh: MeshT, made: Iterator[pv.DataSet]) -> MeshT:
@@ -72,8 +81,11 @@ def like(mesh: MeshT, made: Iterator[pv.DataSet]) -> MeshT:
     # Names and structure at once; one by one they take longer than the light of a small block.
     out.CopyStructure(mesh)
     for i in range(mesh.n_blocks):
-        if (block := mesh[i]) is not None:
+        block = _block(mesh, i)
+        if isinstance(block, pv.MultiBlock):
             out.SetBlock(i, like(block, made))
+        elif block is not None:
+            out.SetBlock(i, next(made))
     for key, value in mesh.field_data.items():
         out.field_data[key] = np.array(value)
     return out

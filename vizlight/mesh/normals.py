@@ -11,13 +11,15 @@ import pyvista as pv
 from vizlight import _check
 from vizlight._version import __version__
 from vizlight.mesh import point_arrays, records
-from vizlight.reading.cells import has_faces
+from vizlight.reading.cells import POLYDATA, as_numpy, has_faces, places, point_data
 from vizlight.reading.normals import Sided, computed_normals, given_normals
 from vizlight.reading.orientation import MANY_SHARP, SHARP
 from vizlight.scene import View
 
 if TYPE_CHECKING:
     from typing import TypeVar
+
+    from vtkmodules.vtkCommonDataModel import vtkCellArray
 
     from vizlight._types import Array
     from vizlight.scene import Scene
@@ -31,6 +33,10 @@ _OWN = "vizlight own"
 #: Name of the point array in which normals that had to be computed stay with a result: three
 #: components of the normal, its lean, and 1 on an open piece.
 KEPT = "vizlight_normals"
+#: Number of points from which normals are kept. Those of smaller meshes are computed for many at
+#: once, sooner than what is kept is checked.
+FEWEST = 256
+_NONE = np.empty(0)
 
 
 def are_computed(mesh: pv.DataSet, options: LightOptions) -> bool:
@@ -149,22 +155,20 @@ def split_edges(mesh: pv.PolyData, angle: float | Literal["auto"]) -> pv.PolyDat
 
 def fingerprint(mesh: pv.DataSet) -> str | None:
     """Return a digest of the points and cells of a mesh, None for a kind that keeps no normals."""
+    cells: list[vtkCellArray | None]
     if isinstance(mesh, pv.PolyData):
-        cells = [mesh.GetLines(), mesh.GetPolys(), mesh.GetStrips()]
+        cells = [get(mesh) if count(mesh) else None for count, get in POLYDATA[1:]]
     elif isinstance(mesh, pv.UnstructuredGrid):
         cells = [mesh.GetCells()]
     else:
         return None
     digest = hashlib.sha256()
-    arrays = [np.asarray(mesh.points)]
+    arrays = [places(mesh)]
     for cell in cells:
-        if cell.GetNumberOfCells():
-            arrays += [
-                pv.convert_array(cell.GetConnectivityArray()),
-                pv.convert_array(cell.GetOffsetsArray()),
-            ]
+        if cell is not None and cell.GetNumberOfCells():
+            arrays += [as_numpy(cell.GetConnectivityArray()), as_numpy(cell.GetOffsetsArray())]
         else:
-            arrays.append(np.empty(0))
+            arrays.append(_NONE)
     for array in arrays:
         digest.update(f"{array.dtype.str}{array.shape}".encode())
         digest.update(np.ascontiguousarray(array).data)
@@ -174,28 +178,31 @@ def fingerprint(mesh: pv.DataSet) -> str | None:
 def keep(mesh: pv.DataSet, normals: Sided) -> None:
     """Attach normals that were computed to a mesh, with a digest of what they were computed from.
 
-    Where the user has an array of that name nothing is attached.
+    Where the user has an array of that name nothing is attached, and nothing to a small mesh.
     """
-    if not normals.computed or normals.kept or normals.lean is None or not mesh.n_points:
+    if not normals.computed or normals.kept or normals.lean is None:
         return
-    if mesh.GetPointData().HasArray(KEPT) and KEPT not in records.made(mesh, KEPT):
+    if len(normals.vectors) < FEWEST:
+        return
+    if point_data(mesh).HasArray(KEPT) and KEPT not in records.made(mesh, KEPT):
         return
     source = fingerprint(mesh)
     if source is None:
         return
-    rows = np.empty((mesh.n_points, 5), dtype=np.float32)
+    rows = np.empty((len(normals.vectors), 5), dtype=np.float32)
     rows[:, :3], rows[:, 3], rows[:, 4] = normals.vectors, normals.lean, normals.open
     point_arrays.attach_rows(mesh, KEPT, rows)
     record: Record = {
         "vizlight": __version__, "filter": "normals", "source": source, "sharp": normals.sharp,
         "inside": normals.inside,
     }  # fmt: skip
-    records.write(mesh, KEPT, record, [KEPT])
+    records.write(mesh, KEPT, record, {KEPT: rows})
 
 
 def kept(mesh: pv.DataSet) -> Sided | None:
     """Return the normals that an earlier result kept, if the mesh has not changed since."""
-    record = records.read(mesh, KEPT) if KEPT in mesh.point_data else None
+    there = point_data(mesh).HasArray(KEPT)
+    record = records.read(mesh, KEPT) if there else None
     if record is None or KEPT not in records.made(mesh, KEPT):
         return None
     rows = np.asarray(mesh.point_data[KEPT])

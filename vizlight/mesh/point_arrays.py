@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight.reading.cells import as_vtk, point_data
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+#: Number of values below which an array is sooner copied than shared.
+_SMALL = 1 << 12
 
 
 def refuse_unnamed(name: str, value: object) -> None:
@@ -29,13 +33,21 @@ def attach_rows(mesh: pv.DataSet, name: str, array: NDArray[np.generic]) -> None
         # By VTK itself: PyVista's way takes longer than the light of a small mesh, and refuses an
         # array without rows.
         part = array.base is not None and array.base.size > array.size
-        mesh.GetPointData().AddArray(pv.convert_array(array, name, deep=part))
+        copied = part or array.size < _SMALL
+        own = as_vtk(array, name) if copied else pv.convert_array(array, name)
+        point_data(mesh).AddArray(own)
+    elif array.dtype == np.bool_:
+        # Without the search for active scalars that assignment adds.
+        mesh.point_data.set_array(cast("Any", array), name)
     else:
         mesh.point_data[name] = array
 
 
 def activate(mesh: pv.DataSet, name: str) -> None:
     """Make a point array the active scalars of a mesh, even if a cell array was active."""
-    mesh.GetPointData().SetActiveScalars(name)
-    if mesh.n_points and mesh.active_scalars_info.association != pv.FieldAssociation.POINT:
+    point_data(mesh).SetActiveScalars(name)
+    if (
+        mesh.GetNumberOfPoints()
+        and mesh.active_scalars_info.association != pv.FieldAssociation.POINT
+    ):
         mesh.set_active_scalars(name, preference="point")

@@ -11,6 +11,7 @@ from vtkmodules.vtkCommonCore import vtkStringArray
 
 from vizlight import _check
 from vizlight.mesh import blocks, point_arrays
+from vizlight.reading.cells import as_numpy, field_data, point_data
 from vizlight.shading.results import digest, plain, record_key
 
 if TYPE_CHECKING:
@@ -23,7 +24,11 @@ if TYPE_CHECKING:
 
 
 def attach(
-    mesh: pv.DataSet, name: str, arrays: Mapping[str, NDArray[np.generic]], record: Record
+    mesh: pv.DataSet,
+    name: str,
+    arrays: Mapping[str, NDArray[np.generic]],
+    record: Record,
+    common: str = "",
 ) -> None:
     """Attach point arrays in place of earlier ones of a name, and activate the one of that name."""
     for stale in made(mesh, name):
@@ -31,17 +36,34 @@ def attach(
     for own, array in arrays.items():
         point_arrays.attach_rows(mesh, own, array)
     point_arrays.activate(mesh, name)
-    write(mesh, name, record, arrays)
+    write(mesh, name, record, arrays, common)
 
 
-def write(mesh: pv.DataSet, name: str, record: Record, arrays: Iterable[str] = ()) -> None:
-    """Attach the record of an array, with digests of the point arrays that it tells of."""
-    data = mesh.GetPointData()
-    digests = {own: digest(pv.convert_array(data.GetArray(own))) for own in sorted(arrays)}
-    text = vtkStringArray()
-    text.SetName(record_key(name))
-    text.InsertNextValue(json.dumps(record | {"arrays": digests}))
-    mesh.GetFieldData().AddArray(text)
+def write(
+    mesh: pv.DataSet,
+    name: str,
+    record: Record,
+    arrays: Iterable[str] = (),
+    common: str = "",
+) -> None:
+    """Attach the record of an array, with digests of the point arrays that it tells of.
+
+    ``arrays`` has their names; a dict also has what they hold. ``common`` is the JSON text of other
+    entries, which many records have in common.
+    """
+    if not isinstance(arrays, dict):
+        data = point_data(mesh)
+        arrays = {own: as_numpy(data.GetAbstractArray(own)) for own in arrays}
+    # VTK has no columns of width 1.
+    digests = {
+        own: digest(rows[:, 0] if rows.shape[1:] == (1,) else rows)
+        for own, rows in sorted(arrays.items())
+    }
+    text = json.dumps(record | {"arrays": digests})
+    attached = vtkStringArray()
+    attached.SetName(record_key(name))
+    attached.InsertNextValue(f"{common[:-1]}, {text[1:]}" if common else text)
+    field_data(mesh).AddArray(attached)
 
 
 def read(mesh: pv.DataSet, name: str) -> dict[str, Any] | None:
@@ -50,7 +72,7 @@ def read(mesh: pv.DataSet, name: str) -> dict[str, Any] | None:
     The record may come from a file of unknown origin: its form is checked, and nothing in it is
     taken for true that the mesh itself does not confirm.
     """
-    if not mesh.GetFieldData().HasArray(record_key(name)):
+    if not field_data(mesh).HasArray(record_key(name)):
         return None
     try:
         record = json.loads(str(mesh.field_data[record_key(name)][0]))
@@ -90,10 +112,11 @@ def count(record: Mapping[str, object], name: str, most: int) -> int:
 def made(mesh: pv.DataSet, name: str) -> set[str]:
     """Return the names of the point arrays attached under a name that are unchanged since."""
     claimed: dict[str, str] = (read(mesh, name) or {}).get("arrays", {})
+    data = point_data(mesh)
     return {
         own
         for own, made_as in claimed.items()
-        if own in mesh.point_data and digest(mesh.point_data[own]) == made_as
+        if data.HasArray(own) and digest(as_numpy(data.GetAbstractArray(own))) == made_as
     }
 
 
@@ -122,8 +145,9 @@ def refuse_overwriting(
     """Raise ValueError if a point array that vizlight did not make would be replaced."""
     for mesh, _ in named:
         ours = made(mesh, name)
+        data = point_data(mesh)
         for array in arrays:
-            if array in mesh.point_data and array not in ours:
+            if data.HasArray(array) and array not in ours:
                 expected = "one under which the mesh has no array of its own"
                 known = array in (read(mesh, name) or {}).get("arrays", {})
                 got = repr(array) + ", changed since it was computed" * known

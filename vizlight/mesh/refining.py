@@ -11,7 +11,7 @@ import numpy as np
 from vizlight import _check
 from vizlight.mesh import records, splitting
 from vizlight.mesh.splitting import Cells
-from vizlight.reading.cells import has_faces
+from vizlight.reading.cells import field_data, has_faces
 from vizlight.shading import engine
 from vizlight.verify.between import Between, Places, columns, interpolated, random_places
 
@@ -188,7 +188,8 @@ def _joined(rows: ArraySource, added: Array) -> Array:
 
 def forget(mesh: pv.DataSet, name: str) -> None:
     """Remove the error of an earlier refinement, which new light does not have."""
-    if mesh.GetFieldData().HasArray(name + LEFT) and records.read(mesh, name) is not None:
+    there = field_data(mesh).HasArray(name + LEFT)
+    if there and records.read(mesh, name) is not None:
         del mesh.field_data[name + LEFT]
 
 

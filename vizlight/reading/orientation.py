@@ -94,7 +94,7 @@ class Shape:
         self._measure()
 
     def _measure(self) -> None:
-        """Place each piece about its centroid, and find the volumes of the pieces."""
+        """Place each piece about its centroid, at a size of 1, and find the volumes."""
         size = np.maximum(np.bincount(self.piece, self.finite, self.count), 1)
         self.away: Array = np.where(self.finite[:, np.newaxis], self._points, 0).astype(np.float64)
         sums = [np.bincount(self.piece, axis, self.count) for axis in self.away.T]
@@ -103,25 +103,18 @@ class Shape:
             self.away[block] -= middle[self.piece[block]]
         # Lengths are scaled, because products of tiny ones underflow and of huge ones overflow.
         if self.owners.of is None:
-            low, high = self.away.min(initial=0.0), self.away.max(initial=0.0)
-            self.scale = np.array([np.maximum(-low, high)])
+            scale = np.maximum(-self.away.min(initial=0.0), self.away.max(initial=0.0))
+            self.away /= scale or 1.0
         else:
-            self.scale = np.zeros(self.owners.count)
-            np.maximum.at(self.scale, self.owners.of, np.abs(self.away).max(axis=1))
-        self.scale[self.scale == 0] = 1.0
+            scales = np.zeros(self.owners.count)
+            np.maximum.at(scales, self.owners.of, np.abs(self.away).max(axis=1))
+            scales[scales == 0] = 1.0
+            self.away /= scales[self.owners.of][:, np.newaxis]
         self.turned: Bools = np.zeros(self.count, dtype=np.bool_)
         self.volume: Array = np.zeros(self.count)
         for _, rows, across in self._parts():
-            height = _dots(across, self._corners(rows[:, 0]))
+            height = _dots(across, self.away[rows[:, 0]])
             np.add.at(self.volume, self.piece[rows[:, 0]], height)
-
-    def _corners(self, points: Indices) -> Array:
-        """Return places of some points about the centroids of their pieces, at most of size 1."""
-        if self.owners.of is None:
-            scale = self.scale
-        else:
-            scale = self.scale[self.owners.of[points]][..., np.newaxis]
-        return np.asarray(self.away[points] / scale)
 
     def _parts(self) -> Iterator[tuple[Indices, Indices, Array]]:
         """Yield the numbers, the corners and the area vectors of some finite triangles."""
@@ -129,7 +122,7 @@ class Shape:
             rows = self.triangles[block]
             known = np.flatnonzero(self.finite[rows].all(axis=1))
             rows = rows[known]
-            a, b, c = (self._corners(rows[:, i]) for i in range(3))
+            a, b, c = (self.away[rows[:, i]] for i in range(3))
             across = np.cross(b - a, c - a)
             across[self.turned[self.piece[rows[:, 0]]]] *= -1
             yield known + block.start, rows, across
@@ -203,7 +196,7 @@ class Shape:
         faces = np.empty((len(self.triangles), 3), dtype=np.float32)
         full = np.zeros(len(self.triangles), dtype=np.bool_)
         for numbers, rows, across in self._parts():
-            corners = self._corners(rows)
+            corners = self.away[rows]
             sides = corners - np.roll(corners, -1, axis=1)
             longest = np.einsum("ijk,ijk->ij", sides, sides).max(axis=1, initial=0.0)
             full[numbers] = np.linalg.norm(across, axis=1) > NARROWEST * longest

@@ -237,7 +237,7 @@ class LightOptions(ShadingOptions):
     normals : str or array_like, optional
         Name of a point array of n components with normals, or its values. Default: the active
         normals of the mesh (clear them after moving points), else those of its surface, which
-        stay with the result as ``vizlight_normals``.
+        stay with the result as ``vizlight_normals`` from 256 points on.
     facing : {"auto", "eye", "outward", "as given"}
         Side of the surface that is lit. ``"auto"``: each connected piece that is closed faces
         outward, any other faces the eye at every point (with ``normals`` that are given the mesh
