@@ -53,6 +53,14 @@ def volume(i):
     return mesh
 
 
+def ghosts(i):
+    """Return a slab whose outer layer belongs to its neighbour."""
+    mesh = volume(i)
+    beyond = mesh.cell_centers().points[:, 0] > i + 2
+    mesh.cell_data["vtkGhostType"] = beyond.astype(np.uint8)
+    return mesh
+
+
 def line(i, n=9):
     t = np.linspace(0, 3, n) + i
     mesh = pv.PolyData()
@@ -103,6 +111,7 @@ MESHES = {
     "both sides": ([sheet(i) for i in range(3)], {"two_sided": True}),
     "volumes": ([volume(i) for i in range(3)], {}),
     "grids of both": ([volume(0), sheet(1).cast_to_unstructured_grid(), volume(2)], {}),
+    "ghost cells": ([ghosts(2 * i) for i in range(3)], {}),
     "lines": ([line(i, 5 + i) for i in range(4)], {}),
     "segments": ([segments(0), line(1), segments(2), line(2)], {}),
     "tangents": ([vectors(i) for i in range(4)], {"tangents": "V"}),

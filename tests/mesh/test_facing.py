@@ -313,3 +313,33 @@ def test_an_array_of_the_user_is_not_replaced():
 
 def test_normals_of_the_user_do_not_stay_a_second_time():
     assert normals.KEPT not in illuminate(pv.Sphere(), HEAD).point_data
+
+
+def test_vertices_and_lines_do_not_change_where_faces_are_split():
+    plain = pv.Box().triangulate().subdivide(2, "linear").clean()
+    mesh = pv.PolyData(plain.points, faces=plain.faces)
+    mesh.verts = np.ravel([(1, i) for i in range(7)])
+    mesh.lines = np.ravel([(2, i, i + 1) for i in range(0, 40, 2)])
+    mesh.cell_data["own"] = np.arange(mesh.n_cells)
+    scene = Scene(lights=Light(direction=(1, 0.5, 2)), view=View(direction=(1, 1, 1)))
+    ours, others = (reading.normals.computed_normals(surface).vectors for surface in (mesh, plain))
+    np.testing.assert_array_equal(ours, others)
+    lit = vizlight.illuminate(mesh, scene, feature_angle=30)
+    assert (lit.n_verts, lit.n_lines) == (7, 20)
+    np.testing.assert_array_equal(lit.cell_data["own"], mesh.cell_data["own"])
+    corners = lit.points[lit.regular_faces]
+    top = lit.regular_faces[(corners[..., 2] > corners[..., 2].max() - 1e-6).all(axis=1)]
+    assert len(top) > 8
+    assert np.ptp(lit["luminance"][top]) < 1e-6
+
+
+def test_an_angle_that_normals_make_idle_is_said_to_be():
+    scene = Scene(lights=Light(direction=(1, 0.5, 2)), view=View(direction=(1, 1, 1)))
+    rounded = pv.Box().triangulate().clean()
+    rounded.clear_data()
+    rounded["N"] = rounded.points / np.linalg.norm(rounded.points, axis=1, keepdims=True)
+    rounded.point_data.active_normals_name = "N"
+    with pytest.warns(UserWarning, match="feature_angle has no effect on normals that the mesh"):
+        vizlight.illuminate(rounded, scene, feature_angle=30)
+    rounded.point_data.active_normals_name = None
+    assert vizlight.illuminate(rounded, scene, feature_angle=30).n_points == 24

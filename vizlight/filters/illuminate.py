@@ -193,7 +193,11 @@ def light_mesh(
 def _split(mesh: pv.DataSet, path: str, options: LightOptions) -> pv.DataSet:
     """Return a mesh with points split at its sharp edges, if its normals will be computed."""
     angle = options.feature_angle
-    if angle is None or not uses_normals(mesh, options) or not normals.are_computed(mesh, options):
+    if angle is None or not uses_normals(mesh, options):
+        return mesh
+    if not normals.are_computed(mesh, options):
+        if options.normals is None:
+            normals.warn_of_idle(mesh, angle)
         return mesh
     where = f"block {path}: " if path else ""
     if not isinstance(mesh, pv.PolyData):

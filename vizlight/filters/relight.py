@@ -76,7 +76,11 @@ def from_options(
 def read(mesh: pv.DataSet, path: str, scene: Scene, options: LightOptions) -> Source:
     """Return what is lit on one mesh by options of :func:`vizlight.illuminate`."""
     if options.feature_angle is not None:
-        expected, remedy = "None for light that follows", "light a mesh with split points"
+        expected = "None for light that follows"
+        remedy = (
+            "light the mesh first, illuminate(mesh, scene, feature_angle=...), and pass the "
+            "result with scene=None"
+        )
         got = repr(options.feature_angle)
         raise ValueError(_check.message("feature_angle", expected, got, remedy))
     part = part_of(mesh, path, scene, options)

@@ -35,6 +35,8 @@ SMALL, LARGEST = 1 << 12, 1 << 18
 #: Arrays that an earlier result keeps with a mesh; what they hold is of that mesh alone.
 _KEPT = (normals.KEPT, splitting.TANGENTS)
 
+#: Array that takes cells or points of a grid out of its surface.
+_GHOSTS = "vtkGhostType"
 #: Types of the cells of grids that are joined: all linear ones but lines and polyhedra.
 _JOINED = frozenset(range(1, 17)) - polylines.LINES
 
@@ -179,6 +181,8 @@ def _kinds(mesh: pv.DataSet) -> Key | None:
         # Where there are segments, lines are joined at their ends.
         return ("polydata", verts, lines, polys, lines and _has_segments(mesh.GetLines()))
     if isinstance(mesh, pv.UnstructuredGrid):
+        if any(data.HasArray(_GHOSTS) for data in (mesh.GetCellData(), mesh.GetPointData())):
+            return None
         kinds = as_numpy(mesh.GetDistinctCellTypesArray()).tolist()
         return ("grid", *kinds) if kinds and _JOINED.issuperset(kinds) else None
     return None

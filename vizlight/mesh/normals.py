@@ -92,21 +92,24 @@ def split_where_computed(mesh: SurfaceT, angle: FeatureAngle) -> SurfaceT | pv.P
         return mesh
     if mesh.point_data.active_normals is None:
         return split_edges(mesh, angle)
-    if has_faces(mesh) and split_edges(_bare(mesh), angle).n_points > mesh.n_points:
+    warn_of_idle(mesh, angle)
+    return mesh
+
+
+def warn_of_idle(mesh: pv.DataSet, angle: FeatureAngle) -> None:
+    """Warn if an angle would split a mesh at sharp edges, but its active normals keep it whole."""
+    if not isinstance(angle, float | int) or not isinstance(mesh, pv.PolyData):
+        return
+    if mesh.point_data.active_normals is None or not has_faces(mesh):
+        return
+    bare = pv.PolyData()
+    bare.SetPoints(mesh.GetPoints())
+    bare.SetPolys(mesh.GetPolys())
+    if split_edges(bare, angle).n_points > mesh.n_points:
         _check.warn(
             "feature_angle has no effect on normals that the mesh has, and sharp edges look round; "
             "clear them by mesh.point_data.active_normals_name = None"
         )
-    return mesh
-
-
-def _bare(mesh: pv.PolyData) -> pv.PolyData:
-    """Return the points and faces of a surface."""
-    bare = pv.PolyData()
-    bare.SetPoints(mesh.GetPoints())
-    bare.SetPolys(mesh.GetPolys())
-    bare.SetStrips(mesh.GetStrips())
-    return bare
 
 
 def split_edges(mesh: pv.PolyData, angle: float | Literal["auto"]) -> pv.PolyData:

@@ -127,11 +127,11 @@ def pictures(
     Notes
     -----
     A picture is that of the whole mesh, drawn with the same samples, but for the rounding of VTK:
-    single pixels may differ by 1 of 255 where a triangle is cut. That holds for the edges of lines too: their samples are opaque, and are averaged after the pieces
-    are put together, so that no edge is transparent before. Of fragments at the same depth the
-    last piece's is seen, as the last mesh's is in one picture. VTK's own anti-aliasing ("ssaa")
-    also weighs samples of the neighbouring pixels, so a picture of :mod:`vizlight.render` has
-    softer edges.
+    single pixels may differ by 1 of 255 where a triangle is cut. That holds for the edges of lines
+    too: their samples are opaque, and are averaged after the pieces are put together, so that no
+    edge is transparent before. Of fragments at the same depth the last piece's is seen, as the last
+    mesh's is in one picture. VTK's own anti-aliasing ("ssaa") also weighs samples of the
+    neighbouring pixels, so a picture of :mod:`vizlight.render` has softer edges.
 
     A task draws one or more pieces, one after the other, and sends their picture. A worker needs
     the memory of one piece and two pictures, the client that of two: 7 bytes per sample each. The

@@ -270,8 +270,11 @@ def computed_normals(
         expected, got = "a surface, whose normals are lit", f"a {type(mesh).__name__} without faces"
         remedy = "name its tangent vectors by tangents= or its normals by normals="
         raise ValueError(_check.message("mesh", expected, got, remedy))
+    # VTK takes the faces of a mesh that has vertices or lines for others.
     bare = vtkPolyData()
-    bare.CopyStructure(surface)
+    bare.SetPoints(surface.GetPoints())
+    bare.SetPolys(surface.GetPolys())
+    bare.SetStrips(surface.GetStrips())
     found, vectors = _by_vtk(bare, consistent=not as_wound)
     vectors[~used(bare)] = 0
     if _same_cells(bare, found):

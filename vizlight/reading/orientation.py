@@ -35,8 +35,8 @@ STAND_APART = 0.5
 #: than of those between by this factor: corners stand apart from coarse arcs.
 CORNERS_APART = 0.7
 #: Most that a normal may lean, as a sine. Where faces around a point differ by more, its surface is
-#: too rough or too coarse to tell bumps from hollows: without the limit 26 % of the pixels of a noisy
-#: isosurface, lit from the side, are off by more than a tenth of white, and with it 6 %.
+#: too rough or too coarse to tell bumps from hollows: of the pixels of a noisy isosurface, lit from
+#: the side, 26 % are off by more than a tenth of white without the limit, and 6 % with it.
 MOST_LEAN = 0.05
 #: Number of points or triangles that are worked on at once, and of edges.
 BLOCK, EDGES = 1 << 16, 1 << 21
