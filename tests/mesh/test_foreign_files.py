@@ -126,6 +126,50 @@ def test_a_tetrahedron_in_a_file_that_meshio_reads(tmp_path):
     assert int(np.argmin(lit["luminance"])) == 0
 
 
+#: As gmsh writes it: with the entities of which the mesh is made, and what bounds them.
+GMSH = """\
+$MeshFormat
+4.1 0 8
+$EndMeshFormat
+$Entities
+3 3 1 0
+1 0 0 0 0
+2 1 0 0 0
+3 0 1 0 0
+1 0 0 0 1 0 0 0 2 1 -2
+2 0 0 0 1 1 0 0 2 2 -3
+3 0 0 0 0 1 0 0 2 3 -1
+1 0 0 0 1 1 0 0 3 1 2 3
+$EndEntities
+$Nodes
+1 3 1 3
+2 1 0 3
+1
+2
+3
+0 0 0
+1 0 0
+0 1 0
+$EndNodes
+$Elements
+2 2 1 2
+1 1 1 1
+1 1 2
+2 1 2 1
+2 1 2 3
+$EndElements
+"""
+
+
+def test_a_mesh_of_gmsh(tmp_path):
+    pytest.importorskip("meshio")
+    path = tmp_path / "part.msh"
+    path.write_text(GMSH)
+    mesh = vizlight.read(path)
+    assert mesh.celltypes.tolist() == [pv.CellType.LINE, pv.CellType.TRIANGLE]
+    assert mesh.cell_data.keys() == ["gmsh:geometrical"]
+
+
 def test_a_file_at_which_meshio_ends_the_process(tmp_path, capsys):
     pytest.importorskip("meshio")
     path = tmp_path / "a.off"

@@ -73,12 +73,24 @@ def read(path: Path, faults: list[str]) -> pv.DataSet | None:
         return _grid(path)
     if suffix == ".dem":
         _refuse_narrow(path)
+    if suffix == ".msh" and missing(path) == "":
+        return _of_gmsh(path)
     if suffix == ".pvtp":
         reader = vtkXMLPPolyDataReader()
         reader.SetFileName(str(path))
         reader.Update()
         return pv.wrap(reader.GetOutput())
     return None
+
+
+def _of_gmsh(path: Path) -> pv.DataSet:
+    """Return a mesh of gmsh. Names of parts are left out: their numbers are cell data."""
+    import meshio
+
+    found = meshio.read(path)
+    # Those that gmsh writes are not of the form that PyVista takes.
+    found.cell_sets = {}
+    return pv.from_meshio(found)
 
 
 def _refuse_narrow(path: Path) -> None:
