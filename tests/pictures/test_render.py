@@ -142,6 +142,18 @@ def test_several_panels_stand_side_by_side(tmp_path):
     np.testing.assert_allclose(found[20, [20, 60], 0], [51, 204], atol=1)
 
 
+def test_a_tinted_mesh_is_shown_in_its_colours(tmp_path):
+    ball = pv.Sphere()
+    scene = Scene(view=View(direction=(1, 1, 1)))
+    shown = vizlight.tint(vizlight.illuminate(ball, scene), ball.points[:, 2], cmap="plasma")
+    pictures = [
+        pixels(render.save_png(one, tmp_path / f"{i}.png", size=(60, 40)))
+        for i, one in enumerate((shown, render.Panel(shown, "rgb")))
+    ]
+    np.testing.assert_array_equal(*pictures)
+    assert np.ptp(pictures[0].astype(int), axis=-1).max() > 80
+
+
 def test_bad_input(tmp_path):
     sphere = pv.Sphere()
     with pytest.raises(

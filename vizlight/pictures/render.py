@@ -11,7 +11,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.files import check_output, replace_file
-from vizlight.filters.tint import unlit_colors
+from vizlight.filters.tint import RGB, unlit_colors
 from vizlight.mesh import records
 from vizlight.mesh.blocks import all_blocks, check
 from vizlight.mesh.polylines import backdrop
@@ -29,6 +29,7 @@ from vizlight.plotting.component import add_recorded
 from vizlight.plotting.program import Stroke
 from vizlight.reading import polylines
 from vizlight.reading.polylines import has_lines_only
+from vizlight.shading.results import DEFAULT_NAME
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -107,7 +108,7 @@ def make_plotter(
     camera: pv.Camera | None = None,
     rows: int = 1,
     size: tuple[int, int] = (1200, 800),
-    scalars: str = "luminance",
+    scalars: str | None = None,
     cmap: str = "gray",
     clim: tuple[float, float] = (0.0, 1.0),
     bar: str = "",
@@ -132,9 +133,10 @@ def make_plotter(
     size : (int, int), default: (1200, 800)
         Width and height of the whole picture in pixels, each at most 8192, with at most
         33 million pixels in all.
-    scalars : str, default: "luminance"
+    scalars : str, optional
         Name of the point or cell array that colours a mesh given without a :class:`Panel`.
-        Three components are taken as a colour.
+        Three components are taken as a colour. Default: the colours of a mesh that
+        :func:`vizlight.tint` returned, otherwise ``"luminance"``.
     cmap : str, default: "gray"
         Name of the colour map for arrays of one component.
     clim : (float, float), default: (0.0, 1.0)
@@ -230,10 +232,28 @@ def make_plotter(
     return plotter
 
 
-def _check_panels(panels: Mesh | Panel | Sequence[Mesh | Panel], scalars: str) -> list[Panel]:
+def _default_scalars(mesh: object) -> str:
+    """Return the array that colours a mesh: what :func:`vizlight.tint` gave it, else its light."""
+    parts = list(all_blocks(mesh)) if isinstance(mesh, Mesh) else []
+    tinted = [
+        (records.read(part, RGB) or {}).get("filter") == "tint"
+        and part.point_data.active_scalars_name == RGB
+        for part in parts
+    ]
+    return RGB if tinted and all(tinted) else DEFAULT_NAME
+
+
+def _check_panels(
+    panels: Mesh | Panel | Sequence[Mesh | Panel], scalars: str | None
+) -> list[Panel]:
     """Return the panels to draw, each of which has the array that colours it."""
     items: Sequence[Any] = panels if isinstance(panels, list | tuple) else [panels]
-    shown = [item if isinstance(item, Panel) else Panel(item, scalars) for item in items]
+    shown = [
+        item
+        if isinstance(item, Panel)
+        else Panel(item, _default_scalars(item) if scalars is None else scalars)
+        for item in items
+    ]
     if not shown:
         raise ValueError(_check.message("panels", "one mesh or more", "none"))
     for panel in shown:
@@ -246,7 +266,9 @@ def _check_panels(panels: Mesh | Panel | Sequence[Mesh | Panel], scalars: str) -
             if panel.scalars not in mesh.point_data and panel.scalars not in mesh.cell_data:
                 known = ", ".join(map(repr, [*mesh.point_data, *mesh.cell_data])) or "none"
                 expected = f"a point array or a cell array ({known})"
-                raise ValueError(_check.message("scalars", expected, repr(panel.scalars)))
+                lit = panel.scalars == DEFAULT_NAME
+                remedy = "light the mesh first, by vizlight.illuminate" if lit else ""
+                raise ValueError(_check.message("scalars", expected, repr(panel.scalars), remedy))
             data = mesh.point_data if panel.scalars in mesh.point_data else mesh.cell_data
             array = data[panel.scalars]
             if array.dtype.kind not in "biuf" or array.shape[1:] not in ((), (1,), (3,), (4,)):
