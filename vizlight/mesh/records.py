@@ -195,7 +195,8 @@ def provenance(mesh: pv.DataSet | pv.MultiBlock, /, name: str = "luminance") -> 
         raise TypeError(_check.message("name", "the name of an array", _check.describe(name)))
     known = set()
     for block in blocks.all_blocks(mesh):
-        if (found := read(block, name)) is not None:
+        # VTK takes no name with half of a surrogate pair.
+        if name in _names(block) and (found := read(block, name)) is not None:
             return found
         known |= {own for own in _names(block) if read(block, own) is not None}
     if not known:

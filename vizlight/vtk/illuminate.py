@@ -55,6 +55,8 @@ class _Option:
     def __set__(self, own: Illuminate, value: object) -> None:
         if self.name in _NAMES and value is not None:
             _check.text(self.name, value, expected="the name of a point array")
+        if self.name == "name":
+            _check.array_name("name", value)
         changes: dict[str, Any] = {self.name: value}
         own._change("_options", dataclasses.replace(own.options, **changes))
 
