@@ -32,7 +32,7 @@ def attach_rows(mesh: pv.DataSet, name: str, array: NDArray[np.generic]) -> None
     if array.dtype in (np.float32, np.float64) or not len(array):
         # By VTK itself: PyVista's way takes longer than the light of a small mesh, and refuses an
         # array without rows.
-        part = array.base is not None and array.base.size > array.size
+        part = getattr(array.base, "nbytes", 0) > array.nbytes
         copied = part or array.size < _SMALL
         own = as_vtk(array, name) if copied else pv.convert_array(array, name)
         point_data(mesh).AddArray(own)
