@@ -1,6 +1,6 @@
 """
-Fur
-===
+The fur of a dog
+================
 
 A dog with 400,000 hairs. Each hair is lit as a thin line, inherits the shadow of the skin it
 stands on, and is attenuated by the fur above it, on the way in and out: so it is darker at its
