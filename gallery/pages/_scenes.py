@@ -150,7 +150,7 @@ def reset(_conf, script):
 
 def scrape(block, block_vars, gallery_conf):
     """Return reST for the pictures and scenes that a block of a script has drawn."""
-    # What a reader who does not see the picture is told: the title of the script.
+    # The title of the script is the description of the picture.
     text = Path(block_vars["src_file"]).read_text("utf-8")
     about = ast.get_docstring(ast.parse(text)).partition("\n")[0]
     if plt.get_fignums():

@@ -11,7 +11,7 @@ from vtkmodules.vtkCommonCore import vtkPoints
 from vizlight.mesh import normals, splitting
 from vizlight.mesh.inputs import part_of
 from vizlight.reading import polylines
-from vizlight.reading.cells import POLYDATA, as_numpy, point_data, vtk_points
+from vizlight.reading.cells import GHOSTS, POLYDATA, as_numpy, point_data, vtk_points
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -35,8 +35,6 @@ SMALL, LARGEST = 1 << 12, 1 << 18
 #: Arrays that an earlier result keeps with a mesh; what they hold is of that mesh alone.
 _KEPT = (normals.KEPT, splitting.TANGENTS)
 
-#: Array that takes cells or points of a grid out of its surface.
-_GHOSTS = "vtkGhostType"
 #: Types of the cells of grids that are joined: all linear ones but lines and polyhedra.
 _JOINED = frozenset(range(1, 17)) - polylines.LINES
 
@@ -181,7 +179,7 @@ def _kinds(mesh: pv.DataSet) -> Key | None:
         # Where there are segments, lines are joined at their ends.
         return ("polydata", verts, lines, polys, lines and _has_segments(mesh.GetLines()))
     if isinstance(mesh, pv.UnstructuredGrid):
-        if any(data.HasArray(_GHOSTS) for data in (mesh.GetCellData(), mesh.GetPointData())):
+        if any(data.HasArray(GHOSTS) for data in (mesh.GetCellData(), mesh.GetPointData())):
             return None
         kinds = as_numpy(mesh.GetDistinctCellTypesArray()).tolist()
         return ("grid", *kinds) if kinds and _JOINED.issuperset(kinds) else None

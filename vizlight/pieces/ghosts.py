@@ -8,6 +8,8 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.vtkFiltersCore import vtkAppendFilter, vtkAppendPolyData
 
+from vizlight.reading.cells import GHOSTS
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
@@ -48,12 +50,11 @@ def some_cells(mesh: pv.DataSet, which: Bools) -> pv.DataSet:
 
 def without_ghosts(mesh: pv.DataSet) -> pv.DataSet:
     """Return a mesh without the duplicate cells that its writer marked."""
-    name = "vtkGhostType"
-    if name in mesh.point_data:
-        del mesh.point_data[name]
-    if name not in mesh.cell_data:
+    if GHOSTS in mesh.point_data:
+        del mesh.point_data[GHOSTS]
+    if GHOSTS not in mesh.cell_data:
         return mesh
-    duplicate = (np.asarray(mesh.cell_data.pop(name)) & 1) > 0
+    duplicate = (np.asarray(mesh.cell_data.pop(GHOSTS)) & 1) > 0
     if not duplicate.any() or not isinstance(mesh, pv.PolyData | pv.UnstructuredGrid):
         return mesh
     return some_cells(mesh, ~duplicate)

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
     from vizlight._types import Bools, Indices
 
+#: Array in which VTK marks cells and points of other pieces, and hidden ones.
+GHOSTS = "vtkGhostType"
 #: Methods of the classes: on a mesh of PyVista the look-up of one takes longer than the call.
 point_data: Callable[[Any], vtkPointData] = vtkDataSet.GetPointData
 field_data: Callable[[Any], vtkFieldData] = vtkDataObject.GetFieldData

@@ -124,7 +124,7 @@ def sided_normals(
 ) -> Sided:
     """Return normals with their sides: those in ``value``, of the mesh, or of its surface.
 
-    With ``starts`` the mesh is a batch, whose members are told apart. ``kept`` is a function of
+    With ``starts`` the mesh is a batch of members that stay apart. ``kept`` is a function of
     the mesh that returns normals of its surface which are known already, or None.
 
     Raises

@@ -14,7 +14,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSet
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
 from vizlight import _check
-from vizlight.reading.cells import as_vtk, check_whole
+from vizlight.reading.cells import GHOSTS, as_vtk, check_whole
 from vizlight.reading.inputs import Part, part_of, uses_normals
 from vizlight.scene import Scene
 from vizlight.shading import engine
@@ -31,8 +31,6 @@ __all__ = ["Illuminate"]
 _NAMES = ("tangents", "normals", "positions")
 #: Options that give a mesh new points, need PyVista, or have been replaced.
 _WITHOUT = ("two_sided", "flip_normals", "feature_angle", "refine", "bundle")
-#: Cell array in which VTK marks cells of other pieces.
-_GHOSTS = "vtkGhostType"
 _NO_GHOSTS = (
     "light at the borders of the pieces is computed without their neighbours; give the pieces a "
     "layer of ghost cells before they are contoured, or normals as a point array"
@@ -256,7 +254,7 @@ class Illuminate(VTKPythonAlgorithmBase):
         part = part_of(data, "", scene, options)
         own = options.tangents is None and part.inputs.tangents is not None
         computed = part.sided is not None and part.sided.computed
-        if pieces > 1 and (own or computed) and not data.GetCellData().HasArray(_GHOSTS):
+        if pieces > 1 and (own or computed) and not data.GetCellData().HasArray(GHOSTS):
             self._tell("WarningEvent", _NO_GHOSTS)
         return part
 
