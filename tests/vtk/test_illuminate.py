@@ -10,6 +10,7 @@ import sys
 import numpy as np
 import pytest
 import pyvista as pv
+from vtkmodules.vtkCommonDataModel import vtkTable
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 from vtkmodules.vtkFiltersSources import vtkPlaneSource, vtkSphereSource
 
@@ -222,6 +223,17 @@ def test_pieces_without_neighbours_are_told_of_and_empty_ones_have_all_arrays():
     assert made == set(names) - {"around"}
     information = lit.GetOutputInformation(0)
     assert information.Get(vtkStreamingDemandDrivenPipeline.UPDATE_NUMBER_OF_PIECES()) == 2
+
+
+def test_data_without_points_are_an_error():
+    lit = Illuminate(SCENE)
+    for other, words in ((None, "got nothing"), (vtkTable(), "got vtkTable")):
+        lit.SetInputDataObject(0, other)
+        assert (
+            f"input: expected a vtkDataSet or blocks of them, {words}" in told(lit, "ErrorEvent")[0]
+        )
+    lit.SetInputData(field())
+    assert not told(lit, "ErrorEvent")
 
 
 def test_points_that_could_not_be_lit_are_told_of():

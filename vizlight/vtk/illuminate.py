@@ -184,7 +184,14 @@ class Illuminate(VTKPythonAlgorithmBase):
     def RequestDataObject(self, _request: Any, given: Any, out: Any) -> int:
         """Make an output of the type of the input."""
         data, made = vtkDataSet.GetData(given[0]), vtkDataSet.GetData(out)
-        if data is not None and (made is None or made.GetClassName() != data.GetClassName()):
+        if data is None:
+            other = vtkDataObject.GetData(given[0])
+            kind = "nothing" if other is None else other.GetClassName()
+            self._tell(
+                "ErrorEvent", _check.message("input", "a vtkDataSet or blocks of them", kind)
+            )
+            return 0
+        if made is None or made.GetClassName() != data.GetClassName():
             information = out.GetInformationObject(0)
             information.Set(vtkDataObject.DATA_OBJECT(), data.NewInstance())
         return 1
