@@ -45,25 +45,23 @@ def small_disk(place, size):
 
 
 def test_a_disk_that_is_too_small_leaves_the_old_file(ball, tmp_path):
-    size = runner_size(ball, tmp_path)
-    for share in (0.9, 1.1, 1.3, 1.6):
-        with small_disk(tmp_path / "disk", int(share * size) // 4096 * 4096) as disk:
-            out = disk / "lit.vtp"
-            out.write_bytes(b"old")
-            (run,) = runner.run([["light", str(ball), "-o", str(out)]])
+    scene = Scene(lights=Light(direction=(0.3, 0.2, 1)), view=View(direction=(0, 0, 1)))
+    lit = files.write_mesh(vizlight.illuminate(pv.read(ball), scene), tmp_path / "whole.vtp")
+    size, outs = lit.stat().st_size, []
+    with contextlib.ExitStack() as disks:
+        for share in (0.9, 1.1, 1.3, 1.6, 10):
+            disk = small_disk(tmp_path / str(share), int(share * size) // 4096 * 4096)
+            outs.append(disks.enter_context(disk) / "lit.vtp")
+            outs[-1].write_bytes(b"old")
+        runs = runner.run([["light", str(ball), "-o", str(out)] for out in outs])
+        for out, run in zip(outs, runs, strict=True):
             assert run.code in (0, 2)
             assert (out.read_bytes() == b"old") == (run.code == 2)
             assert run.code == 0 or run.err.count("\n") == 1
-            assert [path.name for path in disk.iterdir()] == ["lit.vtp"]
+            assert [path.name for path in out.parent.iterdir()] == ["lit.vtp"]
             if not run.code:
                 assert "luminance" in files.read(out).point_data
-
-
-def runner_size(ball, tmp_path):
-    out = tmp_path / "whole.vtp"
-    (run,) = runner.run([["light", str(ball), "-o", str(out)]])
-    assert run.code == 0
-    return out.stat().st_size
+        assert {run.code for run in runs} == {0, 2}
 
 
 def test_kills_while_a_file_is_written(tmp_path):
