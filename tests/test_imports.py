@@ -77,6 +77,14 @@ def test_the_probe_can_fail():
     assert {"pyvista", "vtkmodules", "vizlight.verify.report"} <= after
 
 
+def test_filters_load_no_part_of_scipy_that_few_of_them_need():
+    """They take longer to load than all filters."""
+    code = "import sys, vizlight.filters; print(*sys.modules)"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    few = {f"scipy.{name}" for name in ("interpolate", "ndimage", "optimize", "spatial", "special")}
+    assert not few & set(run.stdout.split())
+
+
 def test_import_of_the_package_loads_next_to_nothing():
     bare, listed, light = loaded(
         "import vizlight",

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 import pyvista as pv
-from scipy.interpolate import RegularGridInterpolator
+import scipy
 
 from vizlight import _check
 from vizlight.geometry.relief import height_field
@@ -95,7 +95,8 @@ class Raster(Heights):
         """Return values at the nodes interpolated to the points, bilinear."""
         own = np.nan_to_num(self.own[:, 1::-1])
         beside = np.clip(own, [self.y[0], self.x[0]], [self.y[-1], self.x[-1]])
-        return np.asarray(RegularGridInterpolator((self.y, self.x), values)(beside))
+        between = scipy.interpolate.RegularGridInterpolator((self.y, self.x), values)
+        return np.asarray(between(beside))
 
     def points(self) -> Array:
         """Return the points of the surface, shape (N, 3)."""

@@ -7,8 +7,7 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.optimize import brentq
-from scipy.special import gammaln
+import scipy
 
 from vizlight import _check
 
@@ -105,7 +104,8 @@ def _exponent(k: int, n: int) -> float:
     high = 1.0
     while excess(high) > 0:
         high *= 2
-    return float(brentq(excess, 0.0, high, xtol=1e-300, rtol=4 * np.finfo(float).eps))
+    eps = np.finfo(float).eps
+    return float(scipy.optimize.brentq(excess, 0.0, high, xtol=1e-300, rtol=4 * eps))
 
 
 def dimensions(k: int, n: int) -> tuple[int, int]:
@@ -138,5 +138,6 @@ def _remainder(x: ArrayLike) -> Array:
     y = 1 / (x * x)
     series = functools.reduce(lambda total, term: total * y + term, _STIRLING) / x
     small = np.minimum(x, _SERIES_FROM)
-    exact = gammaln(small) - (small - 0.5) * np.log(small) + small - 0.5 * math.log(2 * math.pi)
+    log = scipy.special.gammaln(small)
+    exact = log - (small - 0.5) * np.log(small) + small - 0.5 * math.log(2 * math.pi)
     return np.where(x < _SERIES_FROM, exact, series)

@@ -17,7 +17,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy import special
+import scipy
 
 from vizlight.model import kernels
 
@@ -128,7 +128,7 @@ def specular(met: NormalParts, tangential: Array, shininess: float) -> Array:
 
 def round_mean(shininess: float) -> float:
     """Return the mean of max(0, cos)^s over the full circle, for a cylinder that is seen end on."""
-    log = special.gammaln(shininess / 2 + 0.5) - special.gammaln(shininess / 2 + 1)
+    log = scipy.special.gammaln(shininess / 2 + 0.5) - scipy.special.gammaln(shininess / 2 + 1)
     return float(np.exp(log) / (2 * np.sqrt(np.pi)))
 
 
@@ -142,10 +142,10 @@ def half_integral(shininess: float, dtype: DTypeLike = np.float64) -> Callable[[
     """
     if shininess < TABLE_FROM:
         order = shininess / 2 + 1
-        whole = special.beta(0.5, order) / 2
+        whole = scipy.special.beta(0.5, order) / 2
 
         def exact(z: Array) -> Array:
-            size = special.betainc(0.5, order, np.square(z, dtype=np.float64)) * whole
+            size = scipy.special.betainc(0.5, order, np.square(z, dtype=np.float64)) * whole
             value: Array = np.copysign(size, z).astype(z.dtype, copy=False)
             return value
 

@@ -183,7 +183,8 @@ class Illuminate(VTKPythonAlgorithmBase):
 
     def RequestDataObject(self, _request: Any, given: Any, out: Any) -> int:
         """Make an output of the type of the input."""
-        data, made = vtkDataSet.GetData(given[0]), vtkDataSet.GetData(out)
+        data: vtkDataSet | None = vtkDataSet.GetData(given[0])
+        made: vtkDataSet | None = vtkDataSet.GetData(out)
         if data is None:
             other = vtkDataObject.GetData(given[0])
             kind = "nothing" if other is None else other.GetClassName()

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 from vizlight.geometry.lines.samples import SAMPLES, Samples, parallel
 from vizlight.geometry.lines.simplices import Places
@@ -376,7 +376,7 @@ def gaps(
     along, moving = flow.directions(places, None, np.ones(len(places.cell)))
     places, along = places[moving], along[moving]
     there = growth.embedded(curves.places, flow.mesh.positions(curves.places))
-    tree = cKDTree(there)
+    tree = scipy.spatial.cKDTree(there)
     own = np.repeat(np.arange(len(curves.offsets) - 1), np.diff(curves.offsets))
     picked = random.choice(len(there), min(len(there), 4000), replace=False)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 from vizlight.geometry.lines.simplices import Places
 
@@ -44,8 +44,8 @@ class Samples:
         self._used: Bools = np.empty(0, dtype=np.bool_)
         self._size = 0
         # Most samples are in a tree that is seldom made again, the rest in one that often is.
-        self._old: cKDTree | None = None
-        self._new: cKDTree | None = None
+        self._old: scipy.spatial.cKDTree | None = None
+        self._new: scipy.spatial.cKDTree | None = None
         self._rows: Indices = np.empty(0, dtype=np.intp)
         self._recent = self._rows
         self._whole, self._seen, self._stale = 0, 0, 0
@@ -111,12 +111,12 @@ class Samples:
             count += CROSSING
         if self._size - self._whole > RECENT or self._stale > RECENT:
             self._rows = np.flatnonzero(self._used[: self._size])
-            self._old = cKDTree(self._embedded[self._rows], balanced_tree=False)
+            self._old = scipy.spatial.cKDTree(self._embedded[self._rows], balanced_tree=False)
             self._whole, self._seen, self._stale = self._size, -1, 0
             self._recent, self._new = self._rows[:0], None
         if self._seen != self._size:
             self._recent = self._whole + np.flatnonzero(self._used[self._whole : self._size])
-            self._new = cKDTree(self._embedded[self._recent], balanced_tree=False)
+            self._new = scipy.spatial.cKDTree(self._embedded[self._recent], balanced_tree=False)
             self._seen = self._size
         distances: list[Array] = []
         numbers: list[Indices] = []

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
-from scipy import ndimage
+import scipy
 
 from vizlight import _check
 
@@ -174,7 +174,9 @@ def filled(heights: Array) -> Array:
     holes = np.isnan(heights)
     if not holes.any():
         return heights
-    nearest = ndimage.distance_transform_edt(holes, return_distances=False, return_indices=True)
+    nearest = scipy.ndimage.distance_transform_edt(
+        holes, return_distances=False, return_indices=True
+    )
     result: Array = heights[tuple(nearest)]
     return result
 
