@@ -114,7 +114,9 @@ def test_a_picture_is_drawn_or_refused_where_the_library_is_broken(name, ball, t
     )
     assert done.returncode in (0, 1)
     assert out.is_file() == (done.returncode == 0)
-    lines = done.stderr.decode().splitlines()
+    # VTK before 9.7 tells of a device that is not there and takes another.
+    said = done.stderr.decode().splitlines()
+    lines = [line for line in said if "Trying other devices" not in line]
     assert len(lines) == done.returncode
     assert all(line.startswith("vizlight: ") for line in lines)
 

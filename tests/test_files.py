@@ -261,9 +261,9 @@ def test_a_damaged_file_is_used_with_a_warning_on_request(tmp_path):
     path = tmp_path / "a.vtk"
     volume().save(path, binary=False)
     cut(path, 0.9)
-    with pytest.warns(
-        UserWarning, match=r"is damaged, what was read of it is used \(\d+ of \d+ nu"
-    ):
+    # VTK before 9.7 says itself that text ends too early.
+    words = r"is damaged, what was read of it is used \((\d+ of \d+ nu|Error reading ascii data)"
+    with pytest.warns(UserWarning, match=words):
         assert files.read(path, salvage=True).n_points == volume().n_points
 
 
@@ -271,7 +271,9 @@ def test_a_damaged_file_is_used_with_a_warning_on_request(tmp_path):
 def test_whole_legacy_files_of_all_kinds_are_read(kind, tmp_path):
     mesh = volume()
     mesh.cell_data["C"] = np.ones((mesh.n_cells, 3))
-    mesh.point_data["bad"] = np.full(mesh.n_points, np.nan)
+    # VTK before 9.7 writes "nan" as text that it does not read.
+    bad = np.nan if pv.vtk_version_info >= (9, 7) else 0.0
+    mesh.point_data["bad"] = np.full(mesh.n_points, bad)
     mesh.add_field_data(["some words"], "note")
     mesh = pv.Sphere() if kind == "poly" else getattr(mesh, f"cast_to_{kind}_grid")()
     mesh.save(tmp_path / "a.vtk", binary=False)

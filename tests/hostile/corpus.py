@@ -7,6 +7,7 @@ import struct
 from typing import NamedTuple
 
 import numpy as np
+import pyvista as pv
 from hostile import runner
 
 
@@ -79,6 +80,8 @@ FACE = ("POLYGONS 1 5", "4 0 1 2 3")
 NOT_A_MESH = "file: expected a mesh that PyVista reads, got"
 DAMAGED = "file: expected a file that is not damaged, got"
 PAST = "but 4 points are there"
+#: VTK before 9.7 does not read "nan" in text.
+NAN_IN_TEXT = "bounds: expected finite" if pv.vtk_version_info >= (9, 7) else DAMAGED
 
 CASES = {
     # nothing in it
@@ -131,7 +134,7 @@ CASES = {
     ),
     "cut.off": Case(text("OFF", "900 1 0", "0 0 0"), 2, NOT_A_MESH),
     # values that no surface has
-    "nan.vtk": Case(legacy([("nan", "nan", "nan")] * 4, *FACE), 2, "bounds: expected finite"),
+    "nan.vtk": Case(legacy([("nan", "nan", "nan")] * 4, *FACE), 2, NAN_IN_TEXT),
     "größe.vtk": Case(legacy(SQUARE, *FACE), 0, ""),
     "one-place.vtk": Case(legacy([(1, 1, 1)] * 4, *FACE), 0, "could not be lit"),
     "tiny.vtk": Case(legacy([[x * 1e-300 for x in p] for p in SQUARE], *FACE), 2, "a size from"),

@@ -344,7 +344,12 @@ class _Mapped:
             return np.array(mapped[:, first:last])
         whole = last - first == self.shape[1]
         part = self.kept[low:high] if whole else self.kept[low:high, first:last]
-        return np.asarray(part.compute(scheduler="sync") if hasattr(part, "compute") else part)
+        if not hasattr(part, "compute"):
+            return np.asarray(part)
+        import dask
+
+        # In this process; the name "sync" in place of the function is a warning with old versions.
+        return np.asarray(part.compute(scheduler=dask.get))
 
 
 @dataclass(frozen=True)
