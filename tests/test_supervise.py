@@ -166,6 +166,21 @@ def test_ctrl_c_reaches_the_child_also_if_it_was_sent_to_the_parent_alone():
     assert parent.returncode == 5
 
 
+def test_ctrl_c_is_reported_once_though_it_comes_again():
+    body = """
+        try:
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(50)
+        except KeyboardInterrupt:
+            for _ in range(3):
+                os.kill(os.getpid(), signal.SIGINT)
+                time.sleep(0.01)
+            print('interrupted', file=sys.stderr)
+            return 2
+    """
+    assert run(body) == (2, "", "interrupted\n")
+
+
 def test_a_child_that_ignores_ctrl_c_is_killed():
     body = """
         signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -144,6 +144,8 @@ def run(main: Callable[[], int]) -> int:
     if child:
         os.close(writer)
         return _Parent(child, reader).wait()
+    if signal.getsignal(signal.SIGINT) != signal.SIG_IGN:
+        signal.signal(signal.SIGINT, _interrupt_once)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, _PASSED_ON)
     os.close(reader)
     _channel = writer
@@ -167,6 +169,12 @@ def leave(code: int) -> int:
     sys.stdout.flush()
     sys.stderr.flush()
     os._exit(code)
+
+
+def _interrupt_once(number: int, frame: FrameType | None) -> None:
+    """Raise KeyboardInterrupt; the next Ctrl-C must not end the process while it reports this."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.default_int_handler(number, frame)
 
 
 def _open_standard_streams() -> None:

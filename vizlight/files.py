@@ -56,7 +56,8 @@ READERS = {
 #: What VTK says of an error, and of a warning that tells of damage.
 _DAMAGE = re.compile(
     r"(?:ERR\|.*\(0x[0-9a-f]+\): |WARN\| (?:.*\(0x[0-9a-f]+\): )?(?=.*(?i:error|cannot|premature|"
-    r"unexpected|truncat|corrupt|end of file|not enough|invalid|mismatch)))([^\x1b\n]+)"
+    r"unexpected|truncat|corrupt|end of file|not enough|invalid|mismatch|no [xyz] coordinates)))"
+    r"([^\x1b\n]+)"
 )
 
 

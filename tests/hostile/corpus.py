@@ -113,6 +113,16 @@ CASES = {
     "past.ply": Case(ply(rows=("0 0 0", "1 0 0", "0 1 0", "3 0 1 9999")), 2, "file: expected"),
     "count.stl": Case(stl(2**32 - 1, 1), 2, DAMAGED),
     "narrow.dem": Case(dem(5, 5), 2, "5' columns in the header, VTK reads 100 or more"),
+    "cut-spacing.vtk": Case(
+        text("# vtk DataFile Version 3.0", "cut", "BINARY", "DATASET STRUCTURED_POINTS",
+             "DIMENSIONS 3 3 3", "ORIGIN 0 0 0", "SPACING 1 2 0")[:-1],
+        2, "its header ends without SPACING",
+    ),
+    "no-axis.vtk": Case(
+        text("# vtk DataFile Version 3.0", "cut", "ASCII", "DATASET RECTILINEAR_GRID",
+             "DIMENSIONS 2 2 2", "X_COORDINATES 2 double", "0 1"),
+        2, "No y coordinates",
+    ),
     "cut.dem": Case(dem(100, 60), 2, "60 of 100 profiles are there"),
     "cut.stl": Case(stl(2, 1), 2, DAMAGED),
     "no-end.stl": Case(

@@ -44,13 +44,19 @@ _TYPES = frozenset(
         "double",
     ]
 )
+#: What the header of an image says, each with a number for each axis, by the words that VTK reads.
+_IMAGE = {
+    b"DIMENSIONS": b"DIMENSIONS", b"ORIGIN": b"ORIGIN", b"SPACING": b"SPACING",
+    b"ASPECT_RATIO": b"SPACING",
+}  # fmt: skip
+_AXES = 3
 #: Least number of corners of a face.
 _CORNERS = 3
 _LONGEST_HEADER = 10_000
 
 
 def missing_part(path: Path, /) -> str:
-    """Return what a DEM, PLY, STL, SU2 or legacy VTK file of text lacks of what it announces.
+    """Return what a DEM, PLY, STL, SU2 or legacy VTK file lacks of what it announces.
 
     A cut is not seen where it leaves out whole arrays, and in binary PLY files with faces of more
     than three corners. A text of STL announces its end.
@@ -256,7 +262,11 @@ def _short(file: BinaryIO, path: Path, lines: int | None, size: int) -> str:
 def _legacy(file: BinaryIO) -> str:
     """Compare the numbers after the last header line of a text with its count."""
     if b"ASCII" not in file.readline() + file.readline() + file.readline():
-        return ""
+        return _image(file)
+    start = file.tell()
+    if short := _image(file):
+        return short
+    file.seek(start)
     rows, expected, found, last = 0, 0, 0, ""
     for line in file:
         words = line.decode(errors="replace").split()
@@ -270,6 +280,21 @@ def _legacy(file: BinaryIO) -> str:
         if words[0] != "LOOKUP_TABLE":
             expected, found, last = _count(words, rows), 0, " ".join(words[:2])
     return f"{found} of {expected} numbers of {last!r} are there" if found < expected else ""
+
+
+def _image(file: BinaryIO) -> str:
+    """Look for the end of the header of an image, which is text in binary files as well."""
+    if b"STRUCTURED_POINTS" not in file.readline():
+        return ""
+    found: set[bytes] = set()
+    for line in iter(file.readline, b""):
+        words = line.split()
+        if words and words[0] not in _IMAGE:
+            return ""
+        if len(words) > _AXES and line.endswith(b"\n"):
+            found.add(_IMAGE[words[0]])
+    lacking = sorted(set(_IMAGE.values()) - found)
+    return f"its header ends without {lacking[0].decode()}" if lacking else ""
 
 
 def _count(words: list[str], rows: int) -> int:
