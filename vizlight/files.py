@@ -15,14 +15,14 @@ import tempfile
 import uuid
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista as pv
 from vtkmodules import vtkIOXML
 
 from vizlight import _check, _supervise
-from vizlight.mesh import foreign_files, hull, short_files
+from vizlight.mesh import blocks, foreign_files, hull, short_files
 from vizlight.reading.cells import check_whole
 
 if TYPE_CHECKING:
@@ -203,9 +203,9 @@ def _first_line(error: Exception | str) -> str:
     return next((line.strip() for line in str(error).splitlines() if line.strip()), "no reason")
 
 
-def _one_grid(blocks: pv.MultiBlock) -> pv.UnstructuredGrid:
+def _one_grid(found: pv.MultiBlock) -> pv.UnstructuredGrid:
     """Return the cells of the highest dimension of all blocks, without side sets of a volume."""
-    grid = blocks.combine()
+    grid: Any = blocks.joined(found)
     dimension = {kind: grid.GetCell(index).GetCellDimension() for kind, index in _samples(grid)}
     highest = max(dimension.values(), default=0)
     keep = [kind for kind, d in dimension.items() if d == highest]

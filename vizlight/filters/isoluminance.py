@@ -213,7 +213,7 @@ def _make(
     blocks.check(given)
     if not any(block.n_points for block in blocks.all_blocks(mesh)):
         return _of_mesh(pv.PolyData(), light)
-    return _of_mesh(mesh.combine() if isinstance(mesh, pv.MultiBlock) else mesh, light)
+    return _of_mesh(blocks.joined(mesh) if isinstance(mesh, pv.MultiBlock) else mesh, light)
 
 
 class _Light:

@@ -73,6 +73,13 @@ def _block(mesh: pv.MultiBlock, i: int) -> object:
     return block if block is None or isinstance(block, pv.DataObject) else mesh[i]
 
 
+def joined(mesh: pv.MultiBlock) -> pv.UnstructuredGrid:
+    """Return all datasets as one grid; VTK before 9.7 does not join blocks that have none."""
+    found = list(all_blocks(mesh))
+    grid = pv.MultiBlock(found).combine() if found else pv.UnstructuredGrid()
+    return cast("pv.UnstructuredGrid", grid)
+
+
 def like(mesh: MeshT, made: Iterator[pv.DataSet]) -> MeshT:
     """Return the next of some datasets for a dataset, a MultiBlock of them for a MultiBlock."""
     if not isinstance(mesh, pv.MultiBlock):

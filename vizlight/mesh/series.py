@@ -10,6 +10,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight.mesh import blocks
 from vizlight.reading.arrays import vectors_of
 
 __all__ = ["Series"]
@@ -82,7 +83,7 @@ class Series:
             self._reader.set_active_time_value(self.times[step])
             mesh = self._reader.read()
         if isinstance(mesh, pv.MultiBlock):
-            mesh = mesh[0] if len(mesh) == 1 else mesh.combine()
+            mesh = mesh[0] if len(mesh) == 1 else blocks.joined(mesh)
         name = self.name(step)
         if not isinstance(mesh, pv.DataSet) or not mesh.n_cells:
             raise TypeError(_check.message(name, "a mesh with cells", _check.describe(mesh)))
