@@ -46,6 +46,17 @@ def image(*, extent="0 2 0 2 0 2", spacing="1 1 1", data=""):
     )
 
 
+def structured(extent):
+    """Return an XML grid of eight points, of the given extent as a whole."""
+    points = " ".join(f"{x} {y} {z}" for z in (0, 1) for y in (0, 1) for x in (0, 1))
+    return text(
+        '<VTKFile type="StructuredGrid" version="1.0" byte_order="LittleEndian">',
+        f'<StructuredGrid WholeExtent="{extent}"><Piece Extent="0 1 0 1 0 1"><Points>',
+        f'<DataArray type="Float32" NumberOfComponents="3" format="ascii">{points}</DataArray>',
+        "</Points></Piece></StructuredGrid></VTKFile>",
+    )
+
+
 def ply(*, points=3, faces=1, rows=("0 0 0", "1 0 0", "0 1 0", "3 0 1 2")):
     """Return a PLY file of text that announces some points and faces."""
     return text(
@@ -123,6 +134,8 @@ CASES = {
              "DIMENSIONS 2 2 2", "X_COORDINATES 2 double", "0 1"),
         2, "No y coordinates",
     ),
+    "whole.vts": Case(structured("0 1 0 1 0 1"), 0, ""),
+    "extent.vts": Case(structured("0 1 2147483647 1 0 1"), 2, "no points: the dimensions are"),
     "cut.dem": Case(dem(100, 60), 2, "60 of 100 profiles are there"),
     "cut.stl": Case(stl(2, 1), 2, DAMAGED),
     "no-end.stl": Case(

@@ -92,6 +92,8 @@ _POINTS = {
 }  # fmt: skip
 
 
+#: Grids that may be empty.
+_GRIDS = (pv.StructuredGrid, pv.RectilinearGrid)
 #: Last type of linear cells; those in the table have no more points than that.
 _LAST_LINEAR = 16
 
@@ -114,7 +116,8 @@ def contradiction(mesh: object, /) -> str:
     for block in blocks.all_blocks(mesh):
         if block.n_points > _MOST_POINTS:
             return f"{block.n_points} points, more than memory holds"
-        if isinstance(block, pv.ImageData) and min(block.dimensions) < 1:
+        least = 1 if isinstance(block, pv.ImageData) else 0
+        if isinstance(block, (pv.ImageData, *_GRIDS)) and min(block.dimensions) < least:
             return f"no points: the dimensions are {block.dimensions}"
         if isinstance(block, pv.UnstructuredGrid):
             reason = _of_cells(block.GetCells(), block.n_points) or _of_types(block)
