@@ -179,6 +179,7 @@ CALLS = {
     "pictures.backends.choose_backend": dict,
     "pictures.backends.probe": lambda: {"backend": "egl"},
     "pictures.cameras.camera_on": lambda: {"bounds": (0.0, 1.0, 0.0, 1.0, 0.0, 1.0)},
+    "pictures.cameras.outermost": lambda: {"points": unit(5, 3)},
     "pictures.cameras.over_shoulder": lambda: {"camera": pv.Camera()},
     "pictures.movie.save": lambda: {
         "frames": [lit(), lit()],
@@ -211,7 +212,8 @@ CALLS = {
     "pieces.drawing.pictures": lambda: in_pieces(sequence=["piece.vtp"]),
     "pieces.drawing.save_png": lambda: in_pieces(shown="piece.vtp", path=Path("picture.png")),
     "pieces.kinds.Slabs": lambda: {"arrays": {"a": np.zeros((3, 4, 5))}},
-    "pieces.run.bounding_box": lambda: {"sources": saved(), "workers": 1},
+    "pieces.survey.bounding_box": lambda: {"sources": saved(), "workers": 1},
+    "pieces.survey.camera_on": lambda: {"sources": saved(), "workers": 1},
     "pieces.run.light": lambda: {
         "sources": saved(),
         "scene": SCENE,
