@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from vizlight import _check, _compiled, files
 from vizlight.mesh import normals
 from vizlight.pieces import index, task
-from vizlight.pieces.kinds import INDEX, union
+from vizlight.pieces.kinds import INDEX, PieceError, union
 from vizlight.pieces.sources import pieces_of
 from vizlight.pieces.survey import RETRIES, check_alike, job_of, nothing_found, prepared
 from vizlight.pieces.workers import collected, workers_of
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
+    from vizlight.pieces.kinds import Piece
     from vizlight.pieces.task import Done, Job
 
 #: Options of light that depend on a mesh as a whole.
@@ -212,11 +213,12 @@ def light(
         pool = stack.enter_context(workers_of(client, workers, retries, len(parts)))
         parts, job = prepared(parts, job, pool, show=progress_bar)
         targets = [folder / f"{path.stem}_{i:04d}" for i in range(len(parts))]
+        _spare_sources(parts, [path, *(target.with_suffix(job.suffix) for target in targets)])
         calls = [(piece, job, target) for piece, target in zip(parts, targets, strict=True)]
         done = collected(pool.run(task.light, calls), len(calls), "light", show=progress_bar)
-    full = [(piece, one) for piece, one in zip(parts, done, strict=True) if one.file]
-    if not full:
-        raise nothing_found(job)
+        full = [(piece, one) for piece, one in zip(parts, done, strict=True) if one.file]
+        if not full:
+            raise nothing_found(parts, job, pool)
     first, made = full[0]
     for piece, one in full[1:]:
         check_alike(piece, one.arrays | one.grid, first, made.arrays | made.grid)
@@ -260,6 +262,16 @@ def _common_options(
     return ({"facing": "eye"} if sided and not older else {}) | options
 
 
+def _spare_sources(parts: Sequence[Piece], outputs: Sequence[Path]) -> None:
+    """Check that no source would be replaced."""
+    taken = {output.resolve() for output in outputs}
+    for piece in parts:
+        source = getattr(piece, "path", None)
+        if source is not None and source.resolve() in taken:
+            expected = "another name than that of the sources"
+            raise PieceError(_check.message("out", expected, f"'{outputs[0]}'"))
+
+
 def _clear(folder: Path) -> None:
     """Remove drafts of workers that were killed, and the folder if nothing is in it."""
     for draft in folder.glob(".vizlight-*"):
@@ -269,10 +281,12 @@ def _clear(folder: Path) -> None:
 
 
 def _remove_stale(folder: Path, stem: str, made: set[str], notes: set[str]) -> None:
-    """Remove pieces of an earlier run that the index does not name."""
+    """Remove pieces of an earlier run, which have notes, that the index does not name."""
     own = re.compile(re.escape(stem) + r"_\d{4,}\.(vt[puirs]|json)")
-    for path in folder.iterdir():
-        if own.fullmatch(path.name):
+    found = [path for path in folder.iterdir() if own.fullmatch(path.name)]
+    noted = {path.stem for path in found if path.suffix == ".json"}
+    for path in found:
+        if path.stem in noted:
             kept = path.stem in notes if path.suffix == ".json" else path.name in made
             if not kept:
                 path.unlink()
@@ -290,7 +304,7 @@ def _result(path: Path, folder: Path, done: Sequence[Done], job: Job) -> Lit:
             _check.warn(f"{note} ({count} of {len(done)} pieces)")
     sharp = sum((one.sharp or 0.0) * one.cells for one in full)
     sharp /= max(sum(one.cells for one in full), 1)
-    normals.warn_of_edges(sharp, splits=True)
+    normals.warn_of_edges(sharp, splits=job.suffix == ".vtp")
     names = {name for one in full for name in one.ranges}
     return Lit(
         path=path,

@@ -107,9 +107,9 @@ def camera_on(
             job = dataclasses.replace(job, level=_middle([one for _, one in pairs], job))
         calls = [(piece, job, direction, up, aspect) for piece in parts]
         found = collected(pool.run(task.outermost, calls), len(calls), "camera", show=progress_bar)
-    points = np.concatenate([np.asarray(some, dtype=np.float64) for some in found])
-    if not len(points):
-        raise nothing_found(job)
+        points = np.concatenate([np.asarray(some, dtype=np.float64) for some in found])
+        if not len(points):
+            raise nothing_found(parts, job, pool)
     return cameras.camera_on(pv.PolyData(points), direction, **options)
 
 
@@ -125,10 +125,15 @@ def job_of(contour: object, level: object, **more: Any) -> Job:
     )
 
 
-def nothing_found(job: Job) -> PieceError:
+def nothing_found(parts: list[Piece], job: Job, pool: Workers) -> PieceError:
     """Return the error of pieces without a point to light."""
-    what = "points" if job.contour is None else f"contour {job.contour!r} at {job.level:g}"
-    return PieceError(_check.message("sources", "pieces with something to light", f"no {what}"))
+    if job.contour is None:
+        expected = "pieces with something to light"
+        return PieceError(_check.message("sources", expected, "no points"))
+    values = [one.values for _, one in _surveyed(parts, job, pool, show=False)]
+    low, high = min(low for low, _ in values), max(high for _, high in values)
+    expected = f"a value between {low:g} and {high:g}"
+    return PieceError(_check.message("level", expected, f"{job.level:g}"))
 
 
 def _name(argument: str, value: object) -> str:
@@ -176,8 +181,8 @@ def _middle(found: Sequence[Survey], job: Job) -> float:
     low = min(one.values[0] for one in found)
     high = max(one.values[1] for one in found)
     if not low <= high:
-        arrays = found[0].arrays
-        names = [key.partition(" ")[2] for key in arrays if key.startswith("point ")]
+        arrays = found[0].arrays.items()
+        names = [key[6:] for key, kind in arrays if key.startswith("point ") and " x " not in kind]
         expected = f"a point array of one component, {_check.one_of(names)}"
         raise ValueError(_check.message("contour", expected, repr(job.contour)))
     return (low + high) / 2

@@ -161,7 +161,8 @@ def _tried(piece: Piece, found: Callable[[], T]) -> T | None:
         empty = isinstance(error, files.FileError) and "(no points)" in str(error)
         if empty and isinstance(piece, FilePiece) and piece.may_be_empty:
             return None
-        raise PieceError(f"piece {piece.name}: {error}") from error
+        remedy = "; leave it out" if empty else ""
+        raise PieceError(f"piece {piece.name}: {error}{remedy}") from error
 
 
 def key(piece: Piece, job: Job) -> str:

@@ -100,7 +100,7 @@ def workers_of(client: Any, workers: int | None, retries: int, count: int) -> It
         elif isinstance(client, str):
             try:
                 client = stack.enter_context(distributed.Client(client, timeout=10))
-            except (OSError, TimeoutError) as error:
+            except (OSError, TimeoutError, ValueError) as error:
                 got = f"{client!r} ({error})"
                 remedy = "start one by 'dask scheduler', or leave client= out"
                 text = _check.message("client", "the address of a scheduler", got, remedy)
