@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import multiprocessing
+import sys
+
 import pytest
 
 from vizlight.pieces.workers import local_cluster
@@ -9,9 +12,17 @@ from vizlight.pieces.workers import local_cluster
 
 @pytest.fixture(scope="session")
 def _client():
+    dask = pytest.importorskip("dask")
     distributed = pytest.importorskip("distributed")
-    with local_cluster(2) as cluster, distributed.Client(cluster) as client:
-        yield client
+    # Processes begin as copies of one that has imported the package, also in place of killed ones.
+    method = "spawn" if sys.platform == "win32" else "forkserver"
+    with dask.config.set({"distributed.worker.multiprocessing-method": method}):
+        distributed.utils.get_mp_context()  # which chooses what is imported by itself, once
+        if method == "forkserver":
+            modules = ["distributed", "vizlight.pieces.drawing"]
+            multiprocessing.get_context(method).set_forkserver_preload(modules)
+        with local_cluster(2) as cluster, distributed.Client(cluster) as client:
+            yield client
 
 
 @pytest.fixture
