@@ -13,8 +13,8 @@ import pyvista as pv
 
 resource = pytest.importorskip("resource")
 SIDE, SURFACES, WIDTH = 300, 16, 100
-#: Memory in MB beyond that of the imported packages: the grid takes 108, the surfaces 90, most of it
-#: in an array, because normals of so many points would take longer.
+#: Memory in MB beyond that of the imported packages: the grid takes 108, the surfaces 90,
+#: most of it in an array, because normals of so many points would take longer.
 LIMIT = 80
 
 CODE = """
