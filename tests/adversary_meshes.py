@@ -179,7 +179,6 @@ CALLS = {
     "pictures.backends.choose_backend": dict,
     "pictures.backends.probe": lambda: {"backend": "egl"},
     "pictures.cameras.camera_on": lambda: {"bounds": (0.0, 1.0, 0.0, 1.0, 0.0, 1.0)},
-    "pictures.cameras.outermost": lambda: {"points": unit(5, 3)},
     "pictures.cameras.over_shoulder": lambda: {"camera": pv.Camera()},
     "pictures.movie.save": lambda: {
         "frames": [lit(), lit()],

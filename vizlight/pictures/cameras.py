@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array
 
-__all__ = ["camera_on", "outermost", "over_shoulder"]
+__all__ = ["camera_on", "over_shoulder"]
 
 Mesh: TypeAlias = pv.DataSet | pv.MultiBlock
 #: Opening angle of a perspective camera, in degrees, which is VTK's default.
