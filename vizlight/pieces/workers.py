@@ -177,7 +177,7 @@ def _naming(name: str) -> Iterator[None]:
     except (ValueError, TypeError):
         raise
     except distributed.KilledWorker as error:
-        text = f"{LOST + 1} workers ended while they did it, perhaps for lack of memory"
+        text = f"{LOST + 1} workers ended while they worked on it, perhaps for lack of memory"
         raise PieceError(f"piece {name}: {text}; cut it smaller") from error
     except (CancelledError, OSError) as error:
         text = "the cluster went away before it was done; the same call goes on from here"
