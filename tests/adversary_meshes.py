@@ -211,7 +211,8 @@ CALLS = {
     "pieces.drawing.pictures": lambda: in_pieces(sequence=["piece.vtp"]),
     "pieces.drawing.save_png": lambda: in_pieces(shown="piece.vtp", path=Path("picture.png")),
     "pieces.kinds.Slabs": lambda: {"arrays": {"a": np.zeros((3, 4, 5))}},
-    "pieces.run.bounding_box": lambda: {"sources": saved(), "workers": 1},
+    "pieces.survey.bounding_box": lambda: {"sources": saved(), "workers": 1},
+    "pieces.survey.camera_on": lambda: {"sources": saved(), "workers": 1},
     "pieces.run.light": lambda: {
         "sources": saved(),
         "scene": SCENE,

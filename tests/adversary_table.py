@@ -147,7 +147,8 @@ SELF = {
 #: Kinds of arguments, as annotations, where their own say less.
 KINDS = {
     ("filters.pathlines.pathlines", "series"): "Sequence[pv.DataSet] | Path",
-    ("pieces.run.bounding_box", "sources"): "object | Path",
+    ("pieces.survey.bounding_box", "sources"): "object | Path",
+    ("pieces.survey.camera_on", "sources"): "object | Path",
     ("pieces.run.light", "sources"): "object | Path",
 }
 #: Arguments that are not replaced, with the reason.
@@ -167,7 +168,8 @@ ALIASES = {
     # Errors of a piece begin with its name.
     ("pieces.drawing.pictures", "sequence"): {"piece"},
     ("pieces.drawing.save_png", "shown"): {"sequence", "piece"},
-    ("pieces.run.bounding_box", "sources"): {"piece"},
+    ("pieces.survey.bounding_box", "sources"): {"piece"},
+    ("pieces.survey.camera_on", "sources"): {"piece"},
     ("pieces.run.light", "sources"): {"piece"},
     ("pictures.render.save_png", "panels"): {"scalars"},
     ("pictures.render.save_png", "path"): {"output"},

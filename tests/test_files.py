@@ -301,3 +301,28 @@ def test_a_reader_that_crashes_or_never_ends_is_an_error(tmp_path, monkeypatch):
     monkeypatch.setenv("VIZLIGHT_READ_SECONDS", "0.2")
     with pytest.raises(files.FileError, match="not read within 0 s"):
         files.read(path, isolated=True)
+
+
+def test_blocks_are_written_whole_or_not_at_all(tmp_path, monkeypatch):
+    ball = pv.Sphere()
+    ball["label"] = np.array(["text"] * ball.n_points)
+    inner = pv.MultiBlock({"plane": pv.Plane(), "none": None})
+    both = pv.MultiBlock({"ball": ball, "more": inner})
+    path = files.write_mesh(both, tmp_path / "a.vtm")
+    again = pv.read(path)
+    assert (again.keys(), again["more"].keys()) == (["ball", "more"], ["plane", "none"])
+    np.testing.assert_array_equal(again["ball"]["label"], ball["label"])
+    assert again["more"]["none"] is None
+    before = {file: file.read_bytes() for file in tmp_path.rglob("*.vt?")}
+    inner["plane"]["a<b"] = np.zeros(inner["plane"].n_points)
+    with pytest.raises(files.FileError, match="array names without <"):
+        files.write_mesh(both, path)
+    inner["plane"].clear_data()
+    monkeypatch.setattr(files, "_ended", lambda path: path.suffix != ".vtp")
+    for name in ("a.vtm", "b.vtm"):
+        with pytest.raises(files.FileError, match="the file is not whole"):
+            files.write_mesh(both, tmp_path / name)
+    assert {file: file.read_bytes() for file in tmp_path.rglob("*.vt?")} == before
+    assert {file.name for file in tmp_path.iterdir()} == {"a.vtm", "a"}
+    with pytest.raises(files.FileError, match=r"a name that ends in \.vtm for MultiBlock"):
+        files.write_mesh(both, tmp_path / "a.vtp")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import functools
 import io
 import os
 import re
@@ -39,6 +40,7 @@ FORMATS: dict[str, tuple[str, ...]] = {
     "StructuredGrid": (".vts", ".vtk"),
     "RectilinearGrid": (".vtr", ".vtk"),
     "ImageData": (".vti", ".vtk"),
+    "MultiBlock": (".vtm",),
 }
 SUFFIXES = tuple(dict.fromkeys(suffix for kind in FORMATS.values() for suffix in kind))
 
@@ -364,7 +366,7 @@ def check_output(path: str | Path, /, formats: tuple[str, ...], *, name: str = "
     return path
 
 
-def check_format(mesh: pv.DataSet, path: str | Path, /) -> Path:
+def check_format(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
     """Return the path, if its extension is that of a format for this type of mesh.
 
     Raises
@@ -372,7 +374,8 @@ def check_format(mesh: pv.DataSet, path: str | Path, /) -> Path:
     FileError
         If the format does not support the type of mesh.
     """
-    _dataset(mesh)
+    for block in blocks.all_blocks(mesh) if isinstance(mesh, pv.MultiBlock) else [mesh]:
+        _dataset(block)
     path, kind = _path("output", path), type(mesh).__name__
     if kind not in FORMATS:
         expected = f"one of {', '.join(FORMATS)}"
@@ -384,16 +387,18 @@ def check_format(mesh: pv.DataSet, path: str | Path, /) -> Path:
     return path
 
 
-def write_mesh(mesh: pv.DataSet, path: str | Path, /) -> Path:
+def write_mesh(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
     """Write a mesh with its arrays; no partial file is left.
 
     Parameters
     ----------
-    mesh : pyvista.DataSet
+    mesh : pyvista.DataSet or pyvista.MultiBlock
         Mesh to write.
     path : path
         Path of the file, in an existing folder. Its extension, one of .vtp, .vtu, .vtk, .vts,
-        .vti and .vtr, determines the format. An existing file is replaced.
+        .vti and .vtr, or .vtm for several blocks, determines the format. An existing file is
+        replaced. The blocks are in a folder beside the .vtm file, which has its name without the
+        extension.
 
     Returns
     -------
@@ -407,25 +412,64 @@ def write_mesh(mesh: pv.DataSet, path: str | Path, /) -> Path:
     """
     path = check_format(mesh, path)
     if path.suffix.lower() != ".vtk":
-        _check_names(mesh)
+        for block in blocks.all_blocks(mesh):
+            _check_names(block)
+    if isinstance(mesh, pv.MultiBlock):
+        folder = path.with_suffix("")
+        make_folder("output", folder)
+        write = functools.partial(_save_blocks, mesh, folder)
+        try:
+            return replace_file(path, lambda draft: write(Path(draft)))
+        finally:
+            with contextlib.suppress(OSError):  # it is removed if nothing is in it
+                folder.rmdir()
     if path.suffix.lower() == ".vtu" and isinstance(mesh, pv.PolyData):
         mesh = mesh.cast_to_unstructured_grid()
 
     def save(draft: str) -> None:
         # Text of base64 has 4 bytes for 3.
         _reserve(Path(draft), mesh.actual_memory_size * 1024 * 4 // 3 + 65536)
-        # A copy, because PyVista notes the types of arrays in what it saves.
-        own = mesh.copy(deep=False)
-        for data in (own.GetPointData(), own.GetCellData()):
-            for kind in range(data.NUM_ATTRIBUTES):
-                # VTK ends the process where the active normals or vectors are text.
-                if data.GetAbstractAttribute(kind) is not None and data.GetAttribute(kind) is None:
-                    data.SetActiveAttribute(-1, kind)
+        own = _to_save(mesh)
         with captured_errors() as errors:
             own.save(draft)
         _check_draft(Path(draft), mesh, errors)
 
     return replace_file(path, save)
+
+
+def _to_save(mesh: pv.DataSet) -> pv.DataSet:
+    """Return a copy, because PyVista notes the types of arrays in what it saves."""
+    own = mesh.copy(deep=False)
+    for data in (own.GetPointData(), own.GetCellData()):
+        for kind in range(data.NUM_ATTRIBUTES):
+            # VTK ends the process where the active normals or vectors are text.
+            if data.GetAbstractAttribute(kind) is not None and data.GetAttribute(kind) is None:
+                data.SetActiveAttribute(-1, kind)
+    return own
+
+
+def _save_blocks(mesh: pv.MultiBlock, folder: Path, draft: Path) -> None:
+    """Write an index of blocks, and move their files to a folder when all of them are whole."""
+    size = sum(block.actual_memory_size for block in blocks.all_blocks(mesh))
+    _reserve(draft, size * 1024 * 4 // 3 + 65536)
+    own = blocks.like(mesh, (_to_save(block) for block in blocks.all_blocks(mesh)))
+    with captured_errors() as errors:
+        own.save(draft)
+    files = sorted(draft.with_suffix("").glob("*"))
+    reason = errors[0] if errors else ""
+    if not (reason or (draft.is_file() and all(map(_ended, [draft, *files])))):
+        reason = "the file is not whole"
+    if reason:
+        raise FileError(_check.message("output", "a file that can be written", reason))
+    for file in files:
+        file.replace(folder / file.name)
+
+
+def _ended(path: Path) -> bool:
+    """Return whether a file of XML has its end."""
+    with path.open("rb") as file:
+        file.seek(-min(64, path.stat().st_size), os.SEEK_END)
+        return file.read().rstrip().endswith(b"</VTKFile>")
 
 
 def _check_names(mesh: pv.DataSet) -> None:
@@ -471,10 +515,7 @@ def _check_draft(draft: Path, mesh: pv.DataSet, errors: list[str]) -> None:
         with captured_errors() as errors:
             reader.UpdateInformation()
         seen = {reader.GetPointArrayName(i) for i in range(reader.GetNumberOfPointArrays())}
-        with draft.open("rb") as file:
-            file.seek(-min(64, draft.stat().st_size), os.SEEK_END)
-            ended = file.read().rstrip().endswith(b"</VTKFile>")
-        if errors or not ended or seen != set(mesh.point_data):
+        if errors or not _ended(draft) or seen != set(mesh.point_data):
             reason = errors[0] if errors else "the file is not whole"
     if reason:
         raise FileError(_check.message("output", "a file that can be written", reason))

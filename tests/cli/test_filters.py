@@ -457,3 +457,23 @@ def test_colours_of_data_are_multiplied_by_the_light(folder, capfd):
     np.testing.assert_allclose(space["shown"]["tint"] / 255, expected, atol=1.5 / 255)
     picture = np.asarray(pv.read("a.png")["PNGImage"], dtype=int)
     assert np.ptp(picture, axis=1).max() > 50
+
+
+def test_parts_are_blocks_of_one_file_and_one_page(folder, capfd):
+    """Other outputs have a file for each part."""
+    given = ("fur", "flow.vti", "--contour", "r", "--level", "4", "--fibres", "50")
+    code, out, _ = run(capfd, *given, "-o", "a.vtm", "-o", "a.html", "-o", "b.vtp")
+    assert (code, out.count("mesh  "), out.count("page  ")) == (0, 3, 1)
+    blocks = pv.read("a.vtm")
+    assert blocks.keys() == ["fibres", "skin"]
+    for name in blocks.keys():  # noqa: SIM118 - a MultiBlock is a list of its blocks
+        same_arrays(blocks[name], pv.read(f"b-{name}.vtp"))
+    page = Path("a.html").read_text(encoding="utf-8")
+    assert "fibres" in page
+    assert "skin" in page
+    code, out, _ = run(capfd, *given, "-o", "c.vtm", "-o", "c.html", "--script")
+    exec(compile(out, "script", "exec"), {})
+    same_arrays(pv.read("c.vtm")["skin"], blocks["skin"])
+    assert Path("c.html").read_text(encoding="utf-8") == page
+    code, _, err = run(capfd, "light", "flow.vti", "-o", "d.vtm")
+    assert (code, "a name that ends in .vtp, .vtk, .vtu for PolyData" in err) == (2, True)

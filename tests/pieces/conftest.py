@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import multiprocessing
+import os
+import sys
+import time
+
 import pytest
 
 from vizlight.pieces.workers import local_cluster
@@ -9,13 +14,23 @@ from vizlight.pieces.workers import local_cluster
 
 @pytest.fixture(scope="session")
 def _client():
+    dask = pytest.importorskip("dask")
     distributed = pytest.importorskip("distributed")
-    with local_cluster(2) as cluster, distributed.Client(cluster) as client:
-        yield client
+    # Processes begin as copies of one that has imported the package, also in place of killed ones.
+    method = "spawn" if sys.platform == "win32" else "forkserver"
+    with dask.config.set({"distributed.worker.multiprocessing-method": method}):
+        distributed.utils.get_mp_context()  # which chooses what is imported by itself, once
+        if method == "forkserver":
+            modules = ["distributed", "vizlight.pieces.drawing"]
+            multiprocessing.get_context(method).set_forkserver_preload(modules)
+        with local_cluster(2) as cluster, distributed.Client(cluster) as client:
+            yield client
 
 
 @pytest.fixture
 def client(_client):
     """Return a client of two workers; one that a test killed has been started again."""
-    _client.wait_for_workers(2)
+    # The scheduler may not know yet of one that is gone.
+    while len(_client.run(os.getpid, on_error="ignore")) < 2:
+        time.sleep(0.05)
     return _client

@@ -312,6 +312,35 @@ def test_boxes_of_another_grid_are_named(image, tmp_path, what):
         pieces.light(tmp_path / "none.vti", PLAIN, out=tmp_path / "lit.pvti", workers=1)
 
 
+def test_sources_are_given_once_and_never_replaced(balls):
+    both = [str(balls / "ball*.vtp"), balls / "." / "ball1.vtp"]
+    with pytest.raises(pieces.PieceError, match=r"each file once, got '.*ball1\.vtp' twice"):
+        run(balls, both)
+    first = run(balls)
+    before = digests(first)
+    for source in (first.path, first.files[0]):
+        with pytest.raises(pieces.PieceError, match="out: expected another name than that of the"):
+            run(balls, source, name="second")
+    assert digests(first) == before
+    (first.path.with_suffix("") / "lit_0009.vtp").write_bytes(first.files[3].read_bytes())
+    (balls / "ball3.vtp").unlink()
+    assert len(run(balls, ghost=0, name="other").files) == 3
+    assert {path.name for path in (balls / "lit").glob("*.vtp")} == {
+        *(f"lit_000{i}.vtp" for i in range(3)), "lit_0009.vtp",
+    }  # fmt: skip
+
+
+def test_a_level_outside_is_told_with_the_range(image, tmp_path):
+    image.save(tmp_path / "grid.vti")
+    for work in (pieces.camera_on, pieces.light):
+        more = {} if work is pieces.camera_on else {"out": tmp_path / "lit.pvtp"}
+        arguments = (tmp_path / "grid.vti", (1, 1, 1) if work is pieces.camera_on else PLAIN)
+        with pytest.raises(pieces.PieceError, match=r"level: expected a value between .*, got 99"):
+            work(*arguments, contour="s", level=99, workers=1, slab=0.05, **more)
+    with pytest.raises(ValueError, match=r"contour: .* one of \['s'\], got 'W'"):
+        pieces.camera_on(tmp_path / "grid.vti", contour="W", workers=1)
+
+
 def test_lines_in_pieces_are_lit_as_the_whole(tmp_path):
     whole = pv.lines_from_points(np.random.default_rng(2).random((20, 3)))
     whole.save(tmp_path / "a.vtp")
@@ -345,6 +374,7 @@ def test_an_empty_file_is_an_error_but_not_where_an_index_names_it(balls):
         ({"source": 3}, r"sources: expected paths"),
         ({"source": [3]}, r"sources: expected a path"),
         ({"source": {"a": 3}}, r"sources: expected paths, patterns"),
+        ({"client": "nonsense", "workers": None}, r"client: expected the address of a scheduler"),
         ({"scene": 3}, r"scene: expected"),
         ({"facing": "auto"}, r"facing: expected 'eye' or 'as given'"),
         ({"facing": "outward"}, r"facing: expected 'eye' or 'as given'"),

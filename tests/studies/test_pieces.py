@@ -37,7 +37,7 @@ def rows(noise=0.0):
             times = {
                 key: value * (1 + noise * random.uniform(-1, 1)) for key, value in times.items()
             }
-            more = counts | times | {"wall of 1 / this": 0.9 * workers}
+            more = counts | times | {"wall of 1 / this": 0.9 * workers, "disk GB/s": 0.5}
             way = f"{name}, {workers} worker{'s' * (workers > 1)}"
             found.append(Row(way, nodes, 1e-7, 1.0, more))
     return found
@@ -68,6 +68,30 @@ def test_the_prediction_is_the_sum_of_its_parts():
     assert "2 workers light a grid 1.8 times as fast as 1" in study.verdict(rows())
 
 
+def test_the_interval_is_that_of_the_fit():
+    """It has no width without noise, a width in proportion to it, and the true value inside."""
+    true = sum(study.predicted(rows()).values())
+    np.testing.assert_allclose(study.interval(rows()), true, rtol=1e-6)
+    widths = []
+    for noise in (0.001, 0.01):
+        low, high = study.interval(rows(noise))
+        assert low < true < high
+        widths.append(high - low)
+    assert widths[1] / widths[0] == pytest.approx(10, rel=0.1)
+
+
+def test_bytes_are_moved_at_the_rate_of_the_slowest():
+    moved = study.transfers(rows())
+    assert moved["read"] == 4e12
+    assert study.transfers(rows(), 4.0)["read"] == 1.6e13
+    assert moved["layers"] == study.LAYERS * study.WORKERS * study.SAMPLES * 7
+    found = study.moving(rows())
+    assert found["1 GB/s shared"] == pytest.approx(sum(moved.values()) / 1e9)
+    own = (moved["read"] + moved["write"]) / 0.5e12 + moved["layers"] / 1e9
+    assert found["disks of the workers"] == pytest.approx(own)
+    assert study._disk() > 1e6
+
+
 def test_a_grid_in_pieces_is_measured(tmp_path):
     case = study.Case(14, 20, 3, 1.0)
     source = study._slabs(case, tmp_path / "s.npy")
@@ -76,7 +100,8 @@ def test_a_grid_in_pieces_is_measured(tmp_path):
     assert study._error(found["meshes"], case) < 1e-6
     assert all(found[stage] >= 0 for stage in ("read", "contour", "light", "write", "client"))
     runs = {("grid", count): [found] for count in (1, 2)}
-    row = study._row(case, "grid", 2, runs, {"error": 0.0, "composite": study._composite(1)})
+    same = {"error": 0.0, "composite": study._composite(1), "disk": 1e9}
+    row = study._row(case, "grid", 2, runs, same)
     assert (row.way, row.parameter, row.more["wall of 1 / this"]) == ("grid, 2 workers", 3920, 1)
     assert row.more["nodes read"] == 14**2 * (20 + 2 * 3 + 2 - 2)  # shared slices, ghosts, ends
     assert 0 < row.more["composite"] < 1

@@ -171,7 +171,7 @@ class Output:
     Parameters
     ----------
     output
-        Picture .png, mesh .vtp .vtu .vtk .vts .vti .vtr, glTF .glb, or a folder.
+        File .png .html .glb .vtp .vtu .vtk .vts .vti .vtr .vtm, or a folder.
     paraview
         Script .py that shows it in ParaView, lit in each fragment, and a .vtp beside it.
     size

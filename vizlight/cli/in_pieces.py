@@ -8,6 +8,7 @@ from vizlight import _check
 from vizlight.cli.output import OK, complain, draw, say
 from vizlight.cli.script import Step, source
 from vizlight.pieces.kinds import INDEX
+from vizlight.reading.orientation import MANY_SHARP, SHARP
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
     from vizlight.cli.scenes import Look
 
 INDICES = tuple(INDEX.values())
+#: Share of edges from which creases are seen in a picture.
+NOTED = 0.001
 
 
 def are_asked(out: Output, pieces: Pieces) -> bool:
@@ -27,7 +30,7 @@ def are_asked(out: Output, pieces: Pieces) -> bool:
     for name, value in vars(pieces).items():
         option = f"--{name}"
         if value is not None:
-            expected = f"an output that ends in {', '.join(INDICES)} beside {option}"
+            expected = f"an output that ends in {', '.join(INDICES)}, of pieces, beside {option}"
             got = ", ".join(str(path) for path in out.output or ()) or "none"
             raise ValueError(_check.message("output", expected, got))
     return False
@@ -50,7 +53,8 @@ def light(
     for path in others:
         if path.suffix.lower() != ".png":
             expected = "pictures .png beside the index of pieces"
-            raise ValueError(_check.message("output", expected, f"'{path}'"))
+            remedy = f"make it of the index by 'vizlight light {indices[0]} -o {path}'"
+            raise ValueError(_check.message("output", expected, f"'{path}'", remedy))
     if len(indices) > 1:
         expected = "one index of pieces"
         raise ValueError(_check.message("output", expected, ", ".join(map(str, indices))))
@@ -60,14 +64,14 @@ def light(
             {"workers": pieces.workers} if pieces.workers else {}
         )
     shown = {"progress_bar": True} if out.progress else {}
-    box = Step("box", "vizlight.pieces.bounding_box", list(files), **runs, **shown)
-    camera = look.camera(box)
+    asked: dict[str, Any] = {"contour": target.contour, "level": target.level, "slab": pieces.slab}
+    what = {key: value for key, value in asked.items() if value is not None}
+    # The eye is that of the lit whole, which no piece knows: it is found before the light.
+    camera = look.camera(list(files), by="vizlight.pieces.camera_on", **what, **runs, **shown)
     scene = look.scene(camera)
-    what = {"contour": target.contour, "level": target.level, "slab": pieces.slab}
     lit = Step(
-        "lit", "vizlight.pieces.light", list(files), scene,
-        **{key: value for key, value in what.items() if value is not None},
-        out=indices[0], **runs, **given, **shown,
+        "lit", "vizlight.pieces.light", list(files), scene, **what, out=indices[0], **runs, **given,
+        **shown,
     )  # fmt: skip
     name = str(given.get("name", "luminance"))
     scalars = ("rgb" if name == "luminance" else f"{name}_rgb") if look.colored else name
@@ -94,6 +98,11 @@ def light(
     low, high = made.ranges[name]
     if high > 1:
         complain(f"{name} is from {low:.3g} to {high:.3g}; above 1 it is white in a picture")
+    if NOTED <= made.sharp <= MANY_SHARP:  # more is said by the library
+        complain(
+            f"{made.sharp:.1%} of the edges are creases, across which light is averaged; one file "
+            f"is split there by itself, pieces are by --feature-angle {SHARP:g}"
+        )
     say(f"mesh     {made.path}")
     return max((draw(step.run) for step in drawn), default=OK)
 

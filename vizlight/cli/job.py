@@ -26,8 +26,12 @@ if TYPE_CHECKING:
 
 #: File name extension of glTF, which holds what of the light does not depend on the eye.
 GLTF = ".glb"
+#: That of a page in which the light follows the eye.
+HTML = ".html"
 #: Files that no writer of meshes writes, and the functions that do.
-SHOWN = {GLTF: "vizlight.save_gltf", ".py": "paraview.save"}
+SHOWN = {GLTF: "vizlight.save_gltf", HTML: "vizlight.live_html", ".py": "paraview.save"}
+#: Files that hold all parts of a result.
+TOGETHER = (HTML, ".vtm")
 
 
 @dataclass
@@ -85,7 +89,7 @@ class Job:
 
     def of_parts(self, path: Path) -> list[tuple[Step, Path]]:
         """Return what is written for the path of a mesh: the mesh, or each part beside it."""
-        if not self.parts:
+        if not self.parts or path.suffix.lower() in TOGETHER:
             return [(self.lit, path)]
         return [
             (Step("", "[]", self.lit, part), path.with_stem(f"{path.stem}-{part}"))
@@ -136,7 +140,7 @@ def _check_output(out: Output, *, several: bool) -> None:
         if several:
             expected = "a folder that exists, for several files"
             raise files.FileError(_check.message("output", expected, f"'{path}'"))
-        files.check_output(path, (".png", GLTF, *files.SUFFIXES))
+        files.check_output(path, (".png", GLTF, HTML, *files.SUFFIXES))
     if out.paraview and several:
         raise ValueError(_check.message("paraview", "one file to light", "several"))
     if out.paraview:
@@ -173,6 +177,7 @@ def _check_paths(job: Job, inputs: Sequence[Path]) -> None:
             expected = "another file than the input"
             raise files.FileError(_check.message("output", expected, f"'{path}'"))
     formats = files.FORMATS.get(job.kind, files.SUFFIXES) if job.before is None else files.SUFFIXES
+    formats += files.FORMATS["MultiBlock"] if job.parts else ()
     for _, path in job.meshes:
         if path.suffix.lower() not in (*SHOWN, *formats):
             expected = f"a name that ends in {', '.join(formats)} for {job.kind}"
@@ -200,21 +205,26 @@ def _picture(job: Job, path: Path, out: Output) -> Step:
     )
 
 
-def _written(job: Job, mesh: Step, path: Path) -> Step:
+def _written(job: Job, mesh: Step, path: Path, out: Output) -> Step:
     """Return the step that writes a mesh."""
-    writer = SHOWN.get(path.suffix.lower())
+    suffix = path.suffix.lower()
+    writer = SHOWN.get(suffix)
     if writer is None:
         return Step("", "files.write_mesh", mesh, path)
     color = job.color
-    chosen = {} if color is None else {"scalars": color.scalars}
-    if color is not None and path.suffix.lower() == GLTF:
+    chosen: dict[str, object] = {} if color is None else {"scalars": color.scalars}
+    if color is not None and suffix in (GLTF, HTML):
         chosen["cmap"] = color.cmap
+    if suffix == HTML:
+        chosen |= {"camera": job.camera}
+        chosen |= {} if out.background is None else {"background": out.background}
+        chosen |= {} if out.line_width == 1 else {"line_width": out.line_width}
     return Step("", writer, mesh, None, path, **chosen)
 
 
 def _last_steps(job: Job, out: Output) -> list[Step]:
     """Return the steps that leave something behind."""
-    written = [_written(job, mesh, path) for mesh, path in job.meshes]
+    written = [_written(job, mesh, path, out) for mesh, path in job.meshes]
     return [job.lit, *written, *(_picture(job, path, out) for path in job.pictures)]
 
 
@@ -235,8 +245,21 @@ def _run(job: Job, out: Output) -> int:
     if job.explain is not None:
         job.explain(lit)
     for step, path in job.meshes:
-        say(f"mesh     {_written(job, step, path).run()}")
+        what = "page" if path.suffix.lower() == HTML else "mesh"
+        with _window(out) if what == "page" else contextlib.nullcontext():
+            made = _written(job, step, path, out).run()
+        say(f"{what}     {made}")
     return max((draw(_picture(job, path, out).run) for path in job.pictures), default=OK)
+
+
+def _window(out: Output) -> contextlib.AbstractContextManager[None]:
+    """Return a context for windows that need no display; a page is written without them too."""
+    from vizlight.pictures import backends
+
+    try:
+        return backends.window_class(backends.choose_backend(out.backend))
+    except backends.BackendError:
+        return contextlib.nullcontext()
 
 
 def _light(job: Job, out: Output) -> pv.DataSet:

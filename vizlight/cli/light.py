@@ -49,9 +49,9 @@ def light(
     Parameters
     ----------
     files
-        Mesh to light; of several each is lit by itself, or all as pieces of one mesh where the
-        output ends in .pvtp, .pvtu, .pvti, .pvtr or .pvts. A structured grid is then read, lit and
-        written slab by slab.
+        Mesh to light; of several each by itself, or all as pieces of one where the output ends in
+        .pvtp, .pvtu, .pvti, .pvtr or .pvts: a grid slab by slab. Only one file is split at its
+        creases by itself, pieces by --feature-angle.
     explain
         Print what is computed and what is skipped.
     """

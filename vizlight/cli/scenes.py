@@ -172,8 +172,10 @@ class Look:
             _asked_view(self._eye.view) if self._view is None else _file_view(self._view)
         )
 
-    def camera(self, mesh: Step, *, is_map: bool = False) -> Step:
-        """Return the step that sets the camera on a mesh."""
+    def camera(
+        self, mesh: object, *, is_map: bool = False, by: str = "render.camera_on", **more: Any
+    ) -> Step:
+        """Return the step that sets the camera on a mesh by a function with options of its own."""
         eye = self._eye
         up = None if eye.up is None else arguments.vector("up", eye.up)
         if self._fixed is not None:
@@ -187,7 +189,7 @@ class Look:
             "zoom": None if eye.zoom == 1 else eye.zoom,
         }
         aspect = self.size[0] / self.size[1]
-        return Step("camera", "render.camera_on", mesh, toward, **_given(options), aspect=aspect)
+        return Step("camera", by, mesh, toward, **more, **_given(options), aspect=aspect)
 
     def _fixed_camera(self, fixed: Fixed, up: Vector | None) -> Step:
         """Return the step that sets a camera where it was saved."""

@@ -67,12 +67,7 @@ def camera_on(
         If a value does not fit.
     """
     aspect = _check.number("aspect", aspect, low=1e-3)
-    toward = _unit("direction", direction)
-    if up is None:
-        up = (0.0, 1.0, 0.0) if abs(toward[2]) > 0.999 else (0.0, 0.0, 1.0)
-    upward = _unit("up", up)
-    if np.linalg.norm(np.cross(upward, toward)) < 1e-6:
-        raise ValueError(_check.message("up", "a direction across the view", tuple(up)))
+    toward, upward = _directions(direction, up)
     zoom = _check.number("zoom", zoom, low=1e-6)
     box = _box(bounds)
     centre = box.mean(axis=1)
@@ -99,6 +94,64 @@ def camera_on(
     return camera
 
 
+def outermost(
+    points: ArrayLike,
+    direction: Sequence[float] = (1.0, 1.0, 1.0),
+    *,
+    up: Sequence[float] | None = None,
+    aspect: float = 1.0,
+) -> Array:
+    """Return the few points of many on which the camera of :func:`camera_on` depends.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 3)
+        Points, of which those that are not finite are ignored.
+    direction, up, aspect
+        As for :func:`camera_on`, which gives the same camera for a mesh of all points and for one
+        of the points that are returned, also of those of several parts together.
+
+    Returns
+    -------
+    ndarray, shape (m, 3)
+        At most 16 points.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a value does not fit.
+    """
+    found = np.asarray(points).reshape(-1, 3)
+    found = found[np.all(np.isfinite(found), axis=1)]
+    if not len(found):
+        return found
+    x, y, z = _axes(*_directions(direction, up))
+    aspect = _check.number("aspect", aspect, low=1e-3)
+    slope = MARGIN / math.tan(math.radians(VIEW_ANGLE / 2))
+    sides = np.stack([x * slope / aspect, y * slope])
+    along = np.concatenate([np.eye(3), [x, y, z]])
+    # The box, the extent in the picture, and the distance at which each side is in it.
+    rows = np.concatenate([along, -along, z + sides, z - sides])
+    return found[[int(np.argmax(found @ row)) for row in rows]]
+
+
+def _directions(direction: object, up: Sequence[float] | None) -> tuple[Array, Array]:
+    """Return the unit vectors toward the eye and up."""
+    toward = _unit("direction", direction)
+    if up is None:
+        up = (0.0, 1.0, 0.0) if abs(toward[2]) > 0.999 else (0.0, 0.0, 1.0)
+    upward = _unit("up", up)
+    if np.linalg.norm(np.cross(upward, toward)) < 1e-6:
+        raise ValueError(_check.message("up", "a direction across the view", tuple(up)))
+    return toward, upward
+
+
+def _axes(toward: Array, up: Array) -> Array:
+    """Return the unit vectors to the right and up in the picture, and toward the eye."""
+    right = np.cross(up, toward)
+    return np.stack([v / np.linalg.norm(v) for v in (right, np.cross(toward, right), toward)])
+
+
 def _unit(name: str, value: object) -> Array:
     """Return one vector of 3 components, of any length, with length 1."""
     vector = np.array(_check.vector(name, value, direction=True))
@@ -123,8 +176,7 @@ def _fit(
     mesh: Mesh, centre: Array, toward: Array, up: Array, aspect: float
 ) -> tuple[Array, float, float]:
     """Return the shift of the centre, the distance and the height at which a mesh fills a view."""
-    right = np.cross(up, toward)
-    axes = np.stack([v / np.linalg.norm(v) for v in (right, np.cross(toward, right), toward)])
+    axes = _axes(toward, up)
     parts = [
         np.asarray(block.points, dtype=np.float64) for block in all_blocks(mesh) if block.n_points
     ]

@@ -2,6 +2,9 @@
 
 from vizlight.pieces.drawing import pictures, save_png
 from vizlight.pieces.kinds import PieceError, Slabs
-from vizlight.pieces.run import Lit, bounding_box, light
+from vizlight.pieces.run import Lit, light
+from vizlight.pieces.survey import bounding_box, camera_on
 
-__all__ = ["Lit", "PieceError", "Slabs", "bounding_box", "light", "pictures", "save_png"]
+__all__ = [
+    "Lit", "PieceError", "Slabs", "bounding_box", "camera_on", "light", "pictures", "save_png",
+]  # fmt: skip

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 #: Name of the cell array that is 1 on the cells of other pieces.
 GHOST = "vizlight_ghost"
+#: Odd factors that mix the bits of coordinates.
+MIX = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], dtype=np.uint64)
 
 
 def own_cells(mesh: pv.DataSet) -> pv.DataSet:
@@ -72,12 +74,12 @@ def with_layer(
     """
     if GHOST not in mesh.cell_data:
         mesh.cell_data[GHOST] = np.zeros(mesh.n_cells, dtype=np.uint8)
-    own = np.asarray(mesh.points)
+    own = _Places(np.asarray(mesh.points))
     layers, rest = [], []
     for other in others:
         if not isinstance(other, type(mesh)):
             other = other.cast_to_unstructured_grid()
-        touched = _touched(other, _same_place(own, np.asarray(other.points)) >= 0)
+        touched = _touched(other, own.of(np.asarray(other.points)) >= 0)
         if touched.any():
             layer = some_cells(other, touched)
             layer.cell_data[GHOST] = np.ones(layer.n_cells, dtype=np.uint8)
@@ -87,23 +89,32 @@ def with_layer(
     return (_joined(mesh, layers) if layers else mesh), rest
 
 
-def _same_place(points: Array, others: Array) -> Indices:
-    """Return for each of some points the first of ``points`` at its place, -1 where none is."""
-    found = np.full(len(others), -1)
-    low, high = points.min(axis=0), points.max(axis=0)
-    near = np.flatnonzero(np.all((others >= low) & (others <= high), axis=1))
-    if len(near):
-        keys, first = np.unique(_keys(points), return_index=True)
-        wanted = _keys(others[near])
-        at = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
-        found[near] = np.where(keys[at] == wanted, first[at], -1)
-    return found
+class _Places:
+    """Points that are found again by their coordinates, bit for bit."""
+
+    def __init__(self, points: Array) -> None:
+        self._points = points
+        self._low, self._high = points.min(axis=0), points.max(axis=0)
+        self._keys, self._first = np.unique(_keys(points), return_index=True)
+
+    def of(self, others: Array) -> Indices:
+        """Return for each of some points the first one at its place, -1 where none is."""
+        found = np.full(len(others), -1)
+        near = np.flatnonzero(np.all((others >= self._low) & (others <= self._high), axis=1))
+        if len(near):
+            wanted = others[near]
+            keys = _keys(wanted)
+            at = self._first[np.minimum(np.searchsorted(self._keys, keys), len(self._keys) - 1)]
+            found[near] = np.where(np.all(self._points[at] == wanted, axis=1), at, -1)
+        return found
 
 
 def _keys(points: Array) -> Any:
-    """Return the coordinates of each point as one number that compares equal at equal places."""
-    rows = np.ascontiguousarray(np.asarray(points, dtype=np.float64) + 0.0)
-    return rows.view([(axis, rows.dtype) for axis in "xyz"]).ravel()
+    """Return a number for each point that is equal at equal places, and hardly ever elsewhere."""
+    bits = np.ascontiguousarray(np.asarray(points, dtype=np.float64) + 0.0).view(np.uint64)
+    # Single precision leaves the low bits 0, which a product alone would keep.
+    mixed = (bits ^ (bits >> np.uint64(32))) * MIX
+    return (mixed ^ (mixed >> np.uint64(29))) @ MIX[::-1]
 
 
 def _cell_arrays(mesh: Any) -> list[Any]:
@@ -135,7 +146,7 @@ def _joined(mesh: pv.DataSet, layers: Sequence[pv.DataSet]) -> pv.DataSet:
     found = pv.wrap(together.GetOutput())
     places = np.asarray(found.points)
     index = np.arange(found.n_points)
-    index[mesh.n_points :] = _same_place(places, places[mesh.n_points :])
+    index[mesh.n_points :] = _Places(places).of(places[mesh.n_points :])
     for cells in _cell_arrays(found):
         ids = pv.convert_array(cells.GetConnectivityArray())
         if len(ids):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import threading
 import xml.etree.ElementTree as ET
@@ -13,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 from vtkmodules import vtkIOXML
-from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkImageData
+from vtkmodules.vtkCommonDataModel import vtkDataObject
 from vtkmodules.vtkFiltersExtraction import vtkExtractGrid, vtkExtractRectilinearGrid
 from vtkmodules.vtkImagingCore import vtkExtractVOI
 
@@ -25,13 +26,13 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from vizlight._types import VectorLike
+    from vizlight._types import Array, VectorLike
 
     Extent = tuple[int, ...]
     Stamp = list[str | int | float]
 
 #: Suffix of a piece by its type of mesh, and that of an index of pieces by the suffix of those.
-SUFFIX = {kind: formats[0] for kind, formats in files.FORMATS.items()}
+SUFFIX = {kind: formats[0] for kind, formats in files.FORMATS.items() if kind != "MultiBlock"}
 INDEX = {suffix: f".p{suffix[1:]}" for suffix in SUFFIX.values()}
 #: Readers of structured grids, which read any box of nodes out of a file.
 STRUCTURED = {
@@ -79,10 +80,18 @@ class Piece:
         """Return the pieces from which ghost cells are taken."""
         return ()
 
-    def bounds(self) -> tuple[float, ...]:
-        """Return the bounding box, from no more of the data than it needs; empty without points."""
-        mesh = self.read(0)
-        return tuple(mesh.bounds) if mesh.n_points else ()
+    def places(self) -> Array:
+        """Return points with the hull of the piece, from no more of the data than it needs."""
+        return hull(self.read(0))
+
+
+def hull(mesh: pv.DataSet) -> Array:
+    """Return the corners of a grid with straight axes, the points of any other mesh."""
+    if not isinstance(mesh, pv.ImageData | pv.RectilinearGrid) or not mesh.n_points:
+        return np.asarray(mesh.points)
+    nx, ny, nz = mesh.dimensions
+    ends = itertools.product((0, nz - 1), (0, ny - 1), (0, nx - 1))
+    return np.array([mesh.GetPoint(x + nx * (y + ny * z)) for z, y, x in ends])
 
 
 def union(boxes: ArrayLike) -> tuple[float, ...]:
@@ -223,15 +232,15 @@ class BoxPiece(GridPiece):
         reader.GetOutputDataObject(0).ReleaseData()
         return without_ghosts(mesh)
 
-    def bounds(self) -> tuple[float, ...]:
+    def places(self) -> Array:
         """See :class:`Piece`."""
         info = structured(self.path).GetOutputInformation(0)
         if not info.Has(vtkDataObject.SPACING()):  # its places are coordinates in the file
-            return super().bounds()
-        grid = vtkImageData()
+            return super().places()
+        grid = pv.ImageData()
         grid.CopyInformationFromPipeline(info)
         grid.SetExtent(*self.extent)
-        return tuple(grid.GetBounds())
+        return hull(grid)
 
     def stamp(self) -> Stamp | None:
         """See :class:`Piece`."""
@@ -372,9 +381,9 @@ class SlabPiece(GridPiece):
         mesh.extent = extent
         return mesh
 
-    def bounds(self) -> tuple[float, ...]:
+    def places(self) -> Array:
         """See :class:`Piece`."""
-        return tuple(self.empty(self.extent).bounds)
+        return hull(self.empty(self.extent))
 
     def stamp(self) -> Stamp | None:
         """See :class:`Piece`."""

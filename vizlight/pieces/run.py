@@ -11,13 +11,12 @@ from collections import Counter
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-import pyvista as pv
-
 from vizlight import _check, _compiled, files
+from vizlight.mesh import normals
 from vizlight.pieces import index, task
-from vizlight.pieces.kinds import INDEX, FilePiece, PieceError, union
+from vizlight.pieces.kinds import INDEX, PieceError, union
 from vizlight.pieces.sources import pieces_of
+from vizlight.pieces.survey import RETRIES, check_alike, job_of, nothing_found, prepared
 from vizlight.pieces.workers import collected, workers_of
 from vizlight.scene import Scene
 from vizlight.shading.options import LightOptions, unknown_option
@@ -29,7 +28,6 @@ if TYPE_CHECKING:
 
     from vizlight.pieces.kinds import Piece
     from vizlight.pieces.task import Done, Job
-    from vizlight.pieces.workers import Workers
 
 #: Options of light that depend on a mesh as a whole.
 WHOLE = {
@@ -60,6 +58,9 @@ class Lit:
         Value of the contoured array on the isosurface.
     empty, reused : int
         Numbers of pieces that have no point, and of those that an earlier run had made.
+    sharp : float
+        Share of edges that are creases, across which light was averaged, as the mean over the
+        pieces by their cells; ``feature_angle=30`` splits the points there.
     seconds : dict of str to float
         Processor seconds of all pieces by stage: "read", "contour", "light" and "write".
     """
@@ -75,6 +76,7 @@ class Lit:
     empty: int
     reused: int
     seconds: dict[str, float] = field(repr=False)
+    sharp: float = 0.0
 
 
 def light(
@@ -89,7 +91,7 @@ def light(
     out: str | Path = "lit.pvtp",
     client: Any = None,
     workers: int | None = None,
-    retries: int = 2,
+    retries: int = RETRIES,
     slab: float = 64.0,
     progress_bar: bool = False,
     **options: Any,
@@ -137,7 +139,8 @@ def light(
     **options
         Options of the filter. ``normals="gradient"`` with ``contour`` takes the gradient of the
         contoured array. ``facing`` is "eye" by default, or "as given": a piece cannot tell on
-        which side of a surface the outside is.
+        which side of a surface the outside is. ``feature_angle`` is a number or None: whether
+        sharp edges are creases is a question of the whole.
 
     Returns
     -------
@@ -158,8 +161,9 @@ def light(
     Warns
     -----
     UserWarning
-        Once, with the count, if points could not be lit; once for each other warning of the
-        filter that most pieces give.
+        Once, with the count, if points could not be lit; once, with the share in all pieces, if
+        light was averaged across many sharp edges; once for each other warning of the filter that
+        most pieces give.
 
     Notes
     -----
@@ -185,18 +189,16 @@ def light(
     _check.instance("scene", scene, Scene)
     path = files.check_output(_check.path("out", out), tuple(INDEX.values()), name="out")
     ghost = _check.integer("ghost", ghost, low=0)
-    job = task.Job(
+    job = job_of(
+        contour,
+        level,
         scene=scene,
         filter=filter,
         options=_common_options(filter, options, contour, ghost),
-        contour=contour if contour is None else _name("contour", contour),
-        level=None if level is None else _check.number("level", level),
         ghost=ghost if filter == "illuminate" else 0,
         suffix={own: suffix for suffix, own in INDEX.items()}[path.suffix.lower()],
         compiled="1" if _compiled.wanted() == "1" else "0",
     )
-    if level is not None and contour is None:
-        raise ValueError(_check.message("level", "contour= beside it", level))
     retries = _check.integer("retries", retries, low=0)
     if workers is not None:
         workers = _check.integer("workers", workers, low=1)
@@ -209,60 +211,20 @@ def light(
     with contextlib.ExitStack() as stack:
         stack.callback(_clear, folder)
         pool = stack.enter_context(workers_of(client, workers, retries, len(parts)))
-        parts, job = _prepared(parts, job, pool, show=progress_bar)
+        parts, job = prepared(parts, job, pool, show=progress_bar)
         targets = [folder / f"{path.stem}_{i:04d}" for i in range(len(parts))]
+        _spare_sources(parts, [path, *(target.with_suffix(job.suffix) for target in targets)])
         calls = [(piece, job, target) for piece, target in zip(parts, targets, strict=True)]
         done = collected(pool.run(task.light, calls), len(calls), "light", show=progress_bar)
-    full = [(piece, one) for piece, one in zip(parts, done, strict=True) if one.file]
-    if not full:
-        what = f"contour {contour!r} at {job.level:g}" if contour is not None else "points"
-        raise PieceError(_check.message("sources", "pieces with something to light", f"no {what}"))
+        full = [(piece, one) for piece, one in zip(parts, done, strict=True) if one.file]
+        if not full:
+            raise nothing_found(parts, job, pool)
     first, made = full[0]
     for piece, one in full[1:]:
-        _check_alike(piece, one.arrays | one.grid, first, made.arrays | made.grid)
+        check_alike(piece, one.arrays | one.grid, first, made.arrays | made.grid)
     index.write(path, [one for _, one in full], folder.name, job.name)
     _remove_stale(folder, path.stem, {one.file for _, one in full}, {t.name for t in targets})
     return _result(path, folder, done, job)
-
-
-def bounding_box(
-    sources: object,
-    /,
-    *,
-    client: Any = None,
-    workers: int | None = None,
-    progress_bar: bool = False,
-) -> pv.PolyData:
-    """Return the bounding box of data in pieces as a mesh, such as to set a camera on it.
-
-    Parameters
-    ----------
-    sources, client, workers, progress_bar
-        As for :func:`light`.
-
-    Returns
-    -------
-    pyvista.PolyData
-
-    Raises
-    ------
-    TypeError, ValueError, PieceError, ImportError
-        As for :func:`light`.
-    """
-    parts = pieces_of(sources, 64.0)
-    with workers_of(client, workers, 0, len(parts)) as pool:
-        calls = [(piece,) for piece in parts]
-        boxes = collected(pool.run(task.bounds, calls), len(calls), "bounds", show=progress_bar)
-    rows = np.array([box for box in boxes if box]).reshape(-1, 6)
-    if not len(rows):
-        raise PieceError(_check.message("sources", "pieces with points", "none"))
-    return pv.Box(union(rows))
-
-
-def _name(argument: str, value: object) -> str:
-    if not _check.text(argument, value, expected="the name of a point array"):
-        raise ValueError(_check.message(argument, "the name of a point array", repr(value)))
-    return str(value)
 
 
 def _common_options(
@@ -287,7 +249,7 @@ def _common_options(
     fields = {one.name for one in dataclasses.fields(LightOptions)}
     asked = LightOptions(**{name: value for name, value in options.items() if name in fields})
     if asked.feature_angle == "auto":
-        remedy = "pass a number of degrees: a piece cannot tell what creases the whole has"
+        remedy = "pass a number of degrees, such as 30: a piece does not know those of the whole"
         raise ValueError(_check.message("feature_angle", "a number or None", "'auto'", remedy))
     if options.get("facing", "eye") not in ("eye", "as given"):
         remedy = "a piece cannot tell which side of the whole is outside"
@@ -300,75 +262,14 @@ def _common_options(
     return ({"facing": "eye"} if sided and not older else {}) | options
 
 
-def _prepared(
-    parts: list[Piece], job: Job, pool: Workers, *, show: bool
-) -> tuple[list[Piece], Job]:
-    """Return pieces that know their neighbours, and a job without a question left open."""
-    cue = job.scene.depth_cue
-    open_cue = cue is not None and (cue.front is None or cue.back is None)
-    loose = any(isinstance(piece, FilePiece) for piece in parts)
-    if not (loose or open_cue or (job.contour is not None and job.level is None)):
-        return parts, job
-    calls = [(piece, job.contour) for piece in parts]
-    found = collected(pool.run(task.survey, calls), len(calls), "survey", show=show)
-    pairs = [(piece, one) for piece, one in zip(parts, found, strict=True) if one.points]
-    if not pairs:
-        raise PieceError(_check.message("sources", "pieces with points", "none"))
-    first_piece, first = pairs[0]
-    for piece, one in pairs[1:]:
-        _check_alike(piece, one.arrays, first_piece, first.arrays)
-    boxes = np.array([one.bounds for _, one in pairs]).reshape(-1, 3, 2)
-    if open_cue:
-        low, high = boxes[:, :, 0].min(axis=0), boxes[:, :, 1].max(axis=0)
-        grid = np.meshgrid(*np.stack([low, high], axis=1), indexing="ij")
-        corners = np.stack(grid, axis=-1).reshape(-1, 3)
-        job = dataclasses.replace(job, scene=_with_ends(job.scene, corners))
-    if job.contour is not None and job.level is None:
-        low_value = min(one.values[0] for _, one in pairs)
-        high_value = max(one.values[1] for _, one in pairs)
-        if not low_value <= high_value:
-            names = [key.partition(" ")[2] for key in first.arrays if key.startswith("point ")]
-            expected = f"a point array of one component, {_check.one_of(names)}"
-            raise ValueError(_check.message("contour", expected, repr(job.contour)))
-        job = dataclasses.replace(job, level=(low_value + high_value) / 2)
-    return _neighbours([piece for piece, _ in pairs], boxes, job.ghost), job
-
-
-def _check_alike(
-    piece: Piece, found: dict[str, Any], first: Piece, expected: dict[str, Any]
-) -> None:
-    """Check that a piece has the arrays of the first, and the grid of which both are boxes."""
-    for name in expected | found:
-        here, there = found.get(name), expected.get(name)
-        if here != there:
-            kind, _, own = name.partition(" ")
-            what = f"{kind} array {own!r}" if own else kind
-            wanted = f"the {what} of {there}" if there else f"no {what}"
-            text = _check.message("sources", f"{wanted} as in {first.name}", here or "none")
-            raise PieceError(f"piece {piece.name}: {text}")
-
-
-def _with_ends(scene: Scene, corners: Any) -> Scene:
-    from vizlight.filters.lighting import fit_depth_cue
-    from vizlight.shading.inputs import ShadingInputs
-
-    return fit_depth_cue(scene, [ShadingInputs(points=corners)])
-
-
-def _neighbours(parts: list[Piece], boxes: Any, ghost: int) -> list[Piece]:
-    """Return the pieces, those of files with the pieces whose boxes touch theirs."""
-    if not ghost:
-        return parts
-    found: list[Piece] = []
-    for i, piece in enumerate(parts):
-        if not isinstance(piece, FilePiece):
-            found.append(piece)
-            continue
-        touch = np.all((boxes[:, :, 0] <= boxes[i, :, 1]) & (boxes[:, :, 1] >= boxes[i, :, 0]), 1)
-        beside = [parts[j] for j in np.flatnonzero(touch) if j != i]
-        own = tuple(one for one in beside if isinstance(one, FilePiece))
-        found.append(dataclasses.replace(piece, beside=own))
-    return found
+def _spare_sources(parts: Sequence[Piece], outputs: Sequence[Path]) -> None:
+    """Check that no source would be replaced."""
+    taken = {output.resolve() for output in outputs}
+    for piece in parts:
+        source = getattr(piece, "path", None)
+        if source is not None and source.resolve() in taken:
+            expected = "another name than that of the sources"
+            raise PieceError(_check.message("out", expected, f"'{outputs[0]}'"))
 
 
 def _clear(folder: Path) -> None:
@@ -380,10 +281,12 @@ def _clear(folder: Path) -> None:
 
 
 def _remove_stale(folder: Path, stem: str, made: set[str], notes: set[str]) -> None:
-    """Remove pieces of an earlier run that the index does not name."""
+    """Remove pieces of an earlier run, which have notes, that the index does not name."""
     own = re.compile(re.escape(stem) + r"_\d{4,}\.(vt[puirs]|json)")
-    for path in folder.iterdir():
-        if own.fullmatch(path.name):
+    found = [path for path in folder.iterdir() if own.fullmatch(path.name)]
+    noted = {path.stem for path in found if path.suffix == ".json"}
+    for path in found:
+        if path.stem in noted:
             kept = path.stem in notes if path.suffix == ".json" else path.name in made
             if not kept:
                 path.unlink()
@@ -399,6 +302,9 @@ def _result(path: Path, folder: Path, done: Sequence[Done], job: Job) -> Lit:
         # Of the shape of the whole a single piece knows too little.
         if 2 * count > len(full):
             _check.warn(f"{note} ({count} of {len(done)} pieces)")
+    sharp = sum((one.sharp or 0.0) * one.cells for one in full)
+    sharp /= max(sum(one.cells for one in full), 1)
+    normals.warn_of_edges(sharp, splits=job.suffix == ".vtp")
     names = {name for one in full for name in one.ranges}
     return Lit(
         path=path,
@@ -418,4 +324,5 @@ def _result(path: Path, folder: Path, done: Sequence[Done], job: Job) -> Lit:
         empty=len(done) - len(full),
         reused=sum(one.reused for one in done),
         seconds={name: sum(one.seconds[name] for one in done) for name in done[0].seconds},
+        sharp=sharp,
     )

@@ -57,11 +57,15 @@ def pieces_of(sources: object, slab: float, name: str = "sources") -> list[Piece
         remedy = "wrap arrays: Slabs({name: array})"
         raise TypeError(_check.message(name, expected, type(sources).__name__, remedy))
     found: list[Piece] = []
+    taken: set[Path] = set()
     for source in given:
         if isinstance(source, Slabs):
             found += _slabs(source, slab)
         elif isinstance(source, str | Path):
             for path in _paths(source, name):
+                if path.resolve() in taken:
+                    raise PieceError(_check.message(name, "each file once", f"'{path}' twice"))
+                taken.add(path.resolve())
                 found += _of_file(path, slab)
         else:
             expected = "a path, a pattern or a vizlight.pieces.Slabs"

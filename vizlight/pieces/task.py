@@ -20,6 +20,7 @@ from vizlight import _check, _compiled, files
 from vizlight._version import __version__
 from vizlight.filters import illuminate, streamlines
 from vizlight.mesh import normals, records
+from vizlight.pictures import cameras
 from vizlight.pieces.ghosts import GHOST
 from vizlight.pieces.kinds import INDEX, SUFFIX, FilePiece, Piece, PieceError
 from vizlight.reading.polylines import has_lines_only
@@ -28,6 +29,7 @@ from vizlight.shading.results import record_key
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from vizlight._types import Array
     from vizlight.scene import Scene
 
 T = TypeVar("T")
@@ -36,6 +38,8 @@ T = TypeVar("T")
 FILTERS = {"illuminate": illuminate, "streamlines": streamlines}
 #: Name of the gradient of the contoured array, which gives normals that no cut changes.
 GRADIENT = "gradient"
+#: Name of the array by which PyVista numbers points that it splits.
+SPLIT = "pyvistaOriginalPointIds"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -92,6 +96,7 @@ class Done:
     ranges: dict[str, list[float]] = field(default_factory=dict)
     arrays: dict[str, list[Any]] = field(default_factory=dict)
     invalid: int = 0
+    sharp: float | None = None
     notes: list[str] = field(default_factory=list)
     seconds: dict[str, float] = field(default_factory=dict)
     size: int = 0
@@ -128,7 +133,19 @@ def survey(piece: Piece, contour: str | None) -> Survey:
 
 def bounds(piece: Piece) -> tuple[float, ...]:
     """Return the bounding box of a piece, empty where an index names one without points."""
-    return _tried(piece, piece.bounds) or ()
+    found = _tried(piece, piece.places)
+    return () if found is None or not len(found) else tuple(pv.PolyData(found).bounds)
+
+
+def outermost(piece: Piece, job: Job, *view: Any) -> Array:
+    """Return the points of a piece, or of its isosurface, on which a camera depends."""
+    if job.contour is None:
+        found = _tried(piece, piece.places)
+    else:
+        found = _tried(piece, lambda: np.asarray(isosurface(read(piece, 0), job).points))
+    direction, up, aspect = view
+    places = np.empty((0, 3)) if found is None else found
+    return cameras.outermost(places, direction, up=up, aspect=aspect)
 
 
 def read(piece: Piece, ghost: int) -> pv.DataSet:
@@ -144,7 +161,8 @@ def _tried(piece: Piece, found: Callable[[], T]) -> T | None:
         empty = isinstance(error, files.FileError) and "(no points)" in str(error)
         if empty and isinstance(piece, FilePiece) and piece.may_be_empty:
             return None
-        raise PieceError(f"piece {piece.name}: {error}") from error
+        remedy = "; leave it out" if empty else ""
+        raise PieceError(f"piece {piece.name}: {error}{remedy}") from error
 
 
 def key(piece: Piece, job: Job) -> str:
@@ -189,17 +207,19 @@ def light(piece: Piece, job: Job, target: Path) -> Done:
     try:
         with warnings.catch_warnings(record=True) as caught, _compiled.setting(job.compiled):
             warnings.simplefilter("always", UserWarning)
-            if mesh.n_points and job.contour is not None:
-                mesh = _contour(mesh, job)
+            if job.contour is not None:
+                mesh = isosurface(mesh, job)
             laps["contour"] = time.process_time()
-            lit = _lit(mesh, piece, job)
+            lit, sharp = _lit(mesh, piece, job)
         del mesh
         done = _described(lit, job)
+        done.sharp = sharp
         laps["light"] = time.process_time()
         done.key = wanted
         said = [str(one.message) for one in caught if issubclass(one.category, UserWarning)]
-        # Points that could not be lit are counted without ghost cells.
-        done.notes = [text for text in said if "could not be lit" not in text]
+        # Points that could not be lit are counted without ghost cells, creases over all pieces.
+        known = ("could not be lit", *(["edges are sharper"] if sharp is not None else []))
+        done.notes = [text for text in said if not any(part in text for part in known)]
         if lit.n_points:
             suffix = SUFFIX[type(lit).__name__]
             if suffix != job.suffix:
@@ -217,15 +237,19 @@ def light(piece: Piece, job: Job, target: Path) -> Done:
     return done
 
 
-def _lit(mesh: pv.DataSet, piece: Piece, job: Job) -> Any:
-    """Return the own part of a piece, lit."""
+def _lit(mesh: pv.DataSet, piece: Piece, job: Job) -> tuple[Any, float | None]:
+    """Return the own part of a piece, lit, and its share of sharp edges where that is known."""
     if not mesh.n_points:
-        return mesh
+        return mesh, None
     options = dict(job.options)
     if options.get("tangents") is None and has_lines_only(mesh):
         options.pop("facing", None)  # lines have no sides
     lit: Any = FILTERS[job.filter](mesh, job.scene, **options)  # type: ignore[operator]
+    if SPLIT in lit.point_data and SPLIT not in mesh.point_data:
+        del lit.point_data[SPLIT]  # which only pieces with a crease would have
     record, made = records.read(lit, job.name), records.made(lit, job.name)
+    kept = records.read(lit, normals.KEPT)
+    sharp = None if kept is None else records.share(kept, "sharp")
     for stale in records.made(lit, normals.KEPT):
         # They are those of the piece with its ghost cells, and would be checked in vain.
         del lit.point_data[stale]
@@ -238,11 +262,13 @@ def _lit(mesh: pv.DataSet, piece: Piece, job: Job) -> Any:
         own.set_active_scalars(job.name)
         assert record is not None
         records.write(own, job.name, record, {*made, valid})
-    return own
+    return own, sharp
 
 
-def _contour(mesh: pv.DataSet, job: Job) -> pv.PolyData:
+def isosurface(mesh: pv.DataSet, job: Job) -> pv.PolyData:
     """Return the isosurface of a piece, with the gradient of its array if normals are that."""
+    if not mesh.n_points:
+        return pv.PolyData()
     name = str(job.contour)
     if name not in mesh.point_data or mesh.point_data[name].ndim != 1:
         known = [key for key in mesh.point_data if mesh.point_data[key].ndim == 1]

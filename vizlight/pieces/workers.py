@@ -100,7 +100,7 @@ def workers_of(client: Any, workers: int | None, retries: int, count: int) -> It
         elif isinstance(client, str):
             try:
                 client = stack.enter_context(distributed.Client(client, timeout=10))
-            except (OSError, TimeoutError) as error:
+            except (OSError, TimeoutError, ValueError) as error:
                 got = f"{client!r} ({error})"
                 remedy = "start one by 'dask scheduler', or leave client= out"
                 text = _check.message("client", "the address of a scheduler", got, remedy)
@@ -177,7 +177,7 @@ def _naming(name: str) -> Iterator[None]:
     except (ValueError, TypeError):
         raise
     except distributed.KilledWorker as error:
-        text = f"{LOST + 1} workers ended while they did it, perhaps for lack of memory"
+        text = f"{LOST + 1} workers ended while they worked on it, perhaps for lack of memory"
         raise PieceError(f"piece {name}: {text}; cut it smaller") from error
     except (CancelledError, OSError) as error:
         text = "the cluster went away before it was done; the same call goes on from here"

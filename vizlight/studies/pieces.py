@@ -5,7 +5,10 @@ and by 2 workers of one cluster in turn, so a busy machine slows both: wall time
 as ratios of such pairs. The model is a sum of processor times that are proportional to the nodes,
 the points of the isosurface, the pieces, and the samples of the pictures that are put together;
 its coefficients are fitted to the processor times of each stage by least squares without negative
-values. It is also fitted without the largest grid, to state the error where it is extrapolated.
+values. It is also fitted without the largest grid, to state the error where it is extrapolated, and
+the covariance of the coefficients gives an interval of what it predicts. What is moved is counted
+in bytes, and divided by the rate of a disk, which is measured, and by rates of a network, which are
+assumed.
 """
 
 from __future__ import annotations
@@ -23,6 +26,7 @@ import numpy as np
 import pyvista as pv
 from scipy.optimize import nnls
 from scipy.spatial import cKDTree
+from scipy.stats import t as student
 
 from vizlight import pieces
 from vizlight.filters import illuminate
@@ -58,6 +62,14 @@ PICTURE, SAMPLES = (300, 200), 4 * 1200 * 800
 NODES, WORKERS, SLAB = 1e12, 1000, 1.6e7
 #: Layers that a task of a picture makes for each worker.
 LAYERS = 2
+#: Bytes of a node, of a point in the file of a lit piece, and of a sample of a layer.
+NODE, POINT, SAMPLE = 4, 54, 7
+#: Rates in bytes per second of a network that all workers and the client share.
+NETWORKS = (1e9, 1e10)
+#: Bytes that are written and read to measure the rate of a disk.
+DISK = 1 << 26
+#: Probability with which an interval holds what is predicted.
+SHARE = 0.95
 
 
 class Case(NamedTuple):
@@ -100,7 +112,7 @@ def measure(side: int, repeats: int) -> list[Row]:
         raise ImportError(text) from missing
     grids = cases(side)
     runs: dict[tuple[str, int], list[dict[str, float]]] = {}
-    composite = _composite(repeats)
+    composite, disk = _composite(repeats), _disk()
     with (
         tempfile.TemporaryDirectory(prefix="vizlight-") as place,
         local_cluster(2) as cluster,
@@ -119,10 +131,8 @@ def measure(side: int, repeats: int) -> list[Row]:
                         runs.setdefault((name, count), []).append(found)
         lit = light(sources["grid"], grids["grid"], keep=True)
         error = _error(lit["meshes"], grids["grid"])
-    return [
-        _row(grids[name], name, count, runs, {"error": error, "composite": composite})
-        for name, count in runs
-    ]
+    same = {"error": error, "composite": composite, "disk": disk}
+    return [_row(grids[name], name, count, runs, same) for name, count in runs]
 
 
 def _slabs(case: Case, path: Path) -> pieces.Slabs:
@@ -201,6 +211,21 @@ def _composite(repeats: int) -> float:
     return min(times)
 
 
+def _disk() -> float:
+    """Return the bytes per second that are read from a file which is not in memory."""
+    with tempfile.NamedTemporaryFile(prefix="vizlight-") as file:
+        file.write(np.random.default_rng(5).bytes(DISK))
+        file.flush()
+        os.fsync(file.fileno())
+        if hasattr(os, "posix_fadvise"):
+            os.posix_fadvise(file.fileno(), 0, 0, os.POSIX_FADV_DONTNEED)
+        start = time.perf_counter()
+        file.seek(0)
+        while file.read(1 << 24):
+            pass
+        return float(DISK / (time.perf_counter() - start))
+
+
 def _row(
     case: Case, name: str, count: int, runs: Mapping[tuple[str, int], list[dict[str, float]]],
     more: Mapping[str, float],
@@ -218,6 +243,7 @@ def _row(
         "wall s": float(np.median([run["s"] for run in own])),
         "wall of 1 / this": float(np.median(pairs)),
         "load": float(np.median([run["load"] for run in own])),
+        "disk GB/s": more["disk"] / 1e9,
     }  # fmt: skip
     total = sum(found[stage] for stage in ("read", "contour", "light", "write", "client"))
     workers = f"{count} worker{'s' * (count > 1)}"
@@ -231,18 +257,24 @@ def _counts(row: Row) -> dict[str, float]:
     return found | {"layer samples": found["pieces"] * math.prod(PICTURE)}
 
 
+def _relative(rows: Sequence[Row], stage: str, terms: Sequence[str]) -> Array:
+    """Return what a stage is proportional to in each row, by its time: errors are shares of it."""
+    have = [row for row in rows if stage in row.more]
+    found: Array = np.array(
+        [[_counts(row)[term] / float(row.more[stage]) for term in terms] for row in have]
+    )
+    return found
+
+
 def fit(rows: Sequence[Row]) -> dict[str, dict[str, float]]:
     """Return the processor seconds of each stage for one of what it is proportional to."""
     found = {}
     for stage, terms in STAGES.items():
-        have = [row for row in rows if stage in row.more]
-        if not have:
+        if not any(stage in row.more for row in rows):
             continue
-        seconds = np.array([float(row.more[stage]) for row in have])
-        matrix = np.array([[_counts(row)[term] for term in terms] for row in have])
+        matrix = _relative(rows, stage, terms)
         scale = matrix.max(axis=0)
-        # Relative errors are alike, so each row is divided by its time.
-        values, _ = nnls(matrix / scale / seconds[:, None], np.ones(len(have)))
+        values, _ = nnls(matrix / scale, np.ones(len(matrix)))
         found[stage] = dict(zip(terms, (values / scale).tolist(), strict=True))
     return found
 
@@ -284,25 +316,77 @@ def extrapolation(rows: Sequence[Row]) -> float:
     return max(residuals(large, fit(small)), key=abs)
 
 
-def predicted(rows: Sequence[Row], amplification: float = 1.0) -> dict[str, float]:
+def _points(rows: Sequence[Row]) -> float:
+    """Return the points of the isosurface of 1e12 nodes; they grow with the power 2/3 of these."""
+    shares = [
+        float(row.more["points"]) / float(row.parameter) ** (2 / 3)
+        for row in rows if row.way.startswith("grid")
+    ]  # fmt: skip
+    return float(np.mean(shares) * NODES ** (2 / 3))
+
+
+def predicted(
+    rows: Sequence[Row], amplification: float = 1.0,
+    model: Mapping[str, Mapping[str, float]] | None = None,
+) -> dict[str, float]:  # fmt: skip
     """Return the seconds that each stage takes for 1e12 nodes on 1000 workers.
 
     ``amplification`` is the number of nodes that are read for each node: 4 for slabs of one layer
-    of cells. The points of the isosurface grow with the power 2/3 of the nodes.
+    of cells. The model is that of the rows by default.
     """
-    share = np.mean([
-        float(row.more["points"]) / float(row.parameter) ** (2 / 3)
-        for row in rows if row.way.startswith("grid")
-    ])  # fmt: skip
     counts = {
-        "nodes read": NODES * amplification, "points": share * NODES ** (2 / 3),
-        "pieces": NODES / SLAB,
+        "nodes read": NODES * amplification, "points": _points(rows), "pieces": NODES / SLAB,
+        "layer samples": NODES / SLAB * SAMPLES,
     }  # fmt: skip
-    times = modelled(fit(rows), counts | {"layer samples": NODES / SLAB * SAMPLES})
-    times["composite"] = times["composite"] * LAYERS * WORKERS / (NODES / SLAB)
+    times = modelled(fit(rows) if model is None else model, counts)
+    if "composite" in times:
+        times["composite"] *= LAYERS * WORKERS / (NODES / SLAB)
     return {
         stage: seconds if stage in SERIAL else seconds / WORKERS for stage, seconds in times.items()
     }
+
+
+def interval(rows: Sequence[Row], amplification: float = 1.0) -> tuple[float, float]:
+    """Return limits of the predicted seconds, by the covariance of the fitted coefficients.
+
+    The residuals of a stage give their variance, and Student's t the reach at the probability
+    ``SHARE``. The interval is that of the fit: it assumes that the model holds beyond the rows, and
+    processors like that of this machine.
+    """
+    model = fit(rows)
+    variance, freedom = 0.0, len(rows)
+    for stage in model:
+        terms = [term for term, value in model[stage].items() if value > 0]
+        matrix = _relative(rows, stage, terms)
+        left = matrix @ [model[stage][term] for term in terms] - 1
+        freedom = min(freedom, len(left) - len(terms))
+        spread = left @ left / (len(left) - len(terms))
+        ones = [predicted(rows, amplification, {stage: {term: 1.0}})[stage] for term in terms]
+        variance += float(spread * (ones @ np.linalg.solve(matrix.T @ matrix, ones)))
+    reach = float(student.ppf((1 + SHARE) / 2, freedom)) * math.sqrt(variance)
+    total = sum(predicted(rows, amplification).values())
+    return total - reach, total + reach
+
+
+def transfers(rows: Sequence[Row], amplification: float = 1.0) -> dict[str, float]:
+    """Return the bytes that 1e12 nodes move: read, written, and sent to the client as layers."""
+    return {
+        "read": NODES * amplification * NODE,
+        "write": _points(rows) * POINT,
+        "layers": LAYERS * WORKERS * SAMPLES * SAMPLE,
+    }
+
+
+def moving(rows: Sequence[Row], amplification: float = 1.0) -> dict[str, float]:
+    """Return the seconds in which those bytes are moved, by where the data are.
+
+    On disks of the workers only the layers go over the network, of the lower rate.
+    """
+    moved = transfers(rows, amplification)
+    own = float(rows[0].more["disk GB/s"]) * 1e9 * WORKERS
+    found = {f"{rate / 1e9:g} GB/s shared": sum(moved.values()) / rate for rate in NETWORKS}
+    local = (moved["read"] + moved["write"]) / own + moved["layers"] / min(NETWORKS)
+    return found | {"disks of the workers": local}
 
 
 def verdict(rows: Sequence[Row]) -> str:
@@ -311,15 +395,23 @@ def verdict(rows: Sequence[Row]) -> str:
         [float(row.more["wall of 1 / this"]) for row in rows if "2 workers" in row.way]
     )
     worst = max(residuals(rows, fit(rows)), key=abs)
-    blocks, slabs = predicted(rows), predicted(rows, 4.0)
+    blocks = predicted(rows)
     slowest = max(blocks, key=lambda stage: blocks[stage])
+    kinds = []
+    for what, times in (("blocks of 64 MB", 1.0), ("slabs of one layer of cells", 4.0)):
+        low, high = interval(rows, times)
+        total = sum(predicted(rows, times).values())
+        ways = ", ".join(f"{words(s)} s ({place})" for place, s in moving(rows, times).items())
+        kinds.append(
+            f"{words(total)} s ({words(low)} to {words(high)} s, {SHARE:.0%} interval of the "
+            f"fit) for {what}, and to move the bytes {ways}"
+        )
     return (
         f"2 workers light a grid {words(float(gain))} times as fast as 1, in the median of pairs; "
         f"the model of processor time is within {abs(worst):.0%} of each row and, fitted without "
         f"the largest grid, within {abs(extrapolation(rows)):.0%} of that; for 1e12 nodes on 1000 "
-        f"workers it predicts {words(sum(blocks.values()))} s for blocks of 64 MB and "
-        f"{words(sum(slabs.values()))} s for slabs of one layer of cells, of which the stage "
-        f"'{slowest}' takes {words(blocks[slowest])} s; disk and network are not in it"
+        f"workers it predicts {'; '.join(kinds)}; the stage '{slowest}' takes "
+        f"{words(blocks[slowest])} s"
     )
 
 

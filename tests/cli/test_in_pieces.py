@@ -1,0 +1,127 @@
+"""Data in pieces on the command line: the picture of the whole, and what is refused."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+import pyvista as pv
+from PIL import Image
+
+import vizlight
+from vizlight import cli, pieces, render
+
+CONTOUR = ("--contour", "r", "--level", "3")
+
+
+@pytest.fixture
+def parts(tmp_path, monkeypatch):
+    """Return the parts of a ball that is far smaller than the box of its grid."""
+    monkeypatch.chdir(tmp_path)
+    grid = pv.ImageData(dimensions=(14, 12, 13))
+    x, y, z = (grid.points - (4.5, 5.5, 7)).T
+    grid["r"] = np.sqrt(x * x + 1.2 * y * y + z * z)
+    grid = grid.cast_to_unstructured_grid()
+    grid.save("whole.vtu")
+    place = grid.cell_centers().points
+    for i in range(3):
+        which = np.flatnonzero(np.sum(place[:, ::2] > (4, 6), axis=1) == i)
+        part = grid.extract_cells(which, pass_point_ids=False, pass_cell_ids=False)
+        part.clear_cell_data()
+        part.save(f"part{i}.vtu")
+    return [f"part{i}.vtu" for i in range(3)]
+
+
+def run(capfd, *arguments):
+    code = cli.main([str(a) for a in arguments])
+    out, err = capfd.readouterr()
+    return code, out, err
+
+
+@pytest.mark.opengl
+@pytest.mark.parametrize("view", [(), ("--view", "1,0.5,0.45", "--parallel"), ("camera",)], ids=str)
+def test_the_picture_is_that_of_the_whole(parts, capfd, view, tmp_path):
+    """Its samples: one file is drawn with softer edges, and lit in each fragment."""
+    if view == ("camera",):
+        place = [[20, 9, 14], [4.5, 5.5, 7], [0, 0, 1]]
+        (tmp_path / "camera.json").write_text(json.dumps(place), encoding="utf-8")
+        view = ("--view", "camera.json")
+    more = (*CONTOUR, "--size", "150x100", *view)
+    lit = ("light", *parts, *more, "-o", "lit.pvtp", "-o", "lit.png")
+    assert run(capfd, *lit)[::2] == (0, "")
+    assert run(capfd, "light", "whole.vtu", *more, "--facing", "eye", "-o", "lit.vtp")[0] == 0
+    whole = vizlight.read("lit.vtp")
+    seen = vizlight.provenance(whole)["scene"]["view"]
+    one = vizlight.provenance(pv.read(sorted(tmp_path.glob("lit/*.vtp"))[0]))["scene"]["view"]
+    for key in ("position", "direction"):
+        np.testing.assert_allclose(one[key], seen[key], rtol=1e-6)
+    got = np.asarray(Image.open("lit.png").convert("RGB")).astype(int)
+    camera = render.camera_on(whole, (1, 1, 1), aspect=1.5)
+    if "--parallel" in view:
+        camera = render.camera_on(whole, (1, 0.5, 0.45), aspect=1.5, parallel=True)
+    elif view:
+        camera.position, camera.focal_point = place[:2]
+    drawn = next(pieces.pictures(["lit.vtp"], camera=camera, size=(150, 100), workers=1))
+    assert np.abs(got - drawn).max() <= 1
+    rows, columns = np.nonzero((got < 250).any(axis=2))
+    if "camera.json" not in view:
+        assert max(np.ptp(rows) / 100, np.ptp(columns) / 150) > 0.85
+
+
+def test_the_script_does_the_same(parts, capfd):
+    code, out, err = run(capfd, "light", *parts, "--contour", "r", "-o", "a.pvtp", "--script")
+    assert (code, err) == (0, "")
+    exec(compile(out, "script", "exec"), {})
+    level = vizlight.read("whole.vtu")["r"]
+    assert vizlight.read("a.pvtp")["r"] == pytest.approx((level.min() + level.max()) / 2)
+
+
+def test_creases_are_told_and_split_if_asked(tmp_path, monkeypatch, capfd):
+    """One file is split at its creases by itself; pieces have the same light with an angle."""
+    monkeypatch.chdir(tmp_path)
+    box = pv.Box(level=40).triangulate().clean()
+    box.clear_data()
+    box.save("whole.vtp")
+    turned = box.cell_centers().points @ (1, 2, 3)
+    for i in range(2):
+        part = box.remove_cells(np.flatnonzero((turned > 0) == i))
+        part.clear_data()
+        part.save(f"part{i}.vtp")
+    parts = ("light", "part0.vtp", "part1.vtp", "--view", "3,2,1", "-o", "a.pvtp")
+    code, _, err = run(capfd, *parts)
+    assert (code, len(err.splitlines())) == (0, 1)
+    assert "of the edges are creases" in err
+    assert "--feature-angle 30" in err
+    code, _, err = run(capfd, *parts, "--feature-angle", "30")
+    assert (code, err) == (0, "")
+    assert run(capfd, "light", "whole.vtp", *parts[3:5], "--facing", "eye", "-o", "b.vtp")[0] == 0
+    lit, whole = vizlight.read("a.pvtp"), vizlight.read("b.vtp")
+    assert len(np.unique(whole["luminance"])) < len(box.points)
+    own, other = (
+        np.sort(mesh["luminance"][mesh.faces.reshape(-1, 4)[:, 1:]].sum(axis=1))
+        for mesh in (lit, whole)
+    )
+    np.testing.assert_allclose(own, other, atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("-o", "a.vtp", "--workers", "2"), "an output that ends in .pvtp"),
+        (("-o", "a.html", "--workers", "2"), "of pieces, beside --workers, got a.html"),
+        (("-o", "a.pvtp", "-o", "a.html"), "by 'vizlight light a.pvtp -o a.html'"),
+        (("-o", "a.pvtp", "-o", "b.pvtp"), "one index of pieces"),
+        (("-o", "a.pvtp", "--clip", "x:2"), "--clip: expected no such option for pieces"),
+        (("-o", "a.pvtp", "--feature-angle", "auto"), "such as 30"),
+        (("-o", "a.pvtp", "--contour", "s"), "contour: expected a point array of one component"),
+        (("-o", "a.pvtp", "--contour", "r", "--level", "99"), "level: expected a value between"),
+        (("-o", "a.pvtp", "--up", "1,1,1"), "up: expected a direction across the view"),
+    ],
+    ids=str,
+)
+def test_bad_input_is_one_line_and_exit_code_2(parts, capfd, arguments, message, tmp_path):
+    code, out, err = run(capfd, "light", *parts, *arguments)
+    assert (code, out, len(err.splitlines())) == (2, "", 1)
+    assert message in err
+    assert {path.suffix for path in tmp_path.iterdir()} == {".vtu"}
