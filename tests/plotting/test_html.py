@@ -15,6 +15,7 @@ from importlib import resources
 import numpy as np
 import pytest
 import pyvista as pv
+from fields import swatches
 from PIL import Image
 
 import vizlight
@@ -206,6 +207,28 @@ def test_page_has_the_light_of_the_engine_before_and_after_turning(case, browser
     assert np.abs(pictures[1] - pictures[0]).mean() > 1
     live.close()
     other.close()
+
+
+@needs_browser
+def test_colours_above_white_are_those_of_tint(browser, tmp_path):
+    mesh = swatches()
+    camera = vizlight.render.camera_on(mesh, (0, 0, 1))
+    camera.parallel_projection = True
+    bright = Material(ambient=0.4, diffuse=1.0, specular=0.5, shininess=3)
+    scene = Scene(lights=Light(direction=(0.3, 0.2, 1)), material=bright)
+    path = vizlight.live_html(
+        mesh, scene, tmp_path / "live.html", camera=camera, background="black", panel=False,
+        scalars="value", cmap="turbo",
+    )  # fmt: skip
+    page, _ = opened(browser, path)
+    shown = np.unique(shot(page).reshape(-1, 3), axis=0)
+    page.close()
+    seen = scene.replace(view=View.from_camera(camera))
+    lit = vizlight.tint(vizlight.illuminate(mesh, seen), "value", cmap="turbo")
+    expected = lit["rgb"][::4].astype(int)
+    apart = np.abs(shown[:, None] - expected).max(axis=-1)
+    assert (expected.max(axis=1) == 255).sum() > 20
+    assert apart.min(axis=0).max() <= 1
 
 
 @needs_browser
