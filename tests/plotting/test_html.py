@@ -31,7 +31,7 @@ MISSING = [name for name in ("playwright",) if importlib.util.find_spec(name) is
 MISSING += [] if CHROMIUM else ["chromium"]
 needs_browser = pytest.mark.skipif(bool(MISSING), reason=f"needs {', '.join(MISSING)}")
 #: sha256 of the viewer; CONTRIBUTING says how it is made again.
-VIEWER = "6dbffd6ee1f8b8558919e43136d23f94a60b14e164f2fa41d1d03b1e6ae2c3d8"
+VIEWER = "1aecee97d608d58ec6a7104786641dab1b8430f5dc01b26132585e8630074870"
 SIZE = {"width": 300, "height": 250}
 FAR = Light(direction=(1, 0.9, 0.5), intensity=0.8)
 NEAR = Light(position=(3, 4, 5), intensity=0.5, attenuation=(0.5, 0.1, 0.01), color=(1, 0.8, 0.5))
@@ -341,6 +341,30 @@ def test_several_meshes_can_be_switched_off_each(browser, tmp_path):
         seen.append(shot(page))
         assert np.abs(seen[-1] - every).max() > 30
     assert seen[-1].max() == 0
+    page.close()
+
+
+@needs_browser
+def test_many_meshes_stand_in_a_closed_list_after_the_sliders(browser, tmp_path):
+    many = pv.MultiBlock({f"ball {i}": pv.Sphere(radius=0.1, center=(i, 0, 0)) for i in range(40)})
+    path = vizlight.live_html(many, Scene(lights=FAR), tmp_path / "a.html", background="black")
+    page, _ = opened(browser, path)
+    opened_panel(page)
+    meshes = page.locator("details.meshes")
+    assert not meshes.evaluate("(list) => list.open")
+    above = page.locator("#panel input[type=range]").last.bounding_box()
+    assert meshes.bounding_box()["y"] > above["y"]
+    page.locator(".meshes summary").focus()
+    page.keyboard.press("Enter")
+    box = page.locator(".meshes div").bounding_box()
+    assert box["height"] <= 0.4 * SIZE["height"] + 1
+    page.get_by_label("ball 7", exact=True).uncheck()
+    every = page.get_by_label("all", exact=True)
+    assert every.evaluate("(box) => box.indeterminate")
+    every.check()
+    assert shot(page).max() > 30
+    every.uncheck()
+    assert shot(page).max() == 0
     page.close()
 
 

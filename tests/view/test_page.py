@@ -284,6 +284,8 @@ def test_tuning_by_eye(browser, address, tmp_path):
     page.locator(".number-level input").fill("1e9")
     page.locator(".number-level input").press("Enter")
     page.wait_for_selector(".notice >> text=level: expected a value between")
+    controls, notice = (page.locator(x).bounding_box() for x in ("nav", ".notice"))
+    assert notice["x"] >= controls["x"] + controls["width"]
     page.locator(".notice button").click()
     page.mouse.move(600, 500)
     page.mouse.down()

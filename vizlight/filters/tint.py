@@ -319,19 +319,19 @@ def displayable(rgb: ArrayLike, /, *, white: float = 1.0) -> Array:
     >>> from vizlight.filters import displayable
     >>> displayable([[0.2, 0.5, 0.9], [1.4, 0.5, 0.2]]).round(3)
     array([[0.2  , 0.5  , 0.9  ],
-           [1.   , 0.591, 0.459]])
+           [1.   , 0.593, 0.457]])
     """
-    colors = _check.reals("rgb", rgb)
+    colors: Array = np.asarray(_check.reals("rgb", rgb), np.float64)
     if colors.ndim < 1 or colors.shape[-1] != 3:
         raise ValueError(_check.message("rgb", "an array of shape (..., 3)", colors))
-    found = np.maximum(colors, 0.0)
+    found: Array = np.maximum(colors, 0.0)
     rows = found.reshape(-1, 3)
     largest = np.maximum(np.maximum(rows[:, 0], rows[:, 1]), rows[:, 2])
     over = np.flatnonzero(largest > white)
     if len(over):
         bright = rows[over] / white
         luma = bright @ formulas.LUMA
-        kept = formulas.saturation_kept(luma, largest[over] / white)[:, np.newaxis]
+        kept = np.asarray(formulas.saturation_kept(luma, largest[over] / white))[:, np.newaxis]
         gray = np.minimum(luma, 1.0)[:, np.newaxis]
         rows[over] = white * np.minimum(gray + (bright - gray) * kept, 1.0)
     return found
