@@ -31,7 +31,7 @@ MISSING = [name for name in ("playwright",) if importlib.util.find_spec(name) is
 MISSING += [] if CHROMIUM else ["chromium"]
 needs_browser = pytest.mark.skipif(bool(MISSING), reason=f"needs {', '.join(MISSING)}")
 #: sha256 of the viewer; CONTRIBUTING says how it is made again.
-VIEWER = "1aecee97d608d58ec6a7104786641dab1b8430f5dc01b26132585e8630074870"
+VIEWER = "06372e1228f2b045a136855ae6235027dcab52e12199f0aaaca54def9050aca6"
 SIZE = {"width": 300, "height": 250}
 FAR = Light(direction=(1, 0.9, 0.5), intensity=0.8)
 NEAR = Light(position=(3, 4, 5), intensity=0.5, attenuation=(0.5, 0.1, 0.01), color=(1, 0.8, 0.5))
@@ -229,6 +229,38 @@ def test_colours_above_white_are_those_of_tint(browser, tmp_path):
     apart = np.abs(shown[:, None] - expected).max(axis=-1)
     assert (expected.max(axis=1) == 255).sum() > 20
     assert apart.min(axis=0).max() <= 1
+
+
+@needs_browser
+def test_the_page_reads_the_numbers_that_were_packed(browser, tmp_path):
+    """Places to the rounding of float32, cells to the bit, and no place for what is not finite."""
+    mesh = torus((3.0, -2.0, 1.0))
+    mesh.points[7] = (np.nan, 1, 2)
+    mesh.points[9] = (0, np.inf, 2)
+    camera = first_camera((3.0, -2.0, 1.0))
+    path = vizlight.live_html(
+        mesh, Scene(lights=FAR), tmp_path / "a.html", normals="n", camera=camera
+    )
+    page, _ = opened(browser, path)
+    read = """() => {
+        const data = vizlight.meshes[0].mapper.getInputData();
+        const given = data.getPointData().getArrayByName("vizNormal").getData();
+        const numbers = (list) => Array.from(list, (x) => (Number.isNaN(x) ? null : x));
+        return [vizlight.meshes[0].points, data.getPolys().getData(), given].map(numbers);
+    }"""
+    points, cells, normals = page.evaluate(read)
+    page.close()
+    places = np.array(points, dtype=float).reshape(-1, 3)
+    expected = np.asarray(mesh.points, dtype=float) - camera.focal_point
+    lost = ~np.all(np.isfinite(expected), axis=1)
+    np.testing.assert_array_equal(np.flatnonzero(lost), [7, 9])
+    np.testing.assert_array_equal(np.isnan(places).all(axis=1), lost)
+    assert np.abs(places - expected)[~lost].max() <= 2.0**-23 * np.abs(expected[~lost]).max()
+    np.testing.assert_array_equal(cells, mesh.faces)
+    rows = np.reshape(normals, (-1, 3))
+    # Their length says how far they may lean away from the eye.
+    rows = rows / np.linalg.norm(rows, axis=1, keepdims=True)
+    assert np.abs(rows - mesh["n"]).max() < 5e-5
 
 
 @needs_browser
