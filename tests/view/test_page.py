@@ -223,16 +223,16 @@ def seen(page):
 
 
 def settled(page, good):
-    """Return the picture once nothing is computed, it is good and it stays for a second."""
+    """Return the picture once nothing is computed, it is good and it stays."""
     last, still = None, 0
-    for _ in range(LIMIT // 250):
+    for _ in range(LIMIT // 100):
         picture = seen(page)
         same = last is not None and np.abs(picture - last).mean() < 0.2
         still = still + 1 if same and page.locator(".busy").count() == 0 else 0
         if still >= 4 and good(picture):
             return picture
         last = picture
-        page.wait_for_timeout(250)
+        page.wait_for_timeout(100)
     raise AssertionError("the picture does not settle")
 
 

@@ -218,7 +218,9 @@ def make_plotter(
             lit = light == "auto" and plain
             _draw(plotter, panel, cmap, clim, lines, camera, fragments=lit)
             if panel.title:
-                plotter.add_text(panel.title, position="upper_edge", font_size=10, color=ink)
+                text = plotter.add_text(panel.title, position="upper_edge", font_size=10, color=ink)
+                # VTK sets it so near to the edge that letters touch it.
+                text.GetTextProperty().SetLineOffset(8)
             plotter.camera = camera.copy()  # type: ignore[no-untyped-call]
             plotter.reset_camera_clipping_range()
         if bar:
