@@ -49,7 +49,7 @@ plotter = render.make_plotter(panels, camera=camera, size=(2000, 560), backgroun
 plotter.show()
 
 # %%
-# Halfway of the quarter turn. The eye that sees the light stays in 4-space.
+# Halfway through the quarter turn. The eye that sees the light stays in 4-space.
 
 plotter = pv.Plotter(off_screen=True, window_size=(1000, 700))
 plotter.background_color = "#203048"
