@@ -40,12 +40,12 @@ CUE = DepthCue(back_scale=0.3, cue=0.1, color=(0.3, 0.4, 1.0))
 
 def torus(centre=(0.0, 0.0, 0.0)):
     """Return a surface in float64 with a field of tangents."""
-    angles = np.linspace(0, 2 * np.pi, 121)
+    angles = np.linspace(0, 2 * np.pi, 151)
     u, v = (np.ravel(x) for x in np.meshgrid(angles, angles, indexing="ij"))
     ring = 1 + 0.4 * np.cos(v)
     rows = np.stack([ring * np.cos(u), ring * np.sin(u), 0.4 * np.sin(v)], 1) + centre
     grid = pv.StructuredGrid()
-    grid.points, grid.dimensions = rows, (121, 121, 1)
+    grid.points, grid.dimensions = rows, (151, 151, 1)
     mesh = grid.extract_surface(algorithm=None)
     mesh["n"] = np.stack([np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)], 1)
     mesh["around"] = np.stack([-np.sin(u), np.cos(u), 0 * u], 1)

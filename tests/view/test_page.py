@@ -205,12 +205,11 @@ def browser():
 
 
 def opened(browser, address):
-    """Open the page and wait for the picture."""
+    """Open the page and wait for its controls."""
     page = browser.new_page(viewport={"width": 760, "height": 900})
     page.set_default_timeout(LIMIT)
     page.goto(address)
     page.wait_for_selector("text=Copy as Python")
-    settled(page, lambda picture: picture.std() > 10)
     return page
 
 
