@@ -103,7 +103,7 @@ def tint(
 
     Notes
     -----
-    ``colour (ambient + diffuse) + specular``, brought into range by :func:`displayable`: the
+    ``colour (ambient + diffuse) + specular``, brought into range by ``filters.displayable``: the
     highlight keeps the colour of the light.
     Lights with a colour, a specular colour and a depth cue count as in the array ``rgb`` of the
     light; the colours of the data stand for the material's. The light is stored in terms where
