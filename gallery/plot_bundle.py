@@ -30,7 +30,7 @@ flat = tract.copy()
 flat["rgb"] = share @ [[0.93, 0.38, 0.22], [0.98, 0.76, 0.30], [0.22, 0.52, 0.86]]
 # A strand that stands alone gets all the light, but not more than its colour.
 light = np.minimum(1.35 * (lit["ambient"] + lit["diffuse"]), 1.1)
-lit["rgb"] = np.clip(flat["rgb"] * light[:, np.newaxis] + lit["specular"][:, np.newaxis], 0, 1)
+lit["rgb"] = flat["rgb"] * light[:, np.newaxis] + lit["specular"][:, np.newaxis]
 
 panels = [render.Panel(flat, "rgb"), render.Panel(lit, "rgb")]
 options = {"camera": camera, "size": (1600, 760), "line_width": 1.4}

@@ -35,30 +35,25 @@ scene = Scene(
     material=Material(ambient=0.15, diffuse=0.8, specular=0.3, shininess=25),
 )
 camera = render.camera_on((-1.3, 1.3, -1.3, 1.3, -1.2, 1.2), (0.5, -1, 0.7), zoom=0.66)
-panels = [
-    render.Panel(
-        vizlight.tint(
-            vizlight.project(
-                curve, rotation=("xw", np.radians(angle)), scene=scene, light="before"
-            ),
-            "phase of w",
-            cmap=wheel,
-            clim=(-np.pi, np.pi),
-        ),
-        "rgb",
-        f"{angle} degrees",
-    )
-    for angle in (0, 30, 60, 90)
-]
+
+
+def turned(degrees):
+    """Return the curve in 3-space after a turn, lit before it is projected."""
+    turn = ("xw", np.radians(degrees))
+    lit = vizlight.project(curve, rotation=turn, scene=scene, light="before")
+    return vizlight.tint(lit, "phase of w", cmap=wheel, clim=(-np.pi, np.pi))
+
+
+panels = [render.Panel(turned(degrees), "rgb", f"{degrees} degrees") for degrees in (0, 30, 60, 90)]
 plotter = render.make_plotter(panels, camera=camera, size=(2000, 560), background="#203048")
 plotter.show()
 
 # %%
-# One of them as an interactive scene in 3-space. The eye that sees the light stays in 4-space.
+# Halfway through the quarter turn. The eye that sees the light stays in 4-space.
 
 plotter = pv.Plotter(off_screen=True, window_size=(1000, 700))
 plotter.background_color = "#203048"
 bar = {"color": "white", "vertical": True, "n_labels": 3, "height": 0.4, "position_y": 0.3}
-plotter.vizlight.add_mesh(panels[2].mesh, scalar_bar_args=bar)
+plotter.vizlight.add_mesh(turned(45), scalar_bar_args=bar)
 plotter.camera = camera
 plotter.show()

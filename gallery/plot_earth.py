@@ -4,8 +4,8 @@ The relief of the earth in morning light
 
 The embedded relief of the earth, land and sea floor, with heights multiplied by 60. The light
 comes from the west-north-west at 19 degrees, and ``t`` replaces the cosine: trenches and the edges
-of plateaus cast shadows, and ridges on the sea floor stand out. On the left the shadow depth is
-small; on the right it is twenty times as large, which smooths small features.
+of plateaus cast shadows, and ridges on the sea floor stand out. Above the shadow depth is
+small; below it is twenty times as large, which smooths small features.
 """
 
 import numpy as np
@@ -34,13 +34,14 @@ for depth in (0.1, 2.0):
         (1 - land) * [0.55, 0.65, 0.4] + land * [0.95, 0.93, 0.9],
         (1 - sea) * [0.45, 0.65, 0.8] + sea * [0.12, 0.2, 0.45],
     )
-    lit["rgb"] = np.clip(colour * np.asarray(lit["luminance"])[:, np.newaxis] * 1.5, 0, 1)
+    lit["rgb"] = 1.5 * colour * np.asarray(lit["luminance"])[:, np.newaxis]
     panels.append(render.Panel(lit, "rgb", f"depth {depth} degrees"))
 
 plotter = render.make_plotter(
     panels,
     camera=render.camera_on(earth.bounds, (0, 0, 1), parallel=True, zoom=1.95),
-    size=(2000, 520),
+    rows=2,
+    size=(1400, 1480),
     background="white",
 )
 plotter.show()

@@ -10,7 +10,7 @@ digits.
 The error is the largest difference from float64 formulas that share no code with the engine.
 """
 
-import pyvista as pv
+import matplotlib.pyplot as plt
 
 from vizlight.studies import engine
 
@@ -26,24 +26,15 @@ charts = (
     ("ns per point", (2, 1000), lambda row: row.cost),
     ("largest error", (1e-15, 1e-3), lambda row: row.error),
 )
-plotter = pv.Plotter(shape=(1, 2), window_size=(1500, 620), border=False)
-for column, (label, ends, value) in enumerate(charts):
-    chart = pv.Chart2D(x_label="points", y_label=label)
-    chart.x_axis.log_scale = chart.y_axis.log_scale = True
+figure, axes = plt.subplots(1, 2, figsize=(12, 5))
+for axis, (label, ends, value) in zip(axes, charts, strict=True):
     for color, (way, rows) in zip(
         ("#d55e00", "#0072b2", "#009e73", "#000000"), ways.items(), strict=True
     ):
-        if not rows:  # Compiled code needs numba, the extra fast.
-            continue
-        values = [value(row) for row in rows]
-        chart.line(counts, values, color=color, width=3, label=way)
-        chart.scatter(counts, values, color=color, size=9)
-    chart.y_range = ends
-    chart.legend_visible = True
-    for axis in (chart.x_axis, chart.y_axis):
-        axis.label_size, axis.tick_label_size = 20, 15
-    chart.GetLegend().SetLabelSize(17)
-    plotter.subplot(0, column)
-    plotter.background_color = "white"
-    plotter.add_chart(chart)
-plotter.show()
+        if rows:  # Compiled code needs numba, the extra fast.
+            axis.plot(counts, [value(row) for row in rows], "o-", color=color, label=way)
+    axis.set(xscale="log", yscale="log", ylim=ends, xlabel="points", ylabel=label)
+    axis.grid(alpha=0.3)
+axes[0].legend()
+figure.tight_layout()
+plt.show()

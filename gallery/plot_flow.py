@@ -19,11 +19,11 @@ surface = surface.compute_normals(cell_normals=False, auto_orient_normals=True)
 # Split each triangle into 16: a highlight is narrower than the triangles of the simulation.
 surface = surface.subdivide(2, "linear")
 
-camera = render.camera_on(surface.bounds, (1, 0.5, 0.45), aspect=1.4, zoom=1.5)
+camera = render.camera_on(surface.bounds, (1, 0.5, 0.45), aspect=1.4, zoom=1.7)
 scene = Scene(
     lights=Light(direction=(1, 0.9, 0.5)),
     view=View.from_camera(camera),
-    material=Material(ambient=0.15, diffuse=0.8, specular=0.4, shininess=20),
+    material=Material(ambient=0.15, diffuse=0.75, specular=0.3, shininess=20),
 )
 lit = vizlight.illuminate(surface, scene, tangents="V", conditioned=True)
 

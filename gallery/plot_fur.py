@@ -61,9 +61,9 @@ scene = Scene(
 hair = {"fibres": 401_408, "length": 0.3, "segments": 6, "toward": (0, 0, -1), "bend": 0.8}
 hair |= {"compensate": False, "density": 1 - (1 - 0.02) ** 100}
 coats = {
-    "A": vizlight.fur(torus, scene, conditioned=False, attenuated=False, **hair),
-    "B": vizlight.fur(torus, scene, attenuated=False, **hair),
-    "C": vizlight.fur(torus, scene, **hair),
+    "A: fibres alone": vizlight.fur(torus, scene, conditioned=False, attenuated=False, **hair),
+    "B: and the normals": vizlight.fur(torus, scene, attenuated=False, **hair),
+    "C: and the way through the fur": vizlight.fur(torus, scene, **hair),
 }
 plotter = render.make_plotter(
     [render.Panel(coat, title=title) for title, coat in coats.items()],

@@ -56,5 +56,5 @@ for column, factor in enumerate((4.0, float(highlights.simple_factor(ANGLE)))):
         xtitle="phi, degrees", ytitle="theta, degrees", ztitle="error", color="black",
         location="outer", n_xlabels=5, n_ylabels=5, n_zlabels=5, fmt="%.0f", font_size=17,
     )  # fmt: skip
-    plotter.camera_position = [(-330, -300, 90), (90, 90, 5), (0, 0, 1)]
+    plotter.camera_position = [(-285, -256, 82), (90, 90, 0), (0, 0, 1)]
 plotter.show()

@@ -12,34 +12,25 @@ because the dark side of a line is visible too. Right: Blinn's highlight is abou
 tube with 3 sides, and ``model="cylinder"`` is exact.
 """
 
-import pyvista as pv
-from vtkmodules.vtkChartsCore import vtkChartLegend
+import matplotlib.pyplot as plt
+from matplotlib.ticker import NullFormatter
 
 from vizlight.studies import lines
 
 rows = [row for row in lines.measure(5000, repeats=1) if row.setting == "random"]
-plotter = pv.Plotter(shape=(1, 2), window_size=(1500, 620), border=False)
-colors = ("#d55e00", "#0072b2")
-for column, term in enumerate(("diffuse", "specular")):
+figure, axes = plt.subplots(1, 2, figsize=(12, 5), sharey=True)
+for axis, term in zip(axes, ("diffuse", "specular"), strict=True):
     own = [row for row in rows if row.term == term and row.model != "exact"]
-    chart = pv.Chart2D(x_label="sides of the tube", y_label="RMS error")
-    chart.title = term
-    chart.GetTitleProperties().SetFontSize(24)
-    chart.x_axis.log_scale = chart.y_axis.log_scale = True
     errors = [row.scaled_rms for row in own if row.model.startswith("tube")]
-    chart.line(lines.SIDES, errors, color="black", width=2, label="tube")
-    chart.scatter(lines.SIDES, errors, color="black", size=9)
-    for color, row in zip(colors, (r for r in own if not r.model.startswith("tube")), strict=True):
-        ends = (lines.SIDES[0], lines.SIDES[-1])
-        chart.line(ends, [row.scaled_rms] * 2, color=color, width=3, label=row.model)
-    chart.legend_visible = True
-    for axis in (chart.x_axis, chart.y_axis):
-        axis.label_size, axis.tick_label_size = 20, 15
-    chart.GetLegend().SetLabelSize(17)
-    chart.GetLegend().SetHorizontalAlignment(vtkChartLegend.LEFT)
-    chart.GetLegend().SetVerticalAlignment(vtkChartLegend.BOTTOM)
-    chart.y_range = (1e-4, 0.5)
-    plotter.subplot(0, column)
-    plotter.background_color = "white"
-    plotter.add_chart(chart)
-plotter.show()
+    axis.plot(lines.SIDES, errors, "o-", color="black", label="tube")
+    models = [row for row in own if not row.model.startswith("tube")]
+    for color, row in zip(("#d55e00", "#0072b2"), models, strict=True):
+        axis.axhline(row.scaled_rms, color=color, lw=2, label=row.model)
+    axis.set(xscale="log", yscale="log", xlabel="sides of the tube", title=term)
+    axis.set_xticks(lines.SIDES, lines.SIDES)
+    axis.xaxis.set_minor_formatter(NullFormatter())
+    axis.grid(alpha=0.3)
+    axis.legend(loc="lower left")
+axes[0].set_ylabel("RMS error")
+figure.tight_layout()
+plt.show()

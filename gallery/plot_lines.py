@@ -41,7 +41,7 @@ hues = np.array([[0.20, 0.42, 0.78], [0.33, 0.70, 0.84], [0.92, 0.66, 0.28], [0.
 flat = lit.copy()
 flat["rgb"] = np.stack([np.interp(heat, [0, 0.2, 0.5, 1], hue) for hue in hues.T], axis=1)
 light = np.minimum(1.3 * (lit["ambient"] + lit["diffuse"]), 1.0)
-lit["rgb"] = np.clip(flat["rgb"] * light[:, np.newaxis] + lit["specular"][:, np.newaxis], 0, 1)
+lit["rgb"] = flat["rgb"] * light[:, np.newaxis] + lit["specular"][:, np.newaxis]
 
 panels = [render.Panel(flat, "rgb"), render.Panel(lit, "rgb")]
 options = {"camera": camera, "size": (1600, 1000), "line_width": 1.4}

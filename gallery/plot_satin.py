@@ -48,10 +48,11 @@ plotter = render.make_plotter(
 plotter.show()
 
 # %%
-# The four panels. In A a dark sphere hides the threads on the far side.
+# The four panels.
 
+titles = ("A: threads", "B: normals", "C: field", "D: field and normals")
 plotter = render.make_plotter(
-    [render.Panel(panel, "rgb", title) for panel, title in zip(panels, "ABCD", strict=True)],
+    [render.Panel(panel, "rgb", title) for panel, title in zip(panels, titles, strict=True)],
     camera=camera,
     size=(1600, 440),
     **threads,

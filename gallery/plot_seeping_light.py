@@ -2,9 +2,9 @@
 Light that passes through thin parts
 ====================================
 
-The figure of a dog with the light behind it. A: with the clamped cosine, what faces the eye is
-dark. B and C: with ``t = d / r`` for two depths ``d``, against the length ``r`` of the way through
-the figure to the light: ears and tongue glow as if of wax, a leg less, and the body stays dark.
+The figure of a dog with the light behind it. Left: with the clamped cosine, what faces the eye is
+dark. Middle and right: with ``t = d / r`` for two depths ``d``, against the length ``r`` of the way
+through the figure to the light: ears and tongue glow as if of wax, and the body stays dark.
 """
 
 import numpy as np
@@ -16,13 +16,13 @@ dog = vizlight.load_example("dog.vtp").compute_normals(split_vertices=False)
 head = (0.1, 0.5, -0.1, 0.1, 0.47, 0.8)
 camera = render.camera_on(head, (1.0, -0.85, 0.12), aspect=0.75, zoom=1.35)
 panels = []
-for title, depth in (("A", 0.0), ("B", 0.006), ("C", 0.02)):
+for title, depth in (("cosine", 0.0), ("d = 0.006", 0.006), ("d = 0.02", 0.02)):
     scene = Scene(
         lights=Light(direction=(-0.9, 0.75, 0.35)),
         material=Material(ambient=0.025, diffuse=1.0, specular=0.0, color=(1.0, 0.5, 0.22)),
     )
     lit = vizlight.relief_shadow(dog, scene, depth=depth, lit=True)
-    lit["rgb"] = np.sqrt(np.clip(lit["rgb"], 0, 1))
+    lit["rgb"] = np.sqrt(lit["rgb"])
     panels.append(render.Panel(lit, "rgb", title))
 
 plotter = render.make_plotter(panels, camera=camera, size=(1800, 800), background="#0c1016")

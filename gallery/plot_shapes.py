@@ -35,12 +35,12 @@ shapes = {
         {"rotation": [("zw", 0.9), ("xw", 0.4)]},
     ),
     "w = z^2": (
-        manifolds.complex_curve(np.square, domain=((-0.65, 0.65),) * 2, resolution=160),
+        manifolds.complex_curve(np.square, domain=((-0.72, 0.72),) * 2, resolution=160),
         {"rotation": [("xw", 0.7), ("yz", 0.5)]},
     ),
     "Hopf fibres": (
-        manifolds.hopf_fibres(base, radius=0.55, resolution=160),
-        {"distance": 0.55, "rotation": slanted},
+        manifolds.hopf_fibres(base, radius=0.62, resolution=160),
+        {"distance": 0.62, "rotation": slanted},
     ),
     "3-sphere, cut": (
         manifolds.sphere3(radius=1.0, resolution=32),

@@ -32,9 +32,9 @@ day["mean"] = np.asarray(day["t"]).mean(axis=1)
 names = [*(f"{hour:.0f} h" for hour in hours), "mean"]
 plotter = render.make_plotter(
     [render.Panel(day, name, name) for name in names],
-    camera=render.camera_on(terrain.bounds, (0, 0, 1), parallel=True, zoom=1.22),
+    camera=render.camera_on(terrain.bounds, (0, 0, 1), parallel=True, zoom=1.13),
     rows=2,
-    size=(2040, 1000),
+    size=(2000, 1080),
     cmap="cividis",
     bar="t",
     background="white",

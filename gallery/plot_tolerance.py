@@ -3,8 +3,8 @@ Choosing by tolerance
 =====================
 
 With ``tolerance=`` you state the largest acceptable error, and the cheapest evaluation whose error
-bound is within it is used. Left: the exact model. Middle: one step of an 8-bit picture is allowed,
-which selects Blinn's highlight in place of Phong's, in float32. Right: the difference of the two,
+bound is within it is used. Above: the exact model. Middle: one step of an 8-bit picture is allowed,
+which selects Blinn's highlight in place of Phong's, in float32. Below: the difference of the two,
 which is below the tolerance everywhere.
 
 The output below lists what each tolerance selected and what it rejected, with the error bounds.
@@ -21,7 +21,7 @@ from vizlight import Light, Material, Scene, View, engine, render
 
 os.environ["VIZLIGHT_FAST"] = "0"
 bundle = vizlight.load_example("fibre_bundle.vtp")
-camera = render.camera_on(bundle, (0.3, -1, 0.4), aspect=1.07, zoom=1.35)
+camera = render.camera_on(bundle, (0.3, -1, 0.4), aspect=2.5, zoom=1.15)
 scene = Scene(
     lights=Light.headlight(),
     view=View(direction=(0.3, -1, 0.4)),
@@ -34,7 +34,7 @@ off = 255 * np.abs(near["luminance"] - exact["luminance"])
 bound = 255 * vizlight.provenance(near)["error_bound"]
 difference = bundle.copy()
 difference["luminance"] = off
-worst = f"difference, black 0, white 1 of 255:\nat most {off.max():.2f}, bound {bound:.2f}"
+worst = f"difference, black 0, white 1 of 255: at most {off.max():.2f}, bound {bound:.2f}"
 
 plotter = render.make_plotter(
     [
@@ -43,7 +43,8 @@ plotter = render.make_plotter(
         render.Panel(difference, title=worst),
     ],
     camera=camera,
-    size=(1800, 560),
+    rows=3,
+    size=(1100, 1320),
     line_width=1.2,
 )
 plotter.show()

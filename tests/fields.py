@@ -1,4 +1,4 @@
-"""Height fields as arrays and as grids, places on them, directions to the sun."""
+"""Height fields as arrays and as grids, places on them, directions to the sun; swatches."""
 
 from __future__ import annotations
 
@@ -82,3 +82,16 @@ def by_cells(field, start, way):
     count = start.shape[1]
     ways = np.repeat(way[:, None], count, axis=1)
     return marching.march(field, start, ways, np.full(count, marching.FAR), coarse=False)
+
+
+def swatches(rows=6, columns=8):
+    """Return a square for each of many colours, on which far light is the same everywhere."""
+    squares = [
+        pv.Plane(center=(x, y, 0), i_resolution=1, j_resolution=1)
+        for y in range(rows)
+        for x in range(columns)
+    ]
+    mesh = pv.merge(squares, merge_points=False)
+    mesh.clear_data()
+    mesh["value"] = np.repeat(np.linspace(0, 1, rows * columns), 4)
+    return mesh

@@ -40,6 +40,18 @@ def test_warnings_point_at_the_caller():
     assert caught[0].filename == __file__
 
 
+@pytest.mark.parametrize(
+    "name", ["fur", "illuminate", "isoluminance", "refine", "satin", "streamlines"]
+)
+def test_without_a_scene_it_is_said_how_to_make_one(name):
+    """A highlight needs an eye, so only what draws a picture has a default."""
+    mesh = pv.Sphere()
+    remedy = r"scene: expected a vizlight\.Scene, got None; pass Scene\(view=.*mesh\.vizlight\.plot"
+    for call in (getattr(mesh.vizlight, name), lambda: getattr(vizlight, name)(mesh, scene=None)):
+        with pytest.raises(TypeError, match=remedy):
+            call()
+
+
 def test_accessor_on_blocks():
     blocks = pv.MultiBlock([pv.Sphere(), pv.Cube()])
     lit = blocks.vizlight.illuminate(SCENE)

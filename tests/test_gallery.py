@@ -267,7 +267,7 @@ def test_views_of_a_scene_turn_together(chromium):
         frames = [f.element_handle().content_frame() for f in scene.locator("iframe").all()]
         assert len(frames) == 4
         for frame in frames:
-            frame.wait_for_function("window.vizlight")
+            frame.wait_for_function("() => window.vizlight")
         assert [f.inner_text("h1") for f in frames] == [f"{a} degrees" for a in (0, 30, 60, 90)]
         place = "JSON.stringify(window.vizlight.camera.getPosition())"
         before = frames[0].evaluate(place)
@@ -276,7 +276,7 @@ def test_views_of_a_scene_turn_together(chromium):
         after = frames[1].evaluate(place)
         assert after != before
         for frame in frames:
-            frame.wait_for_function(f"{place} === {after!r}")
+            frame.wait_for_function(f"() => {place} === {after!r}")
         assert not said
 
 

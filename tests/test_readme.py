@@ -69,13 +69,9 @@ def test_every_python_block_runs(path, tmp_path, monkeypatch):
 def mended(names):
     """Assert that each symptom of the page on troubleshooting is there, and its remedy mends it."""
     assert max(names["early"], names["behind"], names["faded"]) < 0.6 * names["right"]
-    assert names["outward"] < 0.11 < 0.4 < names["inward"]
-    assert names["dense"] < 0.2 < 0.3 < names["loose"]
     exact = vizlight.illuminate(names["ball"], names["scene"])["luminance"]
     off = [np.abs(names[mesh]["luminance"] - exact).mean() for mesh in ("given", "turned")]
     assert off[1] < 1e-3 < 0.05 < off[0]
-    assert names["split"].n_points > names["bent"].n_points
-    assert names["refined"]["luminance"].max() > names["coarse"]["luminance"].max() + 0.05
     # Light of a ball has no jumps from point to point.
     roughness = [
         np.abs(np.diff(mesh["luminance"][mesh.regular_faces], axis=1)).mean()
@@ -104,7 +100,7 @@ def test_a_page_of_the_guide_runs_and_writes_its_pictures(path, tmp_path, monkey
 def test_every_page_of_the_guide_is_listed_and_short():
     listed = re.findall(r"^- :doc:`(\w+)`", text_of(PAGES / "guide" / "index.rst"), re.M)
     assert sorted([*listed, "index"]) == [path.stem for path in GUIDE]
-    assert not [path.stem for path in GUIDE if len(text_of(path).splitlines()) > 220]
+    assert not [path.stem for path in GUIDE if len(text_of(path).splitlines()) > 200]
 
 
 @pytest.mark.opengl

@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import pyvista as pv
+from PIL import Image
 
 import vizlight
 from vizlight import cli
@@ -277,6 +278,22 @@ def test_no_input_is_overwritten(folder, capfd):
     assert code == 2
     assert "flow.vti: output: expected another file than the input, got 'flow-lit.vtp'" in err
     assert Path("flow-lit.vtp").read_bytes() == before
+
+
+@pytest.mark.opengl
+@pytest.mark.parametrize(("altitude", "gray"), [(10, 1 / 3), (45, 0.5**0.5)])
+def test_level_ground_under_a_low_sun_is_not_black(altitude, gray, folder, capfd):
+    """The picture is brighter, and says so; the numbers are the shadow's own."""
+    flat = pv.ImageData(dimensions=(9, 9, 1))
+    flat["height"] = np.zeros(flat.n_points)
+    flat.save("flat.vti")
+    asked = ("--light", f"315,{altitude}", "-o", "a.png", "-o", "a.vti", *SMALL)
+    code, out, _ = run(capfd, "relief", "flat.vti", *asked)
+    assert code == 0
+    assert ("white in the picture is t = 0.52" in out) == (altitude == 10)
+    np.testing.assert_allclose(pv.read("a.vti")["t"], np.sin(np.radians(altitude)), atol=1e-6)
+    picture = np.array(Image.open("a.png").convert("L"))
+    assert abs(int(picture[30, 45]) - 255 * gray) <= 1
 
 
 def test_report_stands_in_the_script_too(folder, capfd):

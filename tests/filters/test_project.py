@@ -511,6 +511,11 @@ def test_progress(torus, capsys):
     assert "project" in capsys.readouterr().err
 
 
+def test_a_mesh_without_places_is_told_where_they_come_from():
+    with pytest.raises(ValueError, match=r"positions: expected places .* vizlight\.manifold makes"):
+        vizlight.project(pv.Sphere())
+
+
 @pytest.mark.parametrize(
     ("options", "error", "words"),
     [

@@ -9,7 +9,8 @@ import pyvista as pv
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View
-from vizlight.filters.tint import tint, unlit_colors
+from vizlight.filters.tint import displayable, tint, unlit_colors
+from vizlight.shading import formulas
 
 VIEW = View(direction=(1, 0.3, 0.4))
 SCENE = Scene(lights=Light(direction=(1, 1, 1)), view=VIEW)
@@ -92,7 +93,7 @@ def test_colour_times_light(components):
     got = tint(lit, "height", cmap="viridis", clim=(-0.5, 0.5))["rgb"]
     colors = mpl.colormaps["viridis"]((mesh["height"] + 0.5).astype(float))[:, :3]
     light = (terms["ambient"] + terms["diffuse"])[:, None]
-    expected = np.clip(255 * (colors * light + terms["specular"][:, None]), 0, 255)
+    expected = 255 * displayable(colors * light + terms["specular"][:, None])
     # One step of the map, where Matplotlib and VTK round to different sides.
     assert np.abs(got - expected).max() < 3
     assert np.abs(got - expected).mean() < 0.6
@@ -116,7 +117,7 @@ def test_coloured_lights_and_cue_are_those_of_the_engine():
     painted = scene.replace(material=Material(color=own, specular_color=(0.9, 1, 0.8)))
     expected = vizlight.illuminate(mesh, painted)["rgb"]
     got = tint(vizlight.illuminate(mesh, scene), "same", cmap=["#3399cc"] * 2, clim=(-1, 1))["rgb"]
-    assert np.abs(got - 255 * np.clip(expected, 0, 1)).max() <= 0.5 + 1e-3
+    assert np.abs(got - 255 * displayable(expected)).max() <= 0.5 + 1e-3
 
 
 def test_conditioned_tangents_and_blocks():
@@ -220,3 +221,63 @@ def test_bad_input():
         tint(moved, "height")
     with pytest.raises(ValueError, match="expected the result of tint"):
         unlit_colors(vizlight.illuminate(mesh, SCENE, name="rgb"))
+
+
+def in_oklab(rgb):
+    """Return colours of sRGB, which may exceed 1, in the space Oklab of Ottosson (2020)."""
+    linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+    cones = linear @ np.transpose([
+        [0.4122214708, 0.5363325363, 0.0514459929],
+        [0.2119034982, 0.6806995451, 0.1073969566],
+        [0.0883024619, 0.2817188376, 0.6299787005],
+    ])  # fmt: skip
+    return np.cbrt(cones) @ np.transpose([
+        [0.2104542553, 0.7936177850, -0.0040720468],
+        [1.9779984951, -2.4285922050, 0.4505937099],
+        [0.0259040371, 0.7827717662, -0.8086757660],
+    ])  # fmt: skip
+
+
+def test_colours_above_white_keep_hue_and_luma(random):
+    rgb = random.uniform(0, 1.8, (4000, 3))
+    got = displayable(rgb)
+    inside = rgb.max(axis=1) <= 1
+    np.testing.assert_array_equal(got[inside], rgb[inside])
+    luma, white = rgb @ formulas.LUMA, rgb @ formulas.LUMA >= 1
+    np.testing.assert_array_equal(got[white], 1)
+    mixed = ~inside & ~white
+    np.testing.assert_allclose(got[mixed].max(axis=1), 1, atol=1e-12)
+    np.testing.assert_allclose((got @ formulas.LUMA)[mixed], luma[mixed], atol=1e-12)
+    hues = [rgb - rgb.mean(axis=1, keepdims=True) for rgb in (rgb[mixed], got[mixed])]
+    np.testing.assert_allclose(np.cross(*hues), 0, atol=1e-12)
+    assert np.all(np.einsum("ij,ij->i", *hues) >= 0)
+
+
+def test_hue_of_bright_colours_is_that_of_the_eye(random):
+    """The figures of the docstring: hue and lightness before and after, in Oklab."""
+    maps = ("viridis", "turbo", "coolwarm", "plasma")
+    names = ("tan", "orange", "tomato", "royalblue")
+    colors = [mpl.colormaps[name](random.uniform(0, 1, 2000))[:, :3] for name in maps]
+    colors += [np.tile(mpl.colors.to_rgb(name), (2000, 1)) for name in names]
+    rgb = np.concatenate(colors)
+    rgb = rgb * random.uniform(0.4, 1.4, (len(rgb), 1)) + random.uniform(0, 0.6, (len(rgb), 1))
+    rgb = rgb[rgb.max(axis=1) > 1]
+
+    def changes(shown):
+        a, b = in_oklab(rgb), in_oklab(shown)
+        hues = [x[:, 1] + 1j * x[:, 2] for x in (a, b)]
+        seen = np.minimum(*np.abs(hues)) > 0.03
+        degrees = np.degrees(np.abs(np.angle(hues[0] * np.conj(hues[1]))))[seen]
+        return degrees.mean(), np.abs(np.minimum(a[:, 0], 1) - b[:, 0]).mean()
+
+    ours, clipped = changes(displayable(rgb)), changes(np.clip(rgb, 0, 1))
+    scaled = changes(rgb / rgb.max(axis=1, keepdims=True))
+    stated = [(1.7, 0.012), (19, 0.034), (0.07, 0.115)]
+    np.testing.assert_allclose(np.array([ours, clipped, scaled]) / stated, 1, atol=0.3)
+
+
+def test_colours_to_bring_into_range_are_of_three_components():
+    with pytest.raises(ValueError, match=r"rgb: expected an array of shape"):
+        displayable([1.0, 2.0])
+    with pytest.raises(TypeError, match="rgb"):
+        displayable("red")

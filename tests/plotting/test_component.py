@@ -12,6 +12,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View
+from vizlight.filters import displayable
 from vizlight.geometry import manifolds
 from vizlight.geometry.lines import bundle
 from vizlight.plotting import component
@@ -117,7 +118,7 @@ def test_colours_and_cue_are_those_of_the_filter(plotter):
     plotter.vizlight.add_mesh(mesh, scene=scene, light="points")
     for _ in turned(plotter, 3):
         lit = vizlight.illuminate(mesh, seen_by(plotter, scene))
-        lit["rgb"] = np.clip(lit["rgb"], 0, 1)
+        lit["rgb"] = displayable(lit["rgb"])
         np.testing.assert_array_equal(picture(plotter), baked(lit, plotter.camera, "rgb"))
 
 

@@ -9,6 +9,7 @@ import sys
 import numpy as np
 import pytest
 import pyvista as pv
+from fields import swatches
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View
@@ -111,6 +112,43 @@ def test_colours_of_data_within_four(shape):
     # Colours are mapped in each fragment too, which is another rounding.
     assert error.max() <= 5
     assert error.mean() < 0.3
+
+
+BRIGHT = Material(ambient=0.4, diffuse=1.0, specular=0.5, shininess=3)
+
+
+@pytest.mark.parametrize("cmap", ["turbo", "coolwarm"])
+def test_colours_above_white_are_the_same_baked_and_live(cmap, tmp_path):
+    """One rule for light beyond white: tint, both kinds of live light, and pictures."""
+    mesh = swatches()
+    camera = vizlight.render.camera_on(mesh, (0, 0, 1))
+    camera.parallel_projection = True
+    scene = Scene(
+        lights=Light(direction=(0.3, 0.2, 1)), material=BRIGHT, view=View.from_camera(camera)
+    )
+    lit = vizlight.tint(vizlight.illuminate(mesh, scene), "value", cmap=cmap)
+    found = []
+    for light in ("fragments", "points"):
+        plotter = pv.Plotter(off_screen=True, window_size=(320, 240))
+        plotter.render_window.SetMultiSamples(0)
+        plotter.vizlight.add_mesh(
+            mesh, scene=scene, light=light, scalars="value", cmap=cmap, show_scalar_bar=False
+        )
+        found.append(shot(plotter, camera))
+        plotter.close()
+    path = vizlight.render.save_png(
+        lit, tmp_path / "lit.png", camera=camera, size=(320, 240), anti_aliasing=None,
+        background="white",
+    )  # fmt: skip
+    found.append(np.array(pv.read(path).active_scalars).reshape(240, 320, -1)[::-1, :, :3])
+    expected = lit["rgb"][::4].astype(int)
+    assert np.unique(expected[expected.max(axis=1) == 255], axis=0).shape[0] >= 10
+    for picture in found:
+        shown = np.unique(picture.reshape(-1, 3).astype(int), axis=0)
+        apart = np.abs(shown[:, None] - expected).max(axis=-1)
+        assert apart.min(axis=0).max() <= 1, "a colour of tint that is not shown"
+        known = apart.min(axis=1) <= 1
+        assert known.sum() >= len(shown) - 1, "a colour that tint does not have"
 
 
 @pytest.mark.filterwarnings("ignore:light='fragments'")
@@ -312,7 +350,7 @@ def test_each_backend_draws_the_light_in_fragments(backend):
     if not probe(backend).works:
         pytest.skip(probe(backend).detail)
     code = (
-        "import sys; sys.path.insert(0, 'tests/plotting')\n"
+        "import sys; sys.path[:0] = ['tests', 'tests/plotting']\n"
         "import test_fragments as t, numpy as np\n"
         "scene, options = t.SCENES['two in fog'], t.SURFACE['conditioned']\n"
         "a, b = t.pictures(t.torus(), scene, **options)\n"

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import pyvista as pv
+from fields import swatches
 
 import vizlight
 from vizlight import Light, Material, Scene, View
@@ -62,6 +63,20 @@ def test_colours_are_ambient_and_diffuse_light(tmp_path):
     moved = places + np.asarray(text["nodes"][1]["translation"])
     np.testing.assert_allclose(moved, ball.points, atol=1e-6)
     assert np.ptp(arrays[primitive["indices"]]) == ball.n_points - 1
+
+
+@pytest.mark.filterwarnings("ignore:lit.glb. ambient and diffuse light only")
+def test_colours_above_white_are_those_of_tint(tmp_path):
+    mesh = swatches()
+    material = Material(ambient=0.4, diffuse=1.2, specular=0)
+    lamp = Light(direction=(0.3, 0.2, 1))
+    scene = Scene(lights=lamp, material=material, view=View(direction=(0, 0, 1)))
+    path = vizlight.save_gltf(mesh, scene, tmp_path / "lit.glb", scalars="value", cmap="turbo")
+    text, arrays = content(path)
+    colors = arrays[text["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"]]
+    lit = vizlight.tint(vizlight.illuminate(mesh, scene), "value", cmap="turbo")
+    assert (lit["rgb"].max(axis=1) == 255).sum() > 40
+    np.testing.assert_allclose(255 * seen(colors), lit["rgb"], atol=1.01)
 
 
 def test_a_lit_mesh_is_written_by_its_record_and_colours_of_data_count(tmp_path):

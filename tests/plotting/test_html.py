@@ -15,6 +15,7 @@ from importlib import resources
 import numpy as np
 import pytest
 import pyvista as pv
+from fields import swatches
 from PIL import Image
 
 import vizlight
@@ -30,7 +31,7 @@ MISSING = [name for name in ("playwright",) if importlib.util.find_spec(name) is
 MISSING += [] if CHROMIUM else ["chromium"]
 needs_browser = pytest.mark.skipif(bool(MISSING), reason=f"needs {', '.join(MISSING)}")
 #: sha256 of the viewer; CONTRIBUTING says how it is made again.
-VIEWER = "6dbffd6ee1f8b8558919e43136d23f94a60b14e164f2fa41d1d03b1e6ae2c3d8"
+VIEWER = "06372e1228f2b045a136855ae6235027dcab52e12199f0aaaca54def9050aca6"
 SIZE = {"width": 300, "height": 250}
 FAR = Light(direction=(1, 0.9, 0.5), intensity=0.8)
 NEAR = Light(position=(3, 4, 5), intensity=0.5, attenuation=(0.5, 0.1, 0.01), color=(1, 0.8, 0.5))
@@ -39,12 +40,12 @@ CUE = DepthCue(back_scale=0.3, cue=0.1, color=(0.3, 0.4, 1.0))
 
 def torus(centre=(0.0, 0.0, 0.0)):
     """Return a surface in float64 with a field of tangents."""
-    angles = np.linspace(0, 2 * np.pi, 181)
+    angles = np.linspace(0, 2 * np.pi, 151)
     u, v = (np.ravel(x) for x in np.meshgrid(angles, angles, indexing="ij"))
     ring = 1 + 0.4 * np.cos(v)
     rows = np.stack([ring * np.cos(u), ring * np.sin(u), 0.4 * np.sin(v)], 1) + centre
     grid = pv.StructuredGrid()
-    grid.points, grid.dimensions = rows, (181, 181, 1)
+    grid.points, grid.dimensions = rows, (151, 151, 1)
     mesh = grid.extract_surface(algorithm=None)
     mesh["n"] = np.stack([np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)], 1)
     mesh["around"] = np.stack([-np.sin(u), np.cos(u), 0 * u], 1)
@@ -209,6 +210,62 @@ def test_page_has_the_light_of_the_engine_before_and_after_turning(case, browser
 
 
 @needs_browser
+def test_colours_above_white_are_those_of_tint(browser, tmp_path):
+    mesh = swatches()
+    camera = vizlight.render.camera_on(mesh, (0, 0, 1))
+    camera.parallel_projection = True
+    bright = Material(ambient=0.4, diffuse=1.0, specular=0.5, shininess=3)
+    scene = Scene(lights=Light(direction=(0.3, 0.2, 1)), material=bright)
+    path = vizlight.live_html(
+        mesh, scene, tmp_path / "live.html", camera=camera, background="black", panel=False,
+        scalars="value", cmap="turbo",
+    )  # fmt: skip
+    page, _ = opened(browser, path)
+    shown = np.unique(shot(page).reshape(-1, 3), axis=0)
+    page.close()
+    seen = scene.replace(view=View.from_camera(camera))
+    lit = vizlight.tint(vizlight.illuminate(mesh, seen), "value", cmap="turbo")
+    expected = lit["rgb"][::4].astype(int)
+    apart = np.abs(shown[:, None] - expected).max(axis=-1)
+    assert (expected.max(axis=1) == 255).sum() > 20
+    assert apart.min(axis=0).max() <= 1
+
+
+@needs_browser
+def test_the_page_reads_the_numbers_that_were_packed(browser, tmp_path):
+    """Places to the rounding of float32, cells to the bit, and no place for what is not finite."""
+    mesh = pv.Sphere(theta_resolution=20, phi_resolution=20)
+    mesh["n"] = 2 * np.asarray(mesh.points)
+    mesh = mesh.translate((3.0, -2.0, 1.0))
+    mesh.points[7] = (np.nan, 1, 2)
+    mesh.points[9] = (0, np.inf, 2)
+    camera = first_camera((3.0, -2.0, 1.0))
+    path = vizlight.live_html(
+        mesh, Scene(lights=FAR), tmp_path / "a.html", normals="n", camera=camera
+    )
+    page, _ = opened(browser, path)
+    read = """() => {
+        const data = vizlight.meshes[0].mapper.getInputData();
+        const given = data.getPointData().getArrayByName("vizNormal").getData();
+        const numbers = (list) => Array.from(list, (x) => (Number.isNaN(x) ? null : x));
+        return [vizlight.meshes[0].points, data.getPolys().getData(), given].map(numbers);
+    }"""
+    points, cells, normals = page.evaluate(read)
+    page.close()
+    places = np.array(points, dtype=float).reshape(-1, 3)
+    expected = np.asarray(mesh.points, dtype=float) - camera.focal_point
+    lost = ~np.all(np.isfinite(expected), axis=1)
+    np.testing.assert_array_equal(np.flatnonzero(lost), [7, 9])
+    np.testing.assert_array_equal(np.isnan(places).all(axis=1), lost)
+    assert np.abs(places - expected)[~lost].max() <= 2.0**-23 * np.abs(expected[~lost]).max()
+    np.testing.assert_array_equal(cells, mesh.faces)
+    rows = np.reshape(normals, (-1, 3))
+    # Their length says how far they may lean away from the eye.
+    rows = rows / np.linalg.norm(rows, axis=1, keepdims=True)
+    assert np.abs(rows - mesh["n"]).max() < 5e-5
+
+
+@needs_browser
 def test_page_has_the_picture_of_the_plotter(browser, tmp_path):
     mesh, scene = torus(), Scene(lights=[FAR, NEAR])
     plotter = pv.Plotter(off_screen=True, window_size=list(SIZE.values()))
@@ -318,6 +375,30 @@ def test_several_meshes_can_be_switched_off_each(browser, tmp_path):
         seen.append(shot(page))
         assert np.abs(seen[-1] - every).max() > 30
     assert seen[-1].max() == 0
+    page.close()
+
+
+@needs_browser
+def test_many_meshes_stand_in_a_closed_list_after_the_sliders(browser, tmp_path):
+    many = pv.MultiBlock({f"ball {i}": pv.Sphere(radius=0.1, center=(i, 0, 0)) for i in range(40)})
+    path = vizlight.live_html(many, Scene(lights=FAR), tmp_path / "a.html", background="black")
+    page, _ = opened(browser, path)
+    opened_panel(page)
+    meshes = page.locator("details.meshes")
+    assert not meshes.evaluate("(list) => list.open")
+    above = page.locator("#panel input[type=range]").last.bounding_box()
+    assert meshes.bounding_box()["y"] > above["y"]
+    page.locator(".meshes summary").focus()
+    page.keyboard.press("Enter")
+    box = page.locator(".meshes div").bounding_box()
+    assert box["height"] <= 0.4 * SIZE["height"] + 1
+    page.get_by_label("ball 7", exact=True).uncheck()
+    every = page.get_by_label("all", exact=True)
+    assert every.evaluate("(box) => box.indeterminate")
+    every.check()
+    assert shot(page).max() > 30
+    every.uncheck()
+    assert shot(page).max() == 0
     page.close()
 
 

@@ -104,16 +104,18 @@ def test_highlight_follows_a_drag_in_the_browser(tmp_path):
             page = browser.new_page(viewport={"width": 500, "height": 450})
             page.goto(url)
             for turn in range(2):
-                for _ in range(60):
-                    page.wait_for_timeout(500)
+                picture, still = None, 0
+                for _ in range(300):
+                    page.wait_for_timeout(100)
                     page.screenshot(path=tmp_path / "page.png")
+                    last = picture
                     picture = np.array(Image.open(tmp_path / "page.png").convert("RGB"))[70:]
                     # The page fades in; a ball has its highlight and, once turned, another one.
-                    if picture.max() > 200 and (not turn or np.any(picture != shots[0])):
+                    good = picture.max() > 200 and (not turn or np.any(picture != shots[0]))
+                    still = still + 1 if good and np.array_equal(picture, last) else 0
+                    if still == 4:
                         break
-                page.wait_for_timeout(1000)
-                page.screenshot(path=tmp_path / "page.png")
-                shots.append(np.array(Image.open(tmp_path / "page.png").convert("RGB"))[70:])
+                shots.append(picture)
                 if not turn:
                     page.mouse.move(200, 200)
                     page.mouse.down()

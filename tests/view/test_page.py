@@ -205,12 +205,11 @@ def browser():
 
 
 def opened(browser, address):
-    """Open the page and wait for the picture."""
+    """Open the page and wait for its controls."""
     page = browser.new_page(viewport={"width": 760, "height": 900})
     page.set_default_timeout(LIMIT)
     page.goto(address)
     page.wait_for_selector("text=Copy as Python")
-    settled(page, lambda picture: picture.std() > 10)
     return page
 
 
@@ -223,16 +222,16 @@ def seen(page):
 
 
 def settled(page, good):
-    """Return the picture once nothing is computed, it is good and it stays for a second."""
+    """Return the picture once nothing is computed, it is good and it stays."""
     last, still = None, 0
-    for _ in range(LIMIT // 250):
+    for _ in range(LIMIT // 100):
         picture = seen(page)
         same = last is not None and np.abs(picture - last).mean() < 0.2
         still = still + 1 if same and page.locator(".busy").count() == 0 else 0
         if still >= 4 and good(picture):
             return picture
         last = picture
-        page.wait_for_timeout(250)
+        page.wait_for_timeout(100)
     raise AssertionError("the picture does not settle")
 
 
@@ -284,6 +283,8 @@ def test_tuning_by_eye(browser, address, tmp_path):
     page.locator(".number-level input").fill("1e9")
     page.locator(".number-level input").press("Enter")
     page.wait_for_selector(".notice >> text=level: expected a value between")
+    controls, notice = (page.locator(x).bounding_box() for x in ("nav", ".notice"))
+    assert notice["x"] >= controls["x"] + controls["width"]
     page.locator(".notice button").click()
     page.mouse.move(600, 500)
     page.mouse.down()

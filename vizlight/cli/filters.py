@@ -5,10 +5,13 @@ from __future__ import annotations
 from pathlib import Path  # noqa: TC003 - cyclopts reads the annotations
 from typing import TYPE_CHECKING, Annotated
 
+import numpy as np
+
 import vizlight
 from vizlight.cli import options, scenes
 from vizlight.cli.arguments import COMMON, LIT, OUTPUT, Color, Common, Part, Shape
 from vizlight.cli.job import Job, carry_out
+from vizlight.cli.output import say
 from vizlight.cli.script import Step
 from vizlight.filters.fur import LENGTH, FurOptions
 from vizlight.filters.isoluminance import ContourOptions
@@ -17,9 +20,12 @@ from vizlight.filters.relief_shadow import ReliefOptions
 from vizlight.filters.streamlines import StreamlineOptions
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import pyvista as pv
 
     from vizlight.cli.arguments import Output
+    from vizlight.scene import Light
 
 #: Option of ``project`` that the lights have the name of.
 RENAMED = {"light": "when"}
@@ -101,15 +107,28 @@ def relief(
         heights = None if found is None else _heights(found, asked)
         raised = mesh if heights is None else Step("raised", "files.warped", mesh, *heights)
         camera = look.camera(raised, is_map=found is not None)
-        lit = _step("shaded", "relief_shadow", mesh, look.scene(camera), on | given, common.out)
+        scene = look.scene(camera)
+        lit = _step("shaded", "relief_shadow", mesh, scene, on | given, common.out)
         shown = None if heights is None else Step("shown", "files.warped", lit, *heights)
         made = Job(lit, asked.name, look, camera, shown=shown, scalars=asked.name, before=mesh)
         made.suffix = ".vtp" if found is None else _suffix(found)
         if asked.lit:
             made.scalars = "rgb" if look.colored else "luminance"
+        elif found is not None and (white := 3 * _level_light(scene.run().lights)) < 1:
+            made.clim = (0.0, round(white, 3))
+            made.explain = lambda _: say(
+                f"note     white in the picture is t = {white:.2f}, 3 times that of level ground"
+            )
         return made
 
     return carry_out(files, job, common.out, "relief")
+
+
+def _level_light(lights: Sequence[Light]) -> float:
+    """Return the sine of the altitude of the highest light at infinity; 1 without one above."""
+    ways = [np.asarray(light.direction) for light in lights if light.direction is not None]
+    sines = [float(way[2] / np.linalg.norm(way)) for way in ways]
+    return max((sine for sine in sines if sine > 0), default=1.0)
 
 
 @options.takes(vizlight.fur, "Fur")

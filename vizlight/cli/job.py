@@ -60,6 +60,8 @@ class Job:
         Format of the mesh where none is given, none to write only a picture.
     color
         Array and colour map of that mesh.
+    clim
+        Values that are black and white in the picture. Default: 0 and 1.
     hint
         Message about what else may have been meant.
     explain
@@ -77,6 +79,7 @@ class Job:
     parts: Sequence[str] = ()
     suffix: str = ".vtp"
     color: Color | None = None
+    clim: tuple[float, float] | None = None
     hint: Callable[[], str] = lambda: ""
     explain: Callable[[pv.DataSet], None] | None = None
     meshes: list[tuple[Step, Path]] = field(default_factory=list)
@@ -193,6 +196,7 @@ def _picture(job: Job, path: Path, out: Output) -> Step:
         "background": out.background,
         "line_width": None if out.line_width == 1 else out.line_width,
         "backend": out.backend,
+        "clim": job.clim,
     }
     return Step(
         "",

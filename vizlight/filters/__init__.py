@@ -14,6 +14,7 @@ from vizlight.filters.relief_shadow import relief_shadow
 from vizlight.filters.satin import satin
 from vizlight.filters.solids import to_polydata
 from vizlight.filters.streamlines import streamlines
+from vizlight.filters.tint import displayable as displayable
 from vizlight.filters.tint import tint
 from vizlight.filters.tint import unlit_colors as unlit_colors
 from vizlight.mesh.records import provenance

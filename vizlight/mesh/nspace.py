@@ -94,6 +94,13 @@ class Turning:
 
     def _arrays(self, mesh: pv.DataSet) -> dict[str, Array]:
         """Check the arrays that are rotated, and return them by name."""
+        if self.positions == POSITION and POSITION not in mesh.point_data:
+            got = f"a mesh without the point array {POSITION!r}"
+            remedy = (
+                "vizlight.manifold makes a mesh of a manifold in n-space; of your own, attach the "
+                "places as a point array of n components and pass positions="
+            )
+            raise ValueError(_check.message("positions", "places in n-space", got, remedy))
         position = _named(mesh, "positions", self.positions)
         n = position.shape[1]
         if n < 2:

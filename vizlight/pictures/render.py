@@ -11,7 +11,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.files import check_output, replace_file
-from vizlight.filters.tint import RGB, unlit_colors
+from vizlight.filters.tint import RGB, displayable, unlit_colors
 from vizlight.mesh import records
 from vizlight.mesh.blocks import all_blocks, check
 from vizlight.mesh.polylines import backdrop
@@ -218,7 +218,9 @@ def make_plotter(
             lit = light == "auto" and plain
             _draw(plotter, panel, cmap, clim, lines, camera, fragments=lit)
             if panel.title:
-                plotter.add_text(panel.title, position="upper_edge", font_size=10, color=ink)
+                text = plotter.add_text(panel.title, position="upper_edge", font_size=10, color=ink)
+                # VTK sets it so near to the edge that letters touch it.
+                text.GetTextProperty().SetLineOffset(8)
             plotter.camera = camera.copy()  # type: ignore[no-untyped-call]
             plotter.reset_camera_clipping_range()
         if bar:
@@ -420,7 +422,7 @@ def _draw(
         colour = values.ndim == 2
         if colour and values.dtype != np.uint8:
             # VTK wraps around above 1, so a bright highlight would turn black.
-            values = np.clip(values, 0, 1)
+            values = np.column_stack([displayable(values[:, :3]), np.clip(values[:, 3:], 0, 1)])
         actor = plotter.add_mesh(
             shown,
             scalars=values,

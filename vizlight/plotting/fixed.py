@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vizlight.filters.tint import light_factors
+from vizlight.filters.tint import displayable, light_factors
 from vizlight.reading.normals import piece_numbers
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def lit_colors(colors: Array, factors: Array, rest: Array | float = 0.0) -> NDAr
     """
     rows = np.broadcast_to(colors, (len(factors), np.shape(colors)[-1]))
     found = np.full((len(factors), 4), 255, np.uint8)
-    found[:, :3] = np.clip(255.0 * (rows[:, :3] * factors + rest) + 0.5, 0, 255)
+    found[:, :3] = displayable(255.0 * (rows[:, :3] * factors + rest), white=255.0) + 0.5
     if rows.shape[1] == 4:
         found[:, 3] = np.clip(255.0 * rows[:, 3] + 0.5, 0, 255)
     return found

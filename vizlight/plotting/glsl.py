@@ -192,6 +192,7 @@ def fragment(plan: Plan, *, turned: bool = False) -> tuple[str, str]:
     w.add("vec3 vizColor = vizAmbientGain * ambientColor + vizSpecularGain * vizSpecular;")
     w.add("vizColor += vizDiffuseGain * diffuseColor * vizDiffuse;")
     _cue(w, plan)
+    _in_range(w)
     plain = all(is_plain(highlight.shininess) for highlight in plan.highlights)
     return functions(w.used, plain=plain and plan.exponent > 0), "\n".join(w.lines)
 
@@ -269,3 +270,13 @@ def _cue(w: _Writer, plan: Plan) -> None:
     w.add(f"float vizKept = {w.call(name, 'vizDepth', *ends)};")
     channels = [w.call("depth_cue", f"vizColor.{c}", "vizKept", f"vizCue.{c}") for c in "rgb"]
     w.add(f"vizColor = vec3({', '.join(channels)});")
+
+
+def _in_range(w: _Writer) -> None:
+    """Bring a colour with a channel above 1 into the range that a screen shows."""
+    w.add("float vizMost = max(max(vizColor.r, vizColor.g), vizColor.b);")
+    w.add("if (vizMost > 1.0) {")
+    w.add(f"  float vizLuma = dot(vizColor, {vector(formulas.LUMA)});")
+    kept = w.call("saturation_kept", "vizLuma", "vizMost")
+    w.add(f"  vizColor = mix(vec3(min(vizLuma, 1.0)), vizColor, {kept});")
+    w.add("}")

@@ -100,7 +100,7 @@ class Page:
         matrix: Array = np.asarray(pv.array_from_vtkmatrix(actor.GetMatrix()), np.float64)
         with np.errstate(invalid="ignore", over="ignore"):  # points that are not finite
             points = np.asarray(surface.points, dtype=np.float64) @ matrix[:3, :3].T
-            made["points"] = _packed(points + matrix[:3, 3] - self.origin, "f4")
+            made["points"] = _places(points + matrix[:3, 3] - self.origin)
         for key, name in _CELLS.items():
             cells = np.asarray(getattr(surface, name))
             if len(cells):
@@ -243,10 +243,37 @@ def _ended(cue: DepthCue | None) -> DepthCue | None:
 
 
 def _packed(values: NDArray[np.generic], kind: str) -> dict[str, object]:
-    """Return numbers, compressed and as text."""
-    with np.errstate(over="ignore"):  # coordinates beyond float32
-        data = zlib.compress(np.ascontiguousarray(values, f"<{kind}").tobytes(), 6)
-    return {"data": base64.b64encode(data).decode(), "kind": kind}
+    """Return whole numbers, compressed and as text.
+
+    Of numbers of several bytes, differences from row to row are kept, and of signed ones those of
+    the differences, with the sign in the last bit and bytes of equal rank together. This compresses
+    to about half.
+    """
+    rows = np.ascontiguousarray(values, f"<{kind}")
+    made: dict[str, object] = {"kind": kind}
+    data = rows.tobytes()
+    if rows.itemsize > 1:
+        columns, order = 1 if rows.ndim == 1 else rows.shape[1], 2 if rows.dtype.kind == "i" else 1
+        signed = np.dtype(f"<i{rows.itemsize}")
+        steps = rows.view(signed).reshape(-1, columns)
+        for _ in range(order):
+            steps = np.diff(steps, axis=0, prepend=signed.type(0))
+        folded = np.ascontiguousarray(((steps << 1) ^ (steps >> (8 * rows.itemsize - 1))).T)
+        data = folded.view(np.uint8).reshape(-1, rows.itemsize).T.tobytes()
+        made |= {"columns": columns, "order": order}
+    return made | {"data": base64.b64encode(zlib.compress(data, 9)).decode()}
+
+
+def _places(points: Array) -> dict[str, object]:
+    """Return points as multiples of the rounding of float32 at the farthest of them.
+
+    Coordinates that are not finite in float32 become the least number, which the viewer takes for
+    NaN: cells with them are not drawn.
+    """
+    good = np.abs(points) < 1e38
+    scale = float(np.abs(points[good]).max(initial=0.0) or 1.0) / (1 << 23)
+    whole = np.rint(np.where(good, points, 0.0) / scale)
+    return _packed(np.where(good, whole, -(2.0**31)), "i4") | {"scale": scale}
 
 
 def _directions(rows: Array, linear: Array) -> dict[str, object]:

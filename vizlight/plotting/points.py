@@ -9,7 +9,7 @@ import numpy as np
 
 from vizlight import _check
 from vizlight.filters import lighting
-from vizlight.filters.tint import light_factors, map_colors, times_light
+from vizlight.filters.tint import displayable, light_factors, map_colors, times_light
 from vizlight.mesh import point_arrays
 from vizlight.plotting import strokes
 from vizlight.plotting.live import COLORS, LUMINANCE, NORMALS
@@ -111,7 +111,7 @@ class Points:
             if rgb is None:
                 rgb = np.repeat(shading.luminance[:, np.newaxis], 3, axis=1)
             # VTK wraps around above 1, so a bright highlight would turn black.
-            _write(live.drawn, COLORS, np.clip(rgb, 0, 1))
+            _write(live.drawn, COLORS, displayable(rgb))
         else:
             _write(live.drawn, LUMINANCE, shading.luminance)
 

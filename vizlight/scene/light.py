@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from vizlight import _check
 from vizlight.model import falloff
+from vizlight.scene.keywords import keywords_only
 from vizlight.scene.view import View
 
 if TYPE_CHECKING:
@@ -69,6 +70,7 @@ class Light:
             parts.append(f"attenuation={self.attenuation}")
         return f"Light{'.headlight' if self.follows_view else ''}({', '.join(parts)})"
 
+    @keywords_only
     def __init__(
         self,
         *,

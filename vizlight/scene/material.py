@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from vizlight import _check
 from vizlight.scene import vtk
+from vizlight.scene.keywords import keywords_only
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -46,6 +47,7 @@ class Material:
     color: Color | None
     specular_color: Color | None
 
+    @keywords_only
     def __init__(
         self,
         *,

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from vizlight import _check
+from vizlight.scene.keywords import keywords_only
 
 if TYPE_CHECKING:
     from typing import TypeGuard
@@ -44,6 +45,7 @@ class View:
     direction: Vector | None
     parallel: bool
 
+    @keywords_only
     def __init__(
         self,
         *,
@@ -140,6 +142,7 @@ class DepthCue:
     color: Color | None
     smooth: bool
 
+    @keywords_only
     def __init__(
         self,
         *,

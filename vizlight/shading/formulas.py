@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 #: Names that each language gives: ``power`` is one of them, see below.
 PRIMITIVES = ("absolute", "arctan2", "exp", "maximum", "minimum", "power", "where")
+#: Shares of red, green and blue in the luma of a colour (Rec. ITU-R BT.709).
+LUMA = (0.2126, 0.7152, 0.0722)
 
 
 def power(x: Number, deficit: Number, exponent: Number) -> Number:
@@ -199,3 +201,13 @@ def luminance(
 ) -> Number:
     """Return the ambient term and the two others, each summed over the lights."""
     return ambient + (kd * diffuse_light + ks * specular_light)
+
+
+def saturation_kept(luma: Number, largest: Number) -> Number:
+    """Return the share of a colour in its mix with the gray of its luma, so that it can be shown.
+
+    It is 1 for colours whose largest channel is at most 1, and 0 from a luma of 1 on, which is
+    white; between them the mix has a largest channel of 1, and hue (of HSV) and luma stay.
+    """
+    share = (1.0 - luma) / where(largest > luma, largest - luma, 1.0)
+    return where(largest > 1.0, maximum(share, 0.0), 1.0)

@@ -339,6 +339,13 @@ def _is_auto(value: object) -> bool:
     return isinstance(value, str) and value == "auto"
 
 
+#: A highlight needs an eye, which only the picture knows, so filters have no default scene.
+NO_SCENE = (
+    "pass Scene(view=View(direction=(1, 1, 1))), lit by a headlight, or show the mesh by "
+    "mesh.vizlight.plot(), which takes lights and eye from its window"
+)
+
+
 def documented(kind: type) -> dict[str, str]:
     """Return the description of each field of an options class, those of its own first."""
     found: dict[str, str] = {}
@@ -383,6 +390,8 @@ def accepts(
         known = [*(p.name for p in own), *texts]
         aliases = renamed or {}
 
+        places = [p.name for p in own if p.default is p.empty and p.kind is not p.KEYWORD_ONLY]
+        scene = places.index("scene") if "scene" in places else None
         required = {name for name in texts if fields[name].default is dataclasses.MISSING}
 
         @functools.wraps(function)
@@ -401,6 +410,8 @@ def accepts(
                 if name not in known:
                     owner = function.__qualname__.removesuffix(".__init__")
                     raise TypeError(unknown_option(owner.rpartition(".")[2], name, known))
+            if scene is not None and not _is_given(scene, arguments, keywords):
+                raise TypeError(_check.message("scene", "a vizlight.Scene", None, NO_SCENE))
             for name in required - keywords.keys():
                 raise TypeError(_check.message(name, f"a value for {function.__name__}", "none"))
             return function(*arguments, **keywords)
@@ -423,6 +434,12 @@ def accepts(
         return method
 
     return decorate
+
+
+def _is_given(place: int, arguments: tuple[object, ...], keywords: Mapping[str, object]) -> bool:
+    """Return whether there is a scene, as a positional argument or as a keyword."""
+    given = arguments[place] if len(arguments) > place else keywords.get("scene")
+    return given is not None
 
 
 def _doc(function: Callable[..., object]) -> str:

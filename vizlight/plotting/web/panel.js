@@ -1,4 +1,4 @@
-// The panel of the page: sliders for light and material, a checkbox for each mesh, buttons.
+// The panel of the page: sliders for light and material, buttons, a checkbox for each mesh.
 
 const degrees = (x) => (x * 180) / Math.PI;
 
@@ -109,17 +109,42 @@ function materialControls(app, shown) {
   return [element('fieldset', {}, element('legend', { textContent: 'Material' }), ...sliders.map((one) => one.row))];
 }
 
+const FEW = 6;
+
 function meshControls(app) {
   if (app.meshes.length < 2) return [];
-  const rows = app.meshes.map((mesh) => {
+  const boxes = app.meshes.map((mesh) => {
     const box = element('input', { type: 'checkbox', checked: true });
     box.addEventListener('change', () => {
       mesh.actor.setVisibility(box.checked);
+      show();
       app.render();
     });
-    return element('label', { className: 'check' }, box, mesh.name);
+    return box;
   });
-  return [element('fieldset', {}, element('legend', { textContent: 'Meshes' }), ...rows)];
+  const every = element('input', { type: 'checkbox', checked: true });
+  const show = () => {
+    const on = boxes.filter((box) => box.checked).length;
+    every.checked = on === boxes.length;
+    every.indeterminate = on > 0 && !every.checked;
+  };
+  every.addEventListener('change', () => {
+    boxes.forEach((box, i) => {
+      box.checked = every.checked;
+      app.meshes[i].actor.setVisibility(every.checked);
+    });
+    app.render();
+  });
+  const row = (box, name) => element('label', { className: 'check' }, box, name);
+  const rows = boxes.map((box, i) => row(box, app.meshes[i].name));
+  // Few meshes are in sight at once; many open on demand, in a list that scrolls by itself.
+  return [element(
+    'details',
+    { className: 'meshes', open: boxes.length <= FEW },
+    element('summary', { textContent: `Meshes (${boxes.length})` }),
+    ...(boxes.length > FEW ? [row(every, 'all')] : []),
+    element('div', { role: 'group', ariaLabel: 'Meshes' }, ...rows),
+  )];
 }
 
 async function save(app) {
@@ -144,7 +169,6 @@ export function buildPanel(app) {
   const panel = document.getElementById('panel');
   if (window.innerWidth < 600) panel.parentElement.open = false;
   panel.append(
-    ...meshControls(app),
     ...lightControls(app, shown),
     ...materialControls(app, shown),
     element(
@@ -154,6 +178,7 @@ export function buildPanel(app) {
       button('Reset view', app.resetView),
       button('Save picture', () => save(app)),
     ),
+    ...meshControls(app),
   );
   show();
 }

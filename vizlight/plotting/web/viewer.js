@@ -16,14 +16,37 @@ import vtkRenderer from '@kitware/vtk.js/Rendering/Core/Renderer';
 import { unzlibSync } from 'fflate';
 import { buildPanel, buildScalarBars } from './panel.js';
 
-const KINDS = { f4: Float32Array, i2: Int16Array, u1: Uint8Array, u4: Uint32Array };
+// What stands for a coordinate that is not a number.
+const NOT_FINITE = -(2 ** 31);
+const KINDS = { i2: Int16Array, i4: Int32Array, u1: Uint8Array, u4: Uint32Array };
 
-function unpack({ data, kind, scale }) {
+// Numbers of several bytes come as differences from row to row (order 1) or as those of the
+// differences (order 2), with the sign in the last bit, bytes of equal rank together.
+function rowsOf(bytes, size, columns, order) {
+  const count = bytes.length / size;
+  const rows = count / columns;
+  const found = new (size === 4 ? Uint32Array : Uint16Array)(count);
+  for (let c = 0; c < columns; c += 1) {
+    let step = 0;
+    let value = 0;
+    for (let r = 0; r < rows; r += 1) {
+      let folded = 0;
+      for (let b = 0; b < size; b += 1) folded |= bytes[b * count + c * rows + r] << (8 * b);
+      const change = (folded >>> 1) ^ -(folded & 1);
+      step = order === 2 ? step + change : change;
+      value = (value + step) | 0;
+      found[r * columns + c] = value;
+    }
+  }
+  return found.buffer;
+}
+
+function unpack({ data, kind, columns, order, scale }) {
   const text = atob(data);
   const packed = Uint8Array.from(text, (c) => c.charCodeAt(0));
   const bytes = unzlibSync(packed);
-  const values = new KINDS[kind](bytes.buffer, bytes.byteOffset, bytes.byteLength / KINDS[kind].BYTES_PER_ELEMENT);
-  return scale ? Float32Array.from(values, (x) => x * scale) : values;
+  const values = columns ? new KINDS[kind](rowsOf(bytes, KINDS[kind].BYTES_PER_ELEMENT, columns, order)) : bytes;
+  return scale ? Float32Array.from(values, (x) => (x === NOT_FINITE ? NaN : x * scale)) : values;
 }
 
 function array(name, packed, numberOfComponents) {

@@ -1,0 +1,32 @@
+"""Records that take keywords alone say which, and which of them was meant."""
+
+from __future__ import annotations
+
+import inspect
+
+import pytest
+
+from vizlight import DepthCue, Light, Material, Scene, View
+
+RECORDS = {
+    Material: ("spec", "specular"),
+    Light: ("dir", "direction"),
+    Scene: ("light", "lights"),
+    View: ("pos", "position"),
+    DepthCue: ("colour", "color"),
+}
+
+
+@pytest.mark.parametrize("record", RECORDS)
+def test_an_unknown_keyword_is_answered_by_the_known_ones(record):
+    wrong, right = RECORDS[record]
+    with pytest.raises(TypeError, match=f"got {wrong}=; did you mean {right}=") as error:
+        record(**{wrong: 1})
+    assert all(name in str(error.value) for name in inspect.signature(record).parameters)
+    with pytest.raises(TypeError, match=r"got zzz=$"):
+        record(zzz=1)
+
+
+def test_values_without_a_name_are_refused():
+    with pytest.raises(TypeError, match=r"Scene: .* got Light\(.*; name it, as in Scene\(lights="):
+        Scene(Light(direction=(1, 1, 1)))
