@@ -52,7 +52,7 @@ CODE = """
     vizlight.illuminate(small.contour([300.0], scalars="s"), scene, threads=1)  # all is imported
     used = int(re.search(r"VmData:\\s+(\\d+)", Path("/proc/self/status").read_text())[1]) * 1024
     resource.setrlimit(resource.RLIMIT_DATA, (used + %d * 10**6,) * 2)
-    for kind in ("slabs", "vti", "vtkhdf", "surfaces"):
+    for kind in %s:
         child = os.fork()
         if not child:
             try:
@@ -84,6 +84,9 @@ def test_pieces_fit_where_the_whole_does_not(tmp_path):
     hdf.SetInputDataObject(grid)
     hdf.SetFileName(str(tmp_path / "grid.vtkhdf"))
     hdf.Write()
+    kinds = ["slabs", "vti", "vtkhdf", "surfaces"]
+    if pv.vtk_version_info < (9, 5):  # which writes no images
+        kinds.remove("vtkhdf")
     for i in range(SURFACES):
         plane = pv.Plane(center=(0, 0, i), i_resolution=WIDTH, j_resolution=WIDTH)
         plane.clear_data()
@@ -92,12 +95,10 @@ def test_pieces_fit_where_the_whole_does_not(tmp_path):
     # Dask leaves settings of the C library behind, which a process reads when it starts.
     kept = {name: value for name, value in os.environ.items() if not name.startswith("MALLOC_")}
     run = subprocess.run(
-        [sys.executable, "-c", textwrap.dedent(CODE % (SIDE, LIMIT))], cwd=tmp_path, env=kept,
+        [sys.executable, "-c", textwrap.dedent(CODE % (SIDE, LIMIT, kinds))], cwd=tmp_path, env=kept,
         capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert run.returncode == 0, run.stderr
     lines = [line.split() for line in run.stdout.splitlines()]
-    assert [(kind, fails) for kind, _, fails in lines] == [
-        (kind, "True") for kind in ("slabs", "vti", "vtkhdf", "surfaces")
-    ]
-    assert len({points for _, points, _ in lines[:3]}) == 1
+    assert [(kind, fails) for kind, _, fails in lines] == [(kind, "True") for kind in kinds]
+    assert len({points for kind, points, _ in lines if kind != "surfaces"}) == 1
