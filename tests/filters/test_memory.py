@@ -113,6 +113,10 @@ def surface(side):
     mesh.clear_data()
     return mesh
 
+def grid(*sides):
+    axes = np.meshgrid(*(np.linspace(0, 9, n, dtype=np.float32) for n in sides), indexing="ij")
+    return pv.StructuredGrid(*axes[:2], axes[2] + np.sin(axes[0]))
+
 scene = Scene(lights=Light(direction=(0.3, 0.2, 1)), view=View(direction=(0, 0, 1)))
 for small in (line(100, 10), surface(9)):
     vizlight.illuminate(small, scene, threads=1)
@@ -128,7 +132,14 @@ print((status("VmHWM") - before) / mesh.actual_memory_size)
 
 @pytest.mark.skipif(not Path("/proc/self/clear_refs").exists(), reason="Linux tells the peak")
 @pytest.mark.parametrize(
-    "make", ["line(2_000_000, 2_000_000)", "line(2_000_000, 10)", "surface(2000)"]
+    "make",
+    [
+        "line(2_000_000, 2_000_000)",
+        "line(2_000_000, 10)",
+        "surface(1300)",
+        "grid(1300, 1000, 1)",
+        "grid(300, 20, 300)",
+    ],
 )
 def test_light_takes_at_most_three_times_the_memory_of_the_mesh(make):
     code = PEAK.replace("{MAKE}", make)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import hashlib
 from typing import TYPE_CHECKING, Literal
 
@@ -178,14 +179,26 @@ def fingerprint(mesh: pv.DataSet) -> str | None:
     return digest.hexdigest()
 
 
+def _stay(mesh: pv.DataSet, normals: Sided) -> bool:
+    """Return whether normals are kept with a mesh of this kind and size."""
+    made = normals.computed and not normals.kept and normals.lean is not None
+    kind = isinstance(mesh, pv.PolyData | pv.UnstructuredGrid)
+    return made and kind and len(normals.vectors) >= FEWEST
+
+
+def to_keep(mesh: pv.DataSet, normals: Sided | None) -> Sided | None:
+    """Return normals, without those of the points where these do not stay with a mesh."""
+    if normals is None or _stay(mesh, normals):
+        return normals
+    return dataclasses.replace(normals, vectors=_NONE, lean=None, open=False)
+
+
 def keep(mesh: pv.DataSet, normals: Sided) -> None:
     """Attach normals that were computed to a mesh, with a digest of what they were computed from.
 
     Where the user has an array of that name nothing is attached, and nothing to a small mesh.
     """
-    if not normals.computed or normals.kept or normals.lean is None:
-        return
-    if len(normals.vectors) < FEWEST:
+    if not _stay(mesh, normals):
         return
     if point_data(mesh).HasArray(KEPT) and KEPT not in records.made(mesh, KEPT):
         return
