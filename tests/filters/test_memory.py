@@ -137,7 +137,7 @@ print((status("VmHWM") - before) / mesh.actual_memory_size)
         "line(2_000_000, 2_000_000)",
         "line(2_000_000, 10)",
         "surface(1300)",
-        "grid(1300, 1000, 1)",
+        "grid(1800, 1000, 1)",
         "grid(300, 20, 300)",
     ],
 )

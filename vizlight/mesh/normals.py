@@ -12,7 +12,16 @@ import pyvista as pv
 from vizlight import _check
 from vizlight._version import __version__
 from vizlight.mesh import point_arrays, records
-from vizlight.reading.cells import POLYDATA, as_numpy, has_faces, places, point_data
+from vizlight.reading.cells import (
+    POLYDATA,
+    as_numpy,
+    connectivity,
+    faces_only,
+    first_twins,
+    has_faces,
+    places,
+    point_data,
+)
 from vizlight.reading.normals import Sided, computed_normals, given_normals
 from vizlight.reading.orientation import MANY_SHARP, SHARP
 from vizlight.scene import View
@@ -22,7 +31,7 @@ if TYPE_CHECKING:
 
     from vtkmodules.vtkCommonDataModel import vtkCellArray
 
-    from vizlight._types import Array
+    from vizlight._types import Array, Indices
     from vizlight.scene import Scene
     from vizlight.shading.options import FeatureAngle, LightOptions
     from vizlight.shading.results import Record
@@ -31,6 +40,8 @@ if TYPE_CHECKING:
 
 #: Name under which a user's array keeps out of the way of VTK's.
 _OWN = "vizlight own"
+#: Name of a temporary point array of numbers.
+_NUMBERS = "vizlight numbers"
 #: Name of the point array in which normals that had to be computed stay with a result: three
 #: components of the normal, its lean, and 1 on an open piece.
 KEPT = "vizlight_normals"
@@ -103,10 +114,7 @@ def warn_of_idle(mesh: pv.DataSet, angle: FeatureAngle) -> None:
         return
     if mesh.point_data.active_normals is None or not has_faces(mesh):
         return
-    bare = pv.PolyData()
-    bare.SetPoints(mesh.GetPoints())
-    bare.SetPolys(mesh.GetPolys())
-    if split_edges(bare, angle).n_points > mesh.n_points:
+    if split_edges(pv.PolyData(faces_only(mesh)), angle).n_points > mesh.n_points:
         _check.warn(
             "feature_angle has no effect on normals that the mesh has, and sharp edges look round; "
             "clear them by mesh.point_data.active_normals_name = None"
@@ -128,12 +136,14 @@ def split_edges(mesh: pv.PolyData, angle: float | Literal["auto"]) -> pv.PolyDat
     own = mesh.copy(deep=False)
     if "Normals" in own.point_data:
         own.point_data[_OWN] = own.point_data.pop("Normals")
-    # VTK takes the faces of a mesh that has vertices or lines for others.
-    others = (mesh.n_verts or mesh.n_lines) and not mesh.n_strips
-    if others:
-        own.SetVerts(None)
-        own.SetLines(None)
-        own.cell_data.clear()
+    faces = faces_only(mesh)
+    again = faces.GetNumberOfPolys() < mesh.GetNumberOfPolys()
+    if again:
+        own.point_data[_NUMBERS] = np.arange(mesh.n_points)
+    own.SetVerts(None)
+    own.SetLines(None)
+    own.SetPolys(faces.GetPolys())
+    own.cell_data.clear()
     found: pv.PolyData = own.compute_normals(
         cell_normals=False,
         split_vertices=True,
@@ -145,16 +155,49 @@ def split_edges(mesh: pv.PolyData, angle: float | Literal["auto"]) -> pv.PolyDat
     if found.n_points == mesh.n_points:
         return mesh
     del found.point_data["Normals"]
-    if others:
-        # Points that were split stand behind those of the mesh.
-        found.SetVerts(mesh.GetVerts())
-        found.SetLines(mesh.GetLines())
-        found.cell_data.update(mesh.cell_data)
+    if again:
+        origin = np.asarray(found.point_data.pop(_NUMBERS))
+        found.SetPolys(_with_twins(mesh.GetPolys(), found.GetPolys(), origin))
+    # Points that were split stand behind those of the mesh.
+    found.SetVerts(mesh.GetVerts())
+    found.SetLines(mesh.GetLines())
+    _carry_cells(mesh, found)
     if _OWN in found.point_data:
         found.point_data["Normals"] = found.point_data.pop(_OWN)
         found.point_data.active_normals_name = None
     records.carry(mesh, found)
     return found
+
+
+def _with_twins(cells: vtkCellArray, split: vtkCellArray, origin: Indices) -> pv.CellArray:
+    """Return polygons at points that were split, given those that differ and maybe triangles.
+
+    ``origin`` has the point before the split of each point.
+    """
+    first = first_twins(cells)
+    assert first is not None
+    (ids, ends), (new, new_ends) = connectivity(cells), connectivity(split)
+    size, count = np.diff(ends), len(origin)
+    # The corner of a polygon is that of its first twin which was the same point.
+    corners = np.repeat(np.arange(len(new_ends) - 1), np.diff(new_ends)) * count + origin[new]
+    order = np.argsort(corners)
+    row = np.cumsum(first == np.arange(len(first)))[first] - 1
+    at = np.searchsorted(corners, np.repeat(row, size) * count + ids, sorter=order)
+    rest = int(np.count_nonzero(first == np.arange(len(first))))
+    more = new_ends[rest:]
+    return pv.CellArray.from_arrays(
+        np.concatenate([ends, ends[-1] + more[1:] - more[0]]),
+        np.concatenate([new[order[at]], new[more[0] :]]),
+    )
+
+
+def _carry_cells(mesh: pv.PolyData, split: pv.PolyData) -> None:
+    """Carry the cell arrays of a mesh to one whose strips are triangles."""
+    size = np.diff(connectivity(mesh.GetStrips())[1])
+    rows = np.repeat(np.arange(mesh.n_cells - len(size), mesh.n_cells), np.maximum(size - 2, 0))
+    rows = np.concatenate([np.arange(mesh.n_cells - len(size)), rows])
+    for key, array in mesh.cell_data.items():
+        split.cell_data[key] = np.asarray(array)[rows] if len(size) else array
 
 
 def fingerprint(mesh: pv.DataSet) -> str | None:

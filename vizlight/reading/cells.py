@@ -8,6 +8,7 @@ import numpy as np
 from vtkmodules.util import numpy_support
 from vtkmodules.vtkCommonCore import vtkDataArray, vtkStringArray, vtkUnsignedCharArray
 from vtkmodules.vtkCommonDataModel import (
+    vtkCellArray,
     vtkDataObject,
     vtkDataSet,
     vtkPointSet,
@@ -16,14 +17,14 @@ from vtkmodules.vtkCommonDataModel import (
 )
 from vtkmodules.vtkFiltersCore import vtkTriangleFilter
 
-from vizlight import _check
+from vizlight import _check, _pool
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
     from vtkmodules.vtkCommonCore import vtkAbstractArray, vtkPoints
-    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkFieldData, vtkPointData
+    from vtkmodules.vtkCommonDataModel import vtkFieldData, vtkPointData
 
     from vizlight._types import Bools, Indices
 
@@ -95,6 +96,57 @@ def faces(surface: vtkPolyData) -> Iterator[tuple[Indices, Indices]]:
         ids, offsets = connectivity(cells)
         if len(ids):
             yield ids, offsets[1:]
+
+
+def faces_only(mesh: vtkPolyData) -> vtkPolyData:
+    """Return the points and the faces of a mesh, but for polygons that it has again.
+
+    VTK takes the faces of a mesh that has vertices or lines for others, and an edge of polygons
+    that stand at one place twice for one where many faces meet.
+    """
+    bare = vtkPolyData()
+    bare.SetPoints(mesh.GetPoints())
+    bare.SetStrips(mesh.GetStrips())
+    polys = mesh.GetPolys()
+    if (first := first_twins(polys)) is not None:
+        kept, own = first == np.arange(len(first)), polys
+        ids, offsets = connectivity(own)
+        size = np.diff(offsets)
+        ends = np.concatenate([[0], np.cumsum(size[kept])])
+        polys = vtkCellArray()
+        polys.SetData(as_vtk(ends), as_vtk(ids[np.repeat(kept, size)]))
+    bare.SetPolys(polys)
+    return bare
+
+
+def first_twins(cells: vtkCellArray) -> Indices | None:
+    """Return the first cell of the same points as each cell, None if they all differ."""
+    ids, offsets = connectivity(cells)
+    number = np.empty(max(len(offsets) - 1, 0), dtype=np.uint64)
+    with np.errstate(over="ignore"):
+        for block in _pool.blocks(len(number), 1 << 16):
+            ends = offsets[block.start : block.stop + 1]
+            of_points = mixed(ids[ends[0] : ends[-1]].astype(np.uint64) + np.uint64(1))
+            sums = np.concatenate([[np.uint64(0)], np.cumsum(of_points, dtype=np.uint64)])
+            number[block] = np.diff(sums[ends - ends[0]])
+    ordered = np.sort(number)
+    if not np.any(ordered[1:] == ordered[:-1]):
+        return None
+    del ordered
+    _, first, own = np.unique(number, return_index=True, return_inverse=True)
+    return np.asarray(first[own.reshape(-1)], dtype=np.intp)
+
+
+#: Factors of the finaliser of splitmix64.
+_MIX = tuple(np.uint64(x) for x in (0xBF58476D1CE4E5B9, 0x94D049BB133111EB))
+
+
+def mixed(x: NDArray[np.uint64]) -> NDArray[np.uint64]:
+    """Return numbers of 64 bits in which each bit of the given ones changes half of the others."""
+    x = (x ^ (x >> np.uint64(30))) * _MIX[0]
+    x = (x ^ (x >> np.uint64(27))) * _MIX[1]
+    found: NDArray[np.uint64] = x ^ (x >> np.uint64(31))
+    return found
 
 
 def used(surface: vtkPolyData) -> Bools:

@@ -9,13 +9,19 @@ import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
 
-from vizlight import _check, _pool
-from vizlight.reading import grids
+from vizlight import _check
+from vizlight.reading import edges, grids
 from vizlight.reading.arrays import vectors_of
-from vizlight.reading.cells import as_numpy, connectivity, has_faces, places, triangles, used
+from vizlight.reading.cells import (
+    as_numpy,
+    connectivity,
+    faces_only,
+    has_faces,
+    places,
+    used,
+)
 from vizlight.reading.hull import dimension, outer_surface, scattered
 from vizlight.reading.orientation import (
-    BLOCK,
     Owners,
     PartShape,
     Shape,
@@ -168,61 +174,12 @@ def sided_normals(
         return Sided(given)
     own = given if origin is None else np.where(origin[:, np.newaxis] < 0, 0, given[origin])
     owners = Owners(starts, origin)
-    closed = _closed(surface, owners)
+    closed = edges.closed(surface, owners)
     inward = closed & _inward(places(surface), np.flatnonzero(used(surface)), own, owners)
     if starts is None:
         return Sided(-given if inward[0] else given, open=not closed[0])
     signs = np.repeat(np.where(inward, -1, 1).astype(given.dtype), np.diff(starts))
     return Sided(signs[:, np.newaxis] * given, open=np.repeat(~closed, np.diff(starts)))
-
-
-def _closed(surface: vtkPolyData, owners: Owners) -> Bools:
-    """Return of each mesh whether each of its edges has an even number of faces.
-
-    Places make an edge. The numbers of the edges, made from the coordinates of their ends,
-    cancel by pairs.
-    """
-    rows, number = triangles(surface), _place_numbers(places(surface))
-    odd = np.zeros(owners.count, np.uint64)
-    for block in _pool.blocks(len(rows), BLOCK):
-        a, b = number[rows[block].ravel()], number[rows[block][:, [1, 2, 0]].ravel()]
-        edges = _edge_numbers(a, b)
-        if owners.of is None:
-            odd ^= np.bitwise_xor.reduce(edges)
-        else:
-            np.bitwise_xor.at(odd, np.repeat(owners.of[rows[block][:, 0]], 3), edges)
-    return np.asarray(odd == 0)
-
-
-def _place_numbers(points: NDArray[np.generic]) -> NDArray[np.uint64]:
-    """Return numbers of 64 bits made of the coordinates of points."""
-    number = np.zeros(len(points), dtype=np.uint64)
-    with np.errstate(all="ignore"):
-        for block in _pool.blocks(len(points), BLOCK):
-            # The sum with 0 makes one of the two zeros.
-            where = np.ascontiguousarray(points[block].astype(np.float64) + 0.0)
-            for axis, factor in zip(where.view(np.uint64).T, _FACTORS, strict=True):
-                number[block] = _mixed(number[block] ^ (axis * factor))
-    return number
-
-
-def _edge_numbers(a: NDArray[np.uint64], b: NDArray[np.uint64]) -> NDArray[np.uint64]:
-    """Return numbers of edges, made of those of their ends; 0 for edges of no length."""
-    with np.errstate(all="ignore"):
-        return np.where(a == b, np.uint64(0), _mixed((a + b) ^ _mixed(a ^ b)))
-
-
-#: Odd numbers of 64 bits, and those of the finaliser of splitmix64.
-_FACTORS = tuple(np.uint64(x) for x in (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9))
-_MIX = tuple(np.uint64(x) for x in (0xBF58476D1CE4E5B9, 0x94D049BB133111EB))
-
-
-def _mixed(x: NDArray[np.uint64]) -> NDArray[np.uint64]:
-    """Return numbers of 64 bits in which each bit of the given ones changes half of the others."""
-    x = (x ^ (x >> np.uint64(30))) * _MIX[0]
-    x = (x ^ (x >> np.uint64(27))) * _MIX[1]
-    mixed: NDArray[np.uint64] = x ^ (x >> np.uint64(31))
-    return mixed
 
 
 def _inward(points: Array, ids: Indices, normals: Array, owners: Owners) -> Bools:
@@ -247,8 +204,8 @@ def _inward(points: Array, ids: Indices, normals: Array, owners: Owners) -> Bool
 def _sided_grid(mesh: Grid, given: Array) -> Sided:
     """Return normals of a grid with their sides, found part by part."""
     # Edges that are not on the border of a sheet have two faces.
-    edges = [_edge_numbers(x[:-1], x[1:]) for x in map(_place_numbers, grids.rim(mesh))]
-    if any(np.bitwise_xor.reduce(np.concatenate([[np.uint64(0)], *edges]), keepdims=True)):
+    found = [edges.edge_numbers(x[:-1], x[1:]) for x in map(edges.place_numbers, grids.rim(mesh))]
+    if any(np.bitwise_xor.reduce(np.concatenate([[np.uint64(0)], *found]), keepdims=True)):
         return Sided(given, open=True)
     points, normals = [], []
     for part in grids.parts(mesh):
@@ -323,17 +280,12 @@ def computed_normals(
         expected, got = "a surface, whose normals are lit", f"a {type(mesh).__name__} without faces"
         remedy = "name its tangent vectors by tangents= or its normals by normals="
         raise ValueError(_check.message("mesh", expected, got, remedy))
-    # VTK takes the faces of a mesh that has vertices or lines for others.
-    bare = vtkPolyData()
-    bare.SetPoints(surface.GetPoints())
-    bare.SetPolys(surface.GetPolys())
-    bare.SetStrips(surface.GetStrips())
-    found, vectors = _by_vtk(bare, consistent=not as_wound)
-    vectors[~used(bare)] = 0
-    if _same_cells(bare, found):
+    found, vectors = _by_vtk(surface, consistent=not as_wound)
+    vectors[~used(surface)] = 0
+    if _same_cells(surface, found):
         # VTK's copy of the cells takes as much memory as the mesh.
-        found = bare
-    del bare
+        found = surface
+    del surface
     owners = Owners(starts, origin)
     shape = Shape(found, owners)
     lean, border = None, shape.open[shape.piece]
@@ -371,8 +323,8 @@ def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> S
         total, size = total + points.sum(axis=0), size + len(points)
     middle = total / max(size, 1)
     scale = float(np.maximum(high - middle, middle - low).max()) if size else 1.0
-    lines = [_place_numbers(line) for line in grids.rim(mesh)]
-    single, ends = _single_edges(lines)
+    lines = [edges.place_numbers(line) for line in grids.rim(mesh)]
+    single, ends = edges.single_edges(lines)
     sums, counts = [], np.zeros((4, 1), dtype=np.intp)
     for part in grids.parts(mesh):
         surface, own = part.surface, part.side == 0
@@ -383,7 +335,8 @@ def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> S
         if sides:
             lean[part.origin[own]] = shape.lean(normals)[own]
             counts += shape.edge_counts()
-        single = np.setdiff1d(single, _inner_edges(shape, ends))
+        if len(single):
+            single = np.setdiff1d(single, edges.inner_edges(shape, ends))
     border = np.array([len(single) > 0])
     whole = Sums(*(np.sum(each, axis=0) for each in zip(*sums, strict=True)))
     if not as_wound and whole.turned(border)[0]:
@@ -397,26 +350,6 @@ def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> S
         computed=True,
         inside=count - on_surface,
     )
-
-
-def _single_edges(lines: list[NDArray[np.uint64]]) -> tuple[NDArray[np.uint64], ...]:
-    """Return the edges along lines at whose place there is no other of them, and all places."""
-    none = np.empty(0, dtype=np.uint64)
-    edges = np.concatenate([none, *(_edge_numbers(line[:-1], line[1:]) for line in lines)])
-    numbers, times = np.unique(edges, return_counts=True)
-    return numbers[(times == 1) & (numbers != 0)], np.unique(np.concatenate([none, *lines]))
-
-
-def _inner_edges(shape: Shape, ends: NDArray[np.uint64]) -> NDArray[np.uint64]:
-    """Return the edges between some places that have two faces."""
-    number, size = _place_numbers(shape.points), len(shape.points)
-    near = np.isin(number, ends)
-    rows = shape.triangles[np.count_nonzero(near[shape.triangles], axis=1) > 1]
-    a, b = rows.ravel(), rows[:, [1, 2, 0]].ravel()
-    keys = np.minimum(a, b).astype(np.int64) * size + np.maximum(a, b)
-    keys, times = np.unique(keys, return_counts=True)
-    lower, upper = np.divmod(keys[times > 1], max(size, 1))
-    return _edge_numbers(number[lower], number[upper])
 
 
 def _by_vtk(surface: vtkPolyData, *, consistent: bool) -> tuple[vtkPolyData, Array]:
@@ -444,9 +377,9 @@ def piece_numbers(mesh: Dataset) -> Indices:
 
 
 def _skin(mesh: Dataset) -> tuple[vtkPolyData | None, Indices | None]:
-    """Return the outer surface of a mesh and its points' indices, None where it has no faces."""
+    """Return the faces of the outer surface and its points' indices, None where it has none."""
     surface, origin = (mesh, None) if isinstance(mesh, vtkPolyData) else outer_surface(mesh)
-    return (surface if has_faces(surface) else None), origin
+    return (faces_only(surface) if has_faces(surface) else None), origin
 
 
 def _same_cells(one: vtkPolyData, other: vtkPolyData) -> bool:
