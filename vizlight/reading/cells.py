@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
     from vtkmodules.vtkCommonCore import vtkAbstractArray, vtkPoints
-    from vtkmodules.vtkCommonDataModel import vtkFieldData, vtkPointData
+    from vtkmodules.vtkCommonDataModel import vtkCellData, vtkFieldData, vtkPointData
 
     from vizlight._types import Bools, Indices
 
@@ -32,7 +32,9 @@ if TYPE_CHECKING:
 GHOSTS = "vtkGhostType"
 #: Methods of the classes: on a mesh of PyVista the look-up of one takes longer than the call.
 point_data: Callable[[Any], vtkPointData] = vtkDataSet.GetPointData
+cell_data: Callable[[Any], vtkCellData] = vtkDataSet.GetCellData
 field_data: Callable[[Any], vtkFieldData] = vtkDataObject.GetFieldData
+point_count: Callable[[Any], int] = vtkPointSet.GetNumberOfPoints
 vtk_points: Callable[[Any], vtkPoints] = vtkPointSet.GetPoints
 #: Has no types.
 _SUPPORT: Any = numpy_support
@@ -204,7 +206,8 @@ def check_whole(mesh: object, name: str, where: str = "") -> None:
     if isinstance(mesh, vtkPolyData):
         kinds = [kind(mesh) for number, kind in POLYDATA if number(mesh)]
     else:
-        kinds = [mesh.GetCells()] if isinstance(mesh, vtkUnstructuredGrid) else []
+        grid = isinstance(mesh, vtkUnstructuredGrid)
+        kinds = [vtkUnstructuredGrid.GetCells(mesh)] if grid else []
     for cells in kinds:
         if cells is not None and cells.GetNumberOfConnectivityIds():
             ids = as_numpy(cells.GetConnectivityArray())

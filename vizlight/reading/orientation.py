@@ -41,6 +41,8 @@ CORNERS_APART = 0.7
 MOST_LEAN = 0.05
 #: Number of points or triangles that are worked on at once, and of edges.
 BLOCK, EDGES = 1 << 16, 1 << 21
+#: Number of triangles up to which their area vectors stay in memory.
+FEW = 1 << 18
 
 
 class Owners:
@@ -109,6 +111,8 @@ class Shape:
     #: Of a part of a surface: 0 for its own points, 1 for those of the next part, -1 for those of
     #: the one before. Cells belong to the part in which they begin.
     _side: NDArray[np.int8] | None = None
+    #: What belongs to the triangles of a small surface.
+    _few: list[tuple[Indices, Indices, Array]] | None = None
 
     def __init__(self, surface: vtkPolyData, owners: Owners) -> None:
         self.points = points = places(surface)
@@ -120,7 +124,8 @@ class Shape:
         #: Whether each piece has an edge of one face only.
         self.open: Bools = np.zeros(self.count, dtype=np.bool_)
         for keys, _ in _edges(self.triangles, len(points), same):
-            keys.sort()
+            # Keys of neighbouring faces are in order, which other sorts do not use.
+            keys.sort(kind="stable")
             single = np.ones(len(keys), dtype=np.bool_)
             repeats = keys[1:] == keys[:-1]
             single[1:] &= ~repeats
@@ -149,15 +154,25 @@ class Shape:
 
     def _parts(self, *, own: bool = False) -> Iterator[tuple[Indices, Indices, Array]]:
         """Yield the numbers, the corners and the area vectors of some finite triangles."""
+        if self._side is not None or len(self.triangles) > FEW:
+            yield from self._found(own=own)
+            return
+        if self._few is None:
+            self._few = list(self._found(own=own))
+        yield from self._few
+
+    def _found(self, *, own: bool) -> Iterator[tuple[Indices, Indices, Array]]:
+        """Yield what :meth:`_parts` does."""
+        all_finite = bool(self.finite.all())
         for block in _pool.blocks(len(self.triangles), BLOCK):
-            rows = self.triangles[block]
-            known = self.finite[rows].all(axis=1)
-            if own and self._side is not None:
-                known &= self._side[rows].min(axis=1) == 0
-            numbers = np.flatnonzero(known)
-            rows = rows[numbers]
-            a, b, c = (self.away[rows[:, i]] for i in range(3))
-            yield numbers + block.start, rows, np.cross(b - a, c - a)
+            rows, numbers = self.triangles[block], np.arange(block.start, block.stop)
+            if not all_finite or (own and self._side is not None):
+                known = self.finite[rows].all(axis=1)
+                if own and self._side is not None:
+                    known &= self._side[rows].min(axis=1) == 0
+                rows, numbers = rows[known], numbers[known]
+            a, b, c = (self.away.take(rows[:, i], axis=0) for i in range(3))
+            yield numbers, rows, np.cross(b - a, c - a)
 
     def sums(self, normals: Array, view: View | None) -> Sums:
         """Return what tells the sides of the pieces."""
@@ -169,7 +184,7 @@ class Shape:
             np.add.at(volume, owner, _dots(across, self.away[rows[:, 0]]))
             for axis in range(3):
                 np.add.at(total[:, axis], owner, across[:, axis])
-            np.add.at(area, owner, np.linalg.norm(across, axis=1))
+            np.add.at(area, owner, np.sqrt(_dots(across, across)))
         return Sums(score, total, area, volume)
 
     def orient(self, normals: Array, lean: Array | None, view: View | None) -> None:
@@ -208,13 +223,14 @@ class Shape:
         bends, least = np.zeros((3, n)), np.ones(n)
         for _, rows, across in self._parts():
             faces = unit_rows(across)
-            middle = np.asarray(sum(self.away[rows[:, i]] for i in range(3))) / 3
+            corners = [self.away.take(rows[:, i], axis=0) for i in range(3)]
+            middle = (corners[0] + corners[1] + corners[2]) / 3
             for i, bend in enumerate(bends):
                 at = rows[:, i]
-                own = normals[at].astype(np.float64)
+                own = normals.take(at, axis=0).astype(np.float64)
                 with np.errstate(invalid="ignore"):
                     np.minimum.at(least, at, _dots(own, faces))
-                np.add.at(bend, at, _dots(own, middle - self.away[at]))
+                np.add.at(bend, at, _dots(own, middle - corners[i]))
         bend = bends[0] + bends[1] + bends[2]
         del bends
         sine = np.sqrt(np.clip(1 - least * least, 0, MOST_LEAN * MOST_LEAN))
@@ -229,10 +245,10 @@ class Shape:
         faces = np.empty((len(self.triangles), 3), dtype=np.float32)
         full = np.zeros(len(self.triangles), dtype=np.bool_)
         for numbers, rows, across in self._parts():
-            corners = self.away[rows]
-            sides = corners - np.roll(corners, -1, axis=1)
-            longest = np.einsum("ijk,ijk->ij", sides, sides).max(axis=1, initial=0.0)
-            full[numbers] = np.linalg.norm(across, axis=1) > NARROWEST * longest
+            a, b, c = (self.away.take(rows[:, i], axis=0) for i in range(3))
+            sides = [_dots(side, side) for side in (a - b, b - c, c - a)]
+            longest = np.maximum(np.maximum(sides[0], sides[1]), sides[2])
+            full[numbers] = np.sqrt(_dots(across, across)) > NARROWEST * longest
             faces[numbers] = unit_rows(across)
         least = np.cos(np.radians([2 * SHARP, SHARP, SHARP / 2]))
         counts = np.zeros((4, self.owners.count), dtype=np.intp)
