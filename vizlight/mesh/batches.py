@@ -17,6 +17,7 @@ from vizlight.reading.cells import (
     POLYDATA,
     as_numpy,
     cell_data,
+    grid_cells,
     point_count,
     point_data,
     vtk_points,
@@ -219,7 +220,7 @@ def _joined(meshes: Sequence[pv.DataSet], members: list[int], names: Iterable[st
             if count(own[0]):
                 put(_cells([get(mesh) for mesh in own], starts))
     else:
-        of_all = _cells([vtkUnstructuredGrid.GetCells(mesh) for mesh in own], starts)
+        of_all = _cells([grid_cells(mesh) for mesh in own], starts)
         kinds = as_numpy(own[0].GetDistinctCellTypesArray()).astype(np.uint8)
         if len(kinds) > 1:
             kinds = np.concatenate([np.asarray(mesh.celltypes) for mesh in own])

@@ -11,7 +11,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight._version import __version__
-from vizlight.mesh import point_arrays, records
+from vizlight.mesh import creases, point_arrays, records
 from vizlight.reading.cells import (
     POLYDATA,
     as_numpy,
@@ -21,6 +21,7 @@ from vizlight.reading.cells import (
     has_faces,
     places,
     point_data,
+    triangles,
 )
 from vizlight.reading.normals import Sided, computed_normals, given_normals
 from vizlight.reading.orientation import MANY_SHARP, SHARP
@@ -38,10 +39,6 @@ if TYPE_CHECKING:
 
     SurfaceT = TypeVar("SurfaceT")
 
-#: Name under which a user's array keeps out of the way of VTK's.
-_OWN = "vizlight own"
-#: Name of a temporary point array of numbers.
-_NUMBERS = "vizlight numbers"
 #: Name of the point array in which normals that had to be computed stay with a result: three
 #: components of the normal, its lean, and 1 on an open piece.
 KEPT = "vizlight_normals"
@@ -133,61 +130,61 @@ def split_edges(mesh: pv.PolyData, angle: float | Literal["auto"]) -> pv.PolyDat
         if not (kept(mesh) or computed_normals(mesh)).sharp:
             return mesh
         angle = SHARP
-    own = mesh.copy(deep=False)
-    if "Normals" in own.point_data:
-        own.point_data[_OWN] = own.point_data.pop("Normals")
-    faces = faces_only(mesh)
-    again = faces.GetNumberOfPolys() < mesh.GetNumberOfPolys()
-    if again:
-        own.point_data[_NUMBERS] = np.arange(mesh.n_points)
-    own.SetVerts(None)
-    own.SetLines(None)
-    own.SetPolys(faces.GetPolys())
-    own.cell_data.clear()
-    found: pv.PolyData = own.compute_normals(
-        cell_normals=False,
-        split_vertices=True,
-        feature_angle=angle,
-        consistent_normals=True,
-        auto_orient_normals=False,
-        non_manifold_traversal=False,
-    )
-    if found.n_points == mesh.n_points:
+    ids, ends = connectivity(faces_only(mesh).GetPolys())
+    strips = pv.PolyData()
+    strips.SetPoints(mesh.GetPoints())
+    strips.SetStrips(mesh.GetStrips())
+    more = triangles(strips)
+    ids = np.concatenate([ids, more.ravel()]) if len(more) else ids
+    ends = np.concatenate([ends, ends[-1] + 3 * np.arange(1, len(more) + 1)])
+    split, origin = creases.split(places(mesh), ids, ends, angle)
+    if len(origin) == mesh.n_points:
         return mesh
-    del found.point_data["Normals"]
-    if again:
-        origin = np.asarray(found.point_data.pop(_NUMBERS))
-        found.SetPolys(_with_twins(mesh.GetPolys(), found.GetPolys(), origin))
+    if len(ends) - 1 - len(more) < mesh.GetNumberOfPolys():
+        ends, split = _with_twins(mesh.GetPolys(), split, ends, origin)
+    found = pv.PolyData()
+    found.SetPoints(pv.vtk_points(places(mesh)[origin]))
     # Points that were split stand behind those of the mesh.
     found.SetVerts(mesh.GetVerts())
     found.SetLines(mesh.GetLines())
+    found.SetPolys(creases.cell_array(split, ends))
+    for key, array in mesh.point_data.items():
+        point_arrays.attach_rows(found, key, np.asarray(array)[origin])
     _carry_cells(mesh, found)
-    if _OWN in found.point_data:
-        found.point_data["Normals"] = found.point_data.pop(_OWN)
-        found.point_data.active_normals_name = None
+    point_arrays.carry_active(mesh, found)
+    found.GetFieldData().ShallowCopy(mesh.GetFieldData())
     records.carry(mesh, found)
     return found
 
 
-def _with_twins(cells: vtkCellArray, split: vtkCellArray, origin: Indices) -> pv.CellArray:
-    """Return polygons at points that were split, given those that differ and maybe triangles.
+def _with_twins(
+    cells: vtkCellArray, split: Indices, ends: Indices, origin: Indices
+) -> tuple[Indices, Indices]:
+    """Return the ends and corners of polygons at points that were split, and those after them.
 
-    ``origin`` has the point before the split of each point.
+    Parameters
+    ----------
+    cells : vtkCellArray
+        Polygons before the split.
+    split, ends : ndarray of int
+        Corners and ends of those of them that differ, and of more faces, after the split.
+    origin : ndarray of int
+        Point before the split of each point.
     """
     first = first_twins(cells)
     assert first is not None
-    (ids, ends), (new, new_ends) = connectivity(cells), connectivity(split)
-    size, count = np.diff(ends), len(origin)
+    ids, before = connectivity(cells)
+    size, count = np.diff(before), len(origin)
+    kept = first == np.arange(len(first))
     # The corner of a polygon is that of its first twin which was the same point.
-    corners = np.repeat(np.arange(len(new_ends) - 1), np.diff(new_ends)) * count + origin[new]
+    corners = np.repeat(np.arange(len(ends) - 1), np.diff(ends)) * count + origin[split]
     order = np.argsort(corners)
-    row = np.cumsum(first == np.arange(len(first)))[first] - 1
+    row = (np.cumsum(kept) - 1)[first]
     at = np.searchsorted(corners, np.repeat(row, size) * count + ids, sorter=order)
-    rest = int(np.count_nonzero(first == np.arange(len(first))))
-    more = new_ends[rest:]
-    return pv.CellArray.from_arrays(
-        np.concatenate([ends, ends[-1] + more[1:] - more[0]]),
-        np.concatenate([new[order[at]], new[more[0] :]]),
+    more = ends[np.count_nonzero(kept) :]
+    return (
+        np.concatenate([before, before[-1] + more[1:] - more[0]]),
+        np.concatenate([split[order[at]], split[more[0] :]]),
     )
 
 

@@ -53,3 +53,11 @@ def activate(mesh: pv.DataSet, name: str) -> None:
         and mesh.active_scalars_info.association != pv.FieldAssociation.POINT
     ):
         mesh.set_active_scalars(name, preference="point")
+
+
+def carry_active(mesh: pv.DataSet, derived: pv.DataSet) -> None:
+    """Make the arrays that are active at the points of a mesh active on one with the same names."""
+    for attribute in ("Normals", "Vectors", "Scalars", "Tangents", "TCoords"):
+        active = getattr(point_data(mesh), f"Get{attribute}")()
+        if active is not None:
+            getattr(point_data(derived), f"SetActive{attribute}")(active.GetName())

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from vtkmodules.util import numpy_support
-from vtkmodules.vtkCommonCore import vtkDataArray, vtkStringArray, vtkUnsignedCharArray
+from vtkmodules.vtkCommonCore import (
+    vtkDataArray,
+    vtkPoints,
+    vtkStringArray,
+    vtkUnsignedCharArray,
+)
 from vtkmodules.vtkCommonDataModel import (
     vtkCellArray,
     vtkDataObject,
@@ -23,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
-    from vtkmodules.vtkCommonCore import vtkAbstractArray, vtkPoints
+    from vtkmodules.vtkCommonCore import vtkAbstractArray
     from vtkmodules.vtkCommonDataModel import vtkCellData, vtkFieldData, vtkPointData
 
     from vizlight._types import Bools, Indices
@@ -34,6 +39,7 @@ GHOSTS = "vtkGhostType"
 point_data: Callable[[Any], vtkPointData] = vtkDataSet.GetPointData
 cell_data: Callable[[Any], vtkCellData] = vtkDataSet.GetCellData
 field_data: Callable[[Any], vtkFieldData] = vtkDataObject.GetFieldData
+grid_cells: Callable[[Any], vtkCellArray] = vtkUnstructuredGrid.GetCells
 point_count: Callable[[Any], int] = vtkPointSet.GetNumberOfPoints
 vtk_points: Callable[[Any], vtkPoints] = vtkPointSet.GetPoints
 #: Has no types.
@@ -121,6 +127,55 @@ def faces_only(mesh: vtkPolyData) -> vtkPolyData:
     return bare
 
 
+#: Least number of points of a part of a surface that VTK works on, and largest number of parts.
+PART, PARTS = 1 << 16, 16
+
+
+def part_size(count: int) -> int:
+    """Return the number of points around which VTK works at once; it takes 400 bytes for each."""
+    return max(PART, -(-count // PARTS))
+
+
+class Around(NamedTuple):
+    """The faces around some points of a surface.
+
+    Attributes
+    ----------
+    surface : vtkPolyData
+        Those faces and their points, in the order of the surface.
+    used : ndarray of int
+        Point of the whole surface that each point is.
+    corner : ndarray of bool
+        Whether each corner of all faces is one of a face there.
+    """
+
+    surface: vtkPolyData
+    used: Indices
+    corner: Bools
+
+
+def around(points: NDArray[Any], ids: Indices, ends: Indices, block: slice) -> Around | None:
+    """Return the faces around points of a range, None if there are none.
+
+    ``ids`` has the corners of all faces one after the other, ``ends`` the place at which each face
+    begins, followed by the end of the last.
+    """
+    near = np.flatnonzero((ids >= block.start) & (ids < block.stop))
+    if not len(near):
+        return None
+    face = np.zeros(len(ends) - 1, dtype=np.bool_)
+    face[np.searchsorted(ends, near, side="right") - 1] = True
+    size = np.diff(ends)
+    corner = np.repeat(face, size)
+    used, local = np.unique(ids[corner], return_inverse=True)
+    surface, where, cells = vtkPolyData(), vtkPoints(), vtkCellArray()
+    where.SetData(as_vtk(points[used]))
+    cells.SetData(as_vtk(np.concatenate([[0], np.cumsum(size[face])])), as_vtk(local.reshape(-1)))
+    surface.SetPoints(where)
+    surface.SetPolys(cells)
+    return Around(surface, used, corner)
+
+
 def first_twins(cells: vtkCellArray) -> Indices | None:
     """Return the first cell of the same points as each cell, None if they all differ."""
     ids, offsets = connectivity(cells)
@@ -206,8 +261,7 @@ def check_whole(mesh: object, name: str, where: str = "") -> None:
     if isinstance(mesh, vtkPolyData):
         kinds = [kind(mesh) for number, kind in POLYDATA if number(mesh)]
     else:
-        grid = isinstance(mesh, vtkUnstructuredGrid)
-        kinds = [vtkUnstructuredGrid.GetCells(mesh)] if grid else []
+        kinds = [grid_cells(mesh)] if isinstance(mesh, vtkUnstructuredGrid) else []
     for cells in kinds:
         if cells is not None and cells.GetNumberOfConnectivityIds():
             ids = as_numpy(cells.GetConnectivityArray())
