@@ -167,10 +167,14 @@ def around(points: NDArray[Any], ids: Indices, ends: Indices, block: slice) -> A
     face[np.searchsorted(ends, near, side="right") - 1] = True
     size = np.diff(ends)
     corner = np.repeat(face, size)
-    used, local = np.unique(ids[corner], return_inverse=True)
+    own, there = ids[corner], np.zeros(len(points), dtype=np.bool_)
+    there[own] = True
+    used = np.flatnonzero(there)
+    number = np.empty(len(points), dtype=np.intp)
+    number[used] = np.arange(len(used))
     surface, where, cells = vtkPolyData(), vtkPoints(), vtkCellArray()
     where.SetData(as_vtk(points[used]))
-    cells.SetData(as_vtk(np.concatenate([[0], np.cumsum(size[face])])), as_vtk(local.reshape(-1)))
+    cells.SetData(as_vtk(np.concatenate([[0], np.cumsum(size[face])])), as_vtk(number[own]))
     surface.SetPoints(where)
     surface.SetPolys(cells)
     return Around(surface, used, corner)

@@ -9,14 +9,16 @@ import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
 
-from vizlight import _check
+from vizlight import _check, _pool
 from vizlight.reading import edges, grids
 from vizlight.reading.arrays import vectors_of
 from vizlight.reading.cells import (
+    around,
     as_numpy,
     connectivity,
     faces_only,
     has_faces,
+    part_size,
     places,
     used,
 )
@@ -280,11 +282,13 @@ def computed_normals(
         expected, got = "a surface, whose normals are lit", f"a {type(mesh).__name__} without faces"
         remedy = "name its tangent vectors by tangents= or its normals by normals="
         raise ValueError(_check.message("mesh", expected, got, remedy))
-    found, vectors = _by_vtk(surface, consistent=not as_wound)
-    vectors[~used(surface)] = 0
-    if _same_cells(surface, found):
-        # VTK's copy of the cells takes as much memory as the mesh.
-        found = surface
+    found, vectors = surface, _by_parts(surface, consistent=not as_wound)
+    if vectors is None:
+        found, vectors = _by_vtk(surface, consistent=not as_wound)
+        vectors[~used(surface)] = 0
+        if _same_cells(surface, found):
+            # VTK's copy of the cells takes as much memory as the mesh.
+            found = surface
     del surface
     owners = Owners(starts, origin)
     shape = Shape(found, owners)
@@ -364,6 +368,25 @@ def _by_vtk(surface: vtkPolyData, *, consistent: bool) -> tuple[vtkPolyData, Arr
     vectors = np.array(as_numpy(found.GetPointData().GetNormals()))
     found.GetPointData().Initialize()
     return found, vectors
+
+
+def _by_parts(surface: vtkPolyData, *, consistent: bool) -> Array | None:
+    """Return the normals of a large surface part by part, None for one that is not wound alike."""
+    count = surface.GetNumberOfPoints()
+    if count <= part_size(0) or surface.GetNumberOfStrips():
+        return None
+    ids, ends = connectivity(surface.GetPolys())
+    vectors = np.zeros((count, 3), dtype=np.float32)
+    for block in _pool.blocks(count, part_size(count)):
+        part = around(places(surface), ids, ends, block)
+        if part is None:
+            continue
+        found, own = _by_vtk(part.surface, consistent=consistent)
+        if not _same_cells(part.surface, found):
+            return None
+        here = (part.used >= block.start) & (part.used < block.stop)
+        vectors[part.used[here]] = own[here]
+    return vectors
 
 
 def piece_numbers(mesh: Dataset) -> Indices:

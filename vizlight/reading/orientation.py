@@ -39,8 +39,9 @@ CORNERS_APART = 0.7
 #: too rough or too coarse to tell bumps from hollows: of the pixels of a noisy isosurface, lit from
 #: the side, 26 % are off by more than a tenth of white without the limit, and 6 % with it.
 MOST_LEAN = 0.05
-#: Number of points or triangles that are worked on at once, and of edges.
-BLOCK, EDGES = 1 << 16, 1 << 21
+#: Number of points or triangles that are worked on at once, least one of edges, and largest number
+#: of parts of these.
+BLOCK, EDGES, PARTS = 1 << 16, 1 << 19, 16
 #: Number of triangles up to which their area vectors stay in memory.
 FEW = 1 << 18
 
@@ -307,7 +308,7 @@ def _edges(
     An edge that several triangles have is yielded with all of them at once; edges of no length are
     left out. ``same`` has the point that stands for each of the ``count`` points.
     """
-    parts = -(-3 * len(triangles) // EDGES)
+    parts = min(-(-3 * len(triangles) // EDGES), PARTS)
     for part in range(parts):
         # Edges whose lower point is in a range.
         low, high = part * count // parts, (part + 1) * count // parts
@@ -358,7 +359,7 @@ def pieces(surface: vtkPolyData, owners: Owners) -> Pieces:
     for ids, ends in faces(surface):
         last = np.zeros(len(ids), dtype=np.bool_)
         last[ends - 1] = True
-        for block in _pool.blocks(len(ids), EDGES):
+        for block in _pool.blocks(len(ids), max(EDGES, -(-len(ids) // PARTS))):
             follows = np.flatnonzero(~last[block]) + block.start
             a, b = piece[same[ids[follows]]], piece[same[ids[follows + 1]]]
             # Edges between points of two pieces make one of them.
