@@ -270,7 +270,7 @@ def _bound(plan, inputs):
         spread, t = each(wide), each(t)
     if inputs.base_tangents is not None:
         spread = spread + each(_dependence(inputs.base_tangents, n)[0])
-    normal = None if inputs.normals is None else each(_unit(np.asarray(inputs.normals, float)))
+    normal = None if inputs.normals is None else each(_unit(np.asarray(inputs.normals[:], float)))
     wo = None
     if scene.view is not None:
         wo = _way(scene.view.position, scene.view.direction, points, far=scene.view.parallel)

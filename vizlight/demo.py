@@ -72,7 +72,7 @@ def light_flow() -> tuple[pv.PolyData, pv.Camera, list[Row], str]:
     scene, camera = flow_scene(surface.bounds)
     points = np.asarray(surface.points)
     # The surface is open: its normals are turned to the eye.
-    normals = sided_normals(surface, None, 3, "auto").facing("auto", points, scene.view)
+    normals = sided_normals(surface, None, 3, "auto").facing("auto", points, scene.view)[:]
     rows = []
     for title, name, tangents in (
         ("as a surface", "surface_light", None),

@@ -113,6 +113,15 @@ def surface(side):
     mesh.clear_data()
     return mesh
 
+def creased(side):
+    mesh = surface(side)
+    mesh.points[:, 2] = 0.4 * np.abs(5 * mesh.points[:, 0] % 1 - 0.5)
+    return mesh
+
+def grid(*sides):
+    axes = np.meshgrid(*(np.linspace(0, 9, n, dtype=np.float32) for n in sides), indexing="ij")
+    return pv.StructuredGrid(*axes[:2], axes[2] + np.sin(axes[0]))
+
 scene = Scene(lights=Light(direction=(0.3, 0.2, 1)), view=View(direction=(0, 0, 1)))
 for small in (line(100, 10), surface(9)):
     vizlight.illuminate(small, scene, threads=1)
@@ -121,17 +130,26 @@ gc.collect()
 ctypes.CDLL(None).malloc_trim(0)
 Path("/proc/self/clear_refs").write_text("5")
 before = status("VmRSS")
-vizlight.illuminate(mesh, scene, threads=1)
+vizlight.illuminate(mesh, scene, threads=1, {MORE})
 print((status("VmHWM") - before) / mesh.actual_memory_size)
 """
 
 
 @pytest.mark.skipif(not Path("/proc/self/clear_refs").exists(), reason="Linux tells the peak")
 @pytest.mark.parametrize(
-    "make", ["line(2_000_000, 2_000_000)", "line(2_000_000, 10)", "surface(2000)"]
+    "make",
+    [
+        "line(2_000_000, 2_000_000)",
+        "line(2_000_000, 10)",
+        "surface(1300)",
+        "grid(1800, 1000, 1)",
+        "grid(300, 20, 300)",
+        "creased(1000) with feature_angle",
+    ],
 )
 def test_light_takes_at_most_three_times_the_memory_of_the_mesh(make):
-    code = PEAK.replace("{MAKE}", make)
+    make, more, _ = make.partition(" with feature_angle")
+    code = PEAK.replace("{MAKE}", make).replace("{MORE}", "feature_angle=30" if more else "")
     environment = {**os.environ, "VIZLIGHT_FAST": "0"}
     run = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment

@@ -196,6 +196,19 @@ def test_points_are_split_at_sharp_edges(inplace):
     assert day["t"].shape == (6 * 81, 2)
 
 
+def test_a_surface_may_hold_vertices_and_lines():
+    """As files of gmsh do."""
+    box = pv.Cube().triangulate().subdivide(3).clean()
+    box.clear_data()
+    expected = relief_shadow(box, SCENE, feature_angle=30)["t"]
+    box.verts = [1, 0, 1, 5]
+    box.lines = [2, 0, 1]
+    box.cell_data["gmsh:physical"] = np.arange(box.n_cells)
+    found = relief_shadow(box, SCENE, feature_angle=30)
+    np.testing.assert_array_equal(found["t"], expected)
+    assert found.n_cells == box.n_cells
+
+
 def test_a_height_field_has_no_sharp_edges():
     flat = pv.ImageData(dimensions=(5, 5, 1))
     flat["height"] = [0.0] * 25

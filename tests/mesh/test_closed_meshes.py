@@ -130,6 +130,13 @@ def test_seams_of_equal_points_are_closed():
     assert (len(vertices), len(triangles)) == (8, 12)
 
 
+def test_a_face_that_stands_twice_counts_once():
+    cube = pv.Cube().triangulate().clean()
+    faces = np.concatenate([cube.regular_faces, cube.regular_faces[:2, ::-1]])
+    _, triangles = closed_meshes.closed(pv.PolyData.from_regular_faces(cube.points, faces))
+    assert len(triangles) == 12
+
+
 def test_open_surface_says_how_to_repair():
     mesh = pv.Sphere(end_phi=90)
     words = (

@@ -333,6 +333,46 @@ def test_vertices_and_lines_do_not_change_where_faces_are_split():
     assert np.ptp(lit["luminance"][top]) < 1e-6
 
 
+@pytest.mark.parametrize("turned", [False, True])
+@pytest.mark.parametrize("step", [1, 3])
+@pytest.mark.parametrize("make", [pv.Sphere, pv.Box])
+def test_faces_that_a_mesh_has_again_do_not_count(make, step, turned):
+    plain = make().triangulate().subdivide(1, "linear").clean()
+    plain.clear_data()
+    faces = plain.regular_faces
+    more = faces[::step, ::-1] if turned else np.roll(faces[::step], 1, axis=1)
+    mesh = pv.PolyData.from_regular_faces(plain.points, np.concatenate([more, faces]))
+    mesh.cell_data["own"] = np.arange(mesh.n_cells)
+    scene = Scene(lights=Light(direction=(1, 0.5, 2)), view=View(direction=(1, 1, 1)))
+    for angle in ("auto", 30):
+        lit = vizlight.illuminate(mesh, scene, feature_angle=angle)
+        expected = vizlight.illuminate(plain, scene, feature_angle=angle)
+        assert lit.n_points == expected.n_points
+        assert (lit.n_points > plain.n_points) == (make is pv.Box)
+        np.testing.assert_array_equal(lit.cell_data["own"], np.arange(mesh.n_cells))
+        at, own = lit.regular_faces, expected.regular_faces
+        np.testing.assert_array_equal(lit.points[at], mesh.points[mesh.regular_faces])
+        # A face of which there are two has the light that it has alone.
+        light = np.sort(lit["luminance"][at], axis=1)
+        alone = np.sort(expected["luminance"][own], axis=1)
+        # The sums of the normals are in another order.
+        np.testing.assert_allclose(light, np.concatenate([alone[::step], alone]), atol=1e-6)
+
+
+def test_strips_are_split_with_their_cell_arrays():
+    mesh = pv.Box().triangulate().subdivide(2, "linear").clean().strip()
+    mesh.verts = [1, 0, 1, 5]
+    mesh.cell_data["own"] = np.arange(mesh.n_cells)
+    found = normals.split_edges(mesh, 30)
+    assert found.n_points > mesh.n_points
+    assert (found.n_verts, found.n_strips) == (2, 0)
+    own = np.asarray(found.cell_data["own"])
+    np.testing.assert_array_equal(own[:2], [0, 1])
+    points = [set(map(tuple, mesh.get_cell(i).points)) for i in range(mesh.n_cells)]
+    for i, corners in zip(own[2:], found.points[found.regular_faces], strict=True):
+        assert set(map(tuple, corners)) <= points[i]
+
+
 def test_an_angle_that_normals_make_idle_is_said_to_be():
     scene = Scene(lights=Light(direction=(1, 0.5, 2)), view=View(direction=(1, 1, 1)))
     rounded = pv.Box().triangulate().clean()

@@ -162,6 +162,7 @@ def light_mesh(
     )
     results = batches.split(groups, shadings)
     sides = batches.split(groups, [part.sided for part in parts])
+    sides = [normals.to_keep(own, sided) for own, sided in zip(taken, sides, strict=True)]
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
     inputs.clear()
     parts.clear()

@@ -7,11 +7,21 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeAlias, TypeVar
 import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
 
 from vizlight.mesh import normals, splitting
 from vizlight.mesh.inputs import part_of
 from vizlight.reading import polylines
-from vizlight.reading.cells import GHOSTS, POLYDATA, as_numpy, point_data, vtk_points
+from vizlight.reading.cells import (
+    GHOSTS,
+    POLYDATA,
+    as_numpy,
+    cell_data,
+    grid_cells,
+    point_count,
+    point_data,
+    vtk_points,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -134,10 +144,11 @@ def _batches(meshes: Sequence[pv.DataSet], options: LightOptions) -> list[Batch]
         if key is None:
             alone.append(i)
             continue
-        size[key] = size.get(key, 0) + mesh.GetNumberOfPoints()
+        count = point_count(mesh)
+        size[key] = size.get(key, 0) + count
         if size[key] > LARGEST:
             made.append(_joined(meshes, found.pop(key), names or ()))
-            size[key] = mesh.GetNumberOfPoints()
+            size[key] = count
         found.setdefault(key, []).append(i)
     made += [_joined(meshes, members, names or ()) for members in found.values()]
     return made + _alone(meshes, alone)
@@ -154,7 +165,8 @@ def _names(options: LightOptions) -> list[str] | None:
 
 def _key(mesh: pv.DataSet, names: Sequence[str]) -> Key | None:
     """Return what a mesh must have in common with those it is joined with, None for no others."""
-    if not 0 < mesh.GetNumberOfPoints() <= SMALL:
+    joined = isinstance(mesh, pv.PolyData | pv.UnstructuredGrid)
+    if not joined or not 0 < point_count(mesh) <= SMALL:
         return None
     data = point_data(mesh)
     if any(data.HasArray(name) for name in _KEPT):
@@ -179,9 +191,9 @@ def _kinds(mesh: pv.DataSet) -> Key | None:
         # Where there are segments, lines are joined at their ends.
         return ("polydata", verts, lines, polys, lines and _has_segments(mesh.GetLines()))
     if isinstance(mesh, pv.UnstructuredGrid):
-        if any(data.HasArray(GHOSTS) for data in (mesh.GetCellData(), mesh.GetPointData())):
+        if cell_data(mesh).HasArray(GHOSTS) or point_data(mesh).HasArray(GHOSTS):
             return None
-        kinds = as_numpy(mesh.GetDistinctCellTypesArray()).tolist()
+        kinds = as_numpy(vtkUnstructuredGrid.GetDistinctCellTypesArray(mesh)).tolist()
         return ("grid", *kinds) if kinds and _JOINED.issuperset(kinds) else None
     return None
 
@@ -197,7 +209,7 @@ def _joined(meshes: Sequence[pv.DataSet], members: list[int], names: Iterable[st
     if len(members) == 1:
         return Batch(meshes[members[0]], members)
     own = [meshes[i] for i in members]
-    starts = np.concatenate([[0], np.cumsum([mesh.GetNumberOfPoints() for mesh in own])])
+    starts = np.concatenate([[0], np.cumsum([point_count(mesh) for mesh in own])])
     out = pv.PolyData() if isinstance(own[0], pv.PolyData) else pv.UnstructuredGrid()
     points = vtkPoints()
     points.SetData(_end_to_end([vtk_points(mesh).GetData() for mesh in own], starts))
@@ -208,8 +220,12 @@ def _joined(meshes: Sequence[pv.DataSet], members: list[int], names: Iterable[st
             if count(own[0]):
                 put(_cells([get(mesh) for mesh in own], starts))
     else:
-        kinds = np.concatenate([np.asarray(mesh.celltypes) for mesh in own])
-        of_all = _cells([mesh.GetCells() for mesh in own], starts)
+        of_all = _cells([grid_cells(mesh) for mesh in own], starts)
+        kinds = as_numpy(own[0].GetDistinctCellTypesArray()).astype(np.uint8)
+        if len(kinds) > 1:
+            kinds = np.concatenate([np.asarray(mesh.celltypes) for mesh in own])
+        else:
+            kinds = np.repeat(kinds, of_all.GetNumberOfCells())
         out.SetCells(pv.convert_array(kinds), of_all)
     data, of_each = out.GetPointData(), [point_data(mesh) for mesh in own]
     for name in names:

@@ -12,6 +12,7 @@ from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 
 from vizlight import _check
 from vizlight.mesh import blocks, embree_rays, parallel_rays
+from vizlight.reading.cells import faces_only, triangles
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -68,9 +69,8 @@ def triangles_of(surface: object, name: str) -> tuple[Array, Indices]:
 def _merged(surface: object, name: str) -> tuple[Array, Indices, Indices, Indices]:
     """Return vertices, triangles, the points that faces use, and the vertex of each such point."""
     surface = blocks.surface(surface, name)
-    faces = surface if surface.is_all_triangles else surface.triangulate()
-    corners = np.asarray(faces.regular_faces, dtype=np.intp)
-    points = np.asarray(faces.points, dtype=np.float64)
+    corners = np.asarray(triangles(faces_only(surface)), dtype=np.intp)
+    points = np.asarray(surface.points, dtype=np.float64)
     if not np.all(np.isfinite(points[corners])):
         raise ValueError(_check.message(name, "faces with finite points", "NaN or infinite points"))
     there = np.zeros(len(points), np.bool_)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import hashlib
 from typing import TYPE_CHECKING, Literal
 
@@ -10,8 +11,18 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight._version import __version__
-from vizlight.mesh import point_arrays, records
-from vizlight.reading.cells import POLYDATA, as_numpy, has_faces, places, point_data
+from vizlight.mesh import creases, point_arrays, records
+from vizlight.reading.cells import (
+    POLYDATA,
+    as_numpy,
+    connectivity,
+    faces_only,
+    first_twins,
+    has_faces,
+    places,
+    point_data,
+    triangles,
+)
 from vizlight.reading.normals import Sided, computed_normals, given_normals
 from vizlight.reading.orientation import MANY_SHARP, SHARP
 from vizlight.scene import View
@@ -21,15 +32,13 @@ if TYPE_CHECKING:
 
     from vtkmodules.vtkCommonDataModel import vtkCellArray
 
-    from vizlight._types import Array
+    from vizlight._types import Array, Indices
     from vizlight.scene import Scene
     from vizlight.shading.options import FeatureAngle, LightOptions
     from vizlight.shading.results import Record
 
     SurfaceT = TypeVar("SurfaceT")
 
-#: Name under which a user's array keeps out of the way of VTK's.
-_OWN = "vizlight own"
 #: Name of the point array in which normals that had to be computed stay with a result: three
 #: components of the normal, its lean, and 1 on an open piece.
 KEPT = "vizlight_normals"
@@ -102,10 +111,7 @@ def warn_of_idle(mesh: pv.DataSet, angle: FeatureAngle) -> None:
         return
     if mesh.point_data.active_normals is None or not has_faces(mesh):
         return
-    bare = pv.PolyData()
-    bare.SetPoints(mesh.GetPoints())
-    bare.SetPolys(mesh.GetPolys())
-    if split_edges(bare, angle).n_points > mesh.n_points:
+    if split_edges(pv.PolyData(faces_only(mesh)), angle).n_points > mesh.n_points:
         _check.warn(
             "feature_angle has no effect on normals that the mesh has, and sharp edges look round; "
             "clear them by mesh.point_data.active_normals_name = None"
@@ -124,36 +130,71 @@ def split_edges(mesh: pv.PolyData, angle: float | Literal["auto"]) -> pv.PolyDat
         if not (kept(mesh) or computed_normals(mesh)).sharp:
             return mesh
         angle = SHARP
-    own = mesh.copy(deep=False)
-    if "Normals" in own.point_data:
-        own.point_data[_OWN] = own.point_data.pop("Normals")
-    # VTK takes the faces of a mesh that has vertices or lines for others.
-    others = (mesh.n_verts or mesh.n_lines) and not mesh.n_strips
-    if others:
-        own.SetVerts(None)
-        own.SetLines(None)
-        own.cell_data.clear()
-    found: pv.PolyData = own.compute_normals(
-        cell_normals=False,
-        split_vertices=True,
-        feature_angle=angle,
-        consistent_normals=True,
-        auto_orient_normals=False,
-        non_manifold_traversal=False,
-    )
-    if found.n_points == mesh.n_points:
+    ids, ends = connectivity(faces_only(mesh).GetPolys())
+    strips = pv.PolyData()
+    strips.SetPoints(mesh.GetPoints())
+    strips.SetStrips(mesh.GetStrips())
+    more = triangles(strips)
+    ids = np.concatenate([ids, more.ravel()]) if len(more) else ids
+    ends = np.concatenate([ends, ends[-1] + 3 * np.arange(1, len(more) + 1)])
+    split, origin = creases.split(places(mesh), ids, ends, angle)
+    if len(origin) == mesh.n_points:
         return mesh
-    del found.point_data["Normals"]
-    if others:
-        # Points that were split stand behind those of the mesh.
-        found.SetVerts(mesh.GetVerts())
-        found.SetLines(mesh.GetLines())
-        found.cell_data.update(mesh.cell_data)
-    if _OWN in found.point_data:
-        found.point_data["Normals"] = found.point_data.pop(_OWN)
-        found.point_data.active_normals_name = None
+    if len(ends) - 1 - len(more) < mesh.GetNumberOfPolys():
+        ends, split = _with_twins(mesh.GetPolys(), split, ends, origin)
+    found = pv.PolyData()
+    found.SetPoints(pv.vtk_points(places(mesh)[origin]))
+    # Points that were split stand behind those of the mesh.
+    found.SetVerts(mesh.GetVerts())
+    found.SetLines(mesh.GetLines())
+    found.SetPolys(creases.cell_array(split, ends))
+    for key, array in mesh.point_data.items():
+        point_arrays.attach_rows(found, key, np.asarray(array)[origin])
+    _carry_cells(mesh, found)
+    point_arrays.carry_active(mesh, found)
+    found.GetFieldData().ShallowCopy(mesh.GetFieldData())
     records.carry(mesh, found)
     return found
+
+
+def _with_twins(
+    cells: vtkCellArray, split: Indices, ends: Indices, origin: Indices
+) -> tuple[Indices, Indices]:
+    """Return the ends and corners of polygons at points that were split, and those after them.
+
+    Parameters
+    ----------
+    cells : vtkCellArray
+        Polygons before the split.
+    split, ends : ndarray of int
+        Corners and ends of those of them that differ, and of more faces, after the split.
+    origin : ndarray of int
+        Point before the split of each point.
+    """
+    first = first_twins(cells)
+    assert first is not None
+    ids, before = connectivity(cells)
+    size, count = np.diff(before), len(origin)
+    kept = first == np.arange(len(first))
+    # The corner of a polygon is that of its first twin which was the same point.
+    corners = np.repeat(np.arange(len(ends) - 1), np.diff(ends)) * count + origin[split]
+    order = np.argsort(corners)
+    row = (np.cumsum(kept) - 1)[first]
+    at = np.searchsorted(corners, np.repeat(row, size) * count + ids, sorter=order)
+    more = ends[np.count_nonzero(kept) :]
+    return (
+        np.concatenate([before, before[-1] + more[1:] - more[0]]),
+        np.concatenate([split[order[at]], split[more[0] :]]),
+    )
+
+
+def _carry_cells(mesh: pv.PolyData, split: pv.PolyData) -> None:
+    """Carry the cell arrays of a mesh to one whose strips are triangles."""
+    size = np.diff(connectivity(mesh.GetStrips())[1])
+    rows = np.repeat(np.arange(mesh.n_cells - len(size), mesh.n_cells), np.maximum(size - 2, 0))
+    rows = np.concatenate([np.arange(mesh.n_cells - len(size)), rows])
+    for key, array in mesh.cell_data.items():
+        split.cell_data[key] = np.asarray(array)[rows] if len(size) else array
 
 
 def fingerprint(mesh: pv.DataSet) -> str | None:
@@ -178,14 +219,26 @@ def fingerprint(mesh: pv.DataSet) -> str | None:
     return digest.hexdigest()
 
 
+def _stay(mesh: pv.DataSet, normals: Sided) -> bool:
+    """Return whether normals are kept with a mesh of this kind and size."""
+    made = normals.computed and not normals.kept and normals.lean is not None
+    kind = isinstance(mesh, pv.PolyData | pv.UnstructuredGrid)
+    return made and kind and len(normals.vectors) >= FEWEST
+
+
+def to_keep(mesh: pv.DataSet, normals: Sided | None) -> Sided | None:
+    """Return normals, without those of the points where these do not stay with a mesh."""
+    if normals is None or _stay(mesh, normals):
+        return normals
+    return dataclasses.replace(normals, vectors=_NONE, lean=None, open=False)
+
+
 def keep(mesh: pv.DataSet, normals: Sided) -> None:
     """Attach normals that were computed to a mesh, with a digest of what they were computed from.
 
     Where the user has an array of that name nothing is attached, and nothing to a small mesh.
     """
-    if not normals.computed or normals.kept or normals.lean is None:
-        return
-    if len(normals.vectors) < FEWEST:
+    if not _stay(mesh, normals):
         return
     if point_data(mesh).HasArray(KEPT) and KEPT not in records.made(mesh, KEPT):
         return

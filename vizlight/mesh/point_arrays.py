@@ -8,7 +8,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.reading.cells import as_vtk, point_data
+from vizlight.reading.cells import as_vtk, cell_data, point_data
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -46,8 +46,18 @@ def attach_rows(mesh: pv.DataSet, name: str, array: NDArray[np.generic]) -> None
 def activate(mesh: pv.DataSet, name: str) -> None:
     """Make a point array the active scalars of a mesh, even if a cell array was active."""
     point_data(mesh).SetActiveScalars(name)
+    # PyVista's search takes longer than that by VTK, and finds no other where no cells are active.
     if (
-        mesh.GetNumberOfPoints()
+        cell_data(mesh).GetScalars() is not None
+        and mesh.GetNumberOfPoints()
         and mesh.active_scalars_info.association != pv.FieldAssociation.POINT
     ):
         mesh.set_active_scalars(name, preference="point")
+
+
+def carry_active(mesh: pv.DataSet, derived: pv.DataSet) -> None:
+    """Make the arrays that are active at the points of a mesh active on one with the same names."""
+    for attribute in ("Normals", "Vectors", "Scalars", "Tangents", "TCoords"):
+        active = getattr(point_data(mesh), f"Get{attribute}")()
+        if active is not None:
+            getattr(point_data(derived), f"SetActive{attribute}")(active.GetName())

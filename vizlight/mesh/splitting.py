@@ -283,10 +283,7 @@ def rebuilt(
         added = _interpolated(rows, new, places=key == places) if own is None else own
         point_arrays.attach_rows(out, key, np.concatenate([rows, added.astype(rows.dtype)]))
     out.GetFieldData().DeepCopy(mesh.GetFieldData())
-    for attribute in ("Normals", "Vectors", "Scalars", "Tangents", "TCoords"):
-        active = getattr(mesh.GetPointData(), f"Get{attribute}")()
-        if active is not None:
-            getattr(out.GetPointData(), f"SetActive{attribute}")(active.GetName())
+    point_arrays.carry_active(mesh, out)
     return out
 
 

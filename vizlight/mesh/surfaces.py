@@ -9,6 +9,7 @@ import pyvista as pv
 
 from vizlight.mesh import blocks, normals
 from vizlight.reading.arrays import unit_rows
+from vizlight.reading.cells import faces_only
 
 if TYPE_CHECKING:
     from vizlight._types import Array
@@ -37,10 +38,7 @@ def with_normals(
     """
     own = normals.split_where_computed(blocks.surface(surface, name), angle)
     # Vertices and lines are left out, because every cell must be a triangle.
-    triangles = pv.PolyData()
-    triangles.SetPoints(own.GetPoints())
-    triangles.SetPolys(own.GetPolys())
-    triangles.SetStrips(own.GetStrips())
+    triangles = pv.PolyData(faces_only(own))
     for key, array in own.point_data.items():
         if np.asarray(array).dtype.kind in "biuf":
             triangles.point_data[key] = np.asarray(array)

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from vtkmodules.util import numpy_support
-from vtkmodules.vtkCommonCore import vtkDataArray, vtkStringArray, vtkUnsignedCharArray
+from vtkmodules.vtkCommonCore import (
+    vtkDataArray,
+    vtkPoints,
+    vtkStringArray,
+    vtkUnsignedCharArray,
+)
 from vtkmodules.vtkCommonDataModel import (
+    vtkCellArray,
     vtkDataObject,
     vtkDataSet,
     vtkPointSet,
@@ -16,14 +22,14 @@ from vtkmodules.vtkCommonDataModel import (
 )
 from vtkmodules.vtkFiltersCore import vtkTriangleFilter
 
-from vizlight import _check
+from vizlight import _check, _pool
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
-    from vtkmodules.vtkCommonCore import vtkAbstractArray, vtkPoints
-    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkFieldData, vtkPointData
+    from vtkmodules.vtkCommonCore import vtkAbstractArray
+    from vtkmodules.vtkCommonDataModel import vtkCellData, vtkFieldData, vtkPointData
 
     from vizlight._types import Bools, Indices
 
@@ -31,7 +37,10 @@ if TYPE_CHECKING:
 GHOSTS = "vtkGhostType"
 #: Methods of the classes: on a mesh of PyVista the look-up of one takes longer than the call.
 point_data: Callable[[Any], vtkPointData] = vtkDataSet.GetPointData
+cell_data: Callable[[Any], vtkCellData] = vtkDataSet.GetCellData
 field_data: Callable[[Any], vtkFieldData] = vtkDataObject.GetFieldData
+grid_cells: Callable[[Any], vtkCellArray] = vtkUnstructuredGrid.GetCells
+point_count: Callable[[Any], int] = vtkPointSet.GetNumberOfPoints
 vtk_points: Callable[[Any], vtkPoints] = vtkPointSet.GetPoints
 #: Has no types.
 _SUPPORT: Any = numpy_support
@@ -97,6 +106,110 @@ def faces(surface: vtkPolyData) -> Iterator[tuple[Indices, Indices]]:
             yield ids, offsets[1:]
 
 
+def faces_only(mesh: vtkPolyData) -> vtkPolyData:
+    """Return the points and the faces of a mesh, but for polygons that it has again.
+
+    VTK takes the faces of a mesh that has vertices or lines for others, and an edge of polygons
+    that stand at one place twice for one where many faces meet.
+    """
+    bare = vtkPolyData()
+    bare.SetPoints(mesh.GetPoints())
+    bare.SetStrips(mesh.GetStrips())
+    polys = mesh.GetPolys()
+    if (first := first_twins(polys)) is not None:
+        kept, own = first == np.arange(len(first)), polys
+        ids, offsets = connectivity(own)
+        size = np.diff(offsets)
+        ends = np.concatenate([[0], np.cumsum(size[kept])])
+        polys = vtkCellArray()
+        polys.SetData(as_vtk(ends), as_vtk(ids[np.repeat(kept, size)]))
+    bare.SetPolys(polys)
+    return bare
+
+
+#: Least number of points of a part of a surface that VTK works on, and largest number of parts.
+PART, PARTS = 1 << 16, 16
+
+
+def part_size(count: int) -> int:
+    """Return the number of points around which VTK works at once; it takes 400 bytes for each."""
+    return max(PART, -(-count // PARTS))
+
+
+class Around(NamedTuple):
+    """The faces around some points of a surface.
+
+    Attributes
+    ----------
+    surface : vtkPolyData
+        Those faces and their points, in the order of the surface.
+    used : ndarray of int
+        Point of the whole surface that each point is.
+    corner : ndarray of bool
+        Whether each corner of all faces is one of a face there.
+    """
+
+    surface: vtkPolyData
+    used: Indices
+    corner: Bools
+
+
+def around(points: NDArray[Any], ids: Indices, ends: Indices, block: slice) -> Around | None:
+    """Return the faces around points of a range, None if there are none.
+
+    ``ids`` has the corners of all faces one after the other, ``ends`` the place at which each face
+    begins, followed by the end of the last.
+    """
+    near = np.flatnonzero((ids >= block.start) & (ids < block.stop))
+    if not len(near):
+        return None
+    face = np.zeros(len(ends) - 1, dtype=np.bool_)
+    face[np.searchsorted(ends, near, side="right") - 1] = True
+    size = np.diff(ends)
+    corner = np.repeat(face, size)
+    own, there = ids[corner], np.zeros(len(points), dtype=np.bool_)
+    there[own] = True
+    used = np.flatnonzero(there)
+    number = np.empty(len(points), dtype=np.intp)
+    number[used] = np.arange(len(used))
+    surface, where, cells = vtkPolyData(), vtkPoints(), vtkCellArray()
+    where.SetData(as_vtk(points[used]))
+    cells.SetData(as_vtk(np.concatenate([[0], np.cumsum(size[face])])), as_vtk(number[own]))
+    surface.SetPoints(where)
+    surface.SetPolys(cells)
+    return Around(surface, used, corner)
+
+
+def first_twins(cells: vtkCellArray) -> Indices | None:
+    """Return the first cell of the same points as each cell, None if they all differ."""
+    ids, offsets = connectivity(cells)
+    number = np.empty(max(len(offsets) - 1, 0), dtype=np.uint64)
+    with np.errstate(over="ignore"):
+        for block in _pool.blocks(len(number), 1 << 16):
+            ends = offsets[block.start : block.stop + 1]
+            of_points = mixed(ids[ends[0] : ends[-1]].astype(np.uint64) + np.uint64(1))
+            sums = np.concatenate([[np.uint64(0)], np.cumsum(of_points, dtype=np.uint64)])
+            number[block] = np.diff(sums[ends - ends[0]])
+    ordered = np.sort(number)
+    if not np.any(ordered[1:] == ordered[:-1]):
+        return None
+    del ordered
+    _, first, own = np.unique(number, return_index=True, return_inverse=True)
+    return np.asarray(first[own.reshape(-1)], dtype=np.intp)
+
+
+#: Factors of the finaliser of splitmix64.
+_MIX = tuple(np.uint64(x) for x in (0xBF58476D1CE4E5B9, 0x94D049BB133111EB))
+
+
+def mixed(x: NDArray[np.uint64]) -> NDArray[np.uint64]:
+    """Return numbers of 64 bits in which each bit of the given ones changes half of the others."""
+    x = (x ^ (x >> np.uint64(30))) * _MIX[0]
+    x = (x ^ (x >> np.uint64(27))) * _MIX[1]
+    found: NDArray[np.uint64] = x ^ (x >> np.uint64(31))
+    return found
+
+
 def used(surface: vtkPolyData) -> Bools:
     """Return whether each point is a corner of a face."""
     found = np.zeros(surface.GetNumberOfPoints(), dtype=np.bool_)
@@ -152,7 +265,7 @@ def check_whole(mesh: object, name: str, where: str = "") -> None:
     if isinstance(mesh, vtkPolyData):
         kinds = [kind(mesh) for number, kind in POLYDATA if number(mesh)]
     else:
-        kinds = [mesh.GetCells()] if isinstance(mesh, vtkUnstructuredGrid) else []
+        kinds = [grid_cells(mesh)] if isinstance(mesh, vtkUnstructuredGrid) else []
     for cells in kinds:
         if cells is not None and cells.GetNumberOfConnectivityIds():
             ids = as_numpy(cells.GetConnectivityArray())

@@ -84,7 +84,7 @@ def part_of(
             )
             normals = sided.facing(shown_side(options), points, scene.view)
             if options.flip_normals:
-                normals = -normals
+                normals = -normals[:]
             if scene.view is None and _alike(sided, options.facing):
                 options = dataclasses.replace(options, facing="auto", two_sided=True)
     except (TypeError, ValueError) as error:
@@ -106,7 +106,7 @@ def _sides(sided: Sided, view: View | None, options: LightOptions) -> Sides:
 
     def turned(normals: Array, facts: Array, points: Array) -> Array:
         own = Sided(normals, lean=facts[:, 0], open=facts[:, 1] > 0.5)
-        found = own.facing(shown_side(options), points, view)
+        found: Array = own.facing(shown_side(options), points, view)[:]
         return -found if options.flip_normals else found
 
     return Sides(sided.vectors, sided.facts(), turned)

@@ -10,10 +10,27 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
 
 from vizlight import _check, _pool
+from vizlight.reading import edges, grids
 from vizlight.reading.arrays import vectors_of
-from vizlight.reading.cells import as_numpy, connectivity, has_faces, places, triangles, used
+from vizlight.reading.cells import (
+    around,
+    as_numpy,
+    connectivity,
+    faces_only,
+    has_faces,
+    part_size,
+    places,
+    used,
+)
 from vizlight.reading.hull import dimension, outer_surface, scattered
-from vizlight.reading.orientation import BLOCK, Owners, Shape, pieces
+from vizlight.reading.orientation import (
+    Owners,
+    PartShape,
+    Shape,
+    Sums,
+    crease_share,
+    pieces,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -21,6 +38,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vizlight._types import Array, Bools, Dataset, Indices
+    from vizlight.reading.grids import Grid
     from vizlight.scene import View
     from vizlight.shading.inputs import ArraySource
     from vizlight.shading.options import Facing
@@ -83,21 +101,31 @@ class Sided:
         border = np.broadcast_to(self.open, len(self.vectors))
         return np.stack([lean, border], axis=1).astype(np.float64)
 
-    def facing(self, facing: Facing, points: ArraySource, view: View | None) -> Array:
+    def facing(self, facing: Facing, points: ArraySource, view: View | None) -> Array | Turned:
         """Return the normals turned to a side; the normals themselves are not changed."""
         if facing not in ("auto", "eye") or view is None or len(self.vectors) == 0:
             return self.vectors
         if facing == "auto" and not self.any_open:
             return self.vectors
-        turned = np.empty_like(self.vectors)
-        for block in _pool.blocks(len(turned), BLOCK):
-            own = self.vectors[block]
-            lean = None if self.lean is None else self.lean[block]
-            averted = _averted(own, points[block], view, lean)
-            if facing == "auto":
-                averted &= self.open[block] if isinstance(self.open, np.ndarray) else self.open
-            turned[block] = np.where(averted[:, np.newaxis], -own, own)
-        return turned
+        return Turned(self, points, view, only_open=facing == "auto")
+
+
+class Turned:
+    """Normals turned to the side that an eye sees, made for each slice and not stored."""
+
+    def __init__(self, sided: Sided, points: ArraySource, view: View, *, only_open: bool) -> None:
+        self.shape, self.dtype = sided.vectors.shape, sided.vectors.dtype
+        self._sided, self._points, self._view, self._only_open = sided, points, view, only_open
+
+    def __getitem__(self, rows: slice, /) -> Array:
+        """Return a slice of the normals."""
+        sided = self._sided
+        own, lean, border = sided.vectors[rows], sided.lean, sided.open
+        lean = None if lean is None else lean[rows]
+        averted = _averted(own, self._points[rows], self._view, lean)
+        if self._only_open:
+            averted &= border[rows] if isinstance(border, np.ndarray) else border
+        return np.where(averted[:, np.newaxis], -own, own)
 
 
 def _averted(vectors: Array, points: NDArray[np.generic], view: View, lean: Array | None) -> Bools:
@@ -141,61 +169,23 @@ def sided_normals(
         given = given.astype(np.float64)
     if facing in ("eye", "as given") or n != 3:
         return Sided(given)
+    if grids.in_parts(mesh):
+        return _sided_grid(mesh, given)
     surface, origin = _skin(mesh)
     if surface is None:
         return Sided(given)
     own = given if origin is None else np.where(origin[:, np.newaxis] < 0, 0, given[origin])
     owners = Owners(starts, origin)
-    closed = _closed(surface, owners)
-    inward = closed & _inward(surface, own, owners)
+    closed = edges.closed(surface, owners)
+    inward = closed & _inward(places(surface), np.flatnonzero(used(surface)), own, owners)
     if starts is None:
         return Sided(-given if inward[0] else given, open=not closed[0])
     signs = np.repeat(np.where(inward, -1, 1).astype(given.dtype), np.diff(starts))
     return Sided(signs[:, np.newaxis] * given, open=np.repeat(~closed, np.diff(starts)))
 
 
-def _closed(surface: vtkPolyData, owners: Owners) -> Bools:
-    """Return of each mesh whether each of its edges has an even number of faces.
-
-    Places make an edge. The numbers of the edges, made from the coordinates of their ends,
-    cancel by pairs.
-    """
-    points, rows = places(surface), triangles(surface)
-    number, odd = np.zeros(len(points), dtype=np.uint64), np.zeros(owners.count, np.uint64)
-    with np.errstate(all="ignore"):
-        for block in _pool.blocks(len(points), BLOCK):
-            # The sum with 0 makes one of the two zeros.
-            where = np.ascontiguousarray(points[block].astype(np.float64) + 0.0)
-            for axis, factor in zip(where.view(np.uint64).T, _FACTORS, strict=True):
-                number[block] = _mixed(number[block] ^ (axis * factor))
-        for block in _pool.blocks(len(rows), BLOCK):
-            a, b = number[rows[block].ravel()], number[rows[block][:, [1, 2, 0]].ravel()]
-            edges = _mixed((a + b) ^ _mixed(a ^ b))
-            edges = np.where(a == b, np.uint64(0), edges)
-            if owners.of is None:
-                odd ^= np.bitwise_xor.reduce(edges)
-            else:
-                np.bitwise_xor.at(odd, np.repeat(owners.of[rows[block][:, 0]], 3), edges)
-    return np.asarray(odd == 0)
-
-
-#: Odd numbers of 64 bits, and those of the finaliser of splitmix64.
-_FACTORS = tuple(np.uint64(x) for x in (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9))
-_MIX = tuple(np.uint64(x) for x in (0xBF58476D1CE4E5B9, 0x94D049BB133111EB))
-
-
-def _mixed(x: NDArray[np.uint64]) -> NDArray[np.uint64]:
-    """Return numbers of 64 bits in which each bit of the given ones changes half of the others."""
-    x = (x ^ (x >> np.uint64(30))) * _MIX[0]
-    x = (x ^ (x >> np.uint64(27))) * _MIX[1]
-    mixed: NDArray[np.uint64] = x ^ (x >> np.uint64(31))
-    return mixed
-
-
-def _inward(surface: vtkPolyData, normals: Array, owners: Owners) -> Bools:
+def _inward(points: Array, ids: Indices, normals: Array, owners: Owners) -> Bools:
     """Return of each closed mesh whether its normals at its outermost points point inside."""
-    points = places(surface)
-    ids = np.flatnonzero(used(surface))
     ids = ids[np.isfinite(points[ids]).all(axis=1) & np.isfinite(normals[ids]).all(axis=1)]
     outward = np.zeros(owners.count)
     if not len(ids):
@@ -211,6 +201,26 @@ def _inward(surface: vtkPolyData, normals: Array, owners: Owners) -> Bools:
             own, first = np.unique(owners.of[ids][order], return_index=True)
             outward[own] += sign * normals[ids[order[first]], axis]
     return outward < 0
+
+
+def _sided_grid(mesh: Grid, given: Array) -> Sided:
+    """Return normals of a grid with their sides, found part by part."""
+    # Edges that are not on the border of a sheet have two faces.
+    found = [edges.edge_numbers(x[:-1], x[1:]) for x in map(edges.place_numbers, grids.rim(mesh))]
+    if any(np.bitwise_xor.reduce(np.concatenate([[np.uint64(0)], *found]), keepdims=True)):
+        return Sided(given, open=True)
+    points, normals = [], []
+    for part in grids.parts(mesh):
+        where = places(part.surface)
+        own = given[part.origin]
+        known = np.isfinite(where).all(axis=1) & np.isfinite(own).all(axis=1) & (part.side == 0)
+        where, own = where[known], own[known]
+        ends = [f(axis) for axis in where.T for f in (np.argmax, np.argmin) if len(where)]
+        points.append(where[ends])
+        normals.append(own[ends])
+    outermost, own = np.concatenate(points), np.concatenate(normals)
+    inward = _inward(outermost, np.arange(len(outermost)), own, Owners())
+    return Sided(-given if inward[0] else given)
 
 
 def given_normals(mesh: Dataset, value: object, n: int) -> Array | None:
@@ -265,32 +275,31 @@ def computed_normals(
     count = mesh.GetNumberOfPoints()
     if count == 0:
         return Sided(np.zeros((0, 3), dtype=np.float32), computed=True)
+    if grids.in_parts(mesh):
+        return _of_grid(mesh, view, as_wound=as_wound, sides=sides)
     surface, origin = _skin(mesh)
     if surface is None:
         expected, got = "a surface, whose normals are lit", f"a {type(mesh).__name__} without faces"
         remedy = "name its tangent vectors by tangents= or its normals by normals="
         raise ValueError(_check.message("mesh", expected, got, remedy))
-    # VTK takes the faces of a mesh that has vertices or lines for others.
-    bare = vtkPolyData()
-    bare.SetPoints(surface.GetPoints())
-    bare.SetPolys(surface.GetPolys())
-    bare.SetStrips(surface.GetStrips())
-    found, vectors = _by_vtk(bare, consistent=not as_wound)
-    vectors[~used(bare)] = 0
-    if _same_cells(bare, found):
-        # VTK's copy of the cells takes as much memory as the mesh.
-        found = bare
-    del bare
+    found, vectors = surface, _by_parts(surface, consistent=not as_wound)
+    if vectors is None:
+        found, vectors = _by_vtk(surface, consistent=not as_wound)
+        vectors[~used(surface)] = 0
+        if _same_cells(surface, found):
+            # VTK's copy of the cells takes as much memory as the mesh.
+            found = surface
+    del surface
     owners = Owners(starts, origin)
     shape = Shape(found, owners)
-    if not as_wound:
-        shape.orient(vectors, view)
-    sharp: Array = np.zeros(owners.count)
     lean, border = None, shape.open[shape.piece]
+    sharp: Array = np.zeros(owners.count)
     inside = np.zeros(owners.count, dtype=np.intp)
     if sides:
         lean = shape.lean(vectors)
-        sharp = shape.sharp()
+        sharp = crease_share(shape.edge_counts())
+    if not as_wound:
+        shape.orient(vectors, lean, view)
     if origin is not None:
         if dimension(mesh) == 3:
             size = [count] if starts is None else np.diff(starts)
@@ -300,6 +309,51 @@ def computed_normals(
         lean = None if lean is None else scattered(lean, origin, count)
     all_of = Sided(vectors, lean, border, sharp, computed=True, inside=inside)
     return all_of.part(0, slice(None)) if starts is None else all_of
+
+
+def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> Sided:
+    """Return the normals of a grid's outer surface, which is one piece, part by part."""
+    count = mesh.GetNumberOfPoints()
+    vectors = np.zeros((count, 3), dtype=np.float32)
+    lean = np.zeros(count if sides else 0, dtype=np.float32)
+    low, high, total = np.full(3, np.inf), np.full(3, -np.inf), np.zeros(3)
+    size = on_surface = 0
+    for part in grids.parts(mesh):
+        points = places(part.surface)[part.side == 0]
+        on_surface += len(points)
+        points = points[np.all(np.isfinite(points), axis=1)].astype(np.float64)
+        low = np.minimum(low, points.min(axis=0, initial=np.inf))
+        high = np.maximum(high, points.max(axis=0, initial=-np.inf))
+        total, size = total + points.sum(axis=0), size + len(points)
+    middle = total / max(size, 1)
+    scale = float(np.maximum(high - middle, middle - low).max()) if size else 1.0
+    lines = [edges.place_numbers(line) for line in grids.rim(mesh)]
+    single, ends = edges.single_edges(lines)
+    sums, counts = [], np.zeros((4, 1), dtype=np.intp)
+    for part in grids.parts(mesh):
+        surface, own = part.surface, part.side == 0
+        normals = _by_vtk(surface, consistent=False)[1]
+        shape = PartShape(surface, part.side, middle, scale or 1.0)
+        vectors[part.origin[own]] = normals[own]
+        sums.append(shape.sums(normals, view))
+        if sides:
+            lean[part.origin[own]] = shape.lean(normals)[own]
+            counts += shape.edge_counts()
+        if len(single):
+            single = np.setdiff1d(single, edges.inner_edges(shape, ends))
+    border = np.array([len(single) > 0])
+    whole = Sums(*(np.sum(each, axis=0) for each in zip(*sums, strict=True)))
+    if not as_wound and whole.turned(border)[0]:
+        vectors *= -1
+        lean *= -1
+    return Sided(
+        vectors,
+        lean if sides else None,
+        bool(border[0]),
+        float(crease_share(counts)[0]) if sides else 0.0,
+        computed=True,
+        inside=count - on_surface,
+    )
 
 
 def _by_vtk(surface: vtkPolyData, *, consistent: bool) -> tuple[vtkPolyData, Array]:
@@ -316,6 +370,25 @@ def _by_vtk(surface: vtkPolyData, *, consistent: bool) -> tuple[vtkPolyData, Arr
     return found, vectors
 
 
+def _by_parts(surface: vtkPolyData, *, consistent: bool) -> Array | None:
+    """Return the normals of a large surface part by part, None for one that is not wound alike."""
+    count = surface.GetNumberOfPoints()
+    if count <= part_size(0) or surface.GetNumberOfStrips():
+        return None
+    ids, ends = connectivity(surface.GetPolys())
+    vectors = np.zeros((count, 3), dtype=np.float32)
+    for block in _pool.blocks(count, part_size(count)):
+        part = around(places(surface), ids, ends, block)
+        if part is None:
+            continue
+        found, own = _by_vtk(part.surface, consistent=consistent)
+        if not _same_cells(part.surface, found):
+            return None
+        here = (part.used >= block.start) & (part.used < block.stop)
+        vectors[part.used[here]] = own[here]
+    return vectors
+
+
 def piece_numbers(mesh: Dataset) -> Indices:
     """Return for each point the number of its connected piece; 0 where it is on no surface."""
     numbers = np.zeros(mesh.GetNumberOfPoints(), dtype=np.intp)
@@ -327,9 +400,9 @@ def piece_numbers(mesh: Dataset) -> Indices:
 
 
 def _skin(mesh: Dataset) -> tuple[vtkPolyData | None, Indices | None]:
-    """Return the outer surface of a mesh and its points' indices, None where it has no faces."""
+    """Return the faces of the outer surface and its points' indices, None where it has none."""
     surface, origin = (mesh, None) if isinstance(mesh, vtkPolyData) else outer_surface(mesh)
-    return (surface if has_faces(surface) else None), origin
+    return (faces_only(surface) if has_faces(surface) else None), origin
 
 
 def _same_cells(one: vtkPolyData, other: vtkPolyData) -> bool:
