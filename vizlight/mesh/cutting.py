@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
-from scipy.sparse import coo_array, csr_array
+import scipy
 
 from vizlight import _check, _pool
 from vizlight.geometry.nspace import slices
@@ -63,9 +63,11 @@ def cut(
     count, total = mesh.n_points, mesh.n_points + len(middles)
     rows = np.repeat(np.arange(len(edges)), 2)
     parts = np.stack([1 - weights, weights], axis=1).ravel()
-    between = coo_array((parts, (rows, edges.ravel())), shape=(len(edges), total)).tocsr()
+    between = scipy.sparse.coo_array(
+        (parts, (rows, edges.ravel())), shape=(len(edges), total)
+    ).tocsr()
     if len(middles):
-        spread = coo_array(
+        spread = scipy.sparse.coo_array(
             (
                 np.full(middles.size, 1 / middles.shape[1]),
                 (np.repeat(np.arange(len(middles)), middles.shape[1]), middles.ravel()),
@@ -88,13 +90,13 @@ def cut(
     return out
 
 
-def _mean_frames(array: Array, between: csr_array, n: int) -> Array:
+def _mean_frames(array: Array, between: scipy.sparse.csr_array, n: int) -> Array:
     """Return weighted means of frames in n-space; a row of ``between`` has the weights of one."""
     found = np.empty((between.shape[0], array.shape[1]), dtype=array.dtype)
     for block in _pool.blocks(len(found), BLOCK):
         part = between[block]
         used, columns = np.unique(part.indices, return_inverse=True)
-        near = csr_array(
+        near = scipy.sparse.csr_array(
             (part.data, columns.reshape(-1), part.indptr), (len(part.indptr) - 1, len(used))
         )
         rows = array[used].astype(np.float64).reshape(len(used), -1, n)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
-from scipy.sparse import csr_array, vstack
+import scipy
 
 from vizlight import _check
 from vizlight._version import __version__
@@ -211,16 +211,18 @@ class Cells:
         self.corners[rows] = made[first]
         return np.concatenate([rows, np.arange(before, len(self.corners))])
 
-    def shares(self) -> csr_array:
+    def shares(self) -> scipy.sparse.csr_array:
         """Return the weights of the points of the mesh in all points, shape (N + new, N)."""
         numbers = np.arange(self.count + 1)
-        found = csr_array((np.ones(self.count), numbers[:-1], numbers))
+        found = scipy.sparse.csr_array((np.ones(self.count), numbers[:-1], numbers))
         for step in self.steps:
             weights = np.asarray(step.weights.ravel(), dtype=np.float64)
             ends = np.arange(0, len(weights) + 1, 2)
             size = len(step.corners), found.shape[0]
-            between = csr_array((weights, step.corners.ravel(), ends), shape=size)
-            found = csr_array(vstack([found, between @ found], format="csr"))
+            between = scipy.sparse.csr_array((weights, step.corners.ravel(), ends), shape=size)
+            found = scipy.sparse.csr_array(
+                scipy.sparse.vstack([found, between @ found], format="csr")
+            )
         return found
 
 
@@ -287,7 +289,7 @@ def rebuilt(
     return out
 
 
-def _split_lines(lines: vtkCellArray, parts: Cells, shares: csr_array) -> pv.CellArray:
+def _split_lines(lines: vtkCellArray, parts: Cells, shares: scipy.sparse.csr_array) -> pv.CellArray:
     """Return polylines with the new points of their segments."""
     ids, offsets = connectivity(lines)
     # The segments of a line stand one after the other; its last point follows.
@@ -307,7 +309,7 @@ def _split_lines(lines: vtkCellArray, parts: Cells, shares: csr_array) -> pv.Cel
 
 
 def _interpolated(
-    rows: NDArray[np.generic], shares: csr_array, *, places: bool = False
+    rows: NDArray[np.generic], shares: scipy.sparse.csr_array, *, places: bool = False
 ) -> NDArray[np.generic]:
     """Return values of a point array at new points, given the shares of those of the mesh.
 

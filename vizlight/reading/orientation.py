@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
+import scipy
 
 from vizlight import _pool
 from vizlight.reading.arrays import unit_rows
@@ -363,8 +362,8 @@ def pieces(surface: vtkPolyData, owners: Owners) -> Pieces:
             follows = np.flatnonzero(~last[block]) + block.start
             a, b = piece[same[ids[follows]]], piece[same[ids[follows + 1]]]
             # Edges between points of two pieces make one of them.
-            graph = coo_array(
+            graph = scipy.sparse.coo_array(
                 (np.ones(len(a), np.float32), (a, b)), shape=(int(piece.max(initial=-1)) + 1,) * 2
             )
-            piece = connected_components(graph, directed=False)[1][piece]
+            piece = scipy.sparse.csgraph.connected_components(graph, directed=False)[1][piece]
     return Pieces(same, np.asarray(piece[same], dtype=np.intp))

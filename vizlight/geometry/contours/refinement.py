@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
+import scipy
 
 from vizlight import _check
 from vizlight.geometry.contours import banding, spacing
@@ -536,8 +535,10 @@ def _close_apexes(bands: Bands, mesh: Mesh) -> Bands:
             gap = points - apex
             near = np.einsum("ij,ij->i", gap, gap) < (4 * APEX) ** 2
             around = ends[:, near[ends].all(axis=0)]
-            graph = coo_array((np.ones(around.shape[1]), tuple(around)), shape=(count, count))
-            _, hole = connected_components(graph, directed=False)
+            graph = scipy.sparse.coo_array(
+                (np.ones(around.shape[1]), tuple(around)), shape=(count, count)
+            )
+            _, hole = scipy.sparse.csgraph.connected_components(graph, directed=False)
             _, first, which = np.unique(hole[near], return_index=True, return_inverse=True)
             first = np.flatnonzero(near)[first]
             clusters[near] = first[which]

@@ -7,8 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
+import scipy
 
 from vizlight import _compiled
 
@@ -158,8 +157,10 @@ class Simplices:
         own = np.repeat(cells, self.k + 1)[beyond.ravel() >= 0]
         pairs = own, beyond.ravel()[beyond.ravel() >= 0]
         count = len(self.cells)
-        graph = coo_array((np.ones(len(own), dtype=np.int8), pairs), shape=(count, count))
-        part = connected_components(graph, directed=False)[1][cells]
+        graph = scipy.sparse.coo_array(
+            (np.ones(len(own), dtype=np.int8), pairs), shape=(count, count)
+        )
+        part = scipy.sparse.csgraph.connected_components(graph, directed=False)[1][cells]
         order = np.lexsort((-self.measures[cells], part))
         first = np.unique(part[order], return_index=True)[1]
         share = np.full((len(first), self.k + 1), 1 / (self.k + 1))

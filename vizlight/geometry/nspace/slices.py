@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.sparse import csr_array, issparse
+import scipy
 
 from vizlight import _check
 from vizlight.model import layout
@@ -107,7 +107,7 @@ def cut(values: ArrayLike, simplices: ArrayLike, /) -> tuple[Indices, Array, NDA
     return edges, weights, np.asarray(cells_of, dtype=np.intp).reshape(cells.shape)
 
 
-def mean_frame(frame: ArrayLike, shares: csr_array[np.floating, Any], /) -> Array:
+def mean_frame(frame: ArrayLike, shares: scipy.sparse.csr_array[np.floating, Any], /) -> Array:
     """Return tangent frames at new points as weighted means of the tangent spaces at given points.
 
     A frame represents the space that it spans, and any basis of that space is equivalent:
@@ -144,10 +144,10 @@ def mean_frame(frame: ArrayLike, shares: csr_array[np.floating, Any], /) -> Arra
     if rows.ndim != 3:
         raise ValueError(_check.message("frame", "shape (N, k, n)", f"shape {rows.shape}"))
     count, k, n = rows.shape
-    if not issparse(shares) or shares.dtype.kind not in "iuf":
+    if not scipy.sparse.issparse(shares) or shares.dtype.kind not in "iuf":
         expected = "a sparse array of real numbers"
         raise TypeError(_check.message("shares", expected, _check.describe(shares)))
-    parts = csr_array(shares)
+    parts = scipy.sparse.csr_array(shares)
     if parts.shape[1] != count:
         expected = f"a matrix of {count} columns, one per point of frame"
         raise ValueError(_check.message("shares", expected, f"shape {parts.shape}"))
@@ -160,7 +160,7 @@ def mean_frame(frame: ArrayLike, shares: csr_array[np.floating, Any], /) -> Arra
     other = rows[parts.indices]
     left, cosines, right = np.linalg.svd(base @ other.swapaxes(1, 2))
     turned = (left @ right @ other).reshape(len(owner), k * n)
-    mixing = csr_array(
+    mixing = scipy.sparse.csr_array(
         (parts.data, np.arange(len(owner)), parts.indptr), (len(largest), len(owner))
     )
     found = orthonormalize((mixing @ turned).reshape(-1, k, n))[0]
