@@ -36,7 +36,7 @@ camera = render.camera_on((-1, 1, -1, 1, -1, 1), (0.42, 1, 0.2), aspect=1.25, zo
 scene = Scene(
     lights=Light(direction=(0.3, 1, 0.8)),
     view=View.from_camera(camera),
-    material=Material(ambient=0.3, diffuse=0.8, specular=0.15, shininess=25),
+    material=Material(ambient=0.3, diffuse=0.65, specular=0.12, shininess=25),
 )
 air = vizlight.load_example("winds_of_july.vtp").scale(1.022)
 wind = vizlight.streamlines(air, scene, vectors="wind", spacing=0.023)
