@@ -343,9 +343,10 @@ def test_picture_of_a_coloured_ball(verify_image_cache):
 
 
 def test_picture_of_a_satin_ball(verify_image_cache):
-    # Seen: light 5 % too bright gives 389, no self-shadow 1690; other anti-aliasing of the
-    # outline 263.
-    verify_image_cache.error_value = verify_image_cache.warning_value = 330.0
+    # Seen: light 5 % too bright gives 436, no self-shadow 1690; other anti-aliasing of the
+    # outline 263, that of VTK before 9.7 394.
+    limit = 330.0 if pv.vtk_version_info >= (9, 7) else 420.0
+    verify_image_cache.error_value = verify_image_cache.warning_value = limit
     mesh = pv.Sphere(radius=1, theta_resolution=80, phi_resolution=81, start_phi=1, end_phi=179)
     normals = np.asarray(mesh.points)
     mesh["Normals"] = normals

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
+import pyvista as pv
 from PIL import Image
 
 from vizlight import _check
@@ -26,7 +27,6 @@ from vizlight.shading.results import DEFAULT_NAME
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
-    import pyvista as pv
     from numpy.typing import NDArray
     from typing_extensions import Unpack
 
@@ -102,11 +102,13 @@ def save(
     if isinstance(first, np.ndarray):
         for name, value in (("camera", camera), ("picture", picture)):
             if value is not None:
-                raise ValueError(_check.message(name, "none beside pictures", "one"))
+                expected = "none beside frames that are pictures"
+                raise ValueError(_check.message(name, expected, "one"))
         _check_picture(first, first.shape)
         writer = _writer(path, fps, first.shape[1::-1])
         drawn: Iterator[Picture] = (_check_picture(each, first.shape) for each in rest)
     else:
+        rest = map(_check_mesh, rest)
         if camera is None:
             meshes = list(rest)
             known, rest = len(meshes), iter(meshes)
@@ -249,6 +251,15 @@ def _check_picture(picture: object, shape: tuple[int, ...]) -> Picture:
         expected = f"pictures of one shape, {shape} as the first"
         raise ValueError(_check.message("frames", expected, own.shape))
     return own
+
+
+def _check_mesh(frame: object) -> object:
+    """Return a frame that is a mesh or a Panel."""
+    mesh = frame.mesh if isinstance(frame, render.Panel) else frame
+    if not isinstance(mesh, pv.DataSet | pv.MultiBlock):
+        expected = "meshes or Panels, or pictures alone"
+        raise TypeError(_check.message("frames", expected, _check.describe(mesh)))
+    return frame
 
 
 def _drawing(picture: render.PlotterKeywords | None) -> render.PlotterKeywords:

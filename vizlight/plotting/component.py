@@ -475,11 +475,14 @@ def add_recorded(
         None, and nothing is added, if the mesh has no such light, the record does not suffice, or
         the light cannot be computed in each fragment.
     """
-    given: object = plotter
-    if not isinstance(given, pv.BasePlotter):
-        got = _check.describe(given)
+    given: tuple[object, object] = plotter, mesh
+    if not isinstance(given[0], pv.BasePlotter):
+        got = _check.describe(given[0])
         raise TypeError(_check.message("plotter", "a pyvista.Plotter", got))
     blocks.check(mesh)
+    if isinstance(given[1], pv.MultiBlock):
+        remedy = "add its blocks one after the other"
+        raise TypeError(_check.message("mesh", "one dataset", "a MultiBlock", remedy))
     _check.text("name", name, expected="the name of the light")
     light = DEFAULT_NAME if name == RGB else name
     scalars, colors = tinted(mesh, warn=False) if name == RGB else (None, {})
