@@ -78,6 +78,16 @@ def test_blocks_become_one_grid_of_their_highest_cells(tmp_path):
     assert not [name for name in read.array_names if name.startswith("vtk")]
 
 
+def test_blocks_that_are_left_out_are_named(tmp_path):
+    ball = pv.Sphere(center=(20, 0, 0))
+    line = pv.Line((20, 0, 0), (30, 0, 0))
+    blocks = pv.MultiBlock({"grid": volume(), "more": pv.MultiBlock({"ball": ball}), "line": line})
+    blocks.save(tmp_path / "b.vtm")
+    with pytest.warns(UserWarning, match=r"which are left out: more/ball, line; light pyvista"):
+        read = files.read(tmp_path / "b.vtm")
+    assert read.n_cells == volume().n_cells
+
+
 def test_surfaces():
     grid = volume()
     iso = files.surface_of(grid, "r", 2.0)

@@ -151,6 +151,11 @@ def read(path: str | Path, /, *, salvage: bool = False, isolated: bool = False) 
     fault = errors[0] if errors else short
     if fault and not salvage:
         raise _damaged(path, fault)
+    if isinstance(found, pv.MultiBlock) and (names := _left_out(found, mesh)):
+        _check.warn(
+            f"file: '{path}' has blocks whose cells are of a lower dimension than those of others, "
+            f"which are left out: {names}; light pyvista.read(...) to keep all blocks"
+        )
     if fault:
         _check.warn(f"file: '{path}' is damaged, what was read of it is used ({fault})")
     return mesh
@@ -217,6 +222,20 @@ def _one_grid(found: pv.MultiBlock) -> pv.UnstructuredGrid:
         )
     result: pv.UnstructuredGrid = grid
     return result
+
+
+def _left_out(found: pv.MultiBlock, grid: pv.DataSet) -> str:
+    """Return the names of blocks that are not in a grid and are no side sets of it."""
+
+    def keys(mesh: pv.DataSet) -> NDArray[np.uint64]:
+        words = np.array(mesh.points, dtype=np.float64).view(np.uint64)
+        return np.asarray(words @ np.array([1, 0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F], np.uint64))
+
+    kept, names = grid.distinct_cell_types, []
+    for block, path in blocks.named_blocks(found):
+        if block.distinct_cell_types - kept and not np.isin(keys(block), keys(grid)).all():
+            names.append(path.lstrip("/"))
+    return ", ".join(names)
 
 
 def _samples(grid: pv.UnstructuredGrid) -> Iterator[tuple[int, int]]:

@@ -337,7 +337,11 @@ def test_pictures_are_written_as_they_come(tmp_path):
         ([given[0] / 255], {}, "frames: expected pictures, each an array of uint8"),
         ([given[0, :, :0]], {}, "frames: expected pictures, each an array of uint8"),
         ([given[0, :9]], {"path": "b.mp4"}, "size: expected an even width and height"),
-        ([given[0]], {"camera": pv.Camera()}, "camera: expected none beside frames that are pictures"),
+        (
+            [given[0]],
+            {"camera": pv.Camera()},
+            "camera: expected none beside frames that are pictures",
+        ),
         ([given[0]], {"picture": SMALL}, "picture: expected none beside frames that are pictures"),
     ):
         path = tmp_path / options.pop("path", "b.gif")

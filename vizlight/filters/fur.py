@@ -70,10 +70,10 @@ class FurOptions:
     Parameters
     ----------
     absorption : float, optional
-        Share of light, in [0, 1], that is lost on the way through the fur's own length, its mean
+        Share of light from 0 to 1 that is lost on the way through the fur's own length, its mean
         over the points, along the normal. Default: 0.5, without ``density``.
     density : float, optional
-        Share rho of light, in [0, 1], that fur absorbs over a unit of length, in place of
+        Share rho of light from 0 to 1 that fur absorbs over a unit of length, in place of
         ``absorption``: that of fur of length L is ``1 - (1 - rho)^L``.
     fibres : int, default: 50_000
         Number of fibres, uniform in area, jittered, the same for the same seed.

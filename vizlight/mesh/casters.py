@@ -71,8 +71,8 @@ class CasterOptions:
     base, border, method
         As for :func:`vizlight.geometry.relief.inside_length`; only for height fields.
     raster : float, optional
-        Spacing of an even grid on which a curvilinear grid or an open surface, such as a TIN, is
-        sampled from above; 0 for the root of the mean area per point. Shadows then end within a
+        Spacing of an even grid on which curvilinear grids and open surfaces are sampled from
+        above, such as a TIN; 0 for the root of the mean area per point. Shadows then end within a
         cell of it; what it does not cover has the height of the nearest covered node.
     thickness : float, optional
         Thickness of the shell, measured against the normals, that stands for an open surface.
