@@ -276,6 +276,20 @@ def test_hue_of_bright_colours_is_that_of_the_eye(random):
     np.testing.assert_allclose(np.array([ours, clipped, scaled]) / stated, 1, atol=0.3)
 
 
+def test_colours_are_brought_into_range_in_any_layout_and_however_bright():
+    rgb = np.random.default_rng(0).random((4, 5, 3)) * 3
+    expected = displayable(rgb)
+    assert expected.max() == 1
+    np.testing.assert_array_equal(displayable(np.asfortranarray(rgb)), expected)
+    turned = displayable(rgb.transpose(1, 0, 2))
+    np.testing.assert_array_equal(turned, expected.transpose(1, 0, 2))
+    np.testing.assert_array_equal(displayable([[np.inf, 1, 0], [0, 0, 1e300]]), 1)
+    assert np.isnan(displayable([np.nan, 2, 0])).all()
+    for white in (0, -1, np.nan):
+        with pytest.raises(ValueError, match="white: expected"):
+            displayable(rgb, white=white)
+
+
 def test_colours_to_bring_into_range_are_of_three_components():
     with pytest.raises(ValueError, match=r"rgb: expected an array of shape"):
         displayable([1.0, 2.0])

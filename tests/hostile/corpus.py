@@ -134,6 +134,29 @@ CASES = {
              "DIMENSIONS 2 2 2", "X_COORDINATES 2 double", "0 1"),
         2, "No y coordinates",
     ),
+    "field.vtk": Case(
+        text("# vtk DataFile Version 3.0", "cut", "ASCII", "DATASET POLYDATA", "FIELD F")[:-1],
+        2, "it ends in the header of a field",
+    ),
+    "colours.vtk": Case(
+        legacy(SQUARE, *FACE, "POINT_DATA 4", "COLOR_SCALARS c 3", "0 0 0 1 1 1"),
+        2, "6 of 12 numbers of 'COLOR_SCALARS c' are there",
+    ),
+    "texture.vtk": Case(
+        legacy(SQUARE, *FACE, "point_data 4", "texture_coordinates t 2 float", "0 0 1 1"),
+        2, "4 of 8 numbers of 'texture_coordinates t' are there",
+    ),
+    "nan-cut.vtk": Case(
+        legacy(SQUARE, *FACE, "POINT_DATA 4", "SCALARS f float", "LOOKUP_TABLE a", "1 2", "nan"),
+        2, "3 of 4 numbers of 'SCALARS f' are there",
+    ),
+    "title.vtk": Case(
+        text("# vtk DataFile Version 3.0", "from an ASCII file", "BINARY", "DATASET POLYDATA",
+             "POINTS 4 double")
+        + np.array(SQUARE, ">f8").tobytes()
+        + b"\nPOLYGONS 1 5\n" + np.array([4, 0, 1, 2, 3], ">i4").tobytes() + b"\n",
+        0, "",
+    ),
     "whole.vts": Case(structured("0 1 0 1 0 1"), 0, ""),
     "extent.vts": Case(structured("0 1 2147483647 1 0 1"), 2, "no points: the dimensions are"),
     "cut.dem": Case(dem(100, 60), 2, "60 of 100 profiles are there"),

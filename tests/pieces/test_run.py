@@ -318,7 +318,7 @@ def test_sources_are_given_once_and_never_replaced(balls):
         run(balls, both)
     first = run(balls)
     before = digests(first)
-    for source in (first.path, first.files[0]):
+    for source in (first.path, *first.files):
         with pytest.raises(pieces.PieceError, match="out: expected another name than that of the"):
             run(balls, source, name="second")
     assert digests(first) == before

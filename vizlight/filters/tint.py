@@ -283,6 +283,10 @@ def times_light(colors: Bytes, factor: Array, rest: Array | float) -> Bytes:
     return out
 
 
+#: Light that makes any colour white.
+_WHITE = 1e30
+
+
 def displayable(rgb: ArrayLike, /, *, white: float = 1.0) -> Array:
     """Return colours whose light may exceed white, with the same hue in the range of a screen.
 
@@ -298,12 +302,13 @@ def displayable(rgb: ArrayLike, /, *, white: float = 1.0) -> Array:
     Returns
     -------
     ndarray, shape (..., 3)
-        Colours with channels up to ``white``. Those without a larger one are equal to the bit.
+        Colours with channels up to ``white``. Those without a larger one are equal to the bit; all
+        channels are NaN where a brighter colour has one that is.
 
     Raises
     ------
     TypeError, ValueError
-        If ``rgb`` is not an array of three real components.
+        If ``rgb`` is not an array of three real components, or ``white`` is not positive.
 
     Notes
     -----
@@ -324,14 +329,17 @@ def displayable(rgb: ArrayLike, /, *, white: float = 1.0) -> Array:
     colors: Array = np.asarray(_check.reals("rgb", rgb), np.float64)
     if colors.ndim < 1 or colors.shape[-1] != 3:
         raise ValueError(_check.message("rgb", "an array of shape (..., 3)", colors))
-    found: Array = np.maximum(colors, 0.0)
+    white = _check.positive("white", white)
+    found: Array = np.maximum(colors, 0.0, order="C")
     rows = found.reshape(-1, 3)
-    largest = np.maximum(np.maximum(rows[:, 0], rows[:, 1]), rows[:, 2])
+    largest = np.fmax(np.fmax(rows[:, 0], rows[:, 1]), rows[:, 2])
     over = np.flatnonzero(largest > white)
     if len(over):
-        bright = rows[over] / white
+        # Whatever is as bright as that is white, and infinite light with it.
+        bright = np.minimum(rows[over] / white, _WHITE)
         luma = bright @ formulas.LUMA
-        kept = np.asarray(formulas.saturation_kept(luma, largest[over] / white))[:, np.newaxis]
+        most = np.minimum(largest[over] / white, _WHITE)
+        kept = np.asarray(formulas.saturation_kept(luma, most))[:, np.newaxis]
         gray = np.minimum(luma, 1.0)[:, np.newaxis]
         rows[over] = white * np.minimum(gray + (bright - gray) * kept, 1.0)
     return found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import struct
 from typing import TYPE_CHECKING, BinaryIO
 
@@ -39,11 +40,14 @@ _TYPES = frozenset(
         "unsigned_long",
         "vtktypeint64",
         "vtktypeuint64",
-        "vtkIdType",
+        "vtkidtype",
+        "bit",
         "float",
         "double",
     ]
 )
+#: Types of arrays of a field that are not counted in numbers.
+_TEXTS = frozenset(("string", "utf8_string", "variant"))
 #: What the header of an image says, each with a number for each axis, by the words that VTK reads.
 _IMAGE = {
     b"DIMENSIONS": b"DIMENSIONS", b"ORIGIN": b"ORIGIN", b"SPACING": b"SPACING",
@@ -53,6 +57,12 @@ _AXES = 3
 #: Least number of corners of a face.
 _CORNERS = 3
 _LONGEST_HEADER = 10_000
+#: Bytes of a legacy file in which the header of an image is looked for.
+_LARGEST_FIELD = 1 << 24
+#: Words of the header of an array of a field: name, components, rows, type.
+_FIELD_WORDS = 4
+#: Words of a text that stand for numbers.
+_NO_NUMBERS = ("nan", "inf", "infinity")
 
 
 def missing_part(path: Path, /) -> str:
@@ -264,40 +274,67 @@ def _short(file: BinaryIO, path: Path, lines: int | None, size: int) -> str:
 
 def _legacy(file: BinaryIO) -> str:
     """Compare the numbers after the last header line of a text with its count."""
-    if b"ASCII" not in file.readline() + file.readline() + file.readline():
-        return _image(file)
+    file.readline()
+    file.readline()
+    text = b"ASCII" in file.readline().upper()
     start = file.tell()
-    if short := _image(file):
+    if short := _image(file) or _tail(file, start, text=text):
         return short
+    if not text:
+        return ""
     file.seek(start)
-    rows, expected, found, last = 0, 0, 0, ""
+    rows, arrays, expected, found, last = 0, 0, 0, 0, ""
     for line in file:
         words = line.decode(errors="replace").split()
         if not words:
             continue
-        if not (words[0][0].isalpha() or (len(words) == 4 and words[3] in _TYPES)):
+        of_field = len(words) == _FIELD_WORDS and words[3].lower() in _TYPES | _TEXTS
+        if not of_field and (not words[0][0].isalpha() or words[0].lower() in _NO_NUMBERS):
             found += len(words)
             continue
-        if words[0] in ("POINT_DATA", "CELL_DATA") and len(words) > 1 and words[1].isdecimal():
+        name = words[0].upper()
+        if name in ("POINT_DATA", "CELL_DATA") and len(words) > 1 and words[1].isdecimal():
             rows = int(words[1])
-        if words[0] != "LOOKUP_TABLE":
-            expected, found, last = _count(words, rows), 0, " ".join(words[:2])
-    return f"{found} of {expected} numbers of {last!r} are there" if found < expected else ""
+        if name == "FIELD":
+            arrays = int(words[2]) if len(words) > 2 and words[2].isdecimal() else 0
+        arrays -= of_field
+        if name != "LOOKUP_TABLE" or len(words) > 2:
+            expected, found, last = _count([name, *words[1:]], rows), 0, " ".join(words[:2])
+    if found < expected:
+        return f"{found} of {expected} numbers of {last!r} are there"
+    return f"{arrays} arrays of 'FIELD' are missing" if arrays > 0 else ""
 
 
 def _image(file: BinaryIO) -> str:
     """Look for the end of the header of an image, which is text in binary files as well."""
-    if b"STRUCTURED_POINTS" not in file.readline():
+    if b"STRUCTURED_POINTS" not in file.readline().upper():
         return ""
+    # Arrays of the file itself may stand before it.
+    head = file.read(_LARGEST_FIELD)
+    first = re.search(rb"(?im)^(?:DIMENSIONS|ORIGIN|SPACING|ASPECT_RATIO)\b", head)
     found: set[bytes] = set()
-    for line in iter(file.readline, b""):
-        words = line.split()
+    for line in head[first.start() :].splitlines(keepends=True) if first else ():
+        words = line.upper().split()
         if words and words[0] not in _IMAGE:
             return ""
         if len(words) > _AXES and line.endswith(b"\n"):
             found.add(_IMAGE[words[0]])
     lacking = sorted(set(_IMAGE.values()) - found)
     return f"its header ends without {lacking[0].decode()}" if lacking else ""
+
+
+def _tail(file: BinaryIO, start: int, *, text: bool) -> str:
+    """Look for a header of an array that is cut at the end, on which VTK ends the process."""
+    file.seek(max(start, file.seek(0, 2) - _LONGEST_HEADER))
+    lines = file.read().splitlines(keepends=True)
+    for i, line in enumerate(lines[-2:], max(len(lines) - 2, 0)):
+        words = line.split()
+        if words and words[0].upper() == b"FIELD" and words[2:] != [b"0"]:
+            after = lines[i + 1] if i + 1 < len(lines) else b""
+            if len(after.split()) < _FIELD_WORDS or not after.endswith(b"\n"):
+                return "it ends in the header of a field"
+    cut = re.fullmatch(rb"[!-~]+ \d+(?: \d+(?: \w*)?)?", lines[-1]) if lines else None
+    return "it ends in the header of an array" if cut and not text else ""
 
 
 def _count(words: list[str], rows: int) -> int:
@@ -308,12 +345,16 @@ def _count(words: list[str], rows: int) -> int:
         return _PER_ROW[name] * rows
     if name == "SCALARS":
         return rows * (numbers[-1] if len(words) > 3 and numbers else 1)
+    if name in ("COLOR_SCALARS", "TEXTURE_COORDINATES"):
+        return rows * (numbers[-1] if len(words) > 2 and numbers else 1)
+    if name == "LOOKUP_TABLE":
+        return 4 * (numbers[-1] if numbers else 0)
     if name == "POINTS" and numbers:
         return 3 * numbers[0]
     if name in ("X_COORDINATES", "Y_COORDINATES", "Z_COORDINATES", "CELL_TYPES") and numbers:
         return numbers[0]
     if name in ("OFFSETS", "CONNECTIVITY"):
         return 1
-    if len(words) == 4 and words[3] in _TYPES and len(numbers) >= 2:
+    if len(words) == _FIELD_WORDS and words[3].lower() in _TYPES and len(numbers) >= 2:
         return numbers[-1] * numbers[-2]
     return 0

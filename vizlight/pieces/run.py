@@ -213,7 +213,7 @@ def light(
         pool = stack.enter_context(workers_of(client, workers, retries, len(parts)))
         parts, job = prepared(parts, job, pool, show=progress_bar)
         targets = [folder / f"{path.stem}_{i:04d}" for i in range(len(parts))]
-        _spare_sources(parts, [path, *(target.with_suffix(job.suffix) for target in targets)])
+        _spare_sources(parts, path, [target.with_suffix(job.suffix) for target in targets])
         calls = [(piece, job, target) for piece, target in zip(parts, targets, strict=True)]
         done = collected(pool.run(task.light, calls), len(calls), "light", show=progress_bar)
         full = [(piece, one) for piece, one in zip(parts, done, strict=True) if one.file]
@@ -262,14 +262,22 @@ def _common_options(
     return ({"facing": "eye"} if sided and not older else {}) | options
 
 
-def _spare_sources(parts: Sequence[Piece], outputs: Sequence[Path]) -> None:
-    """Check that no source would be replaced."""
-    taken = {output.resolve() for output in outputs}
+def _spare_sources(parts: Sequence[Piece], path: Path, outputs: Sequence[Path]) -> None:
+    """Check that no source would be replaced, or removed as a piece of an earlier run."""
+    taken = {output.resolve() for output in (path, *outputs)}
+    folder, own = outputs[0].resolve().parent, _own_pieces(path.stem)
     for piece in parts:
         source = getattr(piece, "path", None)
-        if source is not None and source.resolve() in taken:
+        source = None if source is None else source.resolve()
+        earlier = source is not None and source.parent == folder and own.fullmatch(source.name)
+        if source in taken or earlier:
             expected = "another name than that of the sources"
-            raise PieceError(_check.message("out", expected, f"'{outputs[0]}'"))
+            raise PieceError(_check.message("out", expected, f"'{path}'"))
+
+
+def _own_pieces(stem: str) -> re.Pattern[str]:
+    """Return the pattern of the names of pieces and of their notes."""
+    return re.compile(re.escape(stem) + r"_\d{4,}\.(vt[puirs]|json)")
 
 
 def _clear(folder: Path) -> None:
@@ -282,7 +290,7 @@ def _clear(folder: Path) -> None:
 
 def _remove_stale(folder: Path, stem: str, made: set[str], notes: set[str]) -> None:
     """Remove pieces of an earlier run, which have notes, that the index does not name."""
-    own = re.compile(re.escape(stem) + r"_\d{4,}\.(vt[puirs]|json)")
+    own = _own_pieces(stem)
     found = [path for path in folder.iterdir() if own.fullmatch(path.name)]
     noted = {path.stem for path in found if path.suffix == ".json"}
     for path in found:
