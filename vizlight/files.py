@@ -25,9 +25,10 @@ from vtkmodules import vtkIOXML
 from vizlight import _check, _supervise
 from vizlight.mesh import blocks, foreign_files, hull, short_files
 from vizlight.reading.cells import check_whole
+from vizlight.reading.edges import place_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
     from numpy.typing import NDArray
 
@@ -226,16 +227,14 @@ def _one_grid(found: pv.MultiBlock) -> pv.UnstructuredGrid:
 
 def _left_out(found: pv.MultiBlock, grid: pv.DataSet) -> str:
     """Return the names of blocks that are not in a grid and are no side sets of it."""
-
-    def keys(mesh: pv.DataSet) -> NDArray[np.uint64]:
-        words = np.array(mesh.points, dtype=np.float64).view(np.uint64)
-        return np.asarray(words @ np.array([1, 0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F], np.uint64))
-
-    kept, names = grid.distinct_cell_types, []
-    for block, path in blocks.named_blocks(found):
-        if block.distinct_cell_types - kept and not np.isin(keys(block), keys(grid)).all():
-            names.append(path.lstrip("/"))
-    return ", ".join(names)
+    kept = grid.distinct_cell_types
+    lower = [pair for pair in blocks.named_blocks(found) if pair[0].distinct_cell_types - kept]
+    there = place_numbers(np.asarray(grid.points)) if lower else ()
+    return ", ".join(
+        path.lstrip("/")
+        for block, path in lower
+        if not np.isin(place_numbers(np.asarray(block.points)), there).all()
+    )
 
 
 def _samples(grid: pv.UnstructuredGrid) -> Iterator[tuple[int, int]]:
@@ -446,8 +445,7 @@ def write_mesh(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
         mesh = mesh.cast_to_unstructured_grid()
 
     def save(draft: str) -> None:
-        # Text of base64 has 4 bytes for 3.
-        _reserve(Path(draft), mesh.actual_memory_size * 1024 * 4 // 3 + 65536)
+        _reserve(Path(draft), [mesh])
         own = _to_save(mesh)
         with captured_errors() as errors:
             own.save(draft)
@@ -469,8 +467,7 @@ def _to_save(mesh: pv.DataSet) -> pv.DataSet:
 
 def _save_blocks(mesh: pv.MultiBlock, folder: Path, draft: Path) -> None:
     """Write an index of blocks, and move their files to a folder when all of them are whole."""
-    size = sum(block.actual_memory_size for block in blocks.all_blocks(mesh))
-    _reserve(draft, size * 1024 * 4 // 3 + 65536)
+    _reserve(draft, blocks.all_blocks(mesh))
     own = blocks.like(mesh, (_to_save(block) for block in blocks.all_blocks(mesh)))
     with captured_errors() as errors:
         own.save(draft)
@@ -501,12 +498,14 @@ def _check_names(mesh: pv.DataSet) -> None:
                 raise FileError(_check.message("output", expected, repr(name), remedy))
 
 
-def _reserve(draft: Path, size: int) -> None:
-    """Check that the disk, a quota and the limit of file sizes leave room for a file.
+def _reserve(draft: Path, meshes: Iterable[pv.DataSet]) -> None:
+    """Check that the disk, a quota and the limit of file sizes leave room for meshes.
 
     VTK's writers end the process where they do not. Space that is reserved and released tells of
     all three.
     """
+    # Text of base64 has 4 bytes for 3.
+    size = sum(mesh.actual_memory_size for mesh in meshes) * 1024 * 4 // 3 + 65536
     if hasattr(os, "posix_fallocate"):
         with draft.open("wb") as file:
             try:

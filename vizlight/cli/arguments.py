@@ -315,12 +315,11 @@ def interval(name: str, text: str) -> tuple[str, float, float]:
     raise ValueError(_check.message(f"--{name}", expected, repr(text)))
 
 
-def fraction(name: str, text: str) -> float:
+def fraction(name: str, text: str, expected: str = "a number or a fraction such as 1/255") -> float:
     """Return a number that may be written as a fraction."""
     try:
         return float(Fraction(text))
     except (ValueError, ZeroDivisionError) as error:
-        expected = "a number or a fraction such as 1/255"
         raise ValueError(_check.message(f"--{name}", expected, repr(text))) from error
 
 

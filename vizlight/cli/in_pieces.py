@@ -121,6 +121,6 @@ def _refuse(target: Target, color: Color, out: Output) -> None:
     }
     for option, value in unknown.items():
         if value:
-            remedy = "a script passes scalars= to vizlight.pieces.save_png"
-            remedy = remedy if option == "--scalars" else ""
+            script = "a script passes scalars= to vizlight.pieces.save_png"
+            remedy = script if option == "--scalars" else ""
             raise ValueError(_check.message(option, "no such option for pieces", "one", remedy))

@@ -63,13 +63,7 @@ def _facing(_: str, text: str) -> object:
 
 
 def _angle(name: str, text: str) -> object:
-    if text == "auto":
-        return text
-    try:
-        return float(text)
-    except ValueError as error:
-        expected = "an angle in degrees, or auto"
-        raise ValueError(_check.message(f"--{name}", expected, repr(text))) from error
+    return text if text == "auto" else fraction(name, text, "an angle in degrees, or auto")
 
 
 def _rotations(name: str, texts: list[str]) -> object:

@@ -48,6 +48,7 @@ _TYPES = frozenset(
 )
 #: Types of arrays of a field that are not counted in numbers.
 _TEXTS = frozenset(("string", "utf8_string", "variant"))
+_OF_FIELDS = _TYPES | _TEXTS
 #: What the header of an image says, each with a number for each axis, by the words that VTK reads.
 _IMAGE = {
     b"DIMENSIONS": b"DIMENSIONS", b"ORIGIN": b"ORIGIN", b"SPACING": b"SPACING",
@@ -288,7 +289,7 @@ def _legacy(file: BinaryIO) -> str:
         words = line.decode(errors="replace").split()
         if not words:
             continue
-        of_field = len(words) == _FIELD_WORDS and words[3].lower() in _TYPES | _TEXTS
+        of_field = len(words) == _FIELD_WORDS and words[3].lower() in _OF_FIELDS
         if not of_field and (not words[0][0].isalpha() or words[0].lower() in _NO_NUMBERS):
             found += len(words)
             continue
@@ -327,13 +328,13 @@ def _tail(file: BinaryIO, start: int, *, text: bool) -> str:
     """Look for a header of an array that is cut at the end, on which VTK ends the process."""
     file.seek(max(start, file.seek(0, 2) - _LONGEST_HEADER))
     lines = file.read().splitlines(keepends=True)
-    for i, line in enumerate(lines[-2:], max(len(lines) - 2, 0)):
+    before, last = [b"", b"", *lines][-2:]
+    for line, after in ((before, last), (last, b"")):
         words = line.split()
-        if words and words[0].upper() == b"FIELD" and words[2:] != [b"0"]:
-            after = lines[i + 1] if i + 1 < len(lines) else b""
-            if len(after.split()) < _FIELD_WORDS or not after.endswith(b"\n"):
-                return "it ends in the header of a field"
-    cut = re.fullmatch(rb"[!-~]+ \d+(?: \d+(?: \w*)?)?", lines[-1]) if lines else None
+        cut_after = len(after.split()) < _FIELD_WORDS or not after.endswith(b"\n")
+        if cut_after and words and words[0].upper() == b"FIELD" and words[2:] != [b"0"]:
+            return "it ends in the header of a field"
+    cut = re.fullmatch(rb"[!-~]+ \d+(?: \d+(?: \w*)?)?", last)
     return "it ends in the header of an array" if cut and not text else ""
 
 

@@ -9,6 +9,7 @@ import pyvista as pv
 from vtkmodules.vtkFiltersCore import vtkAppendFilter, vtkAppendPolyData
 
 from vizlight.reading.cells import GHOSTS
+from vizlight.reading.edges import place_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -17,8 +18,6 @@ if TYPE_CHECKING:
 
 #: Name of the cell array that is 1 on the cells of other pieces.
 GHOST = "vizlight_ghost"
-#: Odd factors that mix the bits of coordinates.
-MIX = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], dtype=np.uint64)
 
 
 def own_cells(mesh: pv.DataSet) -> pv.DataSet:
@@ -95,7 +94,7 @@ class _Places:
     def __init__(self, points: Array) -> None:
         self._points = points
         self._low, self._high = points.min(axis=0), points.max(axis=0)
-        self._keys, self._first = np.unique(_keys(points), return_index=True)
+        self._keys, self._first = np.unique(place_numbers(points), return_index=True)
 
     def of(self, others: Array) -> Indices:
         """Return for each of some points the first one at its place, -1 where none is."""
@@ -103,18 +102,10 @@ class _Places:
         near = np.flatnonzero(np.all((others >= self._low) & (others <= self._high), axis=1))
         if len(near):
             wanted = others[near]
-            keys = _keys(wanted)
+            keys = place_numbers(wanted)
             at = self._first[np.minimum(np.searchsorted(self._keys, keys), len(self._keys) - 1)]
             found[near] = np.where(np.all(self._points[at] == wanted, axis=1), at, -1)
         return found
-
-
-def _keys(points: Array) -> Any:
-    """Return a number for each point that is equal at equal places, and hardly ever elsewhere."""
-    bits = np.ascontiguousarray(np.asarray(points, dtype=np.float64) + 0.0).view(np.uint64)
-    # Single precision leaves the low bits 0, which a product alone would keep.
-    mixed = (bits ^ (bits >> np.uint64(32))) * MIX
-    return (mixed ^ (mixed >> np.uint64(29))) @ MIX[::-1]
 
 
 def _cell_arrays(mesh: Any) -> list[Any]:

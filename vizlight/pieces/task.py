@@ -38,8 +38,6 @@ T = TypeVar("T")
 FILTERS = {"illuminate": illuminate, "streamlines": streamlines}
 #: Name of the gradient of the contoured array, which gives normals that no cut changes.
 GRADIENT = "gradient"
-#: Name of the array by which PyVista numbers points that it splits.
-SPLIT = "pyvistaOriginalPointIds"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -245,8 +243,6 @@ def _lit(mesh: pv.DataSet, piece: Piece, job: Job) -> tuple[Any, float | None]:
     if options.get("tangents") is None and has_lines_only(mesh):
         options.pop("facing", None)  # lines have no sides
     lit: Any = FILTERS[job.filter](mesh, job.scene, **options)  # type: ignore[operator]
-    if SPLIT in lit.point_data and SPLIT not in mesh.point_data:
-        del lit.point_data[SPLIT]  # which only pieces with a crease would have
     record, made = records.read(lit, job.name), records.made(lit, job.name)
     kept = records.read(lit, normals.KEPT)
     sharp = None if kept is None else records.share(kept, "sharp")

@@ -245,9 +245,9 @@ def _ended(cue: DepthCue | None) -> DepthCue | None:
 def _packed(values: NDArray[np.generic], kind: str) -> dict[str, object]:
     """Return whole numbers, compressed and as text.
 
-    Of numbers of several bytes, differences from row to row are kept, and of signed ones those of
-    the differences, with the sign in the last bit and bytes of equal rank together. This compresses
-    to about half.
+    Numbers of several bytes are kept as differences from row to row, signed numbers as differences
+    of those differences. The sign is in the last bit, and bytes of equal rank stand together. This
+    compresses to about half.
     """
     rows = np.ascontiguousarray(values, f"<{kind}")
     made: dict[str, object] = {"kind": kind}

@@ -76,7 +76,7 @@ class Sums(NamedTuple):
     Attributes
     ----------
     score : ndarray, shape (count,)
-        How far the normals agree with the directions of a sheet.
+        Sum of the agreement of the normals with the directions of a sheet.
     total, area : ndarray, shape (count, 3) and (count,)
         Area vectors of the faces, and their lengths.
     volume : ndarray, shape (count,)
