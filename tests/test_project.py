@@ -44,13 +44,11 @@ REASONS = {
     "sphinx-design": "extension of Sphinx, named in gallery/pages/conf.py",
     "twine": "command",
     "uv": "command: installs the lowest versions",
-    "trame-vuetify": "trame.widgets.vuetify3 is of it",
-    "trame-vtk": "trame.widgets.vtk, which shows the picture of vizlight view, is in it",
     "tomli": "read above on Python 3.10 only",
 }
 #: Extras whose packages the files of a folder may import, besides the dependencies.
 ALLOWED = {
-    "vizlight": ["fast", "formats", "movie", "rays", "scale", "solids", "tracts", "test", "view"],
+    "vizlight": ["fast", "formats", "movie", "rays", "scale", "solids", "tracts", "test"],
     "tests": ["test", "docs", "tracts", "formats", "scale"],
     "gallery": ["docs"],
 }

@@ -38,11 +38,10 @@ TIERS = [
     {"pictures", "pieces", "plotting", "vtk"},
     {"accessor", "demo", "doctor", "studies"},
     {"cli"},
-    {"view"},
     {"__main__"},
 ]
 #: Names that the package gives by itself are those of all tiers: only what stands last uses them.
-USES_ALL = {"accessor", "cli", "demo", "doctor", "studies", "view"}
+USES_ALL = {"accessor", "cli", "demo", "doctor", "studies"}
 TIER = {part: i for i, tier in enumerate(TIERS) for part in tier}
 
 

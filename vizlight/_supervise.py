@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from types import FrameType
 
-__all__ = ["Doing", "end_with", "leave", "read_limit", "run", "stage"]
+__all__ = ["Doing", "read_limit", "run", "stage"]
 
 Doing: TypeAlias = Literal["read", "write", "draw"]
 
@@ -149,26 +149,9 @@ def run(main: Callable[[], int]) -> int:
     signal.pthread_sigmask(signal.SIG_UNBLOCK, _PASSED_ON)
     os.close(reader)
     _channel = writer
-    end_with(parent)
+    _end_with(parent)
     _limit_memory()
     return main()
-
-
-def leave(code: int) -> int:
-    """End a supervised process at once, in which nothing is open any more; else return the code.
-
-    The end of an interpreter that has drawn takes so long that Ctrl-C would kill it meanwhile.
-
-    Parameters
-    ----------
-    code : int
-        Exit code.
-    """
-    if _channel is None:
-        return code
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(code)
 
 
 def _interrupt_once(number: int, frame: FrameType | None) -> None:
@@ -190,14 +173,8 @@ def _open_standard_streams() -> None:
         sys.stderr = open(2, "w", closefd=False)  # noqa: SIM115
 
 
-def end_with(parent: int) -> None:
-    """Let the kernel kill this process when its parent is killed.
-
-    Parameters
-    ----------
-    parent : int
-        Number of the process that is the parent.
-    """
+def _end_with(parent: int) -> None:
+    """Let the kernel kill this process when its parent is killed."""
     with contextlib.suppress(OSError, AttributeError):
         ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, int(signal.SIGKILL))
     if os.getppid() != parent:

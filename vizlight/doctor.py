@@ -26,7 +26,6 @@ OPTIONAL = (
     ("meshes in .off, .mesh, .msh and other files", "meshio", "formats"),
     ("grids in netCDF files", "xarray", "formats"),
     ("data in pieces on several processes", "distributed", "scale"),
-    ("the page that tunes a picture by eye", "trame", "view"),
     ("all tests", "pytest", "test"),
     ("tests of pictures", "pytest-pyvista", "test"),
     ("tests with searched inputs", "hypothesis", "test"),

@@ -26,6 +26,8 @@ from vizlight.cli.output import say
 from vizlight.cli.script import Step
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     import pyvista as pv
 
     from vizlight.shading.options import LightOptions
@@ -55,14 +57,25 @@ def light(
     explain
         Print what is computed and what is skipped.
     """
+    given = options.keywords(how)
+    if in_pieces.are_asked(common.out, pieces):
+        scenes.check_target(target)
+        scenes.check_color(color)
+        look = scenes.Look(common)
+        return in_pieces.light(files, target, given, common, color, pieces, look)
+    return carry_out(files, builder(target, how, common, color, explain=explain), common.out, "lit")
+
+
+def builder(
+    target: Target, how: object, common: Common, color: Color, *, explain: bool = False
+) -> Callable[[Path], Job]:
+    """Return the function that makes the job of a file, after a check of what needs no mesh."""
     from vizlight.shading.options import LightOptions
 
     scenes.check_target(target)
     scenes.check_color(color)
     look = scenes.Look(common)
     given = options.keywords(how)
-    if in_pieces.are_asked(common.out, pieces):
-        return in_pieces.light(files, target, given, common, color, pieces, look)
     taken = target.surface or target.contour is not None or target.slice is not None
     if taken:
         # In a picture a crease is seen as one.
@@ -85,7 +98,7 @@ def light(
             made.explain = lambda mesh: _explain(mesh, asked)
         return made
 
-    return carry_out(files, job, common.out, "lit")
+    return job
 
 
 def _hint(mesh: pv.DataSet | pv.MultiBlock, *, surface: bool) -> str:

@@ -131,6 +131,11 @@ LIGHTING = {
         "Light a mesh, and write the lit mesh and a picture.",
         "flow.vtu --contour Temp --tangents V --conditioned",
     ),
+    "view": (
+        "view",
+        "Light a mesh, and open a page whose light follows the eye.",
+        "flow.vtu --contour Temp --tangents V --conditioned",
+    ),
     "streamlines": (
         "filters",
         "Trace streamlines, free or on a surface, and light them.",
@@ -165,11 +170,6 @@ for _name, (_module, _help, _example) in LIGHTING.items():
         help=_help,
         help_epilogue=f"Example: vizlight {_name} {_example}",
     )
-app.command(
-    "vizlight.view.command:view",
-    name="view",
-    help="Tune a picture by eye, on a page of this machine.",
-)
 app.register_install_completion_command(help="Install shell completion.")
 
 
