@@ -182,12 +182,12 @@ CALLS = {
     "pictures.cameras.over_shoulder": lambda: {"camera": pv.Camera()},
     "pictures.movie.save": lambda: {
         "frames": [lit(), lit()],
-        "path": Path("movie.gif"),
+        "path": Path("movie.png"),
         "picture": {"size": (60, 40), "anti_aliasing": None},
     },
     "pictures.movie.turn": lambda: {
         "mesh": torus(),
-        "path": Path("movie.gif"),
+        "path": Path("movie.png"),
         "scene": SCENE4,
         "frames": 2,
         "picture": {"size": (60, 40), "anti_aliasing": None},

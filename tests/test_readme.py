@@ -83,6 +83,8 @@ def mended(names):
 @pytest.mark.opengl
 @pytest.mark.parametrize("path", GUIDE, ids=lambda path: path.stem)
 def test_a_page_of_the_guide_runs_and_writes_its_pictures(path, tmp_path, monkeypatch):
+    if "open_gif(" in text_of(path):
+        pytest.importorskip("imageio", reason="pip install 'vizlight[movie]'")
     monkeypatch.setattr(pv, "OFF_SCREEN", True)
     names = DRAWING["run"](path, tmp_path)
     shown = DRAWING["shown"](path)

@@ -401,6 +401,8 @@ def test_an_empty_file_is_an_error_but_not_where_an_index_names_it(balls):
     ids=str,
 )
 def test_bad_input(balls, options, message):
+    if options.get("client") == "nonsense":
+        pytest.importorskip("distributed", reason="pip install 'vizlight[scale]'")
     with pytest.raises((ValueError, TypeError), match=message):
         run(balls, **options)
     assert {path.suffix for path in balls.iterdir()} == {".vtp"}
