@@ -270,8 +270,8 @@ def names_of(mesh):
 
 def _bad(place, call, given):
     marked, _ = table.MARKED.get(call.name, ("$^", ""))
-    # The bound of a plan without a tolerance is infinite. Arrays of the mesh that came in stay.
-    if not place or re.search(rf"{marked}|(plan|^)\.choice\.bound$", place):
+    # Arrays of the mesh that came in stay.
+    if not place or re.search(marked, place):
         return False
     meshes = [value for value in given.values() if isinstance(value, pv.DataSet | pv.MultiBlock)]
     kept = {"points", *(f"point_data[{name}]" for mesh in meshes for name in names_of(mesh))}

@@ -201,11 +201,6 @@ CALLS = {
     "model.highlights.required_factor": lambda: {"rho": [0.1, 0.2]},
     "model.highlights.simple_factor": lambda: {"light_eye_angle": [1.0], "r": [10.0]},
     "model.highlights.sphere_error": lambda: {"light_eye_angle": 1.0, "r": 10.0},
-    "model.highlights.terminator_error": lambda: {
-        "light_eye_angle": [1.0],
-        "shininess": 10.0,
-        "width": 0.2,
-    },
     "model.reflection.diffuse": lambda: {"wi": unit(4, 3), "frame": frame(4, 2, 3)},
     "model.reflection.specular": lambda: {
         "wi": unit(4, 3),

@@ -15,11 +15,12 @@ import sys
 from collections import defaultdict
 from typing import NamedTuple
 
+import bounds
 import numpy as np
 
 from vizlight import DepthCue, Light, Material, Scene, View
 from vizlight.scene.light import NO_ATTENUATION
-from vizlight.shading import bounds, compiled
+from vizlight.shading import compiled
 from vizlight.shading.block import Output, shade_block
 from vizlight.shading.decide import decide
 from vizlight.shading.inputs import ShadingInputs
@@ -56,6 +57,7 @@ class Frame(NamedTuple):
     material_color: bool
     whole: bool
     repeat: int
+    two_sided: bool
     options: ShadingOptions
 
 
@@ -68,7 +70,6 @@ def frame(random) -> Frame:
     model = "cylinder" if kind == "cylinder" else str(random.choice(["phong", "blinn"]))
     types = [np.float32, np.float32, np.float64]
     sided = kind == "surface" and random.random() < 0.3
-    bare = kind in ("surface", "shadow", "fur") and not sided and random.random() < 0.3
     count = int(random.choice([1, 1, 1, 2, 3, 7]))
     lights = [tuple(map(bool, random.random(3) < (0.6, 0.4, 0.3))) for _ in range(count)]
     return Frame(
@@ -81,12 +82,11 @@ def frame(random) -> Frame:
         material_color=bool(random.random() < 0.2),
         whole=bool(random.random() < 0.5),
         repeat=int(random.choice([1, 1, 1, 4])),
+        two_sided=sided,
         options=ShadingOptions(
             model=model,
             compensate=bool(random.random() < 0.8),
-            two_sided=sided,
             conditioned=kind != "free",
-            terminator=float(random.choice([0.05, 0.3])) if bare and kind == "surface" else 0.0,
             components=bool(random.random() < 0.3),
             precision=str(random.choice(["float32", "float64"])),
         ),
@@ -170,7 +170,7 @@ def _inputs(form, scene, offset, size, random):
         shadow = random.random((count, len(scene.lights)))
         shadow[0] = 0
         given["shadow"] = shadow
-    return ShadingInputs(points=points, repeat=form.repeat, **given)
+    return ShadingInputs(points=points, repeat=form.repeat, two_sided=form.two_sided, **given)
 
 
 def _vectors(random, shape, kind, scene):
@@ -280,8 +280,6 @@ def _bound(plan, inputs):
         factors = 8.0 * (2 + (light.attenuation != NO_ATTENUATION) + plan.conditioned)
         if plan.base:
             factors = factors + bounds.diffuse_bound(plan.base_exponent, eps) / eps * spread
-        if plan.options.terminator:
-            factors += 6 / plan.options.terminator
         if plan.fur:
             # (1 - rho)^d changes by at most 1/e of the relative change of d; and it is within 1.
             sines = [np.abs(np.sum(normal * w, axis=1)) for w in (wi, wo)]
@@ -301,12 +299,12 @@ def _bound(plan, inputs):
             d = 4 * eps / np.maximum(b, 1e-300) + factors * eps
             s = 10 * eps / np.maximum(least, 1e-300)
         s = (s + factors * eps) * spread
-        if plan.surface and not plan.two_sided and not plan.options.terminator:
+        if plan.surface and not plan.two_sided:
             # The highlight ends where the light does: at N.wi = 0 rounding decides.
             cosine = np.abs(np.sum(normal * wi, axis=1))
             s = np.where(cosine < 8 * eps, 1, s)
-        total += light.intensity * plan.factors[0] * material.diffuse * np.minimum(d, 1)
-        total += light.intensity * plan.factors[1] * material.specular * np.minimum(s, 1)
+        total += light.intensity * material.diffuse * np.minimum(d, 1)
+        total += light.intensity * material.specular * np.minimum(s, 1)
         total += 4 * eps * light.intensity * (material.diffuse + material.specular)
     cue = scene.depth_cue
     if cue is not None:

@@ -171,9 +171,6 @@ OF_NUMBERS = {
     "report: the check counted as time": (
         "verify/report.py", "active.seconds -= time.perf_counter() - start", "pass",
     ),
-    "tolerance: a bound for opposite light and eye": (
-        "shading/bounds.py", "angle(light, scene.view) != 0", "angle(light, scene.view) is None",
-    ),
 }  # fmt: skip
 
 

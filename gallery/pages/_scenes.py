@@ -35,9 +35,9 @@ ORDER = [
     "plot_ambient", "plot_depth_cue", "plot_attenuation",
     "plot_terrain_day", "plot_terrain", "plot_earth", "plot_bas_relief", "plot_seeping_light",
     "plot_codimension", "plot_turning", "plot_complex_curve", "plot_shapes",
-    "plot_field_in_4_space", "plot_highlights", "plot_highlights_shapes", "plot_highlight_error",
+    "plot_field_in_4_space", "plot_highlights", "plot_highlights_shapes",
     "plot_isoluminance", "plot_isoluminance_painter", "plot_line_models", "plot_errors",
-    "plot_tolerance", "plot_isoluminance_speed",
+    "plot_isoluminance_speed",
 ]  # fmt: skip
 
 #: Scripts whose thumbnail is made from the first picture; others have it from the last.
@@ -59,7 +59,6 @@ PARTS = {
     "plot_errors": (0.0, 0.0, 0.5, 1.0),
     "plot_field_in_4_space": (0.667, 0.07, 1.0, 1.0),
     "plot_flow": (0.0, 0.1, 1.0, 1.0),
-    "plot_highlight_error": (0.0, 0.2, 0.45, 0.9),
     "plot_highlights": (0.15, 0.06, 0.9, 0.5),
     "plot_highlights_shapes": (0.0, 0.08, 0.5, 0.92),
     "plot_isoluminance": (0.25, 0.56, 0.5, 1.0),
@@ -73,7 +72,6 @@ PARTS = {
     "plot_shapes": (0.2, 0.07, 0.4, 1.0),
     "plot_terrain_day": (0.37, 0.05, 0.63, 0.49),
     "plot_terrain": (0.05, 0.08, 0.95, 0.98),
-    "plot_tolerance": (0.15, 0.03, 0.85, 0.33),
     "plot_tubes": (0.37, 0.08, 1.0, 0.95),
     "plot_turning": (0.4, 0.06, 0.61, 0.5),
     "plot_winds": (0.08, 0.1, 0.92, 0.8),

@@ -72,7 +72,7 @@ COMMANDS = {
     "light": "light flow.vti --contour r --level 4 --tangents V --conditioned",
     "light, all at once": "light flow.vti --contour r --clip x:6 --threshold r:0:8 --light 315,30 "
     "--light-position 9,9,-9 --headlight --color tomato --depth-cue --parallel --zoom 2 "
-    "--tolerance 1/255 --components --background black --line-width 2 --up 0,1,0 --view 1,0,1",
+    "--precision float64 --components --background black --line-width 2 --up 0,1,0 --view 1,0,1",
     "section": "light flow.vti --slice 0,1,1:8 --tangents V",
     "points of a volume": "light flow.vti --no-surface --tangents V",
     "raised": "light terrain.vti --warp height --warp-factor 2 --facing as-given",
@@ -152,8 +152,6 @@ IN_SCRIPTS = {
         "surface",
         "separation",
         "shortest",
-        "terminator",
-        "highlight_error",
     },
     "relief": {"occluders", "sun"},
     "fur": set(),
@@ -408,10 +406,10 @@ def test_help_of_the_whole_loads_no_pyvista():
             | {"attenuated": False, "conditioned": True, "inward": "keep"},
         ),
         (
-            "contours flow.vti --contour r --levels 1/50 --two-sided",
+            "contours flow.vti --contour r --levels 1/50 --flip-normals",
             "lit-bands.vtp",
             "luminance",
-            {"levels": 0.02, "two_sided": True},
+            {"levels": 0.02, "flip_normals": True},
         ),
         (
             "project torus.vtp --rotation xw:0.5 --rotation yz:-1/4 --distance 4 --components",

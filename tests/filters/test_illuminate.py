@@ -64,15 +64,12 @@ def test_normals_decide_without_tangents():
     np.testing.assert_allclose(lit["luminance"][dark], 0.1, rtol=1e-6)
 
 
-def test_flip_and_two_sides():
+def test_flip():
     plane = pv.Plane(i_resolution=2, j_resolution=2)
     front = illuminate(plane, SCENE)["luminance"]
     with pytest.warns(DeprecationWarning, match="flip_normals= is replaced by facing="):
         back = illuminate(plane, SCENE, flip_normals=True)["luminance"]
-    with pytest.warns(DeprecationWarning, match="two_sided= is replaced by facing='eye'"):
-        both = illuminate(plane, SCENE, two_sided=True)["luminance"]
     np.testing.assert_allclose(back, 0.1)
-    np.testing.assert_allclose(both, front, rtol=1e-6)
     assert front.min() > 0.3
 
 
@@ -346,15 +343,9 @@ def test_a_shared_result_does_not_hold_the_input_in_memory_twice():
         ({"conditioned": True}, ValueError, "conditioned: expected tangents to condition"),
         ({"normals": "two"}, ValueError, "normals: expected 3 components, got 'two' with 2"),
         ({"tangents": "V", "model": "x"}, ValueError, "model: expected"),
-        (
-            {"tangents": "V", "two_sided": True},
-            ValueError,
-            "two_sided: expected no two_sided beside",
-        ),
         ({"tangents": "V", "flip_normals": True}, ValueError, "flip_normals: expected no"),
         ({"tangents": "V", "facing": "eye"}, ValueError, "facing: expected no facing beside tang"),
         ({"facing": "me"}, ValueError, "facing: expected .*as given.*, got 'me'"),
-        ({"facing": "eye", "two_sided": True}, ValueError, "two_sided: expected facing= alone"),
         ({"feature_angle": -1}, ValueError, "feature_angle: expected"),
         ({"feature_angle": "30"}, ValueError, "feature_angle: expected .*'auto' or None, got '30'"),
         ({"tangents": "V", "name": ""}, ValueError, "name: expected a name"),

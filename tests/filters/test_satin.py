@@ -94,7 +94,6 @@ def test_options_go_to_the_panels_that_they_fit():
     ball = pv.Sphere(theta_resolution=20, phi_resolution=20, start_phi=5, end_phi=175)
     ball["way"] = np.array([0, 0, 1.0]) - 4 * ball.points[:, 2:] * ball.points
     options = {"flip_normals": True, "components": True, "max_length": 0.5, "name": "x"}
-    options["terminator"] = 0.1
     with pytest.warns(DeprecationWarning, match="flip_normals= is replaced"):
         panels = vizlight.satin(ball, SCENE, tangents="way", seeds=5, **options)
     for panel in panels:

@@ -109,7 +109,6 @@ MESHES = {
     ),
     "toward the eye": ([sheet(i) for i in range(3)], {"facing": "eye"}),
     "as given": ([sheet(i) for i in range(3)], {"facing": "as given"}),
-    "both sides": ([sheet(i) for i in range(3)], {"two_sided": True}),
     "volumes": ([volume(i) for i in range(3)], {}),
     "grids of both": ([volume(0), sheet(1).cast_to_unstructured_grid(), volume(2)], {}),
     "ghost cells": ([ghosts(2 * i) for i in range(3)], {}),

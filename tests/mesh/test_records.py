@@ -105,9 +105,9 @@ def test_several_turns_make_the_light_again():
 def test_numbers_of_any_type_are_written_as_numbers():
     mesh = pv.PolyData(np.eye(3))
     given = np.eye(3, dtype=np.longdouble)
-    lit = vizlight.illuminate(mesh, SCENE, tangents=given, tolerance=Fraction(1, 256))
+    lit = vizlight.illuminate(mesh, SCENE, tangents=given, feature_angle=Fraction(61, 2))
     told = vizlight.provenance(lit)["options"]
-    assert told["tolerance"] == 1 / 256
+    assert told["feature_angle"] == 30.5
     np.testing.assert_array_equal(told["tangents"], np.eye(3))
 
 

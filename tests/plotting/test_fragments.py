@@ -75,8 +75,6 @@ def pictures(mesh, scene, **options):
 
 SURFACE = {
     "surface": {},
-    "two-sided": {"two_sided": True},
-    "terminator": {"terminator": 0.3},
     "tangents": {"tangents": "around"},
     "conditioned": {"tangents": "around", "conditioned": True},
 }

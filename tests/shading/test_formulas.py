@@ -6,11 +6,12 @@ import ast
 import inspect
 import math
 
+import bounds
 import numpy as np
 import pytest
 
 from vizlight.model import cylinder_kernels, falloff, kernels
-from vizlight.shading import bounds, formulas
+from vizlight.shading import formulas
 
 EPS = float(np.finfo(float).eps)
 BODIES = {
@@ -149,7 +150,6 @@ def test_highlights_of_a_surface():
     np.testing.assert_array_equal(formulas.one_side(cosine), [0, 0, 0.05, 0.1, 0.5])
     np.testing.assert_array_equal(formulas.both_sides(cosine), [0.5, 0, 0.05, 0.1, 0.5])
     np.testing.assert_array_equal(formulas.lit_highlight(0.7, cosine), [0, 0, 0.7, 0.7, 0.7])
-    close(formulas.faded_highlight(1.0, cosine, 0.1), kernels.smooth_step(cosine / 0.1))
     side = formulas.one_side(cosine)
     close(formulas.shadowed_highlight(0.7, 0.25, side), [0, 0, 0.7, 0.7, 0.35])
     assert formulas.luminance(0.1, 0.5, 1.0, 0.4, 0.5) == pytest.approx(0.8)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from functools import partial
 
+import bounds as stated
 import numpy as np
 import oracles
 
 from stability import hard, references
 from stability.checks import TYPES, Check, exactly, spread, timed
 from vizlight.scene import Light, Material, Scene, View
-from vizlight.shading import bounds as stated
 from vizlight.shading import engine
 
 #: What is lit, in which space, under which law.

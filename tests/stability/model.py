@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from functools import partial
 
+import bounds
 import numpy as np
 import oracles
 from oracles import dot, exact
@@ -22,7 +23,6 @@ from vizlight.model import (
 )
 from vizlight.model import frames as spaces
 from vizlight.scene import DepthCue
-from vizlight.shading import bounds
 
 SIZES = ((1, 3), (1, 2), (2, 3), (1, 4), (2, 4), (3, 8), (7, 8))
 EXPONENTS = (1.0, 4.7635, 0.5, 2.0, 64.0, 65.0, 128.0, 150.0, 1e3, 1e6)

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import traceback
 
+import bounds
 import numpy as np
 import oracles
 import pytest
@@ -21,7 +22,6 @@ import vizlight
 from stability import checks, hard, model, suite
 from vizlight.geometry import isoluminance, manifolds
 from vizlight.model import falloff, reflection
-from vizlight.shading import bounds
 
 COUNT = 120
 #: The table of the pages, which ``.venv/bin/python tests/stability`` makes.

@@ -36,14 +36,13 @@ def test_rows_of_the_study():
         *highlights.rows_of_rules(60.0, 40.0),
         *highlights.rows_of_codimension(1, 2, 500),
         *(row for a in (2.0, 60.0) for row in highlights.rows_of_exchange(a, 100.0, 1000)),
-        *highlights.rows_of_terminators(120),
     ]
-    assert len({row.way for row in rows}) == 6 + 3 + 2 + 4
+    assert len({row.way for row in rows}) == 6 + 3 + 2
     said = highlights.verdict(rows)
     assert "use 4 cos(beta) corrected for r times the Phong power" in said
     assert "(4: 26.56, 4 cos(beta): 14.13, the best factor by search: 13.63)" in said
     assert "up to 2 degrees between light and eye for power 100" in said
-    assert "the time is" in said
+    assert "its time is" in said
 
 
 @pytest.fixture(scope="module")
@@ -58,9 +57,9 @@ def rows():
 
 
 def test_the_verdict_names_each_power(rows):
-    """The default shininess, 20, is not within 1 of 255 at any angle."""
+    """The largest error falls with the power: 0.85 of 255 at 2 degrees for 20, 0.17 for 100."""
     said = highlights.verdict(rows)
-    assert "at no angle for power 20 (its bound is 1.48 of 255 at 2 degrees)" in said
+    assert "up to 2 degrees between light and eye for power 20" in said
     assert "up to 10 degrees between light and eye for power 100" in said
 
 
@@ -71,21 +70,18 @@ def test_the_rule_follows_from_the_rows(rows):
     )
 
 
-def test_what_is_dearer_is_left_out(rows):
-    dear = [row._replace(cost=1e6) if "Blinn" in row.way else row for row in rows]
-    assert "but do not set it: the time is" in highlights.verdict(dear)
+def test_without_any_angle_there_is_no_time(rows):
     off = [
         row._replace(more={**row.more, "bound": 9.0}) if "bound" in row.more else row
         for row in rows
     ]
-    assert highlights.verdict(off).endswith("at 2 degrees), so do not set it")
+    assert highlights.verdict(off).endswith("at 2 degrees)")
 
 
 def test_the_figure_shows_few_curves_and_no_rounding(rows):
-    rows = [*rows, *(r for a in (60, 120) for r in highlights.rows_of_terminators(a))]
     left, right = (
         {panel.curve(row) for row in rows} - {None}
         for panel in (highlights.STUDY, *highlights.STUDY.beside)
     )
     assert len(left) == 6
-    assert len(right) == 2 + 4
+    assert len(right) == 2

@@ -31,7 +31,6 @@ OPTIONS = {
     "surface": {},
     "surface, blinn": {"model": "blinn", "two_sided": True},
     "surface, two-sided": {"two_sided": True},
-    "surface, terminator": {"terminator": 0.4},
     "surface, shadow": {"shadow": (0.2, 0.4)},
     "conditioned": {},
     "conditioned, shadow": {"shadow": (0.2, 0.4)},

@@ -34,7 +34,7 @@ RENAMED = {"light": "when"}
 @options.takes(
     vizlight.streamlines,
     "Streamlines",
-    without=("positions", "tangents", "separation", "shortest", "terminator", "highlight_error"),
+    without=("positions", "tangents", "separation", "shortest"),
 )
 def streamlines(
     files: list[Path],

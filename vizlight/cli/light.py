@@ -128,6 +128,5 @@ def _explain(lit: pv.DataSet, asked: LightOptions) -> None:
     record = vizlight.provenance(lit, asked.name)
     scene = vizlight.Scene.from_dict(record["scene"])
     inputs = inputs_of(next(all_blocks(lit)), "", scene, asked)
-    dtype = None if asked.tolerance and asked.precision is None else record["precision"]
     layout = inputs.layout._replace(dimmed=bool(asked.bundle), occluded=bool(asked.bundle))
-    say(decide(scene, layout, asked, dtype).explain())
+    say(decide(scene, layout, asked, record["precision"]).explain())

@@ -47,7 +47,6 @@ class ContourKeywords(TypedDict, total=False):
     levels: Levels
     tolerance: float
     model: SpecularModel
-    two_sided: bool
     flip_normals: bool
     feature_angle: FeatureAngle
     normals: str | ArrayLike | None
@@ -71,8 +70,8 @@ class ContourOptions:
         of its size.
     model : {"phong", "blinn"}
         Reflection model of the highlight: ``R . E`` or ``N . H``. Both are drawn exactly.
-    two_sided, flip_normals : bool, default: False
-        Treatment of back sides and normals, as for :func:`vizlight.illuminate`. An open mesh
+    flip_normals : bool, default: False
+        Whether the normals are reversed, as for :func:`vizlight.illuminate`. An open mesh
         faces the eye as a whole, because contours need normals that agree.
     feature_angle : float or "auto", optional
         Angle in degrees above which edges are sharp, as for :func:`vizlight.illuminate`; for a
@@ -86,7 +85,6 @@ class ContourOptions:
     levels: Levels = 16
     tolerance: float = 3e-3
     model: SpecularModel = "phong"
-    two_sided: bool = False
     flip_normals: bool = False
     feature_angle: FeatureAngle = None
     normals: str | ArrayLike | None = None
@@ -245,7 +243,6 @@ class _Light:
             self.scene,
             normals=-normals if asked.flip_normals else normals,
             model=asked.model,
-            two_sided=asked.two_sided,
             precision="float64",
             threads=self.threads,
         )
@@ -263,7 +260,7 @@ def _of_solid(solid: Solid, light: _Light) -> Bands:
     low = scene.material.ambient * scene.ambient_intensity
     dull = scene.material.specular == 0 and scene.depth_cue is None
     found: Bands | Laminae | None = None
-    plain = dull and len(scene.lights) == 1 and not (asked.two_sided or asked.flip_normals)
+    plain = dull and len(scene.lights) == 1 and not asked.flip_normals
     if plain and isinstance(solid, Sphere | Frustum):
         (lamp,) = scene.lights
         source: dict[str, Any] = {
@@ -414,7 +411,6 @@ def _note(bands: Bands, light: _Light, seconds: float, size: int, *, sampled: bo
         size,
         bands.error,
         model=asked.model,
-        two_sided=asked.two_sided,
     )
 
 

@@ -89,14 +89,10 @@ def satin(
             traced.point_data[name] = rows
         vectors_of(traced, "tangents", name, 3)
     light = {f.name: getattr(asked, f.name) for f in dataclasses.fields(LightOptions)}
-    field = LightOptions(**light | {"conditioned": False, "terminator": 0.0})
+    field = LightOptions(**light | {"conditioned": False})
     panels = {
-        "surface": dataclasses.replace(
-            field, tangents=None, model=field.for_surface().model, terminator=asked.terminator
-        ),
-        "field": dataclasses.replace(
-            field, normals=None, two_sided=False, flip_normals=False, facing="auto"
-        ),
+        "surface": dataclasses.replace(field, tangents=None, model=field.for_surface().model),
+        "field": dataclasses.replace(field, normals=None, flip_normals=False, facing="auto"),
         "conditioned": dataclasses.replace(field, conditioned=True),
     }
     lines = dataclasses.replace(
@@ -105,9 +101,7 @@ def satin(
         line_field=asked.line_field or averaged,
         tangents=None,
         conditioned=False,
-        terminator=0.0,
         normals=None,
-        two_sided=False,
         flip_normals=False,
         facing="auto",
     )

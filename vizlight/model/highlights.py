@@ -44,7 +44,6 @@ __all__ = [
     "required_factor",
     "simple_factor",
     "sphere_error",
-    "terminator_error",
 ]
 
 Measure = Literal["worst", "rms", "volume"]
@@ -446,75 +445,6 @@ def exchange_rate(light_eye_angle: ArrayLike, /, *, k: int = 2, n: int = 3) -> A
     log = np.log1p(-np.multiply.outer(np.square(np.sin(beta)), share))
     mean = log @ (weights / weights.sum())
     return result(4 * np.square(cosine) * np.exp(-mean / k))
-
-
-def terminator_error(
-    light_eye_angle: ArrayLike,
-    shininess: ArrayLike,
-    width: ArrayLike,
-    /,
-    *,
-    model: Literal["phong", "blinn"] = "phong",
-) -> Array:
-    """Return the most that a smooth terminator takes from a highlight.
-
-    Both models end abruptly where ``N.L = 0``. A smooth terminator multiplies them by the smooth
-    step ``t^2 (3 - 2 t)``, where ``t = N.L / width`` is clamped to [0, 1].
-
-    Parameters
-    ----------
-    light_eye_angle : array_like, shape (...)
-        Angle 2 beta between light and eye, in radians, from 0 to pi.
-    shininess : array_like, shape (...)
-        Exponent of the chosen model, from 0 to 1e9.
-    width : array_like, shape (...)
-        Cosine N.L above which the highlight is unchanged, from 0 to 1.
-    model : {"phong", "blinn"}
-        Reflection model of the highlight.
-
-    Returns
-    -------
-    ndarray, shape (...)
-        Largest loss over all normals that face the light, in pixel values.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If a value is out of its range.
-
-    Notes
-    -----
-    For a given N.L both models are largest where N, L and E are coplanar: cos(alpha - beta) and
-    cos(2 alpha - 2 beta). The loss there is log-concave in N.L, so ternary search finds its
-    maximum. Fisher and Woo describe the abrupt end beside their figure 3.
-    """
-    _check.choice("model", model, ("phong", "blinn"))
-    beta = _angles("light_eye_angle", light_eye_angle) / 2
-    s, width = _powers("shininess", shininess), _powers("width", width, high=1.0)
-    times = 2.0 if model == "phong" else 1.0
-
-    _check.together(light_eye_angle=beta, shininess=s, width=width)
-    safe = np.where(width > 0, width, 1)
-
-    def log_loss(cosine: Array) -> Array:
-        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            t = np.minimum(cosine / safe, 1)
-            base = np.maximum(np.cos(times * (np.arccos(cosine) - beta)), 0)
-            power = np.where(s == 0, 0, s * np.log(base))
-            total: Array = 2 * np.log1p(-t) + np.log1p(2 * t) + power
-        return total
-
-    # Where N.L is less than ``low`` the highlight is 0, so nothing is lost.
-    reach = np.cos(np.minimum(beta + np.pi / (2 * times), np.pi))
-    low = np.where(s == 0, 0.0, np.maximum(reach, 0)) + np.zeros_like(safe)
-    high = np.maximum(np.minimum(safe, np.cos(beta)), low)
-    for _ in range(90):
-        third = (high - low) / 3
-        right = log_loss(low + third) < log_loss(high - third)
-        low, high = np.where(right, low + third, low), np.where(right, high, high - third)
-    with np.errstate(under="ignore"):
-        most = np.exp(np.maximum(log_loss(low), log_loss(high)))
-    return result(np.where(width > 0, PEAK * most, 0))
 
 
 def _factor(light_eye_angle: ArrayLike | None, factor: float) -> Array:

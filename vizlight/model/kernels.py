@@ -214,10 +214,3 @@ def blinn(tangential: Array, normal: Array, shininess: float) -> Array:
 def blinn_of_unit(tangential: Array, shininess: float) -> Array:
     """Return |h_N|^q for q of 2 or more from |h_T|^2 of a unit half vector."""
     return power(np.maximum(1 - tangential, 0), shininess / 2, tangential)
-
-
-def smooth_step(t: Array) -> Array:
-    """Return t^2 (3 - 2 t), where t is clamped to [0, 1]."""
-    t = np.clip(t, 0, 1)
-    result: Array = t * t * (3 - 2 * t)
-    return result

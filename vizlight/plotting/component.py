@@ -50,7 +50,7 @@ REFUSED = {
     "texture": "sample the texture to a point array and pass scalars=",
     "rgb": "pass the data and a colour map: scalars= and cmap=",
     "rgba": "pass the data and a colour map: scalars= and cmap=",
-    "backface_params": "leave it out; two_sided=True lights both sides",
+    "backface_params": "leave it out; facing='eye' lights the side that is seen",
     "copy_mesh": "pass mesh.copy()",
 }
 #: Endings of the names of pictures that VTK writes.

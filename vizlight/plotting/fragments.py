@@ -219,10 +219,9 @@ def _drawn_as(source: Source, stroke: Stroke) -> tuple[Layout, ShadingOptions]:
 
 
 def exact_plan(scene: Scene, source: Source, stroke: Stroke = Stroke()) -> Plan:  # noqa: B008
-    """Return the plan of a source in its exact form."""
+    """Return the plan of a source."""
     layout, options = _drawn_as(source, stroke)
-    options = dataclasses.replace(options, tolerance=0.0, highlight_error=0.0, components=False)
-    return decide(scene, layout, options)
+    return decide(scene, layout, dataclasses.replace(options, components=False))
 
 
 def _structure(scene: Scene, lights: Sequence[Light], source: Source) -> tuple[object, ...]:

@@ -251,11 +251,7 @@ def _surface_highlight(w: _Writer, plan: Plan, model: str, side: str, shininess:
     else:
         facing = w.call(side, "up")
         value = w.call("blinn", "dot(h, h)", f"{facing} * {facing}", shininess)
-    if plan.two_sided:
-        return value
-    if plan.terminator:
-        return w.call("faded_highlight", value, "cosine", number(plan.terminator))
-    return w.call("lit_highlight", value, "cosine")
+    return value if plan.two_sided else w.call("lit_highlight", value, "cosine")
 
 
 def _cue(w: _Writer, plan: Plan) -> None:

@@ -35,8 +35,8 @@ __all__ = ["Shader", "save", "shader"]
 EYE = View(direction=(0, 0, 1))
 #: Options of light that a program of fragments has no use for.
 WITHOUT = (
-    "positions", "feature_angle", "two_sided", "flip_normals", "average_cells", "refine", "bundle",
-    "name", "components", "precision", "tolerance", "highlight_error",
+    "positions", "feature_angle", "flip_normals", "average_cells", "refine", "bundle",
+    "name", "components", "precision",
 )  # fmt: skip
 #: How normals are turned, by ``facing``; otherwise they stay as they are.
 TOWARD: dict[str, Literal["eye", "face"]] = {"auto": "face", "eye": "eye"}
@@ -277,8 +277,8 @@ def _plan(scene: Scene, layout: Layout, options: ShadingOptions) -> Plan:
     if cue is not None and (cue.front is None or cue.back is None):
         expected, remedy = "both ends for ParaView", "pass DepthCue(front=, back=), distances"
         raise ValueError(_check.message("depth_cue", expected, "none or one", remedy))
-    exact = dataclasses.replace(options, tolerance=0.0, highlight_error=0.0, components=False)
-    return decide(scene.replace(view=EYE), layout, exact)
+    bare = dataclasses.replace(options, components=False)
+    return decide(scene.replace(view=EYE), layout, bare)
 
 
 def _made(

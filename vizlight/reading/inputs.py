@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -56,7 +55,7 @@ def part_of(
     """Return what one mesh is lit by; an error names the path of its block.
 
     With ``starts`` the mesh is a batch, see :mod:`vizlight.mesh.batches`. Without a view both
-    sides of an open surface are lit alike, by ``two_sided`` in the options.
+    sides of an open surface are lit alike.
 
     Raises
     ------
@@ -69,6 +68,7 @@ def part_of(
         tangents = _tangents(mesh, n, options, kept)
         _check_options(tangents, n, options)
         base = normals = sided = None
+        alike = False
         if isinstance(options.conditioned, str):
             base = tangents_of(
                 mesh,
@@ -85,8 +85,7 @@ def part_of(
             normals = sided.facing(shown_side(options), points, scene.view)
             if options.flip_normals:
                 normals = -normals[:]
-            if scene.view is None and _alike(sided, options.facing):
-                options = dataclasses.replace(options, facing="auto", two_sided=True)
+            alike = scene.view is None and _alike(sided, options.facing)
     except (TypeError, ValueError) as error:
         if not path:
             raise
@@ -96,6 +95,7 @@ def part_of(
         tangents=tangents,
         normals=normals,
         base_tangents=base,
+        two_sided=alike,
         sides=None if sided is None else partial(_sides, sided, scene.view, options),
     )
     return Part(inputs, options, sided)
@@ -113,9 +113,9 @@ def _sides(sided: Sided, view: View | None, options: LightOptions) -> Sides:
 
 
 def shown_side(options: LightOptions) -> Facing:
-    """Return the side that normals show; the older switches take the place of the eye."""
-    old = options.two_sided or options.flip_normals
-    return "outward" if old and options.facing == "auto" else options.facing
+    """Return the side that normals show; the older switch takes the place of the eye."""
+    old = options.flip_normals and options.facing == "auto"
+    return "outward" if old else options.facing
 
 
 def _alike(sided: Sided, facing: Facing) -> bool:
@@ -149,7 +149,7 @@ def _check_options(tangents: Array | None, n: int, options: LightOptions) -> Non
 
 def _refuse_sides(options: LightOptions) -> None:
     """Raise ValueError if an option fits only a surface, which has two sides."""
-    for name in ("normals", "two_sided", "flip_normals", "facing"):
+    for name in ("normals", "flip_normals", "facing"):
         value = getattr(options, name)
         if not (value is None or value is False or (isinstance(value, str) and value == "auto")):
             remedy = "pass conditioned=True, or leave one of them out"

@@ -100,7 +100,7 @@ def shade_block(plan: Plan, rows: slice, inputs: ShadingInputs, output: Output) 
     if inputs.normals is not None:
         normal, length = kernels.unit(columns(inputs.normals, rows, plan.dtype))
         normal = normal.astype(plan.dtype, copy=False)
-        surface = Surface(normal, length > 0, two_sided=plan.two_sided, terminator=plan.terminator)
+        surface = Surface(normal, length > 0, two_sided=plan.two_sided)
     if inputs.base_tangents is not None:
         sheet = Tangents(*_spanned(plan, plan.base, inputs.base_tangents, rows))
     each = tangents is not None and tangents.shape[0] == inputs.points.shape[0]
@@ -301,11 +301,10 @@ def _store(
 ) -> None:
     """Multiply the sums by the material, fade them with depth, write them to the output."""
     fade = _fade(plan, points, valid)
-    factors = dict(zip(("diffuse", "specular"), plan.factors, strict=True))
     spoiled = None if valid.all() else ~valid
     for group in (sums.white, sums.channels):
         for term, value in group.items():
-            value *= plan.dtype.type(getattr(plan.scene.material, term) * factors[term])
+            value *= plan.dtype.type(getattr(plan.scene.material, term))
             if spoiled is not None:
                 value[..., spoiled] = 0
     light = output.luminance[block]

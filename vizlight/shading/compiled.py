@@ -255,7 +255,6 @@ def _form(plan: Plan, inputs: ShadingInputs) -> tuple[Form, list[int]]:
         surface=plan.surface,
         cylinder=plan.model == "cylinder",
         two_sided=plan.two_sided,
-        terminator=bool(plan.terminator),
         conditioned=plan.conditioned,
         shadowed=plan.shadowed,
         fur=plan.fur > 0 and seen != "",
@@ -318,14 +317,13 @@ def _scene_numbers(plan: Plan) -> dict[str, float]:
         plan.scene, plan.scene.material, plan.scene.view, plan.scene.depth_cue,
     )  # fmt: skip
     eps, tiny, most = (float(getattr(np.finfo(plan.dtype), x)) for x in ("eps", "tiny", "max"))
-    kd, ks = material.diffuse * plan.factors[0], material.specular * plan.factors[1]
+    kd, ks = material.diffuse, material.specular
     values = {
         "ambient": plan.ambient,
         "kd": kd,
         "ks": ks,
         "exponent": plan.exponent,
         "base_exponent": plan.base_exponent,
-        "terminator": plan.terminator,
         # Not 0, which times an infinite path is no number.
         "rate": min(float(np.log1p(-plan.fur)), -tiny) if plan.fur < 1 else -most,
         "least": cylinder_kernels.ALONG * eps,

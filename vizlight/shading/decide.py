@@ -3,25 +3,29 @@
 from __future__ import annotations
 
 import dataclasses
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vizlight import _check
-from vizlight.model import brightness
+from vizlight.model import brightness, kernels
 from vizlight.scene import Scene
-from vizlight.shading import bounds, compiled, highlight
+from vizlight.shading import compiled
 from vizlight.shading.inputs import Layout
 from vizlight.shading.options import ShadingOptions, accepts
-from vizlight.shading.plan import Plan
-from vizlight.shading.tolerance import relax
+from vizlight.shading.plan import Highlight, Plan
 
 if TYPE_CHECKING:
     from numpy.typing import DTypeLike
     from typing_extensions import Unpack
 
-    from vizlight.shading.options import ShadingKeywords
+    from vizlight._types import Vector
+    from vizlight.shading.options import Model, ShadingKeywords
+
+
+#: Least power at which |h_N|^q may be computed from the tangential part alone: a lower one is too
+#: steep at 0.
+LEAST_POWER = 2.0
 
 
 @accepts(ShadingOptions, renamed={"carrier": "base_tangents"})
@@ -32,6 +36,7 @@ def plan(
     n: int = 3,
     k: int | None = None,
     normals: bool = False,
+    two_sided: bool = False,
     dtype: DTypeLike | None = None,
     base_tangents: int | None = None,
     shadowed: bool = False,
@@ -49,8 +54,10 @@ def plan(
         Number of tangents per point. None: the manifold is the surface that has the normals.
     normals : bool, default: False
         Whether normals are given. With k they may condition and attenuate the light.
+    two_sided : bool, default: False
+        Whether the normals have no side: the surface is lit by ``|N . wi|``.
     dtype : dtype, optional
-        float32 or float64. Default: ``precision``, else float64 or what ``tolerance`` allows.
+        float32 or float64. Default: ``precision``, else float64.
     base_tangents : int, optional
         Number of base tangents per point, k or more and less than n: those of the manifold in
         which the tangents lie.
@@ -70,9 +77,8 @@ def plan(
     TypeError
         If the scene is not a :class:`vizlight.Scene`, or a keyword is unknown.
     ValueError
-        If the vectors of the scene do not have n components, a view is needed and missing, an
-        option does not fit, or the tolerance is less than the rounding of the float32 that is
-        asked for.
+        If the vectors of the scene do not have n components, a view is needed and missing, or an
+        option does not fit.
     """
     n = _check.integer("n", n, low=2, high=int(_check.LARGEST))
     normals = _check.boolean("normals", normals)
@@ -80,7 +86,10 @@ def plan(
     fur = _check.number("fur", fur, low=0.0, high=1.0)
     if base_tangents is not None:
         base_tangents = _check.integer("base_tangents", base_tangents, low=1)
-    layout = Layout(n, k, normals, base_tangents or 0, shadowed, fur)
+    layout = Layout(
+        n, k, normals, base_tangents or 0, shadowed, fur,
+        two_sided=_check.boolean("two_sided", two_sided),
+    )  # fmt: skip
     made = decide(scene, layout, ShadingOptions(**options), dtype)
     return dataclasses.replace(made, code=compiled.why_not(made) or compiled.WHERE_IT_PAYS)
 
@@ -106,7 +115,7 @@ def decide(
     k = n - 1 if layout.k is None else layout.k
     scene, diffuse, specular = _needed(scene, layout, options)
     compensate = options.compensate and options.model != "cylinder"
-    exact = Plan(
+    return Plan(
         n=n,
         k=k,
         dtype=kind,
@@ -114,13 +123,9 @@ def decide(
         options=options,
         exponent=brightness.exponent(k, n) if compensate else 1.0,
         model=options.model,
-        highlights=highlight.choose(
-            scene,
-            options.model,
-            options.highlight_error if specular else 0.0,
-            partial(bounds.specular_bound, eps=float(np.finfo(kind).eps)),
-        ),
+        highlights=_highlights(scene, options.model),
         surface=surface,
+        two_sided=layout.two_sided,
         conditioned=bool(options.conditioned and layout.normals and not surface),
         base=layout.base,
         base_exponent=(
@@ -133,9 +138,32 @@ def decide(
         diffuse=diffuse,
         specular=specular,
     )
-    if not options.tolerance:
-        return exact
-    return relax(exact, options.tolerance, asked=dtype is not None)
+
+
+def _highlights(scene: Scene, model: Model) -> tuple[Highlight, ...]:
+    """Return how the highlight of each light is computed.
+
+    Where light and eye are at infinity all points share the half vector. Blinn's model then needs
+    no split of the eye.
+    """
+    shininess = scene.material.shininess
+    fixed = model == "blinn" and shininess >= LEAST_POWER
+    return tuple(
+        Highlight(model, shininess, _half(scene, i) if fixed else None)
+        for i in range(len(scene.lights))
+    )
+
+
+def _half(scene: Scene, index: int) -> Vector | None:
+    """Return the half vector that all points share, or None."""
+    light, view = scene.lights[index], scene.view
+    if view is None or not view.parallel or light.direction is None or view.direction is None:
+        return None
+    unit, _ = kernels.unit(np.array([light.direction, view.direction], dtype=np.float64).T)
+    both = unit[:, 0] + unit[:, 1]
+    size = float(np.linalg.norm(both))
+    # Of nearly opposite directions the half vector is mere rounding.
+    return None if size < 1e-6 else tuple((both / size).tolist())
 
 
 def _needed(scene: Scene, layout: Layout, options: ShadingOptions) -> tuple[Scene, bool, bool]:
@@ -158,7 +186,7 @@ def _precision(dtype: DTypeLike) -> np.dtype[np.floating]:
 
 def _check_layout(layout: Layout, options: ShadingOptions) -> None:
     """Check that tangents, normals and options go together."""
-    n, k, normals, base, _, fur, _, _ = layout
+    n, k, normals, base, _, fur, *_ = layout
     if k is None and not normals:
         raise ValueError(
             _check.message("tangents", "tangents (k=) or normals (normals=True)", "neither")
@@ -168,10 +196,6 @@ def _check_layout(layout: Layout, options: ShadingOptions) -> None:
     if options.model == "cylinder" and (k, n) != (1, 3):
         got = f"a surface of {n}-space" if k is None else f"{k} tangent(s) per point in {n}-space"
         raise ValueError(not_a_line(got))
-    if options.terminator and k is not None:
-        remedy = "conditioned= shadows tangents smoothly"
-        expected = "0 beside tangents"
-        raise ValueError(_check.message("terminator", expected, options.terminator, remedy))
     if base and (k is None or normals):
         expected = "tangents (k=) and no normals beside it"
         got = "normals" if normals else "neither"

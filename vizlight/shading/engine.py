@@ -146,6 +146,7 @@ def shade(
     shadow: ArrayLike | ArraySource | None = None,
     transmittance: ArrayLike | ArraySource | None = None,
     occlusion: ArrayLike | ArraySource | None = None,
+    two_sided: bool = False,
     repeat: int = 1,
     threads: int | None = None,
     block: int | None = None,
@@ -183,6 +184,8 @@ def shade(
         diffuse and its specular term.
     occlusion : array_like, shape (N,), optional
         Share of the ambient light that reaches a point: 1 for a point that is open to all sides.
+    two_sided : bool, default: False
+        Whether the normals have no side: the surface is lit by ``|N . wi|``.
     repeat : int, default: 1
         Number of points, one after the other, that share a normal, such as those of a fibre:
         N = M repeat. Tangents have N rows or M. What depends on the row alone is computed once.
@@ -230,6 +233,7 @@ def shade(
             None if transmittance is None else array_source("transmittance", transmittance)
         ),
         occlusion=None if occlusion is None else array_source("occlusion", occlusion),
+        two_sided=two_sided,
         repeat=repeat,
     )
     chosen = ShadingOptions(**options)
@@ -275,7 +279,7 @@ def run(
     inputs.check(sum(light.intensity > 0 for light in scene.lights))
     if inputs.origin is not None:
         scene = scene.moved([-x for x in inputs.origin])
-    if options.precision is None and not options.tolerance:
+    if options.precision is None:
         precision: Precision = "float32" if inputs.narrow else "float64"
         options = dataclasses.replace(options, precision=precision)
     made = decide(scene, inputs.layout, options, narrow=inputs.narrow)

@@ -36,7 +36,6 @@ class Form(NamedTuple):
     surface: bool
     cylinder: bool
     two_sided: bool
-    terminator: bool
     conditioned: bool
     shadowed: bool
     fur: bool

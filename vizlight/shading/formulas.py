@@ -100,11 +100,6 @@ def lit_highlight(value: Number, cosine: Number) -> Number:
     return where(cosine > 0.0, value, 0.0)
 
 
-def faded_highlight(value: Number, cosine: Number, terminator: Number) -> Number:
-    """Return the highlight of a surface, which fades between N.wi = 0 and the terminator."""
-    return value * smooth_step(cosine / terminator)
-
-
 def shadowed_highlight(value: Number, passed: Number, side: Number) -> Number:
     """Return the highlight of a surface under t of a cos-theta shadow: min(1, t / cosine) of it."""
     share = passed / where(side > 0.0, side, 1.0)

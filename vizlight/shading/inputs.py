@@ -54,6 +54,8 @@ class Layout(NamedTuple):
         Whether shares of the lights are given.
     occluded : bool
         Whether the share of the ambient light is given.
+    two_sided : bool
+        Whether the normals have no side.
     """
 
     n: int = 3
@@ -64,6 +66,7 @@ class Layout(NamedTuple):
     fur: float = 0.0
     dimmed: bool = False
     occluded: bool = False
+    two_sided: bool = False
 
 
 class Sides(NamedTuple):
@@ -108,6 +111,8 @@ class ShadingInputs:
         Share of each light that reaches the points.
     occlusion : ArraySource, shape (N,), optional
         Share of the ambient light that reaches the points.
+    two_sided : bool, default: False
+        Whether the normals have no side: the surface is lit by ``|N . wi|``.
     repeat : int, default: 1
         Number of points, one after the other, that share a normal.
     block : int, optional
@@ -132,6 +137,7 @@ class ShadingInputs:
     shadow: ArraySource | None = None
     transmittance: ArraySource | None = None
     occlusion: ArraySource | None = None
+    two_sided: bool = False
     repeat: int = 1
     block: int | None = None
     origin: Vector | None = None
@@ -157,7 +163,7 @@ class ShadingInputs:
         base = 0 if self.base_tangents is None else int(np.prod(self.base_tangents.shape[1:])) // n
         return Layout(
             n, k, self.normals is not None, base, self.shadow is not None, self.fur,
-            self.transmittance is not None, self.occlusion is not None,
+            self.transmittance is not None, self.occlusion is not None, self.two_sided,
         )  # fmt: skip
 
     @property
@@ -218,6 +224,7 @@ class ShadingInputs:
         ):
             if given is not None:
                 _check_tangents(name, tuple(given.shape), counts, n)
+        _check.boolean("two_sided", self.two_sided)
         _check.number("fur", self.fur, low=0.0, high=1.0)
         if (self.fur_height is None) == bool(self.fur):
             raise ValueError(

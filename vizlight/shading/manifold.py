@@ -116,9 +116,9 @@ class Surface:
     The tangential part is kept as the rest of the vector, and only where it is needed.
     """
 
-    def __init__(self, normal: Array, good: Bools, *, two_sided: bool, terminator: float) -> None:
+    def __init__(self, normal: Array, good: Bools, *, two_sided: bool) -> None:
         self.normal, self.good = normal, good
-        self.two_sided, self.terminator = two_sided, terminator
+        self.two_sided = two_sided
 
     def side(self, cosine: Array) -> Array:
         """Return the cosine clamped to the lit side or sides."""
@@ -173,12 +173,8 @@ class Surface:
         return kernels.dot(rest, rest), up
 
     def _cut(self, lit: Split, value: Array) -> Array:
-        """Remove the highlight from the side that the light does not reach, sharply or smoothly."""
-        if self.two_sided:
-            return value
-        if self.terminator:
-            return value * kernels.smooth_step(lit.across / value.dtype.type(self.terminator))
-        return value * (lit.across > 0)
+        """Remove the highlight from the side that the light does not reach."""
+        return value if self.two_sided else value * (lit.across > 0)
 
 
 def column(vector: Vector, like: Array) -> Array:

@@ -112,12 +112,8 @@ class ShadingKeywords(TypedDict, total=False):
     """The fields of :class:`ShadingOptions` as keyword arguments."""
 
     model: Model
-    highlight_error: float
-    tolerance: float
     compensate: bool
     conditioned: bool | str | None
-    two_sided: bool
-    terminator: float
     components: bool
     precision: Precision | None
 
@@ -151,33 +147,13 @@ class ShadingOptions:
         of a thin cylinder, diffuse and specular (Blinn's), by which the others are measured. As a
         mean over the width it is dimmer than the brightest normal of a line: raise the
         coefficients.
-    highlight_error : float, default: 0.0
-        Largest error of Phong's highlight, in pixel values of 255, that is accepted for speed.
-        Under a parallel view and lights at infinity Blinn's model with the best power then takes
-        its place, light by light, while the error bounds, rounding included, add up to no more.
-        :meth:`vizlight.engine.Plan.explain` names the choice and its bound.
-    tolerance : float, default: 0.0
-        Largest error of ``luminance`` that is accepted for speed, such as 1/255. The cheapest
-        evaluation whose stated bound is within it is chosen: under headlights the models that the
-        light of a cylinder is a multiple of, and without compiled code (extra ``fast``) float32 for
-        float64 data, Blinn's model for Phong's, and whole powers. Where nothing is cheaper the
-        exact forms stay. float32 data are lit in float64 if the bound of rounding in float32
-        exceeds the tolerance; there is none for several tangents per point, a cylinder, and
-        Blinn's model with eye or light nearby. 0: the exact forms.
-    terminator : float, default: 0.0
-        Value of ``N . wi``, up to 1, below which the highlight of a one-sided surface fades
-        smoothly to the terminator. 0: it ends sharply where the light does. The largest change is
-        :func:`vizlight.model.highlights.terminator_error`.
-    two_sided : bool, default: False
-        Whether the far side of a surface is lit like the near one: by ``|N . wi|``.
     conditioned : bool or str
         Whether tangents inherit the self-shadow of the surface that the normals belong to
         (Banks 6).
     components : bool, default: False
         Whether the terms ``ambient``, ``diffuse`` and ``specular`` are kept, before any depth cue.
     precision : {"float32", "float64"}, optional
-        Precision of the work and the result. Default: that of the tangents or normals, or what
-        ``tolerance`` allows.
+        Precision of the work and the result. Default: that of the tangents or normals.
 
     Raises
     ------
@@ -186,12 +162,8 @@ class ShadingOptions:
     """
 
     model: Model = "phong"
-    highlight_error: float = 0.0
-    tolerance: float = 0.0
     compensate: bool = True
     conditioned: bool | str | None = True
-    two_sided: bool = False
-    terminator: float = 0.0
     components: bool = False
     precision: Precision | None = None
 
@@ -203,19 +175,8 @@ class ShadingOptions:
         if conditioned is not None and not isinstance(conditioned, str):
             names = "True, False or the name of a point array"
             conditioned = _check.boolean("conditioned", conditioned, expected=names)
-        _check.set_fields(
-            self,
-            conditioned=conditioned,
-            highlight_error=_check.number("highlight_error", self.highlight_error, low=0.0),
-            tolerance=_check.number("tolerance", self.tolerance, low=0.0),
-            terminator=_check.number("terminator", self.terminator, low=0.0, high=1.0),
-        )
+        _check.set_fields(self, conditioned=conditioned)
         _check.flags(self)
-        if self.tolerance and self.highlight_error:
-            remedy = "the tolerance includes the error of the highlights"
-            raise ValueError(
-                _check.message("tolerance", "no highlight_error beside it", "both", remedy)
-            )
 
     def for_surface(self) -> ShadingOptions:
         """Return the options for a surface beside lines: a cylinder's highlight is Blinn's."""
@@ -257,7 +218,7 @@ class LightOptions(ShadingOptions):
         and no such shadow: name the point array of its j tangents, such as ``"frame"``, and its
         own brightness ``sin(a)^p(j, n)`` is the factor. In codimension 1 that is ``|N . wi|``.
     flip_normals : bool, default: False
-        Whether the normals are reversed; replaced by ``facing``, as is ``two_sided`` of a mesh.
+        Whether the normals are reversed; replaced by ``facing``.
     average_cells : bool, default: False
         Whether cell data may serve as tangents, averaged to the points.
     refine : float, default: 0.0
@@ -275,9 +236,7 @@ class LightOptions(ShadingOptions):
     """
 
     #: Older switches, and what replaces them.
-    REPLACED: ClassVar[dict[str, str]] = {
-        "two_sided": "facing='eye'", "flip_normals": "facing='outward' or 'as given'",
-    }  # fmt: skip
+    REPLACED: ClassVar[dict[str, str]] = {"flip_normals": "facing='outward' or 'as given'"}
 
     tangents: str | ArrayLike | None = None
     positions: str | None = None
@@ -299,10 +258,9 @@ class LightOptions(ShadingOptions):
             expected, remedy = f"0 or {FINEST:g} at least", "a picture shows 1/255"
             raise ValueError(_check.message("refine", expected, self.refine, remedy))
         check_sides(self.facing, self.feature_angle)
-        for name in ("two_sided", "flip_normals"):
-            if getattr(self, name) and self.facing != "auto":
-                expected = f"facing= alone, which replaces {name}="
-                raise ValueError(_check.message(name, expected, "both", "leave it out"))
+        if self.flip_normals and self.facing != "auto":
+            expected = "facing= alone, which replaces flip_normals="
+            raise ValueError(_check.message("flip_normals", expected, "both", "leave it out"))
 
 
 def checked_bundle(value: object) -> bool | Bundle:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -33,45 +32,11 @@ class Highlight(NamedTuple):
         Power of the model.
     half : vector or None
         Unit half vector, where it is the same at all points and used as such.
-    error : float
-        Bound of the difference from the model that was asked for, in pixel values of 255, with
-        coefficient, intensity and the rounding of both; 0 where it is that model.
-    rejected : float
-        Error of Blinn's model where it was too large.
     """
 
     model: Model
     shininess: float
     half: Vector | None = None
-    error: float = 0.0
-    rejected: float = 0.0
-
-
-@dataclass(frozen=True)
-class Choice:
-    """What was chosen within a tolerance, and the bound of all choices together.
-
-    Attributes
-    ----------
-    tolerance : float
-        Tolerance that was asked for, 0 for the exact forms.
-    bound : float
-        Largest difference of the luminance of a valid point from the exact forms; infinity where
-        rounding has no bound within the tolerance that holds for all data.
-    notes, rejected : tuple of str
-        What was chosen and what was not, in words.
-    cheaper : bool
-        Whether anything cheaper than the exact forms was chosen.
-    """
-
-    tolerance: float = 0.0
-    bound: float = math.inf
-    notes: tuple[str, ...] = ()
-    rejected: tuple[str, ...] = ()
-    cheaper: bool = False
-
-
-EXACT = Choice()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,9 +58,11 @@ class Plan:
     model : {"phong", "blinn", "cylinder"}
         Reflection model of the specular term, for a cylinder also of the diffuse one.
     highlights : tuple of Highlight
-        Way in which the specular term of each light is computed, and its error.
+        Way in which the specular term of each light is computed.
     surface : bool
         Whether the manifold is given by its normals (k = n - 1), not by tangents.
+    two_sided : bool
+        Whether the normals have no side, so that both are lit alike.
     conditioned : bool
         Whether tangents inherit the self-shadow of the surface that the normals belong to.
     base : int
@@ -111,11 +78,6 @@ class Plan:
         Density of the fur that light passes on its way in and out, 0 for none.
     diffuse, specular : bool
         Whether the term is computed.
-    factors : tuple of float
-        Factors of the diffuse and the specular coefficient; not 1 where another model stands for a
-        multiple of its own.
-    choice : Choice
-        What was chosen within ``tolerance=``, and its bound.
     compiled : bool
         Whether compiled code has lit the points (extra ``fast``).
     code : str
@@ -131,6 +93,7 @@ class Plan:
     model: Model
     highlights: tuple[Highlight, ...]
     surface: bool
+    two_sided: bool
     conditioned: bool
     base: int
     base_exponent: float
@@ -140,20 +103,8 @@ class Plan:
     fur: float
     diffuse: bool
     specular: bool
-    factors: tuple[float, float] = (1.0, 1.0)
-    choice: Choice = EXACT
     compiled: bool = False
     code: str = ""
-
-    @property
-    def two_sided(self) -> bool:
-        """Whether the far side of normals is lit like the near one."""
-        return self.options.two_sided
-
-    @property
-    def terminator(self) -> float:
-        """Value of N.wi below which the highlight of a surface fades, 0 for a sharp end."""
-        return self.options.terminator
 
     @property
     def components(self) -> bool:
@@ -211,11 +162,6 @@ class Plan:
         return self.specular and any(h.half is None for h in self.highlights)
 
     @property
-    def highlight_error(self) -> float:
-        """Bound of the specular term's difference from the model asked for, of 255, rounded."""
-        return sum(h.error for h in self.highlights)
-
-    @property
     def block(self) -> int:
         """Number of points in a block, unless the caller gives one."""
         return max(BLOCK_BYTES // (self.n * self.k * self.dtype.itemsize), 1)
@@ -223,7 +169,7 @@ class Plan:
     def explain(self) -> str:
         """Return what is computed, what is skipped and why, one line each."""
         words = _Words()
-        parts = (_manifold, _diffuse, _specular, _lights, _factors, _results, _choice, _code)
+        parts = (_manifold, _diffuse, _specular, _lights, _factors, _results, _code)
         for part in parts:
             part(self, words)
         return "\n".join(
@@ -303,39 +249,20 @@ def _specular(plan: Plan, words: _Words) -> None:
 
 
 def _highlights(plan: Plan, words: _Words) -> None:
-    """Add how highlights are computed, and what was rejected in their place."""
+    """Add how highlights are computed."""
     shininess = plan.scene.material.shininess
-    own = [h for h in plan.highlights if h.model == plan.model]
-    if own:
-        shininess = own[0].shininess
-        if plan.model == "cylinder":
-            how = "averaged over the visible half of a thin cylinder"
-        else:
-            power = shininess / 2 if plan.model == "blinn" else shininess
-            multiplies = power == int(power) and power <= DEFICIT_FROM
-            how = "by multiplication" if multiplies else "by a power"
-        words.add(f"specular: {plan.model}, shininess {shininess:g} {how}")
-    fixed = sum(h.half is not None for h in own)
+    if plan.model == "cylinder":
+        how = "averaged over the visible half of a thin cylinder"
+    else:
+        power = shininess / 2 if plan.model == "blinn" else shininess
+        multiplies = power == int(power) and power <= DEFICIT_FROM
+        how = "by multiplication" if multiplies else "by a power"
+    words.add(f"specular: {plan.model}, shininess {shininess:g} {how}")
+    fixed = sum(h.half is not None for h in plan.highlights)
     if fixed:
         words.add(f"half vector: one for all points for {fixed} light(s)")
-    for i, h in enumerate(plan.highlights):
-        if h.model != plan.model:
-            words.add(
-                f"light {i}: Blinn's model of power {h.shininess:.6g} for {plan.model}'s of "
-                f"{shininess:g}, one half vector for all points, "
-                f"within {h.error:.3g} of 255"
-            )
-        elif h.rejected:
-            words.add(
-                None,
-                f"light {i}: Blinn's model in place of {plan.model}'s, "
-                f"it would differ by up to {h.rejected:.3g} of 255",
-            )
-    if plan.highlight_error:
-        words.add(
-            f"specular: in all within {plan.highlight_error:.3g} of 255 of {plan.model}'s",
-            None if plan.splits_eye else "eye: no split per point, all half vectors are fixed",
-        )
+    if not plan.splits_eye:
+        words.add(None, "eye: no split per point, all half vectors are fixed")
 
 
 def _lights(plan: Plan, words: _Words) -> None:
@@ -363,9 +290,6 @@ def _factors(plan: Plan, words: _Words) -> None:
         words.add(None, "self-shadow: no surface conditions the tangents")
     if plan.dimmed:
         words.add("transmittance: a share of each light for each point, as inside a bundle")
-    if plan.terminator:
-        end = f"N.wi = {plan.terminator:g}"
-        words.add(f"terminator: highlights fade smoothly below {end}")
     if plan.fur:
         words.add(f"fur: density {plan.fur:g}, on the way in for each light and out once")
 
@@ -380,21 +304,6 @@ def _results(plan: Plan, words: _Words) -> None:
         words.add("rgb: three channels")
     else:
         words.add(None, "rgb: nothing in the scene has a colour")
-
-
-def _choice(plan: Plan, words: _Words) -> None:
-    choice = plan.choice
-    if not choice.tolerance:
-        return
-    words.computed += choice.notes
-    words.skipped += choice.rejected
-    bound = (
-        f"the bound of all is {choice.bound:.3g}"
-        if math.isfinite(choice.bound)
-        else "rounding has no bound within it here"
-    )
-    exact = "" if choice.cheaper else "nothing is cheaper than the exact forms, "
-    words.add(f"tolerance: {choice.tolerance:.3g} of luminance, {exact}{bound}")
 
 
 def _code(plan: Plan, words: _Words) -> None:

@@ -94,8 +94,6 @@ def of_light(shading: Shading, filter_name: str, scene: Scene, options: object) 
         precision=plan.dtype.name,
         terms=list(plan.terms),
         exponent=plan.exponent,
-        highlight_error=plan.highlight_error,
-        error_bound=plan.choice.bound if np.isfinite(plan.choice.bound) else None,
         points=int(shading.luminance.size),
         invalid=shading.invalid,
     )  # fmt: skip

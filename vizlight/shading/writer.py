@@ -250,9 +250,7 @@ class _Body:
     def cut(self, value: str, cosine: str, passed: str) -> str:
         """Remove the highlight of a surface where the light does not reach it."""
         form, w = self.form, self.w
-        if form.terminator and not form.two_sided:
-            value = w.call("faded_highlight", value, cosine, w.number("terminator"))
-        elif not form.two_sided:
+        if not form.two_sided:
             value = w.call("lit_highlight", value, cosine)
         return w.call("shadowed_highlight", value, passed, self.side(cosine)) if passed else value
 

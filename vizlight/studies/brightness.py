@@ -83,7 +83,7 @@ def verdict(rows: Sequence[Row]) -> str:
             f"{worst:.2g}"
         )
     off = max(abs(float(row.more["mean - 1/2"])) for row in exact)
-    keep = "keep it unless tolerance= allows another" if off <= PIXEL else "do not rely on it"
+    keep = "keep it" if off <= PIXEL else "do not rely on it"
     return (
         f"p(k, n) gives a mean of 1/2 with an error of {off:.1g}; {keep}; within 1/255 of it: "
         f"{'; '.join(others)}"

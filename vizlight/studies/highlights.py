@@ -1,16 +1,15 @@
 """The Blinn model as a substitute for the Phong model: its power, its error and its cost.
 
 Rules for the Blinn power are compared over the lit and visible normals of a sphere, and over random
-tangent spaces of several codimensions. Further rows measure the substitution that the engine makes
-within ``highlight_error=``, and the error of a smooth terminator. Errors are pixel values from 0 to
-255.
+tangent spaces of several codimensions. Further rows measure the time of the engine's highlights by
+both models. Errors are pixel values from 0 to 255.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -130,25 +129,27 @@ def exchange(
     random = np.random.default_rng(20)
     points, tangents = (random.standard_normal((count, 3)).astype(np.float32) for _ in range(2))
     angle = np.deg2rad(degrees)
-    scene = Scene(
-        lights=Light(direction=(np.sin(angle), 0, np.cos(angle))),
-        view=View(direction=(0, 0, 1)),
-        material=Material(ambient=0, diffuse=0, specular=1, shininess=shininess),
-    )
+    factor = float(highlights.simple_factor(angle, shininess))
 
-    def light(allowed: float) -> Shading:
-        return engine.shade(points, tangents, scene, threads=1, highlight_error=allowed)
+    def light(model: Literal["phong", "blinn"]) -> Shading:
+        power = shininess if model == "phong" else factor * shininess
+        scene = Scene(
+            lights=Light(direction=(np.sin(angle), 0, np.cos(angle))),
+            view=View(direction=(0, 0, 1)),
+            material=Material(ambient=0, diffuse=0, specular=1, shininess=power),
+        )
+        return engine.shade(points, tangents, scene, threads=1, model=model)
 
-    ways = {"phong": lambda: light(0.0), "blinn": lambda: light(255.0)}
+    ways = {"phong": lambda: light("phong"), "blinn": lambda: light("blinn")}
     seconds = take_turns(ways, repeats)
-    exact, made = light(0.0), light(255.0)
+    exact, made = (light(model).luminance for model in ("phong", "blinn"))
     return Exchange(
         degrees,
         shininess,
         phong=1e9 * seconds["phong"] / count,
         blinn=1e9 * seconds["blinn"] / count,
-        bound=made.plan.highlight_error,
-        error=255 * float(np.abs(exact.luminance - made.luminance).max()),
+        bound=abs(float(highlights.max_pixel_error(angle, shininess, factor=factor).error)),
+        error=255 * float(np.abs(exact - made).max()),
     )
 
 
@@ -175,7 +176,7 @@ def rows_of_codimension(k: int, c: int, count: int) -> list[Row]:
 
 
 def rows_of_exchange(degrees: float, shininess: float, count: int) -> list[Row]:
-    """Return the rows of the Phong highlight and of the engine's substitute."""
+    """Return the rows of the engine's Phong highlight and of Blinn's in its place."""
     made = exchange(degrees, shininess, count)
     return [
         Row(f"engine, Phong of power {shininess:g}", degrees, 0.0, made.phong),
@@ -186,20 +187,8 @@ def rows_of_exchange(degrees: float, shininess: float, count: int) -> list[Row]:
     ]  # fmt: skip
 
 
-def rows_of_terminators(degrees: float) -> list[Row]:
-    """Return one row for each width of a smooth terminator, with the error of a highlight."""
-    angle = np.deg2rad(degrees)
-    return [
-        Row(
-            f"terminator={width:g}", degrees,
-            float(highlights.terminator_error(angle, 20.0, width)), np.nan, {"power": 20.0},
-        )
-        for width in (0.02, 0.05, 0.1, 0.2)
-    ]  # fmt: skip
-
-
 def steps(quick: bool) -> list[Callable[[], Iterable[Row]]]:
-    """Return the steps: rules, codimensions, substitution, terminators."""
+    """Return the steps: rules, codimensions, substitution."""
     powers = POWERS[1:2] if quick else POWERS
     sizes = (1, 2) if quick else (1, 2, 3)
     count, many = (20_000, 200_000) if quick else (200_000, 1_000_000)
@@ -211,11 +200,11 @@ def steps(quick: bool) -> list[Callable[[], Iterable[Row]]]:
         for s in (20.0, 100.0)
         for degrees in (2.0, 5.0, 10.0, 30.0, 60.0)
     ]
-    return found + [partial(rows_of_terminators, degrees) for degrees in (60, 90, 120, 150, 170)]
+    return found
 
 
 def verdict(rows: Sequence[Row]) -> str:
-    """Return the rule to use, and what the substitution of the engine saves at each power."""
+    """Return the rule to use, and what the substitution saves at each power."""
     worst = {
         rule: max(row.error for row in rows if row.way == f"rule {rule}")
         for rule in (*FORMULAS, SEARCHED)
@@ -229,7 +218,7 @@ def verdict(rows: Sequence[Row]) -> str:
 
 
 def _substitution(rows: Sequence[Row]) -> str:
-    """Return up to which angles the engine substitutes Blinn within 1 of 255, and the time."""
+    """Return up to which angles Blinn's model is within 1 of 255 of Phong's, and the time."""
     blinn: dict[float, list[Row]] = {}
     for row in rows:
         if row.way.startswith("engine, Blinn"):
@@ -246,14 +235,13 @@ def _substitution(rows: Sequence[Row]) -> str:
             continue
         allowed += [row for row in own if float(row.parameter) <= float(last.parameter)]
         ranges.append(f"up to {last.parameter:g} degrees between light and eye for power {power:g}")
-    where = f"with highlight_error=1 the engine uses the Blinn model {', '.join(ranges)}"
+    where = f"Blinn's model is within 1 of 255 of Phong's {', '.join(ranges)}"
     if not allowed:
-        return f"{where}, so do not set it"
+        return where
     exact = [(f"engine, Phong of power {row.more['power']:g}", row.parameter) for row in allowed]
     phong = sum(row.cost for row in rows if (row.way, row.parameter) in exact)
     ratio = sum(row.cost for row in allowed) / phong
-    but = ", but do not set it: " if ratio >= 1 else ": "
-    return f"{where}{but}the time is {words(ratio)} times that of the Phong model"
+    return f"{where}; its time is {words(ratio)} times that of the Phong model"
 
 
 def curve_of_rules(row: Row) -> Curve | None:
@@ -263,10 +251,9 @@ def curve_of_rules(row: Row) -> Curve | None:
 
 
 def curve_of_exchange(row: Row) -> Curve | None:
-    """Return the curve of a substitution or a terminator, except for negligible errors."""
-    name, _, kind = row.way.partition("=" if row.way.startswith("term") else " for ")
-    shown = name in ("engine, Blinn", "terminator") and row.error >= SEEN
-    return Curve(name, kind) if shown else None
+    """Return the curve of a substitution, except for negligible errors."""
+    name, _, kind = row.way.partition(" for ")
+    return Curve(name, kind) if name == "engine, Blinn" and row.error >= SEEN else None
 
 
 STUDY = Study(

@@ -63,8 +63,7 @@ class Between:
     scene : Scene
         Scene whose depth cue, if it has one, has both ends.
     options : ShadingOptions
-        How light is computed. ``tolerance`` and ``precision`` have no effect: places are lit in
-        float64.
+        How light is computed. ``precision`` has no effect: places are lit in float64.
     threads : int, optional
         Number of threads.
 
@@ -88,9 +87,7 @@ class Between:
         threads: int | None = None,
     ) -> None:
         self.inputs, self.scene, self.threads = inputs, scene, threads
-        self.options = dataclasses.replace(
-            options, tolerance=0.0, precision="float64", components=False
-        )
+        self.options = dataclasses.replace(options, precision="float64", components=False)
         n = int(inputs.points.shape[1])
         self.points = _rows(inputs.points)
         self.vectors: dict[str, Array] = {}

@@ -59,7 +59,6 @@ class _Place(NamedTuple):
     model: str
     conditioned: bool
     two_sided: bool
-    terminator: float
     fur: float
     fur_height: float
 
@@ -118,7 +117,6 @@ class Oracle:
         exponent: float | None = None,
         conditioned: bool = True,
         two_sided: bool = False,
-        terminator: float = 0.0,
         fur: float = 0.0,
         apart: float = 1e-14,
     ) -> Lit:
@@ -134,7 +132,7 @@ class Oracle:
             Normal of any length.
         scene : Scene
             Scene whose depth cue, if it has one, has both ends.
-        base_tangents, fur_height, shadow, transmittance, occlusion, model, compensate, conditioned, two_sided, terminator, fur
+        base_tangents, fur_height, shadow, transmittance, occlusion, model, compensate, conditioned, two_sided, fur
             Options of :func:`vizlight.engine.shade`, for one point.
         exponent : float, optional
             Exponent of the diffuse term, in place of that of ``compensate``.
@@ -159,7 +157,7 @@ class Oracle:
             wo=None if view is None else self.toward(view, at)[0], exponent=exponent,
             base_exponent=self._power(len(base), n, compensate),
             shininess=scene.material.shininess, model=model, conditioned=conditioned,
-            two_sided=two_sided, terminator=terminator, fur=fur, fur_height=fur_height,
+            two_sided=two_sided, fur=fur, fur_height=fur_height,
         )  # fmt: skip
         parts: list[tuple[Light, Real, Real]] = []
         for i, light in enumerate(light for light in scene.lights if light.intensity > 0):
@@ -245,8 +243,6 @@ class Oracle:
             both = cosine * self.dot(normal, wo)
             base = (abs(both) if two_sided else both) + both - self.dot(wi, wo)
         value: Real = max(base, none) ** place.shininess
-        if place.terminator and not two_sided:
-            value *= self.smooth(min(cosine / place.terminator, self.number(1.0)))
         return value
 
     def _sum(

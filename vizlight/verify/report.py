@@ -68,7 +68,7 @@ class Run:
     disagreed : int
         Number of points of the sample that only one of the two implementations could light.
     bound : float
-        Stated error bound of ``tolerance=`` or of the bands of ``isoluminance``; NaN without.
+        Stated error bound of the bands of ``isoluminance``; NaN without.
     places : int
         Number of random places between the points, uniform in area or length, at which the light
         of interpolated normals or tangents was computed; 0 where nothing is interpolated.
@@ -265,8 +265,7 @@ def report(*, sample: int = 4096, seed: int = 0) -> Iterator[Report]:
 
     Notes
     -----
-    The sample's light is computed from the scene itself, not from a plan, so its error includes
-    the approximations that ``tolerance=`` and ``highlight_error=`` chose. t of a cos-theta shadow
+    The sample's light is computed from the scene itself, not from a plan. t of a cos-theta shadow
     is computed again on at most 64 rays, at 20,000 places of each ray in a height field, or against
     all triangles of a closed surface; at depth 0 the report gives no error. Bands of
     ``isoluminance`` are compared with the light at their middles. A point of the sample takes about
@@ -322,7 +321,6 @@ def note(given: ShadingInputs, scene: Scene, shading: Shading, options: ShadingO
     results = (
         shading.luminance, shading.valid, shading.diffuse, shading.specular, shading.rgb
     )  # fmt: skip
-    choice = shading.plan.choice
     places = _between(given, scene, shading, options, active)
     # The time of the check is not a cost of the light.
     active.seconds -= time.perf_counter() - start
@@ -339,7 +337,7 @@ def note(given: ShadingInputs, scene: Scene, shading: Shading, options: ShadingO
             rms=float(np.sqrt(np.mean(off * off))) if off.size else math.nan,
             invalid=shading.invalid,
             disagreed=int(np.count_nonzero(valid != known)),
-            bound=choice.bound if choice.tolerance else math.nan,
+            bound=math.nan,
             places=len(places.error),
             between=float(places.error.max()) if len(places.error) else math.nan,
             between_rms=(
@@ -426,7 +424,7 @@ def note_ratio(
 
 def note_bands(
     values: Array, points: int, places: Array, normals: Array, scene: Scene,
-    terms: tuple[str, ...], seconds: float, size: int, bound: float, *, model: str, two_sided: bool,
+    terms: tuple[str, ...], seconds: float, size: int, bound: float, *, model: str,
 ) -> None:  # fmt: skip
     """Add bands of equal luminance to the open report, compared with the light at places."""
     active = _ACTIVE.get()
@@ -441,7 +439,6 @@ def note_bands(
                 values[i]
                 - oracle.light(
                     places[i].tolist(), None, normals[i].tolist(), scene, model=model,
-                    two_sided=two_sided,
                 ).luminance
             )
             for i in drawn
@@ -516,8 +513,7 @@ def _reference(
         model=options.model,
         compensate=options.compensate,
         conditioned=bool(options.conditioned),
-        two_sided=options.two_sided,
-        terminator=options.terminator,
+        two_sided=given.two_sided,
         fur=given.fur,
         apart=apart,
     )

@@ -30,7 +30,7 @@ __all__ = ["Illuminate"]
 #: Options that are names of arrays: a pipeline has no others.
 _NAMES = ("tangents", "normals", "positions")
 #: Options that give a mesh new points, need PyVista, or have been replaced.
-_WITHOUT = ("two_sided", "flip_normals", "feature_angle", "refine", "bundle")
+_WITHOUT = ("flip_normals", "feature_angle", "refine", "bundle")
 _NO_GHOSTS = (
     "light at the borders of the pieces is computed without their neighbours; give the pieces a "
     "layer of ghost cells before they are contoured, or normals as a point array"
@@ -118,11 +118,8 @@ class Illuminate(VTKPythonAlgorithmBase):
     average_cells = _Option()
     model = _Option()
     compensate = _Option()
-    terminator = _Option()
     components = _Option()
     precision = _Option()
-    tolerance = _Option()
-    highlight_error = _Option()
     name = _Option()
 
     @accepts(LightOptions, without=_WITHOUT)
