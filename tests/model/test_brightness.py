@@ -78,6 +78,7 @@ def test_mean_against_50_digits(random, figure):
 def test_exponent_against_50_digits(random, figure):
     sizes = [(1, 10**6), (10**6 - 1, 10**6), (2, 10**6), (123_456, 10**6), (1, 100), (99, 100)]
     sizes += [(int(random.integers(1, n)), int(n)) for n in random.integers(2, 5000, 30)]
+    sizes += [(k, n) for n in range(2, 9) for k in range(1, n)]
     for k, n in sizes:
         p = brightness.exponent(k, n)
         true = oracles.mp.findroot(
