@@ -94,7 +94,8 @@ def methods(kind):
     """Return the public methods of a class that take arguments."""
     found = {}
     for name in dir(kind):
-        method = inspect.getattr_static(kind, name)
+        # The methods of the accessor are made when they are first used.
+        method = getattr(kind, name) if kind is Accessor else inspect.getattr_static(kind, name)
         made = isinstance(method, classmethod | staticmethod)
         function = method.__func__ if made else method
         # Methods of VTK's form are called by it, or set what the constructor takes too.

@@ -6,12 +6,11 @@ It is registered as an entry point of PyVista, so it is available without import
 from __future__ import annotations
 
 import functools
-from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, Concatenate, Generic, ParamSpec, TypeVar
 
 import pyvista as pv
 
-from vizlight import filters
-from vizlight.plotting import component, gltf, html
+import vizlight
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -22,16 +21,39 @@ Options = ParamSpec("Options")
 Result = TypeVar("Result")
 
 
-def _method(
-    function: Callable[Concatenate[Any, Options], Result],
-) -> Callable[Concatenate[Accessor, Options], Result]:
-    """Return a filter as a method with the signature and the documentation of the filter."""
+class _Method(Generic[Options, Result]):
+    """A filter as a method, with its signature and documentation; loaded when it is first used.
 
-    @functools.wraps(function)
-    def method(self: Accessor, /, *args: Options.args, **kwargs: Options.kwargs) -> Result:
-        return function(self._mesh, *args, **kwargs)
+    Parameters
+    ----------
+    load : callable
+        Function that returns the filter.
+    """
 
-    return method
+    def __init__(self, load: Callable[[], Callable[Concatenate[Any, Options], Result]]) -> None:
+        self._load = load
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+
+    def __get__(self, accessor: Accessor | None, owner: type) -> Callable[Options, Result]:
+        function = self._load()
+
+        @functools.wraps(function)
+        def method(self: Accessor, /, *args: Options.args, **kwargs: Options.kwargs) -> Result:
+            return function(self._mesh, *args, **kwargs)
+
+        setattr(owner, self._name, method)
+        made: Callable[Options, Result] = getattr(
+            owner if accessor is None else accessor, self._name
+        )
+        return made
+
+
+def _plot() -> Callable[..., object]:
+    from vizlight.plotting.component import plot
+
+    return plot
 
 
 @pv.register_dataset_accessor("vizlight", pv.DataObject)
@@ -43,23 +65,22 @@ class Accessor:
         self._mesh: Any = mesh
 
     def __repr__(self) -> str:
-        names = (*filters.__all__, "plot", "live_html", "save_gltf")
-        known = ", ".join(name for name in names if hasattr(self, name))
-        return f"vizlight of {type(self._mesh).__name__}: {known}"
+        names = ", ".join(name for name in sorted(vars(Accessor)) if name[0] != "_")
+        return f"vizlight of {type(self._mesh).__name__}: {names}"
 
-    bas_relief = _method(filters.bas_relief)
-    fur = _method(filters.fur)
-    illuminate = _method(filters.illuminate)
-    isoluminance = _method(filters.isoluminance)
-    plot = _method(component.plot)
-    live_html = _method(html.live_html)
-    project = _method(filters.project)
-    provenance = _method(filters.provenance)
-    refine = _method(filters.refine)
-    relief_day = _method(filters.relief_day)
-    relief_from_mesh = _method(filters.relief_from_mesh)
-    relief_shadow = _method(filters.relief_shadow)
-    save_gltf = _method(gltf.save_gltf)
-    satin = _method(filters.satin)
-    streamlines = _method(filters.streamlines)
-    tint = _method(filters.tint)
+    bas_relief = _Method(lambda: vizlight.bas_relief)
+    fur = _Method(lambda: vizlight.fur)
+    illuminate = _Method(lambda: vizlight.illuminate)
+    isoluminance = _Method(lambda: vizlight.isoluminance)
+    plot = _Method(_plot)
+    live_html = _Method(lambda: vizlight.live_html)
+    project = _Method(lambda: vizlight.project)
+    provenance = _Method(lambda: vizlight.provenance)
+    refine = _Method(lambda: vizlight.refine)
+    relief_day = _Method(lambda: vizlight.relief_day)
+    relief_from_mesh = _Method(lambda: vizlight.relief_from_mesh)
+    relief_shadow = _Method(lambda: vizlight.relief_shadow)
+    save_gltf = _Method(lambda: vizlight.save_gltf)
+    satin = _Method(lambda: vizlight.satin)
+    streamlines = _Method(lambda: vizlight.streamlines)
+    tint = _Method(lambda: vizlight.tint)

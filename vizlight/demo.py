@@ -9,7 +9,7 @@ import numpy as np
 
 from vizlight import files
 from vizlight.data import load_example
-from vizlight.filters import illuminate
+from vizlight.filters.illuminate import illuminate
 from vizlight.pictures import render
 from vizlight.reading.normals import sided_normals
 from vizlight.scene import Light, Scene, View

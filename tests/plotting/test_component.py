@@ -12,7 +12,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View
-from vizlight.filters import displayable
+from vizlight.filters.tint import displayable
 from vizlight.geometry import manifolds
 from vizlight.geometry.lines import bundle
 from vizlight.plotting import component

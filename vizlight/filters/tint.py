@@ -321,7 +321,7 @@ def displayable(rgb: ArrayLike, /, *, white: float = 1.0) -> Array:
 
     Examples
     --------
-    >>> from vizlight.filters import displayable
+    >>> from vizlight.filters.tint import displayable
     >>> displayable([[0.2, 0.5, 0.9], [1.4, 0.5, 0.2]]).round(3)
     array([[0.2  , 0.5  , 0.9  ],
            [1.   , 0.593, 0.457]])

@@ -18,7 +18,8 @@ import pyvista as pv
 
 from vizlight import _check, _compiled, files
 from vizlight._version import __version__
-from vizlight.filters import illuminate, streamlines
+from vizlight.filters.illuminate import illuminate
+from vizlight.filters.streamlines import streamlines
 from vizlight.mesh import normals, records
 from vizlight.pictures import cameras
 from vizlight.pieces.ghosts import GHOST

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
-from vizlight.filters import manifold
+from vizlight.filters.manifold import manifold
 from vizlight.geometry.nspace import manifolds
 from vizlight.model import brightness, reflection
 from vizlight.scene import Light, Material, Scene

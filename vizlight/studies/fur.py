@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 
-from vizlight.filters import fur
+from vizlight.filters.fur import fur
 from vizlight.pictures import render
 from vizlight.scene import Light, Material, Scene, View
 from vizlight.studies._framework import PIXEL, Row, Study, holding, span

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
-from vizlight.filters import project
+from vizlight.filters.project import project
 from vizlight.scene import Light, Scene, View
 from vizlight.shading import engine
 from vizlight.studies._framework import PIXEL, Curve, Panel, Row, Study, span, words

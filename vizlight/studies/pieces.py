@@ -29,7 +29,7 @@ from scipy.spatial import cKDTree
 from scipy.stats import t as student
 
 from vizlight import pieces
-from vizlight.filters import illuminate
+from vizlight.filters.illuminate import illuminate
 from vizlight.pictures.backends import BackendError
 from vizlight.pictures.cameras import camera_on
 from vizlight.pieces.drawing import Layer

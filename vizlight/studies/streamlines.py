@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
-from vizlight.filters import streamlines
+from vizlight.filters.streamlines import streamlines
 from vizlight.scene import Light, Scene, View
 from vizlight.studies._framework import Curve, Panel, Row, Study, holding, order, words
 from vizlight.studies._measuring import take_turns

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight.data import load_example
-from vizlight.filters import illuminate, streamlines
+from vizlight.filters.illuminate import illuminate
+from vizlight.filters.streamlines import streamlines
 from vizlight.model import cylinder
 from vizlight.pictures import render
 from vizlight.scene import Light, Material, Scene, View
