@@ -7,7 +7,7 @@ returns them. Middle: as lines, lit as thin cylinders. Right: as tubes with 20 s
 light, both coloured by temperature. At this width the last two look almost the same, but the lines
 need a twentieth of the points. Use tubes for lines that must be wider or hide one another.
 
-``vizlight study tubes`` measures the errors and the times to build and to draw.
+The study ``tubes`` measures the errors and the times to build and to draw.
 """
 
 import numpy as np

@@ -9,7 +9,7 @@ import pyvista as pv
 from adversary_arrays import UP, unit
 
 import vizlight
-from vizlight import Light, Material, Scene, View, engine, studies
+from vizlight import Light, Material, Scene, View, engine
 from vizlight.geometry import manifolds
 from vizlight.shading.inputs import ShadingInputs
 
@@ -54,21 +54,6 @@ def lit():
 def torus():
     """Return a small torus in 4-space as a mesh."""
     return vizlight.manifold(manifolds.torus(1.0, 1.0, resolution=(6, 5)))
-
-
-def study():
-    """Return a study of two rows."""
-    rows = [studies.Row("a", 1.0, 0.1, 1.0), studies.Row("a", 2.0, 0.05, 2.0)]
-    return studies.Study(
-        approximates="a", reference="b", parameter="p", error="e", cost="c",
-        steps=lambda quick: [lambda: rows], verdict=lambda rows: "rely on it",
-    )  # fmt: skip
-
-
-def result():
-    """Return the result of that study."""
-    rows = list(study().steps(True)[0]())
-    return studies.Result("a", study(), rows, "rely on it")
 
 
 def saved():
@@ -269,15 +254,5 @@ CALLS = {
     "shading.inputs.ShadingInputs.check": lambda: {"lights": 2},
     "shading.options.Bundle": dict,
     "shading.options.ShadingOptions": dict,
-    "studies._framework.cheapest": lambda: {"rows": result().rows},
-    "studies._framework.holding": lambda: {"rows": result().rows},
-    "studies._framework.order": lambda: {"rows": result().rows},
-    "studies._results.Result.draw": lambda: {"path": Path("figure.png")},
-    "studies._results.Result.write_csv": lambda: {"path": Path("rows.csv")},
-    "studies._results.print_list": lambda: {"studies": {"a": study()}},
-    "studies._results.print_result": lambda: {"result": result()},
-    "studies._results.run": lambda: {"name": "a", "study": study()},
-    "studies.load": lambda: {"name": "frames"},
-    "studies.names": dict,
     "verify.report.report": dict,
 }

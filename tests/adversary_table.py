@@ -25,7 +25,7 @@ PAGES = Path(__file__).parent.parent / "gallery" / "pages" / "api.rst"
 BESIDE = (
     "vizlight.accessor", "vizlight.data", "vizlight.geometry.solids",
     "vizlight.geometry.solids.primitives", "vizlight.geometry.solids.polyhedra",
-    "vizlight.plotting.component", "vizlight.scene", "vizlight.studies",
+    "vizlight.plotting.component", "vizlight.scene",
 )  # fmt: skip
 #: Public classes that only vizlight makes, and methods that only it calls.
 RETURNED = {
@@ -41,11 +41,6 @@ RETURNED = {
     "shading.engine.Shading": "returned by shade",
     "shading.inputs.ArraySource": "a protocol",
     "shading.plan.Plan": "returned by plan",
-    "studies._framework.Curve": "a record without checks",
-    "studies._framework.Panel": "a record without checks",
-    "studies._framework.Row": "a record without checks",
-    "studies._framework.Study": "a record without checks",
-    "studies._results.Result": "returned by run",
     "shading.inputs.ShadingInputs": "a record, which run checks",
     "geometry.solids.base.Solid": "a base class",
     "geometry.solids.base.Primitive": "a base class",
@@ -142,8 +137,6 @@ SELF = {
     "scene.scene.Scene.moved": lambda: meshes.SCENE,
     "scene.scene.Scene.replace": lambda: meshes.SCENE,
     "shading.inputs.ShadingInputs.check": meshes.inputs,
-    "studies._results.Result.draw": meshes.result,
-    "studies._results.Result.write_csv": meshes.result,
 }
 #: Kinds of arguments, as annotations, where their own say less.
 KINDS = {
@@ -181,13 +174,10 @@ ALIASES = {
     ("plotting.gltf.save_gltf", "path"): {"output"},
     ("plotting.html.live_html", "path"): {"output"},
     ("plotting.paraview.save", "path"): {"output"},
-    ("studies._results.Result.draw", "path"): {"output"},
-    ("studies._results.Result.write_csv", "path"): {"output"},
     ("files.write_mesh", "mesh"): {"output"},
     ("files.warped", "name"): {"warp"},
     ("filters.relief_day.relief_day", "factor"): {"z"},
     ("filters.relief_shadow.relief_shadow", "factor"): {"z"},
-    ("studies.load", "name"): {"study"},
     ("geometry.nspace.projection.rotation", "turns"): {"rotation", "plane", "angle"},
 }
 #: Places of results that are documented to be NaN or infinite, as regular expressions, and words of

@@ -55,7 +55,7 @@ def loaded(*lines):
 
 def test_mathematics_and_engine_load_no_pyvista_and_no_report():
     """Those that come first are tested alone: what one of them loads, all others have."""
-    modules = [*ENGINE, *MATHEMATICS, "vizlight.studies"]
+    modules = [*ENGINE, *MATHEMATICS]
     for module, names in zip(modules, loaded(*(f"import {m}" for m in modules)), strict=True):
         assert not names & {"pyvista", "vtk", "vtkmodules"}, module
         assert not {name for name in names if "verify" in name} or module not in ENGINE, module

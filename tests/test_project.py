@@ -50,7 +50,7 @@ REASONS = {
 ALLOWED = {
     "vizlight": ["fast", "formats", "movie", "rays", "scale", "solids", "tracts", "test"],
     "tests": ["test", "docs", "tracts", "formats", "scale"],
-    "gallery": ["docs"],
+    "gallery": ["docs", "scale"],
 }
 
 

@@ -17,7 +17,7 @@ from PIL import Image
 from test_tiers import TIER, TIERS
 
 import vizlight
-from vizlight import cli, studies
+from vizlight import cli
 
 ROOT = Path(__file__).parents[1]
 README = ROOT / "README.md"
@@ -126,8 +126,6 @@ def test_every_command_is_one(path, capsys):
         for word in words:
             if word.startswith("--") and word != "--help":
                 assert f"{word} " in described, command
-        if name == "study" and words and words[0] != "NAME":
-            assert words[0] in studies.names(), command
 
 
 def test_the_lines_that_ci_runs_are_there():

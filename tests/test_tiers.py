@@ -36,12 +36,12 @@ TIERS = [
     {"mesh", "data"},
     {"files", "filters"},
     {"pictures", "pieces", "plotting", "vtk"},
-    {"accessor", "demo", "doctor", "studies"},
+    {"accessor", "demo", "doctor"},
     {"cli"},
     {"__main__"},
 ]
 #: Names that the package gives by itself are those of all tiers: only what stands last uses them.
-USES_ALL = {"accessor", "cli", "demo", "doctor", "studies"}
+USES_ALL = {"accessor", "cli", "demo", "doctor"}
 TIER = {part: i for i, tier in enumerate(TIERS) for part in tier}
 
 

@@ -90,7 +90,7 @@ _HOMES = {
 }
 _MODULES = (
     "accessor", "engine", "filters", "geometry", "model", "movie", "paraview", "pieces", "render",
-    "studies", "testing", "vtk",
+    "testing", "vtk",
 )  # fmt: skip
 
 _aliases.install()

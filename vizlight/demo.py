@@ -14,7 +14,7 @@ from vizlight.pictures import render
 from vizlight.reading.normals import sided_normals
 from vizlight.scene import Light, Scene, View
 from vizlight.shading import engine
-from vizlight.studies import reference
+from vizlight.verify import reference
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -10,9 +10,7 @@ from vizlight import _compiled, data
 from vizlight.pictures import render
 
 #: Packages that vizlight always needs.
-PACKAGES = (
-    "vizlight", "numpy", "scipy", "vtk", "pyvista", "cyclopts", "rich", "matplotlib", "pillow",
-)  # fmt: skip
+PACKAGES = ("vizlight", "numpy", "scipy", "vtk", "pyvista", "cyclopts", "rich", "pillow")
 #: Feature, the package that it needs, and the extra that installs the package. Without the package
 #: the feature is refused with a remedy, its tests are skipped, and closed meshes take VTK's rays.
 OPTIONAL = (
@@ -30,6 +28,7 @@ OPTIONAL = (
     ("tests of pictures", "pytest-pyvista", "test"),
     ("tests with searched inputs", "hypothesis", "test"),
     ("checks against 50 digits", "mpmath", "test"),
+    ("figures of the studies", "matplotlib", "test"),
     ("the pages", "sphinx", "docs"),
     ("the test of the wheel", "hatchling", "dev"),
     ("checks of style", "ruff", "dev"),

@@ -36,8 +36,7 @@ ORDER = [
     "plot_terrain_day", "plot_terrain", "plot_earth", "plot_bas_relief", "plot_seeping_light",
     "plot_codimension", "plot_turning", "plot_complex_curve", "plot_shapes",
     "plot_field_in_4_space", "plot_highlights", "plot_highlights_shapes",
-    "plot_isoluminance", "plot_isoluminance_painter", "plot_line_models", "plot_errors",
-    "plot_isoluminance_speed",
+    "plot_isoluminance", "plot_isoluminance_painter",
 ]  # fmt: skip
 
 #: Scripts whose thumbnail is made from the first picture; others have it from the last.
@@ -56,15 +55,12 @@ PARTS = {
     "plot_complex_curve": (0.1, 0.05, 0.9, 1.0),
     "plot_depth_cue": (0.67, 0.06, 1.0, 0.5),
     "plot_earth": (0.05, 0.06, 0.55, 0.46),
-    "plot_errors": (0.0, 0.0, 0.5, 1.0),
     "plot_field_in_4_space": (0.667, 0.07, 1.0, 1.0),
     "plot_flow": (0.0, 0.1, 1.0, 1.0),
     "plot_highlights": (0.15, 0.06, 0.9, 0.5),
     "plot_highlights_shapes": (0.0, 0.08, 0.5, 0.92),
     "plot_isoluminance": (0.25, 0.56, 0.5, 1.0),
     "plot_isoluminance_painter": (0.34, 0.0, 1.0, 1.0),
-    "plot_isoluminance_speed": (0.0, 0.0, 0.51, 1.0),
-    "plot_line_models": (0.0, 0.0, 0.47, 1.0),
     "plot_lines": (0.5, 0.05, 1.0, 1.0),
     "plot_principal_lines": (0.5, 0.0, 1.0, 1.0),
     "plot_satin": (0.0, 0.08, 0.5, 0.75),

@@ -9,17 +9,16 @@ from pathlib import Path
 
 from sphinx.util.display import status_iterator
 
-from vizlight import studies
-from vizlight.studies._results import number
-
 #: Table of the stability suite, which ``.venv/bin/python tests/stability`` writes here.
 KEPT = Path(__file__).resolve().with_name("stability.csv")
-sys.path.append(str(KEPT.parents[2] / "tests"))
+sys.path += [str(KEPT.parents[1]), str(KEPT.parents[2] / "tests")]
 
 
 def write(app):
     """Write a page, a table and a figure for each study, and the table of all verdicts."""
     from stability import suite
+
+    import studies
 
     source = Path(app.srcdir)
     folder = source / "studies"
@@ -41,11 +40,11 @@ def write(app):
                 (folder / f"{name}.rst").write_text("\n".join(page) + "\n", encoding="utf-8")
                 overview.append([f":doc:`{name} <studies/{name}>`", "", reason])
                 continue
-            command = f"vizlight study {name} --quick"
+            command = f"python gallery/studies {name} --quick"
             headings, rows = result.table()
         study = result.study
         result.draw(folder / f"{name}.png")
-        cells = [[_plain(number(cell)) for cell in row] for row in rows]
+        cells = [[_plain(studies.number(cell)) for cell in row] for row in rows]
         approximates, verdict = _plain(study.approximates), _plain(result.verdict)
         overview.append([f":doc:`{name} <studies/{name}>`", approximates, verdict])
         page = [

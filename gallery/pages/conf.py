@@ -88,7 +88,7 @@ sphinx_gallery_conf = {
     "examples_dirs": "..",
     "gallery_dirs": "examples",
     "filename_pattern": r"plot_",
-    "ignore_pattern": r"__init__\.py|/pages/",
+    "ignore_pattern": r"__init__\.py|/pages/|/studies/",
     "within_subsection_order": "_scenes.Order",
     "image_scrapers": ("_scenes.scrape",),
     "reset_modules": ("_scenes.reset",),

@@ -8,10 +8,10 @@ import pyvista as pv
 import vtk
 
 import vizlight
+from studies import fur as study
+from studies import peak_memory
 from vizlight import Bundle, Light, Material, Scene, View, _compiled, fur
 from vizlight.model import cylinder
-from vizlight.studies import fur as study
-from vizlight.studies._measuring import peak_memory
 
 TOWARD = np.array([-1.0, -0.6, 0.9]) / np.linalg.norm([-1.0, -0.6, 0.9])
 EYE = np.array([0.3, -1, 0.8]) / np.linalg.norm([0.3, -1, 0.8])

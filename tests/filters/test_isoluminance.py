@@ -8,8 +8,8 @@ import pytest
 import pyvista as pv
 
 import vizlight
+from studies import fur
 from vizlight import Block, Frustum, Light, Material, Scene, Sphere, View, isoluminance, render
-from vizlight.studies import fur
 
 TOWARD = np.array([1.0, -0.6, 0.8]) / np.linalg.norm([1.0, -0.6, 0.8])
 EYE = np.array([0.2, -1, 0.5]) / np.linalg.norm([0.2, -1, 0.5])

@@ -12,9 +12,9 @@ from fields import X, Y, Z, grids, level
 from scipy.interpolate import RegularGridInterpolator
 
 import vizlight
+from studies.relief import hills
 from vizlight import Light, Material, Scene, relief_day, relief_shadow
 from vizlight.geometry import relief, sun
-from vizlight.studies.relief import hills
 
 TOWARD = np.array([0.6, -0.5, 0.4])
 SCENE = Scene(lights=Light(direction=TOWARD), material=Material(ambient=0.1, specular=0))

@@ -11,9 +11,9 @@ import numpy as np
 import oracles
 import pytest
 
+from studies import peak_memory
 from vizlight import DepthCue, Light, Material, Scene, View, _compiled, engine
 from vizlight.model import reflection
-from vizlight.studies._measuring import peak_memory
 
 SUN = Light(direction=(1, 2, 0.5))
 LAMP = Light(position=(0.5, 4, 2), intensity=0.7, attenuation=(0.5, 0.2, 0.05), color="red")

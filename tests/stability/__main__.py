@@ -21,14 +21,14 @@ def main():
     parser.add_argument("--out", type=Path, help=f"file to write; default: {TABLE}")
     options = parser.parse_args()
     # Python puts the folder of this file first: its modules are a package of the one above.
-    sys.path[0] = str(TESTS)
+    sys.path[:1] = [str(TESTS), str(TESTS.parent / "gallery")]
     try:
         from stability import suite
     except ModuleNotFoundError as error:
         if error.name != "mpmath":
             raise
         sys.exit("mpmath is missing, the reference of 50 digits; pip install 'vizlight[test]'")
-    from vizlight import studies
+    import studies
 
     result = studies.run("stability", suite.STUDY, quick=options.quick, progress_bar=True)
     for line in [*suite.worst(result.rows)[1], [result.verdict]]:

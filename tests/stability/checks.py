@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import oracles
 
-from vizlight.studies import Row
+from studies import Row
 
 TYPES = (np.float32, np.float64)
 DOUBLE = (np.float64,)

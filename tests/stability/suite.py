@@ -17,7 +17,7 @@ import numpy as np
 
 from stability import engine, geometry, model, shapes
 from stability.checks import rows_of
-from vizlight.studies import Curve, Result, Row, Study
+from studies import Curve, Result, Row, Study
 
 #: Number of inputs of a kernel and a type, and in a quick run.
 INPUTS, QUICK = 10_600, 600

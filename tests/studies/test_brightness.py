@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from studies import brightness as study
 from vizlight.model import brightness, kernels
-from vizlight.studies import brightness as study
 
 
 @pytest.mark.parametrize(("p", "q"), [(4.7635, 5.0), (4.7635, 1.0), (0.5, 1.0), (19.57, 20.0)])

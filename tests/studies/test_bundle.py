@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from studies import Row, bundle
 from vizlight.mesh import embree_rays
-from vizlight.studies import Row, bundle
 
 
 @pytest.mark.parametrize("kind", bundle.KINDS)

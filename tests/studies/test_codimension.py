@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import vizlight
+from studies import codimension
 from vizlight import render
 from vizlight.geometry import manifolds
-from vizlight.studies import codimension
 
 
 @pytest.fixture(scope="module")

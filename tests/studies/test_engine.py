@@ -8,8 +8,8 @@ import time
 import numpy as np
 import pytest
 
+from studies import Row, engine, peak_memory, take_turns
 from vizlight import _compiled
-from vizlight.studies import Row, _measuring, engine
 
 
 def test_rows_of_the_study():
@@ -30,7 +30,7 @@ def test_rows_of_the_study():
 
 
 def test_peak_memory_counts_numpy():
-    assert _measuring.peak_memory(lambda: np.ones(100_000)) >= 800_000
+    assert peak_memory(lambda: np.ones(100_000)) >= 800_000
 
 
 def test_turns():
@@ -41,7 +41,7 @@ def test_turns():
         seen.append(1)
         time.sleep(next(waits))
 
-    seconds = _measuring.take_turns({"a": first, "b": lambda: seen.append(2)}, 3)
+    seconds = take_turns({"a": first, "b": lambda: seen.append(2)}, 3)
     assert 3 <= len(seen) // 2 <= 6  # repeated where times do not agree
     assert seen == [1, 2] * (len(seen) // 2)
     assert all(0 < value < 0.02 for value in seconds.values())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from vizlight.studies import Row, frames
+from studies import Row, frames
 
 
 def test_frame_errors():

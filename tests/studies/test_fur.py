@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from vizlight.studies import Row, fur, order
+from studies import Row, fur, order
 
 
 @pytest.mark.opengl

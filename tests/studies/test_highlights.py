@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from vizlight.studies import highlights
+from studies import highlights
 
 
 def test_rules_at_a_right_angle():

@@ -8,9 +8,9 @@ import math
 import numpy as np
 import pytest
 
+from studies import Row
+from studies import isoluminance as study
 from vizlight import render
-from vizlight.studies import Row
-from vizlight.studies import isoluminance as study
 
 
 @pytest.mark.opengl

@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from studies import lines, words
 from vizlight.model import cylinder
-from vizlight.studies import lines
-from vizlight.studies._framework import words
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from vizlight.studies import Row, cheapest, mesh, order, relief, streamlines
+from studies import Row, cheapest, mesh, order, relief, streamlines
 
 
 @cache

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from vizlight.studies import Row, nspace
+from studies import Row, nspace
 
 
 def test_costs():

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from vizlight.studies import Row
-from vizlight.studies import pieces as study
+from studies import Row
+from studies import pieces as study
 
 #: Processor seconds for one node, point, piece or sample.
 TRUE = {

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from vizlight.studies import refinement
+from studies import refinement
 
 
 @cache

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from studies import Row, relief
 from vizlight import _compiled
-from vizlight.studies import Row, relief
 
 
 def test_error_and_memory_of_the_fast_method():

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from studies import Row, scaling
 from vizlight import _compiled
-from vizlight.studies import Row, scaling
 
 
 def test_rows_in_memory_and_from_disk():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from vizlight.studies import Row, tubes
+from studies import Row, tubes
 
 
 @pytest.mark.opengl

@@ -1,4 +1,4 @@
-"""The command line: a command for each filter, ``demo``, ``doctor`` and ``study``."""
+"""The command line: a command for each filter, ``demo`` and ``doctor``."""
 
 from vizlight.cli.main import app, main
 from vizlight.cli.output import BAD_INPUT, LACKING, OK

@@ -6,9 +6,9 @@ import functools
 import shlex
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, TextIO
+from typing import TYPE_CHECKING, TextIO
 
-from cyclopts import App, CycloptsError, Parameter
+from cyclopts import App, CycloptsError
 
 from vizlight import _console
 from vizlight._version import __version__
@@ -209,39 +209,4 @@ def paraview() -> int:
     ):
         say(f"{part:8} {folder / name}")
     say(f"start    PYTHONPATH={shlex.quote(str(folder))} paraview")
-    return OK
-
-
-@app.command
-def study(
-    name: str | None = None,
-    /,
-    *,
-    quick: bool = False,
-    out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("vizlight-study"),
-) -> int:
-    """Measure speed against error; without a name list the studies.
-
-    Prints a table and a verdict, and writes NAME.csv and the log-log figure NAME.png.
-
-    Parameters
-    ----------
-    name
-        Name of the study.
-    quick
-        Measure less: under 20 s on 2 cores.
-    out
-        The folder to write to; made if it is missing.
-    """
-    from vizlight import files, studies
-
-    if name is None:
-        studies.print_list({known: studies.load(known) for known in studies.names()})
-        return OK
-    chosen = studies.load(name)
-    files.make_folder("out", out)
-    result = studies.run(name, chosen, quick=quick, progress_bar=True)
-    studies.print_result(result)
-    say(f"table    {result.write_csv(out / f'{name}.csv')}")
-    say(f"figure   {result.draw(out / f'{name}.png')}")
     return OK

@@ -222,7 +222,7 @@ def best_factor(light_eye_angle: ArrayLike, r: ArrayLike, /, *, by: Measure = "w
     -----
     As f grows Phong exceeds Blinn by more and falls short by less, so the worst error is least
     where both are equal, a root that bisection finds. The other two measures are quadratures over
-    normals, minimised over f to 1e-4 by SciPy's bounded minimiser. ``vizlight study highlights``
+    normals, minimised over f to 1e-4 by SciPy's bounded minimiser. The study ``highlights``
     prints the table.
     """
     _check.choice("by", by, get_args(Measure))

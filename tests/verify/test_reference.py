@@ -7,7 +7,7 @@ import oracles
 import pytest
 
 from vizlight import Light, Scene, View
-from vizlight.studies import reference
+from vizlight.verify import reference
 
 SCENE = Scene(
     lights=[Light(position=(1, 4, 2)), Light(direction=(0, 1, 1), intensity=0.5)],

@@ -17,13 +17,12 @@ import numpy as np
 import pyvista as pv
 from scipy import ndimage
 
+from studies import CLEAR, Curve, Panel, Row, Study, cheapest, take_turns, words
+from studies._virtual_light import highlight
 from vizlight.filters.isoluminance import isoluminance
 from vizlight.geometry.solids.primitives import Frustum, Sphere
 from vizlight.pictures import render
 from vizlight.scene import Light, Material, Scene
-from vizlight.studies._framework import CLEAR, Curve, Panel, Row, Study, cheapest, words
-from vizlight.studies._measuring import take_turns
-from vizlight.studies._virtual_light import highlight
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -2,7 +2,7 @@
 
 The scene is the most expensive of the common ones: lines on a surface, a light with a position, a
 perspective view, the compensated diffuse term, the Phong term and the self-shadow of the surface.
-The script (:mod:`vizlight.studies.reference`) works on whole arrays. The engine runs its NumPy code
+The script (:mod:`studies.reference`) works on whole arrays. The engine runs its NumPy code
 in blocks and, where numba is installed, compiled code. One pass is ``O = P + T; O += N`` into an
 output that is there already: the arrays are read once and little is computed. All are timed in
 turn, so a busy machine slows all of them.
@@ -16,13 +16,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from studies import PIXEL, Row, Study, cheapest, note_spread, peak_memory, words
 from vizlight import _compiled
 from vizlight.model import brightness
 from vizlight.scene import Light, Scene, View
 from vizlight.shading import engine
-from vizlight.studies import reference
-from vizlight.studies._framework import PIXEL, Row, Study, cheapest, words
-from vizlight.studies._measuring import note_spread, peak_memory
+from vizlight.verify import reference
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

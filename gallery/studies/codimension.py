@@ -16,12 +16,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
+from studies import Curve, Row, Study, span, take_turns, words
 from vizlight.filters.manifold import manifold
 from vizlight.geometry.nspace import manifolds
 from vizlight.model import brightness, reflection
 from vizlight.scene import Light, Material, Scene
-from vizlight.studies._framework import Curve, Row, Study, span, words
-from vizlight.studies._measuring import take_turns
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence

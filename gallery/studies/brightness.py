@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy import integrate
 
+from studies import PIXEL, Row, Study, cheapest, take_turns, words
 from vizlight.model import brightness, kernels
-from vizlight.studies._framework import PIXEL, Row, Study, cheapest, words
-from vizlight.studies._measuring import take_turns
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

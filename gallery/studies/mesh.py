@@ -13,11 +13,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from studies import PIXEL, Row, Study, holding, order, span, take_turns, words
 from vizlight.geometry.nspace import manifolds
 from vizlight.scene import Light, Material, Scene, View
 from vizlight.shading import engine
-from vizlight.studies._framework import PIXEL, Row, Study, holding, order, span, words
-from vizlight.studies._measuring import take_turns
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -172,5 +171,4 @@ STUDY = Study(
     steps=steps,
     verdict=verdict,
     axes=("parameter", "error"),
-    slopes=(-2.0, -1.0),
 )

@@ -12,13 +12,12 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from studies import PIXEL, Row, Study, holding, order, take_turns, words
 from vizlight._types import Array, Numbers
 from vizlight.geometry.nspace import manifolds
 from vizlight.geometry.nspace.parametric import CENTRAL_STEP
 from vizlight.scene import Light, Scene, View
 from vizlight.shading import engine
-from vizlight.studies._framework import PIXEL, Row, Study, holding, order, words
-from vizlight.studies._measuring import take_turns
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -125,5 +124,4 @@ STUDY = Study(
     steps=lambda quick: [partial(frame_errors, 64 if quick else 128, 3 if quick else 5)],
     verdict=verdict,
     axes=("parameter", "error"),
-    slopes=(2.0,),
 )

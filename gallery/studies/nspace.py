@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
+from studies import PIXEL, Curve, Panel, Row, Study, peak_memory, span, take_turns, words
 from vizlight.filters.project import project
 from vizlight.scene import Light, Scene, View
 from vizlight.shading import engine
-from vizlight.studies._framework import PIXEL, Curve, Panel, Row, Study, span, words
-from vizlight.studies._measuring import peak_memory, take_turns
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

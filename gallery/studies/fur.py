@@ -15,12 +15,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 
+from studies import PIXEL, Row, Study, holding, peak_memory, span, take_turns
+from studies.tubes import time_to_draw
 from vizlight.filters.fur import fur
 from vizlight.pictures import render
 from vizlight.scene import Light, Material, Scene, View
-from vizlight.studies._framework import PIXEL, Row, Study, holding, span
-from vizlight.studies._measuring import peak_memory, take_turns
-from vizlight.studies.tubes import time_to_draw
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence

@@ -2,7 +2,7 @@
 
 Lines and tubes are lit by the same scene, as point scalars. The error is that of the shape: the
 mean light of a tube over its width, compared with the exact light of a cylinder
-(:mod:`vizlight.studies.lines`), for the default material.
+(:mod:`studies.lines`), for the default material.
 """
 
 from __future__ import annotations
@@ -12,15 +12,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from studies import PIXEL, Row, Study, cheapest, holding, lines, take_turns, words
 from vizlight.data import load_example
 from vizlight.filters.illuminate import illuminate
 from vizlight.filters.streamlines import streamlines
 from vizlight.model import cylinder
 from vizlight.pictures import render
 from vizlight.scene import Light, Material, Scene, View
-from vizlight.studies import lines
-from vizlight.studies._framework import PIXEL, Row, Study, cheapest, holding, words
-from vizlight.studies._measuring import take_turns
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

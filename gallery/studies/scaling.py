@@ -20,12 +20,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from studies import PIXEL, Row, Study, note_spread, peak_memory, slope, words
+from studies.engine import SCENE
 from vizlight import _compiled
 from vizlight.shading import engine
-from vizlight.studies import reference
-from vizlight.studies._framework import PIXEL, Row, Study, slope, words
-from vizlight.studies._measuring import note_spread, peak_memory
-from vizlight.studies.engine import SCENE
+from vizlight.verify import reference
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -45,8 +44,8 @@ FIRST_CALL = """
 import sys, time
 import numpy as np
 from vizlight.shading import engine
-from vizlight.studies import reference
-from vizlight.studies.engine import SCENE
+from vizlight.verify import reference
+from studies.engine import SCENE
 random = np.random.default_rng(7)
 vectors = [random.standard_normal((int(sys.argv[1]), 3), dtype=np.float32) for _ in range(2)]
 start = time.perf_counter(), time.process_time()
@@ -141,6 +140,7 @@ def first_call(count: int, folder: str, way: str, fast: str) -> list[Row]:
     script = Path(folder, "first_call.py")
     script.write_text(FIRST_CALL, encoding="utf-8")
     environment = {**os.environ, "VIZLIGHT_FAST": fast, "XDG_CACHE_HOME": folder}
+    environment["PYTHONPATH"] = str(Path(__file__).parents[1])
     run = subprocess.run(
         [sys.executable, str(script), str(count)],
         env=environment, capture_output=True, text=True, check=True,
@@ -209,5 +209,4 @@ STUDY = Study(
     steps=steps,
     verdict=verdict,
     axes=("parameter", "cost"),
-    slopes=(0.0,),
 )

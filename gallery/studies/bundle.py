@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from studies import Row, Study, words
 from vizlight import _check
 from vizlight.geometry.lines import bundle as geometry
 from vizlight.mesh import embree_rays
-from vizlight.studies._framework import Row, Study, words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -14,10 +14,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
+from studies import Curve, Panel, Row, Study, holding, order, take_turns, words
 from vizlight.filters.streamlines import streamlines
 from vizlight.scene import Light, Scene, View
-from vizlight.studies._framework import Curve, Panel, Row, Study, holding, order, words
-from vizlight.studies._measuring import take_turns
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -149,7 +148,6 @@ STUDY = Study(
             axes=("parameter", "error"),
             curve=curve_of(CELL, SPHERE),
             x="cell size / domain",
-            slopes=(2.0,),
         ),
     ),
 )

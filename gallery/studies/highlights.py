@@ -13,11 +13,10 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from studies import Curve, Panel, Row, Study, holding, take_turns, words
 from vizlight.model import highlights, reflection
 from vizlight.scene import Light, Material, Scene, View
 from vizlight.shading import engine
-from vizlight.studies._framework import Curve, Panel, Row, Study, holding, words
-from vizlight.studies._measuring import take_turns
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence

@@ -22,11 +22,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
+from studies import Curve, Panel, Row, Study, cheapest, take_turns, words
 from vizlight.model import brightness, cylinder, highlights, reflection
 from vizlight.scene import Light, Material, Scene, View
 from vizlight.shading import engine
-from vizlight.studies._framework import Curve, Panel, Row, Study, cheapest, words
-from vizlight.studies._measuring import take_turns
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -28,6 +28,7 @@ from scipy.optimize import nnls
 from scipy.spatial import cKDTree
 from scipy.stats import t as student
 
+from studies import Row, Study, words
 from vizlight import pieces
 from vizlight.filters.illuminate import illuminate
 from vizlight.pictures.backends import BackendError
@@ -35,7 +36,6 @@ from vizlight.pictures.cameras import camera_on
 from vizlight.pieces.drawing import Layer
 from vizlight.pieces.workers import local_cluster
 from vizlight.scene import Scene, View
-from vizlight.studies._framework import Row, Study, words
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -424,5 +424,4 @@ STUDY = Study(
     steps=lambda quick: [lambda: with_residuals(measure(*(48, 1) if quick else (96, 3)))],
     verdict=verdict,
     axes=("parameter", "cost"),
-    slopes=(0.0,),
 )

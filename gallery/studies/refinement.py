@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import pyvista as pv
 
+from studies import PIXEL, Curve, Row, Study, span, words
 from vizlight import data
 from vizlight.filters.refine import refine
 from vizlight.mesh import splitting
@@ -23,7 +24,6 @@ from vizlight.mesh.inputs import inputs_of
 from vizlight.scene import Light, Scene, View
 from vizlight.shading import engine
 from vizlight.shading.options import LightOptions
-from vizlight.studies._framework import PIXEL, Curve, Row, Study, span, words
 from vizlight.verify.between import Between, columns, error_between, random_places
 
 if TYPE_CHECKING:

@@ -17,10 +17,9 @@ from typing import TYPE_CHECKING, get_args
 import numpy as np
 from scipy import ndimage
 
+from studies import Row, Study, cheapest, order, peak_memory, take_turns, words
 from vizlight import _compiled
 from vizlight.geometry.relief import shadowing
-from vizlight.studies._framework import Row, Study, cheapest, order, words
-from vizlight.studies._measuring import peak_memory, take_turns
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
