@@ -10,9 +10,9 @@ a closed surface, which is correct from any view.
 
 import numpy as np
 import pyvista as pv
-from vizlight.geometry.isoluminance import sphere
 
 from vizlight import Light, Material, Scene, Sphere, isoluminance, render
+from vizlight.geometry.contours.isoluminance import sphere
 
 toward = np.array([1.0, 0, 0])
 scene = Scene(lights=Light(direction=toward), material=Material(diffuse=0.9, specular=0))

@@ -148,7 +148,6 @@ CALLS = {
     "files.write_mesh": lambda: {"mesh": ball(), "path": Path("out.vtp")},
     **{f"filters.{name}.{name}": make for name, make in FILTERS.items() if name != "provenance"},
     **{f"accessor.Accessor.{name}": make for name, make in FILTERS.items()},
-    "accessor.Accessor.relief_from_mesh": FILTERS["bas_relief"],
     "accessor.Accessor.live_html": lambda: written("page.html"),
     "accessor.Accessor.plot": plotting,
     "accessor.Accessor.save_gltf": lambda: written("mesh.glb"),

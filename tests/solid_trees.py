@@ -11,11 +11,11 @@ import time
 
 import banded
 import numpy as np
-from vizlight.geometry.primitives import Block, Frustum, Sphere
 
 from vizlight.geometry import solids
 from vizlight.geometry.contours import refinement
 from vizlight.geometry.solids import repair
+from vizlight.geometry.solids.primitives import Block, Frustum, Sphere
 
 TOWARD = np.array([1.0, -0.6, 0.8]) / np.linalg.norm([1.0, -0.6, 0.8])
 

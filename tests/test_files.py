@@ -41,22 +41,22 @@ def test_damaged_files_give_one_clear_error(name, content, tmp_path, capfd):
     with pytest.raises(
         files.FileError, match=rf"file: expected a mesh that PyVista reads, got '.*{name}' \("
     ):
-        files.read_mesh(path)
+        files.read(path)
     assert capfd.readouterr() == ("", "")
 
 
 def test_missing_file(tmp_path):
     with pytest.raises(files.FileError, match=r"file: expected a file, got .*\(no such file\)"):
-        files.read_mesh(tmp_path / "no.vtp")
+        files.read(tmp_path / "no.vtp")
     with pytest.raises(files.FileError, match=r"file: expected a file, got .*\(a folder\)"):
-        files.read_mesh(tmp_path)
+        files.read(tmp_path)
 
 
 def test_the_reason_of_a_damaged_file_is_told(tmp_path):
     path = tmp_path / "a.vtp"
     path.write_text("garbage")
     with pytest.raises(files.FileError, match="no points: Error parsing XML"):
-        files.read_mesh(path)
+        files.read(path)
 
 
 def test_a_full_disk_is_seen_before_writing(tmp_path, monkeypatch):
@@ -71,7 +71,7 @@ def test_blocks_become_one_grid_of_their_highest_cells(tmp_path):
     grid = volume().cast_to_unstructured_grid()
     blocks = pv.MultiBlock({"solid": grid, "side": grid.extract_surface(algorithm="geometry")})
     blocks.save(tmp_path / "b.vtm")
-    read = files.read_mesh(tmp_path / "b.vtm")
+    read = files.read(tmp_path / "b.vtm")
     assert isinstance(read, pv.UnstructuredGrid)
     assert read.n_cells == grid.n_cells
     assert "V" in read.point_data

@@ -208,7 +208,7 @@ FIRST = [
     "api",
     "studies",
 ]
-LONGEST = "api/vizlight.geometry.isoluminance"
+LONGEST = "api/vizlight.geometry.contours.isoluminance"
 
 
 @browser

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import inspect
+import operator
 import re
 import subprocess
 import sys
@@ -12,7 +13,6 @@ from pathlib import Path
 import pytest
 
 import vizlight
-from vizlight._aliases import ALIASES
 
 ROOT = Path(vizlight.__file__).parent
 MATHEMATICS = [
@@ -24,14 +24,14 @@ MATHEMATICS = [
     "vizlight.model.half_vector",
     "vizlight.model.highlights",
     "vizlight.model.falloff",
-    "vizlight.geometry.manifolds",
-    "vizlight.geometry.projection",
-    "vizlight.geometry.slices",
+    "vizlight.geometry.nspace.manifolds",
+    "vizlight.geometry.nspace.projection",
+    "vizlight.geometry.nspace.slices",
     "vizlight.geometry.relief",
-    "vizlight.geometry.isoluminance",
+    "vizlight.geometry.contours.isoluminance",
     "vizlight.geometry.solids",
 ]
-ENGINE = ["vizlight.engine", "vizlight.shading.decide", "vizlight.scene"]
+ENGINE = ["vizlight.shading.engine", "vizlight.shading.decide", "vizlight.scene"]
 HEAVY = {"pyvista", "vtk", "vtkmodules", "scipy", "rich"}
 #: Runs lines of code in one process and prints what is loaded after each.
 PROBE = """
@@ -61,14 +61,31 @@ def test_mathematics_and_engine_load_no_pyvista_and_no_report():
         assert not {name for name in names if "verify" in name} or module not in ENGINE, module
 
 
-@pytest.mark.parametrize("name", [*ALIASES, "vizlight.geometry.relief", "vizlight.geometry.solids"])
-def test_public_names_of_modules_are_the_modules(name):
-    code = (
-        f"import {name}; from {name.rpartition('.')[0]} import {name.rpartition('.')[2]} as again"
-    )
-    space = {}
-    exec(code, space)
-    assert space["again"] is sys.modules[name] is sys.modules[ALIASES.get(name, name)]
+@pytest.mark.parametrize(
+    ("name", "place"),
+    [
+        ("engine", "shading.engine"),
+        ("movie", "pictures.movie"),
+        ("paraview", "plotting.paraview"),
+        ("render", "pictures.render"),
+        ("testing", "pictures.testing"),
+        ("geometry.isoluminance", "geometry.contours.isoluminance"),
+        ("geometry.manifolds", "geometry.nspace.manifolds"),
+        ("geometry.relief", "geometry.relief"),
+        ("geometry.sun", "geometry.relief.sun"),
+    ],
+)
+def test_attributes_of_the_package_are_the_modules(name, place):
+    found = operator.attrgetter(name)(vizlight)
+    assert found is sys.modules[f"vizlight.{place}"]
+    owner, _, own = f"vizlight.{name}".rpartition(".")
+    assert own in dir(sys.modules[owner])
+
+
+def test_the_finders_of_modules_stay_as_they_are():
+    code = "import sys; old = [*sys.meta_path]; import vizlight.model; print(old == sys.meta_path)"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.strip() == "True"
 
 
 def test_the_probe_can_fail():

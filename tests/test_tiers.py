@@ -16,7 +16,6 @@ ROOT = Path(vizlight.__file__).parent
 #: that it holds.
 TIERS = [
     {
-        "_aliases",
         "_check",
         "_colors",
         "_compiled",

@@ -9,21 +9,14 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING
 
-from vizlight import _aliases
 from vizlight._version import __version__ as __version__
 
 if TYPE_CHECKING:
-    from vizlight import engine as engine
-    from vizlight import movie as movie
-    from vizlight import paraview as paraview
     from vizlight import pieces as pieces
-    from vizlight import render as render
-    from vizlight import testing as testing
     from vizlight import vtk as vtk
     from vizlight.data import example_path, load_example
     from vizlight.files import read
     from vizlight.filters.bas_relief import bas_relief
-    from vizlight.filters.bas_relief import relief_from_mesh as relief_from_mesh
     from vizlight.filters.fur import fur
     from vizlight.filters.illuminate import illuminate
     from vizlight.filters.isoluminance import isoluminance
@@ -39,12 +32,17 @@ if TYPE_CHECKING:
     from vizlight.filters.tint import tint
     from vizlight.filters.tint import unlit_colors as unlit_colors
     from vizlight.geometry.solids.polyhedra import HalfSpace, Polyhedron, Prism
-    from vizlight.geometry.solids.primitives import Block, Frustum, Sphere, Torus, Truncus
+    from vizlight.geometry.solids.primitives import Block, Frustum, Sphere, Torus
     from vizlight.mesh.polylines import direction_colors
     from vizlight.mesh.records import provenance
+    from vizlight.pictures import movie as movie
+    from vizlight.pictures import render as render
+    from vizlight.pictures import testing as testing
+    from vizlight.plotting import paraview as paraview
     from vizlight.plotting.gltf import save_gltf
     from vizlight.plotting.html import live_html
     from vizlight.scene import DepthCue, Light, Material, Scene, View
+    from vizlight.shading import engine as engine
     from vizlight.shading.options import Bundle
     from vizlight.verify.report import report
 
@@ -61,7 +59,6 @@ _HOMES = {
     "Scene": "vizlight.scene",
     "Sphere": "vizlight.geometry.solids.primitives",
     "Torus": "vizlight.geometry.solids.primitives",
-    "Truncus": "vizlight.geometry.solids.primitives",
     "View": "vizlight.scene",
     "bas_relief": "vizlight.filters.bas_relief",
     "direction_colors": "vizlight.mesh.polylines",
@@ -78,7 +75,6 @@ _HOMES = {
     "read": "vizlight.files",
     "refine": "vizlight.filters.refine",
     "relief_day": "vizlight.filters.relief_day",
-    "relief_from_mesh": "vizlight.filters.bas_relief",
     "relief_shadow": "vizlight.filters.relief_shadow",
     "report": "vizlight.verify.report",
     "satin": "vizlight.filters.satin",
@@ -88,12 +84,21 @@ _HOMES = {
     "unlit_colors": "vizlight.filters.tint",
     "to_polydata": "vizlight.filters.solids",
 }
-_MODULES = (
-    "accessor", "engine", "filters", "geometry", "model", "movie", "paraview", "pieces", "render",
-    "testing", "vtk",
-)  # fmt: skip
-
-_aliases.install()
+#: Places of the modules that are attributes of the package.
+_MODULES = {
+    "accessor": "accessor",
+    "engine": "shading.engine",
+    "files": "files",
+    "filters": "filters",
+    "geometry": "geometry",
+    "model": "model",
+    "movie": "pictures.movie",
+    "paraview": "plotting.paraview",
+    "pieces": "pieces",
+    "render": "pictures.render",
+    "testing": "pictures.testing",
+    "vtk": "vtk",
+}
 
 __all__ = [
     "Block",
@@ -108,7 +113,6 @@ __all__ = [
     "Scene",
     "Sphere",
     "Torus",
-    "Truncus",
     "View",
     "bas_relief",
     "direction_colors",
@@ -142,7 +146,7 @@ def __getattr__(name: str) -> object:
         globals()[name] = value
         return value
     if name in _MODULES:
-        return importlib.import_module(f"vizlight.{name}")
+        return importlib.import_module(f"vizlight.{_MODULES[name]}")
     raise AttributeError(f"module 'vizlight' has no attribute {name!r}")
 
 

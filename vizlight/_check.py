@@ -6,7 +6,6 @@ They raise TypeError for a value of the wrong type, ValueError for a wrong shape
 from __future__ import annotations
 
 import dataclasses
-import functools
 import math
 import numbers
 import os
@@ -18,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
     from typing import ParamSpec, TypeVar
 
     from numpy.typing import NDArray
@@ -43,17 +42,6 @@ def warn(text: str, category: type[Warning] = UserWarning) -> None:
     while frame.f_back and frame.f_globals.get("__name__", "").partition(".")[0] == "vizlight":
         level, frame = level + 1, frame.f_back
     warnings.warn(text, category, stacklevel=level)
-
-
-def renamed(function: Callable[P, R], old: str) -> Callable[P, R]:
-    """Return a function under its old name, which warns that it has a new one."""
-
-    @functools.wraps(function)
-    def method(*args: P.args, **kwargs: P.kwargs) -> R:
-        warn(f"{old} is now called {function.__name__}", DeprecationWarning)
-        return function(*args, **kwargs)
-
-    return method
 
 
 def message(name: str, expected: str, got: object, remedy: str = "") -> str:

@@ -78,7 +78,6 @@ class Accessor:
     provenance = _Method(lambda: vizlight.provenance)
     refine = _Method(lambda: vizlight.refine)
     relief_day = _Method(lambda: vizlight.relief_day)
-    relief_from_mesh = _Method(lambda: vizlight.relief_from_mesh)
     relief_shadow = _Method(lambda: vizlight.relief_shadow)
     save_gltf = _Method(lambda: vizlight.save_gltf)
     satin = _Method(lambda: vizlight.satin)

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["FileError", "read", "read_mesh", "surface_of", "warped", "write_mesh"]
+__all__ = ["FileError", "read", "surface_of", "warped", "write_mesh"]
 
 #: File formats that keep point and field arrays, by type of mesh.
 FORMATS: dict[str, tuple[str, ...]] = {
@@ -201,10 +201,6 @@ def _try_to_read(path: Path, limit: float) -> None:
             return
         reason = f"its reader was ended by {signal.Signals(-run.returncode).name}"
     raise FileError(_check.message("file", "a file that can be read", f"'{path}' ({reason})"))
-
-
-#: Older name of :func:`read`.
-read_mesh = read
 
 
 def _first_line(error: Exception | str) -> str:

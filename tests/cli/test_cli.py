@@ -148,7 +148,7 @@ def test_more_options(volume, capfd):
         "--tangents",
         "C",
         "--average-cells",
-        "--lamp",
+        "--light-position",
         "9,9,-9",
         "--color",
         "tomato",

@@ -54,14 +54,6 @@ def test_bad_bas_relief():
         bas_relief(edge, direction=(0, 0, 1))
 
 
-def test_the_old_name_warns():
-    with pytest.warns(DeprecationWarning, match="relief_from_mesh is now called bas_relief"):
-        old = vizlight.relief_from_mesh(BALL, resolution=8)
-    with pytest.warns(DeprecationWarning, match="relief_from_mesh is now called bas_relief"):
-        BALL.vizlight.relief_from_mesh(resolution=8)
-    np.testing.assert_array_equal(old["height"], vizlight.bas_relief(BALL, resolution=8)["height"])
-
-
 def test_progress_is_shown_on_standard_error(capfd):
     plain = vizlight.bas_relief(pv.Sphere(), resolution=50)
     shown = vizlight.bas_relief(pv.Sphere(), resolution=50, progress_bar=True)

@@ -7,8 +7,8 @@ import oracles
 import pytest
 
 from vizlight import Light, Material, Scene, View, engine
-from vizlight.engine import plan
 from vizlight.model import cylinder
+from vizlight.shading.engine import plan
 
 FAR = View(direction=(0, 0, 1))
 SUN, LOW = Light(direction=(1, 1, 1)), Light(direction=(1, 0, -0.7))

@@ -77,7 +77,7 @@ def test_signature_and_documentation_list_the_options(filter_name, fields):
         assert re.search(rf"^(\w+, )*{field.name}(, \w+)*( :|$)", text, re.MULTILINE), field.name
 
 
-@accepts(ShadingOptions, without=("precision",), renamed={"law": "model"})
+@accepts(ShadingOptions, without=("precision",))
 def toy(mesh, /, *, size=1, **options):
     """Return what came.
 
@@ -101,8 +101,6 @@ def test_keywords_are_checked_by_name():
         toy(1, precision="float32")
     with pytest.raises(TypeError, match=r"zzz: .* it has size, compensate, model"):
         toy(1, zzz=0)
-    with pytest.warns(DeprecationWarning, match="law= is now called model="):
-        assert toy(1, law="blinn") == (1, 1, {"model": "blinn"})
     assert "precision" not in inspect.signature(toy).parameters
     assert "Reflection model" in toy.__doc__
     assert "Anything else." in toy.__doc__
@@ -160,26 +158,3 @@ def test_satin_has_more_seeds():
 def test_options_for_a_surface_beside_lines():
     assert ShadingOptions(model="cylinder").for_surface().model == "blinn"
     assert ShadingOptions(model="phong").for_surface().model == "phong"
-
-
-def test_old_names_of_the_engine_still_work():
-    from vizlight import engine
-
-    scene = vizlight.Scene(lights=vizlight.Light(direction=(0, 0, 1, 0)), view=None,
-                           material=vizlight.Material(specular=0))  # fmt: skip
-    points, tangents, base = [[0.0] * 4], [[0.6, 0, 0.8, 0]], [[1.0, 0, 0, 0, 0, 0, 1, 0]]
-    with pytest.warns(DeprecationWarning, match="carrier= is now called base_tangents="):
-        old = engine.shade(points, tangents, scene, carrier=base)
-    new = engine.shade(points, tangents, scene, base_tangents=base)
-    assert old.luminance == new.luminance
-    with pytest.raises(TypeError, match="carrier: expected base_tangents= alone, got both"):
-        engine.shade(points, tangents, scene, base_tangents=base, carrier=base)
-    with pytest.warns(DeprecationWarning, match="Plan.carrier is now called Plan.base"):
-        assert new.plan.carrier == new.plan.base == 2
-    with pytest.warns(DeprecationWarning, match="Plan.carrier_exponent is now"):
-        assert new.plan.carrier_exponent == new.plan.base_exponent
-    assert [new.plan.two_sided, new.plan.components, new.plan.colored] == [False] * 3
-    from vizlight.plan import plan
-
-    assert plan is engine.plan
-    assert engine.Rows is engine.ArraySource

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from vizlight import DepthCue, Light, Material, Scene, View
-from vizlight.engine import plan
+from vizlight.shading.engine import plan
 
 SUN = Light(direction=(1, 1, 1))
 FAR = View(direction=(0, 0, 1))

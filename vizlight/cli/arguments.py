@@ -18,7 +18,7 @@ Text = Annotated[str, Parameter(allow_leading_hyphen=True)]
 Texts = Annotated[list[str], Parameter(allow_leading_hyphen=True, negative=())]
 Positions = Annotated[
     list[str],
-    Parameter(name=["--light-position", "--lamp"], allow_leading_hyphen=True, negative=()),
+    Parameter(allow_leading_hyphen=True, negative=()),
 ]
 Outputs = Annotated[list[Path], Parameter(name=["--output", "-o"], negative=())]
 

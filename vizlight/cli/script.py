@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import vizlight
 from vizlight import _check
 
 if TYPE_CHECKING:
@@ -73,7 +74,7 @@ class Step:
         if self.path.startswith("."):
             return getattr(arguments[0], self.path[1:])(*arguments[1:], **keywords)
         head, *names = self.path.split(".")
-        function: Any = importlib.import_module(f"vizlight.{head}" if head in OWN else head)
+        function: Any = getattr(vizlight, head) if head in OWN else importlib.import_module(head)
         for name in names:
             function = getattr(function, name)
         return function(*arguments, **keywords)

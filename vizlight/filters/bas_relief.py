@@ -62,8 +62,8 @@ def bas_relief(
 
     Notes
     -----
-    The depth is sampled at the nodes by :func:`vizlight.geometry.depth_map.depth_map`, without
-    OpenGL. Source: cos-theta, figure 1, lights a bas-relief of a statue.
+    The depth is sampled at the nodes by :func:`vizlight.geometry.relief.depth_map.depth_map`,
+    without OpenGL. Source: cos-theta, figure 1, lights a bas-relief of a statue.
     """
     vertices, triangles = closed_meshes.triangles_of(mesh, "mesh")
     frame = _eye_frame(direction, up)
@@ -135,6 +135,3 @@ def _unit(name: str, value: object) -> Array:
         raise ValueError(_check.message(name, "3 components", len(vector)))
     vector /= np.abs(vector).max()
     return np.asarray(vector / np.linalg.norm(vector))
-
-
-relief_from_mesh = _check.renamed(bas_relief, "relief_from_mesh")

@@ -85,7 +85,7 @@ def illuminate(
 
     Notes
     -----
-    Error bounds: :func:`vizlight.engine.shade`. Sources: Banks (1) to (6), Lecture.
+    Error bounds: :func:`vizlight.shading.engine.shade`. Sources: Banks (1) to (6), Lecture.
 
     ``bundle`` costs one grid for each light and for each two directions of the light from all
     sides: with 64 directions and 128 voxels along the longest side 1.5 s of processor time for

@@ -36,7 +36,7 @@ def manifold(
     Parameters
     ----------
     shape : Manifold
-        Manifold, such as one of :mod:`vizlight.geometry.manifolds`.
+        Manifold, such as one of :mod:`vizlight.geometry.nspace.manifolds`.
     scene, threads, progress_bar
         As for :func:`project`.
     **options

@@ -52,7 +52,7 @@ class ProjectOptions(LightOptions):
     ----------
     rotation : optional
         A matrix of SO(n), ``("xw", angle)`` with the angle in radians, or a list of these, the
-        first done first; see :func:`vizlight.geometry.projection.rotation`.
+        first done first; see :func:`vizlight.geometry.nspace.projection.rotation`.
     hyperplane : (normal, offset), optional
         Hyperplane ``{x : x . normal / |normal| = offset}`` that cuts the turned mesh: what is left
         is a (k - 1)-manifold. Point arrays of numbers are interpolated, the frame as the space
@@ -168,15 +168,15 @@ def project(
     -----
     Where the projection flattens the tangent space (at a silhouette) ``projected_frame`` has rows
     of zero past its rank, which is what is left of unit tangents beyond rounding (see
-    :func:`vizlight.geometry.projection.push_frame`). Light after the projection is there that of
-    the limit of the tangent spaces along the surface, taken from the points around with an error of
+    :func:`vizlight.geometry.nspace.projection.push_frame`). Light after the projection is there
+    that of the limit of the tangent spaces along the surface, from points around, with an error of
     second order in their distance. Where there is none (a pinch point, or points around that
     have lost their rank too) it is the ambient one, and ``luminance_valid`` marks the points; light
     before the projection knows of no silhouette.
     A frame on a cut is a mean of those at the points around, of second order in their distance,
     and zero where one of them lacks tangents.
-    Error bounds: :func:`vizlight.geometry.projection.turn` and ``perspective``. Work is done in
-    float64, block by block; arrays keep their type. Source: Banks, section 3.
+    Error bounds: :func:`vizlight.geometry.nspace.projection.turn` and ``perspective``. Work is done
+    in float64, block by block; arrays keep their type. Source: Banks, section 3.
     """
     blocks.check(mesh)
     _check.instance("scene", scene, Scene, optional=True)

@@ -68,7 +68,7 @@ def relief_day(
     Raises
     ------
     TypeError, ValueError
-        As :func:`relief_shadow` and :func:`vizlight.geometry.sun.directions`.
+        As :func:`relief_shadow` and :func:`vizlight.geometry.relief.sun.directions`.
     """
     if sun is not None:
         if latitude is not None or day is not None or hours is not None:

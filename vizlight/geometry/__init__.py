@@ -1,15 +1,13 @@
 """Shapes as arrays; only NumPy and SciPy are used, no mesh and no file.
 
-Every public module has a short name here, such as ``vizlight.geometry.manifolds``. The modules
-themselves are in the folders ``lines``, ``nspace``, ``solids``, ``contours`` and ``relief``.
+The modules are in the folders ``lines``, ``nspace``, ``solids``, ``contours`` and ``relief``; the
+public ones are also attributes here, such as ``vizlight.geometry.manifolds``.
 """
 
 from __future__ import annotations
 
 import importlib
 from typing import TYPE_CHECKING
-
-from vizlight._aliases import GEOMETRY
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -26,13 +24,28 @@ if TYPE_CHECKING:
     from vizlight.geometry.relief import sun as sun
     from vizlight.geometry.solids import primitives as primitives
 
+#: Places of the public modules and folders.
+_PLACES = {
+    "curves": "lines.curves",
+    "depth_map": "relief.depth_map",
+    "fur": "lines.fur",
+    "isoluminance": "contours.isoluminance",
+    "manifolds": "nspace.manifolds",
+    "primitives": "solids.primitives",
+    "projection": "nspace.projection",
+    "relief": "relief",
+    "slices": "nspace.slices",
+    "solids": "solids",
+    "sun": "relief.sun",
+}
+
 
 def __getattr__(name: str) -> ModuleType:
     """Import a public module on first use."""
-    if name in GEOMETRY or name in ("relief", "solids"):
-        return importlib.import_module(f"vizlight.geometry.{name}")
+    if name in _PLACES:
+        return importlib.import_module(f"vizlight.geometry.{_PLACES[name]}")
     raise AttributeError(f"module 'vizlight.geometry' has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
-    return sorted([*GEOMETRY, "relief", "solids"])
+    return sorted(_PLACES)

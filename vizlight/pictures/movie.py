@@ -74,7 +74,7 @@ def save(
         Camera of all frames. Default: one that shows them all; the frames are then kept in memory
         until the last is there. Pictures have theirs.
     picture : mapping, optional
-        Further options of :func:`vizlight.render.make_plotter`, for meshes.
+        Further options of :func:`vizlight.pictures.render.make_plotter`, for meshes.
     progress_bar : bool, default: False
         Show progress on standard error.
 
@@ -153,7 +153,7 @@ def turn(
         active scalars are drawn: luminance from 0 to 1, other scalars from their minimum to
         their maximum.
     plane : str or (int, int), default: "xw"
-        Plane of the rotation, as for :func:`vizlight.geometry.projection.plane_rotation`.
+        Plane of the rotation, as for :func:`vizlight.geometry.nspace.projection.plane_rotation`.
     frames : int, default: 72
         Number of frames. Frame i is at ``i / frames`` of the angle.
     angle : float, default: 2 pi
@@ -163,7 +163,7 @@ def turn(
     camera : pyvista.Camera, optional
         Camera of all frames. Default: one that shows the whole mesh at every step.
     picture : mapping, optional
-        Further options of :func:`vizlight.render.make_plotter`: size, scalars, cmap, clim,
+        Further options of :func:`vizlight.pictures.render.make_plotter`: size, scalars, cmap, clim,
         background.
     threads : int, optional
         Number of threads for the light. Default: the processors that this process may use.

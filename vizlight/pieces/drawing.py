@@ -98,8 +98,8 @@ def pictures(
         Results of :func:`light`, indices or files of each picture. Of an iterator no more is taken
         ahead than keeps the workers busy.
     camera : pyvista.Camera, optional
-        Camera of all pictures. Default: :func:`vizlight.render.camera_on` the bounding box of the
-        first.
+        Camera of all pictures. Default: :func:`vizlight.pictures.render.camera_on` the bounding box
+        of the first.
     size : (int, int), default: (1200, 800)
         Width and height in pixels.
     samples : int, default: 2
@@ -109,7 +109,7 @@ def pictures(
         are started than there are processors. Every worker needs an OpenGL library.
     **options
         ``scalars``, ``cmap``, ``clim``, ``background`` and ``line_width`` of
-        :func:`vizlight.render.make_plotter`; the background is white by default.
+        :func:`vizlight.pictures.render.make_plotter`; the background is white by default.
 
     Yields
     ------
@@ -131,7 +131,7 @@ def pictures(
     too: their samples are opaque, and are averaged after the pieces are put together, so that no
     edge is transparent before. Of fragments at the same depth the last piece's is seen, as the last
     mesh's is in one picture. VTK's own anti-aliasing ("ssaa") also weighs samples of the
-    neighbouring pixels, so a picture of :mod:`vizlight.render` has softer edges.
+    neighbouring pixels, so a picture of :mod:`vizlight.pictures.render` has softer edges.
 
     A task draws one or more pieces, one after the other, and sends their picture. A worker needs
     the memory of one piece and two pictures, the client that of two: 7 bytes per sample each. The

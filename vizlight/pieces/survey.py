@@ -85,12 +85,12 @@ def camera_on(
         As for :func:`light`. Without ``contour`` only the corners of an image are taken; an
         isosurface costs a first reading and contouring.
     direction, up, parallel, zoom, aspect
-        As for :func:`vizlight.render.camera_on`.
+        As for :func:`vizlight.pictures.render.camera_on`.
 
     Returns
     -------
     pyvista.Camera
-        That of :func:`vizlight.render.camera_on` for the mesh of all pieces, to rounding.
+        That of :func:`vizlight.pictures.render.camera_on` for the mesh of all pieces, to rounding.
 
     Raises
     ------

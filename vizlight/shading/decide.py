@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 LEAST_POWER = 2.0
 
 
-@accepts(ShadingOptions, renamed={"carrier": "base_tangents"})
+@accepts(ShadingOptions)
 def plan(
     scene: Scene,
     /,

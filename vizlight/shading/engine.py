@@ -132,7 +132,7 @@ def observed(observer: Observer | None, /) -> Iterator[None]:
         _OBSERVER.reset(token)
 
 
-@accepts(ShadingOptions, renamed={"carrier": "base_tangents", "depth": "fur_height"})
+@accepts(ShadingOptions)
 def shade(
     points: ArrayLike | ArraySource,
     tangents: ArrayLike | ArraySource | None,

@@ -322,7 +322,6 @@ def accepts(
     kind: type,
     *,
     without: tuple[str, ...] = (),
-    renamed: Mapping[str, str] | None = None,
 ) -> Callable[[Callable[P, R]], Callable[P, R]]:
     """Let a function take the fields of an options class as keywords.
 
@@ -335,8 +334,6 @@ def accepts(
         The options class, a dataclass.
     without : tuple of str
         Fields that the function does not take.
-    renamed : dict of str to str, optional
-        Old names of keywords, which still work with a ``DeprecationWarning``, and their new names.
     """
 
     def decorate(function: Callable[P, R]) -> Callable[P, R]:
@@ -346,7 +343,6 @@ def accepts(
         fields = {f.name: f for f in dataclasses.fields(kind) if f.name not in left_out}
         texts = {name: text for name, text in documented(kind).items() if name in fields}
         known = [*(p.name for p in own), *texts]
-        aliases = renamed or {}
 
         places = [p.name for p in own if p.default is p.empty and p.kind is not p.KEYWORD_ONLY]
         scene = places.index("scene") if "scene" in places else None
@@ -354,13 +350,6 @@ def accepts(
 
         @functools.wraps(function)
         def method(*arguments: P.args, **keywords: P.kwargs) -> R:
-            for old in [name for name in keywords if name in aliases]:
-                new = aliases[old]
-                if new in keywords:
-                    remedy = f"{old} is the old name of {new}"
-                    raise TypeError(_check.message(old, f"{new}= alone", "both", remedy))
-                _check.warn(f"{old}= is now called {new}=", DeprecationWarning)
-                keywords[new] = keywords.pop(old)
             for old, new in getattr(kind, "REPLACED", {}).items():
                 if keywords.get(old) is True:
                     _check.warn(f"{old}= is replaced by {new}", DeprecationWarning)

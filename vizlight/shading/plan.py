@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
-from vizlight import _check
 from vizlight.model.kernels import DEFICIT_FROM
 from vizlight.scene.light import NO_ATTENUATION
 
@@ -41,7 +40,7 @@ class Highlight(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class Plan:
-    """What is computed for each point of a mesh; made by :func:`vizlight.engine.plan`.
+    """What is computed for each point of a mesh; made by :func:`vizlight.shading.engine.plan`.
 
     Attributes
     ----------
@@ -115,18 +114,6 @@ class Plan:
     def colored(self) -> bool:
         """Whether the result has a colour."""
         return self.scene.colored
-
-    @property
-    def carrier(self) -> int:
-        """Deprecated name of ``base``."""
-        _check.warn("Plan.carrier is now called Plan.base", DeprecationWarning)
-        return self.base
-
-    @property
-    def carrier_exponent(self) -> float:
-        """Deprecated name of ``base_exponent``."""
-        _check.warn("Plan.carrier_exponent is now called Plan.base_exponent", DeprecationWarning)
-        return self.base_exponent
 
     @property
     def terms(self) -> tuple[str, ...]:

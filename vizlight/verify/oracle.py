@@ -133,7 +133,7 @@ class Oracle:
         scene : Scene
             Scene whose depth cue, if it has one, has both ends.
         base_tangents, fur_height, shadow, transmittance, occlusion, model, compensate, conditioned, two_sided, fur
-            Options of :func:`vizlight.engine.shade`, for one point.
+            Options of :func:`vizlight.shading.engine.shade`, for one point.
         exponent : float, optional
             Exponent of the diffuse term, in place of that of ``compensate``.
         apart : float

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from vizlight.geometry.primitives import Block, Frustum, Sphere
 
 from vizlight.geometry.contours import banding, refinement, spacing
 from vizlight.geometry.solids import triangle_mesh
+from vizlight.geometry.solids.primitives import Block, Frustum, Sphere
 
 
 def soup(seed, count=12):

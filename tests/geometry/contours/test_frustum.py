@@ -6,7 +6,8 @@ import banded
 import numpy as np
 import oracles
 import pytest
-from vizlight.geometry.isoluminance import truncus
+
+from vizlight.geometry.contours.isoluminance import truncus
 
 mp = oracles.mp
 EPS = np.finfo(float).eps

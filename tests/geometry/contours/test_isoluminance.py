@@ -8,11 +8,11 @@ import banded
 import numpy as np
 import oracles
 import pytest
-from vizlight.geometry.isoluminance import sphere, virtual_light
 
 from vizlight import Light, View
 from vizlight.geometry import isoluminance
 from vizlight.geometry.contours import spacing
+from vizlight.geometry.contours.isoluminance import sphere, virtual_light
 
 mp = oracles.mp
 EPS = np.finfo(float).eps

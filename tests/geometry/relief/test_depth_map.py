@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from vizlight.geometry.depth_map import depth_map
 
 from vizlight.geometry import depth_map as module
+from vizlight.geometry.relief.depth_map import depth_map
 
 
 def brute(x, y, points, triangles):

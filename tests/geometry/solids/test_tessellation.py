@@ -11,12 +11,11 @@ import pytest
 import solid_trees
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
-from vizlight.geometry.primitives import Block, Boolean, Frustum, Sphere
 
-import vizlight
 from vizlight.geometry import solids
 from vizlight.geometry.contours import refinement
 from vizlight.geometry.solids import repair
+from vizlight.geometry.solids.primitives import Block, Boolean, Frustum, Sphere
 
 PI = np.pi
 lambert = solid_trees.lambert
@@ -325,11 +324,6 @@ def test_any_turn_gives_the_same_solid(random):
         assert banded.is_closed(bands)
         volumes.append(banded.volume(bands))
     np.testing.assert_allclose(volumes, 1 - PI * 0.09, rtol=2e-3)
-
-
-def test_the_sources_word_names_the_same_class():
-    assert vizlight.Truncus is vizlight.Frustum is Frustum
-    assert vizlight.geometry.primitives.Truncus is Frustum
 
 
 def test_contains_is_the_combination(random):

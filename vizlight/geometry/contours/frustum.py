@@ -63,10 +63,11 @@ def truncus(
         Height, 0 or more. At height 0 the side is a flat ring, without area if the radii are
         equal.
     direction, position, ambient, diffuse, power, attenuation
-        Light and reflection, as for :func:`vizlight.geometry.isoluminance.sphere`.
+        Light and reflection, as for :func:`vizlight.geometry.contours.isoluminance.sphere`.
     levels : int, float or sequence of float, default: 16
-        Steps of luminance of the side, as for :func:`vizlight.geometry.isoluminance.sphere`. Under
-        a light at infinity each end has one exact value.
+        Steps of luminance of the side, as for
+        :func:`vizlight.geometry.contours.isoluminance.sphere`. Under a light
+        at infinity each end has one exact value.
     segments : int, optional
         Smallest number of points on the circle of an end, 3 or more. Default: 36.
     form : {"bands", "laminae"}

@@ -163,7 +163,7 @@ def parametric(
     an error of ``(h^2/3) |f'''|`` and four times the rounding. Where tangents are dependent, for
     example at the poles of spherical coordinates, the frame has rows of zero and only ambient light
     remains. A twisted direction (a Moebius band) keeps two points at each place of its seam;
-    :func:`vizlight.geometry.manifolds.klein_bottle` has no such seam.
+    :func:`vizlight.geometry.nspace.manifolds.klein_bottle` has no such seam.
 
     Examples
     --------

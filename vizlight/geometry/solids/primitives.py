@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from vizlight.geometry.solids.exact_surfaces import Surface
 
 
-__all__ = ["Block", "Boolean", "Frustum", "Primitive", "Solid", "Sphere", "Torus", "Truncus"]
+__all__ = ["Block", "Boolean", "Frustum", "Primitive", "Solid", "Sphere", "Torus"]
 
 
 class Sphere(Primitive):
@@ -71,7 +71,7 @@ class Sphere(Primitive):
 class Frustum(Primitive):
     """A conical frustum with both ends, or its limits: cone, cylinder, disc and rod.
 
-    The source calls this shape a truncus; ``Truncus`` is another name of this class.
+    The source calls this shape a truncus.
 
     Parameters
     ----------
@@ -148,10 +148,6 @@ class Frustum(Primitive):
     def box(self) -> tuple[Array, float]:
         """Return the centre and the radius of the smallest ball around it."""
         return self.center, math.hypot(self.height / 2, max(self.radii))
-
-
-#: The source's word for :class:`Frustum`.
-Truncus = Frustum
 
 
 class Block(Primitive):

@@ -1,1 +1,0 @@
-from vizlight.shading.engine import *

@@ -1,1 +1,0 @@
-from vizlight.pictures.movie import *

@@ -1,1 +1,0 @@
-from vizlight.plotting.paraview import *
