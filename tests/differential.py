@@ -1,15 +1,14 @@
-"""Random plans and inputs, directed at the hard cases, lit by compiled code and by NumPy.
+"""Random plans and inputs, directed at the hard cases, against the oracle of 50 digits.
 
-``python tests/differential.py [COUNT [START]]`` lights COUNT random plans (default 100,000) at 32
-points each, by kernels that numba compiles, and prints the largest difference in units of the bound
-for each kind of plan. A kernel serves all plans of its form; numbers, points and vectors are random
-for each plan. It takes half an hour of one core; START is the number of the form with which a run
-that was interrupted goes on. ``tests/shading/test_compiled.py`` runs a sample.
+``python tests/differential.py [FORMS [EACH [START]]]`` lights EACH random plans (default 5) of
+FORMS forms (default 400) at 32 points each, by NumPy and by compiled code, and prints the largest
+error in units of the stated bound for each kind of plan. A kernel serves all plans of its form;
+numbers, points and vectors are random for each plan. START is the number of the form with which a
+run that was interrupted goes on. ``tests/shading/test_compiled.py`` runs a sample.
 """
 
 from __future__ import annotations
 
-import dataclasses
 import math
 import sys
 from collections import defaultdict
@@ -17,8 +16,10 @@ from typing import NamedTuple
 
 import bounds
 import numpy as np
+import oracles
 
 from vizlight import DepthCue, Light, Material, Scene, View
+from vizlight.model import frames
 from vizlight.scene.light import NO_ATTENUATION
 from vizlight.shading import compiled
 from vizlight.shading.block import Output, shade_block
@@ -27,8 +28,6 @@ from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import ShadingOptions
 
 POINTS = 32
-#: Number of plans of each form.
-EACH = 500
 KINDS = ("surface", "line", "frame", "conditioned", "free", "based", "fur", "shadow", "cylinder")
 POWERS = (0, 0.3, 1, 2, 7.5, 20, 20, 31, 63, 64, 100.5, 1e4, 1e6)
 
@@ -58,6 +57,7 @@ class Frame(NamedTuple):
     whole: bool
     repeat: int
     two_sided: bool
+    dimmed: bool
     options: ShadingOptions
 
 
@@ -71,10 +71,13 @@ def frame(random) -> Frame:
     types = [np.float32, np.float32, np.float64]
     sided = kind == "surface" and random.random() < 0.3
     count = int(random.choice([1, 1, 1, 2, 3, 7]))
+    chosen = [types[random.integers(3)] for _ in range(4)]
+    if kind == "based":
+        chosen[3] = chosen[1]
     lights = [tuple(map(bool, random.random(3) < (0.6, 0.4, 0.3))) for _ in range(count)]
     return Frame(
         kind=kind, n=n, k=k, base=base,
-        types=tuple(types[random.integers(3)] for _ in range(4)),
+        types=tuple(chosen),
         lights=tuple(lights),
         near_eye=bool(random.random() < 0.6),
         cue=str(random.choice(["", "", "linear", "smooth"])),
@@ -83,6 +86,7 @@ def frame(random) -> Frame:
         whole=bool(random.random() < 0.5),
         repeat=int(random.choice([1, 1, 1, 4])),
         two_sided=sided,
+        dimmed=bool(random.random() < 0.15),
         options=ShadingOptions(
             model=model,
             compensate=bool(random.random() < 0.8),
@@ -170,6 +174,10 @@ def _inputs(form, scene, offset, size, random):
         shadow = random.random((count, len(scene.lights)))
         shadow[0] = 0
         given["shadow"] = shadow
+    if form.dimmed:
+        given["transmittance"] = random.random((count, len(scene.lights)))
+        given["occlusion"] = random.random(count)
+        given["transmittance"][2, 0] = given["occlusion"][3] = np.nan
     return ShadingInputs(points=points, repeat=form.repeat, two_sided=form.two_sided, **given)
 
 
@@ -198,45 +206,111 @@ def _vectors(random, shape, kind, scene):
     return v.astype(kind)
 
 
-def compare(made: Case, *, interpreted: bool) -> tuple[float, int]:
-    """Return the largest difference from NumPy in units of the bound, and the points that count.
+class Truth(NamedTuple):
+    """The light of the points of a case in 50 digits, rounded to float64; NaN without any."""
 
-    Validity and the light of points without any must be the same. float32 is held against NumPy in
-    float64 by the bound, float64 against NumPy in float64 by twice the bound.
+    luminance: np.ndarray
+    diffuse: np.ndarray
+    specular: np.ndarray
+    rgb: np.ndarray
+
+    @property
+    def valid(self):
+        """Where there is light."""
+        return np.isfinite(self.luminance)
+
+
+def truth(made: Case) -> Truth:
+    """Return the light of a case by the oracle, which shares nothing with the engine."""
+    inputs, options = made.inputs, made.options
+    n, count, repeat = inputs.points.shape[1], inputs.count, inputs.repeat
+    # Tangents and base tangents have one type; they are worked on in the wider one of it and of the
+    # precision.
+    wide = np.float64 if inputs.tangents is None else inputs.tangents.dtype
+    apart = frames.default_rtol(n, np.promote_types(wide, options.precision))
+
+    def vectors(rows, i):
+        if rows is None:
+            return None
+        row = i if rows.shape[0] == count else i // repeat
+        return np.asarray(rows[row], float).reshape(-1, n).tolist()
+
+    def number(rows, i):
+        return None if rows is None else np.asarray(rows[i], float).tolist()
+
+    lit = []
+    for i in range(count):
+        normal = vectors(inputs.normals, i)
+        share = number(inputs.transmittance, i)
+        open_ = 1.0 if inputs.occlusion is None else inputs.occlusion[i]
+        found = oracles.digits.light(
+            vectors(inputs.points, i)[0], vectors(inputs.tangents, i),
+            None if normal is None else normal[0], made.scene,
+            base_tangents=vectors(inputs.base_tangents, i), fur=inputs.fur,
+            fur_height=number(inputs.fur_height, i) or 0.0, shadow=number(inputs.shadow, i),
+            transmittance=share, occlusion=open_, model=options.model,
+            compensate=options.compensate, conditioned=bool(options.conditioned),
+            two_sided=inputs.two_sided, apart=apart,
+        )  # fmt: skip
+        known = np.isfinite(open_) and (share is None or np.isfinite(share).all())
+        values = [found.luminance, found.diffuse, found.specular, *found.rgb]
+        lit.append([float(x) if known else math.nan for x in values])
+    table = np.array(lit)
+    return Truth(*table[:, :3].T, table[:, 3:])
+
+
+def by_numpy(plan, inputs, output):
+    """Light points by NumPy."""
+    shade_block(plan, slice(0, inputs.rows), inputs, output)
+
+
+def by_text(plan, inputs, output):
+    """Light points by the text of a kernel, run as Python."""
+    code = compiled.given(plan, inputs, interpreted=True)
+    code.shade_block(plan, slice(0, inputs.rows), inputs, output)
+
+
+def by_kernel(plan, inputs, output):
+    """Light points by a compiled kernel."""
+    compiled.given(plan, inputs).shade_block(plan, slice(0, inputs.rows), inputs, output)
+
+
+def compare(made: Case, true: Truth, light) -> tuple[float, int]:
+    """Return the largest error in units of the stated bound, and the points that count.
+
+    Parameters
+    ----------
+    made : Case
+    true : Truth
+        Its light by the oracle.
+    light : callable
+        Function of a plan, inputs and an output that lights the points.
+
+    Validity must be that of the oracle; points without light have the ambient light.
     """
-    plan = decide(made.scene, made.inputs.layout, made.options, made.options.precision)
-    count, narrow = made.inputs.count, plan.dtype == np.float32
-    whole, rows = slice(0, made.inputs.rows), slice(0, made.inputs.rows)
-    mine, numpys, truth = Output(plan, count), Output(plan, count), None
+    scene, inputs = made.scene, made.inputs
+    plan = decide(scene, inputs.layout, made.options, made.options.precision)
+    output = Output(plan, inputs.count)
     with np.errstate(all="ignore"):
-        code = compiled.given(plan, made.inputs, interpreted=interpreted)
-        code.shade_block(plan, rows, made.inputs, mine)
-        shade_block(plan, rows, made.inputs, numpys)
-        truth = numpys
-        if narrow:
-            wide = dataclasses.replace(made.options, precision="float64")
-            exact = decide(made.scene, made.inputs.layout, wide, "float64")
-            truth = Output(exact, count)
-            shade_block(exact, whole, made.inputs, truth)
-        bound = _bound(plan, made.inputs)
-    np.testing.assert_array_equal(mine.valid, numpys.valid)
-    for name in ("luminance", "diffuse", "specular", "rgb"):
-        a, b = getattr(mine, name), getattr(numpys, name)
-        assert (a is None) == (b is None)
-        if a is not None:
-            assert np.isfinite(a).all()
-            np.testing.assert_array_equal(a[~mine.valid], b[~mine.valid])
-    same = mine.valid & truth.valid
-    if not same.any():
-        return 0.0, 0
-    worst = 0.0
-    for name in ("luminance", "diffuse", "specular", "rgb"):
-        a, b = getattr(mine, name), getattr(truth, name)
-        if a is not None and b is not None:
-            off = np.abs(a[same].astype(float) - b[same])
-            limit = bound[same] if off.ndim == 1 else bound[same, np.newaxis]
-            worst = max(worst, float((off / limit).max()))
-    return worst / (1 if narrow else 2), int(same.sum())
+        light(plan, inputs, output)
+        bound = _bound(plan, inputs)
+    np.testing.assert_array_equal(output.valid, true.valid)
+    worst, good = 0.0, true.valid
+    share = np.ones(inputs.count) if inputs.occlusion is None else inputs.occlusion
+    dark = plan.ambient * np.where(np.isnan(share), 1, share)
+    unlit = {"luminance": dark, "diffuse": 0 * dark, "specular": 0 * dark}
+    color = np.multiply(scene.material.color or (1, 1, 1), scene.ambient_color or (1, 1, 1))
+    unlit["rgb"] = dark[:, np.newaxis] * color
+    for name, ambient in unlit.items():
+        found = getattr(output, name)
+        if found is None:
+            continue
+        assert np.isfinite(found).all()
+        np.testing.assert_allclose(found[~good], ambient[~good], rtol=4 * np.finfo(plan.dtype).eps)
+        off = np.abs(found[good].astype(float) - getattr(true, name)[good])
+        limit = bound[good] if off.ndim == 1 else bound[good, np.newaxis]
+        worst = max(worst, float((off / limit).max(initial=0.0)))
+    return worst, int(good.sum())
 
 
 def _unit(v):
@@ -321,22 +395,27 @@ def _way(position, direction, points, *, far):
     return _unit(np.asarray(position, float) - points)
 
 
-def main(count: int, start: int = 0) -> None:
+def main(forms: int = 400, each: int = 5, start: int = 0) -> None:
     """Run all from the form of a number, print the worst of each kind."""
     worst, cases, points = defaultdict(float), defaultdict(int), 0
-    for number in range(start, count // EACH):
+    for number in range(start, forms):
         form = frame(np.random.default_rng(1000 + number))
         random = np.random.default_rng((14, number))
-        for _ in range(EACH):
-            ratio, lit = compare(case(form, random), interpreted=False)
-            worst[form.kind] = max(worst[form.kind], ratio)
-            cases[form.kind] += 1
-            points += lit
-        print(number, form.kind, f"{worst[form.kind]:.3f}", flush=True)  # noqa: T201
-    for kind in cases:
-        print(f"{kind:<12}{cases[kind]:>8} plans, worst {worst[kind]:.3f} of the bound")  # noqa: T201
+        for _ in range(each):
+            made = case(form, random)
+            true = truth(made)
+            plan = decide(made.scene, made.inputs.layout, made.options, made.options.precision)
+            for light in (by_numpy,) if compiled.why_not(plan) else (by_numpy, by_kernel):
+                ratio, lit = compare(made, true, light)
+                name = f"{form.kind}, {light.__name__}"
+                worst[name] = max(worst[name], ratio)
+                cases[name] += 1
+                points += lit
+        print(number, form.kind, f"{worst[form.kind + ', by_numpy']:.3f}", flush=True)  # noqa: T201
+    for kind in sorted(cases):
+        print(f"{kind:<24}{cases[kind]:>8} plans, worst {worst[kind]:.3f} of the bound")  # noqa: T201
     print(f"{sum(cases.values())} plans, {points} points")  # noqa: T201
 
 
 if __name__ == "__main__":
-    main(*map(int, sys.argv[1:3] or ["100000"]))
+    main(*map(int, sys.argv[1:4]))

@@ -221,7 +221,7 @@ def _kernel(form: Form) -> _compiled.Kernel[..., None]:
         )
     light: Callable[..., None] = scope["light"]  # type: ignore[assignment]
     light.__globals__.update(scope)
-    return _compiled.Kernel(light, rounding=_compiled.ROUNDING)
+    return _compiled.Kernel(light, rounding=_compiled.ROUNDING, apart=True)
 
 
 def _functions(form: Form, sqrt: Callable[[float], float]) -> dict[str, object]:

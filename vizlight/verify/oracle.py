@@ -437,7 +437,7 @@ def _placed(point: Vector, scene: Scene) -> bool:
     """Return whether a point is finite, or no direction depends on it."""
     ends = (*scene.lights, scene.view)
     near = any(end is not None and end.position is not None for end in ends)
-    return not near or all(map(math.isfinite, point))
+    return not (near or scene.depth_cue) or all(map(math.isfinite, point))
 
 
 def _dot(u: Vector, v: Vector) -> float:
