@@ -52,7 +52,7 @@ for compensated in (False, True):
             distance=np.hypot(R1, R2),
             scene=Scene(lights=Light(direction=toward), material=MATTE),
             light="after" if n == 3 else "before",
-            compensate=compensated,
+            exponent="compensated" if compensated else 1,
         )
         light = mesh["luminance"]
         size = sizes(mesh.points if n == 3 else SHAPES[k].points, SHAPES[k].cells)

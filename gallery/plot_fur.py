@@ -46,7 +46,7 @@ plotter = render.make_plotter(
 plotter.show()
 
 # %%
-# All panels use the plain cosine law of the paper (``compensate=False``), and 0.9 of the
+# All panels use the plain cosine law of the paper (``exponent=1``), and 0.9 of the
 # luminance: in A the fibres that face the light would be brighter than white. Fur of density 0.02
 # per unit of the torus would hardly be visible at a length of 0.3, so lengths are counted in
 # hundredths here.
@@ -59,7 +59,7 @@ scene = Scene(
     material=Material(ambient=0.1, diffuse=0.9, specular=0.1),
 )
 hair = {"fibres": 401_408, "length": 0.3, "segments": 6, "toward": (0, 0, -1), "bend": 0.8}
-hair |= {"compensate": False, "density": 1 - (1 - 0.02) ** 100}
+hair |= {"exponent": 1, "density": 1 - (1 - 0.02) ** 100}
 coats = {
     "A: fibres alone": vizlight.fur(torus, scene, conditioned=False, attenuated=False, **hair),
     "B: and the normals": vizlight.fur(torus, scene, attenuated=False, **hair),

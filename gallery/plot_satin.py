@@ -8,7 +8,7 @@ four panels of illustration 2 of Banks, *Illumination in Diverse Codimensions*.
 A: integral curves, each lit as a line. B: the sphere, lit by its normals. C: the sphere lit by the
 field alone, including the side that the light cannot reach. D: the sphere lit by the field and
 conditioned by its normals; its dark side is as dark as that of B. All panels use the plain cosine
-law of the paper (``compensate=False``). In A a dark sphere hides the threads on the far side.
+law of the paper (``exponent=1``). In A a dark sphere hides the threads on the far side.
 """
 
 # sphinx_gallery_thumbnail_number = 1
@@ -33,7 +33,7 @@ scene = Scene(
 # Threads that start at even steps around the equator keep even steps on every circle of latitude.
 turn = np.linspace(0, 2 * np.pi, 120, endpoint=False)
 equator = 0.5 * np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1)
-panels = vizlight.satin(ball, scene, tangents="satin", seeds=equator, compensate=False)
+panels = vizlight.satin(ball, scene, tangents="satin", seeds=equator, exponent=1)
 dark = pv.Sphere(radius=0.497, theta_resolution=120, phi_resolution=120)
 dark["rgb"] = np.full((dark.n_points, 3), 0.02)
 panels["curves"] = pv.MultiBlock([panels["curves"], dark])

@@ -89,7 +89,7 @@ def frame(random) -> Frame:
         dimmed=bool(random.random() < 0.15),
         options=ShadingOptions(
             model=model,
-            compensate=bool(random.random() < 0.8),
+            exponent="compensated" if random.random() < 0.8 else float(random.choice([1, 2])),
             conditioned=kind != "free",
             components=bool(random.random() < 0.3),
             precision=str(random.choice(["float32", "float64"])),

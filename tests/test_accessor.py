@@ -41,15 +41,27 @@ def test_warnings_point_at_the_caller():
 
 
 @pytest.mark.parametrize(
-    "name", ["fur", "illuminate", "isoluminance", "refine", "satin", "streamlines"]
+    ("name", "options"),
+    [
+        ("fur", {"density": 0.02, "fibres": 5}),
+        ("illuminate", {}),
+        ("isoluminance", {"levels": 3}),
+        ("refine", {"max_points": 1000}),
+        ("satin", {"tangents": "V", "seeds": 2}),
+        ("streamlines", {"vectors": "V", "seeds": 2}),
+    ],
 )
-def test_without_a_scene_it_is_said_how_to_make_one(name):
-    """A highlight needs an eye, so only what draws a picture has a default."""
+def test_without_a_scene_there_is_the_default_one(name, options):
     mesh = pv.Sphere()
-    remedy = r"scene: expected a vizlight\.Scene, got None; pass Scene\(view=.*mesh\.vizlight\.plot"
-    for call in (getattr(mesh.vizlight, name), lambda: getattr(vizlight, name)(mesh, scene=None)):
-        with pytest.raises(TypeError, match=remedy):
-            call()
+    mesh["V"] = np.cross(mesh.points, (0, 0, 1.0)) + 1e-3
+    found = getattr(mesh.vizlight, name)(**options)
+    expected = getattr(vizlight, name)(mesh, Scene(), **options)
+    for one, other in zip(*map(blocks_of, (found, expected)), strict=True):
+        np.testing.assert_array_equal(one.active_scalars, other.active_scalars)
+
+
+def blocks_of(mesh):
+    return list(mesh.recursive_iterator()) if isinstance(mesh, pv.MultiBlock) else [mesh]
 
 
 def test_accessor_on_blocks():

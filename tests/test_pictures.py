@@ -177,7 +177,7 @@ def fur():
         material=Material(ambient=0.05, diffuse=1.0, specular=0.6),
     )
     # Few fibres, and black behind: the base of each is seen, where the fur takes most.
-    coat = vizlight.fur(mesh, scene, density=0.7, fibres=8_000, length=0.3, compensate=False)
+    coat = vizlight.fur(mesh, scene, density=0.7, fibres=8_000, length=0.3, exponent=1)
     return plot(coat, camera, background="black", line_width=0.45)
 
 

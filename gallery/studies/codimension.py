@@ -83,7 +83,7 @@ def panels(resolution: int = 192) -> list[Panel]:
                 distance=DISTANCE,
                 scene=Scene(lights=light, material=MATTE),
                 light="after" if n == 3 else "before",
-                compensate=compensated,
+                exponent="compensated" if compensated else 1,
             )
             assert isinstance(mesh, pv.PolyData)
             places = np.asarray(mesh.points) if n == 3 else shapes[k].points
@@ -176,7 +176,7 @@ def verdict(rows: Sequence[Row]) -> str:
     near, far = (
         [float(row.more["contrast (std / mean)"]) for row in of] for of in (compensated, plain)
     )
-    keep = "keep compensate=True" if after < before else "use compensate=False"
+    keep = "keep exponent='compensated'" if after < before else "use exponent=1"
     equal = "equalises" if np.ptp(near) < np.ptp(far) else "does not equalise"
     return (
         f"{keep} if manifolds of several codimensions share a picture: means differ from 1/2 by at "

@@ -277,5 +277,5 @@ def test_live_light_takes_the_shares_or_says_why_not():
     np.testing.assert_allclose(again.luminance, lit["luminance"], atol=1e-6)
     assert "bundle" in fragments.unfit(sources[0].inputs, sources[0].options, lit)
     head = SCENE.replace(lights=[vizlight.Light.headlight()])
-    with pytest.raises(ValueError, match="bundle: expected no headlight"):
+    with pytest.raises(ValueError, match="bundle: expected lights that stay"):
         relight.from_options(mesh, head, LightOptions(bundle=QUICK))

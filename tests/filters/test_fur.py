@@ -330,8 +330,8 @@ def test_the_users_own_array_is_not_replaced():
     mesh["luminance"] = np.arange(mesh.n_points)
     with pytest.raises(ValueError, match="name: expected one under which the mesh has no array"):
         fur(mesh, SCENE, density=0.02, fibres=10)
-    with pytest.raises(TypeError, match=r"scene: expected a vizlight\.Scene, got None"):
-        fur(torus(), None, density=0.02)
+    with pytest.raises(TypeError, match=r"scene: expected a vizlight\.Scene or None, got 3"):
+        fur(torus(), 3, density=0.02)
 
 
 def test_no_fibres():
@@ -391,9 +391,16 @@ def test_bad_surfaces_and_scenes():
     ragged = [[1.0, 2], [3]]
     with pytest.raises(TypeError, match="length: expected numbers in rows of equal length"):
         fur(torus(), SCENE, density=0.02, length=ragged)
-    scene = Scene(lights=Light(direction=(0, 0, 1)), material=Material(specular=0))
-    with pytest.raises(ValueError, match="view: expected a View, which the fur needs"):
-        fur(torus(), scene, density=0.02, fibres=10)
+
+
+def test_fur_without_a_scene_is_seen_from_infinity():
+    seen = Scene(
+        lights=Light(direction=(1, 1, 1)), view=View(direction=(1, 1, 1)),
+        material=Material(specular=0),
+    )  # fmt: skip
+    one, other = (fur(torus(), scene, density=0.2, fibres=50) for scene in (None, seen))
+    for part in ("fibres", "skin"):
+        np.testing.assert_array_equal(one[part]["luminance"], other[part]["luminance"])
 
 
 def test_surfaces_of_whole_numbers_have_fibres_between():

@@ -125,7 +125,7 @@ def test_a_line_gets_a_surface_contrast_unless_told_otherwise():
     np.testing.assert_allclose(
         illuminate(line, scene, tangents="T")["luminance"], 0.5 ** (4.7635 / 2), rtol=1e-4
     )
-    plain = illuminate(line, scene, tangents="T", compensate=False)
+    plain = illuminate(line, scene, tangents="T", exponent=1)
     np.testing.assert_allclose(plain["luminance"], 0.5**0.5, rtol=1e-12)
 
 
@@ -385,14 +385,22 @@ def test_bad_meshes_and_scenes():
         TypeError, match="mesh: expected a PyVista mesh, got ndarray; read files by"
     ):
         illuminate(np.ones((3, 3)), SCENE)
-    with pytest.raises(TypeError, match=r"scene: expected a vizlight\.Scene, got"):
+    with pytest.raises(TypeError, match=r"scene: expected a vizlight\.Scene or None, got"):
         illuminate(pv.Sphere(), Light(direction=(0, 0, 1)))
     with pytest.raises(
         ValueError, match=r"mesh: expected a surface.*name its tangent vectors by tangents="
     ):
         illuminate(pv.PolyData(np.eye(3)), SCENE)
-    with pytest.raises(ValueError, match="view: expected a View, which the specular term needs"):
-        illuminate(pv.Sphere(), Scene(lights=Light(direction=(0, 0, 1))))
+    with pytest.raises(ValueError, match="view: expected a View, which the depth cue needs"):
+        illuminate(pv.Sphere(), Scene(depth_cue=DepthCue()))
+
+
+def test_no_scene_is_a_headlight_from_the_isometric_view_without_highlight():
+    ball = pv.Sphere()
+    normals = np.asarray(ball.point_data.active_normals, float)
+    expected = 0.1 + 0.5 * np.maximum(normals @ (3**-0.5 * np.ones(3)), 0)
+    for lit in (illuminate(ball), illuminate(ball, Scene()), ball.vizlight.illuminate()):
+        np.testing.assert_allclose(lit["luminance"], expected, atol=1e-6)
 
 
 def test_integer_normals_are_turned_over_as_numbers():

@@ -96,7 +96,7 @@ def test_positional_light_and_eye_in_four_space(torus):
         view=View(position=(5, 0, 0, 2)),
         material=Material(ambient=0, diffuse=1, specular=0),
     )
-    lit = project(torus, scene=scene, compensate=False)
+    lit = project(torus, scene=scene, exponent=1)
     x, frame = np.asarray(torus["position"]), frames(torus, "frame", 4)
     away = np.array([0, 0, 0, 1.5]) - x
     d = np.linalg.norm(away, axis=1)
@@ -127,8 +127,8 @@ def test_near_a_silhouette_light_is_defined_and_continuous_along_the_frame():
         mesh = pv.PolyData(np.zeros((1, 3)))
         mesh["position"] = np.zeros((1, 4))
         mesh["frame"] = [[1.0, 0, 0, 0, 0, np.sin(tilt), 0, np.cos(tilt)]]
-        out = project(mesh, scene=SCENE3, light="after", compensate=False)
-        flat = illuminate(out, SCENE3, tangents=np.array([[1.0, 0, 0, 0, 1, 0]]), compensate=False)
+        out = project(mesh, scene=SCENE3, light="after", exponent=1)
+        flat = illuminate(out, SCENE3, tangents=np.array([[1.0, 0, 0, 0, 1, 0]]), exponent=1)
         np.testing.assert_allclose(out["luminance"], flat["luminance"], atol=1e-9)
 
 
@@ -422,7 +422,7 @@ def test_provenance(torus):
 @pytest.mark.parametrize(("light", "scene"), [("before", SCENE4), ("after", SCENE3)])
 def test_light_is_made_again_from_what_is_told(torus, light, scene):
     turns = [("xw", 0.3), ((1, 2), 1.1)]
-    options = {"rotation": turns, "distance": 4.0, "light": light, "compensate": False}
+    options = {"rotation": turns, "distance": 4.0, "light": light, "exponent": 1}
     lit = project(torus, scene=scene, name="glow", **options)
     told = vizlight.provenance(lit, "glow")
     assert told["filter"] == "project"
@@ -543,7 +543,7 @@ def test_a_mesh_without_places_is_told_where_they_come_from():
         ({"vectors": 3}, TypeError, "vectors: expected the name of a point array, or a list"),
         ({"scene": SCENE4, "rotate": 1}, TypeError, "rotate: expected an option of project"),
         ({"rotate": 1}, TypeError, "rotate: .* did you mean rotation="),
-        ({"compensate": False}, TypeError, "compensate: expected an option of project, or"),
+        ({"exponent": 1}, TypeError, "exponent: expected an option of project, or"),
         ({"scene": SCENE3}, ValueError, "scene: expected vectors of 4 components"),
         ({"scene": SCENE4, "light": "after"}, ValueError, "scene: expected vectors of 3"),
         ({"scene": SCENE4, "frame": None}, ValueError, "frame: expected tangents to light by"),

@@ -295,7 +295,7 @@ def test_carotid_artery():
 
 def test_provenance_makes_the_lines_again():
     sphere = ball()
-    lines = streamlines(sphere, SCENE, vectors="V", seeds=6, compensate=False)
+    lines = streamlines(sphere, SCENE, vectors="V", seeds=6, exponent=1)
     told = vizlight.provenance(lines)
     assert told["filter"] == "streamlines"
     again = streamlines(sphere, Scene.from_dict(told["scene"]), **told["options"])

@@ -97,7 +97,7 @@ def test_lines_as_thin_cylinders():
     assert vizlight.provenance(lines)["options"]["model"] == "cylinder"
     again = vizlight.illuminate(lines, scene, tangents="Tangents", model="cylinder", name="again")
     np.testing.assert_array_equal(again["again"], lines["luminance"])
-    cheap = vizlight.illuminate(lines, scene, tangents="Tangents", compensate=False, name="cheap")[
+    cheap = vizlight.illuminate(lines, scene, tangents="Tangents", exponent=1, name="cheap")[
         "cheap"
     ]
     assert np.corrcoef(cheap, lines["luminance"])[0, 1] > 0.5

@@ -32,6 +32,16 @@ def test_repr_tells_what_is_not_the_default():
     [
         ({}, ValueError, "Light: expected either direction=.* or position=, got neither"),
         ({"direction": (1, 0, 0), "position": (1, 0, 0)}, ValueError, "got both"),
+        (
+            {"position": (1, 0, 0), "follows_view": True},
+            ValueError,
+            "position: expected no position with follows_view=True",
+        ),
+        (
+            {"direction": (1, 0, 0, 0), "follows_view": True},
+            ValueError,
+            "direction: expected 3 components with follows_view=True",
+        ),
         ({"direction": (0, 0, 0)}, ValueError, "direction: expected a direction of non-zero"),
         ({"position": (np.inf, 0, 0)}, ValueError, "position: .*direction="),
         ({"direction": (1, 0, 0), "intensity": -1}, ValueError, "intensity: expected"),
@@ -55,8 +65,8 @@ def test_headlight_follows_the_view():
     assert (far.position, far.direction) == (None, (0.0, 0.0, 1.0))
     along = headlight.seen_from(View(position=(1, 2, 3), direction=(0, 1, 0)))
     assert (along.position, along.direction) == (None, (0.0, 1.0, 0.0))
-    with pytest.raises(ValueError, match="view: expected a View, which the headlight follows"):
-        headlight.seen_from(None)
+    unseen = headlight.seen_from(None, n=4)
+    assert (unseen.position, unseen.direction) == (None, (1.0, 1.0, 1.0, 1.0))
     fixed = Light(direction=(1, 0, 0))
     assert fixed.seen_from(None) is fixed
 
@@ -77,11 +87,51 @@ def test_camera_lights_stand_where_vtk_has_them():
     renderer.UpdateLightsGeometryToFollowCamera()
     toward = np.subtract(light.GetTransformedPosition(), light.GetTransformedFocalPoint())
     (read,) = lights_of([light], seen)
+    assert read == Light(direction=(0.3, 0.4, 1.0), follows_view=True)
+    placed = read.seen_from(View.from_camera(seen))
     np.testing.assert_allclose(
-        np.array(read.direction) / np.linalg.norm(read.direction),
+        np.array(placed.direction) / np.linalg.norm(placed.direction),
         toward / np.linalg.norm(toward),
         atol=1e-12,
     )
+
+
+def test_a_light_beside_the_eye_is_in_its_frame(random):
+    """Right, up and toward the eye by another form: dot products with the placed direction."""
+    for view, up in (
+        (View(direction=(3.0, -2, 1)), (0, 0, 1)),
+        (View(direction=(0.1, 0.2, -5)), (0, 1, 0)),
+        (View(position=(1, 2, 3), direction=(1e-150, 2e-150, 0), up=(1, 1, 1e3)), (1, 1, 1e3)),
+    ):
+        e = np.array(view.direction) / np.abs(view.direction).max()
+        e = e / np.hypot.reduce(e)
+        for xyz in random.standard_normal((5, 3)):
+            light = Light(direction=1e100 * xyz, follows_view=True, intensity=0.3, color="red")
+            placed = light.seen_from(view)
+            assert (placed.follows_view, placed.intensity) == (False, 0.3)
+            assert placed.color == light.color
+            d = np.array(placed.direction)
+            d *= np.linalg.norm(xyz) / np.linalg.norm(d)
+            assert d @ e == pytest.approx(xyz[2], abs=1e-13)
+            # The screen's up is what is left of up across the eye.
+            screen = np.array(up) - (np.array(up) @ e) * e
+            assert d @ screen / np.linalg.norm(screen) == pytest.approx(xyz[1], abs=1e-12)
+            right = np.cross(up, e)
+            assert d @ right / np.linalg.norm(right) == pytest.approx(xyz[0], abs=1e-12)
+
+
+def test_a_light_toward_the_eye_is_a_headlight():
+    assert Light(direction=(0, 0, 7), follows_view=True) == Light.headlight()
+    behind = Light(direction=(0, 0, -7), follows_view=True)
+    assert not behind.is_headlight
+    assert behind.seen_from(View(direction=(1, 0, 0))).direction == (-1.0, 0.0, 0.0)
+    shoulder = Light(direction=(-1, 1, 1), follows_view=True)
+    assert eval(repr(shoulder), {"Light": Light}) == shoulder
+    assert shoulder.seen_from(None) == shoulder.seen_from(View(direction=(1, 1, 1)))
+    with pytest.raises(ValueError, match="view: expected a view in 3-space with a direction"):
+        shoulder.seen_from(View(position=(1, 2, 3)))
+    with pytest.raises(ValueError, match="view: expected a view in 3-space with a direction"):
+        shoulder.seen_from(View.isometric(4))
 
 
 def test_scene_lights_keep_position_attenuation_colour_and_transform():

@@ -99,7 +99,7 @@ def test_keywords_are_checked_by_name():
         toy(1, modle="blinn")
     with pytest.raises(TypeError, match="precision: expected an option of toy"):
         toy(1, precision="float32")
-    with pytest.raises(TypeError, match=r"zzz: .* it has size, compensate, model"):
+    with pytest.raises(TypeError, match=r"zzz: .* it has size, exponent, model"):
         toy(1, zzz=0)
     assert "precision" not in inspect.signature(toy).parameters
     assert "Reflection model" in toy.__doc__

@@ -48,7 +48,7 @@ def test_compensation_leaves_surfaces_as_they_are():
     scene = Scene(lights=SUN, view=FAR)
     assert plan(scene, normals=True).exponent == 1.0
     assert plan(scene, k=2).exponent == 1.0
-    assert plan(scene, k=1, compensate=False).exponent == 1.0
+    assert plan(scene, k=1, exponent=1).exponent == 1.0
 
 
 def test_words_for_lights_and_views():
@@ -92,8 +92,20 @@ def test_fur_needs_normals_an_eye_and_a_density():
         plan(scene, k=1, fur=0.3)
     with pytest.raises(ValueError, match="fur: expected a number from 0 to 1"):
         plan(scene, normals=True, fur=2)
-    with pytest.raises(ValueError, match="view: expected a View, which the fur needs"):
-        plan(Scene(lights=SUN, material=Material(specular=0)), normals=True, fur=0.3)
+
+
+def test_a_scene_without_a_view_has_no_highlight_and_an_eye_at_infinity():
+    made = plan(Scene(), normals=True)
+    assert made.unseen
+    assert not made.specular
+    assert made.scene.lights == (Light(direction=(1, 1, 1)),)
+    skipped = words(made, "skip")
+    assert "specular: the scene has no view; pass view= to the Scene" in skipped
+    assert "eye: no term of the light depends on the view" in skipped
+    isometric = "eye: the scene has no view, so it is toward (1, ..., 1), at infinity"
+    assert isometric in words(plan(Scene(lights=SUN), normals=True, fur=0.3), "compute")
+    assert plan(Scene(), k=2, n=5).scene.lights == (Light(direction=(1,) * 5),)
+    assert not plan(Scene(view=FAR), normals=True).unseen
 
 
 def test_block_shrinks_with_the_space():
@@ -108,12 +120,6 @@ def test_block_shrinks_with_the_space():
     ("call", "error", "message"),
     [
         (lambda: plan("scene", k=1), TypeError, "scene: expected a vizlight.Scene"),
-        (
-            lambda: plan(Scene(lights=SUN), k=1),
-            ValueError,
-            r"view: .*specular term.*or Material\(specular=0\)",
-        ),
-        (lambda: plan(Scene(), k=1), ValueError, "view: expected a View"),
         (
             lambda: plan(Scene(lights=[], depth_cue=DepthCue(front=0, back=1)), k=1),
             ValueError,

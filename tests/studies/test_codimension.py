@@ -117,7 +117,7 @@ def test_rows_of_the_study():
     rows = codimension.rows_of_panels(24) + codimension.rows_of_directions(1, 4, 2000)
     assert len(rows) == 9
     assert rows[0].parameter == 2
-    assert codimension.verdict(rows).startswith("keep compensate=True if")
+    assert codimension.verdict(rows).startswith("keep exponent='compensated' if")
     assert "compensation equalises contrast" in codimension.verdict(rows)
 
 
@@ -132,7 +132,7 @@ def test_the_verdict_follows_from_the_rows():
         return row._replace(error=row.error + 0.5, more=more)
 
     said = codimension.verdict([worse(row) for row in codimension.rows_of_panels(24)])
-    assert said.startswith("use compensate=False if")
+    assert said.startswith("use exponent=1 if")
     assert "does not equalise contrast" in said
 
 

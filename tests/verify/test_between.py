@@ -243,7 +243,7 @@ def test_the_peak_of_a_highlight_is_found(lines, near, random):
     eye = {"position": 9 * unit(EYE)} if near else {"direction": EYE}
     scene = Scene(lights=Light(**ends), view=View(**eye), material=material)
     given = {"tangents": rows} if lines else {"normals": rows}
-    field = Between(ShadingInputs(points=points, **given), scene, ShadingOptions(compensate=False))
+    field = Between(ShadingInputs(points=points, **given), scene, ShadingOptions(exponent=1))
     cells = np.arange(300).reshape(-1, 2 if lines else 3)
     (peak,) = field.peaks(cells)
     best = field.light(Places(cells, peak))[:, 0]

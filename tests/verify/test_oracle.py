@@ -27,7 +27,7 @@ OPTIONS = {
     "line": {},
     "blinn": {"model": "blinn"},
     "cylinder": {"model": "cylinder"},
-    "plain": {"compensate": False},
+    "plain": {"exponent": 1},
     "surface": {},
     "surface, blinn": {"model": "blinn", "two_sided": True},
     "surface, two-sided": {"two_sided": True},

@@ -62,7 +62,7 @@ FILTERS = {
     "surface": lambda s: illuminate(s, SCENE),
     "facing the eye": lambda s: illuminate(s, SCENE, facing="eye", model="blinn"),
     "conditioned": lambda s: illuminate(s, SCENE, tangents="V", conditioned=True, components=True),
-    "uncompensated": lambda s: illuminate(s, SCENE, tangents="V", compensate=False),
+    "uncompensated": lambda s: illuminate(s, SCENE, tangents="V", exponent=1),
     "cylinder": lambda s: illuminate(s, SCENE, tangents="V", model="cylinder"),
     "streamlines": lambda _: streamlines(vizlight.load_example(), SCENE, vectors="V", seeds=9),
     "satin": lambda s: satin(s, SCENE, tangents="V", seeds=5),

@@ -131,12 +131,11 @@ def told(lit, event, **pieces):
 @pytest.mark.parametrize(
     ("scene", "options", "of", "words"),
     [
-        (None, {}, 1, "scene: expected a vizlight.Scene, got None"),
         (SCENE, {"tangents": "V"}, 1, "tangents: .*point array .'Normals'.*'V'"),
         (SCENE, {"conditioned": True}, 1, "conditioned: expected tangents"),
         (SCENE, {"name": "Normals"}, 1, "name: .*no array of"),
         (SCENE, {"facing": "outward"}, 2, "facing: expected 'eye' or 'as given'"),
-        (Scene(lights=SCENE.lights), {}, 1, "view: expected a View"),
+        (Scene(lights=[], depth_cue=DepthCue(front=0, back=1)), {}, 1, "view: expected a View"),
     ],
 )
 def test_what_does_not_fit_the_data_is_an_error_of_vtk(scene, options, of, words, caplog):

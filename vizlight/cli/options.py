@@ -88,6 +88,10 @@ def _hyperplane(name: str, text: str) -> object:
     return values, distance[0]
 
 
+def _exponent(name: str, text: str) -> object:
+    return text if text == "compensated" else fraction(name, text, "compensated, or a number")
+
+
 #: Options whose text is read in a way of its own, and its description.
 READ: Mapping[str, tuple[Callable[[str, str], object], str]] = {
     "refine": (fraction, "Largest error between points; cells are split where it is more: 1/255."),
@@ -96,6 +100,7 @@ READ: Mapping[str, tuple[Callable[[str, str], object], str]] = {
         _angle,
         "Angle in degrees above which edges are sharp, auto for creases.",
     ),
+    "exponent": (_exponent, "Exponent of the diffuse term: compensated, or a number: 1, 2."),
     "facing": (_facing, "Side that is lit: auto, eye, outward or as-given."),
     "toward": (_name_or_vector, "Direction x,y,z to which fibres bend, or name of an array."),
     "hyperplane": (_hyperplane, "Hyperplane NORMAL:OFFSET that cuts the mesh: 0,0,0,1:0.2."),

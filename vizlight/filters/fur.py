@@ -18,7 +18,7 @@ from vizlight.mesh.normals import onlooker, split_where_computed
 from vizlight.mesh.strands import Grown, Room, Strands
 from vizlight.model import kernels
 from vizlight.reading.arrays import unit_rows, vectors_of
-from vizlight.scene import Scene
+from vizlight.scene.scene import as_scene
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import Bundle, ShadingOptions, accepts, check_sides, checked_bundle
 
@@ -28,7 +28,8 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from vizlight._types import Array, Bools, Indices, VectorLike
-    from vizlight.shading.options import FeatureAngle, Model
+    from vizlight.scene import Scene
+    from vizlight.shading.options import Exponent, FeatureAngle, Model
 
 Inward = Literal["keep", "flip", "drop"]
 #: Default absorption, and length of fibres as a share of the diagonal of the mesh.
@@ -58,7 +59,7 @@ class FurKeywords(TypedDict, total=False):
     conditioned: bool
     attenuated: bool
     bundle: bool | Bundle
-    compensate: bool
+    exponent: Exponent
     model: Model
     name: str
 
@@ -108,7 +109,7 @@ class FurOptions:
         Whether the fibres dim one another and the skin as a bundle of thin cylinders, as for
         :func:`vizlight.illuminate`, in place of the attenuation by Banks (7, 8), which does not
         know of neighbours.
-    compensate, model, name
+    exponent, model, name
         As for :func:`vizlight.illuminate`; with ``model="cylinder"`` the highlight of the skin is
         Blinn's.
     """
@@ -129,7 +130,7 @@ class FurOptions:
     conditioned: bool = True
     attenuated: bool = True
     bundle: bool | Bundle = False
-    compensate: bool = True
+    exponent: Exponent = "compensated"
     model: Model = "phong"
     name: str = "luminance"
 
@@ -194,7 +195,7 @@ class FurOptions:
     def shading(self) -> ShadingOptions:
         """The options of the fibres' light."""
         return ShadingOptions(
-            compensate=self.compensate, model=self.model, conditioned=self.conditioned
+            exponent=self.exponent, model=self.model, conditioned=self.conditioned
         )
 
 
@@ -202,7 +203,7 @@ class FurOptions:
 def fur(
     surface: pv.PolyData,
     /,
-    scene: Scene,
+    scene: Scene | None = None,
     *,
     threads: int | None = None,
     progress_bar: bool = False,
@@ -215,8 +216,8 @@ def fur(
     surface : pyvista.PolyData
         Surface that is covered; not changed. Its active point normals, or those computed, point
         outward.
-    scene : Scene
-        Scene with a view, if the light is attenuated.
+    scene : Scene, optional
+        Scene, by default ``Scene()``.
     **options
         Fields of FurOptions.
     threads, progress_bar
@@ -252,14 +253,14 @@ def fur(
 
 def _grow(
     surface: pv.PolyData,
-    scene: Scene,
+    scene: Scene | None,
     options: FurOptions,
     threads: int | None,
     *,
     progress_bar: bool,
 ) -> pv.MultiBlock:
     """Return fibres and skin, lit."""
-    _check.instance("scene", scene, Scene)
+    scene = as_scene(scene)
     if scene.n not in (None, 3):
         raise ValueError(_check.message("scene", "vectors of 3 components", scene.n))
     if options.feature_angle is not None and np.asarray(options.length, dtype=object).ndim:

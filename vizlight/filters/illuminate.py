@@ -10,7 +10,7 @@ from vizlight import _check
 from vizlight.filters import lighting
 from vizlight.mesh import batches, blocks, bundles, normals, refining
 from vizlight.reading.inputs import uses_normals
-from vizlight.scene import Scene
+from vizlight.scene.scene import as_scene
 from vizlight.shading.options import Bundle, LightOptions, accepts
 
 if TYPE_CHECKING:
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from vizlight.mesh.blocks import MeshT
     from vizlight.reading.normals import Sided
+    from vizlight.scene import Scene
     from vizlight.shading.options import LightKeywords
 
 
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 def illuminate(
     mesh: MeshT,
     /,
-    scene: Scene,
+    scene: Scene | None = None,
     *,
     threads: int | None = None,
     inplace: bool = False,
@@ -44,8 +45,9 @@ def illuminate(
     ----------
     mesh : pyvista.DataSet or pyvista.MultiBlock
         Mesh that is lit; not changed, unless ``inplace``.
-    scene : Scene
-        Lights, material and view, in the unit of the mesh.
+    scene : Scene, optional
+        Lights, material and view, in the unit of the mesh. Default: ``Scene()``, which has no
+        view: the highlight is left out, and its light follows :meth:`vizlight.View.isometric`.
     **options
         Fields of LightOptions.
     threads : int, optional
@@ -74,7 +76,7 @@ def illuminate(
         If an argument is of the wrong type, or a keyword is unknown.
     ValueError
         If an array is missing, is cell data, or has the wrong number of components; if there
-        is no surface to take normals from; if the scene lacks a view that it needs.
+        is no surface to take normals from; if the scene has a depth cue and no view.
 
     Warns
     -----
@@ -112,7 +114,7 @@ def illuminate(
 
 def light_mesh(
     mesh: MeshT,
-    scene: Scene,
+    scene: Scene | None,
     options: LightOptions,
     *,
     threads: int | None = None,
@@ -124,7 +126,7 @@ def light_mesh(
 
     With ``options.refine`` the result is a new mesh, also with ``inplace``.
     """
-    _check.instance("scene", scene, Scene)
+    scene = as_scene(scene)
     named = blocks.check(mesh)
     inplace = _check.boolean("inplace", inplace)
     lighting.refuse_overwriting(

@@ -19,7 +19,7 @@ from vizlight.geometry.solids.primitives import Frustum, Solid, Sphere
 from vizlight.mesh import blocks, hull, normals, records
 from vizlight.mesh.inputs import inputs_of
 from vizlight.reading.arrays import array_of, unit_rows
-from vizlight.scene import Scene
+from vizlight.scene.scene import as_scene
 from vizlight.shading import engine
 from vizlight.shading.options import LightOptions, accepts, check_sides
 from vizlight.shading.results import of_light, part_name, unlit
@@ -36,8 +36,9 @@ if TYPE_CHECKING:
     from vizlight.geometry.contours.spacing import Levels
     from vizlight.geometry.solids.triangle_mesh import Mesh
     from vizlight.model.reflection import SpecularModel
+    from vizlight.scene import Scene
     from vizlight.shading.engine import Shading
-    from vizlight.shading.options import FeatureAngle
+    from vizlight.shading.options import Exponent, FeatureAngle
     from vizlight.shading.results import Record
 
 
@@ -52,7 +53,7 @@ class ContourKeywords(TypedDict, total=False):
     normals: str | ArrayLike | None
     tangents: str | ArrayLike | None
     conditioned: bool
-    compensate: bool
+    exponent: Exponent
     name: str
 
 
@@ -76,7 +77,7 @@ class ContourOptions:
     feature_angle : float or "auto", optional
         Angle in degrees above which edges are sharp, as for :func:`vizlight.illuminate`; for a
         mesh only. Default: none is.
-    normals, tangents, conditioned, compensate
+    normals, tangents, conditioned, exponent
         Arrays and options as for :func:`vizlight.illuminate`, for a mesh only.
     name : str, default: "luminance"
         Name of the resulting cell arrays.
@@ -90,7 +91,7 @@ class ContourOptions:
     normals: str | ArrayLike | None = None
     tangents: str | ArrayLike | None = None
     conditioned: bool = False
-    compensate: bool = True
+    exponent: Exponent = "compensated"
     name: str = "luminance"
 
     def __post_init__(self) -> None:
@@ -111,7 +112,7 @@ class ContourOptions:
 def isoluminance(
     mesh: pv.DataSet | pv.MultiBlock | Solid,
     /,
-    scene: Scene,
+    scene: Scene | None = None,
     *,
     threads: int | None = None,
     progress_bar: bool = False,
@@ -126,8 +127,8 @@ def isoluminance(
         is lit; blocks are joined. A solid is a :class:`vizlight.Sphere`,
         :class:`~vizlight.Frustum` or :class:`~vizlight.Block`, or a combination of them by ``|``,
         ``&`` and ``-``.
-    scene : Scene
-        Scene with one light or several. A highlight needs a view.
+    scene : Scene, optional
+        Scene with one light or several, by default ``Scene()``. A highlight needs a view.
     **options
         Fields of ContourOptions.
     threads : int, optional
@@ -183,13 +184,13 @@ def isoluminance(
 
 def _make(
     mesh: pv.DataSet | pv.MultiBlock | Solid,
-    scene: Scene,
+    scene: Scene | None,
     options: ContourOptions,
     threads: int | None,
     progress: Callable[[float], None],
 ) -> tuple[pv.MultiBlock, Bands, _Light]:
     """Return bands and contours as meshes, the bands as arrays, and their luminance."""
-    _check.instance("scene", scene, Scene)
+    scene = as_scene(scene)
     light = _Light(scene, options, threads, progress)
     if isinstance(mesh, Solid):
         for option in ("normals", "tangents"):
@@ -258,17 +259,17 @@ def _of_solid(solid: Solid, light: _Light) -> Bands:
     """Return the bands of a solid, in closed form if there is one."""
     scene, asked = light.scene, light.options
     low = scene.material.ambient * scene.ambient_intensity
-    dull = scene.material.specular == 0 and scene.depth_cue is None
+    dull = (scene.material.specular == 0 or scene.view is None) and scene.depth_cue is None
     found: Bands | Laminae | None = None
     plain = dull and len(scene.lights) == 1 and not asked.flip_normals
     if plain and isinstance(solid, Sphere | Frustum):
-        (lamp,) = scene.lights
+        (lamp,) = (light.seen_from(scene.view) for light in scene.lights)
         source: dict[str, Any] = {
             "direction": lamp.direction, "position": lamp.position, "ambient": low,
             "diffuse": scene.material.diffuse * lamp.intensity,
             "attenuation": lamp.attenuation, "levels": asked.levels,
         }  # fmt: skip
-        if isinstance(solid, Sphere) and not lamp.follows_view:
+        if isinstance(solid, Sphere):
             found = closed.sphere(solid.center, solid.radius, **source)
         if isinstance(solid, Frustum) and lamp.direction is not None:
             found = closed.truncus(

@@ -15,7 +15,7 @@ from vizlight.filters.streamlines import OWN_TANGENTS, TANGENTS
 from vizlight.mesh import point_arrays
 from vizlight.mesh.particles import Carrier, Rows
 from vizlight.mesh.series import TIME, Series
-from vizlight.scene import Scene
+from vizlight.scene.scene import as_scene
 from vizlight.shading.options import LightKeywords, LightOptions, accepts
 
 if TYPE_CHECKING:
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from vizlight._types import Array
+    from vizlight.scene import Scene
 
 #: Kinds of lines in a flow that changes with time.
 Kind = Literal["pathlines", "streaklines"]
@@ -98,7 +99,7 @@ class PathlineOptions(LightOptions):
 def pathlines(
     series: Sequence[pv.DataSet] | Any,
     /,
-    scene: Scene,
+    scene: Scene | None = None,
     *,
     threads: int | None = None,
     progress_bar: bool = False,
@@ -112,8 +113,8 @@ def pathlines(
         Meshes with the same points at rising times, such as a list; a reader of PyVista with
         ``time_values``; or the path of its file, such as ``flow.pvd``. Only two steps of a reader
         are in memory at a time.
-    scene : Scene
-        Scene, the same at each step.
+    scene : Scene, optional
+        Scene, the same at each step, by default ``Scene()``.
     **options
         Fields of PathlineOptions.
     threads, progress_bar
@@ -161,7 +162,7 @@ def pathlines(
     (4, True)
     """
     asked = PathlineOptions(**options)
-    _check.instance("scene", scene, Scene)
+    scene = as_scene(scene)
     steps = Series(series, asked.times)
     first = steps.mesh(0)
     vectors = asked.vectors

@@ -55,7 +55,7 @@ class RefineOptions(LightOptions):
 def refine(
     mesh: MeshT,
     /,
-    scene: Scene,
+    scene: Scene | None = None,
     *,
     threads: int | None = None,
     progress_bar: bool = False,
@@ -72,8 +72,8 @@ def refine(
     ----------
     mesh : pyvista.DataSet or pyvista.MultiBlock
         Mesh of faces or lines; not changed.
-    scene : Scene
-        Lights, material and view for which the mesh is refined.
+    scene : Scene, optional
+        Lights, material and view for which the mesh is refined, by default ``Scene()``.
     **options
         Fields of RefineOptions.
     threads, progress_bar

@@ -16,7 +16,8 @@ from vizlight.mesh import point_arrays, records
 from vizlight.mesh.casters import CasterKeywords, CasterOptions, caster
 from vizlight.mesh.normals import split_where_computed
 from vizlight.reading.cells import check_whole
-from vizlight.scene import Light, Material, Scene
+from vizlight.scene import Light, Scene
+from vizlight.scene.scene import as_scene
 from vizlight.shading import engine
 from vizlight.shading.options import accepts
 from vizlight.shading.results import DEFAULT_NAME, PARTS, VALID, of_filter, of_light
@@ -101,8 +102,8 @@ def relief_shadow(
         A height field of one layer, its rows and columns straight and square to each other, or
         any surface with ``raster``; or a closed surface. Not changed, unless ``inplace``.
     scene : Scene
-        Scene whose lights cast the shadows, at infinity or near, in the unit of the mesh. It may
-        be left out with ``sun``.
+        Scene whose lights cast the shadows, at infinity or near, in the unit of the mesh, by
+        default ``Scene()``.
     sun : (azimuth, altitude), optional
         Angles toward the sun in degrees, in place of the lights of the scene: azimuth clockwise
         from north, the y axis, and altitude above the horizon.
@@ -150,9 +151,7 @@ def relief_shadow(
     check_whole(mesh, "mesh")
     if sun is not None:
         lit_by = Light(direction=sun_direction(sun))
-        base = Scene(material=Material(specular=0.0)) if scene is None else scene
-        _check.instance("scene", base, Scene)
-        scene = base.replace(lights=[lit_by])
+        scene = as_scene(scene).replace(lights=[lit_by])
     scene, lights = _lights(scene)
     own = mesh if asked.raster is not None else split_where_computed(mesh, asked.feature_angle)
     shadow = caster(own, scene, asked, threads)
@@ -251,12 +250,11 @@ def sun_direction(sun: object, name: str = "sun") -> Array:
 
 def _lights(scene: Scene | None) -> tuple[Scene, list[Light]]:
     """Return the scene and its lights that give light, fixed where they are."""
-    _check.instance("scene", scene, Scene, remedy="or pass sun=(azimuth, altitude)")
-    assert scene is not None
+    scene = as_scene(scene)
     lights = [light.seen_from(scene.view) for light in scene.lights if light.intensity > 0]
     if not lights:
         raise ValueError(_check.message("scene", "a light of intensity above 0", "none"))
-    if scene.n != 3:
+    if scene.n not in (None, 3):
         raise ValueError(_check.message("scene", "vectors of 3 components", f"{scene.n}"))
     return scene, lights
 

@@ -102,17 +102,20 @@ def _dimmed(
     mesh: pv.DataSet, inputs: ShadingInputs, scene: Scene, bundle: Bundle, name: str
 ) -> ShadingInputs:
     """Return inputs with the shares of light inside a bundle, which do not depend on the eye."""
-    _refuse_headlight(scene, bundled=True)
+    _refuse_following(scene, bundled=True)
     names = [part_name(name, part) for part in lighting.BUNDLE_PARTS]
     (own,) = bundles.dim([mesh], [inputs], scene, bundle, (name, names[0], names[1]))
     return dataclasses.replace(inputs, transmittance=own.transmittance, occlusion=own.occlusion)
 
 
-def _refuse_headlight(scene: Scene, *, bundled: bool) -> None:
+def _refuse_following(scene: Scene, *, bundled: bool) -> None:
     """Refuse a light that follows the view beside shares of light that do not."""
     if bundled and any(light.follows_view and light.intensity > 0 for light in scene.lights):
-        expected, remedy = "no headlight beside it in a live light", "give the scene fixed lights"
-        raise ValueError(_check.message("bundle", expected, "a headlight", remedy))
+        expected, remedy = (
+            "lights that stay beside it in a live light",
+            "give the scene fixed lights",
+        )
+        raise ValueError(_check.message("bundle", expected, "one that follows the view", remedy))
 
 
 def is_lit(mesh: pv.DataSet | pv.MultiBlock, name: str = DEFAULT_NAME) -> bool:
@@ -271,7 +274,7 @@ def _of_fur(
         raise ValueError(
             _check.message("mesh", "fur without dropped fibres", "inward='drop'", remedy)
         )
-    _refuse_headlight(scene, bundled=bool(options.get("bundle")))
+    _refuse_following(scene, bundled=bool(options.get("bundle")))
     fibres, skin = mesh["fibres"], mesh["skin"]
     assert isinstance(fibres, pv.DataSet)
     assert isinstance(skin, pv.PolyData)

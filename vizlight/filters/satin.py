@@ -40,7 +40,7 @@ class SatinOptions(StreamlineOptions):
 def satin(
     surface: pv.PolyData,
     /,
-    scene: Scene,
+    scene: Scene | None = None,
     *,
     threads: int | None = None,
     progress_bar: bool = False,
@@ -53,9 +53,10 @@ def satin(
     surface : pyvista.PolyData
         Surface that is lit; not changed. ``tangents`` names its point array of 3 components,
         tangent to it, or with ``average_cells`` its cell array; it must be given.
-    scene : Scene
-        Banks' material is ``Material(ambient=0.1, diffuse=0.5, specular=1.0,
-        color=(1.0, 0.25, 0.30))``. His panels have ``compensate=False``.
+    scene : Scene, optional
+        Lights, material and view, by default ``Scene()``. Banks' material is
+        ``Material(ambient=0.1, diffuse=0.5, specular=1.0, color=(1.0, 0.25, 0.30))``, and his
+        panels have ``exponent=1``.
     **options
         Fields of SatinOptions.
     threads, progress_bar

@@ -19,7 +19,7 @@ from vizlight.model import line_fields
 from vizlight.reading import polylines
 from vizlight.reading.arrays import array_of, unit_rows, vectors_of
 from vizlight.reading.cells import check_whole, has_faces
-from vizlight.scene import Scene
+from vizlight.scene.scene import as_scene
 from vizlight.shading.options import LightKeywords, LightOptions, accepts
 
 if TYPE_CHECKING:
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from vizlight._types import Array
+    from vizlight.scene import Scene
 
 #: Name of the point array of the directions that were integrated, and by which the lines are lit.
 TANGENTS = "Tangents"
@@ -166,7 +167,7 @@ def _pair(names: Sequence[object], *, line_field: bool) -> tuple[str, str]:
 def streamlines(
     mesh: pv.DataSet,
     /,
-    scene: Scene,
+    scene: Scene | None = None,
     *,
     threads: int | None = None,
     progress_bar: bool = False,
@@ -178,7 +179,8 @@ def streamlines(
     ----------
     mesh : pyvista.DataSet
         Mesh that carries the vectors; not changed.
-    scene : Scene
+    scene : Scene, optional
+        Lights, material and view, by default ``Scene()``.
     **options
         Fields of StreamlineOptions.
     threads, progress_bar
@@ -243,7 +245,7 @@ def streamlines(
 
 def light_lines(
     mesh: pv.DataSet,
-    scene: Scene,
+    scene: Scene | None,
     options: StreamlineOptions,
     *,
     threads: int | None,
@@ -255,7 +257,7 @@ def light_lines(
     Errors name the mesh by ``argument``.
     """
     _check_mesh(mesh, argument)
-    _check.instance("scene", scene, Scene)
+    scene = as_scene(scene)
     made = _resolved(mesh, options)
     with _progress.progress("trace", 100, show=progress_bar) as report:
         lines, tangents = _traced(mesh, scene, made, report, argument)

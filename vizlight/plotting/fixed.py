@@ -38,8 +38,11 @@ def fixed_light(source: Source, scene: Scene) -> tuple[Array, str]:
         What was computed as the view of the scene sees it, in words; empty if nothing was.
     """
     seen = []
-    if any(light.follows_view and light.intensity > 0 for light in scene.lights):
+    following = [light for light in scene.lights if light.follows_view and light.intensity > 0]
+    if any(light.is_headlight for light in following):
         seen.append("the headlight")
+    if not all(light.is_headlight for light in following):
+        seen.append("the light that follows the view")
     if source.options.model == "cylinder":
         seen.append("the diffuse light of cylinders")
     if source.inputs.fur_height is not None:

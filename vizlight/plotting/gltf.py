@@ -15,9 +15,9 @@ from vizlight._version import __version__
 from vizlight.filters.tint import color_table, map_colors, values_of
 from vizlight.mesh import blocks, hull
 from vizlight.plotting.fixed import LEFT_OUT, fixed_light, lit_colors
-from vizlight.plotting.live import headlight_scene, lifted
+from vizlight.plotting.live import lifted
 from vizlight.plotting.sources import sources_of, tinted
-from vizlight.scene import Scene
+from vizlight.scene import Scene, View
 from vizlight.scene.light import WHITE
 from vizlight.shading.options import LightOptions
 
@@ -116,7 +116,7 @@ def save_gltf(
         n = int(source.inputs.points.shape[1])
         here = lifted(used, n)
         if here.view is None:
-            here = here.replace(view=headlight_scene(n).view)
+            here = here.replace(view=View.isometric(n))
         factors, seen = fixed_light(source, here)
         file.add(name or "mesh", source.mesh, lit_colors(own, factors))
         fixed |= {seen} - {""}

@@ -278,11 +278,12 @@ def lifted(scene: Scene, n: int) -> Scene:
     """Return a scene of 3-space in the hyperplane of the first three axes of n-space."""
     if n <= 3 or scene.n != 3:
         return scene
+    fixed = (light if light.is_headlight else light.seen_from(scene.view) for light in scene.lights)
     lights = tuple(
         dataclasses.replace(
             light, direction=_lifted(light.direction, n), position=_lifted(light.position, n)
         )
-        for light in scene.lights
+        for light in fixed
     )
     view = None if scene.view is None else _lifted_view(scene.view, n)
     return scene.replace(lights=lights, view=view)
@@ -297,6 +298,7 @@ def _lifted_view(view: View, n: int) -> View:
         position=_lifted(view.position, n),
         direction=_lifted(view.direction, n),
         parallel=view.parallel,
+        up=_lifted(view.up, n),
     )
 
 

@@ -127,8 +127,8 @@ def shader(scene: Scene, /, **options: Any) -> Shader:
     Parameters
     ----------
     scene : Scene
-        Lights, material and depth cue in 3-space, in the coordinates of the data. A headlight
-        shines along the camera's axis.
+        Lights, material and depth cue in 3-space, in the coordinates of the data. Lights
+        that follow the view turn with the camera.
     **options
         As for :func:`vizlight.illuminate`, but ``tangents`` and ``normals`` are names of point
         arrays of 3 components that the data have in ParaView. Without tangents, and for

@@ -7,6 +7,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from vizlight import _check
 from vizlight.model import falloff
 from vizlight.scene.keywords import keywords_only
@@ -28,7 +30,8 @@ class Light:
     Parameters
     ----------
     direction : vector of n components, optional
-        Direction toward a light at infinity, of any length except 0.
+        Direction toward a light at infinity, of any length except 0. With ``follows_view`` it is
+        in the frame of the eye in 3-space: x to the right, y up, z toward the eye.
     position : vector of n components, optional
         Position of the light, in the unit of the mesh.
     intensity : float, default: 1.0
@@ -39,18 +42,20 @@ class Light:
     color : (r, g, b) or str, optional
         Channels that scale the intensity in the array ``rgb``. They do not affect luminance.
     follows_view : bool, default: False
-        Whether the light is a headlight, which takes its direction or position from the view;
-        see :meth:`headlight`.
+        Whether the light turns with the eye, like a camera light of VTK:
+        ``Light(direction=(-1, 1, 1), follows_view=True)`` shines over the left shoulder. Without
+        a direction, or along ``(0, 0, 1)``, it is a headlight; see :meth:`headlight`.
 
     Raises
     ------
     TypeError, ValueError
         If a value does not fit, or not exactly one of direction and position is given. A
-        headlight has neither.
+        light that follows the view has no position.
 
     See Also
     --------
-    Light.headlight : Light that follows the view.
+    Light.headlight : Light in the direction of the eye.
+    Light.seen_from : Light where a view has it.
     """
 
     direction: Vector | None
@@ -68,7 +73,9 @@ class Light:
             parts.append(f"intensity={self.intensity:g}")
         if self.attenuation != NO_ATTENUATION:
             parts.append(f"attenuation={self.attenuation}")
-        return f"Light{'.headlight' if self.follows_view else ''}({', '.join(parts)})"
+        if self.follows_view and not self.is_headlight:
+            parts.append("follows_view=True")
+        return f"Light{'.headlight' if self.is_headlight else ''}({', '.join(parts)})"
 
     @keywords_only
     def __init__(
@@ -90,15 +97,14 @@ class Light:
             color=_check.color("color", color),
             follows_view=_check.boolean("follows_view", follows_view),
         )
-        given = sum(x is not None for x in (self.direction, self.position))
-        if given != (0 if self.follows_view else 1):
+        if self.follows_view:
+            self._check_following()
+        elif (self.direction is None) == (self.position is None):
             raise ValueError(
                 _check.message(
                     "Light",
-                    "neither direction= nor position= with follows_view=True"
-                    if self.follows_view
-                    else "either direction= (toward the light) or position=",
-                    ("neither", "one of them", "both")[given],
+                    "either direction= (toward the light) or position=",
+                    "neither" if self.direction is None else "both",
                     "Light.headlight() makes a light that follows the view",
                 )
             )
@@ -112,9 +118,29 @@ class Light:
                 )
             )
 
+    def _check_following(self) -> None:
+        """Check a light that follows the view; a direction toward the eye makes a headlight."""
+        if self.position is not None:
+            expected = "no position with follows_view=True"
+            remedy = "pass direction= in the frame of the eye: x right, y up, z toward the eye"
+            raise ValueError(_check.message("position", expected, self.position, remedy))
+        if self.direction is None:
+            return
+        if len(self.direction) != 3:
+            expected = "3 components with follows_view=True, those of the frame of the eye"
+            raise ValueError(_check.message("direction", expected, len(self.direction)))
+        x, y, z = self.direction
+        if x == y == 0 and z > 0:
+            _check.set_fields(self, direction=None)
+
+    @property
+    def is_headlight(self) -> bool:
+        """Whether the light shines from the eye, or from infinity in its direction."""
+        return self.follows_view and self.direction is None
+
     @classmethod
     def headlight(cls, *, intensity: float = 1.0, color: ColorLike | None = None) -> Light:
-        """Return a light that follows the view.
+        """Return a light that shines from the eye and follows the view.
 
         In a view with a direction it is at infinity in that direction, as in VTK. In a
         perspective view without a direction it is at the position of the eye.
@@ -132,13 +158,16 @@ class Light:
         """
         return cls(intensity=intensity, color=color, follows_view=True)
 
-    def seen_from(self, view: View | None) -> Light:
-        """Return the light with a fixed direction or position, which a headlight has from a view.
+    def seen_from(self, view: View | None, *, n: int = 3) -> Light:
+        """Return the light with the fixed direction or position that it has in a view.
 
         Parameters
         ----------
         view : View or None
-            View that a headlight follows. A light that is not a headlight does not need it.
+            View that the light follows. None: :meth:`View.isometric`. A light that does not follow
+            the view is returned as it is.
+        n : int, default: 3
+            Dimension of the space of a headlight without a view.
 
         Returns
         -------
@@ -149,19 +178,19 @@ class Light:
         TypeError
             If the view is not a :class:`vizlight.View`.
         ValueError
-            If the light is a headlight and there is no view.
+            If a light beside the eye follows a view without a direction, or not in 3-space.
         """
         _check.instance("view", view, View, optional=True)
         if not self.follows_view:
             return self
         if view is None:
-            raise ValueError(
-                _check.message("view", "a View, which the headlight follows", None, "pass view=")
-            )
-        position = view.position if view.direction is None else None
-        return dataclasses.replace(
-            self, follows_view=False, direction=view.direction, position=position
-        )
+            view = View.isometric(n)
+        direction = view.direction
+        if self.direction is not None:
+            scale = max(map(abs, self.direction))
+            direction = tuple(np.divide(self.direction, scale) @ view.axes())
+        position = view.position if direction is None else None
+        return dataclasses.replace(self, follows_view=False, direction=direction, position=position)
 
 
 def as_lights(lights: object) -> tuple[Light, ...]:

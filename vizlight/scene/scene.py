@@ -44,11 +44,13 @@ class Scene:
     ----------
     lights : Light or sequence of Light, optional
         Lights of the scene. Default: one headlight. A ``pyvista.Light`` is taken as a Light; one
-        that moves with the camera needs that camera as ``view``.
+        that has a position and moves with the camera needs that camera as ``view``.
     material : Material, optional
         Material of the lit manifold. Default: ``Material()``.
     view : View or pyvista.Camera, optional
-        View of the scene, required for the specular term, a headlight and a depth cue.
+        View of the scene, required for a depth cue. Without a view the highlight is left out, and
+        what else depends on the eye, such as lights that follow the view, is as from
+        :meth:`View.isometric`.
     ambient_intensity : float, default: 1.0
         Intensity Ia of the ambient light (Lecture), unitless, from 0 to 1e9.
     ambient_color : (r, g, b) or str, optional
@@ -150,7 +152,7 @@ class Scene:
         view = self.view
         if view is not None:
             position = offset if view.position is None else np.add(view.position, offset)
-            view = View(position=position, direction=view.direction, parallel=view.parallel)
+            view = dataclasses.replace(view, position=tuple(position))
         return self.replace(lights=lights, view=view)
 
     def to_dict(self) -> dict[str, object]:
@@ -201,9 +203,9 @@ class Scene:
     ) -> Scene:
         """Return the scene of a PyVista plotter: its camera and the lights that are switched on.
 
-        A headlight at infinity continues to follow the view. Other lights that move with the
-        camera are fixed at their current position. A spotlight becomes a light that shines in
-        all directions, with a warning.
+        Headlights and camera lights at infinity continue to follow the view. Other lights that
+        move with the camera are fixed at their current position. A spotlight becomes a light that
+        shines in all directions, with a warning.
 
         Parameters
         ----------
@@ -254,8 +256,20 @@ class Scene:
             fields["material"] = _of_actor(actor, lights, view, model)
             if own_view and vtk.vtk_model(vtk.all_lights(lights, view)) == "blinn":
                 own = View.from_camera(camera)
-                fields["view"] = View(position=own.position, direction=own.direction, parallel=True)
+                fields["view"] = dataclasses.replace(own, parallel=True)
         return cls(**fields)
+
+
+def as_scene(scene: Scene | None) -> Scene:
+    """Return a scene, for None the default one.
+
+    Raises
+    ------
+    TypeError
+        If the argument is neither.
+    """
+    _check.instance("scene", scene, Scene, optional=True)
+    return Scene() if scene is None else scene
 
 
 def _of_actor(actor: pv.Actor, lights: vtk.Lights, view: vtk.AnyView, model: str) -> Material:

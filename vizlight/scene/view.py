@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from vizlight import _check
 from vizlight.scene.keywords import keywords_only
 
@@ -13,9 +15,14 @@ if TYPE_CHECKING:
 
     from vtkmodules.vtkRenderingCore import vtkCamera
 
-    from vizlight._types import Color, ColorLike, Vector, VectorLike
+    from vizlight._types import Array, Color, ColorLike, Vector, VectorLike
 
 __all__ = ["DepthCue", "View"]
+
+#: Component along z of a direction toward the eye, of length 1, from which y is up by default.
+STEEP = 0.9
+#: Sine of the angle between up and the direction toward the eye, up to which they are parallel.
+LEAST_SINE = 1e-6
 
 
 @dataclass(frozen=True, init=False)
@@ -33,6 +40,10 @@ class View:
         along this axis.
     parallel : bool, optional
         Whether the view is parallel. Default: True if no position is given, otherwise False.
+    up : vector of n components, optional
+        Direction that is up in the picture, of any length except 0, not parallel to ``direction``.
+        Lights that follow the view turn with it. Default in 3-space: the z axis, or the y axis
+        where the view is within 26 degrees of the z axis.
 
     Raises
     ------
@@ -44,6 +55,7 @@ class View:
     position: Vector | None
     direction: Vector | None
     parallel: bool
+    up: Vector | None
 
     @keywords_only
     def __init__(
@@ -52,9 +64,11 @@ class View:
         position: VectorLike | None = None,
         direction: VectorLike | None = None,
         parallel: bool | None = None,
+        up: VectorLike | None = None,
     ) -> None:
         position = _check.optional_vector("position", position)
         direction = _check.optional_vector("direction", direction, direction=True)
+        up = _check.optional_vector("up", up, direction=True)
         if parallel is None:
             parallel = position is None
         parallel = _check.boolean("parallel", parallel)
@@ -78,7 +92,57 @@ class View:
                     "direction", f"{len(position)} components like position", len(direction)
                 )
             )
-        _check.set_fields(self, position=position, direction=direction, parallel=parallel)
+        n = len(position or direction or ())
+        if up is not None and len(up) != n:
+            raise ValueError(_check.message("up", f"{n} components", len(up)))
+        if up is not None and direction is not None and _parallel(up, direction):
+            expected = "a direction that is not parallel to direction="
+            raise ValueError(_check.message("up", expected, up))
+        _check.set_fields(self, position=position, direction=direction, parallel=parallel, up=up)
+
+    @classmethod
+    def isometric(cls, n: int = 3) -> View:
+        """Return the view from infinity along (1, ..., 1), PyVista's isometric view.
+
+        It stands in for the view of a scene that has none.
+
+        Parameters
+        ----------
+        n : int, default: 3
+            Dimension of the space.
+
+        Returns
+        -------
+        View
+
+        Raises
+        ------
+        TypeError, ValueError
+            If n is no whole number of at least 2.
+        """
+        return cls(direction=(1.0,) * _check.integer("n", n, low=2))
+
+    def axes(self) -> Array:
+        """Return the frame of the eye in 3-space.
+
+        Returns
+        -------
+        ndarray, shape (3, 3)
+            Unit vectors to the right, up and toward the eye, one per row, orthogonal within 4 eps.
+
+        Raises
+        ------
+        ValueError
+            If the view is not in 3-space, or has no direction.
+        """
+        if self.direction is None or len(self.direction) != 3:
+            expected = "a view in 3-space with a direction, by which a light beside the eye turns"
+            remedy = "pass View(direction=), or View.from_camera(camera)"
+            raise ValueError(_check.message("view", expected, self, remedy))
+        toward = _unit(self.direction)
+        up = np.eye(3)[1 if abs(toward[2]) > STEEP else 2] if self.up is None else _unit(self.up)
+        right = _unit(np.cross(up, toward))
+        return np.stack([right, np.cross(toward, right), toward])
 
     @classmethod
     def from_camera(cls, camera: vtkCamera) -> View:
@@ -87,7 +151,7 @@ class View:
         Parameters
         ----------
         camera : pyvista.Camera or vtkCamera
-            Camera, whose current position and direction are read.
+            Camera, whose current position, direction and up are read.
 
         Returns
         -------
@@ -102,10 +166,14 @@ class View:
             remedy = "pass its .camera" if is_camera(getattr(camera, "camera", None)) else ""
             expected = "a pyvista.Camera or vtkCamera"
             raise TypeError(_check.message("camera", expected, _check.describe(camera), remedy))
+        direction = tuple(-x for x in camera.GetDirectionOfProjection())
+        up = tuple(camera.GetViewUp())
         return cls(
             position=tuple(camera.GetPosition()),
-            direction=tuple(-x for x in camera.GetDirectionOfProjection()),
+            direction=direction,
             parallel=bool(camera.GetParallelProjection()),
+            # VTK keeps an up that has no meaning, and draws by another one.
+            up=None if _parallel(up, direction) else up,
         )
 
 
@@ -187,5 +255,18 @@ def as_view(view: View | vtkCamera | None) -> View | None:
 
 def is_camera(value: object) -> TypeGuard[vtkCamera]:
     """Return whether a value has the methods of a VTK camera that a view needs."""
-    names = ("GetPosition", "GetDirectionOfProjection", "GetParallelProjection")
+    names = ("GetPosition", "GetDirectionOfProjection", "GetParallelProjection", "GetViewUp")
     return all(hasattr(value, name) for name in names)
+
+
+def _unit(vector: VectorLike) -> Array:
+    """Return a vector other than 0 with length 1, whatever its size."""
+    v = np.asarray(vector, dtype=np.float64)
+    v = v / np.abs(v).max()
+    return np.asarray(v / np.linalg.norm(v))
+
+
+def _parallel(a: Vector, b: Vector) -> bool:
+    """Return whether two directions other than 0 lie on one line, within rounding."""
+    u, v = _unit(a), _unit(b)
+    return bool(np.linalg.norm(u - (u @ v) * v) < LEAST_SINE)

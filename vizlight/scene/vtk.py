@@ -51,7 +51,7 @@ def vtk_model(lights: Sequence[Light]) -> ReflectionModel:
 
     A light of intensity 0 counts as a light, because VTK considers only the switch of a light.
     """
-    return "blinn" if len(lights) == 1 and lights[0].follows_view else "phong"
+    return "blinn" if len(lights) == 1 and lights[0].is_headlight else "phong"
 
 
 def to_property(
@@ -142,10 +142,9 @@ def all_lights(lights: Lights, view: AnyView) -> tuple[Light, ...]:
 
 def _fixed(light: vtkLight, view: AnyView) -> tuple[Light, ...]:
     """Return a light of VTK as one of this package, none if it is switched off."""
-    at_camera = bool(light.LightTypeIsCameraLight())
-    at_camera |= bool(light.LightTypeIsHeadlight() and light.GetPositional())
-    if at_camera and not is_camera(view):
-        expected, got = "a pyvista.Camera as view= beside a light that moves with it", view
+    moves = light.LightTypeIsCameraLight() or light.LightTypeIsHeadlight()
+    if moves and light.GetPositional() and not is_camera(view):
+        expected, got = "a pyvista.Camera as view= beside a lamp that moves with it", view
         remedy = "or take both by Scene.from_plotter(plotter)"
         raise ValueError(_check.message("lights", expected, got, remedy))
     return tuple(lights_of([light], view if is_camera(view) else None))
@@ -175,8 +174,11 @@ def _check_model(model: str) -> str:
 
 def _angle(lights: Sequence[Light], view: View | None) -> float:
     """Return the angle between the eye and the brightest light at infinity, or 0 if unknown."""
-    distant = [light for light in lights if light.direction is not None]
-    if not distant or view is None or view.direction is None:
+    if view is None or view.direction is None:
+        return 0.0
+    beside = [light.seen_from(view) for light in lights if not light.is_headlight]
+    distant = [light for light in beside if light.direction is not None]
+    if not distant:
         return 0.0
     brightest = max(distant, key=lambda light: light.intensity)
     a, b = (np.asarray(v, dtype=np.float64) for v in (brightest.direction, view.direction))
@@ -244,8 +246,8 @@ def _warn_of_error(
 def lights_of(lights: Iterable[vtkLight], camera: vtkCamera | None) -> Iterator[Light]:
     """Yield the VTK lights that are switched on.
 
-    A headlight at infinity continues to follow the view. Other lights that move with the camera
-    are fixed at their current position.
+    Headlights and camera lights at infinity continue to follow the view. Other lights that move
+    with the camera are fixed at their current position.
     """
     for light in lights:
         if not light.GetSwitch():
@@ -254,7 +256,12 @@ def lights_of(lights: Iterable[vtkLight], camera: vtkCamera | None) -> Iterator[
         if light.LightTypeIsHeadlight() and not light.GetPositional():
             yield Light.headlight(intensity=intensity, color=color)
             continue
-        position, target = _position_and_target(light, camera)
+        follows = bool(light.LightTypeIsCameraLight() and not light.GetPositional())
+        if follows:
+            # What VTK transforms is in the frame of the camera.
+            position, target = tuple(light.GetPosition()), tuple(light.GetFocalPoint())
+        else:
+            position, target = _position_and_target(light, camera)
         toward = tuple(p - t for p, t in zip(position, target, strict=True))
         if light.GetPositional():
             if light.GetConeAngle() < 90:
@@ -269,7 +276,7 @@ def lights_of(lights: Iterable[vtkLight], camera: vtkCamera | None) -> Iterator[
                 color=color,
             )
         elif any(toward):
-            yield Light(direction=toward, intensity=intensity, color=color)
+            yield Light(direction=toward, intensity=intensity, color=color, follows_view=follows)
         else:
             _check.warn(
                 f"a light at {position} is left out, because its focal point is its position and "

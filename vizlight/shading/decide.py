@@ -9,7 +9,7 @@ import numpy as np
 
 from vizlight import _check
 from vizlight.model import brightness, kernels
-from vizlight.scene import Scene
+from vizlight.scene import Scene, View
 from vizlight.shading import compiled
 from vizlight.shading.inputs import Layout
 from vizlight.shading.options import ShadingOptions, accepts
@@ -77,7 +77,7 @@ def plan(
     TypeError
         If the scene is not a :class:`vizlight.Scene`, or a keyword is unknown.
     ValueError
-        If the vectors of the scene do not have n components, a view is needed and missing, or an
+        If the vectors of the scene do not have n components, a depth cue has no view, or an
         option does not fit.
     """
     n = _check.integer("n", n, low=2, high=int(_check.LARGEST))
@@ -113,15 +113,15 @@ def decide(
     _check_scene(scene, layout.n)
     n, surface = layout.n, layout.k is None
     k = n - 1 if layout.k is None else layout.k
-    scene, diffuse, specular = _needed(scene, layout, options)
-    compensate = options.compensate and options.model != "cylinder"
+    unseen = scene.view is None
+    scene, diffuse, specular = _needed(scene, layout)
     return Plan(
         n=n,
         k=k,
         dtype=kind,
         scene=scene,
         options=options,
-        exponent=brightness.exponent(k, n) if compensate else 1.0,
+        exponent=1.0 if options.model == "cylinder" else _exponent(options, k, n),
         model=options.model,
         highlights=_highlights(scene, options.model),
         surface=surface,
@@ -129,7 +129,9 @@ def decide(
         conditioned=bool(options.conditioned and layout.normals and not surface),
         base=layout.base,
         base_exponent=(
-            brightness.exponent(layout.base, n) if layout.base and options.compensate else 1.0
+            brightness.exponent(layout.base, n)
+            if layout.base and options.exponent == "compensated"
+            else 1.0
         ),
         shadowed=layout.shadowed,
         dimmed=layout.dimmed and (diffuse or specular),
@@ -137,6 +139,7 @@ def decide(
         fur=layout.fur if diffuse or specular else 0.0,
         diffuse=diffuse,
         specular=specular,
+        unseen=unseen,
     )
 
 
@@ -166,14 +169,24 @@ def _half(scene: Scene, index: int) -> Vector | None:
     return None if size < 1e-6 else tuple((both / size).tolist())
 
 
-def _needed(scene: Scene, layout: Layout, options: ShadingOptions) -> tuple[Scene, bool, bool]:
-    """Return the scene with the lights that have an effect, and which terms they need."""
+def _needed(scene: Scene, layout: Layout) -> tuple[Scene, bool, bool]:
+    """Return the scene with a view and the lights that have an effect, and the terms they need."""
+    if scene.view is None and scene.depth_cue is not None:
+        expected, remedy = "a View, which the depth cue needs", "pass view= to the Scene"
+        raise ValueError(_check.message("view", expected, None, remedy))
     lights = tuple(light for light in scene.lights if light.intensity > 0)
-    specular = bool(scene.material.specular > 0 and lights)
+    specular = bool(scene.material.specular > 0 and lights and scene.view is not None)
     diffuse = bool(scene.material.diffuse > 0 and lights)
-    _check_view(scene, layout, options, diffuse=diffuse, specular=specular)
-    fixed = tuple(light.seen_from(scene.view) for light in lights) if diffuse or specular else ()
-    return scene.replace(lights=fixed), diffuse, specular
+    view = View.isometric(layout.n) if scene.view is None else scene.view
+    fixed = tuple(light.seen_from(view) for light in lights) if diffuse or specular else ()
+    return scene.replace(lights=fixed, view=view), diffuse, specular
+
+
+def _exponent(options: ShadingOptions, k: int, n: int) -> float:
+    """Return the exponent of the diffuse term of a k-manifold in n-space."""
+    if isinstance(options.exponent, str):
+        return brightness.exponent(k, n)
+    return options.exponent
 
 
 def _precision(dtype: DTypeLike) -> np.dtype[np.floating]:
@@ -227,23 +240,3 @@ def _check_scene(scene: Scene, n: int) -> None:
     cue = scene.depth_cue
     if cue is not None and (cue.front is None or cue.back is None):
         raise ValueError(_check.message("depth_cue", "front= and back=", cue))
-
-
-def _check_view(
-    scene: Scene, layout: Layout, options: ShadingOptions, *, diffuse: bool, specular: bool
-) -> None:
-    """Check that there is a view where a term needs one."""
-    if scene.view is not None:
-        return
-    needs = {
-        "specular term": specular,
-        "fur": bool(layout.fur and diffuse),
-        "cylinder's visible half": options.model == "cylinder" and diffuse,
-        "depth cue": scene.depth_cue is not None,
-    }
-    for what, needed in needs.items():
-        if needed:
-            remedy = "pass view= to the Scene"
-            remedy += ", or Material(specular=0)" if specular else ""
-            expected = f"a View, which the {what} needs"
-            raise ValueError(_check.message("view", expected, None, remedy))

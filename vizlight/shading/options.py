@@ -26,8 +26,11 @@ if TYPE_CHECKING:
 
 Model = Literal["phong", "blinn", "cylinder"]
 Precision = Literal["float32", "float64"]
+#: Limits of a given exponent of the diffuse term: beyond them a picture has one brightness.
+LEAST_EXPONENT, LARGEST_EXPONENT = 1e-6, 1e6
 #: Largest number of voxels along a side of a bundle's grid.
 FINEST_GRID = 1024
+Exponent: TypeAlias = float | Literal["compensated"]
 FeatureAngle: TypeAlias = float | Literal["auto"] | None
 Facing = Literal["auto", "eye", "outward", "as given"]
 
@@ -112,7 +115,7 @@ class ShadingKeywords(TypedDict, total=False):
     """The fields of :class:`ShadingOptions` as keyword arguments."""
 
     model: Model
-    compensate: bool
+    exponent: Exponent
     conditioned: bool | str | None
     components: bool
     precision: Precision | None
@@ -139,9 +142,11 @@ class ShadingOptions:
 
     Parameters
     ----------
-    compensate : bool, default: True
-        Whether the diffuse term has the exponent p(k, n), which gives lines the contrast of a
-        surface (Banks 5), in place of 1. It has no effect on a cylinder.
+    exponent : float or "compensated"
+        Exponent of the diffuse term, above 0 and up to 1e6. ``"compensated"`` is p(k, n), which
+        gives lines the contrast of a surface (Banks 5); 1 is the plain law; under lamps of several
+        colours in the picture plane 2 makes hue a code of direction. It has no effect on a
+        cylinder.
     model : {"phong", "blinn", "cylinder"}
         Reflection model of the highlight. ``"cylinder"``, for lines in 3-space, is the exact light
         of a thin cylinder, diffuse and specular (Blinn's), by which the others are measured. As a
@@ -162,7 +167,7 @@ class ShadingOptions:
     """
 
     model: Model = "phong"
-    compensate: bool = True
+    exponent: Exponent = "compensated"
     conditioned: bool | str | None = True
     components: bool = False
     precision: Precision | None = None
@@ -175,7 +180,7 @@ class ShadingOptions:
         if conditioned is not None and not isinstance(conditioned, str):
             names = "True, False or the name of a point array"
             conditioned = _check.boolean("conditioned", conditioned, expected=names)
-        _check.set_fields(self, conditioned=conditioned)
+        _check.set_fields(self, exponent=_exponent(self.exponent), conditioned=conditioned)
         _check.flags(self)
 
     def for_surface(self) -> ShadingOptions:
@@ -293,15 +298,18 @@ def check_sides(facing: object, feature_angle: object) -> None:
         _check.number("feature_angle", feature_angle, low=0.0, high=180.0)
 
 
+def _exponent(value: object) -> Exponent:
+    """Return an exponent of the diffuse term that has been checked."""
+    if isinstance(value, str) and value == "compensated":
+        return "compensated"
+    if isinstance(value, str):
+        expected = "a number above 0, or 'compensated'"
+        raise ValueError(_check.message("exponent", expected, repr(value)))
+    return _check.number("exponent", value, low=LEAST_EXPONENT, high=LARGEST_EXPONENT)
+
+
 def _is_auto(value: object) -> bool:
     return isinstance(value, str) and value == "auto"
-
-
-#: A highlight needs an eye, which only the picture knows, so filters have no default scene.
-NO_SCENE = (
-    "pass Scene(view=View(direction=(1, 1, 1))), lit by a headlight, or show the mesh by "
-    "mesh.vizlight.plot(), which takes lights and eye from its window"
-)
 
 
 def documented(kind: type) -> dict[str, str]:
@@ -344,8 +352,6 @@ def accepts(
         texts = {name: text for name, text in documented(kind).items() if name in fields}
         known = [*(p.name for p in own), *texts]
 
-        places = [p.name for p in own if p.default is p.empty and p.kind is not p.KEYWORD_ONLY]
-        scene = places.index("scene") if "scene" in places else None
         required = {name for name in texts if fields[name].default is dataclasses.MISSING}
 
         @functools.wraps(function)
@@ -357,8 +363,6 @@ def accepts(
                 if name not in known:
                     owner = function.__qualname__.removesuffix(".__init__")
                     raise TypeError(unknown_option(owner.rpartition(".")[2], name, known))
-            if scene is not None and not _is_given(scene, arguments, keywords):
-                raise TypeError(_check.message("scene", "a vizlight.Scene", None, NO_SCENE))
             for name in required - keywords.keys():
                 raise TypeError(_check.message(name, f"a value for {function.__name__}", "none"))
             return function(*arguments, **keywords)
@@ -381,12 +385,6 @@ def accepts(
         return method
 
     return decorate
-
-
-def _is_given(place: int, arguments: tuple[object, ...], keywords: Mapping[str, object]) -> bool:
-    """Return whether there is a scene, as a positional argument or as a keyword."""
-    given = arguments[place] if len(arguments) > place else keywords.get("scene")
-    return given is not None
 
 
 def _doc(function: Callable[..., object]) -> str:

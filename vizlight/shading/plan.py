@@ -49,7 +49,7 @@ class Plan:
     dtype : numpy.dtype
         Precision of the work and of the result.
     scene : Scene
-        Scene with headlights fixed, without the lights that have no effect.
+        Scene with a view, lights that follow it fixed, and without lights that have no effect.
     options : ShadingOptions
         Options that were asked for.
     exponent : float
@@ -77,6 +77,9 @@ class Plan:
         Density of the fur that light passes on its way in and out, 0 for none.
     diffuse, specular : bool
         Whether the term is computed.
+    unseen : bool
+        Whether the scene has no view: there is no highlight, and what else depends on the eye is
+        as in :meth:`vizlight.View.isometric`.
     compiled : bool
         Whether compiled code has lit the points (extra ``fast``).
     code : str
@@ -102,6 +105,7 @@ class Plan:
     fur: float
     diffuse: bool
     specular: bool
+    unseen: bool = False
     compiled: bool = False
     code: str = ""
 
@@ -165,6 +169,9 @@ class Plan:
         )
 
 
+_ISOMETRIC = "eye: the scene has no view, so it is toward (1, ..., 1), at infinity"
+
+
 class _Words:
     """Lines about what is computed and what is skipped."""
 
@@ -183,6 +190,8 @@ def _why_not(plan: Plan, term: str) -> str:
     """Return why the diffuse or the specular term is skipped."""
     if getattr(plan.scene.material, term) == 0:
         return f"material.{term} is 0"
+    if plan.unseen and plan.scene.lights:
+        return "the scene has no view; pass view= to the Scene"
     return "no light has an intensity above 0"
 
 
@@ -224,9 +233,10 @@ def _diffuse(plan: Plan, words: _Words) -> None:
 def _specular(plan: Plan, words: _Words) -> None:
     view = plan.scene.view
     if not plan.specular or view is None:
-        unseen = None if plan.needs_eye else "eye: no term of the light depends on the view"
+        unneeded = None if plan.needs_eye else "eye: no term of the light depends on the view"
+        words.add(_ISOMETRIC if plan.unseen and plan.needs_eye else None)
         words.add(None, f"specular: {_why_not(plan, 'specular')}")
-        words.add(None, unseen)
+        words.add(None, unneeded)
         return
     _highlights(plan, words)
     if view.parallel:

@@ -12,10 +12,12 @@ import operator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
+from vizlight.scene import View
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from vizlight.scene import DepthCue, Light, Scene, View
+    from vizlight.scene import DepthCue, Light, Scene
 
     #: Number of an oracle's own type, which is float in the package.
     Real: TypeAlias = float
@@ -113,8 +115,7 @@ class Oracle:
         transmittance: Vector | None = None,
         occlusion: float = 1.0,
         model: str = "phong",
-        compensate: bool = True,
-        exponent: float | None = None,
+        exponent: float | str = "compensated",
         conditioned: bool = True,
         two_sided: bool = False,
         fur: float = 0.0,
@@ -132,10 +133,8 @@ class Oracle:
             Normal of any length.
         scene : Scene
             Scene whose depth cue, if it has one, has both ends.
-        base_tangents, fur_height, shadow, transmittance, occlusion, model, compensate, conditioned, two_sided, fur
+        base_tangents, fur_height, shadow, transmittance, occlusion, model, exponent, conditioned, two_sided, fur
             Options of :func:`vizlight.shading.engine.shade`, for one point.
-        exponent : float, optional
-            Exponent of the diffuse term, in place of that of ``compensate``.
         apart : float
             Share of a tangent's length beyond which it is independent of those before it.
 
@@ -150,25 +149,26 @@ class Oracle:
             dark = self.number(math.nan)
             return Lit(dark, (dark,) * (3 if scene.colored else 0), dark, dark, dark)
         frame, base, up = frames
-        if exponent is None:
-            exponent = self._power(len(frame) or n - 1, n, compensate)
+        # Without a view the eye is along (1, ..., 1), and there is no highlight.
+        eye = View.isometric(n) if view is None else view
         place = _Place(
             normal=up[0] if up else None, frame=frame, base=base,
-            wo=None if view is None else self.toward(view, at)[0], exponent=exponent,
-            base_exponent=self._power(len(base), n, compensate),
+            wo=self.toward(eye, at)[0], exponent=self._power(len(frame) or n - 1, n, exponent),
+            base_exponent=self._power(len(base), n, exponent if isinstance(exponent, str) else 1),
             shininess=scene.material.shininess, model=model, conditioned=conditioned,
             two_sided=two_sided, fur=fur, fur_height=fur_height,
         )  # fmt: skip
         parts: list[tuple[Light, Real, Real]] = []
         for i, light in enumerate(light for light in scene.lights if light.intensity > 0):
-            wi, distance = self.toward(light.seen_from(view), at)
+            wi, distance = self.toward(light.seen_from(eye), at)
             if wi is not None:
                 scale = self._arriving(wi, distance, light, place)
                 if transmittance is not None:
                     scale *= self.number(transmittance[i])
                 passed = None if shadow is None else self.number(shadow[i])
                 diffuse, specular = self._reflected(wi, passed, place)
-                parts.append((light, scale * diffuse, scale * specular))
+                seen = 0.0 if view is None else 1.0
+                parts.append((light, scale * diffuse, scale * seen * specular))
         return self._sum(at, scene, parts, self.number(occlusion))
 
     def _frames(
@@ -185,8 +185,10 @@ class Oracle:
         whole = list(map(len, made)) == list(map(len, given))
         return made if whole and (made[0] or made[2]) else None
 
-    def _power(self, k: int, n: int, compensate: bool) -> Real:
-        return self.exponent(k, n) if compensate and k else self.number(1.0)
+    def _power(self, k: int, n: int, exponent: float | str) -> Real:
+        if isinstance(exponent, str):
+            return self.exponent(k, n) if k else self.number(1.0)
+        return self.number(exponent)
 
     def _arriving(self, wi: Vector, distance: Real | None, light: Light, place: _Place) -> Real:
         """Return the intensity after distance, fur and a base's diffuse term."""

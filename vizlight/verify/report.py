@@ -511,7 +511,7 @@ def _reference(
         transmittance=(None if given.transmittance is None else numbers(given.transmittance, own)),
         occlusion=1.0 if given.occlusion is None else numbers(given.occlusion, own)[0],
         model=options.model,
-        compensate=options.compensate,
+        exponent=options.exponent,
         conditioned=bool(options.conditioned),
         two_sided=given.two_sided,
         fur=given.fur,

@@ -17,6 +17,7 @@ from vizlight import _check
 from vizlight.reading.cells import GHOSTS, as_vtk, check_whole
 from vizlight.reading.inputs import Part, part_of, uses_normals
 from vizlight.scene import Scene
+from vizlight.scene.scene import as_scene
 from vizlight.shading import engine
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import LightOptions, accepts, documented
@@ -65,7 +66,8 @@ class Illuminate(VTKPythonAlgorithmBase):
     Parameters
     ----------
     scene : Scene, optional
-        Lights, material and view, in the unit of the data. A depth cue has both ends.
+        Lights, material and view, in the unit of the data; ``Scene()`` until one is set. A depth
+        cue has both ends.
     **options
         Properties of the filter, which are options of :func:`vizlight.illuminate`. Arrays are
         given by name.
@@ -117,7 +119,7 @@ class Illuminate(VTKPythonAlgorithmBase):
     conditioned = _Option()
     average_cells = _Option()
     model = _Option()
-    compensate = _Option()
+    exponent = _Option()
     components = _Option()
     precision = _Option()
     name = _Option()
@@ -220,9 +222,7 @@ class Illuminate(VTKPythonAlgorithmBase):
         self, data: vtkDataSet, pieces: int
     ) -> tuple[dict[str, NDArray[np.generic]], dict[str, object]]:
         """Return the arrays that a dataset gets, by name, and their record."""
-        scene = self._scene
-        if scene is None:
-            raise ValueError(_check.message("scene", "a vizlight.Scene", None, "set it first"))
+        scene = as_scene(self._scene)
         check_whole(data, "input")
         part = self._part(data, scene, pieces)
         shading = engine.run(part.inputs, scene, part.options)

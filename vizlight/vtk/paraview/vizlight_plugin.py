@@ -16,7 +16,7 @@ except ImportError as error:
 
 FACINGS = ("eye", "auto", "outward", "as given")
 MODELS = ("phong", "blinn", "cylinder")
-LIGHTS = ("direction", "position", "headlight")
+LIGHTS = ("direction", "position", "headlight", "beside the eye")
 #: Visibility of what few set.
 RARE = "advanced"
 BOOLEAN = '<BooleanDomain name="bool"/>'
@@ -68,7 +68,7 @@ PROPERTIES = [
     prop("Int", "Conditioned", 0, "Tangents have the self-shadow of their surface.", BOOLEAN),
     prop("Int", "Facing", 0, "Side of the surface that is lit.", entries(*FACINGS)),
     prop("Int", "Model", 0, "Reflection model of the highlight.", entries(*MODELS)),
-    prop("Int", "LightType", 0, "What Light is; a headlight is at the eye.", entries(*LIGHTS)),
+    prop("Int", "LightType", 0, "What Light is; beside the eye: x right, y up.", entries(*LIGHTS)),
     prop("Double", "Light", (1, 1, 1), "Direction toward the light, or its position."),
     prop("Double", "Intensity", 1, "Intensity of the light.", at_least(0)),
     prop("Double", "Eye", (0, 0, 1), "Position of the eye, or the direction toward it."),
@@ -78,7 +78,7 @@ PROPERTIES = [
     prop("Double", "Specular", 0.4, "Specular coefficient.", at_least(0)),
     prop("Double", "Shininess", 20, "Exponent of the highlight.", at_least(0)),
     prop("Double", "Color", (1, 1, 1), "Colour; unless white it gives an array rgb.", UNIT),
-    prop("Int", "Compensate", 1, "Lines have the contrast of a surface.", BOOLEAN, shown=RARE),
+    prop("Double", "Exponent", 0, "Diffuse exponent, 0: automatic.", at_least(0), shown=RARE),
     prop("Int", "Terms", 0, "The three terms are arrays of their own.", BOOLEAN, shown=RARE),
 ]  # fmt: skip
 NAMES = re.findall(r'command="Put(\w+)"', "".join(PROPERTIES))
@@ -125,13 +125,16 @@ class VizlightIlluminate(Illuminate):
 
     def apply(
         self, *, Tangents, Conditioned, Facing, Model, LightType, Light, Intensity, Eye,
-        ParallelProjection, Ambient, Diffuse, Specular, Shininess, Color, Compensate, Terms,
+        ParallelProjection, Ambient, Diffuse, Specular, Shininess, Color, Exponent, Terms,
     ):  # fmt: skip
         """Set scene and options."""
         eye = {"direction" if ParallelProjection else "position": Eye}
         kind = LIGHTS[LightType]
-        at = {} if kind == "headlight" else {kind: Light}
-        light = made("Light", scene.Light, intensity=Intensity, follows_view=not at, **at)
+        at = {
+            "headlight": {"follows_view": True},
+            "beside the eye": {"direction": Light, "follows_view": True},
+        }.get(kind, {kind: Light})
+        light = made("Light", scene.Light, intensity=Intensity, **at)
         material = made(
             "Material", scene.Material, ambient=Ambient, diffuse=Diffuse, specular=Specular,
             shininess=Shininess, color=None if Color == (1, 1, 1) else Color,
@@ -142,5 +145,5 @@ class VizlightIlluminate(Illuminate):
         tangents = Tangents[-1]
         self.tangents = None if tangents in ("", "None") else tangents
         self.conditioned, self.facing = bool(Conditioned), FACINGS[Facing]
-        self.model, self.compensate = MODELS[Model], bool(Compensate)
+        self.model, self.exponent = MODELS[Model], Exponent or "compensated"
         self.components = bool(Terms)
