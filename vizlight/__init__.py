@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from vizlight._version import __version__ as __version__
 
 if TYPE_CHECKING:
+    from vizlight import maps as maps
     from vizlight import pieces as pieces
     from vizlight import vtk as vtk
     from vizlight.data import example_path, load_example
@@ -91,6 +92,7 @@ _MODULES = {
     "files": "files",
     "filters": "filters",
     "geometry": "geometry",
+    "maps": "maps",
     "model": "model",
     "movie": "pictures.movie",
     "paraview": "plotting.paraview",

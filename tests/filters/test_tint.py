@@ -9,8 +9,8 @@ import pyvista as pv
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View
-from vizlight.filters.tint import displayable, tint, unlit_colors
-from vizlight.shading import formulas
+from vizlight.filters.tint import tint, unlit_colors
+from vizlight.shading.display import NO_DATA
 
 VIEW = View(direction=(1, 0.3, 0.4))
 SCENE = Scene(lights=Light(direction=(1, 1, 1)), view=VIEW)
@@ -59,6 +59,7 @@ CONVENTIONS = {
 def drawn_by_pyvista(mesh, name, options):
     """Return the bytes that PyVista's own mapper gives to the points."""
     plotter = pv.Plotter(off_screen=True)
+    options = {"cmap": "vizlight.even"} | options
     actor = plotter.add_mesh(mesh.copy(), scalars=name, interpolate_before_map=False, **options)
     mapper = actor.mapper
     values = np.array(mapper.dataset.point_data[mapper.array_name], dtype=float)
@@ -78,6 +79,30 @@ def test_colours_are_those_of_pyvista(case):
     np.testing.assert_array_equal(tinted["rgb"], drawn_by_pyvista(mesh, name, options))
 
 
+def test_the_map_is_the_one_of_data_unless_a_map_or_a_theme_is_chosen(monkeypatch):
+    lit = vizlight.illuminate(with_holes(), WHITE)
+
+    def colours(**options):
+        return tint(lit, "height", **options)["rgb"]
+
+    even = colours(cmap=vizlight.maps.even)
+    np.testing.assert_array_equal(colours(), even)
+    assert not np.array_equal(colours(cmap="viridis"), even)
+    np.testing.assert_array_equal(even[::7], 128)
+    monkeypatch.setattr(pv.global_theme, "cmap", "hot")
+    np.testing.assert_array_equal(colours(), colours(cmap="hot"))
+    monkeypatch.setattr(pv.global_theme, "nan_color", "red")
+    assert {tuple(c) for c in colours()[::7]} == {(255, 0, 0)}
+
+
+def test_bytes_are_colours():
+    mesh = ball()
+    mesh["own"] = np.arange(3 * mesh.n_points, dtype=np.uint8).reshape(-1, 3)
+    lit = vizlight.illuminate(mesh, WHITE)
+    np.testing.assert_array_equal(tint(lit, "own")["rgb"], mesh["own"])
+    np.testing.assert_array_equal(tint(lit, np.array(mesh["own"]))["rgb"], mesh["own"])
+
+
 def test_categories_have_a_colour_each():
     mesh = ball()
     tinted = tint(vizlight.illuminate(mesh, WHITE), "zone", categories=True, cmap="tab10")
@@ -85,39 +110,50 @@ def test_categories_have_a_colour_each():
     np.testing.assert_array_equal(tinted["rgb"], four[mesh["zone"]])
 
 
+MATERIALS = {
+    "dark": Material(ambient=0.1, diffuse=0.5, specular=0.9),
+    "no ambient": Material(ambient=0, diffuse=0.9, specular=0.2),
+    "matte": Material(ambient=0.35, diffuse=0.6, specular=0),
+    "bright": Material(ambient=0.4, diffuse=1.2, specular=1),
+}
+
+
 @pytest.mark.parametrize("components", [False, True])
-def test_colour_times_light(components):
+@pytest.mark.parametrize("material", MATERIALS)
+def test_colour_times_light(components, material):
+    """The law itself: the material's highlight is left out, its ambient light is 0.3 or more."""
     mesh = ball()
-    terms = vizlight.illuminate(mesh, SCENE, components=True)
-    lit = terms if components else vizlight.illuminate(mesh, SCENE)
+    material = MATERIALS[material]
+    lit = vizlight.illuminate(mesh, SCENE.replace(material=material), components=components)
     got = tint(lit, "height", cmap="viridis", clim=(-0.5, 0.5))["rgb"]
     colors = mpl.colormaps["viridis"]((mesh["height"] + 0.5).astype(float))[:, :3]
-    light = (terms["ambient"] + terms["diffuse"])[:, None]
-    expected = 255 * displayable(colors * light + terms["specular"][:, None])
+    cosine = np.maximum(np.asarray(mesh["Normals"], float) @ np.full(3, 3**-0.5), 0)
+    light = np.minimum(max(material.ambient, 0.3) + material.diffuse * cosine, 1)
     # One step of the map, where Matplotlib and VTK round to different sides.
-    assert np.abs(got - expected).max() < 3
-    assert np.abs(got - expected).mean() < 0.6
+    assert np.abs(got - 255 * colors * light[:, None]).max() < 3
+    assert np.abs(got - 255 * colors * light[:, None]).mean() < 0.6
 
 
-def test_coloured_lights_and_cue_are_those_of_the_engine():
-    """Light on a constant colour is the array rgb of a material of that colour."""
+def test_coloured_lights_and_cue_count_by_their_luma():
+    """Light on a colour is a share of it, that of the luma of light on white, in 0.3 to 1."""
     scene = Scene(
         lights=[
             Light(direction=(1, 1, 1), color=(1, 0.7, 0.4)),
             Light(position=(0, 2, 1), intensity=0.4, color="skyblue"),
         ],
-        material=Material(specular_color=(0.9, 1, 0.8)),
+        material=Material(ambient=0.3, specular_color=(0.9, 1, 0.8)),
         view=VIEW,
         ambient_color=(0.8, 0.9, 1),
         depth_cue=DepthCue(back_scale=0.4, cue=0.3, color=(0.2, 0.3, 0.9)),
     )
     mesh = ball()
     mesh["same"] = np.zeros(mesh.n_points)
-    own = (51 / 255, 153 / 255, 204 / 255)
-    painted = scene.replace(material=Material(color=own, specular_color=(0.9, 1, 0.8)))
-    expected = vizlight.illuminate(mesh, painted)["rgb"]
+    matte = scene.replace(material=Material(ambient=0.3, specular=0))
+    light = vizlight.illuminate(mesh, matte)["rgb"] @ (0.2126, 0.7152, 0.0722)
+    expected = np.clip(light, 0.3, 1)[:, None] * (51, 153, 204)
     got = tint(vizlight.illuminate(mesh, scene), "same", cmap=["#3399cc"] * 2, clim=(-1, 1))["rgb"]
-    assert np.abs(got - 255 * displayable(expected)).max() <= 0.5 + 1e-3
+    assert np.abs(got - expected).max() <= 0.5 + 1e-3
+    assert light.min() < 0.3 < 0.6 < light.max()
 
 
 def test_conditioned_tangents_and_blocks():
@@ -171,14 +207,25 @@ def test_result_replaces_the_one_before_and_no_array_of_the_user():
     assert "shade" in tint(mine, "height", name="shade").point_data
 
 
-def test_points_without_light_have_the_ambient_one():
+@pytest.mark.parametrize("components", [False, True])
+def test_points_without_light_have_the_colour_of_no_data(components):
     mesh = ball()
     mesh["V"] = np.array(mesh.points)
     mesh["V"][:10] = 0
     with pytest.warns(UserWarning, match="10 of 530"):
-        lit = vizlight.illuminate(mesh, SCENE, tangents="V")
-    tinted = tint(lit, "height", cmap=["white", "white"])
-    assert set(np.unique(tinted["rgb"][:10])) == {26}
+        lit = vizlight.illuminate(mesh, SCENE, tangents="V", components=components)
+    got = tint(lit, "height", cmap=["white", "white"])["rgb"]
+    np.testing.assert_array_equal(got[:10], np.rint(np.multiply(NO_DATA, 255))[None].repeat(10, 0))
+    assert not np.any(got[10:] == 128)
+
+
+def test_the_result_shares_all_else():
+    lit = vizlight.illuminate(ball(), SCENE)
+    tinted = tint(lit, "height")
+    assert np.shares_memory(tinted.points, lit.points)
+    assert np.shares_memory(tinted["luminance"], lit["luminance"])
+    assert "rgb" not in lit.point_data
+    assert lit.point_data.active_scalars_name == "luminance"
 
 
 def test_empty_mesh():
@@ -221,77 +268,3 @@ def test_bad_input():
         tint(moved, "height")
     with pytest.raises(ValueError, match="expected the result of tint"):
         unlit_colors(vizlight.illuminate(mesh, SCENE, name="rgb"))
-
-
-def in_oklab(rgb):
-    """Return colours of sRGB, which may exceed 1, in the space Oklab of Ottosson (2020)."""
-    linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
-    cones = linear @ np.transpose([
-        [0.4122214708, 0.5363325363, 0.0514459929],
-        [0.2119034982, 0.6806995451, 0.1073969566],
-        [0.0883024619, 0.2817188376, 0.6299787005],
-    ])  # fmt: skip
-    return np.cbrt(cones) @ np.transpose([
-        [0.2104542553, 0.7936177850, -0.0040720468],
-        [1.9779984951, -2.4285922050, 0.4505937099],
-        [0.0259040371, 0.7827717662, -0.8086757660],
-    ])  # fmt: skip
-
-
-def test_colours_above_white_keep_hue_and_luma(random):
-    rgb = random.uniform(0, 1.8, (4000, 3))
-    got = displayable(rgb)
-    inside = rgb.max(axis=1) <= 1
-    np.testing.assert_array_equal(got[inside], rgb[inside])
-    luma, white = rgb @ formulas.LUMA, rgb @ formulas.LUMA >= 1
-    np.testing.assert_array_equal(got[white], 1)
-    mixed = ~inside & ~white
-    np.testing.assert_allclose(got[mixed].max(axis=1), 1, atol=1e-12)
-    np.testing.assert_allclose((got @ formulas.LUMA)[mixed], luma[mixed], atol=1e-12)
-    hues = [rgb - rgb.mean(axis=1, keepdims=True) for rgb in (rgb[mixed], got[mixed])]
-    np.testing.assert_allclose(np.cross(*hues), 0, atol=1e-12)
-    assert np.all(np.einsum("ij,ij->i", *hues) >= 0)
-
-
-def test_hue_of_bright_colours_is_that_of_the_eye(random):
-    """The figures of the docstring: hue and lightness before and after, in Oklab."""
-    maps = ("viridis", "turbo", "coolwarm", "plasma")
-    names = ("tan", "orange", "tomato", "royalblue")
-    colors = [mpl.colormaps[name](random.uniform(0, 1, 2000))[:, :3] for name in maps]
-    colors += [np.tile(mpl.colors.to_rgb(name), (2000, 1)) for name in names]
-    rgb = np.concatenate(colors)
-    rgb = rgb * random.uniform(0.4, 1.4, (len(rgb), 1)) + random.uniform(0, 0.6, (len(rgb), 1))
-    rgb = rgb[rgb.max(axis=1) > 1]
-
-    def changes(shown):
-        a, b = in_oklab(rgb), in_oklab(shown)
-        hues = [x[:, 1] + 1j * x[:, 2] for x in (a, b)]
-        seen = np.minimum(*np.abs(hues)) > 0.03
-        degrees = np.degrees(np.abs(np.angle(hues[0] * np.conj(hues[1]))))[seen]
-        return degrees.mean(), np.abs(np.minimum(a[:, 0], 1) - b[:, 0]).mean()
-
-    ours, clipped = changes(displayable(rgb)), changes(np.clip(rgb, 0, 1))
-    scaled = changes(rgb / rgb.max(axis=1, keepdims=True))
-    stated = [(1.7, 0.012), (19, 0.034), (0.07, 0.115)]
-    np.testing.assert_allclose(np.array([ours, clipped, scaled]) / stated, 1, atol=0.3)
-
-
-def test_colours_are_brought_into_range_in_any_layout_and_however_bright():
-    rgb = np.random.default_rng(0).random((4, 5, 3)) * 3
-    expected = displayable(rgb)
-    assert expected.max() == 1
-    np.testing.assert_array_equal(displayable(np.asfortranarray(rgb)), expected)
-    turned = displayable(rgb.transpose(1, 0, 2))
-    np.testing.assert_array_equal(turned, expected.transpose(1, 0, 2))
-    np.testing.assert_array_equal(displayable([[np.inf, 1, 0], [0, 0, 1e300]]), 1)
-    assert np.isnan(displayable([np.nan, 2, 0])).all()
-    for white in (0, -1, np.nan):
-        with pytest.raises(ValueError, match="white: expected"):
-            displayable(rgb, white=white)
-
-
-def test_colours_to_bring_into_range_are_of_three_components():
-    with pytest.raises(ValueError, match=r"rgb: expected an array of shape"):
-        displayable([1.0, 2.0])
-    with pytest.raises(TypeError, match="rgb"):
-        displayable("red")

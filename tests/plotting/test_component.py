@@ -12,11 +12,11 @@ import pyvista as pv
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View
-from vizlight.filters.tint import displayable
 from vizlight.geometry import manifolds
 from vizlight.geometry.lines import bundle
 from vizlight.plotting import component
 from vizlight.plotting.live import COLORS
+from vizlight.shading.display import displayable
 
 pytestmark = pytest.mark.opengl
 

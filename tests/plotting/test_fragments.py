@@ -116,8 +116,8 @@ BRIGHT = Material(ambient=0.4, diffuse=1.0, specular=0.5, shininess=3)
 
 
 @pytest.mark.parametrize("cmap", ["turbo", "coolwarm"])
-def test_colours_above_white_are_the_same_baked_and_live(cmap, tmp_path):
-    """One rule for light beyond white: tint, both kinds of live light, and pictures."""
+def test_colours_of_data_in_bright_light_are_the_same_baked_and_live(cmap, tmp_path):
+    """One rule for light on data: tint, both kinds of live light, and pictures."""
     mesh = swatches()
     camera = vizlight.render.camera_on(mesh, (0, 0, 1))
     camera.parallel_projection = True
@@ -140,7 +140,7 @@ def test_colours_above_white_are_the_same_baked_and_live(cmap, tmp_path):
     )  # fmt: skip
     found.append(np.array(pv.read(path).active_scalars).reshape(240, 320, -1)[::-1, :, :3])
     expected = lit["rgb"][::4].astype(int)
-    assert np.unique(expected[expected.max(axis=1) == 255], axis=0).shape[0] >= 10
+    assert len(np.unique(expected, axis=0)) > 40
     for picture in found:
         shown = np.unique(picture.reshape(-1, 3).astype(int), axis=0)
         apart = np.abs(shown[:, None] - expected).max(axis=-1)

@@ -69,9 +69,11 @@ def test_every_formula_is_written(name):
         ("attenuation", (2.0, 0.5, 0.1, 0.01)),
         ("depth_scale", (4.0, 2.0, 7.0, 1.0, 0.2)),
         ("smooth_step", (0.3,)),
-        ("saturation_kept", (0.7, 1.3)),
-        ("saturation_kept", (1.1, 1.3)),
-        ("saturation_kept", (0.7, 0.9)),
+        ("in_range", (0.7, 1.3)),
+        ("in_range", (0.7, 0.9)),
+        ("color_factor", (0.1, 0.3)),
+        ("color_factor", (0.7, 0.3)),
+        ("color_factor", (1.7, 0.3)),
     ],
 )
 def test_written_functions_give_the_numbers_of_the_formulas(name, arguments):

@@ -66,7 +66,7 @@ def test_colours_are_ambient_and_diffuse_light(tmp_path):
 
 
 @pytest.mark.filterwarnings("ignore:lit.glb. ambient and diffuse light only")
-def test_colours_above_white_are_those_of_tint(tmp_path):
+def test_colours_of_data_are_those_of_tint(tmp_path):
     mesh = swatches()
     material = Material(ambient=0.4, diffuse=1.2, specular=0)
     lamp = Light(direction=(0.3, 0.2, 1))
@@ -75,7 +75,7 @@ def test_colours_above_white_are_those_of_tint(tmp_path):
     text, arrays = content(path)
     colors = arrays[text["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"]]
     lit = vizlight.tint(vizlight.illuminate(mesh, scene), "value", cmap="turbo")
-    assert (lit["rgb"].max(axis=1) == 255).sum() > 40
+    assert len(np.unique(lit["rgb"], axis=0)) > 40
     np.testing.assert_allclose(255 * seen(colors), lit["rgb"], atol=1.01)
 
 

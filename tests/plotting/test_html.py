@@ -210,7 +210,7 @@ def test_page_has_the_light_of_the_engine_before_and_after_turning(case, browser
 
 
 @needs_browser
-def test_colours_above_white_are_those_of_tint(browser, tmp_path):
+def test_colours_of_data_in_bright_light_are_those_of_tint(browser, tmp_path):
     mesh = swatches()
     camera = vizlight.render.camera_on(mesh, (0, 0, 1))
     camera.parallel_projection = True
@@ -227,7 +227,7 @@ def test_colours_above_white_are_those_of_tint(browser, tmp_path):
     lit = vizlight.tint(vizlight.illuminate(mesh, seen), "value", cmap="turbo")
     expected = lit["rgb"][::4].astype(int)
     apart = np.abs(shown[:, None] - expected).max(axis=-1)
-    assert (expected.max(axis=1) == 255).sum() > 20
+    assert len(np.unique(expected, axis=0)) > 40
     assert apart.min(axis=0).max() <= 1
 
 

@@ -205,8 +205,11 @@ def test_properties_and_script():
     assert "GetActiveSource()" in own
     assert "ResetCamera" not in own
     assert "ColorBy(display, None)" in own
-    other = made.script("it's.vtp", scalars="Temp")
-    assert "ColorBy(display, ('POINTS', 'Temp'))" in other
+    colored = paraview.shader(scene, tangents="V", conditioned=True, scalars="Temp")
+    other = colored.script("it's.vtp")
+    assert "ColorBy(display, (\"POINTS\", 'Temp'))" in other
+    # The colour of the data is what ParaView multiplied by Ambient and Diffuse.
+    assert "float vizColorGain = 0.833333333;" in colored.shader_replacements
     for text in (own, other):
         compile(text, "script", "exec")
     plain = paraview.shader(scene).properties

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, Any
+import functools
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import pyvista as pv
@@ -11,23 +12,21 @@ import pyvista as pv
 from vizlight import _check
 from vizlight._version import __version__
 from vizlight.filters import lighting, relight
-from vizlight.filters.illuminate import separate_copy
-from vizlight.mesh import blocks, point_arrays, records
-from vizlight.scene import DepthCue, Scene
-from vizlight.shading import formulas
-from vizlight.shading.results import DEFAULT_NAME, part_name
+from vizlight.mesh import blocks, records
+from vizlight.scene import Scene
+from vizlight.shading import display
+from vizlight.shading.results import DEFAULT_NAME, VALID, part_name
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
-    from vizlight._types import Array, ColorLike
+    from vizlight._types import Array, Bools, ColorLike
     from vizlight.mesh.blocks import MeshT
-    from vizlight.shading import engine
+    from vizlight.shading.display import Bytes
     from vizlight.shading.results import Record
 
-    Bytes = NDArray[np.uint8]
     ColorMap = Any
 
 RGB = "rgb"
@@ -63,9 +62,11 @@ def tint(
         ``inplace``.
     scalars : str or array_like, shape (N,) or (N, c), optional
         Point array whose values are coloured, by its name or as an array. Default: the active
-        scalars, if they are not the light. The length of vectors is taken, unless ``component``.
+        scalars, if they are not the light. The length of vectors is taken, unless ``component``;
+        three or four unsigned bytes are colours.
     cmap : str, list, matplotlib colormap or pyvista.LookupTable, optional
-        Colour map, as for ``pyvista.Plotter.add_mesh``. Default: that of PyVista's theme.
+        Colour map, as for ``pyvista.Plotter.add_mesh``. Default: that of PyVista's theme if it was
+        changed, otherwise ``vizlight.maps.even``, which can be read in any light.
     clim : (float, float) or float, optional
         Values at the ends of the colour map; one number stands for itself and its negative.
         Default: smallest and largest value, over all blocks.
@@ -80,8 +81,8 @@ def tint(
     component : int, optional
         Component of vectors that is coloured.
     nan_color, above_color, below_color : colour, optional
-        Colours of NaN and of values beyond ``clim``. Default: that of the theme for NaN, and those
-        at the ends of the map.
+        Colours of NaN and of values beyond ``clim``. Default: mid grey for NaN, unless the theme's
+        was changed, and those at the ends of the map.
     light : str, default: "luminance"
         Name of the light.
     name : str, default: "rgb"
@@ -93,7 +94,8 @@ def tint(
     -------
     pyvista.DataSet or pyvista.MultiBlock
         The mesh with the point array ``rgb`` of three bytes (active scalars), and the field array
-        ``rgb_provenance``, from which :func:`unlit_colors` makes the scalar bar.
+        ``rgb_provenance``, from which :func:`unlit_colors` makes the scalar bar. It shares points,
+        cells and the other arrays with ``lit``.
 
     Raises
     ------
@@ -103,12 +105,14 @@ def tint(
 
     Notes
     -----
-    ``colour (ambient + diffuse) + specular``, brought into range by ``filters.displayable``: the
-    highlight keeps the colour of the light.
-    Lights with a colour, a specular colour and a depth cue count as in the array ``rgb`` of the
-    light; the colours of the data stand for the material's. The light is stored in terms where
-    ``components=True`` was given, else it is computed again from its record, which takes about
-    twice as long as lighting the mesh.
+    ``colour * min(1, max(ambient, 0.3) * ambient light + diffuse)``, and never less than 0.3 of the
+    colour: light keeps the chromaticity of the data, so that values can be read by the scalar bar,
+    and the highlight, which would hide them, is left out. Lights of a colour count by their luma;
+    the colours of the data stand for the material's. Points without light are mid grey.
+
+    The light is taken from the mesh where it was stored in terms, with ``components=True``, or has
+    no highlight and ``ambient`` of 0.3 or more; else it is computed again from its record, which
+    takes about twice as long as lighting the mesh.
 
     Examples
     --------
@@ -121,7 +125,8 @@ def tint(
     dtype('uint8')
     """
     blocks.check(lit)
-    out = lit if _check.boolean("inplace", inplace) else separate_copy(lit)
+    shared = (block.copy(deep=False) for block in blocks.all_blocks(lit))
+    out = lit if _check.boolean("inplace", inplace) else blocks.like(lit, shared)
     every = list(blocks.named_blocks(out))
     meshes = [block for block, _ in every]
     _check.array_name("name", name)
@@ -130,16 +135,15 @@ def tint(
     component = None if component is None else _check.integer("component", component, low=0)
     values = [values_of(mesh, scalars, component) for mesh in meshes]
     table = color_table(
-        np.concatenate(values) if values else np.zeros(0),
+        values,
         cmap=cmap, clim=clim, n_colors=n_colors, categories=categories, log_scale=log_scale,
         flip_scalars=flip_scalars, nan_color=nan_color, above_color=above_color,
         below_color=below_color,
     )  # fmt: skip
-    factors = _factors_of(out, meshes, light)
     record = _record(table, scalars, light, component)
     made = [
-        times_light(map_colors(table, value)[:, :3], *factor)
-        for value, factor in zip(values, factors, strict=True)
+        display.on_colors(map_colors(table, value, components=3), *own)
+        for value, own in zip(values, _light_of(out, meshes, light), strict=True)
     ]
     for mesh, array in zip(meshes, made, strict=True):
         kept = records.read(mesh, light) or {}
@@ -157,7 +161,7 @@ def _holds_light(meshes: Sequence[pv.DataSet], name: str) -> bool:
 def values_of(
     mesh: pv.DataSet, scalars: str | ArrayLike | None, component: int | None = None
 ) -> NDArray[np.generic]:
-    """Return the values that are coloured, one per point."""
+    """Return the values that are coloured, one per point, or bytes that are colours already."""
     if scalars is None:
         scalars = mesh.point_data.active_scalars_name
         if scalars is None or scalars in records.all_made(mesh):
@@ -179,6 +183,8 @@ def values_of(
             expected = f"{mesh.n_points} rows, one per point"
             raise ValueError(_check.message("scalars", expected, array))
     if array.ndim == 2:
+        if component is None and array.dtype == np.uint8 and array.shape[1] in (3, 4):
+            return array
         if component is None:
             return np.asarray(np.linalg.norm(array.astype(np.float64), axis=1))
         column = _check.integer("component", component, low=0)
@@ -194,7 +200,7 @@ def values_of(
 
 
 def color_table(
-    values: NDArray[np.generic],
+    values: Sequence[NDArray[np.generic]],
     *,
     cmap: ColorMap = None,
     clim: Sequence[float] | float | None = None,
@@ -206,11 +212,11 @@ def color_table(
     above_color: ColorLike | None = None,
     below_color: ColorLike | None = None,
 ) -> pv.LookupTable:
-    """Return the lookup table that PyVista would draw values with."""
-    finite = np.asarray(values, dtype=np.float64)
-    finite = finite[np.isfinite(finite)]
+    """Return the lookup table that PyVista would draw the values of all blocks with."""
+    cmap, nan_color = default_map(cmap), default_nan_color(nan_color)
+    values = [part for part in values if part.ndim == 1]
     if clim is None and not isinstance(cmap, pv.LookupTable):
-        clim = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
+        clim = _range(values)
     if isinstance(clim, int | float):
         clim = (-abs(clim), abs(clim))
     ends = None if clim is None else _check.vector("clim", clim)
@@ -220,12 +226,14 @@ def color_table(
         categories = _check.integer("categories", categories, low=0, high=MOST_COLORS)
     colors = {"nan_color": nan_color, "above_color": above_color, "below_color": below_color}
     known: dict[str, Any] = {name: _known_color(name, color) for name, color in colors.items()}
-    sample = pv.PolyData(np.zeros((max(len(values), 1), 3)))
-    given = np.asarray(values) if len(values) else np.zeros(1)
-    mapper = pv.DataSetMapper(sample)
+    # PyVista looks at values to count categories alone.
+    sample: NDArray[np.generic] = np.zeros(1)
+    if categories is True and any(len(part) for part in values):
+        sample = np.unique(np.concatenate([np.unique(part) for part in values]))
+    mapper = pv.DataSetMapper(pv.PolyData(np.zeros((len(sample), 3))))
     try:
         mapper.set_scalars(
-            given,
+            sample,
             "values",
             n_colors=_check.integer("n_colors", n_colors, low=1, high=MOST_COLORS),
             scalar_bar_args={},
@@ -234,7 +242,7 @@ def color_table(
             cmap=cmap,
             flip_scalars=_check.boolean("flip_scalars", flip_scalars),
             log_scale=_check.boolean("log_scale", log_scale),
-            **known | {"nan_color": known["nan_color"] or pv.global_theme.nan_color},
+            **known,
         )
     except (KeyError, TypeError, ValueError) as error:
         if "n_colors" in str(error):
@@ -245,9 +253,43 @@ def color_table(
     if ends is not None and not isinstance(cmap, pv.LookupTable):
         low, high = ends
         if log_scale and low <= 0:
-            low = float(finite[finite > 0].min(initial=high))
+            low = min((float(np.min(p, where=p > 0, initial=high)) for p in values), default=high)  # type: ignore[operator]
         table.scalar_range = (low, high)
     return table
+
+
+def _range(values: Sequence[NDArray[np.generic]]) -> tuple[float, float]:
+    """Return the smallest and the largest finite value, (0, 1) without any."""
+    ends = []
+    for part in values:
+        pair = (part.min(), part.max()) if len(part) else ()
+        if not np.all(np.isfinite(pair)):
+            finite = part[np.isfinite(part)]
+            pair = (finite.min(), finite.max()) if len(finite) else ()
+        ends += [float(end) for end in pair]
+    return (min(ends), max(ends)) if ends else (0.0, 1.0)
+
+
+def default_map(cmap: ColorMap) -> ColorMap:
+    """Return a colour map, ``vizlight.maps.even`` where neither it nor the theme's is chosen."""
+    if cmap is not None or pv.global_theme.cmap != _own_theme().cmap:
+        return cmap
+    from vizlight.maps import even
+
+    return even
+
+
+def default_nan_color(color: ColorLike | None) -> ColorLike:
+    """Return a colour of NaN: the theme's if it was changed and none is given, else mid grey."""
+    if color is None and pv.global_theme.nan_color != _own_theme().nan_color:
+        return pv.global_theme.nan_color
+    return display.NO_DATA if color is None else color
+
+
+@functools.cache
+def _own_theme() -> pv.themes.Theme:
+    """Return PyVista's theme before anyone changed it."""
+    return pv.themes.Theme()
 
 
 def _known_color(name: str, color: ColorLike | None) -> pv.Color | None:
@@ -262,160 +304,79 @@ def _known_color(name: str, color: ColorLike | None) -> pv.Color | None:
         raise ValueError(_check.message(name, expected, _check.describe(color))) from error
 
 
-def map_colors(table: pv.LookupTable, values: NDArray[np.generic]) -> Bytes:
-    """Return the colours of values as bytes of shape (N, 4)."""
+def map_colors(
+    table: pv.LookupTable, values: NDArray[np.generic], *, components: Literal[3, 4] = 4
+) -> Bytes:
+    """Return the colours of values, or colours as they are, as bytes of 3 or 4 components."""
     if not len(values):
-        return np.zeros((0, 4), np.uint8)
+        return np.zeros((0, components), np.uint8)
+    if values.ndim == 2:
+        opaque = np.full((len(values), 1), 255, np.uint8)
+        return np.hstack([values, opaque])[:, :components].astype(np.uint8)
     plain = np.ascontiguousarray(values)
     if plain.dtype == np.bool_:
         plain = plain.astype(np.uint8)
     table.BuildSpecialColors()
     # By default VTK takes unsigned bytes for colours and does not map them.
-    mapped = table.MapScalars(pv.convert_array(plain), 1, -1, 4)
-    return np.array(pv.convert_array(mapped), np.uint8).reshape(-1, 4)
+    mapped = table.MapScalars(pv.convert_array(plain), 1, -1, components)
+    return np.array(pv.convert_array(mapped), np.uint8).reshape(-1, components)
 
 
-def times_light(colors: Bytes, factor: Array, rest: Array | float) -> Bytes:
-    """Return ``colour factor + rest`` in bytes; colours of any number of components."""
-    product = colors[:, :3] * np.asarray(factor) + 255.0 * np.asarray(rest)
-    out = colors.copy()
-    out[:, :3] = displayable(product, white=255.0) + 0.5
-    return out
-
-
-#: Light that makes any colour white.
-_WHITE = 1e30
-
-
-def displayable(rgb: ArrayLike, /, *, white: float = 1.0) -> Array:
-    """Return colours whose light may exceed white, with the same hue in the range of a screen.
-
-    Live light, pages, glTF files and pictures show colours by the same rule.
-
-    Parameters
-    ----------
-    rgb : array_like, shape (..., 3)
-        Red, green and blue, 0 or more, such as the array ``rgb`` of a lit mesh.
-    white : float, default: 1.0
-        Value of all channels of white.
-
-    Returns
-    -------
-    ndarray, shape (..., 3)
-        Colours with channels up to ``white``. Those without a larger one are equal to the bit; all
-        channels are NaN where a brighter colour has one that is.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If ``rgb`` is not an array of three real components, or ``white`` is not positive.
-
-    Notes
-    -----
-    A colour with a channel above 1 is mixed with the gray of the same luma until that channel is 1.
-    Hue and luma stay and saturation is lost; from a luma of 1 on the colour is white. Over colours
-    of four maps and four names, with light of 0.4 to 1.4 and highlights up to 0.6, the hue of
-    Oklab changes by 1.7 degrees in the mean and its lightness by 0.012. Clipped channels change
-    them by 19 degrees and 0.034, division by the largest channel by 0.1 degrees and 0.115, which
-    makes highlights flat.
-
-    Examples
-    --------
-    >>> from vizlight.filters.tint import displayable
-    >>> displayable([[0.2, 0.5, 0.9], [1.4, 0.5, 0.2]]).round(3)
-    array([[0.2  , 0.5  , 0.9  ],
-           [1.   , 0.593, 0.457]])
-    """
-    colors: Array = np.asarray(_check.reals("rgb", rgb), np.float64)
-    if colors.ndim < 1 or colors.shape[-1] != 3:
-        raise ValueError(_check.message("rgb", "an array of shape (..., 3)", colors))
-    white = _check.positive("white", white)
-    found: Array = np.maximum(colors, 0.0, order="C")
-    rows = found.reshape(-1, 3)
-    largest = np.fmax(np.fmax(rows[:, 0], rows[:, 1]), rows[:, 2])
-    over = np.flatnonzero(largest > white)
-    if len(over):
-        # Whatever is as bright as that is white, and infinite light with it.
-        bright = np.minimum(rows[over] / white, _WHITE)
-        luma = bright @ formulas.LUMA
-        most = np.minimum(largest[over] / white, _WHITE)
-        kept = np.asarray(formulas.saturation_kept(luma, most))[:, np.newaxis]
-        gray = np.minimum(luma, 1.0)[:, np.newaxis]
-        rows[over] = white * np.minimum(gray + (bright - gray) * kept, 1.0)
-    return found
-
-
-def light_factors(
+def light_on_colors(
     sources: Sequence[relight.Source], scene: Scene, *, threads: int | None = None
-) -> list[tuple[Array, Array | float]]:
-    """Return for each source what its colours are multiplied by, and what is added.
+) -> list[tuple[Array, Bools]]:
+    """Return for each source the light on colours of data, and where there is any.
 
     Parameters
     ----------
     sources : sequence of Source
     scene : Scene
-        Scene with a view; the colour of its material does not count.
     threads : int, optional
         Number of threads.
 
     Returns
     -------
-    list of (ndarray, ndarray or float)
-        Each of shape (N, 1), or (N, 3) where a light, the highlight or the cue has a colour.
+    list of (ndarray, ndarray of bool)
+        Each of shape (N,), as :func:`vizlight.shading.display.on_colors` takes them.
     """
-    material = scene.material
-    bare = dataclasses.replace(material, color=None, specular=0.0)
+    plain = display.for_colors(scene)
     parts = [(source.seen_from(scene.view, source.inputs), source.options) for source in sources]
-    dark = scene.depth_cue if scene.depth_cue is None else _dark(scene.depth_cue)
-    first = scene.replace(material=bare, depth_cue=dark)
-    shaded, _ = lighting.light(parts, first, threads=threads, progress_bar=False)
-    factors = [_channels(shading) for shading in shaded]
-    cued = scene.depth_cue is not None and scene.depth_cue.cue > 0
-    if not material.specular and not cued:
-        return [(factor, 0.0) for factor in factors]
-    shine = dataclasses.replace(material, color=None, ambient=0.0, diffuse=0.0)
-    second = scene.replace(material=shine)
-    shaded, _ = lighting.light(parts, second, threads=threads, progress_bar=False)
-    return [(factor, _channels(shading)) for factor, shading in zip(factors, shaded, strict=True)]
+    shaded, _ = lighting.light(parts, plain, threads=threads, progress_bar=False)
+    return [(shading.luminance, shading.valid) for shading in shaded]
 
 
-def _dark(cue: DepthCue) -> DepthCue:
-    return dataclasses.replace(cue, cue=0.0, color=None)
-
-
-def _channels(shading: engine.Shading) -> Array:
-    return shading.luminance[:, np.newaxis] if shading.rgb is None else shading.rgb
-
-
-def _factors_of(
+def _light_of(
     lit: pv.DataSet | pv.MultiBlock, meshes: Sequence[pv.DataSet], light: str
-) -> list[tuple[Array, Array | float]]:
-    """Return the factors of the light that meshes carry, stored or computed again."""
+) -> list[tuple[Array, Bools | None]]:
+    """Return the light on colours of the meshes, as they carry it or computed again."""
     _check.text("light", light, expected="the name of the light")
     if not relight.is_lit(lit, light):
         known = "a mesh with the light of a filter and its record"
         remedy = "light it by vizlight.illuminate first"
         raise ValueError(_check.message("lit", known, f"no {light!r} with a record", remedy))
-    stored = [_stored_terms(mesh, light) for mesh in meshes]
-    terms = [term for term in stored if term is not None]
-    if len(terms) == len(meshes):
-        return terms
+    stored = [_stored(mesh, light) for mesh in meshes]
+    carried = [own for own in stored if own is not None]
+    if len(carried) == len(meshes):
+        return carried
     sources, scene = relight.from_record(lit, name=light)
-    return light_factors(sources, scene)
+    return [*light_on_colors(sources, scene)]
 
 
-def _stored_terms(mesh: pv.DataSet, light: str) -> tuple[Array, Array | float] | None:
-    """Return factor and rest from stored terms; None where they do not suffice."""
+def _stored(mesh: pv.DataSet, light: str) -> tuple[Array, Bools | None] | None:
+    """Return the light on colours from stored arrays; None where they do not suffice."""
     scene = Scene.from_dict((records.read(mesh, light) or {})["scene"])
-    white = scene.replace(material=dataclasses.replace(scene.material, color=None))
-    names = [part_name(light, part) for part in ("ambient", "diffuse", "specular")]
-    ours = records.made(mesh, light)
-    if scene.depth_cue is not None or white.colored or not set(names) <= ours:
+    material, ours = scene.material, records.made(mesh, light)
+    valid = np.asarray(mesh[light + VALID], np.bool_) if light + VALID in ours else None
+    if scene.replace(material=dataclasses.replace(material, color=None)).colored:
         return None
-    if not all(name in mesh.point_data for name in names):
+    if light in ours and not material.specular and material.ambient >= display.LEAST:
+        return np.asarray(mesh.point_data[light]), valid
+    names = [part_name(light, part) for part in ("ambient", "diffuse")]
+    if scene.depth_cue is not None or not material.ambient or not set(names) <= ours:
         return None
-    ambient, diffuse, specular = (np.asarray(mesh.point_data[name]) for name in names)
-    return (ambient + diffuse)[:, np.newaxis], specular[:, np.newaxis]
+    ambient, diffuse = (np.asarray(mesh.point_data[name]) for name in names)
+    raised = max(material.ambient, display.LEAST) / material.ambient
+    return raised * ambient + diffuse, valid
 
 
 def _record(table: pv.LookupTable, scalars: object, light: str, component: int | None) -> Record:
@@ -474,8 +435,3 @@ def unlit_colors(mesh: pv.DataSet | pv.MultiBlock, /, name: str = RGB) -> pv.Loo
         if options[option] is not None:
             setattr(table, own, options[option])
     return table
-
-
-def attach_colors(mesh: pv.DataSet, name: str, colors: Bytes) -> None:
-    """Attach colours as a point array."""
-    point_arrays.attach_rows(mesh, name, colors)

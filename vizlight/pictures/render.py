@@ -11,7 +11,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.files import check_output, replace_file
-from vizlight.filters.tint import RGB, displayable, unlit_colors
+from vizlight.filters.tint import RGB, unlit_colors
 from vizlight.mesh import records
 from vizlight.mesh.blocks import all_blocks, check
 from vizlight.mesh.polylines import backdrop
@@ -25,11 +25,12 @@ from vizlight.pictures.backends import (
 )
 from vizlight.pictures.cameras import Mesh, camera_on, common_bounds, over_shoulder
 from vizlight.plotting import strokes
-from vizlight.plotting.component import add_recorded
+from vizlight.plotting.component import add_recorded, name_no_data
 from vizlight.plotting.program import Stroke
 from vizlight.reading import polylines
 from vizlight.reading.polylines import has_lines_only
-from vizlight.shading.results import DEFAULT_NAME
+from vizlight.shading.display import NO_DATA, displayable
+from vizlight.shading.results import DEFAULT_NAME, VALID
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -224,10 +225,12 @@ def make_plotter(
             plotter.camera = camera.copy()  # type: ignore[no-untyped-call]
             plotter.reset_camera_clipping_range()
         if bar:
-            plotter.add_scalar_bar(  # type: ignore[call-arg]
+            made = plotter.add_scalar_bar(  # type: ignore[call-arg]
                 title=bar, color=ink, n_labels=3, fmt="%.1f", vertical=True, height=0.7, width=0.1,
                 position_x=0.82, position_y=0.12,
             )  # fmt: skip
+            if any(panel.scalars + VALID in mesh.point_data for mesh in all_blocks(panel.mesh)):
+                name_no_data(made)
     except BaseException:
         plotter.close()
         raise
@@ -423,6 +426,9 @@ def _draw(
         if colour and values.dtype != np.uint8:
             # VTK wraps around above 1, so a bright highlight would turn black.
             values = np.column_stack([displayable(values[:, :3]), np.clip(values[:, 3:], 0, 1)])
+        light = DEFAULT_NAME if panel.scalars == RGB else panel.scalars
+        if of_points and light + VALID in mesh.point_data and values.dtype != np.uint8:
+            values = np.where(mesh[light + VALID], values.T, NO_DATA[0] if colour else np.nan).T
         actor = plotter.add_mesh(
             shown,
             scalars=values,
@@ -430,6 +436,7 @@ def _draw(
             rgb=colour,
             cmap=None if colour else cmap,
             clim=None if colour else clim,
+            nan_color=NO_DATA,
             lighting=False,
             line_width=width["line_width"],
             show_scalar_bar=False,

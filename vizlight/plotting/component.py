@@ -11,7 +11,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.files import check_output
 from vizlight.filters import relight
-from vizlight.filters.tint import RGB
+from vizlight.filters.tint import RGB, default_map, default_nan_color
 from vizlight.mesh import blocks, records
 from vizlight.plotting.fragments import Fragments, unfit
 from vizlight.plotting.html import write_page
@@ -23,6 +23,7 @@ from vizlight.plotting.program import Stroke
 from vizlight.plotting.sources import sources_of, tinted
 from vizlight.reading.polylines import has_lines_only
 from vizlight.scene import Scene
+from vizlight.shading.display import NO_DATA_NAME
 from vizlight.shading.options import LightOptions
 from vizlight.shading.results import DEFAULT_NAME, unlit
 
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from vtkmodules.vtkCommonCore import vtkObject
+    from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
     from vizlight._types import ColorLike
@@ -103,15 +105,17 @@ class Component:
             between the points of a coarse mesh too. "auto": in fragments where the plan allows.
             ``"fragments"`` warns where it does not.
         scalars : str, optional
-            Name of the array that gives the colours, which are multiplied by ambient and diffuse
-            light. Default: none, or that of :func:`vizlight.tint` for a mesh that it returned.
+            Name of the array that gives the colours. Light keeps them readable, as in
+            :func:`vizlight.tint`: there is no highlight, and values that are missing are grey.
+            Default: none, or that of :func:`vizlight.tint` for a mesh that it returned.
         line_diameter : float, optional
             Diameter of lines in the unit of the mesh, at least a pixel, in place of PyVista's
             ``line_width`` in pixels: nearer lines are wider.
         **options
             Options of :func:`vizlight.illuminate`, such as ``tangents=`` and ``conditioned=``,
             except ``name`` and ``components``; and keywords of ``pyvista.Plotter.add_mesh``, such
-            as ``cmap``, ``clim``, ``name``, ``opacity``, ``line_width``, ``pickable``. With
+            as ``clim``, ``name``, ``opacity``, ``line_width``, ``pickable``, and ``cmap``, which is
+            ``vizlight.maps.even`` unless the theme's was changed. With
             ``render_lines_as_tubes=True`` lines wider than a pixel have, where light is in
             fragments, the light of the cylinder that they stand for across their width: its mean
             is that of ``model="cylinder"``.
@@ -322,6 +326,8 @@ class Component:
         if scalars is not None:
             live.color_by(scalars, drawing.pop("component", None), at_points=bool(reason))
             drawing["scalars"] = live.scalars
+            drawing["cmap"] = default_map(drawing.get("cmap"))
+            drawing["nan_color"] = default_nan_color(drawing.get("nan_color"))
             bar = {"title": scalars, **(drawing.get("scalar_bar_args") or {})}
             drawing["scalar_bar_args"] = bar
         painter: Points | Fragments = (
@@ -341,9 +347,13 @@ class Component:
         except (TypeError, ValueError):
             plotter.remove_actor(actor, render=False)
             raise
-        invalid = live.invalid() if follow else 0
-        if invalid:
+        invalid = live.invalid()
+        if invalid and follow:
             _check.warn(unlit(invalid, source.inputs.count))
+        if scalars is not None and (invalid or live.lacks_values()):
+            for bar in plotter.scalar_bars.values():
+                if bar.GetLookupTable() is actor.mapper.lookup_table:
+                    name_no_data(bar)
         self._keep(plotter, live, actor)
         if rendered:
             plotter.render()
@@ -398,6 +408,12 @@ class Component:
     def __plotter_deep_clean__(self) -> None:
         """Let go of everything when the plotter is cleaned."""
         self.__plotter_close__()
+
+
+def name_no_data(bar: vtkScalarBarActor) -> None:
+    """Let a scalar bar name the colour of what is not data."""
+    bar.SetDrawNanAnnotation(True)
+    bar.SetNanAnnotation(NO_DATA_NAME)
 
 
 class _Holder:

@@ -7,33 +7,35 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vizlight.filters.tint import displayable, light_factors
+from vizlight.filters import lighting
+from vizlight.filters.tint import light_on_colors
 from vizlight.reading.normals import piece_numbers
+from vizlight.shading.display import NO_DATA, displayable, on_colors
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from vizlight._types import Array
     from vizlight.filters.relight import Source
     from vizlight.scene import Scene, View
+    from vizlight.shading.display import Bytes
 
 #: What is left out, for a page, a file and its reader.
 LEFT_OUT = "ambient and diffuse light only: the highlight and the depth cue depend on the eye"
 
 
-def fixed_light(source: Source, scene: Scene) -> tuple[Array, str]:
-    """Return what colours are multiplied by in light that stays as it is when the eye moves.
+def fixed_colors(source: Source, scene: Scene, colors: Bytes | None) -> tuple[Bytes, str]:
+    """Return colours in light that stays as it is when the eye moves.
 
     Parameters
     ----------
     source : Source
     scene : Scene
         Scene; its view is used only where ambient and diffuse light cannot do without one.
+    colors : ndarray of uint8, shape (N, 4), or None
+        Colours of data; None for the material's.
 
     Returns
     -------
-    factors : ndarray, shape (N, 1) or (N, 3)
-        Ambient and diffuse light.
+    colors : ndarray of uint8, shape (N, 4)
+        Colours in ambient and diffuse light.
     from_view : str
         What was computed as the view of the scene sees it, in words; empty if nothing was.
     """
@@ -54,8 +56,20 @@ def fixed_light(source: Source, scene: Scene) -> tuple[Array, str]:
         depth_cue=None,
         view=scene.view if seen else None,
     )
-    ((factors, _),) = light_factors([_on_one_side(source, bare.view)], bare)
-    return factors, " and ".join(seen)
+    return lit_colors(_on_one_side(source, bare.view), bare, colors), " and ".join(seen)
+
+
+def lit_colors(source: Source, scene: Scene, colors: Bytes | None) -> Bytes:
+    """Return colours of data, or of the material, in light, as bytes of shape (N, 4)."""
+    if colors is not None:
+        return on_colors(colors, *light_on_colors([source], scene)[0])
+    inputs = source.seen_from(scene.view, source.inputs)
+    parts = [(inputs, source.options)]
+    (shading,), _ = lighting.light(parts, scene, threads=None, progress_bar=False)
+    rgb = shading.luminance[:, np.newaxis] if shading.rgb is None else shading.rgb
+    shown = displayable(np.broadcast_to(rgb, (len(rgb), 3)))
+    shown[~shading.valid] = NO_DATA
+    return np.insert(255.0 * shown + 0.5, 3, 255.0, axis=1).astype(np.uint8)
 
 
 def _on_one_side(source: Source, view: View | None) -> Source:
@@ -73,21 +87,3 @@ def _on_one_side(source: Source, view: View | None) -> Source:
     averted = np.bincount(piece, same)[piece] < 0
     sides = np.where(averted[:, np.newaxis], -vectors, vectors)
     return source._replace(inputs=dataclasses.replace(source.inputs, normals=sides), sided=None)
-
-
-def lit_colors(colors: Array, factors: Array, rest: Array | float = 0.0) -> NDArray[np.uint8]:
-    """Return colours from 0 to 1 times light, in bytes of shape (N, 4), opaque if they have none.
-
-    Parameters
-    ----------
-    colors : array_like, shape (3,), (N, 3) or (N, 4)
-    factors : array_like, shape (N, 1) or (N, 3)
-    rest : array_like, shape (N, 1) or (N, 3), or float, default: 0
-        Light that does not take the colour.
-    """
-    rows = np.broadcast_to(colors, (len(factors), np.shape(colors)[-1]))
-    found = np.full((len(factors), 4), 255, np.uint8)
-    found[:, :3] = displayable(255.0 * (rows[:, :3] * factors + rest), white=255.0) + 0.5
-    if rows.shape[1] == 4:
-        found[:, 3] = np.clip(255.0 * rows[:, 3] + 0.5, 0, 255)
-    return found

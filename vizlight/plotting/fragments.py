@@ -172,8 +172,6 @@ class Fragments:
         prop = actor.GetProperty()
         prop.SetInterpolationToPhong()
         if live.scene is None:
-            if live.scalars is not None:
-                prop.SetSpecularColor(1.0, 1.0, 1.0)
             return
         material = live.scene.material
         prop.SetAmbient(min(material.ambient, 1.0))
@@ -185,6 +183,9 @@ class Fragments:
     def paint(self, live: Live, scene: Scene, renderer: vtkRenderer, actor: vtkActor) -> None:
         """Write the shader of a scene if it is another one, and set its uniforms."""
         scene = lighting.fit_depth_cue(scene, [live.placed(actor)])
+        data = live.scalars is not None
+        if data:
+            scene = without_highlight(scene)
         lights = [light.seen_from(scene.view) for light in scene.lights if light.intensity > 0]
         key, prop = _structure(scene, lights, live.source), actor.GetProperty()
         stroke, renew = self._stroke, key != self._key or self._plan is None
@@ -193,10 +194,12 @@ class Fragments:
             plan = exact_plan(scene, live.source, stroke)
         # VTK has a specular colour only where it has lights of its own.
         shown = program.Shown(prop.GetAmbient(), prop.GetDiffuse(), prop.GetSpecularColor())
-        given = program.numbers(scene, lights, shown=shown, fur=plan.fur, tallest=self.tallest)
+        given = program.numbers(
+            scene, lights, shown=shown, fur=plan.fur, tallest=self.tallest, data=data
+        )
         if renew:
             turned = live.source.sided is not None
-            written = program.write(plan, turned=turned, stroke=stroke)
+            written = program.write(plan, turned=turned, stroke=stroke, data=data)
             texts = dialects.VTK.replacements(written, given)
             if stroke != Stroke():
                 texts = strokes.widened(actor, texts, stroke)
@@ -207,8 +210,15 @@ class Fragments:
     def explain(self, live: Live, scene: Scene) -> str:
         """Return what is computed in each fragment."""
         fitted = lighting.fit_depth_cue(scene, [live.source.inputs])
+        if live.scalars is not None:
+            fitted = without_highlight(fitted)
         plan = decide(fitted, *_drawn_as(live.source, self._stroke))
         return f"light in each fragment\n{plan.explain()}"
+
+
+def without_highlight(scene: Scene) -> Scene:
+    """Return a scene for colours of data, which no highlight hides."""
+    return scene.replace(material=dataclasses.replace(scene.material, specular=0.0))
 
 
 def _drawn_as(source: Source, stroke: Stroke) -> tuple[Layout, ShadingOptions]:

@@ -8,7 +8,7 @@ import inspect
 from typing import TYPE_CHECKING
 
 from vizlight.scene.light import NO_ATTENUATION
-from vizlight.shading import formulas
+from vizlight.shading import display, formulas
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -157,7 +157,7 @@ class _Writer:
         return f"{PREFIX}{name}({', '.join(arguments)})"
 
 
-def fragment(plan: Plan, *, turned: bool = False) -> tuple[str, str]:
+def fragment(plan: Plan, *, turned: bool = False, data: bool = False) -> tuple[str, str]:
     """Return the functions and the body of a fragment shader for the light of a plan.
 
     Parameters
@@ -166,6 +166,8 @@ def fragment(plan: Plan, *, turned: bool = False) -> tuple[str, str]:
         Plan of a surface or of one tangent per point in 3-space.
     turned : bool, default: False
         Whether the normal is turned to the eye, unless it leans away by ``vizLean`` at most.
+    data : bool, default: False
+        Whether the renderer's colours are those of data.
 
     Returns
     -------
@@ -188,11 +190,13 @@ def fragment(plan: Plan, *, turned: bool = False) -> tuple[str, str]:
         w.add("{")
         _light(w, plan, i)
         w.add("}")
-    w.add("if (!vizGood) { vizDiffuse = vec3(0.0); vizSpecular = vec3(0.0); }")
-    w.add("vec3 vizColor = vizAmbientGain * ambientColor + vizSpecularGain * vizSpecular;")
-    w.add("vizColor += vizDiffuseGain * diffuseColor * vizDiffuse;")
+    if data:
+        w.add("vec3 vizColor = max(vizAmbientGain, vizLeastGain) + vizDiffuseGain * vizDiffuse;")
+    else:
+        w.add("vec3 vizColor = vizAmbientGain * ambientColor + vizSpecularGain * vizSpecular;")
+        w.add("vizColor += vizDiffuseGain * diffuseColor * vizDiffuse;")
     _cue(w, plan)
-    _in_range(w)
+    _shown(w, data=data)
     plain = all(is_plain(highlight.shininess) for highlight in plan.highlights)
     return functions(w.used, plain=plain and plan.exponent > 0), "\n".join(w.lines)
 
@@ -268,11 +272,14 @@ def _cue(w: _Writer, plan: Plan) -> None:
     w.add(f"vizColor = vec3({', '.join(channels)});")
 
 
-def _in_range(w: _Writer) -> None:
-    """Bring a colour with a channel above 1 into the range that a screen shows."""
-    w.add("float vizMost = max(max(vizColor.r, vizColor.g), vizColor.b);")
-    w.add("if (vizMost > 1.0) {")
-    w.add(f"  float vizLuma = dot(vizColor, {vector(formulas.LUMA)});")
-    kept = w.call("saturation_kept", "vizLuma", "vizMost")
-    w.add(f"  vizColor = mix(vec3(min(vizLuma, 1.0)), vizColor, {kept});")
-    w.add("}")
+def _shown(w: _Writer, *, data: bool) -> None:
+    """Turn light into a colour that a screen shows, as :mod:`vizlight.shading.display` does."""
+    if data:
+        light = f"dot(vizColor, {vector(formulas.LUMA)})"
+        factor = w.call("color_factor", light, number(display.LEAST))
+        w.add(f"vizColor = vizColorGain * (ambientColor + diffuseColor) * {factor};")
+    else:
+        w.add("float vizMost = max(max(vizColor.r, vizColor.g), vizColor.b);")
+        channels = [w.call("in_range", f"vizColor.{c}", "vizMost") for c in "rgb"]
+        w.add(f"vizColor = vec3({', '.join(channels)});")
+    w.add(f"if (!vizGood) vizColor = {vector(display.NO_DATA)};")

@@ -14,11 +14,10 @@ from vizlight import _check, files
 from vizlight._version import __version__
 from vizlight.filters.tint import color_table, map_colors, values_of
 from vizlight.mesh import blocks, hull
-from vizlight.plotting.fixed import LEFT_OUT, fixed_light, lit_colors
+from vizlight.plotting.fixed import LEFT_OUT, fixed_colors
 from vizlight.plotting.live import lifted
 from vizlight.plotting.sources import sources_of, tinted
 from vizlight.scene import Scene, View
-from vizlight.scene.light import WHITE
 from vizlight.shading.options import LightOptions
 
 if TYPE_CHECKING:
@@ -109,7 +108,7 @@ def save_gltf(
         raise ValueError(_check.message("scene", "a scene or the record of one", None, remedy))
     names = [path.lstrip("/") for _, path in blocks.named_blocks(mesh)]
     file, fixed = _File(), set()
-    colors = _colors(sources, used, scalars, cmap, clim)
+    colors = _colors(sources, scalars, cmap, clim)
     for source, name, own in zip(sources, names, colors, strict=True):
         if not source.mesh.n_points:
             continue
@@ -117,8 +116,8 @@ def save_gltf(
         here = lifted(used, n)
         if here.view is None:
             here = here.replace(view=View.isometric(n))
-        factors, seen = fixed_light(source, here)
-        file.add(name or "mesh", source.mesh, lit_colors(own, factors))
+        lit, seen = fixed_colors(source, here, own)
+        file.add(name or "mesh", source.mesh, lit)
         fixed |= {seen} - {""}
     if not file.nodes:
         raise ValueError(_check.message("mesh", "a mesh with points", "none"))
@@ -132,25 +131,23 @@ def save_gltf(
 
 def _colors(
     sources: Sequence[Source],
-    scene: Scene,
     scalars: str | None,
     cmap: ColorMap,
     clim: Sequence[float] | float | None,
-) -> list[NDArray[np.floating[Any]]]:
-    """Return for each source the colours that light multiplies, from 0 to 1."""
-    plain = np.asarray(scene.material.color or WHITE, dtype=np.float64)
+) -> list[NDArray[np.uint8] | None]:
+    """Return for each source the colours of data, None for the colour of the material."""
     if scalars is not None:
         values = [values_of(source.mesh, scalars) for source in sources]
-        table = color_table(np.concatenate(values), cmap=cmap, clim=clim)
-        return [map_colors(table, value) / 255.0 for value in values]
-    found: list[NDArray[np.floating[Any]]] = []
+        table = color_table(values, cmap=cmap, clim=clim)
+        return [map_colors(table, value) for value in values]
+    found: list[NDArray[np.uint8] | None] = []
     for source in sources:
         name, own = tinted(source.mesh)
         if name is None:
-            found.append(plain)
+            found.append(None)
         else:
             value = values_of(source.mesh, name, own["component"])
-            found.append(map_colors(own["cmap"], value) / 255.0)
+            found.append(map_colors(own["cmap"], value))
     return found
 
 

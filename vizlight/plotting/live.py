@@ -169,6 +169,12 @@ class Live:
         unlit = int(np.count_nonzero(~good)) - self.source.inside
         return max(unlit, 0) * self.source.inputs.repeat
 
+    def lacks_values(self) -> bool:
+        """Return whether any of the values that are coloured is NaN."""
+        data = self.source.mesh.cell_data if self._of_cells else self.drawn.point_data
+        values = np.asarray(data[self.scalars or ""])
+        return bool(values.dtype.kind == "f" and np.isnan(values).any())
+
     def update(self, renderer: vtkRenderer, actor: vtkActor) -> None:
         """Light the mesh anew if anything has changed since; called before a frame is drawn.
 

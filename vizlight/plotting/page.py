@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import pyvista as pv
 
-from vizlight.filters.tint import light_factors, map_colors
+from vizlight.filters.tint import map_colors
 from vizlight.mesh import hull
 from vizlight.plotting import dialects, program
-from vizlight.plotting.fixed import LEFT_OUT, fixed_light, lit_colors
-from vizlight.plotting.fragments import Fragments, exact_plan
+from vizlight.plotting.fixed import LEFT_OUT, fixed_colors, lit_colors
+from vizlight.plotting.fragments import Fragments, exact_plan, without_highlight
 from vizlight.plotting.live import NORMALS, TANGENTS, items
 from vizlight.scene import DepthCue, Light, Scene, View
 from vizlight.scene.light import WHITE
@@ -34,7 +34,7 @@ COLORS = 64
 #: Cells by their names in vtk.js and in PyVista.
 _CELLS = {"verts": "verts", "lines": "lines", "polys": "faces", "strips": "strips"}
 #: Numbers that neither the eye nor a slider changes.
-_CONSTANT = ("vizFurRate", "vizTallest", "vizCue")
+_CONSTANT = ("vizFurRate", "vizTallest", "vizCue", "vizLeastGain", "vizColorGain")
 
 
 class Shown(NamedTuple):
@@ -121,11 +121,16 @@ class Page:
         whole = dataclasses.replace(scene.material, diffuse=1.0, specular=1.0)
         # Sliders raise what is 0 now, so the text has all terms.
         scene = scene.replace(lights=lights, material=whole, depth_cue=_ended(scene.depth_cue))
+        data = live.scalars is not None
+        if data:
+            scene = without_highlight(scene)
         plan = exact_plan(scene, live.source)
         shown = program.Shown(specular_color=prop.GetSpecularColor())
         fixed = [light.seen_from(scene.view) for light in scene.lights]
-        given = program.numbers(scene, fixed, shown=shown, fur=plan.fur, tallest=painter.tallest)
-        written = program.write(plan, turned=live.source.sided is not None)
+        given = program.numbers(
+            scene, fixed, shown=shown, fur=plan.fur, tallest=painter.tallest, data=data
+        )
+        written = program.write(plan, turned=live.source.sided is not None, data=data)
         shader = dialects.VTK_JS.replacements(written, given)
         made: dict[str, object] = {
             "live": True,
@@ -144,14 +149,14 @@ class Page:
             made["cue"] = {
                 "front": cue.front, "back": cue.back, "scales": [cue.front_scale, cue.back_scale]
             }  # fmt: skip
-        data, linear = live.drawn.point_data, matrix[:3, :3]
-        if TANGENTS in data and not plan.surface:
-            made["tangents"] = _directions(data[TANGENTS], linear.T)
-        if NORMALS in data and (plan.surface or plan.conditioned or plan.fur):
-            made["normals"] = _directions(data[NORMALS], np.linalg.inv(linear))
+        arrays, linear = live.drawn.point_data, matrix[:3, :3]
+        if TANGENTS in arrays and not plan.surface:
+            made["tangents"] = _directions(arrays[TANGENTS], linear.T)
+        if NORMALS in arrays and (plan.surface or plan.conditioned or plan.fur):
+            made["normals"] = _directions(arrays[NORMALS], np.linalg.inv(linear))
         if live.scalars is not None:
-            of_cells = live.scalars not in data
-            values = live.drawn.cell_data[live.scalars] if of_cells else data[live.scalars]
+            of_cells = live.scalars not in arrays
+            values = live.drawn.cell_data[live.scalars] if of_cells else arrays[live.scalars]
             made |= {"colors": _packed(_mapped(values, actor), "u1"), "ofCells": of_cells}
         return made
 
@@ -159,15 +164,14 @@ class Page:
         """Return colours with the light that does not depend on the eye."""
         live, actor = shown.live, shown.actor
         placed = live.source._replace(inputs=live.placed(actor))
-        colors: Array = np.asarray(scene.material.color or WHITE)
+        colors = None
         if live.scalars is not None:
-            colors = _mapped(live.drawn.point_data[live.scalars], actor) / 255
+            colors = _mapped(live.drawn.point_data[live.scalars], actor)
         if live.own_eye:
-            ((factors, rest),) = light_factors([placed], scene)
-            whole = lit_colors(colors, factors, rest)[ids]
+            whole = lit_colors(placed, scene, colors)[ids]
             return {"live": False, "colors": _packed(whole, "u1"), "color": [1.0, 1.0, 1.0]}
-        factors, seen = fixed_light(placed, scene)
-        lit = lit_colors(colors, factors)[ids]
+        lit, seen = fixed_colors(placed, scene, colors)
+        lit = lit[ids]
         lit[ids < 0] = 0
         reason = getattr(live.painter, "reason", "")
         why = "" if reason == "asked for" else f", because {reason}"

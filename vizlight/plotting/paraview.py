@@ -9,15 +9,19 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+import numpy as np
+
 from vizlight import _check, files
+from vizlight.filters.tint import color_table
 from vizlight.mesh import blocks
 from vizlight.plotting import dialects, program
-from vizlight.plotting.fragments import Fragments, unfit, unfit_layout
+from vizlight.plotting.fragments import Fragments, unfit, unfit_layout, without_highlight
 from vizlight.plotting.live import NORMALS, TANGENTS, Live
 from vizlight.plotting.sources import sources_of
 from vizlight.scene import Scene, View
 from vizlight.scene.light import WHITE
 from vizlight.shading.decide import decide
+from vizlight.shading.display import NO_DATA, NO_DATA_NAME
 from vizlight.shading.inputs import Layout
 from vizlight.shading.options import LightOptions, ShadingOptions, accepts
 
@@ -41,6 +45,16 @@ WITHOUT = (
 #: How normals are turned, by ``facing``; otherwise they stay as they are.
 TOWARD: dict[str, Literal["eye", "face"]] = {"auto": "face", "eye": "eye"}
 SUFFIX = ".py"
+#: Number of colours by which ParaView is told a map.
+COLORS = 33
+_COLORED = string.Template("""\
+ColorBy(display, ("POINTS", $name))
+table = GetColorTransferFunction($name)
+table.ColorSpace, table.RGBPoints, table.NanColor = "RGB", $points, $nan
+display.RescaleTransferFunctionToDataRange(False, True)
+display.SetScalarBarVisibility(view, True)
+bar = GetScalarBar(table, view)
+bar.DrawNanAnnotation, bar.NanAnnotation = 1, $no_data""")
 _SCRIPT = string.Template("""\
 # Shows a mesh in ParaView with light in each fragment: paraview --script=THIS.py, or Run Script in
 # the Python shell; pvpython for a picture.
@@ -55,7 +69,7 @@ from paraview.simple import *
 source = $source
 view = GetActiveViewOrCreate("RenderView")
 display = Show(source, view)
-ColorBy(display, $colors)
+$colors
 properties = $properties
 names = properties["SelectNormalArray"], properties["SelectTangentArray"]
 for name in names:
@@ -79,20 +93,21 @@ class Shader:
         Text, in JSON, of the property ``ShaderReplacements``.
     properties : dict of str to object
         Values of the other properties, by the names that ``pvpython`` has for them.
+    scalars : str or None
+        Name of the point array that gives the colours.
     """
 
     shader_replacements: str
     properties: Mapping[str, object]
+    scalars: str | None = None
 
-    def script(self, source: str | Path | None = None, *, scalars: str | None = None) -> str:
+    def script(self, source: str | Path | None = None) -> str:
         """Return a script for ``pvpython``, ``paraview --script`` and ParaView's Python shell.
 
         Parameters
         ----------
         source : path, optional
             Path of a file that is opened. Default: the source that is selected.
-        scalars : str, optional
-            Name of the point array that gives the colours. Default: the colour of the material.
 
         Returns
         -------
@@ -110,25 +125,40 @@ class Shader:
         lines = "".join(f"    {name!r}: {value!r},\n" for name, value in values.items())
         return _SCRIPT.substitute(
             source="GetActiveSource()" if source is None else f"OpenDataFile({str(source)!r})",
-            colors=None if scalars is None else repr(("POINTS", scalars)),
+            colors="ColorBy(display, None)" if self.scalars is None else _colored(self.scalars),
             properties=f"{{\n{lines}}}",
             end="" if source is None else "ResetCamera(view)\n",
         )
 
 
+def _colored(name: str) -> str:
+    """Return statements that colour by an array, by the map of data where none is named."""
+    colors = np.asarray(color_table([], clim=(0, 1), n_colors=COLORS).values)[:, :3] / 255
+    points = np.column_stack([np.linspace(0, 1, COLORS), colors]).round(4)
+    return _COLORED.substitute(
+        name=repr(name),
+        points=points.ravel().tolist(),
+        nan=[round(channel, 4) for channel in NO_DATA],
+        no_data=repr(NO_DATA_NAME),
+    )
+
+
 @accepts(LightOptions, without=WITHOUT)
-def shader(scene: Scene, /, **options: Any) -> Shader:
+def shader(scene: Scene, /, *, scalars: str | None = None, **options: Any) -> Shader:
     """Return what shows the light of a scene in each fragment in an unchanged ParaView.
 
     The light follows ParaView's camera, which takes the place of the view of the scene; ParaView's
-    own lights have no effect. The properties Ambient and Diffuse scale it, and colours by data are
-    multiplied by it.
+    own lights have no effect. The properties Ambient and Diffuse scale it, but not on colours of
+    data, which stay readable as those of :func:`vizlight.tint`.
 
     Parameters
     ----------
     scene : Scene
         Lights, material and depth cue in 3-space, in the coordinates of the data. Lights
         that follow the view turn with the camera.
+    scalars : str, optional
+        Name of the point array that gives the colours, by ``vizlight.maps.even`` unless PyVista's
+        theme was changed. Default: the colour of the material.
     **options
         As for :func:`vizlight.illuminate`, but ``tangents`` and ``normals`` are names of point
         arrays of 3 components that the data have in ParaView. Without tangents, and for
@@ -171,9 +201,12 @@ def shader(scene: Scene, /, **options: Any) -> Shader:
     if normals is None and (tangents is None or asked.conditioned):
         normals = "Normals"
     layout = Layout(k=None if tangents is None else 1, normals=normals is not None)
-    plan = _plan(scene, layout, asked)
-    written = program.write(plan, turned=False, toward=TOWARD.get(asked.facing, ""))
-    return _made(scene, plan, written, tangents, normals)
+    scalars = _named("scalars", scalars)
+    plan = _plan(scene, layout, asked, data=scalars is not None)
+    written = program.write(
+        plan, turned=False, toward=TOWARD.get(asked.facing, ""), data=scalars is not None
+    )
+    return _made(scene, plan, written, tangents, normals, scalars)
 
 
 def save(
@@ -197,8 +230,7 @@ def save(
         Path of the script, which ends in .py. The mesh, with the tangents and normals of its
         light, is beside it: ``NAME-paraview.vtp`` for ``NAME.py``. Existing files are replaced.
     scalars : str, optional
-        Name of the point array that gives the colours, by ParaView's colour map. Default: the
-        colour of the material.
+        Name of the point array that gives the colours, as for :func:`shader`.
     **options
         Options of :func:`vizlight.illuminate`, except ``name`` and ``components``.
 
@@ -232,13 +264,13 @@ def save(
         raise ValueError(_check.message("scalars", "the name of a point array", repr(scalars)))
     if reason := unfit(source.inputs, source.options, source.mesh):
         raise ValueError(_unfit(reason))
-    plan = _plan(used, source.inputs.layout, source.options)
+    plan = _plan(used, source.inputs.layout, source.options, data=scalars is not None)
     live, painter = Live(source, used, follow=True, by_surface=True), Fragments()
     painter.attach(live)
-    written = program.write(plan, turned=source.sided is not None)
-    made = _made(used, plan, written, TANGENTS, NORMALS, tallest=painter.tallest)
+    written = program.write(plan, turned=source.sided is not None, data=scalars is not None)
+    made = _made(used, plan, written, TANGENTS, NORMALS, scalars, tallest=painter.tallest)
     data = files.write_mesh(live.drawn, beside(path))
-    text = made.script(data.resolve(), scalars=scalars)
+    text = made.script(data.resolve())
     return files.replace_file(path, lambda draft: Path(draft).write_text(text, "utf-8"))
 
 
@@ -259,8 +291,8 @@ def _unfit(reason: str) -> str:
     return _check.message("light", "what a fragment can compute in ParaView", reason, remedy)
 
 
-def _plan(scene: Scene, layout: Layout, options: ShadingOptions) -> Plan:
-    """Return the plan of a scene as ParaView's camera sees it.
+def _plan(scene: Scene, layout: Layout, options: ShadingOptions, *, data: bool) -> Plan:
+    """Return the plan of a scene as ParaView's camera sees it, on colours of data or without.
 
     Raises
     ------
@@ -278,7 +310,8 @@ def _plan(scene: Scene, layout: Layout, options: ShadingOptions) -> Plan:
         expected, remedy = "both ends for ParaView", "pass DepthCue(front=, back=), distances"
         raise ValueError(_check.message("depth_cue", expected, "none or one", remedy))
     bare = dataclasses.replace(options, components=False)
-    return decide(scene.replace(view=EYE), layout, bare)
+    seen = without_highlight(scene) if data else scene
+    return decide(seen.replace(view=EYE), layout, bare)
 
 
 def _made(
@@ -287,6 +320,7 @@ def _made(
     written: Program,
     tangents: str | None,
     normals: str | None,
+    scalars: str | None,
     *,
     tallest: float = 0.0,
 ) -> Shader:
@@ -297,7 +331,9 @@ def _made(
     )
     lights = [light for light in scene.lights if light.intensity > 0]
     seen, fixed = scene.replace(view=EYE), [light.seen_from(EYE) for light in lights]
-    given = program.numbers(seen, fixed, shown=shown, fur=plan.fur, tallest=tallest)
+    given = program.numbers(
+        seen, fixed, shown=shown, fur=plan.fur, tallest=tallest, data=scalars is not None
+    )
     # What stands with the camera has its numbers in view coordinates already.
     own = {"vizEye", "vizAxis", "vizFrom"}
     own |= {f"vizLight{i}" for i, light in enumerate(lights) if light.follows_view}
@@ -320,4 +356,4 @@ def _made(
         "SelectTangentArray": tangent_array or "None",
         "UseShaderReplacements": 1,
     }
-    return Shader(json.dumps(replacements, indent=1), properties)
+    return Shader(json.dumps(replacements, indent=1), properties, scalars)

@@ -9,13 +9,14 @@ import numpy as np
 
 from vizlight import _check
 from vizlight.filters import lighting
-from vizlight.filters.tint import displayable, light_factors, map_colors, times_light
+from vizlight.filters.tint import light_on_colors, map_colors
 from vizlight.mesh import point_arrays
 from vizlight.plotting import strokes
 from vizlight.plotting.live import COLORS, LUMINANCE, NORMALS
 from vizlight.plotting.program import Stroke
 from vizlight.reading import polylines
 from vizlight.shading.decide import decide
+from vizlight.shading.display import NO_DATA, displayable, on_colors
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -88,8 +89,6 @@ class Points:
         if live.scalars is None:
             return
         mapper = actor.GetMapper()
-        if live.scene is None:
-            prop.SetSpecularColor(1.0, 1.0, 1.0)
         mapper.SetScalarModeToUsePointFieldData()
         mapper.SelectColorArray(COLORS)
         mapper.SetColorModeToDirectScalars()
@@ -100,9 +99,8 @@ class Points:
         inputs = live.source.seen_from(scene.view, live.placed(actor))
         source = live.source._replace(inputs=inputs, sided=None)
         if live.scalars is not None:
-            (factors,) = light_factors([source], scene)
-            colors = _colors(live, actor)
-            _write(live.drawn, COLORS, times_light(colors, *factors))
+            (light,) = light_on_colors([source], scene)
+            _write(live.drawn, COLORS, on_colors(_colors(live, actor), *light))
             return
         parts = [(source.inputs, source.options)]
         (shading,), _ = lighting.light(parts, scene, threads=None, progress_bar=False)
@@ -111,9 +109,11 @@ class Points:
             if rgb is None:
                 rgb = np.repeat(shading.luminance[:, np.newaxis], 3, axis=1)
             # VTK wraps around above 1, so a bright highlight would turn black.
-            _write(live.drawn, COLORS, displayable(rgb))
+            shown = displayable(rgb)
+            shown[~shading.valid] = NO_DATA
+            _write(live.drawn, COLORS, shown)
         else:
-            _write(live.drawn, LUMINANCE, shading.luminance)
+            _write(live.drawn, LUMINANCE, np.where(shading.valid, shading.luminance, NO_DATA[0]))
 
     def explain(self, live: Live, scene: Scene) -> str:
         """Return why the light is computed at the points, and what of it."""

@@ -13,6 +13,7 @@ import numpy as np
 from vizlight import _check
 from vizlight.plotting import glsl
 from vizlight.scene.light import WHITE
+from vizlight.shading.display import LEAST
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -133,6 +134,7 @@ def write(
     turned: bool,
     toward: Literal["", "eye", "face"] = "",
     stroke: Stroke = Stroke(),  # noqa: B008
+    data: bool = False,
 ) -> Program:
     """Return the program of a plan.
 
@@ -148,12 +150,14 @@ def write(
         the face that is seen, which may lean away between the corners. A line has no face.
     stroke : Stroke
         Width of lines; the plan of round ones is that of the surface of their cylinders.
+    data : bool, default: False
+        Whether the renderer's colours are those of data, which light keeps readable.
 
     Returns
     -------
     Program
     """
-    functions, body = glsl.fragment(plan, turned=turned)
+    functions, body = glsl.fragment(plan, turned=turned, data=data)
     names = [Varying("vizP", "vec3", "{position}")]
     read = f"  vec3 vizP = {suffixed('vizP')};\n  bool vizGood = true;\n"
     if (plan.surface and not stroke.round) or plan.conditioned or plan.fur:
@@ -177,7 +181,13 @@ def write(
 
 
 def numbers(
-    scene: Scene, lights: Sequence[Light], *, shown: Shown, fur: float, tallest: float
+    scene: Scene,
+    lights: Sequence[Light],
+    *,
+    shown: Shown,
+    fur: float,
+    tallest: float,
+    data: bool = False,
 ) -> list[Uniform]:
     """Return what the program of a scene is given.
 
@@ -193,6 +203,8 @@ def numbers(
         Density of the fur, 0 for none.
     tallest : float
         Height of the fur whose normal has the length 2.
+    data : bool, default: False
+        Whether the renderer's colours are those of data.
 
     Returns
     -------
@@ -206,11 +218,18 @@ def numbers(
     if len(lights) > MOST_LIGHTS:
         got = str(len(lights))
         raise ValueError(_check.message("lights", f"at most {MOST_LIGHTS} lights", got))
+    # Light on colours of data is a factor, which the colours of a renderer must not hold already.
     found = [
         *_of_lights(lights),
-        *_of_material(scene, shown),
+        *_of_material(scene, Shown() if data else shown),
         *_of_view(scene.depth_cue, scene.view),
     ]
+    if data:
+        least = scene.ambient_intensity * LEAST
+        around = tuple(least * c for c in scene.ambient_color or WHITE)
+        found.append(Uniform("vizLeastGain", "vec3", around))
+        gain = _ratio(1.0, shown.ambient + shown.diffuse)
+        found.append(Uniform("vizColorGain", "float", (gain,)))
     if fur:
         # Fur of density 1 lets through what is less than any float.
         rate = float(np.log1p(-min(fur, 1 - 1e-12)))
@@ -246,9 +265,10 @@ def _of_material(scene: Scene, shown: Shown) -> list[Uniform]:
     material = scene.material
     ambient = scene.ambient_intensity * _ratio(material.ambient, shown.ambient)
     diffuse = _ratio(material.diffuse, shown.diffuse)
+    around = scene.ambient_color or WHITE
     shine = tuple(material.specular * c for c in shown.specular_color)
     return [
-        Uniform("vizAmbientGain", "vec3", tuple(ambient * c for c in scene.ambient_color or WHITE)),
+        Uniform("vizAmbientGain", "vec3", tuple(ambient * c for c in around)),
         Uniform("vizDiffuseGain", "float", (diffuse,)),
         Uniform("vizSpecularGain", "vec3", shine),
         Uniform("vizShininess", "float", (material.shininess,)),

@@ -198,11 +198,11 @@ def luminance(
     return ambient + (kd * diffuse_light + ks * specular_light)
 
 
-def saturation_kept(luma: Number, largest: Number) -> Number:
-    """Return the share of a colour in its mix with the gray of its luma, so that it can be shown.
+def color_factor(light: Number, least: Number) -> Number:
+    """Return what a colour of data is multiplied by: its light, from ``least`` to 1."""
+    return clamp(light, least, 1.0)
 
-    It is 1 for colours whose largest channel is at most 1, and 0 from a luma of 1 on, which is
-    white; between them the mix has a largest channel of 1, and hue (of HSV) and luma stay.
-    """
-    share = (1.0 - luma) / where(largest > luma, largest - luma, 1.0)
-    return where(largest > 1.0, maximum(share, 0.0), 1.0)
+
+def in_range(channel: Number, largest: Number) -> Number:
+    """Return a channel of a colour, over the largest of its channels where that exceeds 1."""
+    return channel / maximum(largest, 1.0)

@@ -1,0 +1,73 @@
+"""The map of data: one lightness, one chroma, even steps for two kinds of readers."""
+
+from __future__ import annotations
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+import pyvista as pv
+
+from vizlight.maps import even
+
+COLORS = even(np.arange(256))[:, :3]
+#: Viewing without green cones, on linear sRGB (Vienot, Brettel and Mollon 1999).
+DEUTERANOPIA = np.array([[0.29275, 0.70725, 0], [0.29275, 0.70725, 0], [-0.02234, 0.02234, 1]])
+
+
+def linear(rgb):
+    return np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+
+
+def cielab(light):
+    """Return CIELAB, white D65, of linear sRGB."""
+    m = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
+    x = light @ m.T / m.sum(axis=1)
+    f = np.where(x > (6 / 29) ** 3, np.cbrt(x), x * (29 / 6) ** 2 / 3 + 4 / 29)
+    return np.stack([116 * f[:, 1] - 16, 500 * (f[:, 0] - f[:, 1]), 200 * (f[:, 1] - f[:, 2])], 1)
+
+
+def test_one_lightness_and_one_chroma():
+    lightness, a, b = cielab(linear(COLORS)).T
+    assert np.abs(lightness - 70).max() < 0.25
+    assert np.abs(np.hypot(a, b) - 46).max() < 0.6
+    hue = np.degrees(np.unwrap(np.arctan2(b, a))) % 360
+    assert (hue[0], hue[-1]) == pytest.approx((275, 85), abs=1)
+
+
+@pytest.mark.parametrize(
+    ("cones", "p95", "most"), [("all", 0.005, 0.02), ("no green", 0.015, 0.04)]
+)
+def test_chromaticity_tells_the_value_in_any_light(cones, p95, most):
+    error = misread(lambda rgb: shares(rgb if cones == "all" else without_green(rgb)))
+    assert np.quantile(error, 0.95) < p95
+    assert error.max() < most
+
+
+def test_the_nearest_colour_of_the_bar_tells_the_value_in_any_light():
+    error = misread(lambda rgb: cielab(linear(rgb)))
+    assert np.quantile(error, 0.95) < 0.03
+    assert error.max() < 0.06
+
+
+def shares(rgb):
+    return rgb / rgb.sum(axis=1, keepdims=True)
+
+
+def without_green(rgb):
+    seen = np.clip(linear(rgb) @ DEUTERANOPIA.T, 0, 1)
+    return np.where(seen <= 0.0031308, 12.92 * seen, 1.055 * seen ** (1 / 2.4) - 0.055)
+
+
+def misread(key):
+    """Return errors, as shares of the range, of values in bytes of light from 0.3 to 1."""
+    values = np.linspace(0, 255, 2000).round().astype(int)
+    light = np.random.default_rng(3).uniform(0.3, 1, (2000, 1))
+    seen = key(np.rint(255 * COLORS[values] * light) / 255)
+    found = ((seen[:, None] - key(COLORS)) ** 2).sum(axis=-1).argmin(axis=1)
+    return np.abs(found - values) / 255
+
+
+def test_it_has_a_name_for_matplotlib_and_pyvista():
+    np.testing.assert_array_equal(mpl.colormaps["vizlight.even"].colors, even.colors)
+    table = pv.LookupTable("vizlight.even").values[:, :3]
+    np.testing.assert_array_equal(table, np.rint(255 * COLORS).astype(np.uint8))

@@ -1,0 +1,40 @@
+"""Colour maps that stay readable in light.
+
+Light dims a colour along the line to black. Colours of one lightness and one chroma differ in hue
+alone, which dimming does not change, so that a value can still be read by the nearest colour.
+"""
+
+from __future__ import annotations
+
+from matplotlib import colormaps
+from matplotlib.colors import ListedColormap
+
+__all__ = ["even"]
+
+#: Hexadecimal digits of 256 colours of sRGB, of CIELAB lightness 70 and chroma 46, hue from 275 to
+#: 445 degrees. Steps are even in CIELAB, half as a normal reader and half as one without green
+#: cones sees them (Vienot, Brettel and Mollon 1999).
+_EVEN = (
+    "74adfe76adfe79acfe7cacfe7eabfd81abfd83aafd85aafd87a9fc8aa9fc8ca8fc8ea8fc90a8fb92a7fb94a7fb96a6fa"
+    "97a6fa99a6f99ba5f99da5f99ea4f8a0a4f8a2a3f7a3a3f7a5a3f7a6a2f6a8a2f6a9a2f5aba1f5aca1f4aea0f4afa0f3"
+    "b0a0f3b29ff2b39ff2b49ff1b59ef1b79ef0b89ef0b99defba9defbc9ceebd9ceebe9cedbf9becc09becc19bebc29aeb"
+    "c39aeac49aeac599e9c699e8c799e8c899e7c998e7ca98e6cb98e5cc97e5cd97e4ce97e3cf96e3d096e2d196e2d296e1"
+    "d395e0d395e0d495dfd594ded694ded794ddd794dcd893dcd993dbda93dada93dadb92d9dc92d8dd92d8dd92d7de91d6"
+    "df91d6df91d5e091d4e190d4e190d3e290d2e390d2e38fd1e48fd0e58fcfe58fcfe68fcee68ecde78ecde78ecce88ecb"
+    "e88ecae98dcaea8dc9ea8dc8eb8dc8eb8dc7ec8dc6ec8cc5ed8cc5ed8cc4ed8cc3ee8cc2ee8cc2ef8bc1ef8bc0f08bc0"
+    "f08bbff08bbef18bbdf18bbdf28abcf28abbf28abaf38abaf38ab9f38ab8f48ab7f48ab7f48ab6f58ab5f589b4f589b3"
+    "f689b3f689b2f689b1f689b0f789b0f789aff789aef789adf889adf889acf889abf889aaf889a9f989a9f989a8f989a7"
+    "f989a6f989a6fa89a5fa89a4fa89a3fa89a2fa89a2fa89a1fa89a0fa899ffa899ffb899efb899dfb899cfb899bfb899b"
+    "fb899afb8999fb8998fb8997fb8997fb8a96fb8a95fb8a94fb8a94fb8a93fb8a92fb8a91fb8a90fb8a90fb8b8ffb8b8e"
+    "fa8b8dfa8b8cfa8b8cfa8b8bfa8b8afa8c89fa8c88fa8c88fa8c87f98c86f98c85f98d85f98d84f98d83f88d82f88d81"
+    "f88e81f88e80f78e7ff78e7ef78f7df78f7df68f7cf68f7bf68f7af5907af59079f59078f49177f49176f49176f39175"
+    "f39274f29273f29273f29372f19371f19370f09470f0946fef946eef956dee956ded956ced966bec966aec966aeb9769"
+    "eb9768ea9767e99867e99866e89965e79965e69a64e69a63e59a63e49b62e39b61e29c61e19c60e19d5fe09d5fdf9e5e"
+    "de9e5ddd9f5ddc9f5cdba05cdaa05bd8a15bd7a15ad6a259d5a259d4a359d2a358d1a458cfa457cea557cca657cba656"
+)
+#: Blue over rose to yellow, by the name ``"vizlight.even"`` also where PyVista or Matplotlib take
+#: a name. It is the map of data where none is named.
+even = ListedColormap(
+    [f"#{_EVEN[i : i + 6]}" for i in range(0, len(_EVEN), 6)], name="vizlight.even"
+)
+colormaps.register(even, force=True)

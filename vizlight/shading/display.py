@@ -1,0 +1,142 @@
+"""Light as a screen shows it: on colours of data, and on anything else.
+
+Colours of data keep their chromaticity, so that they can be read by their bar: light multiplies
+them by one number from 0.3 to 1, and there is no highlight. Every way to show data colours derives
+from :func:`for_colors` and :func:`on_colors`, or is the same formula as GLSL.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+
+from vizlight import _check
+from vizlight.shading import formulas
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from vizlight._types import Array, Bools, Color
+    from vizlight.scene import Scene
+
+    Bytes: TypeAlias = NDArray[np.uint8]
+
+#: Least ambient coefficient, and least light, of colours of data.
+LEAST = 0.3
+#: Colour of what is not data, in bytes, and as channels from 0 to 1.
+NO_DATA_BYTE = 128
+NO_DATA = (NO_DATA_BYTE / 255,) * 3
+#: Name of that colour beside a scalar bar.
+NO_DATA_NAME = "no data"
+#: Light that makes any colour as bright as a screen can.
+_LARGEST = 1e30
+#: Number of colours that are multiplied at once.
+_BLOCK = 1 << 14
+
+
+def for_colors(scene: Scene) -> Scene:
+    """Return the scene whose luminance is the light on colours of data.
+
+    Lights, ambient light and depth cue of a colour count by their luma; the material has no
+    highlight, and its ambient coefficient is 0.3 at least.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    Scene
+    """
+    material, cue = scene.material, scene.depth_cue
+    if cue is not None:
+        cue = dataclasses.replace(cue, cue=cue.cue * _luma(cue.color), color=None)
+    return scene.replace(
+        lights=tuple(
+            # A black lamp stays one of the lights, to which shadows belong.
+            dataclasses.replace(
+                light, intensity=light.intensity * max(_luma(light.color), 1e-12), color=None
+            )
+            for light in scene.lights
+        ),
+        material=dataclasses.replace(
+            material, ambient=max(material.ambient, LEAST), specular=0.0, color=None,
+            specular_color=None,
+        ),
+        ambient_intensity=scene.ambient_intensity * _luma(scene.ambient_color),
+        ambient_color=None,
+        depth_cue=cue,
+    )  # fmt: skip
+
+
+def _luma(color: Color | None) -> float:
+    return 1.0 if color is None else float(np.dot(color, formulas.LUMA))
+
+
+def on_colors(colors: Bytes, light: Array, valid: Bools | None = None) -> Bytes:
+    """Return colours of data in light: ``colour * min(1, max(0.3, light))``.
+
+    Parameters
+    ----------
+    colors : ndarray of uint8, shape (N, 3) or (N, 4)
+        Colours; a fourth component is kept.
+    light : ndarray, shape (N,)
+        Luminance by the scene of :func:`for_colors`.
+    valid : ndarray of bool, shape (N,), optional
+        False for points without light, which have the colour of what is not data.
+
+    Returns
+    -------
+    ndarray of uint8, of the shape of ``colors``
+        Colours, rounded to the nearest byte.
+    """
+    out = colors.copy()
+    for start in range(0, len(colors), _BLOCK):
+        rows = slice(start, start + _BLOCK)
+        factor = formulas.color_factor(light[rows].astype(np.float32), LEAST)
+        product = colors[rows, :3] * np.asarray(factor)[:, np.newaxis]
+        product += np.float32(0.5)
+        out[rows, :3] = product
+    if valid is not None:
+        out[~valid, :3] = NO_DATA_BYTE
+    return out
+
+
+def displayable(rgb: ArrayLike, /) -> Array:
+    """Return colours whose light may exceed white, with the same chromaticity in a screen's range.
+
+    Parameters
+    ----------
+    rgb : array_like, shape (..., 3)
+        Red, green and blue, 0 or more, such as the array ``rgb`` of a lit mesh.
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+        Colours with channels up to 1: those with a larger one are divided by their largest, the
+        others are equal to the bit. All channels are NaN where one is.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If ``rgb`` is not an array of three real components.
+
+    Notes
+    -----
+    Live light, pages, glTF files and pictures show what has no colours of data by this rule;
+    colours of data are never brighter than themselves, see :func:`vizlight.tint`.
+
+    Examples
+    --------
+    >>> from vizlight.shading.display import displayable
+    >>> displayable([[0.2, 0.5, 0.9], [1.6, 0.8, 0.4]])
+    array([[0.2 , 0.5 , 0.9 ],
+           [1.  , 0.5 , 0.25]])
+    """
+    colors: Array = np.asarray(_check.reals("rgb", rgb), np.float64)
+    if colors.ndim < 1 or colors.shape[-1] != 3:
+        raise ValueError(_check.message("rgb", "an array of shape (..., 3)", colors))
+    bright = np.clip(colors, 0.0, _LARGEST)
+    return np.asarray(formulas.in_range(bright, bright.max(axis=-1, keepdims=True)))
