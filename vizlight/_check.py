@@ -329,6 +329,16 @@ def vector(name: str, value: object, *, direction: bool = False) -> Vector:
     return result
 
 
+def unit(name: str, value: object) -> Array:
+    """Return a direction of 3 components, of any length but 0, with length 1."""
+    found = np.array(vector(name, value, direction=True))
+    if found.size != 3:
+        raise ValueError(message(name, "3 components", found.size))
+    # By a power of 2, which rounds nothing: squares of the components might overflow.
+    found = np.ldexp(found, -np.frexp(np.abs(found).max())[1])
+    return np.asarray(found / np.linalg.norm(found))
+
+
 def optional_vector(name: str, value: object, *, direction: bool = False) -> Vector | None:
     """Return None for None, and otherwise the value as a :func:`vector`."""
     return None if value is None else vector(name, value, direction=direction)

@@ -117,21 +117,12 @@ def bas_relief(
 
 def _eye_frame(direction: VectorLike, up: VectorLike | None) -> Array:
     """Return the unit vectors to the right, up and toward the eye as rows."""
-    toward = _unit("direction", direction)
+    toward = _check.unit("direction", direction)
     if up is None:
         up = (0.0, 1.0, 0.0) if abs(toward[2]) > 0.999 else (0.0, 0.0, 1.0)
-    right = np.cross(_unit("up", up), toward)
+    right = np.cross(_check.unit("up", up), toward)
     if np.linalg.norm(right) < 1e-6:
         remedy = "name another direction than that of the eye"
         raise ValueError(_check.message("up", "a direction across the view", tuple(up), remedy))
     right /= np.linalg.norm(right)
     return np.stack([right, np.cross(toward, right), toward])
-
-
-def _unit(name: str, value: object) -> Array:
-    """Return a unit vector of 3 components."""
-    vector = np.array(_check.vector(name, value, direction=True))
-    if len(vector) != 3:
-        raise ValueError(_check.message(name, "3 components", len(vector)))
-    vector /= np.abs(vector).max()
-    return np.asarray(vector / np.linalg.norm(vector))

@@ -17,7 +17,7 @@ from vizlight.mesh import blocks, bundles, point_arrays, surfaces
 from vizlight.mesh.normals import onlooker, split_where_computed
 from vizlight.mesh.strands import Grown, Room, Strands
 from vizlight.model import kernels
-from vizlight.reading.arrays import unit_rows, vectors_of
+from vizlight.reading.arrays import vectors_of
 from vizlight.scene.scene import as_scene
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import Bundle, ShadingOptions, accepts, check_sides, checked_bundle
@@ -356,7 +356,7 @@ class _Coat:
             if lost:
                 what = "the vectors are not finite: fibres there follow the normals"
                 _check.warn(f"{lost} of {len(given)} of {what}")
-            self.vectors = unit_rows(given).astype(np.float32)
+            self.vectors = kernels.unit_rows(given).astype(np.float32)
         self.toward = _toward(surface, options.toward)
         self.length: Array | float = (
             LENGTH * size if options.length is None else _lengths(surface, options.length)
@@ -492,7 +492,7 @@ def _toward(surface: pv.PolyData, toward: str | VectorLike | None) -> Array | No
         if len(direction) != 3:
             raise ValueError(_check.message("toward", "3 components", len(direction)))
         rows = np.array([direction])
-    return unit_rows(rows).astype(np.float32)
+    return kernels.unit_rows(rows).astype(np.float32)
 
 
 def _lengths(mesh: pv.PolyData, length: object) -> Array | float:

@@ -18,7 +18,8 @@ from vizlight.geometry.solids import exact_surfaces, tessellation, triangle_mesh
 from vizlight.geometry.solids.primitives import Frustum, Solid, Sphere
 from vizlight.mesh import blocks, hull, normals, records
 from vizlight.mesh.inputs import inputs_of
-from vizlight.reading.arrays import array_of, unit_rows
+from vizlight.model import kernels
+from vizlight.reading.arrays import array_of
 from vizlight.scene.scene import as_scene
 from vizlight.shading import engine
 from vizlight.shading.options import LightOptions, accepts, check_sides
@@ -326,7 +327,7 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
         found = normals.normals_of(
             surface, asked.normals, 3, normals.onlooker(scene), warn=angle is None
         )
-        unit = unit_rows(np.asarray(found, dtype=np.float64))
+        unit = kernels.unit_rows(np.asarray(found, dtype=np.float64))
         rows = np.concatenate([points, unit, *carried.values()], axis=1)
         near = any(lamp.position is not None for lamp in scene.lights)
         near |= scene.view is not None and scene.view.position is not None
@@ -422,7 +423,7 @@ def _middles(bands: Bands, light: _Light) -> tuple[Array, Array]:
         patches = np.stack([bands.patch, bands.patch], axis=1)
         places = exact_surfaces.onto(shape.surfaces, (middle - shape.shift) / shape.scale, patches)
         return shape.world(places), triangle_mesh.normals_of(shape, places, bands.patch)
-    normals = unit_rows(middle[:, 3:6]) if middle.shape[1] >= 6 else bands.normals()
+    normals = kernels.unit_rows(middle[:, 3:6]) if middle.shape[1] >= 6 else bands.normals()
     return middle[:, :3], normals
 
 

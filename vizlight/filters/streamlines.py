@@ -15,9 +15,9 @@ from vizlight.mesh import blocks, hull, point_arrays, records, surfaces, tracers
 from vizlight.mesh.normals import onlooker
 from vizlight.mesh.records import all_made
 from vizlight.mesh.tracers import TRACED, Vectors
-from vizlight.model import line_fields
+from vizlight.model import kernels, line_fields
 from vizlight.reading import polylines
-from vizlight.reading.arrays import array_of, unit_rows, vectors_of
+from vizlight.reading.arrays import array_of, vectors_of
 from vizlight.reading.cells import check_whole, has_faces
 from vizlight.scene.scene import as_scene
 from vizlight.shading.options import LightKeywords, LightOptions, accepts
@@ -343,7 +343,7 @@ def _traced(
     tangents: Array = np.array(lines.point_data[TRACED], dtype=np.float64)
     if surface is not None:
         if confined:
-            normals = unit_rows(lines.point_data[surfaces.NORMALS])
+            normals = kernels.unit_rows(lines.point_data[surfaces.NORMALS])
             tangents -= np.einsum("ij,ij->i", tangents, normals)[:, np.newaxis] * normals
         else:
             normals = surfaces.closest(surface, places)[1]
@@ -352,7 +352,7 @@ def _traced(
         if key in lines.point_data:
             del lines.point_data[key]
     name = TANGENTS if TANGENTS not in mesh.point_data else OWN_TANGENTS
-    tangents = unit_rows(tangents)
+    tangents = kernels.unit_rows(tangents)
     resting = ~np.any(tangents, axis=1)
     if resting.any():
         # Where a line comes to rest it has the direction in which it came.

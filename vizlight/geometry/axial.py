@@ -73,7 +73,7 @@ def source(
             raise ValueError(
                 _check.message("attenuation", "a light with position=", "a light at infinity")
             )
-        return Source(unit("direction", direction), math.inf, low, scale, power, fading)
+        return Source(_check.unit("direction", direction), math.inf, low, scale, power, fading)
     offset = triple("position", position) - center
     size = length(offset)
     toward = offset / size if size > 0 else np.array([0.0, 0, 1])
@@ -91,18 +91,6 @@ def triple(name: str, value: object) -> Array:
     if len(found) != 3:
         raise ValueError(_check.message(name, "3 components", len(found)))
     return np.array(found)
-
-
-def unit(name: str, value: object) -> Array:
-    """Return a unit vector of 3 components."""
-    found = triple(name, value)
-    top = np.abs(found).max()
-    if not top > 0:
-        raise ValueError(
-            _check.message(name, "a direction of non-zero length", _check.describe(value))
-        )
-    found = found / top
-    return np.asarray(found / length(found))
 
 
 def frame(axis: Array, toward: Array | None = None) -> tuple[Array, Array]:

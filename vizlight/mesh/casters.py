@@ -15,7 +15,7 @@ from vizlight import _check
 from vizlight.geometry.relief import height_field, shadowing
 from vizlight.mesh import closed_meshes, normals
 from vizlight.mesh.height_grids import Grid, heights_of
-from vizlight.reading.arrays import unit_rows
+from vizlight.model import kernels
 from vizlight.shading.options import check_sides
 from vizlight.verify import rays
 
@@ -171,7 +171,7 @@ class _FieldCaster:
         self.points = found.points()
         normals = self._normal if self._turn is None else self._normal @ self._turn
         upright = found.to_points(np.where(self._holes[..., np.newaxis], 0, normals))
-        self.normals = unit_rows(upright) if found.sampled else upright
+        self.normals = kernels.unit_rows(upright) if found.sampled else upright
         self.valid: Bools = found.covered() & (found.to_points(~self._holes * 1.0) > 0)
         field = self._field
         size = max(field.x[-1], field.y[-1], field.top)
@@ -218,7 +218,7 @@ class _SolidCaster:
         vectors = normals.normals_of(
             mesh, None, 3, normals.onlooker(scene), warn=options.feature_angle is None
         )
-        self.normals = unit_rows(np.asarray(vectors, dtype=np.float64))
+        self.normals = kernels.unit_rows(np.asarray(vectors, dtype=np.float64))
         if thickness is not None:
             thickness = _check.number("thickness", thickness, low=0.0)
             if not thickness:

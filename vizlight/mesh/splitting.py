@@ -12,9 +12,10 @@ from vizlight import _check
 from vizlight._version import __version__
 from vizlight.geometry.solids import triangle_mesh
 from vizlight.mesh import hull, normals, point_arrays, records
+from vizlight.model import kernels
 from vizlight.reading import polylines
 from vizlight.reading.cells import connectivity, has_faces
-from vizlight.verify.between import Places, are_unit, unit_rows
+from vizlight.verify.between import Places, are_unit
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -326,7 +327,7 @@ def _interpolated(
     with np.errstate(all="ignore"):
         found = np.asarray(shares @ values)
         if not places and are_unit(values):
-            found = unit_rows(found)
+            found = kernels.unit_rows(found)
     found = np.rint(found) if colour else found
     return np.asarray(found.reshape(-1, *rows.shape[1:]).astype(rows.dtype))
 

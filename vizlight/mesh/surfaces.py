@@ -8,7 +8,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight.mesh import blocks, normals
-from vizlight.reading.arrays import unit_rows
+from vizlight.model import kernels
 from vizlight.reading.cells import faces_only
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ def with_normals(
             triangles.point_data[key] = np.asarray(array)
     found = normals.normals_of(own, None, 3, view, warn=angle is None)
     kind = np.result_type(found.dtype, np.float32)
-    triangles.point_data[NORMALS] = unit_rows(found).astype(kind, copy=False)
+    triangles.point_data[NORMALS] = kernels.unit_rows(found).astype(kind, copy=False)
     return triangles if triangles.is_all_triangles else triangles.triangulate()
 
 

@@ -17,7 +17,6 @@ from vizlight.geometry.lines.simplices import Places, Simplices
 from vizlight.geometry.lines.tracing import AT_REST, Curves, Flow, trace
 from vizlight.mesh import polylines
 from vizlight.model import kernels, line_fields
-from vizlight.reading.arrays import unit_rows
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -254,6 +253,6 @@ def scaled(mesh: pv.DataSet, vectors: Array) -> pv.DataSet:
     array = np.clip(array / scale, -1e30, 1e30)
     if vectors.shape[1] == 6:
         array[speed <= AT_REST * scale] = 0
-        array = unit_rows(array)
+        array = kernels.unit_rows(array)
     mesh.point_data[TRACED] = array.reshape(vectors.shape)
     return mesh

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     from vizlight._types import Array, Bools, Indices
 
@@ -59,6 +59,12 @@ def unit(v: Array) -> tuple[Array, Array]:
     scaled_size = np.sqrt(dot(scaled, scaled))
     result[:, extreme] = scaled / np.where(scaled_size > 0, scaled_size, 1)
     return result, size
+
+
+def unit_rows(vectors: ArrayLike) -> Array:
+    """Return rows as unit vectors in float64; zero where there is no direction."""
+    columns = np.ascontiguousarray(np.asarray(vectors, dtype=np.float64).T)
+    return unit(columns)[0].T
 
 
 def _length(v: Array) -> tuple[Array, Bools | None]:

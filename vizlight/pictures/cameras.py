@@ -137,10 +137,10 @@ def outermost(
 
 def _directions(direction: object, up: Sequence[float] | None) -> tuple[Array, Array]:
     """Return the unit vectors toward the eye and up."""
-    toward = _unit("direction", direction)
+    toward = _check.unit("direction", direction)
     if up is None:
         up = (0.0, 1.0, 0.0) if abs(toward[2]) > 0.999 else (0.0, 0.0, 1.0)
-    upward = _unit("up", up)
+    upward = _check.unit("up", up)
     if np.linalg.norm(np.cross(upward, toward)) < 1e-6:
         raise ValueError(_check.message("up", "a direction across the view", tuple(up)))
     return toward, upward
@@ -150,16 +150,6 @@ def _axes(toward: Array, up: Array) -> Array:
     """Return the unit vectors to the right and up in the picture, and toward the eye."""
     right = np.cross(up, toward)
     return np.stack([v / np.linalg.norm(v) for v in (right, np.cross(toward, right), toward)])
-
-
-def _unit(name: str, value: object) -> Array:
-    """Return one vector of 3 components, of any length, with length 1."""
-    vector = np.array(_check.vector(name, value, direction=True))
-    if vector.size != 3:
-        raise ValueError(_check.message(name, "3 components", vector.size))
-    # By a power of 2, which rounds nothing: squares of the components might overflow.
-    vector = np.ldexp(vector, -np.frexp(np.abs(vector).max())[1])
-    return np.asarray(vector / np.linalg.norm(vector))
 
 
 def _box(bounds: Mesh | ArrayLike) -> Array:

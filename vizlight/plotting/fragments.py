@@ -10,11 +10,11 @@ import pyvista as pv
 
 from vizlight.filters import lighting
 from vizlight.mesh import hull
+from vizlight.model import kernels
 from vizlight.plotting import dialects, glsl, program, strokes
 from vizlight.plotting.live import NORMALS, TANGENTS
 from vizlight.plotting.program import Stroke
 from vizlight.reading import polylines
-from vizlight.reading.arrays import unit_rows
 from vizlight.scene.light import NO_ATTENUATION, WHITE
 from vizlight.scene.vtk import LARGEST_POWER
 from vizlight.shading.decide import decide
@@ -249,7 +249,7 @@ def _rows(inputs: ShadingInputs, rows: ArraySource | None) -> Array | None:
     """Return unit vectors, one per point, also where several points share one."""
     if rows is None:
         return None
-    unit = unit_rows(np.asarray(rows[0 : rows.shape[0]]).reshape(-1, 3))
+    unit = kernels.unit_rows(np.asarray(rows[0 : rows.shape[0]]).reshape(-1, 3))
     unit[~np.all(np.isfinite(unit), axis=1)] = 0
     return unit if len(unit) == inputs.count else np.repeat(unit, inputs.repeat, axis=0)
 

@@ -9,7 +9,7 @@ from vtkmodules.vtkCommonDataModel import vtkImageData, vtkRectilinearGrid
 from vtkmodules.vtkFiltersCore import vtkCellDataToPointData
 
 from vizlight import _check
-from vizlight.model import kernels, line_fields
+from vizlight.model import line_fields
 from vizlight.reading.cells import as_numpy, as_vtk, places
 
 if TYPE_CHECKING:
@@ -186,10 +186,3 @@ def _checked_tangents(argument: str, value: object, array: Array, n: int) -> Arr
         remedy = "name another array, or name the positions in n-space by positions="
         raise ValueError(_check.message(argument, expected, _components(value, array), remedy))
     return array
-
-
-def unit_rows(vectors: Array) -> Array:
-    """Return vectors of any length as unit vectors in float64; zero where there is no direction."""
-    columns = np.ascontiguousarray(np.asarray(vectors, dtype=np.float64).T)
-    result: Array = kernels.unit(columns)[0].T
-    return result

@@ -8,7 +8,7 @@ import numpy as np
 import scipy
 
 from vizlight import _pool
-from vizlight.reading.arrays import unit_rows
+from vizlight.model import kernels
 from vizlight.reading.cells import faces, places, triangles
 
 if TYPE_CHECKING:
@@ -202,9 +202,9 @@ class Shape:
         seen = view is not None and len(view.position or view.direction or ()) == 3
         for block in _pool.blocks(len(normals), BLOCK):
             own, away = normals[block], self.away[block]
-            score = _dots(own, unit_rows(away))
+            score = _dots(own, kernels.unit_rows(away))
             if seen and view is not None:
-                score += 3 * _dots(own, unit_rows(self._toward(view, block)))
+                score += 3 * _dots(own, kernels.unit_rows(self._toward(view, block)))
             good = self.finite[block] & np.all(np.isfinite(own), axis=1)
             if self._side is not None:
                 good &= self._side[block] == 0
@@ -222,7 +222,7 @@ class Shape:
         n = len(normals)
         bends, least = np.zeros((3, n)), np.ones(n)
         for _, rows, across in self._parts():
-            faces = unit_rows(across)
+            faces = kernels.unit_rows(across)
             corners = [self.away.take(rows[:, i], axis=0) for i in range(3)]
             middle = (corners[0] + corners[1] + corners[2]) / 3
             for i, bend in enumerate(bends):
@@ -249,7 +249,7 @@ class Shape:
             sides = [_dots(side, side) for side in (a - b, b - c, c - a)]
             longest = np.maximum(np.maximum(sides[0], sides[1]), sides[2])
             full[numbers] = np.sqrt(_dots(across, across)) > NARROWEST * longest
-            faces[numbers] = unit_rows(across)
+            faces[numbers] = kernels.unit_rows(across)
         least = np.cos(np.radians([2 * SHARP, SHARP, SHARP / 2]))
         counts = np.zeros((4, self.owners.count), dtype=np.intp)
         for keys, edges in _edges(self.triangles, len(self.away)):

@@ -97,7 +97,7 @@ class Between:
             given: ArraySource = inputs.normals
             if self._sides is not None:
                 given, self.facts = self._sides.normals, self._sides.facts
-            self.vectors["normals"] = unit_rows(_rows(given))[:, np.newaxis]
+            self.vectors["normals"] = kernels.unit_rows(_rows(given))[:, np.newaxis]
         self._unit = set(self.vectors)
         self.scales: dict[str, float] = {}
         for name in ("tangents", "base_tangents"):
@@ -112,7 +112,7 @@ class Between:
         """Return the points, the vectors and the facts on which sides depend, at places."""
         points, found, facts = self._interpolated(places)
         for name in self._unit & found.keys():
-            found[name] = unit_rows(found[name][:, 0])[:, np.newaxis]
+            found[name] = kernels.unit_rows(found[name][:, 0])[:, np.newaxis]
         return points, found, facts
 
     def _interpolated(self, places: Places) -> tuple[Array, dict[str, Array], Array]:
@@ -125,7 +125,7 @@ class Between:
     def rows(self, name: str) -> Array:
         """Return vectors of all points, of length 1 where those of the mesh are."""
         rows = self.vectors[name]
-        return unit_rows(rows[:, 0])[:, np.newaxis] if name in self._unit else rows
+        return kernels.unit_rows(rows[:, 0])[:, np.newaxis] if name in self._unit else rows
 
     def turned(self, normals: Array, facts: Array, points: Array) -> Array:
         """Return normals, shape (M, n), turned to the side of the surface that is seen."""
@@ -183,7 +183,7 @@ class Between:
         else:
             at = cells.ravel()
             normals = self.vectors["normals"][at, 0]
-            turned = self.turned(unit_rows(normals), self.facts[at], self.points[at])
+            turned = self.turned(kernels.unit_rows(normals), self.facts[at], self.points[at])
             length = np.linalg.norm(normals, axis=1, keepdims=True)
             given = (length * turned).reshape(rows.shape)
         solve = _across if lines else _toward_half
@@ -427,13 +427,6 @@ def sub_cells(weights: Array, factor: int) -> tuple[Array, Array]:
     return (whole[:, np.newaxis] + steps) / factor, share
 
 
-def unit_rows(rows: Array) -> Array:
-    """Return vectors as unit vectors, zero where there is no direction."""
-    with np.errstate(all="ignore"):
-        unit, _ = kernels.unit(np.ascontiguousarray(rows.T))
-    return np.nan_to_num(unit.T)
-
-
 def are_unit(rows: Array) -> bool:
     """Return whether rows are unit vectors, but for some of length 0."""
     if rows.ndim != 2 or rows.shape[1] < 2:
@@ -466,8 +459,8 @@ def _dots(a: Array, b: Array) -> Array:
 def _toward(end: Light | View, points: Array) -> Array:
     """Return unit directions from points to a light or an eye."""
     if end.direction is not None and (end.position is None or getattr(end, "parallel", False)):
-        return unit_rows(np.array([end.direction], dtype=np.float64))
-    return unit_rows(np.asarray(end.position, dtype=np.float64) - points)
+        return kernels.unit_rows(np.array([end.direction], dtype=np.float64))
+    return kernels.unit_rows(np.asarray(end.position, dtype=np.float64) - points)
 
 
 def _across(lines: Array, half: Array) -> Array:

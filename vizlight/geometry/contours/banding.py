@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vizlight.geometry import axial
+from vizlight import _check
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -151,7 +151,7 @@ class Laminae:
         """
         size = np.diff(self.offsets)
         lamina = np.repeat(np.arange(len(size)), size)
-        depth = self.points @ axial.unit("toward", toward)
+        depth = self.points @ _check.unit("toward", toward)
         return np.argsort(np.bincount(lamina, depth, len(size)) / np.maximum(size, 1))
 
 

@@ -141,9 +141,9 @@ def virtual_light(center: VectorLike, /, *, light: object, eye: object) -> Array
     for name, given in (("light", light), ("eye", eye)):
         position = getattr(given, "position", None)
         if position is not None and not getattr(given, "parallel", False):
-            total += axial.unit(name, axial.triple(name, position) - middle)
+            total += _check.unit(name, axial.triple(name, position) - middle)
         else:
-            total += axial.unit(name, getattr(given, "direction", given))
+            total += _check.unit(name, getattr(given, "direction", given))
     if axial.length(total) < 1e-12:
         raise ValueError(
             _check.message(

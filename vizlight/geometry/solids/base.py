@@ -91,7 +91,7 @@ class Solid:
         point : vector of 3 components, default: (0, 0, 0)
             Point of the axis.
         """
-        axis = axial.unit("vector", vector)
+        axis = _check.unit("vector", vector)
         angle = math.radians(_check.number("angle", angle))
         cross = np.cross(np.eye(3), axis)
         turn = np.eye(3) + math.sin(angle) * cross + 2 * math.sin(angle / 2) ** 2 * cross @ cross

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vizlight.model import kernels
+
 if TYPE_CHECKING:
     from vizlight._types import Array, Bools, Indices
 
@@ -26,7 +28,7 @@ class Ball:
 
     def normal(self, points: Array) -> Array:
         """Return outward unit normals."""
-        return _unit_rows(points - self.center)
+        return kernels.unit_rows(points - self.center)
 
     def key(self, sign: float) -> tuple[float, ...]:
         """Return numbers that are equal for equal surfaces with equal normals times ``sign``."""
@@ -87,7 +89,7 @@ class Cone:
         """Return outward unit normals; at the apex the normal is parallel to the axis."""
         _, across, size, slope, cosine = self._parts(points)
         unit = across / np.where(size > 0, size, 1)[:, np.newaxis]
-        return np.asarray(_unit_rows(cosine * (unit - slope * self.axis)))
+        return np.asarray(kernels.unit_rows(cosine * (unit - slope * self.axis)))
 
     def key(self, sign: float) -> tuple[float, ...]:
         """Return numbers that are equal for equal surfaces with equal normals times ``sign``."""
@@ -124,7 +126,7 @@ class Ring:
         along, across, size = self._parts(points)
         unit = across / np.where(size > 0, size, 1)[:, np.newaxis]
         out = (size - self.ring)[:, np.newaxis] * unit
-        return _unit_rows(out + along[:, np.newaxis] * self.axis)
+        return kernels.unit_rows(out + along[:, np.newaxis] * self.axis)
 
     def key(self, sign: float) -> tuple[float, ...]:
         """Return numbers that are equal for equal surfaces with equal normals times ``sign``."""
@@ -186,11 +188,6 @@ def fibonacci(count: int) -> Array:
 
 def _sizes(vectors: Array) -> Array:
     return np.asarray(np.sqrt(np.einsum("ij,ij->i", vectors, vectors)))
-
-
-def _unit_rows(vectors: Array) -> Array:
-    size = _sizes(vectors)[:, np.newaxis]
-    return np.asarray(vectors / np.where(size > 0, size, 1))
 
 
 def onto(surfaces: Surfaces, points: Array, both: Indices, rounds: int = 4) -> Array:

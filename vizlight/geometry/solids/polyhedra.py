@@ -61,7 +61,7 @@ class HalfSpace(Primitive):
         self, point: VectorLike = (0.0, 0.0, 0.0), normal: VectorLike = (0.0, 0.0, 1.0)
     ) -> None:
         self.point = axial.triple("point", point)
-        self.normal = axial.unit("normal", normal)
+        self.normal = _check.unit("normal", normal)
 
     def __repr__(self) -> str:
         point, normal = (tuple(map(float, v)) for v in (self.point, self.normal))

@@ -104,7 +104,7 @@ class Frustum(Primitive):
         if not np.any(along):
             remedy = "pass its direction, and height=0 for a disc without thickness"
             raise ValueError(_check.message("axis", "a vector of non-zero length", along, remedy))
-        self.axis = axial.unit("axis", axis)
+        self.axis = _check.unit("axis", axis)
         self.height = (
             axial.length(along) if height is None else _check.number("height", height, low=0.0)
         )
@@ -251,7 +251,7 @@ class Torus(Primitive):
         tube_radius: float = 0.25,
     ) -> None:
         self.center = axial.triple("center", center)
-        self.axis = axial.unit("axis", axis)
+        self.axis = _check.unit("axis", axis)
         self.ring_radius = _check.number("ring_radius", ring_radius, low=0.0)
         self.tube_radius = _check.number("tube_radius", tube_radius, low=0.0)
         if self.tube_radius >= self.ring_radius:
