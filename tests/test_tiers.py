@@ -36,6 +36,7 @@ TIERS = [
     {"mesh", "data"},
     {"files", "filters"},
     {"pictures", "pieces", "plotting", "vtk"},
+    {"observers"},
     {"accessor", "demo", "doctor"},
     {"cli"},
     {"__main__"},

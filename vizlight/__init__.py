@@ -36,6 +36,8 @@ if TYPE_CHECKING:
     from vizlight.geometry.solids.primitives import Block, Frustum, Sphere, Torus
     from vizlight.mesh.polylines import direction_colors
     from vizlight.mesh.records import provenance
+    from vizlight.observers.legibility import legibility
+    from vizlight.observers.record import Legibility
     from vizlight.pictures import movie as movie
     from vizlight.pictures import render as render
     from vizlight.pictures import testing as testing
@@ -53,6 +55,7 @@ _HOMES = {
     "DepthCue": "vizlight.scene",
     "Frustum": "vizlight.geometry.solids.primitives",
     "HalfSpace": "vizlight.geometry.solids.polyhedra",
+    "Legibility": "vizlight.observers.record",
     "Light": "vizlight.scene",
     "Material": "vizlight.scene",
     "Polyhedron": "vizlight.geometry.solids.polyhedra",
@@ -67,6 +70,7 @@ _HOMES = {
     "fur": "vizlight.filters.fur",
     "illuminate": "vizlight.filters.illuminate",
     "isoluminance": "vizlight.filters.isoluminance",
+    "legibility": "vizlight.observers.legibility",
     "live_html": "vizlight.plotting.html",
     "load_example": "vizlight.data",
     "manifold": "vizlight.filters.manifold",
@@ -108,6 +112,7 @@ __all__ = [
     "DepthCue",
     "Frustum",
     "HalfSpace",
+    "Legibility",
     "Light",
     "Material",
     "Polyhedron",
@@ -122,6 +127,7 @@ __all__ = [
     "fur",
     "illuminate",
     "isoluminance",
+    "legibility",
     "live_html",
     "load_example",
     "manifold",

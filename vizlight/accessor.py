@@ -72,6 +72,7 @@ class Accessor:
     fur = _Method(lambda: vizlight.fur)
     illuminate = _Method(lambda: vizlight.illuminate)
     isoluminance = _Method(lambda: vizlight.isoluminance)
+    legibility = _Method(lambda: vizlight.legibility)
     plot = _Method(_plot)
     live_html = _Method(lambda: vizlight.live_html)
     project = _Method(lambda: vizlight.project)

@@ -66,6 +66,8 @@ class Job:
         Message about what else may have been meant.
     explain
         Function that prints how the result was made.
+    read
+        Step that measures what a reader can read back from the picture.
     """
 
     lit: Step
@@ -82,6 +84,7 @@ class Job:
     clim: tuple[float, float] | None = None
     hint: Callable[[], str] = lambda: ""
     explain: Callable[[pv.DataSet], None] | None = None
+    read: Step | None = None
     meshes: list[tuple[Step, Path]] = field(default_factory=list)
     pictures: list[Path] = field(default_factory=list)
 
@@ -229,7 +232,8 @@ def _written(job: Job, mesh: Step, path: Path, out: Output) -> Step:
 def _last_steps(job: Job, out: Output) -> list[Step]:
     """Return the steps that leave something behind."""
     written = [_written(job, mesh, path, out) for mesh, path in job.meshes]
-    return [job.lit, *written, *(_picture(job, path, out) for path in job.pictures)]
+    read = [] if job.read is None else [Step("", "print", job.read)]
+    return [job.lit, *read, *written, *(_picture(job, path, out) for path in job.pictures)]
 
 
 def _run(job: Job, out: Output) -> int:
@@ -248,6 +252,8 @@ def _run(job: Job, out: Output) -> int:
         _count_white(lit, job.name)
     if job.explain is not None:
         job.explain(lit)
+    if job.read is not None:
+        say(str(job.read.run()))
     for step, path in job.meshes:
         what = "page" if path.suffix.lower() == HTML else "mesh"
         with _window(out) if what == "page" else contextlib.nullcontext():

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import inspect
 from pathlib import Path  # noqa: TC003 - cyclopts reads the annotations
 from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
 import vizlight
+from vizlight import _check
 from vizlight.cli import in_pieces, options, scenes
 from vizlight.cli.arguments import (
     COMMON,
@@ -45,6 +47,7 @@ def light(
     color: Annotated[Color, OUTPUT] = Color(),  # noqa: B008
     pieces: Annotated[Pieces, PIECES] = Pieces(),  # noqa: B008
     explain: Annotated[Flag, Parameter(group=GROUPS["Output"])] = False,
+    legibility: Annotated[Flag, Parameter(group=GROUPS["Output"])] = False,
 ) -> int:
     """Light a mesh from any file that PyVista reads, and write the lit mesh and a picture.
 
@@ -56,18 +59,30 @@ def light(
         creases by itself, pieces by --feature-angle.
     explain
         Print what is computed and what is skipped.
+    legibility
+        Print what an ideal reader reads back from the picture: direction, slope, shape, values.
     """
     given = options.keywords(how)
     if in_pieces.are_asked(common.out, pieces):
         scenes.check_target(target)
         scenes.check_color(color)
         look = scenes.Look(common)
+        if legibility:
+            got = "pieces"
+            raise ValueError(_check.message("--legibility", "one mesh, lit as a whole", got))
         return in_pieces.light(files, target, given, common, color, pieces, look)
-    return carry_out(files, builder(target, how, common, color, explain=explain), common.out, "lit")
+    build = builder(target, how, common, color, explain=explain, legibility=legibility)
+    return carry_out(files, build, common.out, "lit")
 
 
 def builder(
-    target: Target, how: object, common: Common, color: Color, *, explain: bool = False
+    target: Target,
+    how: object,
+    common: Common,
+    color: Color,
+    *,
+    explain: bool = False,
+    legibility: bool = False,
 ) -> Callable[[Path], Job]:
     """Return the function that makes the job of a file, after a check of what needs no mesh."""
     from vizlight.shading.options import LightOptions
@@ -88,7 +103,8 @@ def builder(
             mesh = scenes.surface(data, target)
         camera = look.camera(mesh)
         progress = {"progress_bar": True} if common.out.progress else {}
-        lit = Step("lit", "vizlight.illuminate", mesh, look.scene(camera), **given, **progress)
+        scene = look.scene(camera)
+        lit = Step("lit", "vizlight.illuminate", mesh, scene, **given, **progress)
         made = Job(lit, asked.name, look, camera, suffix=".vtp" if taken or asked.refine else "")
         made.before = None if asked.refine else mesh
         made.tint(scenes.tinted(lit, asked.name, data, color), color)
@@ -96,9 +112,22 @@ def builder(
             made.hint = lambda: _hint(data.run(), surface=target.surface)
         if explain:
             made.explain = lambda mesh: _explain(mesh, asked)
+        if legibility:
+            made.read = _read(made, scene, given)
         return made
 
     return job
+
+
+def _read(made: Job, scene: Step, given: dict[str, object]) -> Step:
+    """Return the step that measures what a reader can read back from the picture."""
+    names = [
+        field for field in inspect.signature(vizlight.legibility).parameters if field in given
+    ]
+    known = {name: given[name] for name in names}
+    if made.shown is not None and made.shown.path == "vizlight.tint":
+        known |= {"scalars": made.shown.arguments[1], "cmap": made.shown.keywords["cmap"]}
+    return Step("", "vizlight.legibility", made.lit, scene, **known, view=made.camera)
 
 
 def _hint(mesh: pv.DataSet | pv.MultiBlock, *, surface: bool) -> str:

@@ -63,8 +63,7 @@ def of_slope(samples: list[Sample], seed: int, noise: float, notes: list[str]) -
     steep: list[Array] = []
     light: list[Array] = []
     for one in own:
-        assert one.tangents is not None
-        steep.append(np.abs(np.einsum("ij,ij->i", one.tangents[:, 0], one.eye)))
+        steep.append(slope.steepness(one))
         light.append(lab(seen(one.own_light(), random, noise))[:, 0])
     error = np.concatenate([slope.in_space(one, random, noise) for one in own])
     steepness, lightness = np.concatenate(steep), np.concatenate(light)

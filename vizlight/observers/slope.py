@@ -20,6 +20,12 @@ if TYPE_CHECKING:
 STEEP, LIGHT = 16, 32
 
 
+def steepness(sample: Sample) -> Array:
+    """Return the cosine, 0 or more, of the angle between tangents and the line of sight."""
+    assert sample.tangents is not None
+    return np.asarray(np.abs(np.einsum("ij,ij->i", sample.tangents[:, 0], sample.eye)))
+
+
 def rank_correlation(a: Array, b: Array) -> float:
     """Return Spearman's rank correlation; 0 where one of the two is constant."""
     if np.ptp(a) == 0 or np.ptp(b) == 0:

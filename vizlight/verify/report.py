@@ -172,6 +172,8 @@ class Report:
                 f"{run.seconds:.3g} s, {run.nanoseconds:.3g} ns per point, {run.bytes} bytes"
             )
             lines += _lines(run)
+        if self.runs:
+            lines.append("not measured: what a reader can read back, see vizlight.legibility")
         return "\n".join(lines)
 
 
@@ -277,7 +279,8 @@ def report(*, sample: int = 4096, seed: int = 0) -> Iterator[Report]:
     as a fragment shader computes it. It is computed by the engine in float64, in some 4 ms for
     4,096 places and 0.1 µs for each cell. It is not measured for fur, for cast shadows, for
     light inside a bundle, and for points without cells, and the report says so where it is not.
-    Filters that other threads call are not recorded.
+    Filters that other threads call are not recorded. What a reader can read back from the picture
+    is another question: :func:`vizlight.legibility` measures it.
 
     Examples
     --------

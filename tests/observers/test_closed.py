@@ -1,0 +1,87 @@
+"""The meter gives the answers that are known, and would not if it were broken."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from closed_cases import CASES
+
+from vizlight.observers import direction, matching, shape, slope, value
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_known_answer(name):
+    CASES[name]()
+
+
+class Unturned:
+    """A generator whose candidates start at the truth, so that ties favour it."""
+
+    def __init__(self, random):
+        self._random = random
+
+    def uniform(self, low, high, size=None):
+        return np.zeros(size) if size is not None else 0.0
+
+    def __getattr__(self, name):
+        return getattr(self._random, name)
+
+
+def ties_favor_the_truth(monkeypatch):
+    real = direction.ideal
+    monkeypatch.setattr(direction, "ideal", lambda s, r, noise: real(s, Unturned(r), noise))
+
+
+def likely_is_unlikely(monkeypatch):
+    def flipped(observed, table, noise):
+        inverse = 1 / np.maximum(matching.posterior(observed, table, noise), 1e-12)
+        return inverse / inverse.sum(axis=1, keepdims=True)
+
+    for module in (direction, shape, slope):
+        monkeypatch.setattr(module, "posterior", flipped)
+
+
+def noise_is_not_allowed_for(monkeypatch):
+    real = matching.posterior
+    monkeypatch.setattr(matching, "posterior", lambda o, t, _: real(o, t, 1e-5))
+
+
+def slope_is_across_the_eye(monkeypatch):
+    monkeypatch.setattr(slope, "steepness", lambda s: np.abs(s.tangents[:, 0, 0]))
+
+
+def normals_have_a_wrong_frame(monkeypatch):
+    real = shape._in_space
+    monkeypatch.setattr(shape, "_in_space", lambda s, local: real(s, local[:, [1, 0, 2]]))
+
+
+def key_is_turned(monkeypatch):
+    real = direction.key
+    monkeypatch.setattr(direction, "key", lambda s, m, angles: real(s, m, angles + 0.1))
+
+
+def bar_is_off_by_half_a_step(monkeypatch):
+    real = value.decode
+
+    def shifted(colors, positions, bar):
+        return real(colors, positions + 0.5 / len(bar), bar)
+
+    monkeypatch.setattr(value, "decode", shifted)
+
+
+MUTATIONS = {
+    ties_favor_the_truth: "headlight_on_a_plane_is_chance_share",
+    likely_is_unlikely: "two_colors_60_degrees_apart_resolve_it",
+    noise_is_not_allowed_for: "two_grays_tell_what_the_binary_channel_does",
+    slope_is_across_the_eye: "cylinder_under_a_headlight_orders_slopes",
+    normals_have_a_wrong_frame: "three_lamps_solve_for_the_normal",
+    key_is_turned: "key_reads_a_plane_that_is_the_key",
+    bar_is_off_by_half_a_step: "unlit_colors_are_read_to_half_a_step",
+}
+
+
+@pytest.mark.parametrize("mutate", MUTATIONS, ids=lambda f: f.__name__)
+def test_a_broken_meter_is_noticed(monkeypatch, mutate):
+    mutate(monkeypatch)
+    with pytest.raises(AssertionError):
+        CASES[MUTATIONS[mutate]]()
