@@ -435,3 +435,26 @@ def test_lines_are_lit_as_a_bundle(tmp_path, monkeypatch, capfd):
     code, _, error = run(capfd, "light", "ball.vtp", "-o", "no.vtp", "--bundle")
     assert code == 2
     assert error.startswith("vizlight: bundle: expected a mesh with lines")
+
+
+@pytest.mark.opengl
+def test_legibility_is_printed_and_the_script_does_the_same(tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    ball = pv.Sphere()
+    ball["v"] = np.cross([0.2, 0, 1], ball.points)
+    ball["height"] = ball.points[:, 2]
+    ball.save("ball.vtp")
+    arguments = ("light", "ball.vtp", "-o", "lit.vtp", "--tangents", "v", "--scalars", "height")
+    code, out, _ = run(capfd, *arguments, "--legibility")
+    assert code == 0
+    for text in ("within 10 degrees", "median error of the normal", "nearest colour"):
+        assert text in out
+    code, script, _ = run(capfd, *arguments, "--legibility", "--script")
+    assert code == 0
+    exec(compile(script, "script", "exec"), {})
+    table = capfd.readouterr().out.strip()
+    assert table.startswith("question")
+    assert table in out
+    code, _, error = run(capfd, "light", "ball.vtp", "-o", "lit.pvtp", "--legibility")
+    assert code == 2
+    assert "--legibility: expected one mesh, lit as a whole" in error

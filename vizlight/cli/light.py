@@ -121,9 +121,7 @@ def builder(
 
 def _read(made: Job, scene: Step, given: dict[str, object]) -> Step:
     """Return the step that measures what a reader can read back from the picture."""
-    names = [
-        field for field in inspect.signature(vizlight.legibility).parameters if field in given
-    ]
+    names = [field for field in inspect.signature(vizlight.legibility).parameters if field in given]
     known = {name: given[name] for name in names}
     if made.shown is not None and made.shown.path == "vizlight.tint":
         known |= {"scalars": made.shown.arguments[1], "cmap": made.shown.keywords["cmap"]}

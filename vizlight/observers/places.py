@@ -92,20 +92,24 @@ def places_of(
 def _facing(
     parts: list[Part], camera: pv.Camera, scene: Scene, most: int, random: np.random.Generator
 ) -> list[tuple[Sample, Part]]:
-    """Return random points that face the eye."""
+    """Return random points that face the eye, each as likely as its surface is large in a picture.
+
+    Points that are even on a surface are then as in a picture without what hides them.
+    """
     total = sum(part.inputs.count for part in parts)
     found = []
     for part in parts:
         count = part.inputs.count
-        # Half of the points of a closed surface face the eye.
-        chosen = random.permutation(count)[: max(1, round(2 * most * count / total))]
+        # On a ball half of the points face the eye, and are half as large in the picture.
+        chosen = random.permutation(count)[: max(1, round(4 * most * count / total))]
         ids: Indices = np.sort(chosen)
-        points = rows_of(part.inputs.points, ids)
-        ids = ids[np.isfinite(points).all(axis=1)]
+        ids = ids[np.isfinite(rows_of(part.inputs.points, ids)).all(axis=1)]
         own = sample(part, ids[:, np.newaxis], np.zeros((len(ids), 2)), camera, scene)
         if own.normals is not None:
-            own = own.take(np.einsum("ij,ij->i", own.normals, own.eye) > 0)
+            toward = np.einsum("ij,ij->i", own.normals, own.eye)
+            own = own.take(toward > random.uniform(0.0, 1.0, len(own)))
         if len(own):
             found.append((own, part))
     keep = min(1.0, most / max(1, sum(len(one) for one, _ in found)))
-    return [(one.take(slice(max(1, round(keep * len(one))))), part) for one, part in found]
+    few = [random.permutation(len(one))[: max(1, round(keep * len(one)))] for one, _ in found]
+    return [(one.take(np.sort(ids)), part) for ids, (one, part) in zip(few, found, strict=True)]

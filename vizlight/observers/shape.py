@@ -20,7 +20,7 @@ NORMALS, TURNS = 900, 24
 #: Largest number of candidates that are lit where each place has its own, and matched in all.
 LIT, MATCHED = 1 << 22, 1 << 25
 #: Number of candidates that are matched at once.
-BLOCK = 1 << 22
+BLOCK = 1 << 20
 
 
 def most(sample: Sample) -> int:
