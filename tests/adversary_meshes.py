@@ -89,6 +89,9 @@ FILTERS = {
     "fur": lambda: {"surface": ball(), "scene": SCENE, "fibres": 20, "length": 0.1, "density": 0.3},
     "illuminate": lambda: {"mesh": ball(), "scene": SCENE, "tangents": "V"},
     "isoluminance": lambda: {"mesh": ball(), "scene": SUN, "levels": 4},
+    "legibility": lambda: {
+        "mesh": ball(), "scene": SCENE, "tangents": "V", "scalars": "s", "samples": 16,
+    },
     "project": lambda: {"mesh": torus(), "scene": SCENE4, "distance": 4.0},
     "provenance": lambda: {"mesh": lit()},
     "refine": lambda: {"mesh": ball(), "scene": SCENE, "error": 0.2},
@@ -146,7 +149,11 @@ CALLS = {
     "files.surface_of": lambda: {"mesh": flow(), "contour": None},
     "files.warped": lambda: {"mesh": hills(), "name": "h", "factor": 1.0},
     "files.write_mesh": lambda: {"mesh": ball(), "path": Path("out.vtp")},
-    **{f"filters.{name}.{name}": make for name, make in FILTERS.items() if name != "provenance"},
+    **{
+        f"filters.{name}.{name}": make
+        for name, make in FILTERS.items()
+        if name not in ("legibility", "provenance")
+    },
     **{f"accessor.Accessor.{name}": make for name, make in FILTERS.items()},
     "accessor.Accessor.live_html": lambda: written("page.html"),
     "accessor.Accessor.plot": plotting,
@@ -159,6 +166,7 @@ CALLS = {
     "filters.solids.to_polydata": lambda: {"solid": vizlight.Sphere(), "tolerance": 0.1},
     "mesh.polylines.direction_colors": lambda: {"mesh": pv.Spline(np.cumsum(unit(5, 3), 0), 8)},
     "mesh.records.provenance": FILTERS["provenance"],
+    "observers.legibility.legibility": FILTERS["legibility"],
     "filters.pathlines.pathlines": series,
     "pictures.backends.choose_backend": dict,
     "pictures.backends.probe": lambda: {"backend": "egl"},

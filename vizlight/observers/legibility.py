@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from vizlight.filters.tint import ColorMap
     from vizlight.scene.vtk import AnyView
-    from vizlight.shading.options import Model
+    from vizlight.shading.options import Exponent, Model
 
 #: Standard deviation of the noise of each channel.
 NOISE = 2 / 255
@@ -41,7 +41,7 @@ def legibility(
     cmap: ColorMap = None,
     clim: Sequence[float] | float | None = None,
     conditioned: bool = False,
-    compensate: bool = True,
+    exponent: Exponent = "compensated",
     model: Model = "phong",
     view: AnyView = None,
     noise: float = NOISE,
@@ -76,8 +76,8 @@ def legibility(
         Values at the ends of the colour map. Default: smallest and largest value.
     conditioned : bool, default: False
         Whether tangents inherit the self-shadow of the surface (Banks 6).
-    compensate : bool, default: True
-        Whether the diffuse term has the exponent p(k, n) in place of 1 (Banks 5).
+    exponent : float or "compensated"
+        Exponent of the diffuse term, as for :func:`vizlight.illuminate`.
     model : {"phong", "blinn", "cylinder"}
         Reflection model of the highlight.
     view : View or pyvista.Camera, optional
@@ -152,7 +152,7 @@ def legibility(
         raise ValueError(_check.message(name, "scalars= beside it", "none"))
     conditioned = _check.boolean("conditioned", conditioned)
     options = LightOptions(
-        tangents=tangents, conditioned=conditioned, compensate=compensate, model=model
+        tangents=tangents, conditioned=conditioned, exponent=exponent, model=model
     )
     blocks.check(mesh)
     camera, scene = seen_from(mesh, scene, view)

@@ -46,13 +46,14 @@ def _camera_of(view: View, mesh: pv.DataSet | pv.MultiBlock) -> pv.Camera:
     """Return a camera at the eye of a view."""
     if view.position is None or view.parallel:
         assert view.direction is not None
-        return camera_on(mesh, view.direction, parallel=view.parallel)
+        return camera_on(mesh, view.direction, up=view.axes()[1].tolist(), parallel=view.parallel)
     position = np.array(view.position)
     if view.direction is None:
         toward = position - np.array(camera_on(mesh).focal_point)
     else:
         toward = np.array(view.direction)
-    camera = camera_on((-1, 1, -1, 1, -1, 1), toward)
+    eye = View(direction=toward, up=view.up)
+    camera = camera_on((-1, 1, -1, 1, -1, 1), toward, up=eye.axes()[1].tolist())
     camera.position = tuple(position)
     camera.focal_point = tuple(position - toward)
     camera.view_angle = VIEW_ANGLE
