@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vizlight.filters.tint import displayable
+from vizlight.shading.display import displayable
 
 if TYPE_CHECKING:
     from vizlight._types import Array

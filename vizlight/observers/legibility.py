@@ -167,7 +167,10 @@ def legibility(
     table = None
     if scalars is not None:
         values = [np.asarray(part.values) for part in parts]
-        table = color_table(np.concatenate(values), cmap=cmap, clim=clim)
+        if any(own.ndim == 2 for own in values):
+            got, remedy = "colours of three or four bytes", "name the array that they show"
+            raise ValueError(_check.message("scalars", "values to read", got, remedy))
+        table = color_table(values, cmap=cmap, clim=clim)
     toward = -np.array(camera.GetDirectionOfProjection())
     return Legibility(
         direction=of_direction(asked, seed, noise, notes),

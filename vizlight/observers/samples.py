@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight.model.frames import orthonormalize
+from vizlight.model.kernels import unit_rows
 from vizlight.observers.parts import rows_of
 from vizlight.observers.visible import rays, weights
-from vizlight.reading.arrays import unit_rows
 from vizlight.shading import engine
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import ShadingOptions

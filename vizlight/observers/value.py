@@ -8,8 +8,9 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from vizlight.filters import relight
-from vizlight.filters.tint import light_factors, map_colors, times_light
+from vizlight.filters.tint import light_on_colors, map_colors
 from vizlight.observers.colors import chromaticity, lab
+from vizlight.shading import display
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -57,6 +58,6 @@ def lit_colors(part: Part, sample: Sample, table: pv.LookupTable) -> Array:
     assert sample.values is not None
     inputs = sample.given(sample.tangents, sample.normals)
     source = relight.Source(part.mesh, inputs, sample.options, None)
-    ((factor, rest),) = light_factors([source], sample.scene)
-    colors = times_light(map_colors(table, sample.values)[:, :3], factor, rest)
-    return colors[:, :3] / 255.0
+    ((light, _),) = light_on_colors([source], sample.scene)
+    colors = display.on_colors(map_colors(table, sample.values, components=3), light)
+    return np.asarray(colors / 255.0)
