@@ -25,6 +25,7 @@ TIERS = [
         "_supervise",
         "_types",
         "_version",
+        "_words",
         "maps",
     },
     {"model"},

@@ -16,6 +16,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from vizlight import _words
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from typing import ParamSpec, TypeVar
@@ -26,6 +28,8 @@ if TYPE_CHECKING:
 
     P = ParamSpec("P")
     R = TypeVar("R")
+
+describe, message, one_of = _words.describe, _words.message, _words.one_of
 
 #: Largest intensity, coefficient or power: the product of three of them fits float32.
 LARGEST = 1e9
@@ -42,18 +46,6 @@ def warn(text: str, category: type[Warning] = UserWarning) -> None:
     while frame.f_back and frame.f_globals.get("__name__", "").partition(".")[0] == "vizlight":
         level, frame = level + 1, frame.f_back
     warnings.warn(text, category, stacklevel=level)
-
-
-def message(name: str, expected: str, got: object, remedy: str = "") -> str:
-    """Return ``name: expected ..., got ...; remedy`` on one line, with arrays described."""
-    got = describe(got) if isinstance(got, np.ndarray) else got
-    text = f"{name}: expected {expected}, got {got}"
-    return f"{text}; {remedy}" if remedy else text
-
-
-def one_of(names: Sequence[str]) -> str:
-    """Return the names that the user may choose from, as part of an error message."""
-    return f"one of {list(names)}" if names else "but the mesh has none"
 
 
 def choice(name: str, value: object, allowed: Sequence[str], *, optional: bool = False) -> None:
@@ -90,19 +82,6 @@ def array_name(name: str, value: object) -> str:
     if not text(name, value, expected=expected):
         raise ValueError(message(name, expected, "an empty text"))
     return str(value)
-
-
-def describe(value: object) -> str:
-    """Return a short description of a value for an error message."""
-    if isinstance(value, np.ndarray):
-        return f"an array of shape {value.shape} and type {value.dtype}"
-    try:
-        # A file or a terminal may take no half of a surrogate pair.
-        text = " ".join(repr(value).encode("utf-8", "backslashreplace").decode().split())
-    except ValueError:  # Python does not print integers of more than 4300 digits
-        kind = "an integer" if isinstance(value, int) else "a number"
-        text = f"{kind} of more digits than Python prints"
-    return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 def reals(name: str, value: object) -> NDArray[np.generic]:

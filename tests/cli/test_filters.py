@@ -172,7 +172,7 @@ def test_every_option_of_a_filter_is_one_of_its_command(name, capfd, monkeypatch
     out = shown(name, capfd, monkeypatch)
     parameters = inspect.signature(FILTERS[name]).parameters.values()
     own = {p.name for p in parameters if p.kind is p.KEYWORD_ONLY} - {*options.NOT_OPTIONS}
-    given = set(inspect.signature(options.arguments_of(FILTERS[name])).parameters)
+    given = set(inspect.signature(options.arguments_of(FILTERS[name].__name__)).parameters)
     assert own - given <= IN_SCRIPTS[name]
     for option in own - IN_SCRIPTS[name] - getattr(FILTERS[name], "replaced", set()):
         text = {"light": "when"}.get(option, option) if name == "project" else option

@@ -10,7 +10,7 @@ from typing import Annotated, Literal
 
 from cyclopts import Group, Parameter
 
-from vizlight import _check
+from vizlight._words import message
 
 Backend = Literal["egl", "osmesa"]
 Flag = Annotated[bool, Parameter(negative=(), show_default=False)]
@@ -265,16 +265,18 @@ def vector(name: str, text: str, *, n: int = 3, direction: bool = True) -> tuple
     if not values:
         expected = "three numbers x,y,z" + f" or {n} numbers" * (n != 3)
         expected += ", or azimuth,altitude in degrees" * by_angles
-        raise ValueError(_check.message(f"--{name}", expected, repr(text)))
+        raise ValueError(message(f"--{name}", expected, repr(text)))
     if len(values) == 2:
         values = toward(*values)
     if direction and not any(values):
-        raise ValueError(_check.message(f"--{name}", "a direction x,y,z, not all zero", repr(text)))
+        raise ValueError(message(f"--{name}", "a direction x,y,z, not all zero", repr(text)))
     return values + (0.0,) * (n - len(values))
 
 
 def toward(azimuth: float, altitude: float) -> tuple[float, float, float]:
     """Return a unit direction from degrees clockwise from y (north) and above the horizon."""
+    from vizlight import _check
+
     a, e = (
         math.radians(azimuth),
         math.radians(_check.number("altitude", altitude, low=-90, high=90)),
@@ -296,7 +298,7 @@ def plane(name: str, text: str, *, n: int = 3) -> tuple[tuple[float, ...], float
     if not (colon and any(values) and distance):
         example = "0,0,1:2.5 or z:2.5" if n == 3 else ",".join("0" * (n - 1)) + ",1:0.2"
         expected = f"NORMAL:OFFSET, {n} numbers and one, such as {example}"
-        raise ValueError(_check.message(f"--{name}", expected, repr(text)))
+        raise ValueError(message(f"--{name}", expected, repr(text)))
     return values, distance[0]
 
 
@@ -312,7 +314,7 @@ def interval(name: str, text: str) -> tuple[str, float, float]:
         if low <= high and any(ends):
             return array, low, high
     expected = "NAME:LOW:HIGH, such as Temp:300:600 or Temp:300:"
-    raise ValueError(_check.message(f"--{name}", expected, repr(text)))
+    raise ValueError(message(f"--{name}", expected, repr(text)))
 
 
 def fraction(name: str, text: str, expected: str = "a number or a fraction such as 1/255") -> float:
@@ -320,7 +322,7 @@ def fraction(name: str, text: str, expected: str = "a number or a fraction such 
     try:
         return float(Fraction(text))
     except (ValueError, ZeroDivisionError) as error:
-        raise ValueError(_check.message(f"--{name}", expected, repr(text))) from error
+        raise ValueError(message(f"--{name}", expected, repr(text))) from error
 
 
 def pixels(text: str) -> tuple[int, int]:
@@ -329,6 +331,6 @@ def pixels(text: str) -> tuple[int, int]:
 
     width, _, height = text.lower().partition("x")
     if not (width.isdecimal() and height.isdecimal()):
-        raise ValueError(_check.message("--size", "WIDTHxHEIGHT in pixels", repr(text)))
+        raise ValueError(message("--size", "WIDTHxHEIGHT in pixels", repr(text)))
     columns, rows = render.pixels_of((int(width), int(height)))
     return columns, rows

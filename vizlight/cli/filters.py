@@ -5,19 +5,11 @@ from __future__ import annotations
 from pathlib import Path  # noqa: TC003 - cyclopts reads the annotations
 from typing import TYPE_CHECKING, Annotated
 
-import numpy as np
-
-import vizlight
 from vizlight.cli import options, scenes
 from vizlight.cli.arguments import COMMON, LIT, OUTPUT, Color, Common, Part, Shape
 from vizlight.cli.job import Job, carry_out
 from vizlight.cli.output import say
 from vizlight.cli.script import Step
-from vizlight.filters.fur import LENGTH, FurOptions
-from vizlight.filters.isoluminance import ContourOptions
-from vizlight.filters.project import ProjectOptions
-from vizlight.filters.relief_shadow import ReliefOptions
-from vizlight.filters.streamlines import StreamlineOptions
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,6 +17,8 @@ if TYPE_CHECKING:
     import pyvista as pv
 
     from vizlight.cli.arguments import Output
+    from vizlight.filters.fur import FurOptions
+    from vizlight.filters.relief_shadow import ReliefOptions
     from vizlight.scene import Light
 
 #: Option of ``project`` that the lights have the name of.
@@ -32,9 +26,9 @@ RENAMED = {"light": "when"}
 
 
 @options.takes(
-    vizlight.streamlines,
+    "streamlines",
     "Streamlines",
-    without=("positions", "tangents", "separation", "shortest"),
+    without=("positions", "tangents", "separation", "shortest", "flip_normals"),
 )
 def streamlines(
     files: list[Path],
@@ -55,6 +49,8 @@ def streamlines(
     files
         Mesh with vectors; of several each is lit by itself.
     """
+    from vizlight.filters.streamlines import StreamlineOptions
+
     scenes.check_target(part)
     scenes.check_color(color)
     look = scenes.Look(common)
@@ -75,7 +71,7 @@ def streamlines(
     return carry_out(files, job, common.out, "streamlines")
 
 
-@options.takes(vizlight.relief_shadow, "Relief")
+@options.takes("relief_shadow", "Relief")
 def relief(
     files: list[Path],
     /,
@@ -91,6 +87,8 @@ def relief(
     files
         Height field, or closed surface; of several each is lit by itself.
     """
+    from vizlight.filters.relief_shadow import ReliefOptions
+
     scenes.check_target(shape)
     # The shadow is that of one light.
     look = scenes.Look(common, fill=False)
@@ -126,12 +124,14 @@ def relief(
 
 def _level_light(lights: Sequence[Light]) -> float:
     """Return the sine of the altitude of the highest light at infinity; 1 without one above."""
+    import numpy as np
+
     ways = [np.asarray(light.direction) for light in lights if light.direction is not None]
     sines = [float(way[2] / np.linalg.norm(way)) for way in ways]
     return max((sine for sine in sines if sine > 0), default=1.0)
 
 
-@options.takes(vizlight.fur, "Fur")
+@options.takes("fur", "Fur")
 def fur(
     files: list[Path],
     /,
@@ -147,6 +147,8 @@ def fur(
     files
         Surface, or a mesh with one; of several each is lit by itself.
     """
+    from vizlight.filters.fur import FurOptions
+
     scenes.check_target(shape)
     look = scenes.Look(common, material=scenes.FUR)
     given = {"feature_angle": "auto"} | options.keywords(how)
@@ -162,7 +164,7 @@ def fur(
 
 
 # The tolerance is that of solids, which no file holds.
-@options.takes(vizlight.isoluminance, "Contours", without=("tolerance",))
+@options.takes("isoluminance", "Contours", without=("tolerance",))
 def contours(
     files: list[Path],
     /,
@@ -178,6 +180,8 @@ def contours(
     files
         Surface, or a mesh with one; of several each is lit by itself.
     """
+    from vizlight.filters.isoluminance import ContourOptions
+
     scenes.check_target(shape)
     look = scenes.Look(common)
     # In a picture a crease is seen as one.
@@ -194,7 +198,7 @@ def contours(
     return carry_out(files, job, common.out, "contours")
 
 
-@options.takes(vizlight.project, "Projection", renamed=RENAMED)
+@options.takes("project", "Projection", without=("flip_normals",), renamed=RENAMED)
 def project(
     files: list[Path],
     /,
@@ -212,6 +216,8 @@ def project(
     files
         Mesh with positions and tangents in n-space; of several each is lit by itself.
     """
+    from vizlight.filters.project import ProjectOptions
+
     look = scenes.Look(common)
     given = options.keywords(how, RENAMED)
     asked = ProjectOptions(**given)
@@ -244,6 +250,8 @@ def _step(
 
 def _tips(mesh: Step, asked: FurOptions) -> Step:
     """Return the step that moves the points of a surface to where straight fur ends."""
+    from vizlight.filters.fur import LENGTH
+
     found: pv.PolyData = mesh.run()
     length = LENGTH * found.length if asked.length is None else asked.length
     if isinstance(length, str):

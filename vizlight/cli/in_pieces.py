@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from vizlight import _check
+from vizlight._words import message
 from vizlight.cli.output import OK, complain, draw, say
 from vizlight.cli.script import Step, source
-from vizlight.pieces.kinds import INDEX
-from vizlight.reading.orientation import MANY_SHARP, SHARP
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -17,23 +15,34 @@ if TYPE_CHECKING:
     from vizlight.cli.arguments import Color, Common, Output, Pieces, Target
     from vizlight.cli.scenes import Look
 
-INDICES = tuple(INDEX.values())
 #: Share of edges from which creases are seen in a picture.
 NOTED = 0.001
 
 
 def are_asked(out: Output, pieces: Pieces) -> bool:
     """Return whether files are pieces of one mesh, by the output and the workers."""
-    indices = [path for path in out.output or () if path.suffix.lower() in INDICES]
-    if indices:
+    if _indices(out):
         return True
     for name, value in vars(pieces).items():
         option = f"--{name}"
         if value is not None:
-            expected = f"an output that ends in {', '.join(INDICES)}, of pieces, beside {option}"
+            from vizlight.pieces.kinds import INDEX
+
+            endings = ", ".join(INDEX.values())
+            expected = f"an output that ends in {endings}, of pieces, beside {option}"
             got = ", ".join(str(path) for path in out.output or ()) or "none"
-            raise ValueError(_check.message("output", expected, got))
+            raise ValueError(message("output", expected, got))
     return False
+
+
+def _indices(out: Output) -> list[Path]:
+    """Return the outputs that are indices of pieces."""
+    found = [path for path in out.output or () if path.suffix.lower().startswith(".pv")]
+    if not found:
+        return []
+    from vizlight.pieces.kinds import INDEX
+
+    return [path for path in found if path.suffix.lower() in INDEX.values()]
 
 
 def light(
@@ -48,16 +57,16 @@ def light(
     """Light files as pieces of one mesh, or print the script that does; return the exit code."""
     out = common.out
     _refuse(target, color, out)
-    indices = [path for path in out.output or () if path.suffix.lower() in INDICES]
-    others = [path for path in out.output or () if path.suffix.lower() not in INDICES]
+    indices = _indices(out)
+    others = [path for path in out.output or () if path not in indices]
     for path in others:
         if path.suffix.lower() != ".png":
             expected = "pictures .png beside the index of pieces"
             remedy = f"make it of the index by 'vizlight light {indices[0]} -o {path}'"
-            raise ValueError(_check.message("output", expected, f"'{path}'", remedy))
+            raise ValueError(message("output", expected, f"'{path}'", remedy))
     if len(indices) > 1:
         expected = "one index of pieces"
-        raise ValueError(_check.message("output", expected, ", ".join(map(str, indices))))
+        raise ValueError(message("output", expected, ", ".join(map(str, indices))))
     runs: dict[str, Any] = {"workers": 1 if pieces.workers is None else pieces.workers}
     if pieces.scheduler is not None:
         runs = {"client": pieces.scheduler} | (
@@ -98,6 +107,8 @@ def light(
     low, high = made.ranges[name]
     if high > 1:
         complain(f"{name} is from {low:.3g} to {high:.3g}; above 1 it is white in a picture")
+    from vizlight.reading.orientation import MANY_SHARP, SHARP
+
     if NOTED <= made.sharp <= MANY_SHARP:  # more is said by the library
         complain(
             f"{made.sharp:.1%} of the edges are creases, across which light is averaged; one file "
@@ -123,4 +134,4 @@ def _refuse(target: Target, color: Color, out: Output) -> None:
         if value:
             script = "a script passes scalars= to vizlight.pieces.save_png"
             remedy = script if option == "--scalars" else ""
-            raise ValueError(_check.message(option, "no such option for pieces", "one", remedy))
+            raise ValueError(message(option, "no such option for pieces", "one", remedy))

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import vizlight
-from vizlight import _check
+from vizlight._words import message
 from vizlight.cli.output import BAD_INPUT, OK, complain, draw, one_line, say
 from vizlight.cli.scenes import TINT
 from vizlight.cli.script import Step, source
@@ -112,7 +112,7 @@ def carry_out(files_: Sequence[Path], build: Callable[[Path], Job], out: Output,
     stems = [path.stem for path in files_]
     for twice in (name for name in stems if stems.count(name) > 1):
         expected = "files of different names, after which the outputs are named"
-        raise ValueError(_check.message("file", expected, f"{twice!r} twice"))
+        raise ValueError(message("file", expected, f"{twice!r} twice"))
     jobs, codes = [], [OK]
     for path in files_:
         try:
@@ -136,7 +136,7 @@ def carry_out(files_: Sequence[Path], build: Callable[[Path], Job], out: Output,
 
 def _check_output(out: Output, *, several: bool) -> None:
     """Check the options of output that need no mesh."""
-    from vizlight import files
+    from vizlight import _check, files
 
     _check.color("background", out.background)
     _check.number("line_width", out.line_width, low=0.1, high=1000.0)
@@ -145,10 +145,10 @@ def _check_output(out: Output, *, several: bool) -> None:
             continue
         if several:
             expected = "a folder that exists, for several files"
-            raise files.FileError(_check.message("output", expected, f"'{path}'"))
+            raise files.FileError(message("output", expected, f"'{path}'"))
         files.check_output(path, (".png", GLTF, HTML, *files.SUFFIXES))
     if out.paraview and several:
-        raise ValueError(_check.message("paraview", "one file to light", "several"))
+        raise ValueError(message("paraview", "one file to light", "several"))
     if out.paraview:
         files.check_output(out.paraview, (".py",))
 
@@ -181,13 +181,13 @@ def _check_paths(job: Job, inputs: Sequence[Path]) -> None:
             path = beside(path)
         if any(path.exists() and file.exists() and path.samefile(file) for file in inputs):
             expected = "another file than the input"
-            raise files.FileError(_check.message("output", expected, f"'{path}'"))
+            raise files.FileError(message("output", expected, f"'{path}'"))
     formats = files.FORMATS.get(job.kind, files.SUFFIXES) if job.before is None else files.SUFFIXES
     formats += files.FORMATS["MultiBlock"] if job.parts else ()
     for _, path in job.meshes:
         if path.suffix.lower() not in (*SHOWN, *formats):
             expected = f"a name that ends in {', '.join(formats)} for {job.kind}"
-            raise files.FileError(_check.message("output", expected, f"'{path.name}'"))
+            raise files.FileError(message("output", expected, f"'{path.name}'"))
 
 
 def _picture(job: Job, path: Path, out: Output) -> Step:

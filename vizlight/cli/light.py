@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 
 # Places in n-space need lights and an eye in n-space, which scripts have.
-@options.takes(vizlight.illuminate, "Shading", without=("positions",))
+@options.takes("illuminate", "Shading", without=("positions", "flip_normals"))
 def light(
     files: list[Path],
     /,

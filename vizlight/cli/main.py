@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 app = App(
     name="vizlight",
     help="Light that makes scientific data legible.",
+    # Markdown takes longer to load than all of NumPy, and no text of the help has marks.
+    help_format="plaintext",
     version=__version__,
     result_action="return_value",
     suppress_keyboard_interrupt=False,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import inspect
 import re
 from dataclasses import field, make_dataclass
@@ -10,14 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Union
 
 from cyclopts import Group, Parameter
 
-from vizlight import _check
+from vizlight._words import message
+from vizlight.cli import declared
 from vizlight.cli.arguments import fraction, numbers
-from vizlight.filters.fur import Inward
-from vizlight.filters.project import LightWhen
-from vizlight.geometry.relief.height_field import Border
-from vizlight.geometry.relief.shadowing import Method
-from vizlight.model.reflection import SpecularModel
-from vizlight.shading.options import LightOptions, Model, Precision, documented
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -25,21 +19,9 @@ if TYPE_CHECKING:
 
     P = ParamSpec("P")
 
-#: Types that text can be read as, by their names in annotations. A filter's option that has none
-#: of them is left to scripts.
-TYPES: Mapping[str, object] = {
-    "bool": bool,
-    "int": int,
-    "float": float,
-    "str": str,
-    "Model": Model,
-    "SpecularModel": SpecularModel,
-    "Precision": Precision,
-    "Border": Border,
-    "Method": Method,
-    "Inward": Inward,
-    "LightWhen": LightWhen,
-}
+#: Types that text can be read as, by their names in annotations, beside those that are choices. A
+#: filter's option that has none of them is left to scripts.
+TYPES: Mapping[str, type] = {"bool": bool, "int": int, "float": float, "str": str}
 #: Keywords of filters that are not options of what they make.
 NOT_OPTIONS = ("scene", "threads", "inplace", "progress_bar")
 #: Number of letters of a description that is shortened.
@@ -73,7 +55,7 @@ def _rotations(name: str, texts: list[str]) -> object:
         plane, colon, angle = text.partition(":")
         if not colon:
             expected = "PLANE:ANGLE with the angle in radians, such as xw:0.3"
-            raise ValueError(_check.message(f"--{name}", expected, repr(text)))
+            raise ValueError(message(f"--{name}", expected, repr(text)))
         found.append((plane, fraction(name, angle)))
     return found
 
@@ -84,7 +66,7 @@ def _hyperplane(name: str, text: str) -> object:
     values, distance = numbers(normal, tuple(range(3, 100))), numbers(offset, (1,))
     if not (any(values) and distance):
         expected = "NORMAL:OFFSET, such as 0,0,0,1:0.2"
-        raise ValueError(_check.message(f"--{name}", expected, repr(text)))
+        raise ValueError(message(f"--{name}", expected, repr(text)))
     return values, distance[0]
 
 
@@ -111,7 +93,7 @@ READ_LISTS: Mapping[str, tuple[Callable[[str, list[str]], object], str]] = {
 
 
 def arguments_of(
-    filter_: Callable[..., object],
+    filter_: str,
     *,
     without: tuple[str, ...] = (),
     renamed: Mapping[str, str] | None = None,
@@ -120,39 +102,36 @@ def arguments_of(
 
     Parameters
     ----------
-    filter_ : callable
-        Public filter, whose signature and documentation list its options.
+    filter_ : str
+        Name of a public filter, whose signature and documentation list its options.
     without : tuple of str
         Options that are left to scripts.
     renamed : dict of str to str, optional
         Other names of options on the command line.
     """
-    texts = _documented(filter_)
+    found = declared.filter_(filter_)
     made: list[tuple[str, object, object]] = []
-    for name, parameter in inspect.signature(filter_).parameters.items():
-        text_type = _type(name, str(parameter.annotation))
-        own = parameter.kind is parameter.KEYWORD_ONLY and name not in (*NOT_OPTIONS, *without)
-        if not own or text_type is None:
+    for name, option in found.options.items():
+        text_type = _type(name, option)
+        if text_type is None or name in (*NOT_OPTIONS, *without):
             continue
-        default = parameter.default
-        option = Parameter(
-            # What a newer option replaces still works.
-            show=name not in getattr(filter_, "replaced", ()),
-            help=first_clause(_text(name, texts)),
+        default = option.default
+        shown = Parameter(
+            help=first_clause(_text(name, found.texts)),
             negative=() if default is False or name in READ_LISTS else None,
             show_default=bool(default) and not isinstance(default, bool),
             allow_leading_hyphen=name in READ,
         )
-        required = default is parameter.empty
         made.append(
             (
                 (renamed or {}).get(name, name),
-                Annotated[text_type, option],
-                field() if required else field(default=default),
+                Annotated[text_type, shown],
+                field() if option.required else field(default=default),
             )
         )
     kind = make_dataclass("Arguments", made, frozen=True, kw_only=True)
-    kind.__module__ = __name__
+    # Cyclopts looks for descriptions in the source of the module of a class; this one has none.
+    kind.__module__ = __package__ or __name__
     return kind
 
 
@@ -174,22 +153,20 @@ def keywords(arguments: object, renamed: Mapping[str, str] | None = None) -> dic
     return found
 
 
-def _type(name: str, annotation: str) -> object | None:
+def _type(name: str, option: declared.Option) -> object | None:
     """Return the type of an option on the command line, None where text cannot give it."""
     if name in READ_LISTS:
         return list[str] | None
     if name in READ:
-        return str if annotation == "Facing" else str | None
-    parts = [TYPES[part] for part in annotation.split(" | ") if part in TYPES]
+        return str if option.annotation == "Facing" else str | None
+    words = option.annotation.split(" | ")
+    parts = [TYPES.get(word) or declared.choices(option, word) for word in words]
+    parts = [part for part in parts if part is not None]
     if bool in parts:
         # A flag; the name of an array in its place is left to scripts.
         parts = [bool]
-    optional = [None] if "None" in annotation.split(" | ") else []
+    optional = [None] if "None" in words else []
     return Union[(*parts, *optional)] if parts else None
-
-
-def _documented(function: Callable[..., object]) -> dict[str, str]:
-    return documented(type("Documented", (), {"__doc__": function.__doc__}))
 
 
 def _text(name: str, texts: Mapping[str, str]) -> str:
@@ -205,11 +182,11 @@ def _text(name: str, texts: Mapping[str, str]) -> str:
     text, elsewhere = _flat(entry), re.search(r"[Aa]s for\s:\w+:`~?vizlight\.([\w.]+)`", entry)
     if not elsewhere:
         return text
-    there = documented(LightOptions)
-    if elsewhere[1] != "illuminate":
-        module, _, function = elsewhere[1].rpartition(".")
-        there = _documented(getattr(importlib.import_module(f"vizlight.{module}"), function))
-    return _flat(there.get(name, "")) or text
+    module, _, function = elsewhere[1].rpartition(".")
+    there = (
+        declared.function(f"vizlight.{module}", function) if module else declared.filter_(function)
+    )
+    return _flat(there.texts.get(name, "")) or text
 
 
 def _flat(entry: str) -> str:
@@ -235,7 +212,7 @@ def first_clause(text: str) -> str:
 
 
 def takes(
-    filter_: Callable[..., object],
+    filter_: str,
     group: str,
     *,
     without: tuple[str, ...] = (),

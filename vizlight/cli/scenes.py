@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import vizlight
-from vizlight import _check
+from vizlight._words import message, one_of
 from vizlight.cli import arguments
 from vizlight.cli.arguments import Shape
 from vizlight.cli.script import Step
@@ -48,10 +48,10 @@ def check_target(target: Part) -> None:
     if isinstance(target, Shape):
         together.append(("warp-factor", target.warp_factor, "warp", target.warp))
         if target.slice is not None and target.contour is not None:
-            raise ValueError(_check.message("--slice", "no --contour beside it", "both"))
+            raise ValueError(message("--slice", "no --contour beside it", "both"))
     for option, value, needs, given in together:
         if value is not None and given is None:
-            raise ValueError(_check.message(f"--{option}", f"--{needs} with it", "it alone"))
+            raise ValueError(message(f"--{option}", f"--{needs} with it", "it alone"))
 
 
 def check_color(color: Color) -> None:
@@ -62,7 +62,7 @@ def check_color(color: Color) -> None:
         pv.LookupTable(color.cmap)
     except ValueError as error:
         expected = "the name of a colour map"
-        raise ValueError(_check.message("--cmap", expected, repr(color.cmap))) from error
+        raise ValueError(message("--cmap", expected, repr(color.cmap))) from error
 
 
 def data(file: Path, target: Part, *, average_cells: bool = False) -> Step:
@@ -88,8 +88,8 @@ def _threshold(mesh: Step, text: str) -> Step:
     found = mesh.run()
     there = [*found.point_data, *found.cell_data]
     if name not in there:
-        expected = f"the name of an array, {_check.one_of(there)}"
-        raise ValueError(_check.message("--threshold", expected, repr(name)))
+        expected = f"the name of an array, {one_of(there)}"
+        raise ValueError(message("--threshold", expected, repr(name)))
     if math.isinf(high):
         step = Step("kept", ".threshold", mesh, low, scalars=name)
     elif math.isinf(low):
@@ -135,8 +135,8 @@ def tinted(lit: Step, name: str, data: Step, color: Color) -> Step | None:
             values = Step("values", "[]", Step("", ".cell_data_to_point_data", lit), color.scalars)
         return Step("shown", "vizlight.tint", lit, values, cmap=color.cmap, light=name, name=TINT)
     if color.scalars != DIRECTION:
-        expected = f"an array, {_check.one_of(there)}, or {DIRECTION!r} for lines"
-        raise ValueError(_check.message("--scalars", expected, repr(color.scalars)))
+        expected = f"an array, {one_of(there)}, or {DIRECTION!r} for lines"
+        raise ValueError(message("--scalars", expected, repr(color.scalars)))
     light = Step("", "numpy.expand_dims", Step("", "[]", lit, name), 1)
     shown = Step("shown", ".copy", lit, deep=False)
     rgb = Step("", "vizlight.direction_colors", lit)
@@ -193,6 +193,8 @@ class Look:
 
     def _fixed_camera(self, fixed: Fixed, up: Vector | None) -> Step:
         """Return the step that sets a camera where it was saved."""
+        from vizlight import _check
+
         position, focus, saved_up = fixed
         zoom = _check.number("zoom", self._eye.zoom, low=1e-6)
         along_z = not any(p - f for p, f in zip(position[:2], focus[:2], strict=True))
@@ -222,7 +224,7 @@ class Look:
             toward = tuple(p - f for p, f in zip(*self._fixed[:2], strict=True))
         if len(toward) not in (3, n):
             expected = "three numbers x,y,z" + f" or {n} numbers" * (n != 3)
-            raise ValueError(_check.message("--view", expected, repr(self._eye.view)))
+            raise ValueError(message("--view", expected, repr(self._eye.view)))
         zeros = (0.0,) * (n - len(toward))
         up = None if self._eye.up is None else arguments.vector("up", self._eye.up)
         shoulder = render.over_shoulder(render.camera_on(BOX, toward[:3], up=up))
@@ -288,10 +290,10 @@ def _json(option: str, path: Path) -> Any:
         return json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         got = f"'{path}' ({error.strerror})"
-        raise ValueError(_check.message(f"--{option}", "a JSON file", got)) from error
+        raise ValueError(message(f"--{option}", "a JSON file", got)) from error
     except ValueError as error:
         got = f"'{path}' ({error})"
-        raise ValueError(_check.message(f"--{option}", "a JSON file", got)) from error
+        raise ValueError(message(f"--{option}", "a JSON file", got)) from error
 
 
 def _asked_view(view: str | None) -> tuple[Vector | None, Fixed | None]:
@@ -308,7 +310,7 @@ def _file_view(view: View) -> tuple[Vector | None, Fixed | None]:
     """Return the direction toward the eye, and where the camera stands if that is known."""
     if view.direction is None:
         remedy = "give the view a direction too, or pass --view"
-        raise ValueError(_check.message("--scene", "a view with a direction", view, remedy))
+        raise ValueError(message("--scene", "a view with a direction", view, remedy))
     if view.position is None or view.parallel or len(view.position) != 3:
         return view.direction, None
     target = tuple(p - d for p, d in zip(view.position, view.direction, strict=True))
@@ -317,6 +319,8 @@ def _file_view(view: View) -> tuple[Vector | None, Fixed | None]:
 
 def _saved_camera(file: str) -> Fixed:
     """Return the position, the focal point and the direction up of a saved camera."""
+    from vizlight import _check
+
     saved = _json("view", Path(file))
     try:
         position, focus, up = (_check.vector("view", part) for part in saved)
@@ -324,5 +328,5 @@ def _saved_camera(file: str) -> Fixed:
             raise ValueError
     except (TypeError, ValueError) as error:
         expected = "a JSON list of the camera's position, focal point and direction up"
-        raise ValueError(_check.message("--view", expected, f"'{file}'")) from error
+        raise ValueError(message("--view", expected, f"'{file}'")) from error
     return position, focus, up

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import vizlight
-from vizlight import _check
+from vizlight._words import message
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -55,9 +55,7 @@ class Step:
     def _result(self) -> Any:
         made = self._called()
         if self.asked[0] and not made.n_points:
-            raise ValueError(
-                _check.message(self.asked[0], "a value that leaves points", self.asked[1])
-            )
+            raise ValueError(message(self.asked[0], "a value that leaves points", self.asked[1]))
         for key, value in self.attributes.items():
             setattr(made, key, _run(value))
         for key, value in self.items.items():

@@ -10,8 +10,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-import vizlight
-from vizlight import _check
+from vizlight._words import message
 from vizlight.cli import options
 from vizlight.cli.arguments import (
     CAMERA,
@@ -31,7 +30,6 @@ from vizlight.cli.arguments import (
 from vizlight.cli.job import HTML, carry_out
 from vizlight.cli.light import builder
 from vizlight.cli.output import OK, complain
-from vizlight.files import FileError
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,7 +57,7 @@ class Window:
     progress: Flag = False
 
 
-@options.takes(vizlight.illuminate, "Shading", without=("positions",))
+@options.takes("illuminate", "Shading", without=("positions", "flip_normals"))
 def view(
     file: Path,
     /,
@@ -79,12 +77,14 @@ def view(
     file
         Mesh to show.
     """
+    from vizlight.files import FileError
+
     page = window.output
     if page is not None and page.suffix.lower() != HTML:
         expected = f"a name that ends in {HTML}"
-        raise FileError(_check.message("output", expected, f"'{page}'"))
+        raise FileError(message("output", expected, f"'{page}'"))
     if not file.is_file():
-        raise FileError(_check.message("file", "a file", f"'{file}' (no such file)"))
+        raise FileError(message("file", "a file", f"'{file}' (no such file)"))
     folder = None
     if page is None:
         # Only this user may look into the folder.

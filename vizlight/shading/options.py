@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias, TypedDict, get_a
 
 import numpy as np
 
-from vizlight import _check
+from vizlight import _check, _words
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -316,13 +316,8 @@ def documented(kind: type) -> dict[str, str]:
     """Return the description of each field of an options class, those of its own first."""
     found: dict[str, str] = {}
     for owner in kind.__mro__:
-        text = inspect.cleandoc(owner.__dict__.get("__doc__") or "")
-        section = re.search(r"^Parameters\n-+\n(.*?)(?:\n\n[A-Z]|\Z)", text, re.S | re.M)
-        for entry in re.split(r"\n(?=\w)", section[1]) if section else ():
-            # An entry of several fields stands at the first of them.
-            first, *others = entry.partition("\n")[0].partition(" :")[0].split(", ")
-            found.setdefault(first, entry.rstrip())
-            found.update(dict.fromkeys(others, ""))
+        for name, text in _words.parameters(owner.__dict__.get("__doc__")).items():
+            found.setdefault(name, text)
     return found
 
 

@@ -1,0 +1,57 @@
+"""The words of an error message and the entries of a docstring; nothing here needs NumPy."""
+
+from __future__ import annotations
+
+import inspect
+import re
+import sys
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+
+def message(name: str, expected: str, got: object, remedy: str = "") -> str:
+    """Return ``name: expected ..., got ...; remedy`` on one line, with arrays described."""
+    got = describe(got) if _is_array(got) else got
+    text = f"{name}: expected {expected}, got {got}"
+    return f"{text}; {remedy}" if remedy else text
+
+
+def one_of(names: Sequence[str]) -> str:
+    """Return the names that the user may choose from, as part of an error message."""
+    return f"one of {list(names)}" if names else "but the mesh has none"
+
+
+def describe(value: object) -> str:
+    """Return a short description of a value for an error message."""
+    if _is_array(value):
+        return f"an array of shape {value.shape} and type {value.dtype}"  # type: ignore[attr-defined]
+    try:
+        # A file or a terminal may take no half of a surrogate pair.
+        text = " ".join(repr(value).encode("utf-8", "backslashreplace").decode().split())
+    except ValueError:  # Python does not print integers of more than 4300 digits
+        kind = "an integer" if isinstance(value, int) else "a number"
+        text = f"{kind} of more digits than Python prints"
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def _is_array(value: object) -> bool:
+    """Return whether a value is an array, of which there is none before NumPy is loaded."""
+    numpy = sys.modules.get("numpy")
+    return numpy is not None and isinstance(value, numpy.ndarray)
+
+
+def parameters(docstring: str | None) -> dict[str, str]:
+    """Return the entry of each parameter in the first section Parameters of a docstring.
+
+    An entry of several parameters stands at the first of them; the others have an empty one.
+    """
+    text = inspect.cleandoc(docstring or "")
+    section = re.search(r"^Parameters\n-+\n(.*?)(?:\n\n[A-Z]|\Z)", text, re.S | re.M)
+    found: dict[str, str] = {}
+    for entry in re.split(r"\n(?=[\w*])", section[1]) if section else ():
+        first, *others = entry.partition("\n")[0].partition(" :")[0].split(", ")
+        found.setdefault(first, entry.rstrip())
+        found.update(dict.fromkeys(others, ""))
+    return found
