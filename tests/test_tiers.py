@@ -38,7 +38,7 @@ TIERS = [
     {"files", "filters"},
     {"pictures", "pieces", "plotting", "vtk"},
     {"observers"},
-    {"accessor", "demo", "doctor"},
+    {"accessor", "demo", "doctor", "presets"},
     {"cli"},
     {"__main__"},
 ]

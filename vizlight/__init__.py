@@ -14,6 +14,7 @@ from vizlight._version import __version__ as __version__
 if TYPE_CHECKING:
     from vizlight import maps as maps
     from vizlight import pieces as pieces
+    from vizlight import presets as presets
     from vizlight import vtk as vtk
     from vizlight.data import example_path, load_example
     from vizlight.files import read
@@ -101,6 +102,7 @@ _MODULES = {
     "movie": "pictures.movie",
     "paraview": "plotting.paraview",
     "pieces": "pieces",
+    "presets": "presets",
     "render": "pictures.render",
     "testing": "pictures.testing",
     "vtk": "vtk",

@@ -1,0 +1,107 @@
+"""Keys: the colours that the light gives the directions they stand for."""
+
+import numpy as np
+import pytest
+
+import vizlight
+from vizlight import Light, Material, Scene, View, engine, presets
+from vizlight.filters.key import BAR, HOLE, question_of
+from vizlight.shading.display import displayable
+
+VIEW = View(direction=(2, -1, 0.5))
+
+
+def found(mesh, x, y):
+    """Return the colour of the point next to a place."""
+    near = np.argmin(np.hypot(mesh.points[:, 0] - x, mesh.points[:, 1] - y))
+    return mesh["rgb"][near].astype(int), mesh.points[near].astype(float)
+
+
+def light(scene, vector, *, surface=False, **options):
+    """Return bytes of the light of a vector in the frame of the eye of VIEW."""
+    world = np.asarray([vector]) @ VIEW.axes()
+    given = {"normals": world} if surface else {}
+    lit = engine.shade(0 * world, None if surface else world, scene, **given, **options)
+    rgb = np.broadcast_to(lit.luminance[:, None], (1, 3)) if lit.rgb is None else lit.rgb
+    return np.rint(255 * displayable(rgb))[0]
+
+
+@pytest.mark.parametrize("exponent", ["compensated", 2])
+def test_the_disc_shows_tangents_of_the_screen(exponent):
+    scene = presets.direction(VIEW)
+    disc = presets.key(scene, exponent=exponent)
+    radii = np.hypot(*disc.points[:, :2].T)
+    assert radii.min() == pytest.approx(HOLE)
+    assert radii.max() == pytest.approx(1)
+    for x, y in ((1, 0), (0.5, 0.5), (-0.2, 0.7)):
+        color, at = found(disc, x, y)
+        np.testing.assert_allclose(color, light(scene, at, exponent=exponent), atol=1)
+    assert list(disc.field_data["words"]) == ["direction on the screen"]
+
+
+def test_the_bar_runs_from_across_to_toward_the_eye():
+    scene = presets.slope(VIEW)
+    bar = presets.key(scene)
+    assert bar.bounds == pytest.approx((-1, 1, -BAR, BAR, 0, 0))
+    for x in (-1, 0, 1):
+        angle = (x + 1) * np.pi / 4
+        color, _ = found(bar, x, 0)
+        expected = light(scene, (np.cos(angle), 0, np.sin(angle)))
+        np.testing.assert_allclose(color, expected, atol=1)
+
+
+@pytest.mark.parametrize("name", ["heading", "shape"])
+def test_the_ball_shows_what_points_outward(name):
+    scene = getattr(presets, name)(VIEW)
+    ball = presets.key(scene)
+    for x, y in ((0, 0), (0.6, -0.3), (-0.9, 0.1)):
+        color, (x, y, _) = found(ball, x, y)
+        outward = (x, y, np.sqrt(max(1 - x * x - y * y, 0)))
+        expected = light(scene, outward, surface=name == "shape")
+        np.testing.assert_allclose(color, expected, atol=1)
+
+
+def test_values_have_their_colours_in_least_and_full_light():
+    bar = presets.key(presets.value(), cmap="viridis")
+    full, _ = found(bar, 1, BAR)
+    least, _ = found(bar, 1, -BAR)
+    np.testing.assert_array_equal(full, (253, 231, 36))
+    np.testing.assert_allclose(least, 0.3 * full, atol=1)
+    assert not np.array_equal(presets.key(presets.value())["rgb"], bar["rgb"])
+
+
+def test_questions_are_those_of_the_preset():
+    for name in ("direction", "slope", "heading", "shape", "value"):
+        assert question_of(getattr(presets, name)(VIEW)) == name
+    own = Scene(lights=Light(direction=(1, 2, 3)), view=VIEW)
+    assert question_of(own) == "shape"
+    assert presets.key(own, question="direction").n_points == presets.key(own).n_points
+
+
+def test_fixed_lights_and_highlights_are_as_the_eye_has_them():
+    scene = Scene(lights=Light(direction=(1, 2, 3)), view=VIEW, material=Material(shininess=5))
+    color, (x, y, _) = found(presets.key(scene), 0.3, -0.4)
+    outward = (x, y, np.sqrt(1 - x * x - y * y))
+    np.testing.assert_allclose(color, light(scene, outward, surface=True), atol=1)
+
+
+def test_conditioned_tangents_lie_in_a_surface_that_faces_the_eye():
+    scene = Scene(lights=Light(direction=(1, 0, 1), follows_view=True), view=VIEW)
+    free = presets.key(scene, question="direction")["rgb"]
+    bound = presets.key(scene, question="direction", conditioned=True)["rgb"]
+    assert (bound <= free).all()
+    assert (bound < free).any()
+
+
+def test_bad_input():
+    near = Scene(lights=Light(position=(1, 2, 3)), view=VIEW)
+    with pytest.raises(ValueError, match="scene: expected lights at infinity for a key"):
+        presets.key(near)
+    with pytest.raises(ValueError, match="question: expected 'direction', 'slope'"):
+        presets.key(Scene(), question="colour")
+    with pytest.raises(TypeError, match=r"scene: expected a vizlight\.Scene"):
+        vizlight.presets.key(None)
+    with pytest.raises(ValueError, match="view: expected a view in 3-space"):
+        presets.key(Scene(view=View(direction=(1, 0, 0, 0))))
+    dark = presets.key(Scene(lights=[], view=VIEW))["rgb"]
+    assert np.unique(dark).size == 1

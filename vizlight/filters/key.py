@@ -1,0 +1,211 @@
+"""The key of a light: what its hues and its lightness mean, to be drawn beside the picture."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
+
+import numpy as np
+
+from vizlight import _check
+from vizlight.filters.tint import RGB, color_table
+from vizlight.scene import Scene, View
+from vizlight.scene.presets import PRESETS
+from vizlight.shading import engine
+from vizlight.shading.display import LEAST, displayable, on_colors
+
+if TYPE_CHECKING:
+    import pyvista as pv
+    from numpy.typing import NDArray
+
+    from vizlight._types import Array
+    from vizlight.filters.tint import ColorMap
+    from vizlight.shading.options import Exponent
+
+__all__ = ["Question", "colors_of", "key", "question_of"]
+
+Question: TypeAlias = Literal["direction", "slope", "heading", "shape", "value"]
+#: Name of the field array with the words that stand beside a key.
+WORDS = "words"
+#: Words beside the key of each question: below it, or at the two ends of a bar.
+TEXTS: dict[str, tuple[str, ...]] = {
+    "direction": ("direction on the screen",),
+    "slope": ("across the view", "toward you"),
+    "heading": ("near end of a line",),
+    "shape": ("a ball in this light",),
+    "value": ("low", "high"),
+}
+#: Inner radius of the disc of directions, whose centre has none.
+HOLE = 0.3
+#: Height of a bar as a share of its width.
+BAR = 0.16
+#: Numbers of rings, of points around, and of points along a bar.
+RINGS, AROUND, ALONG = 24, 96, 97
+
+
+def key(
+    scene: Scene,
+    /,
+    *,
+    question: Question | None = None,
+    exponent: Exponent = "compensated",
+    conditioned: bool = False,
+    cmap: ColorMap = None,
+) -> pv.PolyData:
+    """Return the key of a scene's light as a mesh that faces the eye.
+
+    Parameters
+    ----------
+    scene : Scene
+        Scene whose lights are all at infinity, as it lights the data.
+    question : {"direction", "slope", "heading", "shape", "value"}, optional
+        What the key tells. ``"direction"``: a disc of tangents that run from its centre.
+        ``"slope"``: a bar of lines, from across the view to toward the eye. ``"heading"``: a disc
+        where each point is the near end of a line from the centre. ``"shape"``: a ball.
+        ``"value"``: a bar of the colours of data, below in the least light and above in full.
+        Default: that of the preset whose lights the scene has, otherwise ``"shape"``.
+    exponent : float or "compensated"
+        Exponent of the diffuse light of lines, as the data have it.
+    conditioned : bool, default: False
+        Whether tangents of the disc have the self-shadow of a surface that faces the eye.
+    cmap : str or colour map, optional
+        Colour map of ``"value"``. Default: :data:`vizlight.maps.even`.
+
+    Returns
+    -------
+    pyvista.PolyData
+        Disc of radius 1, or bar of width 2, about the origin of the xy plane: x to the right and y
+        up on the screen. The point array ``rgb`` has its colours as bytes, and the field array
+        ``words`` the few words that belong beside it.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument does not fit, or a light has a position.
+
+    Examples
+    --------
+    >>> import vizlight
+    >>> disc = vizlight.presets.key(vizlight.presets.direction())
+    >>> disc.field_data["words"][0]
+    'direction on the screen'
+    """
+    import pyvista as pv
+
+    asked = question_of(scene) if question is None else question
+    x, y, faces = _bar() if asked in ("slope", "value") else _disc(HOLE * (asked == "direction"))
+    made = pv.PolyData(np.stack([x, y, 0 * x], axis=1), faces.ravel())
+    made[RGB] = colors_of(
+        scene, x, y, question=asked, exponent=exponent, conditioned=conditioned, cmap=cmap
+    )
+    made.field_data[WORDS] = list(TEXTS[asked])
+    return made
+
+
+def question_of(scene: Scene) -> Question:
+    """Return the question whose preset has the lights of a scene, ``"shape"`` if there is none.
+
+    Raises
+    ------
+    TypeError
+        If it is no scene.
+    """
+    _check.instance("scene", scene, Scene)
+    for name in get_args(Question):
+        if PRESETS[name]().lights == scene.lights:
+            found: Question = name
+            return found
+    return "shape"
+
+
+def colors_of(
+    scene: Scene,
+    x: Array,
+    y: Array,
+    /,
+    *,
+    question: Question,
+    exponent: Exponent = "compensated",
+    conditioned: bool = False,
+    cmap: ColorMap = None,
+) -> NDArray[np.uint8]:
+    """Return the colours of a key at places of its plane; see :func:`key`.
+
+    Parameters
+    ----------
+    scene : Scene
+    x, y : ndarray, shape (N,)
+        Places: of a disc of radius 1, or of a bar of width 2 and its height.
+    question, exponent, conditioned, cmap
+        As for :func:`key`.
+
+    Returns
+    -------
+    ndarray of uint8, shape (N, 3)
+
+    Raises
+    ------
+    TypeError, ValueError
+        As :func:`key`.
+    """
+    _check.choice("question", question, get_args(Question))
+    seen = _in_frame_of_eye(scene)
+    if question == "value":
+        table = np.asarray(color_table([np.array([0.0, 1.0])], cmap=cmap).values)[:, :3]
+        at = np.rint((x + 1) / 2 * (len(table) - 1)).astype(int)
+        darkest = max(seen.material.ambient * seen.ambient_intensity, LEAST)
+        return on_colors(table[at], darkest + (1 - darkest) * (y / BAR + 1) / 2)
+    radius = np.hypot(x, y)
+    depth = np.sqrt(np.maximum(1 - radius**2, 0.0))
+    toward_eye = np.broadcast_to((0.0, 0.0, 1.0), (len(x), 3))
+    vectors = np.stack([x, y, depth], axis=1)
+    if question == "direction":
+        vectors = np.stack([x, y, 0 * x], axis=1)
+    elif question == "slope":
+        angle = (x + 1) * np.pi / 4
+        vectors = np.stack([np.cos(angle), 0 * x, np.sin(angle)], axis=1)
+    surface = question == "shape"
+    shading = engine.shade(
+        np.zeros((len(x), 3)), None if surface else vectors, seen,
+        normals=vectors if surface else toward_eye if conditioned else None,
+        exponent=exponent, conditioned=conditioned,
+    )  # fmt: skip
+    light = shading.luminance[:, np.newaxis] if shading.rgb is None else shading.rgb
+    return np.rint(255 * displayable(np.broadcast_to(light, (len(x), 3)))).astype(np.uint8)
+
+
+def _in_frame_of_eye(scene: Scene) -> Scene:
+    """Return a scene seen along z from infinity, with its lights where the eye has them."""
+    _check.instance("scene", scene, Scene)
+    axes = (View.isometric() if scene.view is None else scene.view).axes()
+    lights = []
+    for light in scene.lights:
+        if light.position is not None:
+            expected, remedy = "lights at infinity for a key", "give them directions"
+            raise ValueError(_check.message("scene", expected, light, remedy))
+        if not light.follows_view and light.direction is not None:
+            unit = np.divide(light.direction, np.abs(light.direction).max())
+            light = dataclasses.replace(light, direction=tuple(axes @ unit))
+        lights.append(light)
+    return scene.replace(lights=lights, view=View(direction=(0, 0, 1)), depth_cue=None)
+
+
+def _disc(hole: float) -> tuple[Array, Array, NDArray[np.int64]]:
+    """Return places of a disc and its quadrilaterals, from a hole's radius to 1."""
+    # Rings of a ball stand close where its normal turns fast.
+    radii = np.sin(np.linspace(np.arcsin(hole), np.pi / 2, RINGS))
+    angles = 2 * np.pi * np.arange(AROUND) / AROUND
+    x, y = np.outer(radii, np.cos(angles)), np.outer(radii, np.sin(angles))
+    at = np.arange(x.size).reshape(x.shape)
+    return x.ravel(), y.ravel(), _quads(np.hstack([at, at[:, :1]]))
+
+
+def _bar() -> tuple[Array, Array, NDArray[np.int64]]:
+    x, y = np.meshgrid(np.linspace(-1, 1, ALONG), np.linspace(-BAR, BAR, 9))
+    return x.ravel(), y.ravel(), _quads(np.arange(x.size).reshape(x.shape))
+
+
+def _quads(at: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the faces of a grid of indices, each with its number of corners."""
+    corners = [at[:-1, :-1], at[:-1, 1:], at[1:, 1:], at[1:, :-1]]
+    return np.stack([np.full_like(corners[0], 4), *corners], axis=-1).reshape(-1, 5)

@@ -1,0 +1,260 @@
+"""Scenes by which a reader reads one thing back: direction, slope, heading, shape or value.
+
+Their lamps turn with the eye, so that a colour means the same from all sides. Colours of lamps have
+one luma, and their mean is white: hue tells what lightness does not. :func:`vizlight.presets.key`
+draws what hue and lightness mean.
+"""
+
+from __future__ import annotations
+
+import itertools
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from vizlight import _check
+from vizlight.scene.light import Light
+from vizlight.scene.material import Material
+from vizlight.scene.scene import Scene
+from vizlight.scene.view import View, as_view
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from vizlight._types import Array
+
+#: Share of red, green and blue in the luma of a colour (ITU-R BT.709).
+LUMA = np.array([0.2126, 0.7152, 0.0722])
+#: Light between black and white that is left to lamps, for data without and with colours.
+AMBIENT, FLOOR = 0.08, 0.3
+#: Hue of the first lamp, in degrees in the plane of equal luma, and azimuth of the first lamp, in
+#: degrees from right toward up.
+FIRST_HUE, FIRST_AZIMUTH = 60.0, 90.0
+
+
+def direction(view: Any = None, /) -> Scene:
+    """Return a scene in which hue tells the direction of tangents on the screen.
+
+    Three lamps in the picture plane have hues of equal luma, and a weaker white one is at the eye.
+    A lamp in the picture plane sees ``cos(slope) cos(angle on the screen)`` of a tangent, so that
+    hue does not depend on how the surface lies. For lines, and for tangents on a surface without
+    ``conditioned``, whose self-shadow spoils it. With ``exponent=2`` hue is twice the angle on the
+    screen exactly, but readers without green cones tell fewer angles apart.
+
+    Parameters
+    ----------
+    view : View, pyvista.Camera or pyvista.Plotter, optional
+        View of the scene. Without it the scene has none, as :class:`vizlight.Scene`.
+
+    Returns
+    -------
+    Scene
+        Scene in whose light no tangent is brighter than white, in any channel of ``rgb``, for any
+        exponent of at least 1.
+
+    Raises
+    ------
+    TypeError
+        If the argument is none of these.
+
+    Examples
+    --------
+    >>> import vizlight
+    >>> [light.follows_view for light in vizlight.presets.direction().lights]
+    [True, True, True, True]
+    """
+    return _of_lines(_ring(0.0, 0.6, 0.4), view)
+
+
+def slope(view: Any = None, /) -> Scene:
+    """Return a scene in which lightness tells how steeply lines run toward the eye.
+
+    A lone headlight: a line across the view is white, one along it dark. Which end is nearer is
+    not told; :func:`heading` tells that too.
+
+    Parameters
+    ----------
+    view : View, pyvista.Camera or pyvista.Plotter, optional
+        View of the scene, as for :func:`direction`.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    TypeError
+        If the argument is none of these.
+    """
+    return _of_lines([(np.array([0.0, 0.0, 1.0]), np.ones(3))], view)
+
+
+def heading(view: Any = None, /) -> Scene:
+    """Return a scene in which lightness tells the slope of lines, and hue which end is nearer.
+
+    The hues of :func:`direction`, 65 degrees above the picture plane, and a white lamp at the eye.
+
+    Parameters
+    ----------
+    view : View, pyvista.Camera or pyvista.Plotter, optional
+        View of the scene, as for :func:`direction`.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    TypeError
+        If the argument is none of these.
+    """
+    return _of_lines(_ring(65.0, 0.6, 0.5), view)
+
+
+def shape(view: Any = None, /) -> Scene:
+    """Return a scene in which hue and lightness tell the normal of a surface.
+
+    The hues of :func:`direction`, 45 degrees above the picture plane, and a white lamp at the eye.
+    For surfaces; tangents of a surface need ``conditioned=True``.
+
+    Parameters
+    ----------
+    view : View, pyvista.Camera or pyvista.Plotter, optional
+        View of the scene, as for :func:`direction`.
+
+    Returns
+    -------
+    Scene
+        Scene in whose light no normal is brighter than white, in any channel of ``rgb``.
+
+    Raises
+    ------
+    TypeError
+        If the argument is none of these.
+    """
+    lamps = _ring(45.0, 0.5, 1.0)
+    return _scene(lamps, brightest_normal(lamps), AMBIENT, view)
+
+
+def value(view: Any = None, /) -> Scene:
+    """Return a scene in which colours of data stay readable by their scalar bar.
+
+    A white lamp over the left shoulder and a weaker one at the eye, no highlight, and never less
+    than 0.3 of the light. Colours of one lightness, :data:`vizlight.maps.even`, read best.
+
+    Parameters
+    ----------
+    view : View, pyvista.Camera or pyvista.Plotter, optional
+        View of the scene, as for :func:`direction`.
+
+    Returns
+    -------
+    Scene
+        Scene in whose light neither normals nor tangents are brighter than white.
+
+    Raises
+    ------
+    TypeError
+        If the argument is none of these.
+    """
+    lamps = [(_toward(125.0, 45.0), np.full(3, 0.8)), (_toward(0.0, 90.0), np.full(3, 0.3))]
+    return _scene(lamps, brightest_tangent(lamps), FLOOR, view)
+
+
+#: The presets by the names of their questions.
+PRESETS = {
+    "direction": direction, "slope": slope, "heading": heading, "shape": shape, "value": value,
+}  # fmt: skip
+
+#: A lamp: the direction toward it in the frame of the eye, of length 1, and its channels.
+Lamp = tuple["Array", "Array"]
+
+
+def brightest_normal(lamps: Sequence[Lamp]) -> float:
+    """Return the largest channel of any normal's diffuse light, for a coefficient of 1.
+
+    ``sum(w max(0, N . L))`` is the largest ``N . sum(w L)`` over all sets of lamps, and the largest
+    of that over N is the length of the sum: exact to rounding.
+    """
+    sets = itertools.product((False, True), repeat=len(lamps))
+    sums = [
+        np.linalg.norm(sum(w[channel] * d for (d, w), on in zip(lamps, chosen, strict=True) if on))
+        for chosen in sets
+        for channel in range(3)
+        if any(chosen)
+    ]
+    return float(max(sums))
+
+
+def brightest_tangent(lamps: Sequence[Lamp]) -> float:
+    """Return a bound of the largest channel of any tangent's diffuse light, for a coefficient of 1.
+
+    ``sum(w |wi_N|^p) <= sum(w |wi_N|)`` for exponents p of at least 1. As the root is concave, that
+    is at most ``sqrt(W sum(w |wi_N|^2))`` with W the sum of w, and ``sum(w |wi_N|^2)`` is W less
+    the value of the form ``sum(w L L^T)`` at the tangent, at least its least eigenvalue.
+    """
+    bounds = []
+    for channel in range(3):
+        total = sum(w[channel] for _, w in lamps)
+        form = np.sum([w[channel] * np.outer(d, d) for d, w in lamps], axis=0)
+        least = max(float(np.linalg.eigvalsh(form)[0]), 0.0)
+        bounds.append(float(np.sqrt(total * (total - least))))
+    return max(bounds)
+
+
+def hues(count: int, saturation: float) -> Array:
+    """Return colours of luma 1 whose mean is white, as (count, 3), channels from 0.
+
+    Hue is an angle in the plane of no luma; with a saturation of 1 a channel of some hue is 0.
+    """
+    blue = np.array([0.0, -LUMA[2], LUMA[1]])
+    blue /= np.linalg.norm(blue)
+    red = np.cross(blue, LUMA / np.linalg.norm(LUMA))
+    angles = np.radians(FIRST_HUE) + 2 * np.pi * np.arange(count) / count
+    ways = np.cos(angles)[:, np.newaxis] * red + np.sin(angles)[:, np.newaxis] * blue
+    return np.asarray(1 + saturation * ways / np.abs(np.minimum(ways, 0)).max())
+
+
+def _toward(azimuth: float, height: float) -> Array:
+    """Return a direction of the eye's frame, by degrees from right toward up and toward the eye."""
+    a, h = np.radians(azimuth), np.radians(height)
+    return np.array([np.cos(h) * np.cos(a), np.cos(h) * np.sin(a), np.sin(h)])
+
+
+def _ring(height: float, saturation: float, head: float) -> list[Lamp]:
+    """Return three lamps of equal luma around the eye, and a white one at it."""
+    lamps = [
+        (_toward(FIRST_AZIMUTH + 120.0 * i, height), color)
+        for i, color in enumerate(hues(3, saturation))
+    ]
+    return [*lamps, (np.array([0.0, 0.0, 1.0]), np.full(3, head))]
+
+
+def _of_lines(lamps: Sequence[Lamp], view: object) -> Scene:
+    return _scene(lamps, brightest_tangent(lamps), AMBIENT, view)
+
+
+def _scene(lamps: Sequence[Lamp], brightest: float, ambient: float, view: object) -> Scene:
+    """Return the scene of lamps, the brightest light of which becomes white."""
+    lights = []
+    for toward, channels in lamps:
+        most = float(channels.max())
+        color = None if np.ptp(channels) == 0 else tuple((channels / most).tolist())
+        lights.append(
+            Light(
+                direction=None if toward[2] == 1 else toward, follows_view=True, color=color,
+                intensity=most / brightest,
+            )
+        )  # fmt: skip
+    material = Material(ambient=ambient, diffuse=1 - ambient, specular=0.0)
+    return Scene(lights=lights, material=material, view=_view(view))
+
+
+def _view(given: Any) -> View | None:
+    """Return a view, that of a camera, or that of a plotter's camera."""
+    camera = getattr(given, "camera", None)
+    try:
+        return as_view(given if camera is None else camera)
+    except TypeError:
+        expected = "a vizlight.View, a pyvista.Camera, a pyvista.Plotter or None"
+        raise TypeError(_check.message("view", expected, _check.describe(given))) from None
