@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from vizlight.filters.tint import ColorMap
     from vizlight.shading.options import Exponent
 
-__all__ = ["Question", "colors_of", "key", "question_of"]
+__all__ = ["colors_of", "key", "question_of"]
 
 Question: TypeAlias = Literal["direction", "slope", "heading", "shape", "value"]
 #: Name of the field array with the words that stand beside a key.
