@@ -59,11 +59,12 @@ scene = Scene(
     material=Material(ambient=0.1, diffuse=0.9, specular=0.1),
 )
 hair = {"fibres": 401_408, "length": 0.3, "segments": 6, "toward": (0, 0, -1), "bend": 0.8}
-hair |= {"exponent": 1, "density": 1 - (1 - 0.02) ** 100}
+hair |= {"exponent": 1, "absorption": 0}
+dense = {"absorption": None, "density": 1 - (1 - 0.02) ** 100}
 coats = {
-    "A: fibres alone": vizlight.fur(torus, scene, conditioned=False, attenuated=False, **hair),
-    "B: and the normals": vizlight.fur(torus, scene, attenuated=False, **hair),
-    "C: and the way through the fur": vizlight.fur(torus, scene, **hair),
+    "A: fibres alone": vizlight.fur(torus, scene, conditioned=False, **hair),
+    "B: and the normals": vizlight.fur(torus, scene, **hair),
+    "C: and the way through the fur": vizlight.fur(torus, scene, **hair | dense),
 }
 plotter = render.make_plotter(
     [render.Panel(coat, title=title) for title, coat in coats.items()],

@@ -147,7 +147,6 @@ def test_more_options(volume, capfd):
         volume,
         "--tangents",
         "C",
-        "--average-cells",
         "--light-position",
         "9,9,-9",
         "--color",

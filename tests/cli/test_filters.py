@@ -150,8 +150,6 @@ IN_SCRIPTS = {
         "positions",
         "tangents",
         "surface",
-        "separation",
-        "shortest",
     },
     "relief": {"occluders", "sun"},
     "fur": set(),
@@ -174,7 +172,7 @@ def test_every_option_of_a_filter_is_one_of_its_command(name, capfd, monkeypatch
     own = {p.name for p in parameters if p.kind is p.KEYWORD_ONLY} - {*options.NOT_OPTIONS}
     given = set(inspect.signature(options.arguments_of(FILTERS[name].__name__)).parameters)
     assert own - given <= IN_SCRIPTS[name]
-    for option in own - IN_SCRIPTS[name] - getattr(FILTERS[name], "replaced", set()):
+    for option in own - IN_SCRIPTS[name]:
         text = {"light": "when"}.get(option, option) if name == "project" else option
         assert f"--{text.replace('_', '-')} " in out
 
@@ -399,17 +397,17 @@ def test_help_of_the_whole_loads_no_pyvista():
         ),
         (
             "fur flow.vti --contour r --density 0.3 --length r --toward -1,0,2 --bend 0.5 "
-            "--no-attenuated --fibres 8 --inward keep",
+            "--fibres 8",
             "lit-fibres.vtp",
             "luminance",
             {"density": 0.3, "length": "r", "toward": [-1, 0, 2], "bend": 0.5}
-            | {"attenuated": False, "conditioned": True, "inward": "keep"},
+            | {"conditioned": True},
         ),
         (
-            "contours flow.vti --contour r --levels 1/50 --flip-normals",
+            "contours flow.vti --contour r --levels 1/50 --model blinn",
             "lit-bands.vtp",
             "luminance",
-            {"levels": 0.02, "flip_normals": True},
+            {"levels": 0.02, "model": "blinn"},
         ),
         (
             "project torus.vtp --rotation xw:0.5 --rotation yz:-1/4 --distance 4 --components",

@@ -58,7 +58,7 @@ def test_attenuation_is_the_closed_form_from_base_to_tip():
     density, length = 0.6, 0.3
     mesh = torus()
     with_fur = fur(mesh, SCENE, density=density, fibres=2000, length=length)
-    bare = fur(mesh, SCENE, density=density, fibres=2000, length=length, attenuated=False)
+    bare = fur(mesh, SCENE, absorption=0, fibres=2000, length=length)
     root = strands(bare)[:, 0].astype(float)
     normal = np.asarray(strands(bare)[:, -1] - strands(bare)[:, 0], dtype=float) / length
     lit = (bare["fibres"]["luminance"].reshape(-1, 4) - 0.1).astype(float)
@@ -89,10 +89,10 @@ def test_skin_is_attenuated_by_the_fur_above_it():
 def test_illustration_3_as_numbers():
     """A: lit by the fibres alone. B: conditioned. C: conditioned and attenuated."""
     mesh = torus()
-    options = {"fibres": 3000, "length": 0.3, "density": 0.9}
-    a = fur(mesh, SCENE, conditioned=False, attenuated=False, **options)["fibres"]
-    b = fur(mesh, SCENE, attenuated=False, **options)["fibres"]
-    c = fur(mesh, SCENE, **options)["fibres"]
+    options = {"fibres": 3000, "length": 0.3}
+    a = fur(mesh, SCENE, conditioned=False, absorption=0, **options)["fibres"]
+    b = fur(mesh, SCENE, absorption=0, **options)["fibres"]
+    c = fur(mesh, SCENE, density=0.9, **options)["fibres"]
     np.testing.assert_array_equal(a.points, c.points)
     root = strands({"fibres": a})[:, 0].astype(float)
     normal = (strands({"fibres": a})[:, -1] - root) / 0.3
@@ -115,7 +115,7 @@ def test_illustration_3_as_numbers():
 def test_no_fur_and_opaque_fur(density):
     mesh = torus()
     coat = fur(mesh, SCENE, density=density, fibres=500, length=0.2)
-    plain = fur(mesh, SCENE, density=0.5, fibres=500, length=0.2, attenuated=False)
+    plain = fur(mesh, SCENE, absorption=0, fibres=500, length=0.2)
     light = coat["fibres"]["luminance"].reshape(-1, 4)
     free = plain["fibres"]["luminance"].reshape(-1, 4)
     np.testing.assert_array_equal(light[:, 3], free[:, 3])
@@ -132,7 +132,7 @@ def test_bald_and_downy_skin_is_lit_like_long_hair(length):
     mesh = torus()
     mesh["way"] = np.asarray(mesh["Normals"]) + np.array([0, 0, 0.3], np.float32)
     for shape in ({}, {"vectors": "way"}, {"vectors": "way", "toward": (0, 0, -1), "bend": 0.5}):
-        options = {"density": 0.5, "fibres": 400, "attenuated": False, **shape}
+        options = {"absorption": 0, "fibres": 400, **shape}
         coat = fur(mesh, SCENE, length=length, **options)
         long = fur(mesh, SCENE, length=0.3, **options)
         hair, down = (block["fibres"]["luminance"].reshape(-1, 4) for block in (long, coat))
@@ -167,32 +167,23 @@ def test_bent_and_curled_fibres_lean_where_they_are_told():
     assert np.linalg.norm(curled[:, -1] - straight[:, -1], axis=1).min() > 0.01
     # Bent fibres are lit by their own tangents.
     lit = fur(
-        mesh, SCENE, toward=(0, 0, -1), bend=2.0, conditioned=False, attenuated=False, **options
-    )
+        mesh, SCENE, toward=(0, 0, -1), bend=2.0, conditioned=False,
+        **options | {"density": None, "absorption": 0},
+    )  # fmt: skip
     again = vizlight.illuminate(lit["fibres"], SCENE, name="again")
     np.testing.assert_allclose(again["again"], lit["fibres"]["luminance"], atol=1e-4)
 
 
-def test_vectors_that_point_inward():
+def test_vectors_that_point_inward_are_reversed_and_counted():
     mesh = torus()
     mesh["up"] = np.tile([0, 0, 1.0], (mesh.n_points, 1))
     options = {"density": 0.02, "fibres": 1000, "vectors": "up", "length": 0.2}
-    counts = {}
-    for inward, words in (("flip", "reversed"), ("keep", "kept"), ("drop", "dropped")):
-        with pytest.warns(
-            UserWarning, match=rf"(\d+) of 1000 fibres point into .* were {words}"
-        ) as caught:
-            coat = fur(mesh, SCENE, inward=inward, **options)
-        counts[inward] = int(str(caught[0].message).split()[0])
-        rise = (strands(coat)[:, -1] - strands(coat)[:, 0])[:, 2]
-        if inward == "flip":
-            assert (rise > 0).sum() == 1000 - counts[inward]
-        if inward == "keep":
-            assert np.all(rise > 0)
-        if inward == "drop":
-            assert len(rise) == 1000 - counts[inward]
-    assert len(set(counts.values())) == 1
-    assert 400 < counts["flip"] < 600
+    with pytest.warns(UserWarning, match=r"\d+ of 1000 fibres point into .* reversed") as caught:
+        coat = fur(mesh, SCENE, **options)
+    count = int(str(caught[0].message).split()[0])
+    rise = (strands(coat)[:, -1] - strands(coat)[:, 0])[:, 2]
+    assert (rise > 0).sum() == 1000 - count
+    assert 400 < count < 600
 
 
 @pytest.mark.parametrize("kind", [np.float32, np.float64])
@@ -235,8 +226,8 @@ def test_far_from_the_origin(kind):
 @pytest.mark.parametrize("shape", [{"curl": 1.0}, {"bend": 0.8, "toward": (0, 0, 1)}])
 def test_one_segment_is_lit_along_itself(shape):
     coat = fur(
-        torus(), SCENE, density=0.5, fibres=100, segments=1, length=0.2, conditioned=False,
-        attenuated=False, **shape,
+        torus(), SCENE, absorption=0, fibres=100, segments=1, length=0.2,
+        conditioned=False, **shape,
     )  # fmt: skip
     again = vizlight.illuminate(coat["fibres"], SCENE, name="again")
     np.testing.assert_allclose(coat["fibres"]["luminance"], again["again"], atol=1e-5)
@@ -318,11 +309,12 @@ def test_an_array_called_normals_that_is_none():
     mesh.point_data["Normals"] = np.tile([0.0, 0, 1], (mesh.n_points, 1))
     mesh.point_data["n"] = normals
     mesh.point_data.active_normals_name = "n"
-    options = {"vectors": "Normals", "inward": "keep", "length": 0.1}
-    with pytest.warns(UserWarning, match="fibres point into the surface and were kept"):
+    options = {"vectors": "Normals", "length": 0.1}
+    with pytest.warns(UserWarning, match="fibres point into the surface and were reversed"):
         coat = fur(mesh, SCENE, density=0.02, fibres=100, **options)
     tip = strands(coat)[:, -1] - strands(coat)[:, 0]
-    np.testing.assert_allclose(tip, np.tile([0, 0, 0.1], (len(tip), 1)), atol=1e-6)
+    up = np.where(tip[:, 2:] > 0, 0.1, -0.1) * np.array([0, 0, 1])
+    np.testing.assert_allclose(tip, up, atol=1e-6)
 
 
 def test_the_users_own_array_is_not_replaced():
@@ -355,7 +347,6 @@ def test_no_fibres():
         ({"fibres": -1}, ValueError, "fibres: expected an integer of at least 0"),
         ({"segments": 0}, ValueError, "segments: expected an integer of at least 1"),
         ({"vectors": "U"}, ValueError, "vectors: expected the name of a point array"),
-        ({"inward": "cut"}, ValueError, "inward: expected 'keep', 'flip' or 'drop'"),
         ({"bend": 1.0}, ValueError, "toward: expected the direction of the bend"),
         (
             {"bend": 1.0, "toward": (0, 0, 0)},
@@ -418,8 +409,8 @@ def test_surfaces_of_whole_numbers_have_fibres_between():
 
 def test_fur_of_thin_cylinders_stands_on_a_skin_of_blinns():
     """Each fibre has the exact line light along itself, the skin the same highlight's power."""
-    mesh, still = torus(), {"conditioned": False, "attenuated": False}
-    coat = fur(mesh, SCENE, density=0.02, fibres=400, length=0.2, model="cylinder", **still)
+    mesh, still = torus(), {"conditioned": False, "absorption": 0}
+    coat = fur(mesh, SCENE, fibres=400, length=0.2, model="cylinder", **still)
     root, tip = strands(coat)[:, 0].astype(float), strands(coat)[:, -1].astype(float)
     way = np.repeat(tip - root, 4, axis=0)
     shine = cylinder.specular(TOWARD, EYE, way, shininess=SCENE.material.shininess)
@@ -492,10 +483,10 @@ def varied():
         {},
         {"segments": 1, "fibres": 70_000},
         {"segments": 6, "toward": (0, 0, -1), "bend": 0.5},
-        {"vectors": "v", "length": "size", "inward": "keep"},
-        {"vectors": "v", "toward": "to", "bend": 0.7, "length": "size", "inward": "drop"},
+        {"vectors": "v", "length": "size"},
+        {"vectors": "v", "toward": "to", "bend": 0.7, "length": "size"},
         {"segments": 2, "curl": 0.3, "turns": 2.0, "toward": "to", "bend": 0.4},
-        {"length": 0.0, "curl": 0.3, "conditioned": False, "attenuated": False},
+        {"length": 0.0, "curl": 0.3, "conditioned": False, "absorption": 0},
     ],
 )
 @pytest.mark.parametrize("origin", [0.0, 5e6])
@@ -575,14 +566,13 @@ def test_fibres_dim_one_another_and_the_skin_as_a_bundle(origin, fast, monkeypat
     # The same as light among the finished fibres.
     again = vizlight.illuminate(fibres, scene, bundle=asked)
     np.testing.assert_allclose(again["transmittance"], fibres["transmittance"], atol=0.02)
-    plain = fur(ball, scene, fibres=4000, length=0.3, attenuated=False)
+    plain = fur(ball, scene, fibres=4000, length=0.3, absorption=0)
     assert (fibres["luminance"] <= plain["fibres"]["luminance"] + 1e-6).all()
 
 
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"inward": "drop"}, "inward: expected 'flip' or 'keep'"),
         ({"density": 0.3}, "bundle: expected no absorption or density"),
         ({"bundle": 3}, "bundle: expected True, False"),
         ({"bundle": Bundle(lines=pv.Line())}, r"Bundle\(lines=\): expected the fibres"),

@@ -64,15 +64,6 @@ def test_normals_decide_without_tangents():
     np.testing.assert_allclose(lit["luminance"][dark], 0.1, rtol=1e-6)
 
 
-def test_flip():
-    plane = pv.Plane(i_resolution=2, j_resolution=2)
-    front = illuminate(plane, SCENE)["luminance"]
-    with pytest.warns(DeprecationWarning, match="flip_normals= is replaced by facing="):
-        back = illuminate(plane, SCENE, flip_normals=True)["luminance"]
-    np.testing.assert_allclose(back, 0.1)
-    assert front.min() > 0.3
-
-
 def test_named_normals_win():
     plane = pv.Plane(i_resolution=2, j_resolution=2)
     plane["down"] = np.tile([0, 0, -1.0], (plane.n_points, 1))
@@ -270,12 +261,15 @@ def test_zero_and_nan_vectors_are_marked_with_one_warning():
     np.testing.assert_allclose(lit["luminance"][[3, 5]], 0.1)
 
 
-def test_cell_data_is_refused_or_averaged():
+def test_cell_data_is_averaged_with_a_notice():
     grid = image().cast_to_unstructured_grid()
     grid.cell_data["C"] = np.tile([1.0, 2, 3], (grid.n_cells, 1))
-    with pytest.raises(ValueError, match="got the cell array 'C'; pass average_cells=True or call"):
-        illuminate(grid, SCENE, tangents="C")
-    lit = illuminate(grid, SCENE, tangents="C", average_cells=True)
+    with pytest.warns(UserWarning, match="tangents: the cell array 'C' is averaged") as caught:
+        lit = illuminate(grid, SCENE, tangents="C")
+    assert len(caught) == 1
+    assert caught[0].filename == __file__
+    with pytest.raises(ValueError, match=r"normals: .* 'C'; call mesh.cell_data_to_point_data\(\)"):
+        illuminate(grid, SCENE, normals="C")
     grid["P"] = np.tile([1.0, 2, 3], (grid.n_points, 1))
     np.testing.assert_allclose(lit["luminance"], illuminate(grid, SCENE, tangents="P")["luminance"])
     assert "C" not in lit.point_data
@@ -343,7 +337,6 @@ def test_a_shared_result_does_not_hold_the_input_in_memory_twice():
         ({"conditioned": True}, ValueError, "conditioned: expected tangents to condition"),
         ({"normals": "two"}, ValueError, "normals: expected 3 components, got 'two' with 2"),
         ({"tangents": "V", "model": "x"}, ValueError, "model: expected"),
-        ({"tangents": "V", "flip_normals": True}, ValueError, "flip_normals: expected no"),
         ({"tangents": "V", "facing": "eye"}, ValueError, "facing: expected no facing beside tang"),
         ({"facing": "me"}, ValueError, "facing: expected .*as given.*, got 'me'"),
         ({"feature_angle": -1}, ValueError, "feature_angle: expected"),
@@ -373,10 +366,8 @@ def test_bad_options(options, error, words):
     )
     plane["words"] = np.array(["a"] * 42)
     before = plane.copy()
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeprecationWarning)
-        with pytest.raises(error, match=words):
-            illuminate(plane, SCENE, **options)
+    with pytest.raises(error, match=words):
+        illuminate(plane, SCENE, **options)
     assert plane == before
 
 

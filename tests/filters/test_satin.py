@@ -93,9 +93,10 @@ def test_satin_of_thin_cylinders(made):
 def test_options_go_to_the_panels_that_they_fit():
     ball = pv.Sphere(theta_resolution=20, phi_resolution=20, start_phi=5, end_phi=175)
     ball["way"] = np.array([0, 0, 1.0]) - 4 * ball.points[:, 2:] * ball.points
-    options = {"flip_normals": True, "components": True, "max_length": 0.5, "name": "x"}
-    with pytest.warns(DeprecationWarning, match="flip_normals= is replaced"):
-        panels = vizlight.satin(ball, SCENE, tangents="way", seeds=5, **options)
+    options = {"facing": "as given", "components": True, "max_length": 0.5, "name": "x"}
+    ball.point_data["Normals"] = -2 * np.asarray(ball.points)
+    ball.point_data.active_normals_name = "Normals"
+    panels = vizlight.satin(ball, SCENE, tangents="way", seeds=5, **options)
     for panel in panels:
         assert "x_diffuse" in panel.point_data
     away = np.asarray(ball.points) @ (1, -1, 0.8) < -0.1
@@ -121,7 +122,8 @@ def test_errors_name_the_argument(tangents, error, words):
 
 
 @pytest.mark.filterwarnings("ignore:2 of 3482 points could not be lit")
-def test_vectors_of_cells_are_averaged_on_request():
+@pytest.mark.filterwarnings("ignore:tangents. the cell array 'C' is averaged")
+def test_vectors_of_cells_are_averaged():
     """Whatever their signs, the panels are those of the field at the points, nearly."""
     mesh = pv.Sphere(theta_resolution=60, phi_resolution=60)
     centres = np.asarray(mesh.cell_centers().points)
@@ -129,9 +131,7 @@ def test_vectors_of_cells_are_averaged_on_request():
     signs = np.random.default_rng(1).choice([-1.0, 1.0], size=(len(across), 1))
     mesh.cell_data["C"] = signs * across
     mesh.point_data["T"] = np.cross(mesh.points, (0, 0, 1)) + 1e-9
-    with pytest.raises(ValueError, match="tangents: expected a point array, got the cell array"):
-        vizlight.satin(mesh, SCENE, tangents="C")
-    found = vizlight.satin(mesh, SCENE, tangents="C", average_cells=True, seeds=20)
+    found = vizlight.satin(mesh, SCENE, tangents="C", seeds=20)
     expected = vizlight.satin(mesh, SCENE, tangents="T", seeds=20)
     away = np.abs(np.asarray(mesh.points)[:, 2]) < 0.45
     for panel in ("surface", "field", "conditioned"):

@@ -142,7 +142,6 @@ def test_a_missing_option_is_named():
         ({"precision": "half"}, ValueError, "precision: expected 'float32' or 'float64'"),
         ({"conditioned": 3}, TypeError, "conditioned: expected True, False or the name"),
         ({"components": "no"}, TypeError, "components: expected True or False, got 'no'"),
-        ({"flip_normals": "no"}, TypeError, "flip_normals: expected True or False, got 'no'"),
     ],
 )
 def test_bad_values(options, error, words):

@@ -50,13 +50,14 @@ CASES = {
     "lines": (lambda: pv.Spline(np.random.default_rng(1).random((9, 3)), 200), {}),
     "cylinders": (lambda: pv.Spline(np.eye(3), 50), {"model": "cylinder"}),
     "image": (image, {"tangents": "V", "model": "blinn"}),
-    "cells": (image, {"tangents": "C", "average_cells": True}),
+    "cells": (image, {"tangents": "C"}),
     "grid": (lambda: field().cast_to_unstructured_grid(), {"facing": "eye", "name": "own"}),
     "volume": (lambda: pv.Cube().triangulate().delaunay_3d(), {"precision": "float64"}),
     "curved": (pv.examples.cells.QuadraticTriangle, {}),
 }
 
 
+@pytest.mark.filterwarnings("ignore:.* cell array 'C' is averaged")
 @pytest.mark.filterwarnings("ignore:.* points could not be lit", "ignore:.* edges are sharper")
 @pytest.mark.parametrize("case", CASES)
 def test_light_is_that_of_the_mesh_filter(case):

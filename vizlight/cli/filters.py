@@ -28,7 +28,7 @@ RENAMED = {"light": "when"}
 @options.takes(
     "streamlines",
     "Streamlines",
-    without=("positions", "tangents", "separation", "shortest", "flip_normals"),
+    without=("positions", "tangents"),
 )
 def streamlines(
     files: list[Path],
@@ -60,7 +60,7 @@ def streamlines(
     asked = StreamlineOptions(**given)
 
     def job(path: Path) -> Job:
-        mesh = scenes.data(path, part, average_cells=asked.average_cells)
+        mesh = scenes.data(path, part)
         on = {} if part.contour is None else {"surface": scenes.surface(mesh, part)}
         camera = look.camera(on.get("surface", mesh) if asked.confined else mesh)
         lit = _step("lit", "streamlines", mesh, look.scene(camera), given | on, common.out)

@@ -98,7 +98,7 @@ def builder(
     asked = LightOptions(**given)
 
     def job(path: Path) -> Job:
-        mesh = data = scenes.data(path, target, average_cells=asked.average_cells)
+        mesh = data = scenes.data(path, target)
         if taken:
             mesh = scenes.surface(data, target)
         camera = look.camera(mesh)

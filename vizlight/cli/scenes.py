@@ -65,12 +65,12 @@ def check_color(color: Color) -> None:
         raise ValueError(message("--cmap", expected, repr(color.cmap))) from error
 
 
-def data(file: Path, target: Part, *, average_cells: bool = False) -> Step:
+def data(file: Path, target: Part) -> Step:
     """Return the step that reads a file, after those that raise and cut what is in it."""
     mesh = Step("data", "vizlight.read", file, **({"salvage": True} if target.salvage else {}))
     warp = target.warp if isinstance(target, Shape) else None
     wanted = {target.contour, warp} - {None}
-    if average_cells and wanted and not wanted <= {*mesh.run().point_data}:
+    if wanted and any(name in mesh.run().cell_data for name in wanted - {*mesh.run().point_data}):
         mesh = Step("averaged", ".cell_data_to_point_data", mesh)
     if isinstance(target, Shape) and warp is not None:
         factor = 1.0 if target.warp_factor is None else target.warp_factor

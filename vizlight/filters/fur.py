@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, TypedDict, get_args
+from typing import TYPE_CHECKING, TypedDict
 
 import numpy as np
 import pyvista as pv
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from vizlight.scene import Scene
     from vizlight.shading.options import Exponent, FeatureAngle, Model
 
-Inward = Literal["keep", "flip", "drop"]
 #: Default absorption, and length of fibres as a share of the diagonal of the mesh.
 ABSORPTION, LENGTH = 0.5, 0.03
 #: Number of blocks of random numbers that are kept for threads that work on parts of them.
@@ -49,7 +48,6 @@ class FurKeywords(TypedDict, total=False):
     length: float | str | Sequence[float] | Array | None
     segments: int
     vectors: str | None
-    inward: Inward
     toward: str | VectorLike | None
     bend: float
     curl: float
@@ -57,7 +55,6 @@ class FurKeywords(TypedDict, total=False):
     seed: int
     feature_angle: FeatureAngle
     conditioned: bool
-    attenuated: bool
     bundle: bool | Bundle
     exponent: Exponent
     model: Model
@@ -72,7 +69,8 @@ class FurOptions:
     ----------
     absorption : float, optional
         Share of light from 0 to 1 that is lost on the way through the fur's own length, its mean
-        over the points, along the normal. Default: 0.5, without ``density``.
+        over the points, along the normal, on its way in and out (Banks 7, 8): most at the root,
+        not at all at the tip. 0: light is not attenuated. Default: 0.5, without ``density``.
     density : float, optional
         Share rho of light from 0 to 1 that fur absorbs over a unit of length, in place of
         ``absorption``: that of fur of length L is ``1 - (1 - rho)^L``.
@@ -85,9 +83,8 @@ class FurOptions:
         Number of segments of a fibre, of equal lengths.
     vectors : str, optional
         Name of a point array of 3 components along which fibres grow, whatever their length.
-        Default: the normals, also where a vector is zero.
-    inward : {"flip", "keep", "drop"}
-        Treatment of fibres whose vector points into the surface; a warning counts them.
+        Default: the normals, also where a vector is zero. A vector that points into the surface is
+        reversed, and a warning counts them.
     toward : str or vector of 3 components, optional
         Direction to which fibres bend: one for all, or the name of a point array.
     bend : float, default: 0.0
@@ -102,9 +99,6 @@ class FurOptions:
         none is.
     conditioned : bool, default: True
         Whether fibres inherit the self-shadow of the surface (Banks 6).
-    attenuated : bool, default: True
-        Whether light is attenuated by the fur above a point on its way in and out (Banks 7, 8):
-        most at the base, not at all at the tip.
     bundle : bool or Bundle, default: False
         Whether the fibres dim one another and the skin as a bundle of thin cylinders, as for
         :func:`vizlight.illuminate`, in place of the attenuation by Banks (7, 8), which does not
@@ -120,7 +114,6 @@ class FurOptions:
     length: float | str | Sequence[float] | Array | None = None
     segments: int = 3
     vectors: str | None = None
-    inward: Inward = "flip"
     toward: str | VectorLike | None = None
     bend: float = 0.0
     curl: float = 0.0
@@ -128,14 +121,12 @@ class FurOptions:
     seed: int = 0
     feature_angle: FeatureAngle = None
     conditioned: bool = True
-    attenuated: bool = True
     bundle: bool | Bundle = False
     exponent: Exponent = "compensated"
     model: Model = "phong"
     name: str = "luminance"
 
     def __post_init__(self) -> None:
-        _check.choice("inward", self.inward, get_args(Inward))
         _check.flags(self)
         _check.set_fields(self, bundle=checked_bundle(self.bundle))
         if isinstance(self.bundle, Bundle):
@@ -167,9 +158,6 @@ class FurOptions:
 
     def _check_bundle(self, bundle: Bundle) -> None:
         """Refuse options that do not go with a bundle."""
-        if self.inward == "drop":
-            expected, remedy = "'flip' or 'keep' beside bundle=", "leave it out"
-            raise ValueError(_check.message("inward", expected, repr(self.inward), remedy))
         if self.absorption is not None or self.density is not None:
             expected, remedy = "no absorption or density", "set the diameter of a vizlight.Bundle"
             raise ValueError(_check.message("bundle", expected, "both", remedy))
@@ -185,7 +173,7 @@ class FurOptions:
     @property
     def lost(self) -> float:
         """Share of light that is lost over a unit of height, or over the fur's own length."""
-        if not self.attenuated or self.bundle:
+        if self.bundle:
             return 0.0
         if self.density is not None:
             return self.density
@@ -318,11 +306,7 @@ def _grow(
         strands.points += np.array(coat.origin, strands.points.dtype)
     inside = int(np.count_nonzero(strands.inside))
     if inside:
-        verbs = {"flip": "were reversed", "keep": "were kept", "drop": "were dropped"}
-        verb = verbs[options.inward]
-        _check.warn(f"{inside} of {options.fibres} fibres point into the surface and {verb}")
-        if options.inward == "drop":
-            results[0] = strands.drop(results[0])
+        _check.warn(f"{inside} of {options.fibres} fibres point into the surface and were reversed")
     meshes = [strands.mesh(), surface.copy(deep=True)]
     lighting.finish(meshes, results, "fur", scene, options, name, dimmings=dimmings)
     return pv.MultiBlock(dict(zip(("fibres", "skin"), meshes, strict=True)))
@@ -420,7 +404,7 @@ class _Coat:
             np.zeros(3, np.float32) if self.toward is None else self.toward[0],
             np.empty(0) if phase is None else phase,
             np.array([length, bend, options.curl, options.turns, self.unit], np.float64),
-            options.segments, options.inward == "flip", *room,
+            options.segments, *room,
         )  # fmt: skip
 
     def _draws(self, start: int) -> geometry.Draws:
@@ -449,8 +433,7 @@ class _Coat:
         way, size = kernels.unit(vector)
         way = np.where(size > 0, way, normal)
         inside = kernels.dot(way, normal) < 0
-        if self.options.inward == "flip":
-            way[:, inside] *= -1
+        way[:, inside] *= -1
         return way, inside
 
     def _strands(
@@ -471,13 +454,11 @@ class _Coat:
     def skin_heights(self) -> Array:
         """Return the height of a fibre that stood on each point of the skin."""
         normal = kernels.unit(np.ascontiguousarray(self.normals.T))[0]
-        way, inside = self._ways(normal, None if self.vectors is None else self.vectors.T)
+        way, _ = self._ways(normal, None if self.vectors is None else self.vectors.T)
         toward = None if self.toward is None else self.toward.T
         offsets = self._strands(way, self.length, toward, None)
         height: Array = np.einsum("jib,ib->jb", offsets, normal).max(axis=0)
         height /= np.float32(self.unit)
-        if self.options.inward == "drop" and inside is not None:
-            height[inside] = 0
         return height
 
 

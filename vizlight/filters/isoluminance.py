@@ -49,7 +49,6 @@ class ContourKeywords(TypedDict, total=False):
     levels: Levels
     tolerance: float
     model: SpecularModel
-    flip_normals: bool
     feature_angle: FeatureAngle
     normals: str | ArrayLike | None
     tangents: str | ArrayLike | None
@@ -72,9 +71,6 @@ class ContourOptions:
         of its size.
     model : {"phong", "blinn"}
         Reflection model of the highlight: ``R . E`` or ``N . H``. Both are drawn exactly.
-    flip_normals : bool, default: False
-        Whether the normals are reversed, as for :func:`vizlight.illuminate`. An open mesh
-        faces the eye as a whole, because contours need normals that agree.
     feature_angle : float or "auto", optional
         Angle in degrees above which edges are sharp, as for :func:`vizlight.illuminate`; for a
         mesh only. Default: none is.
@@ -87,7 +83,6 @@ class ContourOptions:
     levels: Levels = 16
     tolerance: float = 3e-3
     model: SpecularModel = "phong"
-    flip_normals: bool = False
     feature_angle: FeatureAngle = None
     normals: str | ArrayLike | None = None
     tangents: str | ArrayLike | None = None
@@ -243,7 +238,7 @@ class _Light:
             points,
             None,
             self.scene,
-            normals=-normals if asked.flip_normals else normals,
+            normals=normals,
             model=asked.model,
             precision="float64",
             threads=self.threads,
@@ -262,7 +257,7 @@ def _of_solid(solid: Solid, light: _Light) -> Bands:
     low = scene.material.ambient * scene.ambient_intensity
     dull = (scene.material.specular == 0 or scene.view is None) and scene.depth_cue is None
     found: Bands | Laminae | None = None
-    plain = dull and len(scene.lights) == 1 and not asked.flip_normals
+    plain = dull and len(scene.lights) == 1
     if plain and isinstance(solid, Sphere | Frustum):
         (lamp,) = (light.seen_from(scene.view) for light in scene.lights)
         source: dict[str, Any] = {
@@ -368,7 +363,7 @@ def _on_surface(
     """Return values of a mesh as those of its outer surface; the name of an array stays."""
     if value is None or isinstance(value, str):
         return value
-    rows = array_of(mesh, name, value, average_cells=False)
+    rows = array_of(mesh, name, value)
     return np.where(ids[:, np.newaxis] < 0, 0, rows[ids])
 
 
@@ -406,7 +401,7 @@ def _note(bands: Bands, light: _Light, seconds: float, size: int, *, sampled: bo
         bands.values,
         len(bands.points),
         places,
-        -normals if asked.flip_normals else normals,
+        normals,
         light.scene,
         terms,
         seconds,

@@ -17,7 +17,6 @@ from vizlight.filters.streamlines import OWN_TANGENTS, TANGENTS
 from vizlight.mesh import blocks, bundles, records
 from vizlight.mesh.inputs import part_of
 from vizlight.mesh.nspace import PROJECTED
-from vizlight.reading.inputs import shown_side
 from vizlight.scene import Scene
 from vizlight.shading import engine
 from vizlight.shading.options import Bundle, LightOptions
@@ -56,7 +55,7 @@ class Source(NamedTuple):
     @property
     def facing(self) -> Facing:
         """Side of the surface that is lit."""
-        return "as given" if self.named is None else shown_side(self.named)
+        return "as given" if self.named is None else self.named.facing
 
     def seen_from(self, view: View | None, inputs: ShadingInputs) -> ShadingInputs:
         """Return inputs with the normals turned to an eye."""
@@ -269,11 +268,6 @@ def _of_fur(
     if not isinstance(mesh, pv.MultiBlock) or {"fibres", "skin"} - set(mesh.keys()):
         expected, remedy = "the fibres and the skin of fur", "pass the MultiBlock that fur returned"
         raise ValueError(_check.message("mesh", expected, "one of them", remedy))
-    if options.get("inward") == "drop":
-        remedy = "grow it with inward='flip', or draw its arrays by plotter.add_mesh"
-        raise ValueError(
-            _check.message("mesh", "fur without dropped fibres", "inward='drop'", remedy)
-        )
     _refuse_following(scene, bundled=bool(options.get("bundle")))
     fibres, skin = mesh["fibres"], mesh["skin"]
     assert isinstance(fibres, pv.DataSet)

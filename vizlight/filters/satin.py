@@ -12,7 +12,7 @@ from vizlight import _check
 from vizlight.filters.illuminate import light_mesh
 from vizlight.filters.streamlines import StreamlineOptions, light_lines
 from vizlight.mesh import point_arrays
-from vizlight.reading.arrays import tangents_of, vectors_of
+from vizlight.reading.arrays import is_of_cells, tangents_of, vectors_of
 from vizlight.shading.options import LightOptions, accepts
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ def satin(
     ----------
     surface : pyvista.PolyData
         Surface that is lit; not changed. ``tangents`` names its point array of 3 components,
-        tangent to it, or with ``average_cells`` its cell array; it must be given.
+        tangent to it, or its cell array; it must be given.
     scene : Scene, optional
         Lights, material and view, by default ``Scene()``. Banks' material is
         ``Material(ambient=0.1, diffuse=0.5, specular=1.0, color=(1.0, 0.25, 0.30))``, and his
@@ -82,10 +82,10 @@ def satin(
     if isinstance(surface, pv.DataSet):
         point_arrays.refuse_unnamed("tangents", asked.tangents)
         name = str(asked.tangents)
-        averaged = asked.average_cells and name not in surface.point_data
-        if averaged and name in surface.cell_data:
+        averaged = is_of_cells(surface, name)
+        if averaged:
             # Means over cells have no sign.
-            rows = tangents_of(surface, name, 3, average_cells=True)
+            rows = tangents_of(surface, name, 3)
             traced = surface.copy(deep=False)
             traced.point_data[name] = rows
         vectors_of(traced, "tangents", name, 3)
@@ -93,7 +93,7 @@ def satin(
     field = LightOptions(**light | {"conditioned": False})
     panels = {
         "surface": dataclasses.replace(field, tangents=None, model=field.for_surface().model),
-        "field": dataclasses.replace(field, normals=None, flip_normals=False, facing="auto"),
+        "field": dataclasses.replace(field, normals=None, facing="auto"),
         "conditioned": dataclasses.replace(field, conditioned=True),
     }
     lines = dataclasses.replace(
@@ -103,7 +103,6 @@ def satin(
         tangents=None,
         conditioned=False,
         normals=None,
-        flip_normals=False,
         facing="auto",
     )
     curves = light_lines(

@@ -47,8 +47,6 @@ class StreamlineKeywords(LightKeywords, total=False):
     seeds: int | ArrayLike | pv.DataSet
     seed: int
     spacing: float | None
-    separation: float
-    shortest: float
     step: float
     max_length: float | None
     max_steps: int
@@ -88,11 +86,6 @@ class StreamlineOptions(LightOptions):
         Distance between evenly spaced lines, in the unit of the mesh, at which they cover the whole
         surface or volume; in a cross field once along each of the two directions. Lines of a cross
         field keep their distance where the angle between them is below 45 degrees.
-    separation : float, default: 0.5
-        Share of the spacing at which a line ends before another.
-    shortest : float, default: 2.0
-        Length of the shortest line that is kept, in spacings, where other lines cut it short. In
-        gaps that are wider than 1.15 spacings 0.7 of it is enough, or 0.35 from a boundary.
     step : float, default: 0.3
         Largest step of the integration, in cell lengths.
     max_length : float, optional
@@ -112,8 +105,6 @@ class StreamlineOptions(LightOptions):
     seeds: int | ArrayLike | pv.DataSet = 200
     seed: int = 0
     spacing: float | None = None
-    separation: float = 0.5
-    shortest: float = 2.0
     step: float = 0.3
     max_length: float | None = None
     max_steps: int = 4000
@@ -125,8 +116,6 @@ class StreamlineOptions(LightOptions):
             self,
             step=_check.number("step", self.step, low=1e-6, high=1e3),
             max_steps=int(_check.number("max_steps", self.max_steps, low=1, high=1e9)),
-            separation=_check.number("separation", self.separation, low=0.05, high=0.95),
-            shortest=_check.number("shortest", self.shortest, low=0.0),
         )
         if self.confined is not None:
             _check.boolean("confined", self.confined)
@@ -222,10 +211,11 @@ def streamlines(
     singularities of index 1/4; around them they go on, each as a line of the other direction.
 
     Evenly spaced lines start a spacing beside others and end where they come nearer to one than
-    ``separation``; lines that meet their own start are closed. With the default ``shortest`` the
-    largest gap was at most 1.22 spacings on surfaces and in volumes with saddles, vortices and
-    walls. On a surface distances include half
-    a spacing times the difference of normals, so that two sides of a thin sheet are apart.
+    half of it; lines that meet their own start are closed. Lines that others cut short are kept if
+    they are two spacings long; in gaps wider than 1.15 spacings 0.7 of that is enough, or 0.35 from
+    a boundary. The largest gap was at most 1.22 spacings on surfaces and in volumes with saddles,
+    vortices and walls. On a surface distances include half a spacing times the difference of
+    normals, so that two sides of a thin sheet are apart.
     Sources: Banks 4.1 and (6); Jobard and Lefer, Creating evenly-spaced streamlines of arbitrary
     density (1997).
 
@@ -407,8 +397,7 @@ def _lines(
         return lines
     spacing = options.spacing / size
     tracers.check_spacing(tracer, spacing, size)
-    asked = spacing, options.separation, options.shortest
-    curves, facts = tracer.even(given, how, asked, report)
+    curves, facts = tracer.even(given, how, spacing, report)
     lines = tracer.lines(curves, unsigned)
     for key, value in facts.items():
         lines.field_data[key] = [value]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import threading
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -17,7 +16,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vizlight._types import Array, Bools, Vector
-    from vizlight.shading import engine
 
 #: Number of points that all threads grow at once: few compared with the points that are kept, but
 #: enough that threads seldom wait for the interpreter.
@@ -214,16 +212,6 @@ class Strands:
             tip: Array = heights[0]
             return np.asarray(np.maximum(tip, 0) - np.float32(j / last) * tip)
         return np.asarray(heights.max(axis=0) - heights[j])
-
-    def drop(self, shading: engine.Shading) -> engine.Shading:
-        """Drop the fibres that point inward, and return the light of the others."""
-        kept = ~self.inside
-        points = np.repeat(kept, self.m)
-        self.points = self.points[kept]
-        names = ("luminance", "valid", "diffuse", "specular", "rgb")
-        arrays = {name: getattr(shading, name) for name in names}
-        left = {name: array[points] for name, array in arrays.items() if array is not None}
-        return dataclasses.replace(shading, **left)
 
     def mesh(self) -> pv.PolyData:
         """Return the fibres as lines; their points are not copied."""

@@ -174,7 +174,7 @@ class CellTracer:
         self,
         seeds: Places | None,
         how: Tracing,
-        spacing: tuple[float, float, float],
+        spacing: float,
         report: Callable[[int], None],
     ) -> tuple[Curves, dict[str, float]]:
         """Return evenly spaced curves, and how even they are; ``report`` as for traced.
@@ -183,10 +183,10 @@ class CellTracer:
         ----------
         seeds : Places, optional
         how : Tracing
-        spacing : tuple of float
-            Spacing, separation and shortest.
+        spacing : float
+            Distance between curves.
         """
-        asked = even.Spacing(*spacing, how.step, how.max_length, how.max_steps)
+        asked = even.Spacing(spacing, how.step, how.max_length, how.max_steps)
         total = even.place_count(self.flow, asked.spacing)
         curves, closed = even.evenly_spaced(
             self.flow,

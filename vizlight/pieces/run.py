@@ -258,7 +258,7 @@ def _common_options(
     if options.get("normals") == task.GRADIENT and contour is not None and not ghost:
         raise ValueError(_check.message("ghost", "1 at least beside normals='gradient'", ghost))
     sided = asked.tangents is None or asked.conditioned is True
-    return ({"facing": "eye"} if sided and not asked.flip_normals else {}) | options
+    return ({"facing": "eye"} if sided else {}) | options
 
 
 def _spare_sources(parts: Sequence[Piece], path: Path, outputs: Sequence[Path]) -> None:

@@ -71,13 +71,12 @@ def array_of(
     name: str,
     value: object,
     *,
-    average_cells: bool | None = None,
     sizes: Collection[int] = (),
 ) -> Array:
     """Return a point array of real numbers, from its name or from an array with those values.
 
-    A cell array is an error; ``average_cells`` is None for a filter without that option. Errors
-    name the arrays whose number of components is among ``sizes``, if there are any.
+    A cell array is an error. Errors name the arrays whose number of components is among ``sizes``,
+    if there are any.
 
     Raises
     ------
@@ -88,7 +87,7 @@ def array_of(
     """
     if isinstance(value, str):
         _check.text(name, value, expected="the name of a point array")
-        array = _named(mesh, name, value, average_cells, sizes)
+        array = _named(mesh, name, value, sizes)
         what = f"{value!r} with "
     else:
         array, what = _check.floats(name, value), ""
@@ -111,16 +110,12 @@ def _real_rows(name: str, array: Array, what: str) -> Array:
     return array
 
 
-def _named(
-    mesh: Dataset, name: str, value: str, average_cells: bool | None, sizes: Collection[int]
-) -> Array:
+def _named(mesh: Dataset, name: str, value: str, sizes: Collection[int]) -> Array:
     data = mesh.GetPointData()
     if (found := named(data, value)) is not None:
         return found
     if mesh.GetCellData().HasArray(value):
         remedy = "call mesh.cell_data_to_point_data()"
-        if average_cells is not None:
-            remedy = f"pass average_cells=True or {remedy}"
         raise ValueError(_check.message(name, "a point array", f"the cell array {value!r}", remedy))
     there = [data.GetAbstractArray(i) for i in range(data.GetNumberOfArrays())]
     fitting = [
@@ -146,17 +141,26 @@ def _components(value: object, array: Array) -> str:
     return (f"{value!r} with " if isinstance(value, str) else "") + str(array.shape[1])
 
 
-def tangents_of(
-    mesh: Dataset, value: object, n: int, *, average_cells: bool, argument: str = "tangents"
-) -> Array:
-    """Return k tangents per point as an array of shape (n_points, k n), 0 < k < n."""
+def tangents_of(mesh: Dataset, value: object, n: int, *, argument: str = "tangents") -> Array:
+    """Return k tangents per point as an array of shape (n_points, k n), 0 < k < n.
+
+    A cell array is averaged to the points, with a warning.
+    """
     if isinstance(value, str):
         _check.text(argument, value, expected="the name of a point array")
-        of_points = mesh.GetPointData().HasArray(value)
-        if average_cells and not of_points and mesh.GetCellData().HasArray(value):
+        if is_of_cells(mesh, value):
+            _check.warn(
+                f"{argument}: the cell array {value!r} is averaged to the points, whatever the "
+                "signs; mesh.cell_data_to_point_data() keeps them"
+            )
             return _averaged_tangents(mesh, argument, value, n)
-    array = array_of(mesh, argument, value, average_cells=False, sizes=range(n, n * n, n))
+    array = array_of(mesh, argument, value, sizes=range(n, n * n, n))
     return _checked_tangents(argument, value, array, n)
+
+
+def is_of_cells(mesh: Dataset, name: str) -> bool:
+    """Return whether a mesh has an array of this name at its cells alone."""
+    return bool(mesh.GetCellData().HasArray(name) and not mesh.GetPointData().HasArray(name))
 
 
 def _averaged_tangents(mesh: Dataset, argument: str, value: str, n: int) -> Array:

@@ -70,21 +70,13 @@ def part_of(
         base = normals = sided = None
         alike = False
         if isinstance(options.conditioned, str):
-            base = tangents_of(
-                mesh,
-                options.conditioned,
-                n,
-                average_cells=options.average_cells,
-                argument="conditioned",
-            )
+            base = tangents_of(mesh, options.conditioned, n, argument="conditioned")
         elif tangents is None or options.conditioned:
             known = None if kept is None else kept.normals
             sided = sided_normals(
-                mesh, options.normals, n, shown_side(options), kept=known, starts=starts
+                mesh, options.normals, n, options.facing, kept=known, starts=starts
             )
-            normals = sided.facing(shown_side(options), points, scene.view)
-            if options.flip_normals:
-                normals = -normals[:]
+            normals = sided.facing(options.facing, points, scene.view)
             alike = scene.view is None and _alike(sided, options.facing)
     except (TypeError, ValueError) as error:
         if not path:
@@ -106,16 +98,10 @@ def _sides(sided: Sided, view: View | None, options: LightOptions) -> Sides:
 
     def turned(normals: Array, facts: Array, points: Array) -> Array:
         own = Sided(normals, lean=facts[:, 0], open=facts[:, 1] > 0.5)
-        found: Array = own.facing(shown_side(options), points, view)[:]
-        return -found if options.flip_normals else found
+        found: Array = own.facing(options.facing, points, view)[:]
+        return found
 
     return Sides(sided.vectors, sided.facts(), turned)
-
-
-def shown_side(options: LightOptions) -> Facing:
-    """Return the side that normals show; the older switch takes the place of the eye."""
-    old = options.flip_normals and options.facing == "auto"
-    return "outward" if old else options.facing
 
 
 def _alike(sided: Sided, facing: Facing) -> bool:
@@ -126,7 +112,7 @@ def _alike(sided: Sided, facing: Facing) -> bool:
 def _tangents(mesh: Dataset, n: int, options: LightOptions, kept: Kept | None) -> Array | None:
     """Return the tangents in the options, or those of a mesh of lines."""
     if options.tangents is not None:
-        return tangents_of(mesh, options.tangents, n, average_cells=options.average_cells)
+        return tangents_of(mesh, options.tangents, n)
     if n == 3 and polylines.has_lines_only(mesh):
         known = None if kept is None else kept.tangents(mesh)
         return polylines.line_tangents(mesh) if known is None else known
@@ -149,7 +135,7 @@ def _check_options(tangents: Array | None, n: int, options: LightOptions) -> Non
 
 def _refuse_sides(options: LightOptions) -> None:
     """Raise ValueError if an option fits only a surface, which has two sides."""
-    for name in ("normals", "flip_normals", "facing"):
+    for name in ("normals", "facing"):
         value = getattr(options, name)
         if not (value is None or value is False or (isinstance(value, str) and value == "auto")):
             remedy = "pass conditioned=True, or leave one of them out"

@@ -9,7 +9,7 @@ import inspect
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias, TypedDict, get_args
+from typing import TYPE_CHECKING, Literal, TypeAlias, TypedDict, get_args
 
 import numpy as np
 
@@ -129,8 +129,6 @@ class LightKeywords(ShadingKeywords, total=False):
     normals: str | ArrayLike | None
     facing: Facing
     feature_angle: FeatureAngle
-    flip_normals: bool
-    average_cells: bool
     refine: float
     bundle: bool | Bundle
     name: str
@@ -196,7 +194,8 @@ class LightOptions(ShadingOptions):
     ----------
     tangents : str or array_like, optional
         Name of a point array of ``k n`` components (k vectors of n, row after row), or its values.
-        The vectors may have any length: they are orthonormalised.
+        The vectors may have any length: they are orthonormalised. A cell array is averaged to the
+        points as lines without sign, with a warning.
     positions : str, optional
         Name of a point array of n components with the places of the points in n-space. Default:
         the points of the mesh.
@@ -222,10 +221,6 @@ class LightOptions(ShadingOptions):
         light times ``max(0, N . wi)`` (Banks 6). A surface of codimension 2 or more has no sides
         and no such shadow: name the point array of its j tangents, such as ``"frame"``, and its
         own brightness ``sin(a)^p(j, n)`` is the factor. In codimension 1 that is ``|N . wi|``.
-    flip_normals : bool, default: False
-        Whether the normals are reversed; replaced by ``facing``.
-    average_cells : bool, default: False
-        Whether cell data may serve as tangents, averaged to the points.
     refine : float, default: 0.0
         Largest error between the points, such as 1/255: segments and triangles are split where
         interpolation of the light would be further off, see :func:`vizlight.refine`. 0: the mesh
@@ -240,17 +235,12 @@ class LightOptions(ShadingOptions):
         Name of the result. Under another name the further arrays are ``<name>_diffuse`` and so on.
     """
 
-    #: Older switches, and what replaces them.
-    REPLACED: ClassVar[dict[str, str]] = {"flip_normals": "facing='outward' or 'as given'"}
-
     tangents: str | ArrayLike | None = None
     positions: str | None = None
     normals: str | ArrayLike | None = None
     facing: Facing = "auto"
     feature_angle: FeatureAngle = None
     conditioned: bool | str | None = False
-    flip_normals: bool = False
-    average_cells: bool = False
     refine: float = 0.0
     bundle: bool | Bundle = False
     name: str = "luminance"
@@ -263,9 +253,6 @@ class LightOptions(ShadingOptions):
             expected, remedy = f"0 or {FINEST:g} at least", "a picture shows 1/255"
             raise ValueError(_check.message("refine", expected, self.refine, remedy))
         check_sides(self.facing, self.feature_angle)
-        if self.flip_normals and self.facing != "auto":
-            expected = "facing= alone, which replaces flip_normals="
-            raise ValueError(_check.message("flip_normals", expected, "both", "leave it out"))
 
 
 def checked_bundle(value: object) -> bool | Bundle:
@@ -351,9 +338,6 @@ def accepts(
 
         @functools.wraps(function)
         def method(*arguments: P.args, **keywords: P.kwargs) -> R:
-            for old, new in getattr(kind, "REPLACED", {}).items():
-                if keywords.get(old) is True:
-                    _check.warn(f"{old}= is replaced by {new}", DeprecationWarning)
             for name in keywords:
                 if name not in known:
                     owner = function.__qualname__.removesuffix(".__init__")
@@ -374,7 +358,6 @@ def accepts(
         listed = signature.replace(parameters=[*own, *added])
         entries = "\n".join(filter(None, texts.values()))
         text = re.sub(r"^\*\*options.*(\n    .*)*", lambda _: entries, _doc(function), flags=re.M)
-        method.__dict__["replaced"] = set(getattr(kind, "REPLACED", {}))
         method.__signature__ = listed  # type: ignore[attr-defined]
         method.__doc__ = text
         return method

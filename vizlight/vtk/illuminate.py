@@ -31,7 +31,7 @@ __all__ = ["Illuminate"]
 #: Options that are names of arrays: a pipeline has no others.
 _NAMES = ("tangents", "normals", "positions")
 #: Options that give a mesh new points, need PyVista, or have been replaced.
-_WITHOUT = ("flip_normals", "feature_angle", "refine", "bundle")
+_WITHOUT = ("feature_angle", "refine", "bundle")
 _NO_GHOSTS = (
     "light at the borders of the pieces is computed without their neighbours; give the pieces a "
     "layer of ghost cells before they are contoured, or normals as a point array"
@@ -117,7 +117,6 @@ class Illuminate(VTKPythonAlgorithmBase):
     normals = _Option()
     facing = _Option()
     conditioned = _Option()
-    average_cells = _Option()
     model = _Option()
     exponent = _Option()
     components = _Option()

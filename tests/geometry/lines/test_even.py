@@ -139,18 +139,14 @@ def test_in_a_volume():
     assert "Normals" not in lines.point_data
 
 
-def test_seeds_come_first_and_separation_and_length_are_kept():
+def test_seeds_come_first_and_lines_keep_their_distance():
     mesh = ball(30)
     seeds = np.array([[0, 1.0, 0], [1.0, 0, 0]])
-    lines = streamlines(
-        mesh, SCENE, vectors="spiral", spacing=0.2, separation=0.8, shortest=5.0, seeds=seeds
-    )
+    lines = streamlines(mesh, SCENE, vectors="spiral", spacing=0.2, seeds=seeds)
     _, near, _ = evenness(lines, seeds)
-    assert np.percentile(near, 5) > 0.75 * 0.2
-    assert cKDTree(lines.points).query(seeds)[0].max() < 0.02
-    again = streamlines(
-        mesh, SCENE, vectors="spiral", spacing=0.2, separation=0.8, shortest=5.0, seeds=seeds
-    )
+    assert np.percentile(near, 5) > 0.45 * 0.2
+    assert cKDTree(lines.points).query(seeds)[0].max() < 0.03
+    again = streamlines(mesh, SCENE, vectors="spiral", spacing=0.2, seeds=seeds)
     np.testing.assert_array_equal(lines.points, again.points)
 
 
@@ -174,8 +170,6 @@ def test_far_from_the_origin_and_of_any_size():
             ValueError,
             "spacing: expected a number from 0.00.* for a mesh of this",
         ),
-        ({"separation": 1.5}, ValueError, "separation: expected a number from 0.05 to 0.95"),
-        ({"shortest": -1}, ValueError, "shortest: expected a finite number of at least 0"),
         ({"line_field": "yes"}, TypeError, "line_field: expected True or False"),
     ],
 )

@@ -247,7 +247,7 @@ def hang(
 def grow(
     total: Array, place: Array, number: Array, jitter: Array, start: Array, triangle: int,
     mean: float, corners: Indices, table: Array, at: Indices, toward: Array, phase: Array,
-    shape: Array, segments: int, flip: bool, points: Array, tangents: Array, normals: Array,
+    shape: Array, segments: int, points: Array, tangents: Array, normals: Array,
     heights: Array, inside: Bools,
 ) -> None:  # fmt: skip
     """Write a block of fibres.
@@ -273,12 +273,12 @@ def grow(
         Angles at which the curl starts.
     shape : ndarray, shape (5,)
         Length, bend, curl, turns, unit of heights.
-    segments, flip
-        Number of segments, and whether vectors that point into the surface are reversed.
+    segments : int
+        Number of segments.
     points, tangents, normals, heights : ndarray
         Written, point after point; normals and heights may be empty. Tangents have any length.
     inside : ndarray of bool, shape (F,)
-        Written: whether the vector of a fibre points into the surface.
+        Written: whether the vector of a fibre points into the surface, where it is reversed.
     """
     m, width = segments + 1, at[0]
     t = first_above(total, place[0], triangle)
@@ -304,7 +304,7 @@ def grow(
             if x != ZERO or y != ZERO or z != ZERO:
                 way = x, y, z
             inside[f] = way[0] * normal[0] + way[1] * normal[1] + way[2] * normal[2] < ZERO
-            if flip and inside[f]:
+            if inside[f]:
                 way = -way[0], -way[1], -way[2]
         if at[2]:
             x, y, z = mixed(table, a + at[2], b + at[2], c + at[2], w)

@@ -30,6 +30,10 @@ CLOSED = 0.05
 QUEUE = 512
 #: Number of random places per square or cube of the spacing that are looked at for gaps.
 DENSE, MOST_PLACES = 8, 200_000
+#: Share of the spacing at which a curve stops before another.
+SEPARATION = 0.5
+#: Length, in spacings, of the shortest curve that is kept where others cut it short.
+SHORTEST = 2.0
 #: Number of places per spacing along each axis that are looked at for the last gaps, which are
 #: filled if they are wider than so many spacings, by curves of a share of the shortest length, or
 #: half of that from a boundary.
@@ -44,10 +48,6 @@ class Spacing:
     ----------
     spacing : float
         Distance at which a curve starts beside another.
-    separation : float
-        Share of the spacing at which a curve stops before another.
-    shortest : float
-        Length, in spacings, of the shortest curve that is kept where others cut it short.
     step : float
         Largest length of a step, in extents of its cell.
     max_length, max_steps : float, int
@@ -55,8 +55,6 @@ class Spacing:
     """
 
     spacing: float
-    separation: float
-    shortest: float
     step: float
     max_length: float
     max_steps: int
@@ -178,7 +176,7 @@ class Growth:
         curves that give way.
         """
         samples, spacing = self.samples, self.asked.spacing
-        d = self.asked.separation * spacing
+        d = SEPARATION * spacing
         distance, row = samples.near(embedded, d, 16, ahead.along if self.crossing else None)
         sign = ahead.sign[:, np.newaxis]
         own = samples.curve[row] == ahead.curve[:, np.newaxis]
@@ -229,7 +227,7 @@ class Growth:
         cut = self.cut.get(curve, 0)
         # In a gap there is room for half the length on either side of the seed.
         share = SHARE * cut / 2 if self.last_gaps else min(cut, 1)
-        if self.lengths[curve] < share * self.asked.shortest * self.asked.spacing:
+        if self.lengths[curve] < share * SHORTEST * self.asked.spacing:
             self.dropped.add(curve)
             self.samples.drop(curve)
         elif not self.last_gaps:
@@ -310,7 +308,7 @@ def evenly_spaced(
 
     Notes
     -----
-    Curves start a spacing beside others and stop where they come nearer than ``separation`` to
+    Curves start a spacing beside others and stop where they come nearer than half a spacing to
     another or to themselves. Where no place beside a curve is free, random places that are a
     spacing from all curves are tried until none is left: so every part is reached. On the double
     cover of a cross field only curves that are nearly parallel count. Source: Jobard
