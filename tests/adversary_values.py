@@ -16,7 +16,7 @@ KINDS = {
     r"Picture\b",
     "number": r"\b(int|float)\b|FeatureAngle|Levels|object|Fraction|LightAt",
     "flag": r"\bbool\b",
-    "text": r"\bstr\b|Model|Measure|Border|Method|Form\b|Facing|Precision|Inward|LightWhen|Literal|"
+    "text": r"\bstr\b|Model|Measure|Border|Method|Form\b|Facing|Precision|LightWhen|Literal|"
     r"ColorMap|ColorLike|FeatureAngle|Tangents\b|Backend|AntiAliasing|PictureLight|LightAt|DTypeLike|"
     r"Picture\b|Lights|AnyView|object",
     "mesh": r"pv\.(PolyData|DataSet|DataObject|MultiBlock)|MeshT|\bMesh\b|Picture\b",

@@ -198,7 +198,7 @@ def contours(
     return carry_out(files, job, common.out, "contours")
 
 
-@options.takes("project", "Projection", without=("flip_normals",), renamed=RENAMED)
+@options.takes("project", "Projection", renamed=RENAMED)
 def project(
     files: list[Path],
     /,

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 
 # Places in n-space need lights and an eye in n-space, which scripts have.
-@options.takes("illuminate", "Shading", without=("positions", "flip_normals"))
+@options.takes("illuminate", "Shading", without=("positions",))
 def light(
     files: list[Path],
     /,

@@ -57,7 +57,7 @@ class Window:
     progress: Flag = False
 
 
-@options.takes("illuminate", "Shading", without=("positions", "flip_normals"))
+@options.takes("illuminate", "Shading", without=("positions",))
 def view(
     file: Path,
     /,

@@ -9,6 +9,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.filters import lighting
 from vizlight.mesh import batches, blocks, bundles, normals, refining
+from vizlight.reading.arrays import is_of_cells
 from vizlight.reading.inputs import uses_normals
 from vizlight.scene.scene import as_scene
 from vizlight.shading.options import Bundle, LightOptions, accepts
@@ -139,6 +140,7 @@ def light_mesh(
         taken, [path for _, path in named], scene, options,
         join=not (options.refine or options.bundle),
     )  # fmt: skip
+    _tell_of_averages(named, options)
     rest: list[refining.Left] = []
     if options.refine:
         fitted = lighting.fit_depth_cue(scene, [part.inputs for part in parts])
@@ -191,6 +193,17 @@ def light_mesh(
     for block, left in zip(lit, rest, strict=False):
         block.field_data[f"{options.name}{refining.LEFT}"] = [left.error, left.share]
     return out
+
+
+def _tell_of_averages(named: list[tuple[pv.DataSet, str]], options: LightOptions) -> None:
+    """Warn once of each cell array whose means at the points are the tangents."""
+    for argument in ("tangents", "conditioned"):
+        name: object = getattr(options, argument)
+        if isinstance(name, str) and any(is_of_cells(block, name) for block, _ in named):
+            _check.warn(
+                f"{argument}: the cell array {name!r} is averaged to the points, whatever the "
+                "signs; mesh.cell_data_to_point_data() keeps them"
+            )
 
 
 def _split(mesh: pv.DataSet, path: str, options: LightOptions) -> pv.DataSet:

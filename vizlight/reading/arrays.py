@@ -144,15 +144,11 @@ def _components(value: object, array: Array) -> str:
 def tangents_of(mesh: Dataset, value: object, n: int, *, argument: str = "tangents") -> Array:
     """Return k tangents per point as an array of shape (n_points, k n), 0 < k < n.
 
-    A cell array is averaged to the points, with a warning.
+    A cell array is averaged to the points, as lines without sign.
     """
     if isinstance(value, str):
         _check.text(argument, value, expected="the name of a point array")
         if is_of_cells(mesh, value):
-            _check.warn(
-                f"{argument}: the cell array {value!r} is averaged to the points, whatever the "
-                "signs; mesh.cell_data_to_point_data() keeps them"
-            )
             return _averaged_tangents(mesh, argument, value, n)
     array = array_of(mesh, argument, value, sizes=range(n, n * n, n))
     return _checked_tangents(argument, value, array, n)
