@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import tracemalloc
+
 import numpy as np
 import pytest
 import pyvista as pv
@@ -85,3 +87,49 @@ def test_nothing_before_the_eye_is_clipped(direction, zoom):
     assert depth.max() <= far
     # Depth is kept in few digits: no more than the box twice over.
     assert far - near < 2.01 * np.linalg.norm(corners[0] - corners[-1])
+
+
+def projected(mesh, camera):
+    """Return the places of the finite points in the picture, -1 to 1 from side to side."""
+    points = mesh.points[np.isfinite(mesh.points).all(axis=1)].astype(np.float64)
+    back = np.array(camera.position) - camera.focal_point
+    back /= np.linalg.norm(back)
+    right = np.cross(camera.up, back)
+    right /= np.linalg.norm(right)
+    way = points - camera.position
+    half = -(way @ back) * np.tan(np.radians(camera.view_angle / 2))
+    return np.stack([way @ right / half, way @ np.cross(back, right) / half])
+
+
+@pytest.mark.parametrize("direction", [(1, 1, 1), (0, 0, 1), (0.3, -1, 0.2)])
+def test_the_outermost_of_many_points_touch_the_margins(direction, random):
+    """Also where some are not finite, of a grid, and in whatever order they are."""
+    cloud = pv.PolyData(random.normal(size=(150_000, 3)).astype(np.float32) + 7)
+    cloud.points[::7] = np.nan
+    turned = cloud.copy()
+    turned.points = turned.points[::-1]
+    edges = [np.cumsum(random.random(n)) for n in (9, 7, 5)]
+    for mesh in (
+        cloud,
+        pv.ImageData(dimensions=(3, 4, 5), origin=(5, 6, 7)),
+        pv.RectilinearGrid(*edges),
+    ):
+        camera = render.camera_on(mesh, direction)
+        assert np.abs(projected(mesh, camera)).max() == pytest.approx(1 / 1.05, rel=1e-6)
+    np.testing.assert_allclose(
+        render.camera_on(turned, direction).position,
+        render.camera_on(cloud, direction).position,
+        rtol=1e-14,
+    )
+
+
+def test_a_camera_copies_no_mesh():
+    cloud = pv.PolyData(np.tile(np.float32([1, 2, 3]), (400_000, 1)))
+    cloud.points[0] = 0
+    for mesh in (cloud, pv.ImageData(dimensions=(160, 160, 160))):
+        mesh.bounds  # noqa: B018 - which VTK keeps
+        tracemalloc.start()
+        render.camera_on(mesh)
+        _, peak = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+        assert peak < 2.5 * 65_536 * 10 * 8

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -12,7 +13,7 @@ from vizlight import _check
 from vizlight.mesh.blocks import all_blocks
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from numpy.typing import ArrayLike
 
@@ -25,6 +26,8 @@ Mesh: TypeAlias = pv.DataSet | pv.MultiBlock
 VIEW_ANGLE = 30.0
 #: Factor by which the picture is larger than the mesh in it.
 MARGIN = 1.05
+#: Number of points that are projected at once.
+SOME = 1 << 16
 #: Least and largest size of a box that a camera shows; VTK's are no nearer than 1e-20.
 SIZES = 1e-15, 1e100
 
@@ -167,23 +170,49 @@ def _fit(
 ) -> tuple[Array, float, float]:
     """Return the shift of the centre, the distance and the height at which a mesh fills a view."""
     axes = _axes(toward, up)
-    parts = [
-        np.asarray(block.points, dtype=np.float64) for block in all_blocks(mesh) if block.n_points
-    ]
-    points = np.concatenate(parts)
-    points = (points[np.all(np.isfinite(points), axis=1)] - centre) @ axes.T
-    if not len(points):
+    slope = MARGIN / math.tan(math.radians(VIEW_ANGLE / 2))
+    # A point is in the picture from the distance z + slope |x|, so the largest z + slope x and
+    # z - slope x of all points are enough, and the same of y.
+    sides = np.stack([axes[0] * slope / aspect, axes[1] * slope])
+    rows = np.concatenate([axes, axes[2] + sides, axes[2] - sides])
+    low, high = np.full(7, np.inf), np.full(7, -np.inf)
+    for points in _coordinates(mesh):
+        with np.errstate(invalid="ignore"):
+            found = rows @ (points - centre).T
+        if not np.all(np.isfinite(found)):
+            found = found[:, np.all(np.isfinite(found), axis=0)]
+        low = np.minimum(low, found.min(axis=1, initial=np.inf))
+        high = np.maximum(high, found.max(axis=1, initial=-np.inf))
+    if not np.all(low <= high):
         raise ValueError(_check.message("bounds", "a mesh with finite points", "none"))
-    middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    middle = 0.5 * (low[:3] + high[:3])
     middle[2] = 0
-    across = np.maximum(np.abs(points[:, 0] - middle[0]) / aspect, np.abs(points[:, 1] - middle[1]))
-    height = MARGIN * float(across.max())
-    depth = float(np.ptp(points[:, 2]))
-    slope = math.tan(math.radians(VIEW_ANGLE / 2))
-    distance = float(np.max(MARGIN * across / slope + points[:, 2]))
+    half = 0.5 * (high[:2] - low[:2])
+    height = MARGIN * float(max(half[0] / aspect, half[1]))
+    shift = rows[3:5] @ axes.T @ middle
+    distance = float(max(np.max(high[3:5] - shift), np.max(high[5:] + shift)))
     # A single point, or a flat mesh that is seen edge on, has no extent in the picture.
-    size = 0.05 * depth or (0.0 if height else 1.0)
-    return middle @ axes, max(distance, float(points[:, 2].max()) + size), max(height, size)
+    size = 0.05 * float(high[2] - low[2]) or (0.0 if height else 1.0)
+    return middle @ axes, max(distance, float(high[2]) + size), max(height, size)
+
+
+def _coordinates(mesh: Mesh) -> Iterator[Array]:
+    """Yield the points of a mesh in float64, some at a time; of a box only its corners."""
+    for block in all_blocks(mesh):
+        corners = _corners(block)
+        points = block.points if corners is None else corners
+        for start in range(0, len(points), SOME):
+            yield np.asarray(points[start : start + SOME], dtype=np.float64)
+
+
+def _corners(block: pv.DataSet) -> Array | None:
+    """Return the corners of a grid that fills its box, and so are its outermost points."""
+    fills = isinstance(block, pv.RectilinearGrid) or (
+        isinstance(block, pv.ImageData) and np.array_equal(block.direction_matrix, np.eye(3))
+    )
+    if not fills or not block.n_points:
+        return None
+    return np.array([*itertools.product(*np.reshape(block.bounds, (3, 2)))])
 
 
 def common_bounds(name: str, meshes: Iterable[Mesh]) -> list[float]:
