@@ -124,13 +124,6 @@ def series():
     return {"series": steps, "scene": SCENE, "vectors": "V", "seeds": 4}
 
 
-def in_pieces(**more):
-    """Return the path of a lit mesh in pieces, and how it is drawn."""
-    lit().save("piece.vtp")
-    picture = {"camera": pv.Camera(), "size": (60, 40), "samples": 1, "workers": 1}
-    return {**more, **picture}
-
-
 def written(name):
     """Return arguments of a function that writes a lit mesh to a file."""
     return {"mesh": ball(), "scene": SCENE, "path": Path(name)}
@@ -200,11 +193,8 @@ CALLS = {
         "got": np.zeros((20, 20, 3), np.uint8),
         "expected": np.zeros((20, 20, 3), np.uint8),
     },
-    "pieces.drawing.pictures": lambda: in_pieces(sequence=["piece.vtp"]),
-    "pieces.drawing.save_png": lambda: in_pieces(shown="piece.vtp", path=Path("picture.png")),
     "pieces.kinds.Slabs": lambda: {"arrays": {"a": np.zeros((3, 4, 5))}},
-    "pieces.survey.bounding_box": lambda: {"sources": saved(), "workers": 1},
-    "pieces.survey.camera_on": lambda: {"sources": saved(), "workers": 1},
+    "pieces.survey.camera_on": lambda: {"sources": saved()},
     "pieces.run.light": lambda: {
         "sources": saved(),
         "scene": SCENE,

@@ -142,7 +142,6 @@ SELF = {
 #: Kinds of arguments, as annotations, where their own say less.
 KINDS = {
     ("filters.pathlines.pathlines", "series"): "Sequence[pv.DataSet] | Path",
-    ("pieces.survey.bounding_box", "sources"): "object | Path",
     ("pieces.survey.camera_on", "sources"): "object | Path",
     ("pieces.run.light", "sources"): "object | Path",
 }
@@ -159,11 +158,7 @@ ALIASES = {
     ("files.warped", "factor"): {"warp_factor"},
     ("pictures.movie.save", "path"): {"output"},
     ("pictures.movie.turn", "path"): {"output"},
-    ("pieces.drawing.save_png", "path"): {"output"},
     # Errors of a piece begin with its name.
-    ("pieces.drawing.pictures", "sequence"): {"piece"},
-    ("pieces.drawing.save_png", "shown"): {"sequence", "piece"},
-    ("pieces.survey.bounding_box", "sources"): {"piece"},
     ("pieces.survey.camera_on", "sources"): {"piece"},
     ("pieces.run.light", "sources"): {"piece"},
     ("pictures.render.save_png", "panels"): {"scalars"},

@@ -29,6 +29,7 @@ REASONS = {
     "check-jsonschema": "command: checks .github/workflows",
     "check-wheel-contents": "command",
     "codespell": "command",
+    "distributed": "what vizlight light --scheduler connects to, a client that users bring",
     "hatchling": "builds what tests/test_release.py inspects, in a second process",
     "ipykernel": "kernel of the notebooks that tests/test_gallery.py runs",
     "mypy": "command",

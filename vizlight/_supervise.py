@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from types import FrameType
 
-__all__ = ["Doing", "read_limit", "run", "stage"]
+__all__ = ["Doing", "end_with", "read_limit", "run", "stage"]
 
 Doing: TypeAlias = Literal["read", "write", "draw"]
 
@@ -149,7 +149,7 @@ def run(main: Callable[[], int]) -> int:
     signal.pthread_sigmask(signal.SIG_UNBLOCK, _PASSED_ON)
     os.close(reader)
     _channel = writer
-    _end_with(parent)
+    end_with(parent)
     _limit_memory()
     return main()
 
@@ -173,8 +173,14 @@ def _open_standard_streams() -> None:
         sys.stderr = open(2, "w", closefd=False)  # noqa: SIM115
 
 
-def _end_with(parent: int) -> None:
-    """Let the kernel kill this process when its parent is killed."""
+def end_with(parent: int) -> None:
+    """Let the kernel kill this process when its parent is killed.
+
+    Parameters
+    ----------
+    parent : int
+        Number of the process that is the parent.
+    """
     with contextlib.suppress(OSError, AttributeError):
         ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, int(signal.SIGKILL))
     if os.getppid() != parent:

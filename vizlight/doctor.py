@@ -23,7 +23,7 @@ OPTIONAL = (
     ("tractograms in .trx files", "trx-python", "tracts"),
     ("meshes in .off, .mesh, .msh and other files", "meshio", "formats"),
     ("grids in netCDF files", "xarray", "formats"),
-    ("data in pieces on several processes", "distributed", "scale"),
+    ("data in pieces on several machines", "distributed", "scale"),
     ("all tests", "pytest", "test"),
     ("tests of pictures", "pytest-pyvista", "test"),
     ("tests with searched inputs", "hypothesis", "test"),

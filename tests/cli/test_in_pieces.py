@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import socket
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ import pyvista as pv
 from PIL import Image
 
 import vizlight
-from vizlight import cli, pieces, render
+from vizlight import cli, render
 
 CONTOUR = ("--contour", "r", "--level", "3")
 
@@ -42,7 +43,6 @@ def run(capfd, *arguments):
 @pytest.mark.opengl
 @pytest.mark.parametrize("view", [(), ("--view", "1,0.5,0.45", "--parallel"), ("camera",)], ids=str)
 def test_the_picture_is_that_of_the_whole(parts, capfd, view, tmp_path):
-    """Its samples: one file is drawn with softer edges, and lit in each fragment."""
     if view == ("camera",):
         place = [[20, 9, 14], [4.5, 5.5, 7], [0, 0, 1]]
         (tmp_path / "camera.json").write_text(json.dumps(place), encoding="utf-8")
@@ -62,17 +62,40 @@ def test_the_picture_is_that_of_the_whole(parts, capfd, view, tmp_path):
         camera = render.camera_on(whole, (1, 0.5, 0.45), aspect=1.5, parallel=True)
     elif view:
         camera.position, camera.focal_point = place[:2]
-    drawn = next(pieces.pictures(["lit.vtp"], camera=camera, size=(150, 100), workers=1))
-    assert np.abs(got - drawn).max() <= 1
+    panel = render.Panel(whole, "luminance")
+    (drawn,) = render.pictures([panel], camera=camera, size=(150, 100), light="points")
+    assert np.abs(got - drawn).mean() < 0.1
     rows, columns = np.nonzero((got < 250).any(axis=2))
     if "camera.json" not in view:
         assert max(np.ptp(rows) / 100, np.ptp(columns) / 150) > 0.85
+
+
+def test_processes_write_the_same_bytes(parts, capfd, tmp_path):
+    for name, more in (("one", ()), ("two", ("--workers", "2"))):
+        lit = ("light", *parts, *CONTOUR, "-o", f"{name}.pvtp", *more)
+        assert run(capfd, *lit)[::2] == (0, "")
+    for i in range(3):
+        one, two = (tmp_path / name / f"{name}_000{i}.vtp" for name in ("one", "two"))
+        assert one.read_bytes() == two.read_bytes()
+
+
+def test_a_scheduler_that_does_not_answer(parts, capfd):
+    pytest.importorskip("distributed")
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        address = f"tcp://127.0.0.1:{free.getsockname()[1]}"
+    code, out, err = run(capfd, "light", *parts, "-o", "a.pvtp", "--scheduler", address)
+    assert (code, out, len(err.splitlines())) == (2, "", 1)
+    assert "127.0.0.1" in err
 
 
 def test_the_script_does_the_same(parts, capfd):
     code, out, err = run(capfd, "light", *parts, "--contour", "r", "-o", "a.pvtp", "--script")
     assert (code, err) == (0, "")
     exec(compile(out, "script", "exec"), {})
+    _, out, _ = run(capfd, "light", *parts, "-o", "a.pvtp", "--workers", "3", "--script")
+    assert "work = vizlight.pieces.Processes(3)\n" in out
+    assert out.count("map=work") == 2
     level = vizlight.read("whole.vtu")["r"]
     assert vizlight.read("a.pvtp")["r"] == pytest.approx((level.min() + level.max()) / 2)
 
@@ -112,6 +135,8 @@ def test_creases_are_told_and_split_if_asked(tmp_path, monkeypatch, capfd):
         (("-o", "a.html", "--workers", "2"), "of pieces, beside --workers, got a.html"),
         (("-o", "a.pvtp", "-o", "a.html"), "by 'vizlight light a.pvtp -o a.html'"),
         (("-o", "a.pvtp", "-o", "b.pvtp"), "one index of pieces"),
+        (("-o", "a.pvtp", "--workers", "0"), "--workers: expected an integer of at least 1"),
+        (("-o", "a.pvtp", "--workers", "2", "--scheduler", "x"), "--workers or --scheduler"),
         (("-o", "a.pvtp", "--clip", "x:2"), "--clip: expected no such option for pieces"),
         (("-o", "a.pvtp", "--feature-angle", "auto"), "such as 30"),
         (("-o", "a.pvtp", "--contour", "s"), "contour: expected a point array of one component"),

@@ -9,8 +9,6 @@ import time
 
 import pytest
 
-from vizlight.pieces.workers import local_cluster
-
 
 @pytest.fixture(scope="session")
 def _client():
@@ -21,9 +19,15 @@ def _client():
     with dask.config.set({"distributed.worker.multiprocessing-method": method}):
         distributed.utils.get_mp_context()  # which chooses what is imported by itself, once
         if method == "forkserver":
-            modules = ["distributed", "vizlight.pieces.drawing"]
+            modules = ["distributed", "vizlight.pieces.run"]
             multiprocessing.get_context(method).set_forkserver_preload(modules)
-        with local_cluster(2) as cluster, distributed.Client(cluster) as client:
+        with (
+            distributed.LocalCluster(
+                n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None,
+                scheduler_kwargs={"dashboard_address": ":0"}, silence_logs=50,
+            ) as cluster,
+            distributed.Client(cluster) as client,
+        ):  # fmt: skip
             yield client
 
 

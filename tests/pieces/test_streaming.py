@@ -31,7 +31,7 @@ CODE = """
             "slabs": lambda: pieces.Slabs({"s": np.load("s.npy", mmap_mode="r")}),
             "surfaces": lambda: "surface*.vtp",
         }.get(kind, lambda: f"grid.{kind}")()
-        lit = pieces.light(source, scene, threads=1, workers=1, out=f"{kind}.pvtp",
+        lit = pieces.light(source, scene, threads=1, out=f"{kind}.pvtp",
                            **({} if kind == "surfaces" else grid))
         assert len(lit.files) > 15 and lit.points > 80_000, lit
         return lit.points

@@ -1,14 +1,17 @@
-"""Killed workers, a cluster that goes away and a full disk: nothing is lost or done again."""
+"""Killed workers, a cluster that goes away and a full disk: the same result, or nothing."""
 
 from __future__ import annotations
 
 import functools
+import multiprocessing
 import os
 import signal
 import subprocess
 import sys
 import threading
 import time
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,7 +19,7 @@ import pyvista as pv
 
 from vizlight import Scene, View, pieces
 from vizlight.files import FileError
-from vizlight.pieces.workers import tried
+from vizlight.pieces.workers import LOST, Call, Work
 
 PLAIN = Scene(view=View(direction=(0, 0, 1)))
 #: A scheduler and a worker in one process, which prints the address.
@@ -29,6 +32,15 @@ async def main():
     await scheduler.finished()
 if __name__ == "__main__":
     asyncio.run(main())
+"""
+#: A script without a guard, which lights by processes.
+SCRIPT = """
+import vizlight
+scene = vizlight.Scene(view=vizlight.View(direction=(0, 0, 1)))
+lit = vizlight.pieces.light(
+    "ball*.vtp", scene, ghost=0, map=vizlight.pieces.Processes(2), out="lit.pvtp"
+)
+print(len(lit.files))
 """
 
 
@@ -47,13 +59,8 @@ def light(folder, **options):
     )
 
 
-def kept(folder):
-    """Return how many pieces are finished; each file there is whole."""
-    assert not (folder / "lit.pvtp").exists()
-    found = list((folder / "lit").iterdir())
-    assert {path.suffix for path in found} <= {".vtp", ".json"}
-    assert all("luminance" in pv.read(path).point_data for path in found if path.suffix == ".vtp")
-    return sum(path.suffix == ".json" for path in found)
+def nothing_is_left(folder):
+    return not (folder / "lit.pvtp").exists() and not (folder / "lit").exists()
 
 
 def slabs(folder):
@@ -63,71 +70,161 @@ def slabs(folder):
     return pieces.Slabs({"s": np.load(folder / "s.npy", mmap_mode="r")})
 
 
+GYROID = {"contour": "s", "level": 0.5, "normals": "gradient", "slab": 0.02}
+
+
+def same(lit, expected):
+    """Return whether the files of two results are the same, byte for byte."""
+    pairs = zip(lit.files, expected.files, strict=True)
+    return all(one.read_bytes() == other.read_bytes() for one, other in pairs)
+
+
 def test_a_killed_worker_leaves_nothing_and_the_result_is_the_same(tmp_path, client):
     source = slabs(tmp_path)
-    options = {"contour": "s", "level": 0.5, "normals": "gradient", "slab": 0.02}
-    expected = pieces.light(source, PLAIN, out=tmp_path / "one.pvtp", workers=1, **options)
+    expected = pieces.light(source, PLAIN, out=tmp_path / "one.pvtp", **GYROID)
     pids = list(client.run(os.getpid).values())
 
     def kill():
-        while len(list((tmp_path / "two").glob("*.vtp"))) < 2:
+        while len(list((tmp_path / "two").glob(".vizlight-*/*.vtp"))) < 2:
             time.sleep(0.01)
         os.kill(pids[0], signal.SIGKILL)
 
     killer = threading.Thread(target=kill)
     killer.start()
-    lit = pieces.light(source, PLAIN, out=tmp_path / "two.pvtp", client=client, **options)
+    lit = pieces.light(source, PLAIN, out=tmp_path / "two.pvtp", map=client, **GYROID)
     killer.join()
     assert pids[0] not in client.run(os.getpid, on_error="ignore").values()
     with pytest.raises(pieces.PieceError, match=r"slices \[0:.*tangents: expected the name"):
-        pieces.light(source, PLAIN, out=tmp_path / "three.pvtp", client=client, tangents="W")
-    for one, other in zip(lit.files, expected.files, strict=True):
-        assert one.read_bytes() == other.read_bytes()
+        pieces.light(source, PLAIN, out=tmp_path / "three.pvtp", map=client.map, tangents="W")
+    assert same(lit, expected)
     assert not list((tmp_path / "two").glob(".*"))
 
 
-def test_a_cluster_that_goes_away_is_named_and_finished_pieces_are_kept(balls):
-    pytest.importorskip("distributed")
+def killing(arguments):
+    """Return a number by a process that is killed the first time."""
+    number, mark = arguments
+    if not Path(mark).exists():
+        Path(mark).touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return number
+
+
+def always_killed(_):
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="kills by a signal")
+def test_calls_of_a_process_that_is_killed_are_made_again(tmp_path):
+    work = pieces.Processes(2)
+    calls = [(i, str(tmp_path / f"mark{i % 2}")) for i in range(6)]
+    assert list(work(killing, calls)) == list(range(6))
+    assert len(list(tmp_path.iterdir())) == 2
+    one = pieces.sources.pieces_of(slabs(tmp_path), 64.0)[0]
+    with pytest.raises(pieces.PieceError, match=r"piece slices \[0:19\]: workers ended while"):
+        Work(work, 0, False).each(always_killed, [(one,)], "light")
+    assert list(work(abs, [-1])) == [1], f"after {LOST} losses others start"
+
+
+def listening(pids):
+    """Return the sockets of some processes that listen, by the tables of the kernel."""
+    found = set()
+    for table, state, listens, inode in (
+        ("tcp", 3, "0A", 9), ("tcp6", 3, "0A", 9), ("unix", 3, "00010000", 6),
+    ):  # fmt: skip
+        for row in Path(f"/proc/net/{table}").read_text().splitlines()[1:]:
+            fields = row.split()
+            if fields[state] == listens:
+                found.add(f"socket:[{fields[inode]}]")
+    own = set()
+    for pid in pids:
+        for link in Path(f"/proc/{pid}/fd").glob("*"):
+            try:
+                own.add(str(link.readlink()))
+            except OSError:  # it was closed meanwhile
+                continue
+    return found & own
+
+
+def children(pid):
+    """Return a process and all below it."""
+    tasks = Path(f"/proc/{pid}/task").glob("*/children")
+    return [pid, *(one for task in tasks for own in task.read_text().split()
+                   for one in children(int(own)))]  # fmt: skip
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
+def test_no_process_listens_and_a_script_needs_no_guard(balls):
+    import socket
+
+    with socket.socket() as known:
+        known.bind(("127.0.0.1", 0))
+        known.listen()
+        assert listening([os.getpid()]), "the look itself finds a socket"
+    (balls / "script.py").write_text(SCRIPT, encoding="utf-8")
+    seen, most = set(), 0
+    with subprocess.Popen(
+        [sys.executable, "script.py"], cwd=balls, stdout=subprocess.PIPE, text=True
+    ) as run:
+        while run.poll() is None:
+            try:
+                there = children(run.pid)
+                seen |= listening(there)
+                most = max(most, len(there))
+            except OSError:  # one ended meanwhile
+                pass
+            time.sleep(0.02)
+        assert run.stdout.read() == "12\n"
+    assert most >= 3, "a parent and two processes"
+    assert not seen
+
+
+def test_executors_light_the_same(balls):
+    expected = pieces.light(
+        str(balls / "ball*.vtp"), PLAIN, ghost=0, out=balls / "one.pvtp", threads=1
+    )
+    with ProcessPoolExecutor(2, multiprocessing.get_context("spawn")) as pool:
+        for work in (pool, pool.map):
+            assert same(light(balls, map=work), expected)
+
+
+def test_a_cluster_that_goes_away_is_named_and_nothing_is_left(balls):
+    distributed = pytest.importorskip("distributed")
     quiet = {"stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL, "text": True}
     with subprocess.Popen([sys.executable, "-c", CLUSTER], **quiet) as cluster:
         assert cluster.stdout
         address = cluster.stdout.readline().strip()
 
         def kill():
-            while len(list((balls / "lit").glob("*.json"))) < 3:
+            while len(list((balls / "lit").glob(".vizlight-*/*.vtp"))) < 3:
                 time.sleep(0.002)
             cluster.kill()
 
         killer = threading.Thread(target=kill)
         killer.start()
-        with pytest.raises(
-            pieces.PieceError, match=r"piece .*ball\d\d\.vtp: the cluster went away"
+        with (
+            distributed.Client(address, timeout=10) as client,
+            pytest.raises(pieces.PieceError, match=r"piece .*ball\d\d\.vtp: its workers went away"),
         ):
-            light(balls, client=address)
+            light(balls, map=client)
         killer.join()
-    finished = kept(balls)
-    assert finished >= 3
-    lit = light(balls, workers=1)
-    assert (lit.reused, len(lit.files)) == (finished, 12)
+    assert nothing_is_left(balls)
 
 
-def test_a_disk_that_is_full_names_the_piece_and_the_rest_is_kept(balls, client):
+def test_a_disk_that_is_full_names_the_piece_and_nothing_is_left(balls, client):
     resource = pytest.importorskip("resource")
     unlimited = resource.getrlimit(resource.RLIMIT_FSIZE)
     limit = functools.partial(resource.setrlimit, resource.RLIMIT_FSIZE)
     client.run(limit, (1 << 18, unlimited[1]))
     try:
         with pytest.raises(pieces.PieceError, match=r"piece .*ball08\.vtp: output: .* free disk"):
-            light(balls, client=client)
+            light(balls, map=client)
     finally:
         client.run(limit, unlimited)
     # A task whose result nobody wants any more goes on.
     while any(client.run(lambda dask_worker: dask_worker.state.executing_count).values()):
         time.sleep(0.01)
-    finished = kept(balls)
-    assert 8 <= finished < 12
-    lit = light(balls, client=client)
-    assert (lit.reused, len(lit.files)) == (finished, 12)
+    assert nothing_is_left(balls)
+    assert len(light(balls, map=client).files) == 12
 
 
 def test_errors_of_the_system_are_tried_again():
@@ -141,9 +238,15 @@ def test_errors_of_the_system_are_tried_again():
             raise pieces.PieceError("piece a: not read") from error
         return len(calls)
 
-    assert tried(work, 2, OSError("stale")) == 3
+    assert Call(work, 2)((OSError("stale"),)) == 3
     for retries, cause in ((1, OSError("stale")), (2, None)):
         calls.clear()
         with pytest.raises(pieces.PieceError, match="not read"):
-            tried(work, retries, cause)
+            Call(work, retries)((cause,))
         assert len(calls) == (2 if cause else 1)
+
+
+@pytest.mark.parametrize(("count", "error"), [(0, ValueError), ("two", TypeError)])
+def test_bad_numbers_of_processes(count, error):
+    with pytest.raises(error, match="count: expected an integer"):
+        pieces.Processes(count)

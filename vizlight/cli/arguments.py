@@ -224,9 +224,9 @@ class Pieces:
     Parameters
     ----------
     workers
-        Number of processes. Default: 1, one piece after the other.
+        Number of processes. Default: 1, this one.
     scheduler
-        Address of a scheduler of Dask.
+        Address of a scheduler of Dask, whose workers light the pieces.
     slab
         Largest size in MB of a slab of a structured grid. Default: 64.
     """

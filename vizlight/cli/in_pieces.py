@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 from typing import TYPE_CHECKING, Any
 
 from vizlight._words import message
@@ -15,6 +16,8 @@ if TYPE_CHECKING:
     from vizlight.cli.arguments import Color, Common, Output, Pieces, Target
     from vizlight.cli.scenes import Look
 
+#: What ``--workers`` stands for.
+PROCESSES = "vizlight.pieces.Processes"
 #: Share of edges from which creases are seen in a picture.
 NOTED = 0.001
 
@@ -67,11 +70,7 @@ def light(
     if len(indices) > 1:
         expected = "one index of pieces"
         raise ValueError(message("output", expected, ", ".join(map(str, indices))))
-    runs: dict[str, Any] = {"workers": 1 if pieces.workers is None else pieces.workers}
-    if pieces.scheduler is not None:
-        runs = {"client": pieces.scheduler} | (
-            {"workers": pieces.workers} if pieces.workers else {}
-        )
+    runs: dict[str, Any] = _runs(pieces)
     shown = {"progress_bar": True} if out.progress else {}
     asked: dict[str, Any] = {"contour": target.contour, "level": target.level, "slab": pieces.slab}
     what = {key: value for key, value in asked.items() if value is not None}
@@ -85,14 +84,14 @@ def light(
     name = str(given.get("name", "luminance"))
     scalars = ("rgb" if name == "luminance" else f"{name}_rgb") if look.colored else name
     options = {
-        "scalars": scalars,
         "background": out.background,
         "line_width": None if out.line_width == 1 else out.line_width,
         "backend": out.backend,
     }
+    panel = Step("", "render.Panel", Step("whole", "vizlight.read", indices[0]), scalars)
     drawn = [
         Step(
-            "", "vizlight.pieces.save_png", lit, path, camera=camera, size=look.size, **runs,
+            "", "render.save_png", panel, path, camera=camera, size=look.size, light="points",
             **{key: value for key, value in options.items() if value is not None},
         )
         for path in others
@@ -101,9 +100,8 @@ def light(
         say(source([[lit, *drawn]]))
         return OK
     made = lit.run()
-    again = f", {made.reused} of them made before" if made.reused else ""
     none = f", {made.empty} empty" if made.empty else ""
-    say(f"{made.points} points lit in {len(made.files)} pieces{again}{none}")
+    say(f"{made.points} points lit in {len(made.files)} pieces{none}")
     low, high = made.ranges[name]
     if high > 1:
         complain(f"{name} is from {low:.3g} to {high:.3g}; above 1 it is white in a picture")
@@ -116,6 +114,24 @@ def light(
         )
     say(f"mesh     {made.path}")
     return max((draw(step.run) for step in drawn), default=OK)
+
+
+def _runs(pieces: Pieces) -> dict[str, Step]:
+    """Return what the pieces are lit by: this process, processes, or a cluster."""
+    if pieces.workers is not None:
+        from vizlight import _check
+
+        _check.integer("--workers", pieces.workers, low=1)
+    if pieces.scheduler is None:
+        several = pieces.workers is not None and pieces.workers > 1
+        return {"map": Step("work", PROCESSES, pieces.workers)} if several else {}
+    if pieces.workers is not None:
+        raise ValueError(message("--workers", "--workers or --scheduler", "both"))
+    if importlib.util.find_spec("distributed") is None:
+        remedy = "install it by: pip install 'vizlight[scale]'"
+        raise ValueError(message("--scheduler", "the package distributed", "none", remedy))
+    # An address that nobody answers at is an error of the operating system.
+    return {"map": Step("work", "distributed.Client", pieces.scheduler, timeout=10)}
 
 
 def _refuse(target: Target, color: Color, out: Output) -> None:
@@ -132,6 +148,4 @@ def _refuse(target: Target, color: Color, out: Output) -> None:
     }
     for option, value in unknown.items():
         if value:
-            script = "a script passes scalars= to vizlight.pieces.save_png"
-            remedy = script if option == "--scalars" else ""
-            raise ValueError(message(option, "no such option for pieces", "one", remedy))
+            raise ValueError(message(option, "no such option for pieces", "one"))

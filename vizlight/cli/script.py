@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
 #: First names of paths: modules in groups, and modules of vizlight.
-MODULES = (("json", "pathlib"), ("numpy", "pyvista"), ("vizlight",))
+MODULES = (("json", "pathlib"), ("distributed", "numpy", "pyvista"), ("vizlight",))
 OWN = ("files", "paraview", "render")
 INDENT, WIDTH = 4, 88
 #: Indentation at which nothing is broken.

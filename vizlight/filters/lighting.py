@@ -64,7 +64,13 @@ def fit_depth_cue(scene: Scene, inputs: Sequence[ShadingInputs]) -> Scene:
     cue = scene.depth_cue
     if cue is None or scene.view is None or (cue.front is not None and cue.back is not None):
         return scene
-    ranges = [engine.depth_range(given.points, scene) for given in inputs]
+    return with_depth_ends(scene, [engine.depth_range(given.points, scene) for given in inputs])
+
+
+def with_depth_ends(scene: Scene, ranges: Sequence[tuple[float, float]]) -> Scene:
+    """Return a scene whose depth cue has ends, those that are not given from ranges of depth."""
+    cue = scene.depth_cue
+    assert cue is not None
     near = min((near for near, _ in ranges if np.isfinite(near)), default=0.0)
     far = max((far for _, far in ranges if np.isfinite(far)), default=1.0)
     # An end that is given may lie beyond all points: the other is then put beyond it.

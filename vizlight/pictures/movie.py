@@ -65,7 +65,8 @@ def save(
     ----------
     frames : iterable of meshes or Panels, or of pictures
         Meshes to draw, one after the other; or pictures, arrays of uint8 of one shape (height,
-        width, 3), such as :func:`vizlight.pieces.pictures` yields. They are written as they come.
+        width, 3), such as :func:`vizlight.pictures.render.pictures` makes. They are written as they
+        come.
     path : path
         Path of a movie or of a sequence of PNGs, as for :func:`turn`.
     fps : float, default: 24.0

@@ -1,10 +1,8 @@
-"""Light of data in pieces: on one machine slab by slab, by processes, or on a cluster."""
+"""Light of data in pieces: slab by slab, by processes, or on a cluster that the user brings."""
 
-from vizlight.pieces.drawing import pictures, save_png
 from vizlight.pieces.kinds import PieceError, Slabs
 from vizlight.pieces.run import Lit, light
-from vizlight.pieces.survey import bounding_box, camera_on
+from vizlight.pieces.survey import camera_on
+from vizlight.pieces.workers import Processes
 
-__all__ = [
-    "Lit", "PieceError", "Slabs", "bounding_box", "camera_on", "light", "pictures", "save_png",
-]  # fmt: skip
+__all__ = ["Lit", "PieceError", "Processes", "Slabs", "camera_on", "light"]

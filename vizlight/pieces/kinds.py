@@ -8,7 +8,6 @@ import threading
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,13 +22,13 @@ from vizlight.pieces.ghosts import GHOST, own_cells, with_layer, without_ghosts
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+    from pathlib import Path
 
     from numpy.typing import ArrayLike
 
     from vizlight._types import Array, VectorLike
 
     Extent = tuple[int, ...]
-    Stamp = list[str | int | float]
 
 #: Suffix of a piece by its type of mesh, and that of an index of pieces by the suffix of those.
 SUFFIX = {kind: formats[0] for kind, formats in files.FORMATS.items() if kind != "MultiBlock"}
@@ -72,14 +71,6 @@ class Piece:
         """Return the part of a mesh, read with ghost cells, that belongs to the piece."""
         return own_cells(mesh)
 
-    def stamp(self) -> Stamp | None:
-        """Return what changes with the data; None where that is not known."""
-        raise NotImplementedError
-
-    def neighbours(self) -> tuple[Piece, ...]:
-        """Return the pieces from which ghost cells are taken."""
-        return ()
-
     def places(self) -> Array:
         """Return points with the hull of the piece, from no more of the data than it needs."""
         return hull(self.read(0))
@@ -101,12 +92,6 @@ def union(boxes: ArrayLike) -> tuple[float, ...]:
     return tuple(both.tolist())
 
 
-def stamp_of(path: Path) -> Stamp:
-    """Return the place, size and time of change of a file."""
-    status = path.stat()
-    return [str(path.resolve()), status.st_size, status.st_mtime_ns]
-
-
 @dataclass(frozen=True)
 class FilePiece(Piece):
     """A file, or one partition of a VTKHDF file, of cells in any order.
@@ -119,15 +104,12 @@ class FilePiece(Piece):
         Index of the partition, and their number.
     beside : tuple of FilePiece
         Pieces whose bounding boxes touch that of this one.
-    may_be_empty : bool
-        Whether an index names it, which may name files without points.
     """
 
     path: Path
     partition: int = 0
     partitions: int = 1
     beside: tuple[FilePiece, ...] = ()
-    may_be_empty: bool = False
 
     def load(self) -> pv.DataSet:
         """Return the mesh without ghost cells."""
@@ -153,14 +135,6 @@ class FilePiece(Piece):
         for more in reversed(range(ghost)):
             mesh, others = with_layer(mesh, others, keep=more > 0)
         return mesh
-
-    def stamp(self) -> Stamp | None:
-        """See :class:`Piece`."""
-        return [*stamp_of(self.path), self.partition, self.partitions]
-
-    def neighbours(self) -> tuple[Piece, ...]:
-        """See :class:`Piece`."""
-        return self.beside
 
 
 @dataclass(frozen=True)
@@ -241,14 +215,6 @@ class BoxPiece(GridPiece):
         grid.CopyInformationFromPipeline(info)
         grid.SetExtent(*self.extent)
         return hull(grid)
-
-    def stamp(self) -> Stamp | None:
-        """See :class:`Piece`."""
-        found: Stamp = [*stamp_of(self.path), *self.extent]
-        if self.path.suffix.lower() in INDEX.values():
-            for path in index_files(self.path):
-                found += stamp_of(path)
-        return found
 
 
 class Slabs:
@@ -385,15 +351,6 @@ class SlabPiece(GridPiece):
         """See :class:`Piece`."""
         return hull(self.empty(self.extent))
 
-    def stamp(self) -> Stamp | None:
-        """See :class:`Piece`."""
-        found: Stamp = [*self.extent, *self.grid.spacing, *self.grid.origin]
-        for name, array in self.grid.arrays.items():
-            if array.kept is not None:
-                return None
-            found += [name, *stamp_of(Path(array.path)), array.offset]
-        return found
-
 
 def index_files(path: Path) -> list[Path]:
     """Return the files that an index names.
@@ -426,7 +383,8 @@ def structured(path: Path) -> Any:
     A thread keeps the last one: to find what a file holds a reader may have to go through all of
     it, which would take longer than to read a slab.
     """
-    stamp = stamp_of(path)
+    status = path.stat()
+    stamp = (str(path.resolve()), status.st_size, status.st_mtime_ns)
     if getattr(_LAST, "stamp", None) != stamp:
         suffix = path.suffix.lower()
         _LAST.reader = hdf(path) if suffix in HDF else _informed(STRUCTURED[suffix](), path)

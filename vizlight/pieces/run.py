@@ -1,12 +1,14 @@
-"""Light data in pieces: one after the other, by local processes, or on a cluster of Dask."""
+"""Light data in pieces: one after the other, by processes, or on a cluster of Dask."""
 
 from __future__ import annotations
 
+import builtins
 import contextlib
 import dataclasses
 import inspect
 import re
 import shutil
+import uuid
 from collections import Counter
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -14,10 +16,10 @@ from typing import TYPE_CHECKING, Any
 from vizlight import _check, _compiled, files
 from vizlight.mesh import normals
 from vizlight.pieces import index, task
-from vizlight.pieces.kinds import INDEX, PieceError, union
+from vizlight.pieces.kinds import INDEX, PieceError, index_files, union
 from vizlight.pieces.sources import pieces_of
-from vizlight.pieces.survey import RETRIES, check_alike, job_of, nothing_found, prepared
-from vizlight.pieces.workers import collected, workers_of
+from vizlight.pieces.survey import check_alike, job_of, nothing_found, prepared
+from vizlight.pieces.workers import RETRIES, Work, checked
 from vizlight.scene import Scene
 from vizlight.shading.options import LightOptions, unknown_option
 from vizlight.shading.results import unlit
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
 
     from vizlight.pieces.kinds import Piece
     from vizlight.pieces.task import Done, Job
+    from vizlight.pieces.workers import Map
 
 #: Options of light that depend on a mesh as a whole.
 WHOLE = {
@@ -56,8 +59,8 @@ class Lit:
         Scene with both ends of its depth cue, the same for all pieces.
     level : float or None
         Value of the contoured array on the isosurface.
-    empty, reused : int
-        Numbers of pieces that have no point, and of those that an earlier run had made.
+    empty : int
+        Number of pieces that have no point.
     sharp : float
         Share of edges that are creases, across which light was averaged, as the mean over the
         pieces by their cells; ``feature_angle=30`` splits the points there.
@@ -74,7 +77,6 @@ class Lit:
     scene: Scene = field(repr=False)
     level: float | None
     empty: int
-    reused: int
     seconds: dict[str, float] = field(repr=False)
     sharp: float = 0.0
 
@@ -89,8 +91,7 @@ def light(
     level: float | None = None,
     ghost: int = 1,
     out: str | Path = "lit.pvtp",
-    client: Any = None,
-    workers: int | None = None,
+    map: Map = map,
     retries: int = RETRIES,
     slab: float = 64.0,
     progress_bar: bool = False,
@@ -123,12 +124,10 @@ def light(
         Path of the index: .pvtp for isosurfaces, lines and surfaces, .pvtu for cells of any other
         kind, .pvti, .pvtr and .pvts for grids. The files of the pieces are in a folder beside it
         that has its name without the suffix.
-    client : distributed.Client or str, optional
-        Client or address of a scheduler of Dask, whose workers see the same files. Default: local
-        processes.
-    workers : int, optional
-        Number of local processes. Default: the processors that this process may use. 1: the
-        pieces are lit one after the other in this process, without Dask.
+    map : callable, executor or client, default: map
+        What calls a function of each piece: ``map``, one after the other in this process;
+        :class:`vizlight.pieces.Processes`; a ``ProcessPoolExecutor`` or its ``map``; or a
+        ``distributed.Client`` of Dask, whose workers see the same files.
     retries : int, default: 2
         Number of times that a piece is tried again after an error of the operating system.
     slab : float, default: 64.0
@@ -152,11 +151,8 @@ def light(
     TypeError, ValueError
         If an argument or an option does not fit.
     PieceError
-        If a piece is missing, empty or damaged, has other arrays than the first, or cannot be lit
-        or written; the message begins with its name. Pieces that were finished are kept, and the
-        same call does not do them again.
-    ImportError
-        If Dask is asked for and not installed.
+        If a piece is missing or damaged, has other arrays than the first, or cannot be lit or
+        written; the message begins with its name. An earlier result then stays as it was.
 
     Warns
     -----
@@ -168,12 +164,12 @@ def light(
     Notes
     -----
     Light of a piece equals that of the whole by the same options (``facing="eye"``, unless it is
-    given) within 1e-6, normals on borders included. Processes take some seconds to start. The
-    memory of a process is bounded by its piece with its ghost cells, one neighbour at a time (all
-    of them with ``ghost`` above 1), and the result: 0.55 GB for slabs of 64 MB of a file of any
-    size. Each file is written under another name and moved to its place, so that a worker that is
-    killed leaves no part of one; its piece is then lit by another, with the same bits. Compiled
-    code is used only with ``VIZLIGHT_FAST=1``, so that every worker computes alike.
+    given) within 1e-6, normals on borders and the ends of a depth cue included. The memory of a
+    process is bounded by its piece with its ghost cells, one neighbour at a time (all of them with
+    ``ghost`` above 1), and the result: 0.55 GB for slabs of 64 MB of a file of any size. The files
+    move to their place when all are written, so that a worker that is killed leaves no part of one;
+    its piece is lit by another, with the same bits. Compiled code is used only with
+    ``VIZLIGHT_FAST=1``, so that every worker computes alike.
 
     Examples
     --------
@@ -182,7 +178,7 @@ def light(
     >>> for i in range(2):
     ...     pv.Sphere(center=(i, 0, 0)).save(f"{folder}/part{i}.vtp")
     >>> scene = vizlight.Scene(view=vizlight.View(direction=(0, 0, 1)))
-    >>> lit = vizlight.pieces.light(f"{folder}/*.vtp", scene, workers=1, out=f"{folder}/lit.pvtp")
+    >>> lit = vizlight.pieces.light(f"{folder}/*.vtp", scene, out=f"{folder}/lit.pvtp")
     >>> len(lit.files), lit.points
     (2, 1684)
     """
@@ -200,30 +196,35 @@ def light(
         compiled="1" if _compiled.wanted() == "1" else "0",
     )
     retries = _check.integer("retries", retries, low=0)
-    if workers is not None:
-        workers = _check.integer("workers", workers, low=1)
-    if client is not None or workers != 1:
+    if checked(map) is not builtins.map:
         # Workers share the processors.
         job = dataclasses.replace(job, options={"threads": 1} | dict(job.options))
     parts = pieces_of(sources, _check.positive("slab", slab))
+    work = Work(map, retries, progress_bar)
     folder = path.with_suffix("")
-    files.make_folder("out", folder)
-    with contextlib.ExitStack() as stack:
-        stack.callback(_clear, folder)
-        pool = stack.enter_context(workers_of(client, workers, retries, len(parts)))
-        parts, job = prepared(parts, job, pool, show=progress_bar)
-        targets = [folder / f"{path.stem}_{i:04d}" for i in range(len(parts))]
-        _spare_sources(parts, path, [target.with_suffix(job.suffix) for target in targets])
+    drafts = folder / f".vizlight-{uuid.uuid4().hex[:12]}"
+    files.make_folder("out", drafts)
+    try:
+        parts, job = prepared(parts, job, work)
+        targets = [drafts / f"{path.stem}_{i:04d}" for i in range(len(parts))]
+        outputs = [folder / f"{target.name}{job.suffix}" for target in targets]
+        _spare_sources(parts, path, outputs)
         calls = [(piece, job, target) for piece, target in zip(parts, targets, strict=True)]
-        done = collected(pool.run(task.light, calls), len(calls), "light", show=progress_bar)
+        done = work.each(task.light, calls, "light")
         full = [(piece, one) for piece, one in zip(parts, done, strict=True) if one.file]
         if not full:
-            raise nothing_found(parts, job, pool)
-    first, made = full[0]
-    for piece, one in full[1:]:
-        check_alike(piece, one.arrays | one.grid, first, made.arrays | made.grid)
-    index.write(path, [one for _, one in full], folder.name, job.name)
-    _remove_stale(folder, path.stem, {one.file for _, one in full}, {t.name for t in targets})
+            raise nothing_found(parts, job, work)
+        first, made = full[0]
+        for piece, one in full[1:]:
+            check_alike(piece, one.arrays | one.grid, first, made.arrays | made.grid)
+        earlier = _named_by(path, folder)
+        for _, one in full:
+            (drafts / one.file).replace(folder / one.file)
+        index.write(path, [one for _, one in full], folder.name, job.name)
+        for name in earlier - {one.file for _, one in full}:
+            (folder / name).unlink()
+    finally:
+        _clear(folder)
     return _result(path, folder, done, job)
 
 
@@ -275,28 +276,26 @@ def _spare_sources(parts: Sequence[Piece], path: Path, outputs: Sequence[Path]) 
 
 
 def _own_pieces(stem: str) -> re.Pattern[str]:
-    """Return the pattern of the names of pieces and of their notes."""
-    return re.compile(re.escape(stem) + r"_\d{4,}\.(vt[puirs]|json)")
+    """Return the pattern of the names of pieces."""
+    return re.compile(re.escape(stem) + r"_\d{4,}\.vt[puirs]")
+
+
+def _named_by(path: Path, folder: Path) -> set[str]:
+    """Return the names of the pieces of an earlier run, in its folder, that its index names."""
+    own = _own_pieces(path.stem)
+    try:
+        found = index_files(path)
+    except PieceError:  # there is none, or its pieces are gone
+        return set()
+    return {file.name for file in found if file.parent == folder and own.fullmatch(file.name)}
 
 
 def _clear(folder: Path) -> None:
-    """Remove drafts of workers that were killed, and the folder if nothing is in it."""
+    """Remove drafts, those of runs that were killed too, and the folder if nothing is in it."""
     for draft in folder.glob(".vizlight-*"):
         shutil.rmtree(draft, ignore_errors=True)
-    with contextlib.suppress(OSError):  # pieces that are finished stay
+    with contextlib.suppress(OSError):  # it holds pieces
         folder.rmdir()
-
-
-def _remove_stale(folder: Path, stem: str, made: set[str], notes: set[str]) -> None:
-    """Remove pieces of an earlier run, which have notes, that the index does not name."""
-    own = _own_pieces(stem)
-    found = [path for path in folder.iterdir() if own.fullmatch(path.name)]
-    noted = {path.stem for path in found if path.suffix == ".json"}
-    for path in found:
-        if path.stem in noted:
-            kept = path.stem in notes if path.suffix == ".json" else path.name in made
-            if not kept:
-                path.unlink()
 
 
 def _result(path: Path, folder: Path, done: Sequence[Done], job: Job) -> Lit:
@@ -329,7 +328,6 @@ def _result(path: Path, folder: Path, done: Sequence[Done], job: Job) -> Lit:
         scene=job.scene,
         level=job.level,
         empty=len(done) - len(full),
-        reused=sum(one.reused for one in done),
         seconds={name: sum(one.seconds[name] for one in done) for name in done[0].seconds},
         sharp=sharp,
     )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import glob
 import itertools
 import math
@@ -33,7 +32,7 @@ if TYPE_CHECKING:
     from vizlight.pieces.kinds import Extent
 
 
-def pieces_of(sources: object, slab: float, name: str = "sources") -> list[Piece]:
+def pieces_of(sources: object, slab: float) -> list[Piece]:
     """Return the pieces of files, indices, folders of patterns, and arrays.
 
     Parameters
@@ -42,8 +41,6 @@ def pieces_of(sources: object, slab: float, name: str = "sources") -> list[Piece
         Files; patterns such as ``"run/*.vtu"``; indices; grids.
     slab : float
         Largest size in MB of a slab of a structured grid.
-    name : str
-        Name of the argument in messages.
 
     Raises
     ------
@@ -55,27 +52,27 @@ def pieces_of(sources: object, slab: float, name: str = "sources") -> list[Piece
     if wrong or not hasattr(given, "__iter__") or getattr(given, "ndim", 1) == 0:
         expected = "paths, patterns, or grids as vizlight.pieces.Slabs"
         remedy = "wrap arrays: Slabs({name: array})"
-        raise TypeError(_check.message(name, expected, type(sources).__name__, remedy))
+        raise TypeError(_check.message("sources", expected, type(sources).__name__, remedy))
     found: list[Piece] = []
     taken: set[Path] = set()
     for source in given:
         if isinstance(source, Slabs):
             found += _slabs(source, slab)
         elif isinstance(source, str | Path):
-            for path in _paths(source, name):
+            for path in _paths(source):
                 if path.resolve() in taken:
-                    raise PieceError(_check.message(name, "each file once", f"'{path}' twice"))
+                    raise PieceError(_check.message("sources", "each file once", f"'{path}' twice"))
                 taken.add(path.resolve())
                 found += _of_file(path, slab)
         else:
             expected = "a path, a pattern or a vizlight.pieces.Slabs"
-            raise TypeError(_check.message(name, expected, type(source).__name__))
+            raise TypeError(_check.message("sources", expected, type(source).__name__))
     if not found:
-        raise PieceError(_check.message(name, "at least one piece", "none"))
+        raise PieceError(_check.message("sources", "at least one piece", "none"))
     return found
 
 
-def _paths(source: str | Path, name: str) -> list[Path]:
+def _paths(source: str | Path) -> list[Path]:
     """Return the files of a path or a pattern, in the order of their names."""
     text = str(source)
     try:
@@ -88,10 +85,12 @@ def _paths(source: str | Path, name: str) -> list[Path]:
         found = sorted(Path(file) for file in glob.glob(text, recursive=True))  # noqa: PTH207
         if found:
             return found
-        raise PieceError(_check.message(name, "a pattern that files match", repr(text)))
+        raise PieceError(_check.message("sources", "a pattern that files match", repr(text)))
     what = "a folder" if is_folder else "no such file"
     remedy = f"name its files, as '{text}/*.vtu'" if is_folder else ""
-    raise PieceError(_check.message(name, "a file", f"{_check.describe(text)} ({what})", remedy))
+    raise PieceError(
+        _check.message("sources", "a file", f"{_check.describe(text)} ({what})", remedy)
+    )
 
 
 def _of_file(path: Path, slab: float) -> list[Piece]:
@@ -100,12 +99,7 @@ def _of_file(path: Path, slab: float) -> list[Piece]:
     if suffix in STRUCTURED:
         return _boxes(path, slab)
     if suffix in INDICES:
-        made: list[Piece] = []
-        for file in index_files(path):
-            for piece in _of_file(file, slab):
-                if isinstance(piece, FilePiece):
-                    piece = dataclasses.replace(piece, may_be_empty=True)
-                made.append(piece)
+        made = [piece for file in index_files(path) for piece in _of_file(file, slab)]
         if not made:
             got = f"'{path}' (it names none)"
             raise PieceError(_check.message("sources", "an index of files", got))

@@ -9,11 +9,12 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight.filters import lighting
 from vizlight.pictures import cameras
 from vizlight.pieces import task
-from vizlight.pieces.kinds import FilePiece, PieceError, union
+from vizlight.pieces.kinds import FilePiece, PieceError
 from vizlight.pieces.sources import pieces_of
-from vizlight.pieces.workers import collected, workers_of
+from vizlight.pieces.workers import RETRIES, Work, checked
 from vizlight.scene import Scene
 
 if TYPE_CHECKING:
@@ -21,44 +22,7 @@ if TYPE_CHECKING:
 
     from vizlight.pieces.kinds import Piece
     from vizlight.pieces.task import Job, Survey
-    from vizlight.pieces.workers import Workers
-
-#: Number of times that a piece is tried again after an error of the operating system.
-RETRIES = 2
-
-
-def bounding_box(
-    sources: object,
-    /,
-    *,
-    client: Any = None,
-    workers: int | None = None,
-    progress_bar: bool = False,
-) -> pv.PolyData:
-    """Return the bounding box of data in pieces as a mesh, such as to set a camera on it.
-
-    Parameters
-    ----------
-    sources, client, workers, progress_bar
-        As for :func:`light`.
-
-    Returns
-    -------
-    pyvista.PolyData
-
-    Raises
-    ------
-    TypeError, ValueError, PieceError, ImportError
-        As for :func:`light`.
-    """
-    parts = pieces_of(sources, 64.0)
-    with workers_of(client, workers, 0, len(parts)) as pool:
-        calls = [(piece,) for piece in parts]
-        boxes = collected(pool.run(task.bounds, calls), len(calls), "bounds", show=progress_bar)
-    rows = np.array([box for box in boxes if box]).reshape(-1, 6)
-    if not len(rows):
-        raise PieceError(_check.message("sources", "pieces with points", "none"))
-    return pv.Box(union(rows))
+    from vizlight.pieces.workers import Map
 
 
 def camera_on(
@@ -72,8 +36,7 @@ def camera_on(
     parallel: bool = False,
     zoom: float = 1.0,
     aspect: float = 1.0,
-    client: Any = None,
-    workers: int | None = None,
+    map: Map = map,
     slab: float = 64.0,
     progress_bar: bool = False,
 ) -> pv.Camera:
@@ -81,7 +44,7 @@ def camera_on(
 
     Parameters
     ----------
-    sources, contour, level, client, workers, slab, progress_bar
+    sources, contour, level, map, slab, progress_bar
         As for :func:`light`. Without ``contour`` only the corners of an image are taken; an
         isosurface costs a first reading and contouring.
     direction, up, parallel, zoom, aspect
@@ -94,22 +57,22 @@ def camera_on(
 
     Raises
     ------
-    TypeError, ValueError, PieceError, ImportError
+    TypeError, ValueError, PieceError
         As for :func:`light`.
     """
     job = job_of(contour, level)
     options: dict[str, Any] = {"up": up, "parallel": parallel, "zoom": zoom, "aspect": aspect}
     cameras.camera_on((0, 1) * 3, direction, **options)  # checks them before anything is read
     parts = pieces_of(sources, _check.positive("slab", slab))
-    with workers_of(client, workers, RETRIES, len(parts)) as pool:
-        if job.contour is not None and job.level is None:
-            pairs = _surveyed(parts, job, pool, show=progress_bar)
-            job = dataclasses.replace(job, level=_middle([one for _, one in pairs], job))
-        calls = [(piece, job, direction, up, aspect) for piece in parts]
-        found = collected(pool.run(task.outermost, calls), len(calls), "camera", show=progress_bar)
-        points = np.concatenate([np.asarray(some, dtype=np.float64) for some in found])
-        if not len(points):
-            raise nothing_found(parts, job, pool)
+    work = Work(checked(map), RETRIES, progress_bar)
+    if job.contour is not None and job.level is None:
+        pairs = _surveyed(parts, job, work)
+        job = dataclasses.replace(job, level=_middle([one for _, one in pairs], job))
+    calls = [(piece, job, direction, up, aspect) for piece in parts]
+    found = work.each(task.outermost, calls, "camera")
+    points = np.concatenate([np.asarray(some, dtype=np.float64) for some in found])
+    if not len(points):
+        raise nothing_found(parts, job, work)
     return cameras.camera_on(pv.PolyData(points), direction, **options)
 
 
@@ -125,12 +88,12 @@ def job_of(contour: object, level: object, **more: Any) -> Job:
     )
 
 
-def nothing_found(parts: list[Piece], job: Job, pool: Workers) -> PieceError:
+def nothing_found(parts: list[Piece], job: Job, work: Work) -> PieceError:
     """Return the error of pieces without a point to light."""
     if job.contour is None:
         expected = "pieces with something to light"
         return PieceError(_check.message("sources", expected, "no points"))
-    values = [one.values for _, one in _surveyed(parts, job, pool, show=False)]
+    values = [one.values for _, one in _surveyed(parts, job, work)]
     low, high = min(low for low, _ in values), max(high for _, high in values)
     expected = f"a value between {low:g} and {high:g}"
     return PieceError(_check.message("level", expected, f"{job.level:g}"))
@@ -142,31 +105,28 @@ def _name(argument: str, value: object) -> str:
     return str(value)
 
 
-def prepared(parts: list[Piece], job: Job, pool: Workers, *, show: bool) -> tuple[list[Piece], Job]:
+def prepared(parts: list[Piece], job: Job, work: Work) -> tuple[list[Piece], Job]:
     """Return pieces that know their neighbours, and a job without a question left open."""
     cue = job.scene.depth_cue
     open_cue = cue is not None and (cue.front is None or cue.back is None)
     loose = any(isinstance(piece, FilePiece) for piece in parts)
     if not (loose or open_cue or (job.contour is not None and job.level is None)):
         return parts, job
-    pairs = _surveyed(parts, job, pool, show=show)
+    pairs = _surveyed(parts, job, work)
     boxes = np.array([one.bounds for _, one in pairs]).reshape(-1, 3, 2)
-    if open_cue:
-        low, high = boxes[:, :, 0].min(axis=0), boxes[:, :, 1].max(axis=0)
-        grid = np.meshgrid(*np.stack([low, high], axis=1), indexing="ij")
-        corners = np.stack(grid, axis=-1).reshape(-1, 3)
-        job = dataclasses.replace(job, scene=_with_ends(job.scene, corners))
     if job.contour is not None and job.level is None:
         job = dataclasses.replace(job, level=_middle([one for _, one in pairs], job))
+    if open_cue:
+        calls = [(piece, job) for piece, _ in pairs]
+        ends = work.each(task.depths, calls, "depth")
+        job = dataclasses.replace(job, scene=lighting.with_depth_ends(job.scene, ends))
     return _neighbours([piece for piece, _ in pairs], boxes, job.ghost), job
 
 
-def _surveyed(
-    parts: list[Piece], job: Job, pool: Workers, *, show: bool
-) -> list[tuple[Piece, Survey]]:
+def _surveyed(parts: list[Piece], job: Job, work: Work) -> list[tuple[Piece, Survey]]:
     """Return the pieces with points, which have arrays of the same types, and what is in them."""
     calls = [(piece, job.contour) for piece in parts]
-    found = collected(pool.run(task.survey, calls), len(calls), "survey", show=show)
+    found = work.each(task.survey, calls, "survey")
     pairs = [(piece, one) for piece, one in zip(parts, found, strict=True) if one.points]
     if not pairs:
         raise PieceError(_check.message("sources", "pieces with points", "none"))
@@ -200,13 +160,6 @@ def check_alike(
             wanted = f"the {what} of {there}" if there else f"no {what}"
             text = _check.message("sources", f"{wanted} as in {first.name}", here or "none")
             raise PieceError(f"piece {piece.name}: {text}")
-
-
-def _with_ends(scene: Scene, corners: Any) -> Scene:
-    from vizlight.filters.lighting import fit_depth_cue
-    from vizlight.shading.inputs import ShadingInputs
-
-    return fit_depth_cue(scene, [ShadingInputs(points=corners)])
 
 
 def _neighbours(parts: list[Piece], boxes: Any, ghost: int) -> list[Piece]:

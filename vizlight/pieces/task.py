@@ -2,33 +2,30 @@
 
 from __future__ import annotations
 
-import dataclasses
-import hashlib
 import itertools
-import json
 import time
 import warnings
 from dataclasses import dataclass, field
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check, _compiled, files
-from vizlight._version import __version__
 from vizlight.filters.illuminate import illuminate
 from vizlight.filters.streamlines import streamlines
 from vizlight.mesh import normals, records
 from vizlight.pictures import cameras
 from vizlight.pieces.ghosts import GHOST
-from vizlight.pieces.kinds import INDEX, SUFFIX, FilePiece, Piece, PieceError
+from vizlight.pieces.kinds import INDEX, SUFFIX, Piece, PieceError
 from vizlight.reading.polylines import has_lines_only
+from vizlight.shading import engine
 from vizlight.shading.results import record_key
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
+    from pathlib import Path
 
     from vizlight._types import Array
     from vizlight.scene import Scene
@@ -98,9 +95,6 @@ class Done:
     sharp: float | None = None
     notes: list[str] = field(default_factory=list)
     seconds: dict[str, float] = field(default_factory=dict)
-    size: int = 0
-    key: str = ""
-    reused: bool = False
 
 
 def survey(piece: Piece, contour: str | None) -> Survey:
@@ -109,7 +103,7 @@ def survey(piece: Piece, contour: str | None) -> Survey:
     Raises
     ------
     PieceError
-        If it cannot be read, or is empty and named by itself.
+        If it cannot be read.
     """
     mesh = read(piece, 0)
     if not mesh.n_points:
@@ -130,12 +124,6 @@ def survey(piece: Piece, contour: str | None) -> Survey:
     return Survey(mesh.n_points, tuple(mesh.bounds), arrays, values)
 
 
-def bounds(piece: Piece) -> tuple[float, ...]:
-    """Return the bounding box of a piece, empty where an index names one without points."""
-    found = _tried(piece, piece.places)
-    return () if found is None or not len(found) else tuple(pv.PolyData(found).bounds)
-
-
 def outermost(piece: Piece, job: Job, *view: Any) -> Array:
     """Return the points of a piece, or of its isosurface, on which a camera depends."""
     if job.contour is None:
@@ -147,46 +135,27 @@ def outermost(piece: Piece, job: Job, *view: Any) -> Array:
     return cameras.outermost(places, direction, up=up, aspect=aspect)
 
 
+def depths(piece: Piece, job: Job) -> tuple[float, float]:
+    """Return the least and the largest depth of the points of a piece that are lit."""
+    mesh = read(piece, 0)
+    if job.contour is not None:
+        mesh = _tried(piece, partial(isosurface, mesh, job)) or mesh
+    return engine.depth_range(np.asarray(mesh.points), job.scene)
+
+
 def read(piece: Piece, ghost: int) -> pv.DataSet:
-    """Return the mesh of a piece, without points where an index names such a one."""
+    """Return the mesh of a piece, which may have no points."""
     return _tried(piece, partial(piece.read, ghost)) or pv.PolyData()
 
 
 def _tried(piece: Piece, found: Callable[[], T]) -> T | None:
-    """Return what a function reads, None where an index names a piece without points."""
+    """Return what a function reads, None where a piece has no points."""
     try:
         return found()
     except (OSError, ValueError, TypeError, KeyError) as error:
-        empty = isinstance(error, files.FileError) and "(no points)" in str(error)
-        if empty and isinstance(piece, FilePiece) and piece.may_be_empty:
-            return None
-        remedy = "; leave it out" if empty else ""
-        raise PieceError(f"piece {piece.name}: {error}{remedy}") from error
-
-
-def key(piece: Piece, job: Job) -> str:
-    """Return a digest of all that a lit piece depends on; empty where data have no stamp."""
-    stamps = [one.stamp() for one in (piece, *piece.neighbours())]
-    if None in stamps:
-        return ""
-    facts = dataclasses.asdict(dataclasses.replace(job, scene=None))  # type: ignore[arg-type]
-    facts["options"].pop("threads", None)  # which change no bit
-    text = json.dumps([stamps, job.scene.to_dict(), facts, __version__], default=repr)
-    return hashlib.sha256(text.encode()).hexdigest()
-
-
-def kept(target: Path, wanted: str) -> Done | None:
-    """Return what an earlier run made of a piece, if it is there and would be made the same."""
-    note = target.with_suffix(".json")
-    try:
-        done = Done(**json.loads(note.read_text(encoding="utf-8")))
-        whole = not done.file or (target.parent / done.file).stat().st_size == done.size
-    except (OSError, ValueError, TypeError):
-        return None  # it is made again
-    if not (wanted and done.key == wanted and whole):
-        return None
-    done.reused = True
-    return done
+        if isinstance(error, files.FileError) and "(no points)" in str(error):
+            return None  # parallel writers make such files
+        raise PieceError(f"piece {piece.name}: {error}") from error
 
 
 def light(piece: Piece, job: Job, target: Path) -> Done:
@@ -197,9 +166,6 @@ def light(piece: Piece, job: Job, target: Path) -> Done:
     PieceError
         If the piece cannot be read, lit or written.
     """
-    wanted = _tried(piece, partial(key, piece, job)) or ""
-    if done := kept(target, wanted):
-        return done
     laps: dict[str, float] = {"": time.process_time()}
     mesh = read(piece, job.ghost)
     laps["read"] = time.process_time()
@@ -214,7 +180,6 @@ def light(piece: Piece, job: Job, target: Path) -> Done:
         done = _described(lit, job)
         done.sharp = sharp
         laps["light"] = time.process_time()
-        done.key = wanted
         said = [str(one.message) for one in caught if issubclass(one.category, UserWarning)]
         # Points that could not be lit are counted without ghost cells, creases over all pieces.
         known = ("could not be lit", *(["edges are sharper"] if sharp is not None else []))
@@ -225,14 +190,11 @@ def light(piece: Piece, job: Job, target: Path) -> Done:
                 expected = f"a name that ends in {INDEX[suffix]} for {type(lit).__name__}"
                 raise ValueError(_check.message("out", expected, f"*{INDEX[job.suffix]}"))
             path = files.write_mesh(lit, target.with_suffix(suffix))
-            done.file, done.size = path.name, path.stat().st_size
+            done.file = path.name
         laps["write"] = time.process_time()
     except (OSError, ValueError, TypeError) as error:
         raise PieceError(f"piece {piece.name}: {error}") from error
     done.seconds = {name: laps[name] - laps[before] for before, name in itertools.pairwise(laps)}
-    text = json.dumps(dataclasses.asdict(done))
-    note = target.with_suffix(".json")
-    files.replace_file(note, lambda draft: Path(draft).write_text(text, encoding="utf-8"))
     return done
 
 

@@ -1,124 +1,213 @@
-"""What works on the pieces: this process, local processes, or a cluster of Dask."""
+"""What works on the pieces: a ``map``, whose calls are tried again, and processes of one's own."""
 
 from __future__ import annotations
 
 import contextlib
-import importlib.util
+import multiprocessing
+import os
+import signal
 import sys
-from collections import deque
-from concurrent.futures import CancelledError
+from concurrent.futures import CancelledError, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from vizlight import _check, _pool, _progress
+from vizlight import _check, _progress, _supervise
 from vizlight.pieces.kinds import PieceError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Sequence
+    from concurrent.futures import Future
+
+    #: ``map``, the ``map`` of an executor, an executor, or a client of Dask.
+    Map = Any
 
 T = TypeVar("T")
 
-#: Number of workers that a piece may end before it counts as the cause.
+#: Number of times that a piece is tried again after an error of the operating system.
+RETRIES = 2
+#: Number of processes that may end one after the other before the call that they did fails.
 LOST = 3
 
 
 @dataclass(frozen=True)
-class Workers:
-    """What calls functions, each with a piece first: a cluster, or this process without one.
+class Call(Generic[T]):
+    """A function of a piece and more, called again after an error of the operating system.
 
     Attributes
     ----------
-    client : distributed.Client or None
-        Client of the cluster.
+    function : callable
     retries : int
-        Number of times that a call is repeated after an error of the operating system.
+        Number of times that a call is repeated.
     """
 
-    client: Any
+    function: Callable[..., T]
     retries: int
 
-    @property
-    def number(self) -> int:
-        """Number of calls that run at a time."""
-        return 1 if self.client is None else max(sum(self.client.nthreads().values()), 1)
+    def __call__(self, arguments: tuple[Any, ...]) -> T:
+        """Call the function with a tuple of arguments."""
+        for _ in range(self.retries):
+            try:
+                return self.function(*arguments)
+            except PieceError as error:
+                cause: BaseException | None = error
+                while cause is not None and not isinstance(cause, OSError):
+                    cause = cause.__cause__
+                if cause is None:
+                    raise
+        return self.function(*arguments)
 
-    def run(
-        self, function: Callable[..., T], calls: Iterable[tuple[Any, ...]], ahead: int | None = None
-    ) -> Iterator[T]:
-        """Yield the results of calls in their order; an error names the piece.
 
-        Calls are taken from the iterable no more than ``ahead`` before the first whose result
-        has not been taken; None: all at once.
-        """
-        if self.client is None:
-            for arguments in calls:
-                yield tried(function, self.retries, *arguments)
-            return
-        waiting: deque[tuple[str, Any]] = deque()
-        try:
-            for arguments in calls:
-                name = arguments[0].name
-                with _naming(name):
-                    future = self.client.submit(
-                        tried, function, self.retries, *arguments, pure=False
-                    )
-                waiting.append((name, future))
-                if len(waiting) == ahead:
-                    yield _next(waiting)
-            while waiting:
-                yield _next(waiting)
-        finally:
-            if waiting:
-                with contextlib.suppress(Exception):  # a cluster that is gone cancels nothing
-                    self.client.cancel([future for _, future in waiting], force=True)
+@dataclass(frozen=True)
+class Work:
+    """What calls functions, each with a piece first.
+
+    Attributes
+    ----------
+    map : callable or object
+        ``map``, or an object with such a method, whose results may be futures.
+    retries : int
+        Number of times that a call is repeated after an error of the operating system.
+    show : bool
+        Whether progress is shown.
+    """
+
+    map: Map
+    retries: int
+    show: bool
+
+    def each(
+        self, function: Callable[..., T], calls: Sequence[tuple[Any, ...]], what: str
+    ) -> list[T]:
+        """Return the results of calls in their order; the error of a worker names its piece."""
+        found: list[T] = []
+        results: Iterator[Any] = iter(())
+        with _progress.progress(what, len(calls), show=self.show) as report:
+            try:
+                for number, arguments in enumerate(calls):
+                    with _naming(arguments[0].name):
+                        if not number:
+                            results = iter(self._started(Call(function, self.retries), calls))
+                        value = next(results)
+                        found.append(value.result() if hasattr(value, "result") else value)
+                    report(len(found))
+            finally:
+                if hasattr(self.map, "cancel"):
+                    with contextlib.suppress(Exception):  # a cluster that is gone cancels nothing
+                        self.map.cancel([*results], force=True)
+        return found
+
+    def _started(self, call: Call[T], calls: Sequence[tuple[Any, ...]]) -> Iterable[Any]:
+        """Return the results of calls, or their futures."""
+        # Dask takes calls of the same arguments for one.
+        more = {"pure": False} if hasattr(self.map, "gather") else {}
+        start: Any = getattr(self.map, "map", self.map)
+        made: Iterable[Any] = start(call, calls, **more)
+        return made
+
+
+def checked(map: Map) -> Map:
+    """Return a map, if it is one.
+
+    Raises
+    ------
+    TypeError
+        If it is neither a function nor has a method ``map``.
+    """
+    if callable(map) or callable(getattr(map, "map", None)):
+        return map
+    expected = "map, an executor or a client of Dask"
+    raise TypeError(_check.message("map", expected, _check.describe(map)))
 
 
 @contextlib.contextmanager
-def workers_of(client: Any, workers: int | None, retries: int, count: int) -> Iterator[Workers]:
-    """Yield what works on at most so many pieces at a time: a cluster or processes of its own."""
-    if workers is not None and client is not None:
-        raise ValueError(_check.message("workers", "client= or workers=", "both"))
-    if client is None:
-        number = (
-            _pool.workers(None) if workers is None else _check.integer("workers", workers, low=1)
-        )
-        number = min(number, count)
-        if number == 1 or (workers is None and not _has_dask()):
-            yield Workers(None, retries)
-            return
-    if not _has_dask():
-        what = "workers" if client is None else "client"
-        raise ImportError(f"{what}= needs Dask: run pip install 'vizlight[scale]'")
-    import distributed
+def _naming(name: str) -> Iterator[None]:
+    """Turn the errors of workers into one that names the piece."""
+    try:
+        yield
+    except (ValueError, TypeError):
+        raise
+    except Exception as error:
+        text = f"{type(error).__name__}: {error}"
+        if isinstance(error, BrokenProcessPool) or type(error).__name__ == "KilledWorker":
+            text = "workers ended while they did it, perhaps for lack of memory; cut it smaller"
+        elif isinstance(error, CancelledError | OSError):
+            text = f"its workers went away before it was done ({text})"
+        raise PieceError(f"piece {name}: {text}") from error
 
-    with contextlib.ExitStack() as stack:
-        if client is None:
-            stack.enter_context(_main_apart())
-            client = stack.enter_context(
-                distributed.Client(stack.enter_context(local_cluster(number)))
-            )
-        elif isinstance(client, str):
+
+class Processes:
+    """A ``map`` whose calls run in processes on this machine.
+
+    Parameters
+    ----------
+    count : int
+        Number of processes. They start with the first call and end with this object.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If the count is not an integer above 0.
+
+    Notes
+    -----
+    The processes are spawned and talk by pipes; none of them listens on a socket. The calls of a
+    process that ends before they are done are made again by another, three times at most. A script
+    need not be guarded by ``if __name__ == "__main__"``.
+
+    Examples
+    --------
+    >>> import vizlight
+    >>> list(vizlight.pieces.Processes(1)(abs, [-1, 2]))
+    [1, 2]
+    """
+
+    def __init__(self, count: int) -> None:
+        self.count = _check.integer("count", count, low=1)
+        self._pool: ProcessPoolExecutor | None = None
+
+    def __call__(self, function: Callable[[Any], T], calls: Iterable[Any]) -> Iterator[T]:
+        """Yield the results of calls in their order.
+
+        Parameters
+        ----------
+        function : callable
+            Function that can be pickled.
+        calls : iterable
+            Argument of each call.
+        """
+        left, lost = list(calls), 0
+        while left:
+            futures: list[Future[T]] = []
             try:
-                client = stack.enter_context(distributed.Client(client, timeout=10))
-            except (OSError, TimeoutError, ValueError) as error:
-                got = f"{client!r} ({error})"
-                remedy = "start one by 'dask scheduler', or leave client= out"
-                text = _check.message("client", "the address of a scheduler", got, remedy)
-                raise PieceError(text) from error
-        elif not isinstance(client, distributed.Client):
-            expected = "a distributed.Client or the address of a scheduler"
-            raise TypeError(_check.message("client", expected, type(client).__name__))
-        yield Workers(client, retries)
+                futures = self._submitted(function, left)
+                for future in futures:
+                    value = future.result()
+                    left.pop(0)
+                    lost = 0
+                    yield value
+            except BrokenProcessPool:
+                self._pool, lost = None, lost + 1
+                if lost == LOST:
+                    raise
+            finally:
+                for future in futures:
+                    future.cancel()
+
+    def _submitted(self, function: Callable[[Any], T], calls: Iterable[Any]) -> list[Future[T]]:
+        if self._pool is None:
+            self._pool = ProcessPoolExecutor(
+                self.count, multiprocessing.get_context("spawn"), _begin, (os.getpid(),)
+            )
+        with _main_apart():
+            return [self._pool.submit(function, one) for one in calls]
 
 
-def local_cluster(count: int) -> Any:
-    """Return a cluster of so many processes, without a dashboard, beside any others here."""
-    import distributed
-
-    return distributed.LocalCluster(
-        n_workers=count, threads_per_worker=1, processes=True, dashboard_address=None,
-        scheduler_kwargs={"dashboard_address": ":0"}, silence_logs=50,
-    )  # fmt: skip
+def _begin(parent: int) -> None:
+    """Leave Ctrl-C to the parent, and end with it."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if sys.platform == "linux":
+        _supervise.end_with(parent)
 
 
 @contextlib.contextmanager
@@ -138,59 +227,3 @@ def _main_apart() -> Iterator[None]:
         yield
     finally:
         main.__file__ = path
-
-
-def _has_dask() -> bool:
-    return importlib.util.find_spec("distributed") is not None
-
-
-def tried(function: Callable[..., Any], retries: int, *arguments: Any) -> Any:
-    """Call a function, again after an error of the operating system."""
-    for _ in range(retries):
-        try:
-            return function(*arguments)
-        except PieceError as error:
-            cause: BaseException | None = error
-            while cause is not None and not isinstance(cause, OSError):
-                cause = cause.__cause__
-            if cause is None:
-                raise
-    return function(*arguments)
-
-
-def _next(waiting: deque[tuple[str, Any]]) -> Any:
-    """Return the result of the first call that waits, which then waits no more."""
-    name, future = waiting[0]
-    with _naming(name):
-        result = future.result()
-    waiting.popleft()
-    return result
-
-
-@contextlib.contextmanager
-def _naming(name: str) -> Iterator[None]:
-    """Turn the errors of a cluster into one that names the piece."""
-    import distributed
-
-    try:
-        yield
-    except (ValueError, TypeError):
-        raise
-    except distributed.KilledWorker as error:
-        text = f"{LOST + 1} workers ended while they worked on it, perhaps for lack of memory"
-        raise PieceError(f"piece {name}: {text}; cut it smaller") from error
-    except (CancelledError, OSError) as error:
-        text = "the cluster went away before it was done; the same call goes on from here"
-        raise PieceError(f"piece {name}: {text}") from error
-    except Exception as error:
-        raise PieceError(f"piece {name}: {type(error).__name__}: {error}") from error
-
-
-def collected(results: Iterable[T], count: int, what: str, *, show: bool) -> list[T]:
-    """Return results, with progress shown as they come."""
-    found: list[T] = []
-    with _progress.progress(what, count, show=show) as report:
-        for value in results:
-            found.append(value)
-            report(len(found))
-    return found
