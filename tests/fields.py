@@ -95,3 +95,13 @@ def swatches(rows=6, columns=8):
     mesh.clear_data()
     mesh["value"] = np.repeat(np.linspace(0, 1, rows * columns), 4)
     return mesh
+
+
+def half_known():
+    """Return a square: left tangents along y and heights, right tangents of zero; NaN above."""
+    mesh = pv.Plane(i_resolution=20, j_resolution=20)
+    mesh.clear_data()
+    x, y, _ = np.asarray(mesh.points, dtype=float).T
+    mesh["V"] = np.stack([0 * x, (x <= 0.05) * 1.0, 0 * x], axis=1)
+    mesh["height"] = np.where(y <= 0.05, x + y, np.nan)
+    return mesh

@@ -459,14 +459,13 @@ def test_colours_of_data_are_multiplied_by_the_light(folder, capfd):
     space = {}
     exec(script, space)
     lit, ends = space["lit"], space["lit"].get_data_range("r")
-    table = pv.LookupTable("viridis", scalar_range=ends)
+    table = pv.LookupTable(vizlight.maps.even, scalar_range=ends)
     colors = np.array([table(float(r))[:3] for r in lit["r"]])
-    # The highlight keeps the colour of the light.
+    # No highlight, and ambient light of 0.3 or more.
     scene = vizlight.Scene.from_dict(vizlight.provenance(lit)["scene"])
     terms = vizlight.illuminate(lit, scene, components=True, name="again")
-    specular = np.asarray(terms["again_specular"])[:, np.newaxis]
-    without = lit["luminance"][:, np.newaxis] - specular
-    expected = np.clip(colors * without + specular, 0, 1)
+    light = max(scene.material.ambient, 0.3) + np.asarray(terms["again_diffuse"])
+    expected = colors * np.clip(light, 0, 1)[:, np.newaxis]
     np.testing.assert_allclose(space["shown"]["tint"] / 255, expected, atol=1.5 / 255)
     picture = np.asarray(pv.read("a.png")["PNGImage"], dtype=int)
     assert np.ptp(picture, axis=1).max() > 50

@@ -13,6 +13,7 @@ import sys
 import numpy as np
 import pytest
 import pyvista as pv
+from fields import half_known
 
 import vizlight
 from vizlight import Light, Material, Scene, View, demo, render
@@ -414,3 +415,36 @@ def test_a_surface_does_not_hide_the_lines_on_it(parallel):
         ink.append((255 - picture[:, :, 0]).sum())
     assert ink[1] == pytest.approx(ink[0], rel=0.1)
     np.testing.assert_array_equal(lines.points, before)
+
+
+@pytest.mark.parametrize("light", ["auto", "points"])
+@pytest.mark.parametrize("scalars", ["luminance", "rgb"])
+def test_what_is_not_data_is_grey(light, scalars, tmp_path):
+    material = Material(color="tan" if scalars == "rgb" else None)
+    scene = Scene(lights=Light(direction=(1, 0, 1)), material=material)
+    with pytest.warns(UserWarning, match="210 of 441"):
+        lit = vizlight.illuminate(half_known(), scene, tangents="V")
+    camera = render.camera_on(lit, (0, 0, 1), parallel=True)
+    path = render.save_png(
+        lit, tmp_path / "a.png", scalars=scalars, camera=camera, size=(200, 200), light=light
+    )
+    np.testing.assert_array_equal(pixels(path)[60:140, 120:170], 128)
+    assert not np.any(pixels(path)[60:140, 40:90] == 128)
+
+
+def test_holes_of_a_height_field_are_grey(tmp_path):
+    x, y = np.meshgrid(np.linspace(0, 9, 40), np.linspace(0, 9, 40))
+    height = np.sin(x) * np.cos(y)
+    height[15:26, 15:26] = np.nan
+    grid = pv.ImageData(dimensions=(40, 40, 1))
+    grid["height"] = height.ravel()
+    scene = Scene(lights=Light(direction=(-1, 1, 1)), view=View(direction=(0, 0, 1)))
+    with pytest.warns(UserWarning, match="121 of 1600 points have no height"):
+        lit = vizlight.relief_shadow(grid, scene, elevation="height", lit=True)
+    camera = render.camera_on(lit, (0, 0, 1), parallel=True)
+    for name in ("luminance", "t", "rgb"):
+        shown = vizlight.tint(lit, "height") if name == "rgb" else lit
+        path = render.save_png(
+            shown, tmp_path / "a.png", scalars=name, camera=camera, size=(200, 200)
+        )
+        np.testing.assert_array_equal(pixels(path)[90:110, 90:110], 128)

@@ -9,6 +9,7 @@ import weakref
 import numpy as np
 import pytest
 import pyvista as pv
+from fields import half_known
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View
@@ -562,3 +563,40 @@ def test_shares_of_light_inside_a_bundle_are_kept_when_the_eye_moves(plotter, mo
     lines.Modified()
     picture(plotter)
     assert len(asked) == 2
+
+
+@pytest.mark.parametrize("light", ["points", "fragments"])
+@pytest.mark.parametrize("scalars", [None, "height"])
+def test_what_is_not_data_is_grey_and_the_bar_names_it(light, scalars):
+    plotter = pv.Plotter(off_screen=True, window_size=(200, 200))
+    plotter.disable_anti_aliasing()
+    scene = Scene(lights=Light(direction=(1, 0, 1)))
+    with pytest.warns(UserWarning, match="210 of 441"):
+        plotter.vizlight.add_mesh(
+            half_known(), scene=scene, light=light, tangents="V", scalars=scalars
+        )
+    plotter.view_xy()
+    plotter.camera.parallel_projection, plotter.camera.parallel_scale = True, 0.5
+    picture = plotter.screenshot(return_img=True)
+    np.testing.assert_array_equal(picture[60:140, 120:180], 128)
+    assert not np.any(np.all(picture[60:140, 20:90] == 128, axis=2))
+    for bar in plotter.scalar_bars.values():
+        assert (bar.GetDrawNanAnnotation(), bar.GetNanAnnotation()) == (1, "no data")
+        np.testing.assert_allclose(bar.GetLookupTable().nan_color.float_rgb, 128 / 255)
+    assert len(plotter.scalar_bars) == (scalars is not None)
+    if scalars:
+        missing, known = picture[20:80, 20:90].astype(int), picture[120:140, 20:90].astype(int)
+        assert np.ptp(missing, axis=2).max() == 0
+        assert np.ptp(known, axis=2).min() > 10
+    plotter.close()
+
+
+def test_a_bar_of_whole_data_has_no_such_name():
+    plotter = pv.Plotter(off_screen=True)
+    mesh = half_known().clip("x", origin=(-0.1, 0, 0)).clip("y", origin=(0, -0.1, 0))
+    plotter.vizlight.add_mesh(
+        mesh, scene=Scene(lights=Light(direction=(1, 0, 1))), tangents="V", scalars="height"
+    )
+    (bar,) = plotter.scalar_bars.values()
+    assert not bar.GetDrawNanAnnotation()
+    plotter.close()

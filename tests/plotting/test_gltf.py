@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import pyvista as pv
-from fields import swatches
+from fields import half_known, swatches
 
 import vizlight
 from vizlight import Light, Material, Scene, View
@@ -151,3 +151,21 @@ def test_the_validator_of_gltf_has_no_objection(tmp_path):
     )  # fmt: skip
     issues = json.loads(run.stdout)
     assert (issues["numErrors"], issues["numWarnings"]) == (0, 0), issues
+
+
+@pytest.mark.parametrize("scalars", [None, "height"])
+def test_what_is_not_data_is_grey(tmp_path, scalars):
+    mesh = half_known()
+    scene = Scene(lights=FAR)
+    vizlight.save_gltf(mesh, scene, tmp_path / "a.glb", tangents="V", scalars=scalars)
+    text, arrays = content(tmp_path / "a.glb")
+    colors = arrays[text["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"]]
+    shown = np.rint(255 * seen(colors))
+    lost = ~np.any(mesh["V"], axis=1)
+    np.testing.assert_array_equal(shown[lost], 128)
+    assert not np.any(np.all(shown[~lost] == 128, axis=1))
+    if scalars:
+        # Light dims that grey where there is light.
+        missing = shown[~lost & np.isnan(mesh["height"])]
+        assert np.ptp(missing, axis=1).max() == 0
+        assert np.ptp(shown[~lost & np.isfinite(mesh["height"])], axis=1).min() > 10

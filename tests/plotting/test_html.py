@@ -15,7 +15,7 @@ from importlib import resources
 import numpy as np
 import pytest
 import pyvista as pv
-from fields import swatches
+from fields import half_known, swatches
 from PIL import Image
 
 import vizlight
@@ -483,3 +483,24 @@ def test_viewer_is_the_one_of_the_recipe():
 def test_lines_alone_stand_before_black(mesh, colour, tmp_path):
     path = vizlight.live_html(mesh, Scene(lights=FAR), tmp_path / "a.html")
     assert f"rgb({colour})" in path.read_text(encoding="utf-8")
+
+
+@needs_browser
+@pytest.mark.filterwarnings("ignore:.*could not be lit")
+def test_what_is_not_data_is_grey_and_has_a_name(browser, tmp_path):
+    camera = vizlight.render.camera_on((-0.5, 0.5, -0.5, 0.5, 0, 0), (0, 0, 1), parallel=True)
+    camera.parallel_scale = 0.5
+    path = vizlight.live_html(
+        half_known(), Scene(lights=Light(direction=(1, 0, 1))), tmp_path / "a.html",
+        camera=camera, tangents="V", scalars="height", panel=False,
+    )  # fmt: skip
+    page, _ = opened(browser, path)
+    picture = shot(page)
+    page.close()
+    np.testing.assert_array_equal(picture[80:170, 165:240], 128)
+    missing, known = picture[30:100, 40:140], picture[160:220, 40:140]
+    assert np.ptp(missing, axis=2).max() == 0
+    assert np.ptp(known, axis=2).min() > 10
+    bars = scene_in(path)[2]["bars"]
+    assert [bar["title"] for bar in bars] == ["height", "no data"]
+    assert bars[1]["colors"] == ["#808080"] * 2

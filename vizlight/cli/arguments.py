@@ -210,11 +210,11 @@ class Color:
     scalars
         Array that colours the picture, times the light; or direction, for lines.
     cmap
-        Name of the colour map of --scalars.
+        Name of the colour map of --scalars; by default one that can be read in any light.
     """
 
     scalars: str | None = None
-    cmap: str = "viridis"
+    cmap: str | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

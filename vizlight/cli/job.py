@@ -220,7 +220,7 @@ def _written(job: Job, mesh: Step, path: Path, out: Output) -> Step:
         return Step("", "files.write_mesh", mesh, path)
     color = job.color
     chosen: dict[str, object] = {} if color is None else {"scalars": color.scalars}
-    if color is not None and suffix in (GLTF, HTML):
+    if color is not None and color.cmap is not None and suffix in (GLTF, HTML):
         chosen["cmap"] = color.cmap
     if suffix == HTML:
         chosen |= {"camera": job.camera}

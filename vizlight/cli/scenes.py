@@ -56,10 +56,12 @@ def check_target(target: Part) -> None:
 
 def check_color(color: Color) -> None:
     """Check the options of a picture in colour that need no mesh."""
-    import pyvista as pv
+    if color.cmap is None:
+        return
+    from vizlight.filters.tint import color_table
 
     try:
-        pv.LookupTable(color.cmap)
+        color_table([], cmap=color.cmap)
     except ValueError as error:
         expected = "the name of a colour map"
         raise ValueError(message("--cmap", expected, repr(color.cmap))) from error
@@ -133,15 +135,13 @@ def tinted(lit: Step, name: str, data: Step, color: Color) -> Step | None:
         values: object = color.scalars
         if color.scalars not in found.point_data:
             values = Step("values", "[]", Step("", ".cell_data_to_point_data", lit), color.scalars)
-        return Step("shown", "vizlight.tint", lit, values, cmap=color.cmap, light=name, name=TINT)
+        named = _given({"cmap": color.cmap})
+        return Step("shown", "vizlight.tint", lit, values, **named, light=name, name=TINT)
     if color.scalars != DIRECTION:
         expected = f"an array, {one_of(there)}, or {DIRECTION!r} for lines"
         raise ValueError(message("--scalars", expected, repr(color.scalars)))
-    light = Step("", "numpy.expand_dims", Step("", "[]", lit, name), 1)
-    shown = Step("shown", ".copy", lit, deep=False)
-    rgb = Step("", "vizlight.direction_colors", lit)
-    shown.items = {TINT: Step("", "numpy.multiply", rgb, light)}
-    return shown
+    rgb = Step("", "numpy.multiply", Step("", "vizlight.direction_colors", lit), 255)
+    return Step("shown", "vizlight.tint", lit, Step("", "numpy.uint8", rgb), light=name, name=TINT)
 
 
 class Look:

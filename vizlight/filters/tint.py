@@ -272,11 +272,11 @@ def _range(values: Sequence[NDArray[np.generic]]) -> tuple[float, float]:
 
 def default_map(cmap: ColorMap) -> ColorMap:
     """Return a colour map, ``vizlight.maps.even`` where neither it nor the theme's is chosen."""
-    if cmap is not None or pv.global_theme.cmap != _own_theme().cmap:
-        return cmap
-    from vizlight.maps import even
+    # Loading the module makes its names known.
+    from vizlight import maps
 
-    return even
+    chosen = cmap is not None or pv.global_theme.cmap != _own_theme().cmap
+    return cmap if chosen else maps.even
 
 
 def default_nan_color(color: ColorLike | None) -> ColorLike:

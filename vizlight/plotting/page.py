@@ -19,6 +19,7 @@ from vizlight.plotting.live import NORMALS, TANGENTS, items
 from vizlight.scene import DepthCue, Light, Scene, View
 from vizlight.scene.light import WHITE
 from vizlight.scene.vtk import lights_of
+from vizlight.shading.display import NO_DATA_NAME
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -230,6 +231,9 @@ class Page:
             if title:
                 titles.remove(title)
                 self.bars.append(_bar(title, table))
+                if plotter.scalar_bars[title].GetDrawNanAnnotation():
+                    grey = "#" + bytes(round(255 * c) for c in table.GetNanColor()[:3]).hex()
+                    self.bars.append({"title": NO_DATA_NAME, "colors": [grey, grey], "numbers": []})
 
 
 def _surface(live: Live) -> tuple[pv.PolyData, Indices]:
