@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import warnings
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -242,7 +243,9 @@ def _of_relief(mesh: pv.DataSet, options: dict[str, Any], scene: Scene) -> Sourc
     made = ReliefOptions(**_own(ReliefOptions, kept) | {"lit": True, "components": False})
     arguments = {field.name: getattr(made, field.name) for field in dataclasses.fields(made)}
     seen = _Seen()
-    with engine.observed(seen):
+    with engine.observed(seen), warnings.catch_warnings():
+        # They were given when the field was lit.
+        warnings.simplefilter("ignore", UserWarning)
         relief_shadow(mesh.copy(deep=False), scene, **arguments)
     inputs, light = seen.runs[-1]
     return Source(mesh, inputs, light, None)
