@@ -210,7 +210,7 @@ class Color:
     scalars
         Array that colours the picture, times the light; or direction, for lines.
     cmap
-        Name of the colour map of --scalars; by default one that can be read in any light.
+        Name of the colour map of --scalars.
     """
 
     scalars: str | None = None
