@@ -237,7 +237,8 @@ def test_values_are_read_off_the_bar():
     # Half a step, and one more where bytes of the map repeat.
     assert unlit.p95 < 0.5 / 256
     assert unlit.largest < 1.51 / 256
-    dim = vizlight.legibility(mesh, head(), scalars="height", cmap="viridis").value
+    side = Scene(lights=Light(direction=(1, 0, 0.3)), material=MATTE, view=flat.view)
+    dim = vizlight.legibility(mesh, side, scalars="height", cmap="viridis").value
     assert dim.p95 > 5 * unlit.p95
     assert dim.p95_chromaticity < dim.p95
     gray = vizlight.legibility(mesh, flat, scalars="height", cmap="gray", clim=(-1, 1)).value

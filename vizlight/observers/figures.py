@@ -111,7 +111,8 @@ def of_value(
     left = 0
     for one, part in taken:
         assert one.values is not None
-        known = np.isfinite(one.values)
+        # Points without light have the colour of what is not data.
+        known = np.isfinite(one.values) & one.valid
         left += int(np.count_nonzero(~known))
         own = one.take(known)
         if len(own):
