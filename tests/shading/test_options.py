@@ -9,130 +9,89 @@ import re
 import pytest
 
 import vizlight
-from vizlight.filters.fur import FurKeywords, FurOptions
-from vizlight.filters.isoluminance import ContourKeywords, ContourOptions
-from vizlight.filters.project import ProjectKeywords, ProjectOptions
-from vizlight.filters.relief_shadow import ReliefKeywords, ReliefOptions
-from vizlight.filters.streamlines import StreamlineKeywords, StreamlineOptions
-from vizlight.shading.options import (
-    LightKeywords,
-    LightOptions,
-    ShadingKeywords,
-    ShadingOptions,
-    accepts,
-    documented,
-)
+from vizlight import _words
+from vizlight.filters.fur import FurOptions
+from vizlight.filters.isoluminance import ContourOptions
+from vizlight.filters.pathlines import PathlineOptions
+from vizlight.filters.project import ProjectOptions
+from vizlight.filters.refine import RefineOptions
+from vizlight.filters.relief_shadow import ReliefOptions
+from vizlight.filters.satin import SatinOptions
+from vizlight.filters.streamlines import StreamlineOptions
+from vizlight.pictures import movie
+from vizlight.plotting import paraview
+from vizlight.shading import engine
+from vizlight.shading.options import LightOptions, ShadingOptions, named
 
-PAIRS = [
-    (ShadingOptions, ShadingKeywords),
-    (LightOptions, LightKeywords),
-    (StreamlineOptions, StreamlineKeywords),
-    (ProjectOptions, ProjectKeywords),
-    (ContourOptions, ContourKeywords),
-    (FurOptions, FurKeywords),
-    (ReliefOptions, ReliefKeywords),
+#: Functions, the options that they take, and those that they leave out.
+FUNCTIONS = [
+    (engine.shade, ShadingOptions, set()),
+    (engine.plan, ShadingOptions, set()),
+    (vizlight.illuminate, LightOptions, set()),
+    (vizlight.streamlines, StreamlineOptions, set()),
+    (vizlight.pathlines, PathlineOptions, set()),
+    (vizlight.satin, SatinOptions, {"conditioned", "vectors", "surface", "confined"}),
+    (vizlight.project, ProjectOptions, set()),
+    (vizlight.manifold, ProjectOptions, set()),
+    (movie.turn, ProjectOptions, set()),
+    (vizlight.fur, FurOptions, set()),
+    (vizlight.isoluminance, ContourOptions, set()),
+    (vizlight.relief_shadow, ReliefOptions, set()),
+    (vizlight.relief_day, ReliefOptions, {"lit", "components"}),
+    (vizlight.refine, RefineOptions, {"refine"}),
+    (paraview.shader, LightOptions, set(paraview.WITHOUT)),
+    (vizlight.vtk.Illuminate, LightOptions, {"feature_angle", "refine", "bundle"}),
 ]
+IDS = [function.__qualname__ for function, _, _ in FUNCTIONS]
 
 
-@pytest.mark.parametrize(("fields", "keywords"), PAIRS)
-def test_keywords_are_the_fields(fields, keywords):
-    own = {field.name: field.type for field in dataclasses.fields(fields)}
-    hints = {name: hint.__forward_arg__ for name, hint in keywords.__annotations__.items()}
-    assert {name: re.sub(r"Required\[(.*)\]", r"\1", hint) for name, hint in hints.items()} == own
-
-
-@pytest.mark.parametrize("fields", [pair[0] for pair in PAIRS])
-def test_every_option_is_described_with_its_default(fields):
-    texts = documented(fields)
-    for field in dataclasses.fields(fields):
-        assert field.name in texts, field.name
-        stated = re.search(r"default: ([^\n]*)", texts[field.name].partition("\n")[0])
-        if stated and field.default is not dataclasses.MISSING:
-            assert eval(stated[1]) == field.default, field.name
-
-
-@pytest.mark.parametrize(
-    ("filter_name", "fields"),
-    [
-        ("illuminate", LightOptions),
-        ("streamlines", StreamlineOptions),
-        ("project", ProjectOptions),
-        ("manifold", ProjectOptions),
-        ("fur", FurOptions),
-        ("isoluminance", ContourOptions),
-        ("relief_shadow", ReliefOptions),
-    ],
-)
-def test_signature_and_documentation_list_the_options(filter_name, fields):
-    function = getattr(vizlight, filter_name)
+@pytest.mark.parametrize(("function", "kind", "without"), FUNCTIONS, ids=IDS)
+def test_the_signature_lists_the_options(function, kind, without):
+    """Names, types and defaults are those of the fields, for an editor and for help() alike."""
     parameters = inspect.signature(function).parameters
-    text = inspect.getdoc(function)
-    assert "**options" not in text
-    for field in dataclasses.fields(fields):
-        assert parameters[field.name].kind is inspect.Parameter.KEYWORD_ONLY
-        if field.default is dataclasses.MISSING:
-            assert parameters[field.name].default is inspect.Parameter.empty
-        else:
-            assert parameters[field.name].default == field.default
-        assert re.search(rf"^(\w+, )*{field.name}(, \w+)*( :|$)", text, re.MULTILINE), field.name
+    kinds = {p.kind for p in parameters.values()}
+    assert inspect.Parameter.VAR_KEYWORD not in kinds
+    fields = {f.name: f for f in dataclasses.fields(kind)}
+    assert without <= fields.keys()
+    positional = {p.name for p in parameters.values() if p.kind is not p.KEYWORD_ONLY}
+    assert fields.keys() - without - positional == fields.keys() & parameters.keys() - positional
+    for name in fields.keys() - without - positional:
+        parameter, field = parameters[name], fields[name]
+        required = field.default is dataclasses.MISSING
+        assert parameter.kind is parameter.KEYWORD_ONLY
+        assert parameter.annotation == field.type, name
+        assert parameter.default == (parameter.empty if required else field.default), name
 
 
-@accepts(ShadingOptions, without=("precision",))
-def toy(mesh, /, *, size=1, **options):
-    """Return what came.
+@pytest.mark.parametrize(("function", "kind", "without"), FUNCTIONS, ids=IDS)
+def test_every_option_is_described_with_its_default(function, kind, without):
+    if function is vizlight.vtk.Illuminate:
+        pytest.skip("its options are properties, described there")
+    parameters, texts = inspect.signature(function).parameters, _words.parameters(function.__doc__)
+    for name in {f.name for f in dataclasses.fields(kind)} & parameters.keys():
+        assert name in texts, name
+        stated = re.search(r"default: ([^\n]*)", texts[name].partition("\n")[0])
+        if stated:
+            assert eval(stated[1]) == parameters[name].default, name
 
-    Parameters
-    ----------
-    mesh
-        Anything.
-    **options
-        Fields of ShadingOptions.
-    size : int
-        Anything else.
-    """
-    return mesh, size, options
+
+@named
+def toy(mesh, /, *, size=1, model="phong"):
+    return mesh, size, model
 
 
 def test_keywords_are_checked_by_name():
-    assert toy(1, size=2, model="blinn") == (1, 2, {"model": "blinn"})
+    assert toy(1, size=2, model="blinn") == (1, 2, "blinn")
     with pytest.raises(TypeError, match="modle: expected an option of toy.* mean model="):
         toy(1, modle="blinn")
-    with pytest.raises(TypeError, match="precision: expected an option of toy"):
-        toy(1, precision="float32")
-    with pytest.raises(TypeError, match=r"zzz: .* it has size, exponent, model"):
+    with pytest.raises(TypeError, match=r"zzz: .* it has size, model"):
         toy(1, zzz=0)
-    assert "precision" not in inspect.signature(toy).parameters
-    assert "Reflection model" in toy.__doc__
-    assert "Anything else." in toy.__doc__
 
 
-def test_a_missing_option_is_named():
-    @dataclasses.dataclass(frozen=True)
-    class Options:
-        """Options.
-
-        Parameters
-        ----------
-        size : float
-            Size of it.
-        """
-
-        size: float
-
-    @accepts(Options)
-    def sized(mesh, /, **options):
-        """Return what came.
-
-        Parameters
-        ----------
-        **options
-            Fields of Options.
-        """
-        return options
-
-    assert sized(1, size=2) == {"size": 2}
-    with pytest.raises(TypeError, match="size: expected a value for sized, got none"):
-        sized(1)
+def test_options_of_a_function_and_those_that_differ():
+    made = LightOptions.of({"mesh": 1, "model": "blinn", "refine": 0.0, "tangents": [1.0]})
+    assert made.changed() == {"model": "blinn", "tangents": [1.0]}
+    assert ReliefOptions.of({"depth": 0.0}).changed()["depth"] == 0.0
 
 
 @pytest.mark.parametrize(

@@ -49,7 +49,7 @@ def filter_(name: str) -> Filter:
 
 
 def function(module: str, name: str) -> Filter:
-    """Return the declaration of a function, with the fields of the options that it accepts."""
+    """Return the declaration of a function."""
     node, module = _find(module, name)
     if not isinstance(node, ast.FunctionDef):
         raise LookupError(f"{name} is no function of {module}")
@@ -60,13 +60,6 @@ def function(module: str, name: str) -> Filter:
         for argument, default in zip(node.args.kwonlyargs, node.args.kw_defaults, strict=True)
     }
     texts = _words.parameters(ast.get_docstring(node))
-    for call in node.decorator_list:
-        if isinstance(call, ast.Call) and _text(call.func) == "accepts":
-            fields, entries = _options(module, _text(call.args[0]))
-            left_out = {*own, *_left_out(call, module)}
-            taken = {key: fields[key] for key in entries if key in fields.keys() - left_out}
-            own |= taken
-            texts = texts | {key: entries[key] for key in taken}
     return Filter(own, texts)
 
 
@@ -83,33 +76,6 @@ def choices(option: Option, name: str) -> object | None:
     if isinstance(value, ast.Subscript) and _text(value.value) == "Literal":
         return Literal[ast.literal_eval(value.slice)]
     return None
-
-
-def _left_out(call: ast.Call, module: str) -> Iterator[str]:
-    """Yield the fields of an options class that a function does not accept."""
-    for keyword in call.keywords:
-        if keyword.arg == "without":
-            yield from _value(keyword.value, module)  # type: ignore[misc]
-
-
-def _options(module: str, name: str) -> tuple[dict[str, Option], dict[str, str]]:
-    """Return the fields of an options class, and the descriptions, those of its own first."""
-    node, module = _find(module, name)
-    if not isinstance(node, ast.ClassDef):
-        raise LookupError(f"{name} is no class of {module}")
-    fields: dict[str, Option] = {}
-    texts = _words.parameters(ast.get_docstring(node))
-    for base in node.bases:
-        inherited, described = _options(module, _text(base))
-        fields |= inherited
-        texts = texts | {key: text for key, text in described.items() if key not in texts}
-    for line in node.body:
-        if isinstance(line, ast.AnnAssign) and not _text(line.annotation).startswith("ClassVar"):
-            value = _value(line.value, module)
-            fields[_text(line.target)] = Option(
-                _text(line.annotation), line.value is None, value, module
-            )
-    return fields, texts
 
 
 @functools.cache

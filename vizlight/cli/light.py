@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 import vizlight
-from vizlight import _check
+from vizlight import _words
 from vizlight.cli import in_pieces, options, scenes
 from vizlight.cli.arguments import (
     COMMON,
@@ -69,7 +69,7 @@ def light(
         look = scenes.Look(common)
         if legibility:
             got = "pieces"
-            raise ValueError(_check.message("--legibility", "one mesh, lit as a whole", got))
+            raise ValueError(_words.message("--legibility", "one mesh, lit as a whole", got))
         return in_pieces.light(files, target, given, common, color, pieces, look)
     build = builder(target, how, common, color, explain=explain, legibility=legibility)
     return carry_out(files, build, common.out, "lit")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypedDict
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -20,12 +20,17 @@ from vizlight.model import kernels
 from vizlight.reading.arrays import vectors_of
 from vizlight.scene.scene import as_scene
 from vizlight.shading.inputs import ShadingInputs
-from vizlight.shading.options import Bundle, ShadingOptions, accepts, check_sides, checked_bundle
+from vizlight.shading.options import (
+    Bundle,
+    Options,
+    ShadingOptions,
+    check_sides,
+    checked_bundle,
+    named,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-    from typing_extensions import Unpack
 
     from vizlight._types import Array, Bools, Indices, VectorLike
     from vizlight.scene import Scene
@@ -39,73 +44,11 @@ KEPT = 8
 LONGEST = 1e30
 
 
-class FurKeywords(TypedDict, total=False):
-    """The fields of :class:`FurOptions` as keyword arguments."""
-
-    absorption: float | None
-    density: float | None
-    fibres: int
-    length: float | str | Sequence[float] | Array | None
-    segments: int
-    vectors: str | None
-    toward: str | VectorLike | None
-    bend: float
-    curl: float
-    turns: float
-    seed: int
-    feature_angle: FeatureAngle
-    conditioned: bool
-    bundle: bool | Bundle
-    exponent: Exponent
-    model: Model
-    name: str
-
-
 @dataclass(frozen=True, kw_only=True)
-class FurOptions:
+class FurOptions(Options):
     """How fur grows and is lit.
 
-    Parameters
-    ----------
-    absorption : float, optional
-        Share of light from 0 to 1 that is lost on the way through the fur's own length, its mean
-        over the points, along the normal, on its way in and out (Banks 7, 8): most at the root,
-        not at all at the tip. 0: light is not attenuated. Default: 0.5, without ``density``.
-    density : float, optional
-        Share rho of light from 0 to 1 that fur absorbs over a unit of length, in place of
-        ``absorption``: that of fur of length L is ``1 - (1 - rho)^L``.
-    fibres : int, default: 50_000
-        Number of fibres, uniform in area, jittered, the same for the same seed.
-    length : float, str or array_like, optional
-        Length of a fibre, in the unit of the mesh, 0 or more: one for all, or a point array of
-        one component, interpolated. Default: 0.03 of the diagonal of the mesh.
-    segments : int, default: 3
-        Number of segments of a fibre, of equal lengths.
-    vectors : str, optional
-        Name of a point array of 3 components along which fibres grow, whatever their length.
-        Default: the normals, also where a vector is zero. A vector that points into the surface is
-        reversed, and a warning counts them.
-    toward : str or vector of 3 components, optional
-        Direction to which fibres bend: one for all, or the name of a point array.
-    bend : float, default: 0.0
-        Share of ``toward`` in the direction at the tip.
-    curl, turns : float
-        Sideways share of the direction, 0.3 for soft fur, and number of its turns from root to
-        tip.
-    seed : int, default: 0
-        Seed of the random numbers.
-    feature_angle : float or "auto", optional
-        Angle in degrees above which edges are sharp, as for :func:`vizlight.illuminate`. Default:
-        none is.
-    conditioned : bool, default: True
-        Whether fibres inherit the self-shadow of the surface (Banks 6).
-    bundle : bool or Bundle, default: False
-        Whether the fibres dim one another and the skin as a bundle of thin cylinders, as for
-        :func:`vizlight.illuminate`, in place of the attenuation by Banks (7, 8), which does not
-        know of neighbours.
-    exponent, model, name
-        As for :func:`vizlight.illuminate`; with ``model="cylinder"`` the highlight of the skin is
-        Blinn's.
+    The fields are keywords of :func:`vizlight.fur`.
     """
 
     absorption: float | None = None
@@ -187,15 +130,31 @@ class FurOptions:
         )
 
 
-@accepts(FurOptions)
+@named
 def fur(
     surface: pv.PolyData,
     /,
     scene: Scene | None = None,
     *,
+    absorption: float | None = None,
+    density: float | None = None,
+    fibres: int = 50000,
+    length: float | str | Sequence[float] | Array | None = None,
+    segments: int = 3,
+    vectors: str | None = None,
+    toward: str | VectorLike | None = None,
+    bend: float = 0.0,
+    curl: float = 0.0,
+    turns: float = 1.0,
+    seed: int = 0,
+    feature_angle: FeatureAngle = None,
+    conditioned: bool = True,
+    bundle: bool | Bundle = False,
+    exponent: Exponent = "compensated",
+    model: Model = "phong",
+    name: str = "luminance",
     threads: int | None = None,
     progress_bar: bool = False,
-    **options: Unpack[FurKeywords],
 ) -> pv.MultiBlock:
     """Cover a surface with fibres and light them and the skin below.
 
@@ -206,8 +165,45 @@ def fur(
         outward.
     scene : Scene, optional
         Scene, by default ``Scene()``.
-    **options
-        Fields of FurOptions.
+    absorption : float, optional
+        Share of light from 0 to 1 that is lost on the way through the fur's own length, its mean
+        over the points, along the normal, on its way in and out (Banks 7, 8): most at the root,
+        not at all at the tip. 0: light is not attenuated. Default: 0.5, without ``density``.
+    density : float, optional
+        Share rho of light from 0 to 1 that fur absorbs over a unit of length, in place of
+        ``absorption``: that of fur of length L is ``1 - (1 - rho)^L``.
+    fibres : int, default: 50_000
+        Number of fibres, uniform in area, jittered, the same for the same seed.
+    length : float, str or array_like, optional
+        Length of a fibre, in the unit of the mesh, 0 or more: one for all, or a point array of
+        one component, interpolated. Default: 0.03 of the diagonal of the mesh.
+    segments : int, default: 3
+        Number of segments of a fibre, of equal lengths.
+    vectors : str, optional
+        Name of a point array of 3 components along which fibres grow, whatever their length.
+        Default: the normals, also where a vector is zero. A vector that points into the surface is
+        reversed, and a warning counts them.
+    toward : str or vector of 3 components, optional
+        Direction to which fibres bend: one for all, or the name of a point array.
+    bend : float, default: 0.0
+        Share of ``toward`` in the direction at the tip.
+    curl, turns : float
+        Sideways share of the direction, 0.3 for soft fur, and number of its turns from root to
+        tip.
+    seed : int, default: 0
+        Seed of the random numbers.
+    feature_angle : float or "auto", optional
+        Angle in degrees above which edges are sharp, as for :func:`vizlight.illuminate`. Default:
+        none is.
+    conditioned : bool, default: True
+        Whether fibres inherit the self-shadow of the surface (Banks 6).
+    bundle : bool or Bundle, default: False
+        Whether the fibres dim one another and the skin as a bundle of thin cylinders, as for
+        :func:`vizlight.illuminate`, in place of the attenuation by Banks (7, 8), which does not
+        know of neighbours.
+    exponent, model, name
+        As for :func:`vizlight.illuminate`; with ``model="cylinder"`` the highlight of the skin is
+        Blinn's.
     threads, progress_bar
         As for :func:`vizlight.illuminate`.
 
@@ -236,7 +232,7 @@ def fur(
     across the surface at the root, from the point to the highest point of its fibre. Sources: Banks
     4.2, 5, (7), (8).
     """
-    return _grow(surface, scene, FurOptions(**options), threads, progress_bar=progress_bar)
+    return _grow(surface, scene, FurOptions.of(locals()), threads, progress_bar=progress_bar)
 
 
 def _grow(

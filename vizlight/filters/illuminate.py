@@ -12,29 +12,41 @@ from vizlight.mesh import batches, blocks, bundles, normals, refining
 from vizlight.reading.arrays import is_of_cells
 from vizlight.reading.inputs import uses_normals
 from vizlight.scene.scene import as_scene
-from vizlight.shading.options import Bundle, LightOptions, accepts
+from vizlight.shading.options import Bundle, LightOptions, named
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from typing_extensions import Unpack
+    from numpy.typing import ArrayLike
 
     from vizlight.mesh.blocks import MeshT
     from vizlight.reading.normals import Sided
     from vizlight.scene import Scene
-    from vizlight.shading.options import LightKeywords
+    from vizlight.shading.options import Exponent, Facing, FeatureAngle, Model, Precision
 
 
-@accepts(LightOptions)
+@named
 def illuminate(
     mesh: MeshT,
     /,
     scene: Scene | None = None,
     *,
+    tangents: str | ArrayLike | None = None,
+    positions: str | None = None,
+    normals: str | ArrayLike | None = None,
+    facing: Facing = "auto",
+    feature_angle: FeatureAngle = None,
+    conditioned: bool | str | None = False,
+    refine: float = 0.0,
+    bundle: bool | Bundle = False,
+    name: str = "luminance",
+    exponent: Exponent = "compensated",
+    model: Model = "phong",
+    components: bool = False,
+    precision: Precision | None = None,
     threads: int | None = None,
     inplace: bool = False,
     progress_bar: bool = False,
-    **options: Unpack[LightKeywords],
 ) -> MeshT:
     """Light a mesh and return it with the light as point scalars.
 
@@ -49,8 +61,61 @@ def illuminate(
     scene : Scene, optional
         Lights, material and view, in the unit of the mesh. Default: ``Scene()``, which has no
         view: the highlight is left out, and its light follows :meth:`vizlight.View.isometric`.
-    **options
-        Fields of LightOptions.
+    tangents : str or array_like, optional
+        Name of a point array of ``k n`` components (k vectors of n, row after row), or its values.
+        The vectors may have any length: they are orthonormalised. A cell array is averaged to the
+        points as lines without sign, with a warning.
+    positions : str, optional
+        Name of a point array of n components with the places of the points in n-space. Default:
+        the points of the mesh.
+    normals : str or array_like, optional
+        Name of a point array of n components with normals, or its values. Default: the active
+        normals of the mesh (clear them after moving points), else those of its surface, which
+        stay with the result as ``vizlight_normals`` from 256 points on.
+    facing : {"auto", "eye", "outward", "as given"}
+        Side of the surface that is lit. ``"auto"``: each connected piece that is closed faces
+        outward, any other faces the eye at every point (with ``normals`` that are given the mesh
+        counts as one piece). ``"eye"``: every point faces the eye,
+        whatever piece it belongs to; with ``normals`` from data a surface in parts is then lit
+        as the whole. ``"outward"``: each piece faces outward as a whole, an open one away from its
+        centroid. ``"as given"``: normals as they are, those of the surface by the order of the
+        corners of its faces. Without a view both sides are lit alike where the eye would choose.
+    feature_angle : float or "auto", optional
+        Angle in degrees between two faces above which points on their common edge are split, so
+        that light does not bend across it; only for normals that are computed. ``"auto"``: 30 if
+        the sharp edges are creases, which stand apart from the others, else none is split.
+        Default: none is split.
+    conditioned : bool or str, default: False
+        Whether tangents inherit the self-shadow of the surface: diffuse and specular term of each
+        light times ``max(0, N . wi)`` (Banks 6). A surface of codimension 2 or more has no sides
+        and no such shadow: name the point array of its j tangents, such as ``"frame"``, and its
+        own brightness ``sin(a)^p(j, n)`` is the factor. In codimension 1 that is ``|N . wi|``.
+    refine : float, default: 0.0
+        Largest error between the points, such as 1/255: segments and triangles are split where
+        interpolation of the light would be further off, see :func:`vizlight.refine`. 0: the mesh
+        stays as it is.
+    bundle : bool or Bundle, default: False
+        Whether lines dim one another, and surfaces among them, as a bundle of thin cylinders; a
+        :class:`vizlight.Bundle` says how. The point arrays ``transmittance``, with one component
+        per light of intensity above 0, and ``occlusion``, 1 for a point that is open to all
+        sides, multiply each light and the ambient term. They are computed anew only where lines,
+        lights or points have changed.
+    name : str, default: "luminance"
+        Name of the result. Under another name the further arrays are ``<name>_diffuse`` and so on.
+    exponent : float or "compensated"
+        Exponent of the diffuse term, above 0 and up to 1e6. ``"compensated"`` is p(k, n), which
+        gives lines the contrast of a surface (Banks 5); 1 is the plain law; under lamps of several
+        colours in the picture plane 2 makes hue a code of direction. It has no effect on a
+        cylinder.
+    model : {"phong", "blinn", "cylinder"}
+        Reflection model of the highlight. ``"cylinder"``, for lines in 3-space, is the exact light
+        of a thin cylinder, diffuse and specular (Blinn's), by which the others are measured. As a
+        mean over the width it is dimmer than the brightest normal of a line: raise the
+        coefficients.
+    components : bool, default: False
+        Whether the terms ``ambient``, ``diffuse`` and ``specular`` are kept, before any depth cue.
+    precision : {"float32", "float64"}, optional
+        Precision of the work and the result. Default: that of the tangents or normals.
     threads : int, optional
         Number of threads. Default: the processors that this process may use.
     inplace : bool, default: False
@@ -104,7 +169,7 @@ def illuminate(
     >>> lit.active_scalars_name
     'luminance'
     """
-    asked = LightOptions(**options)
+    asked = LightOptions.of(locals())
     if asked.refine and _check.boolean("inplace", inplace):
         expected, remedy = "False for a mesh that gets new points", "leave it out"
         raise ValueError(_check.message("inplace", expected, inplace, remedy))

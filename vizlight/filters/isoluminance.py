@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import time
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista as pv
@@ -22,7 +22,7 @@ from vizlight.model import kernels
 from vizlight.reading.arrays import array_of
 from vizlight.scene.scene import as_scene
 from vizlight.shading import engine
-from vizlight.shading.options import LightOptions, accepts, check_sides
+from vizlight.shading.options import LightOptions, Options, check_sides, named
 from vizlight.shading.results import of_light, part_name, unlit
 from vizlight.verify import report
 
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import ArrayLike
-    from typing_extensions import Unpack
 
     from vizlight._types import Array, Bools, Indices
     from vizlight.geometry.contours.banding import Bands, Laminae
@@ -43,41 +42,11 @@ if TYPE_CHECKING:
     from vizlight.shading.results import Record
 
 
-class ContourKeywords(TypedDict, total=False):
-    """The fields of :class:`ContourOptions` as keyword arguments."""
-
-    levels: Levels
-    tolerance: float
-    model: SpecularModel
-    feature_angle: FeatureAngle
-    normals: str | ArrayLike | None
-    tangents: str | ArrayLike | None
-    conditioned: bool
-    exponent: Exponent
-    name: str
-
-
 @dataclass(frozen=True, kw_only=True)
-class ContourOptions:
+class ContourOptions(Options):
     """Which contours are drawn, and how the surface is lit.
 
-    Parameters
-    ----------
-    levels : int, float or sequence of float, default: 16
-        Number of equal steps (int), allowed luminance error (float), or luminance of the contours
-        (sequence).
-    tolerance : float, default: 3e-3
-        Largest distance of triangles from the curves and surfaces of a combined solid, as a share
-        of its size.
-    model : {"phong", "blinn"}
-        Reflection model of the highlight: ``R . E`` or ``N . H``. Both are drawn exactly.
-    feature_angle : float or "auto", optional
-        Angle in degrees above which edges are sharp, as for :func:`vizlight.illuminate`; for a
-        mesh only. Default: none is.
-    normals, tangents, conditioned, exponent
-        Arrays and options as for :func:`vizlight.illuminate`, for a mesh only.
-    name : str, default: "luminance"
-        Name of the resulting cell arrays.
+    The fields are keywords of :func:`vizlight.isoluminance`.
     """
 
     levels: Levels = 16
@@ -104,15 +73,23 @@ class ContourOptions:
         return LightOptions(precision="float64", **{name: getattr(self, name) for name in own})
 
 
-@accepts(ContourOptions)
+@named
 def isoluminance(
     mesh: pv.DataSet | pv.MultiBlock | Solid,
     /,
     scene: Scene | None = None,
     *,
+    levels: Levels = 16,
+    tolerance: float = 0.003,
+    model: SpecularModel = "phong",
+    feature_angle: FeatureAngle = None,
+    normals: str | ArrayLike | None = None,
+    tangents: str | ArrayLike | None = None,
+    conditioned: bool = False,
+    exponent: Exponent = "compensated",
+    name: str = "luminance",
     threads: int | None = None,
     progress_bar: bool = False,
-    **options: Unpack[ContourKeywords],
 ) -> pv.MultiBlock:
     """Return contours of equal luminance, and the bands between them with one value per band.
 
@@ -125,8 +102,21 @@ def isoluminance(
         ``&`` and ``-``.
     scene : Scene, optional
         Scene with one light or several, by default ``Scene()``. A highlight needs a view.
-    **options
-        Fields of ContourOptions.
+    levels : int, float or sequence of float, default: 16
+        Number of equal steps (int), allowed luminance error (float), or luminance of the contours
+        (sequence).
+    tolerance : float, default: 3e-3
+        Largest distance of triangles from the curves and surfaces of a combined solid, as a share
+        of its size.
+    model : {"phong", "blinn"}
+        Reflection model of the highlight: ``R . E`` or ``N . H``. Both are drawn exactly.
+    feature_angle : float or "auto", optional
+        Angle in degrees above which edges are sharp, as for :func:`vizlight.illuminate`; for a
+        mesh only. Default: none is.
+    normals, tangents, conditioned, exponent
+        Arrays and options as for :func:`vizlight.illuminate`, for a mesh only.
+    name : str, default: "luminance"
+        Name of the resulting cell arrays.
     threads : int, optional
         Number of threads.
     progress_bar : bool, default: False
@@ -165,7 +155,7 @@ def isoluminance(
     sphere or a frustum under one light without a highlight has closed forms.
     Source: Isoluminance.
     """
-    asked = ContourOptions(**options)
+    asked = ContourOptions.of(locals())
     start = time.perf_counter()
     with report.paused(), _progress.progress("contours", 100, show=progress_bar) as show:
         made, bands, light = _make(

@@ -12,24 +12,47 @@ from vizlight.filters.project import ProjectOptions, project
 from vizlight.geometry.nspace.parametric import Manifold
 from vizlight.mesh.blocks import polydata
 from vizlight.mesh.nspace import FRAME, POSITION
-from vizlight.shading.options import accepts
+from vizlight.shading.options import named
 
 if TYPE_CHECKING:
-    from typing_extensions import Unpack
+    from collections.abc import Sequence
 
-    from vizlight.filters.project import ProjectKeywords
+    from numpy.typing import ArrayLike
+
+    from vizlight._types import VectorLike
+    from vizlight.filters.project import LightWhen
     from vizlight.scene import Scene
+    from vizlight.shading.options import Bundle, Exponent, Facing, FeatureAngle, Model, Precision
 
 
-@accepts(ProjectOptions)
+@named
 def manifold(
     shape: Manifold,
     /,
     *,
     scene: Scene | None = None,
+    rotation: object = None,
+    hyperplane: tuple[VectorLike, float] | None = None,
+    distance: float | None = None,
+    positions: str | None = "position",
+    frame: str | None = "frame",
+    vectors: str | Sequence[str] | None = None,
+    cut: bool = False,
+    light: LightWhen = "before",
+    tangents: str | ArrayLike | None = None,
+    normals: str | ArrayLike | None = None,
+    facing: Facing = "auto",
+    feature_angle: FeatureAngle = None,
+    conditioned: bool | str | None = False,
+    refine: float = 0.0,
+    bundle: bool | Bundle = False,
+    name: str = "luminance",
+    exponent: Exponent = "compensated",
+    model: Model = "phong",
+    components: bool = False,
+    precision: Precision | None = None,
     threads: int | None = None,
     progress_bar: bool = False,
-    **options: Unpack[ProjectKeywords],
 ) -> pv.DataSet | pv.MultiBlock:
     """Return a sampled manifold as a mesh in 3-space.
 
@@ -39,8 +62,12 @@ def manifold(
         Manifold, such as one of :mod:`vizlight.geometry.nspace.manifolds`.
     scene, threads, progress_bar
         As for :func:`project`.
-    **options
-        Fields of ProjectOptions.
+    rotation, hyperplane, distance, positions, frame, vectors, cut, light
+        As for :func:`vizlight.project`.
+    tangents, normals, facing, feature_angle, conditioned, refine, bundle, name, exponent
+        As for :func:`vizlight.illuminate`.
+    model, components, precision
+        As for :func:`vizlight.illuminate`.
 
     Returns
     -------
@@ -63,6 +90,7 @@ def manifold(
     >>> mesh["position"].shape, mesh["frame"].shape
     ((256, 4), (256, 8))
     """
+    asked = ProjectOptions.of(locals()).changed()
     _check.instance("shape", shape, Manifold, home="geometry.manifolds")
     count, n = shape.points.shape
     # The projection sets the points.
@@ -74,4 +102,4 @@ def manifold(
         mesh = polydata(points, shape.cells)
     mesh.point_data[POSITION] = shape.points
     mesh.point_data[FRAME] = shape.frame.reshape(count, shape.k * n)
-    return project(mesh, scene=scene, threads=threads, progress_bar=progress_bar, **options)
+    return project(mesh, scene=scene, threads=threads, progress_bar=progress_bar, **asked)

@@ -16,16 +16,16 @@ from vizlight.mesh import point_arrays
 from vizlight.mesh.particles import Carrier, Rows
 from vizlight.mesh.series import TIME, Series
 from vizlight.scene.scene import as_scene
-from vizlight.shading.options import LightKeywords, LightOptions, accepts
+from vizlight.shading.options import LightOptions, named
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from numpy.typing import ArrayLike
-    from typing_extensions import Unpack
 
     from vizlight._types import Array
     from vizlight.scene import Scene
+    from vizlight.shading.options import Bundle, Exponent, Facing, FeatureAngle, Model, Precision
 
 #: Kinds of lines in a flow that changes with time.
 Kind = Literal["pathlines", "streaklines"]
@@ -33,41 +33,11 @@ Kind = Literal["pathlines", "streaklines"]
 TIMES = "Time"
 
 
-class PathlineKeywords(LightKeywords, total=False):
-    """The fields of :class:`PathlineOptions` as keyword arguments."""
-
-    kind: Kind
-    times: ArrayLike | None
-    vectors: str | None
-    seeds: int | ArrayLike | pv.DataSet
-    seed: int
-    tail: float | None
-    step: float
-
-
 @dataclass(frozen=True, kw_only=True)
 class PathlineOptions(LightOptions):
     """How particles are carried, and the lines that they draw are lit.
 
-    Parameters
-    ----------
-    kind : {"pathlines", "streaklines"}
-        Lines: the way of each particle that leaves its seed at the first time; or where the
-        particles are now that have left a seed one after the other, like smoke.
-    times : array_like, shape (S,), optional
-        Times of a sequence of meshes, rising. Default: their field array ``TimeValue``.
-    vectors : str, optional
-        Name of a point array of 3 components, of the same name at each step. Default: the active
-        vectors of the first.
-    seeds : int or array_like, shape (M, 3), or mesh, default: 200
-        Points at which particles start; a number stands for points of the mesh, drawn without
-        repetition from those that move at the first time.
-    seed : int, default: 0
-        Seed of the random numbers.
-    tail : float, optional
-        Duration that the lines show, in the unit of the times. Default: all since the first time.
-    step : float, default: 0.3
-        Largest step of the integration, in cell lengths; lines have a point at each.
+    The fields are keywords of :func:`vizlight.pathlines`.
     """
 
     kind: Kind = "pathlines"
@@ -95,15 +65,34 @@ class PathlineOptions(LightOptions):
             _check.set_fields(self, tail=_check.positive("tail", self.tail))
 
 
-@accepts(PathlineOptions)
+@named
 def pathlines(
     series: Sequence[pv.DataSet] | Any,
     /,
     scene: Scene | None = None,
     *,
+    kind: Kind = "pathlines",
+    times: ArrayLike | None = None,
+    vectors: str | None = None,
+    seeds: int | ArrayLike | pv.DataSet = 200,
+    seed: int = 0,
+    tail: float | None = None,
+    step: float = 0.3,
+    tangents: str | ArrayLike | None = None,
+    positions: str | None = None,
+    normals: str | ArrayLike | None = None,
+    facing: Facing = "auto",
+    feature_angle: FeatureAngle = None,
+    conditioned: bool | str | None = False,
+    refine: float = 0.0,
+    bundle: bool | Bundle = False,
+    name: str = "luminance",
+    exponent: Exponent = "compensated",
+    model: Model = "phong",
+    components: bool = False,
+    precision: Precision | None = None,
     threads: int | None = None,
     progress_bar: bool = False,
-    **options: Unpack[PathlineKeywords],
 ) -> Iterator[pv.PolyData]:
     """Carry particles by vectors that change with time, and light their lines at each step.
 
@@ -115,8 +104,27 @@ def pathlines(
         are in memory at a time.
     scene : Scene, optional
         Scene, the same at each step, by default ``Scene()``.
-    **options
-        Fields of PathlineOptions.
+    kind : {"pathlines", "streaklines"}
+        Lines: the way of each particle that leaves its seed at the first time; or where the
+        particles are now that have left a seed one after the other, like smoke.
+    times : array_like, shape (S,), optional
+        Times of a sequence of meshes, rising. Default: their field array ``TimeValue``.
+    vectors : str, optional
+        Name of a point array of 3 components, of the same name at each step. Default: the active
+        vectors of the first.
+    seeds : int or array_like, shape (M, 3), or mesh, default: 200
+        Points at which particles start; a number stands for points of the mesh, drawn without
+        repetition from those that move at the first time.
+    seed : int, default: 0
+        Seed of the random numbers.
+    tail : float, optional
+        Duration that the lines show, in the unit of the times. Default: all since the first time.
+    step : float, default: 0.3
+        Largest step of the integration, in cell lengths; lines have a point at each.
+    tangents, positions, normals, facing, feature_angle, conditioned, refine, bundle, name
+        As for :func:`vizlight.illuminate`.
+    exponent, model, components, precision
+        As for :func:`vizlight.illuminate`.
     threads, progress_bar
         As for :func:`vizlight.illuminate`.
 
@@ -161,7 +169,7 @@ def pathlines(
     >>> len(frames), "luminance" in frames[-1].point_data
     (4, True)
     """
-    asked = PathlineOptions(**options)
+    asked = PathlineOptions.of(locals())
     scene = as_scene(scene)
     steps = Series(series, asked.times)
     first = steps.mesh(0)

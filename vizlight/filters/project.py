@@ -15,14 +15,15 @@ from vizlight.geometry.nspace import projection
 from vizlight.mesh import blocks, point_arrays, records
 from vizlight.mesh.nspace import FRAME, POSITION, PROJECTED, Counter, Turning, continued
 from vizlight.scene import Scene
-from vizlight.shading.options import LightKeywords, LightOptions, accepts
+from vizlight.shading.options import LightOptions, named
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from typing_extensions import Unpack
+    from numpy.typing import ArrayLike
 
     from vizlight._types import VectorLike
+    from vizlight.shading.options import Bundle, Exponent, Facing, FeatureAngle, Model, Precision
     from vizlight.shading.results import Record
 
 LightWhen = Literal["before", "after"]
@@ -32,50 +33,11 @@ PROJECTION = ("rotation", "hyperplane", "distance", "frame", "vectors", "cut", "
 LIGHT_ALONE = {field.name for field in dataclasses.fields(LightOptions)} - {"positions"}
 
 
-class ProjectKeywords(LightKeywords, total=False):
-    """The fields of :class:`ProjectOptions` as keyword arguments."""
-
-    rotation: object
-    hyperplane: tuple[VectorLike, float] | None
-    distance: float | None
-    frame: str | None
-    vectors: str | Sequence[str] | None
-    cut: bool
-    light: LightWhen
-
-
 @dataclass(frozen=True, kw_only=True)
 class ProjectOptions(LightOptions):
     """How a mesh is turned, cut, projected and lit.
 
-    Parameters
-    ----------
-    rotation : optional
-        A matrix of SO(n), ``("xw", angle)`` with the angle in radians, or a list of these, the
-        first done first; see :func:`vizlight.geometry.nspace.projection.rotation`.
-    hyperplane : (normal, offset), optional
-        Hyperplane ``{x : x . normal / |normal| = offset}`` that cuts the turned mesh: what is left
-        is a (k - 1)-manifold. Point arrays of numbers are interpolated, the frame as the space
-        that it spans, whatever its basis at each point, and cut down to the directions within.
-    distance : float, optional
-        Distance of the eye on the last axis from the origin, in the unit of the mesh: a
-        perspective projection on the hyperplane across it. Default: orthographic, the first three
-        coordinates.
-    positions : str, default: "position"
-        Name of the point array of n components with the places of the points in n-space.
-    frame : str or None, default: "frame"
-        Name of the point array of k n components, the tangents, row after row. None: there is
-        none.
-    vectors : str or sequence of str, optional
-        Names of further point arrays of m n components, vectors in n-space that turn with the
-        mesh.
-    cut : bool, default: False
-        Whether points that cannot be cut or projected, those on or behind the eye's hyperplane
-        or not finite, are dropped with the cells that have one, and a warning gives the count;
-        else they are an error.
-    light : {"before", "after"}
-        Light in n-space, with lights and eye of n components, before the projection; or in
-        3-space, by the projected points and frame, after it.
+    The fields are keywords of :func:`vizlight.project`.
     """
 
     rotation: object = None
@@ -113,15 +75,34 @@ class ProjectOptions(LightOptions):
         return LightOptions(**own | {"tangents": named, "positions": positions})
 
 
-@accepts(ProjectOptions)
+@named
 def project(
     mesh: pv.DataSet | pv.MultiBlock,
     /,
     *,
     scene: Scene | None = None,
+    rotation: object = None,
+    hyperplane: tuple[VectorLike, float] | None = None,
+    distance: float | None = None,
+    positions: str | None = "position",
+    frame: str | None = "frame",
+    vectors: str | Sequence[str] | None = None,
+    cut: bool = False,
+    light: LightWhen = "before",
+    tangents: str | ArrayLike | None = None,
+    normals: str | ArrayLike | None = None,
+    facing: Facing = "auto",
+    feature_angle: FeatureAngle = None,
+    conditioned: bool | str | None = False,
+    refine: float = 0.0,
+    bundle: bool | Bundle = False,
+    name: str = "luminance",
+    exponent: Exponent = "compensated",
+    model: Model = "phong",
+    components: bool = False,
+    precision: Precision | None = None,
     threads: int | None = None,
     progress_bar: bool = False,
-    **options: Unpack[ProjectKeywords],
 ) -> pv.DataSet | pv.MultiBlock:
     """Turn a mesh in n-space, cut it by a hyperplane, project it to 3-space; light it on the way.
 
@@ -133,8 +114,36 @@ def project(
         Mesh that is turned; not changed. An image or a rectilinear grid becomes a structured grid.
     scene : Scene, optional
         Scene by which the mesh is lit.
-    **options
-        Fields of ProjectOptions.
+    rotation : optional
+        A matrix of SO(n), ``("xw", angle)`` with the angle in radians, or a list of these, the
+        first done first; see :func:`vizlight.geometry.nspace.projection.rotation`.
+    hyperplane : (normal, offset), optional
+        Hyperplane ``{x : x . normal / |normal| = offset}`` that cuts the turned mesh: what is left
+        is a (k - 1)-manifold. Point arrays of numbers are interpolated, the frame as the space
+        that it spans, whatever its basis at each point, and cut down to the directions within.
+    distance : float, optional
+        Distance of the eye on the last axis from the origin, in the unit of the mesh: a
+        perspective projection on the hyperplane across it. Default: orthographic, the first three
+        coordinates.
+    positions : str, default: "position"
+        Name of the point array of n components with the places of the points in n-space.
+    frame : str or None, default: "frame"
+        Name of the point array of k n components, the tangents, row after row. None: there is
+        none.
+    vectors : str or sequence of str, optional
+        Names of further point arrays of m n components, vectors in n-space that turn with the
+        mesh.
+    cut : bool, default: False
+        Whether points that cannot be cut or projected, those on or behind the eye's hyperplane
+        or not finite, are dropped with the cells that have one, and a warning gives the count;
+        else they are an error.
+    light : {"before", "after"}
+        Light in n-space, with lights and eye of n components, before the projection; or in
+        3-space, by the projected points and frame, after it.
+    tangents, normals, facing, feature_angle, conditioned, refine, bundle, name, exponent
+        As for :func:`vizlight.illuminate`.
+    model, components, precision
+        As for :func:`vizlight.illuminate`.
     threads : int, optional
         Number of threads of the light. Default: the processors that this process may use.
     progress_bar : bool, default: False
@@ -178,14 +187,14 @@ def project(
     Error bounds: :func:`vizlight.geometry.nspace.projection.turn` and ``perspective``. Work is done
     in float64, block by block; arrays keep their type. Source: Banks, section 3.
     """
+    asked = ProjectOptions.of(locals())
     blocks.check(mesh)
     _check.instance("scene", scene, Scene, optional=True)
     if scene is None:
-        for option in options:
+        for option in asked.changed():
             if option in LIGHT_ALONE:
                 expected = "an option of project, or scene= beside an option of illuminate"
                 raise TypeError(_check.message(option, expected, "neither"))
-    asked = ProjectOptions(**options)
     job = Turning(
         rotation=asked.rotation,
         hyperplane=asked.hyperplane,

@@ -9,34 +9,22 @@ from typing import TYPE_CHECKING
 from vizlight import _check
 from vizlight.filters.illuminate import light_mesh
 from vizlight.mesh import blocks, records
-from vizlight.shading.options import FINEST, LightKeywords, LightOptions, accepts
+from vizlight.shading.options import FINEST, LightOptions, named
 from vizlight.shading.results import plain
 
 if TYPE_CHECKING:
-    from typing_extensions import Unpack
+    from numpy.typing import ArrayLike
 
     from vizlight.mesh.blocks import MeshT
     from vizlight.scene import Scene
-
-
-class RefineKeywords(LightKeywords, total=False):
-    """The fields of :class:`RefineOptions` as keyword arguments."""
-
-    error: float
-    max_points: int | None
+    from vizlight.shading.options import Bundle, Exponent, Facing, FeatureAngle, Model, Precision
 
 
 @dataclass(frozen=True, kw_only=True)
 class RefineOptions(LightOptions):
     """How far a mesh is refined, and how it is lit.
 
-    Parameters
-    ----------
-    error : float, default: 1/255
-        Largest difference, in luminance and in each channel of a colour, of the light that is
-        interpolated between the points from the light there; 1e-5 or more.
-    max_points : int, optional
-        Largest number of points of each mesh. Default: one million, or twice those that it has.
+    The fields are keywords of :func:`vizlight.refine`.
     """
 
     error: float = 1 / 255
@@ -51,15 +39,28 @@ class RefineOptions(LightOptions):
             _check.set_fields(self, max_points=most)
 
 
-@accepts(RefineOptions, without=("refine",))
+@named
 def refine(
     mesh: MeshT,
     /,
     scene: Scene | None = None,
     *,
+    error: float = 0.00392156862745098,
+    max_points: int | None = None,
+    tangents: str | ArrayLike | None = None,
+    positions: str | None = None,
+    normals: str | ArrayLike | None = None,
+    facing: Facing = "auto",
+    feature_angle: FeatureAngle = None,
+    conditioned: bool | str | None = False,
+    bundle: bool | Bundle = False,
+    name: str = "luminance",
+    exponent: Exponent = "compensated",
+    model: Model = "phong",
+    components: bool = False,
+    precision: Precision | None = None,
     threads: int | None = None,
     progress_bar: bool = False,
-    **options: Unpack[RefineKeywords],
 ) -> MeshT:
     """Split triangles and polylines where light bends, and light the mesh.
 
@@ -74,8 +75,15 @@ def refine(
         Mesh of faces or lines; not changed.
     scene : Scene, optional
         Lights, material and view for which the mesh is refined, by default ``Scene()``.
-    **options
-        Fields of RefineOptions.
+    error : float, default: 1/255
+        Largest difference, in luminance and in each channel of a colour, of the light that is
+        interpolated between the points from the light there; 1e-5 or more.
+    max_points : int, optional
+        Largest number of points of each mesh. Default: one million, or twice those that it has.
+    tangents, positions, normals, facing, feature_angle, conditioned, bundle, name, exponent
+        As for :func:`vizlight.illuminate`.
+    model, components, precision
+        As for :func:`vizlight.illuminate`.
     threads, progress_bar
         As for :func:`vizlight.illuminate`.
 
@@ -120,7 +128,7 @@ def refine(
     >>> bool(fine.n_points > ball.n_points), bool(fine["luminance_error"][0] <= 1 / 255)
     (True, True)
     """
-    asked = RefineOptions(**options)
+    asked = RefineOptions.of(locals())
     light = dataclasses.replace(asked, refine=asked.error)
     lit = light_mesh(
         mesh,

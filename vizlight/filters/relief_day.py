@@ -11,19 +11,23 @@ from vizlight.filters.relief_shadow import ReliefOptions, relief_shadow
 from vizlight.geometry.relief import sun as sky
 from vizlight.mesh import point_arrays, records
 from vizlight.scene import Light, Material, Scene
-from vizlight.shading.options import accepts
+from vizlight.shading.options import named
 from vizlight.shading.results import VALID, plain
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import pyvista as pv
     from numpy.typing import ArrayLike, NDArray
-    from typing_extensions import Unpack
 
     from vizlight._types import Array
-    from vizlight.filters.relief_shadow import ReliefKeywords
+    from vizlight.geometry.relief.height_field import Border
+    from vizlight.geometry.relief.shadowing import Method
     from vizlight.mesh.blocks import MeshT
+    from vizlight.shading.options import FeatureAngle
 
 
-@accepts(ReliefOptions, without=("lit", "components"))
+@named
 def relief_day(
     mesh: MeshT,
     /,
@@ -33,9 +37,21 @@ def relief_day(
     hours: ArrayLike | None = None,
     directions: ArrayLike | None = None,
     sun: ArrayLike | None = None,
+    angular_diameter: float = 0.0,
+    samples: int = 16,
+    name: str = "t",
+    depth: float | None = None,
+    elevation: str | None = None,
+    factor: float = 1.0,
+    base: float | None = None,
+    border: Border = "extend",
+    method: Method = "fast",
+    raster: float | None = None,
+    thickness: float | None = None,
+    feature_angle: FeatureAngle = None,
+    occluders: pv.PolyData | Sequence[pv.PolyData] = (),
     threads: int | None = None,
     progress_bar: bool = False,
-    **options: Unpack[ReliefKeywords],
 ) -> MeshT:
     """Return a mesh with its cos-theta shadow at several hours of a day.
 
@@ -53,8 +69,10 @@ def relief_day(
         Directions toward the sun, in place of latitude, day and hours.
     sun : array_like, shape (H, 2), optional
         Azimuth, clockwise from north, and altitude of the sun in degrees, in place of directions.
-    **options
-        Fields of ReliefOptions.
+    angular_diameter, samples, name, depth, elevation, factor, base, border, method, raster
+        As for :func:`vizlight.relief_shadow`.
+    thickness, feature_angle, occluders
+        As for :func:`vizlight.relief_shadow`.
     threads, progress_bar
         As for :func:`relief_shadow`.
 
@@ -70,6 +88,7 @@ def relief_day(
     TypeError, ValueError
         As :func:`relief_shadow` and :func:`vizlight.geometry.relief.sun.directions`.
     """
+    asked = ReliefOptions.of(locals())
     if sun is not None:
         if latitude is not None or day is not None or hours is not None:
             expected = "sun alone, or latitude, day and hours"
@@ -87,9 +106,9 @@ def relief_day(
         scene,
         threads=threads,
         progress_bar=progress_bar,
-        **options | {"components": True},
+        **asked.changed() | {"components": True},
     )
-    name = options.get("name", ReliefOptions.name)
+    name = asked.name
     mean = f"{name}_mean"
     records.refuse_overwriting([(found, "")], name, [mean])
     t, seen = np.zeros((found.n_points, len(toward))), 0

@@ -13,55 +13,35 @@ from vizlight.filters.illuminate import separate_copy
 from vizlight.filters.lighting import attach, refuse_overwriting
 from vizlight.geometry.relief import sun as sky
 from vizlight.mesh import point_arrays, records
-from vizlight.mesh.casters import CasterKeywords, CasterOptions, caster
+from vizlight.mesh.casters import CasterOptions, caster
 from vizlight.mesh.normals import split_where_computed
 from vizlight.reading.cells import check_whole
 from vizlight.scene import Light, Scene
 from vizlight.scene.scene import as_scene
 from vizlight.shading import engine
-from vizlight.shading.options import accepts
+from vizlight.shading.options import named
 from vizlight.shading.results import DEFAULT_NAME, PARTS, VALID, of_filter, of_light
 from vizlight.verify.report import note_ratio
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    import pyvista as pv
     from numpy.typing import NDArray
-    from typing_extensions import Unpack
 
     from vizlight._types import Array
+    from vizlight.geometry.relief.height_field import Border
+    from vizlight.geometry.relief.shadowing import Method
     from vizlight.mesh.blocks import MeshT
     from vizlight.mesh.casters import Caster
-
-
-class ReliefKeywords(CasterKeywords, total=False):
-    """The fields of :class:`ReliefOptions` as keyword arguments."""
-
-    angular_diameter: float
-    samples: int
-    lit: bool
-    components: bool
-    name: str
+    from vizlight.shading.options import FeatureAngle
 
 
 @dataclass(frozen=True, kw_only=True)
 class ReliefOptions(CasterOptions):
     """How cos-theta shadows are made.
 
-    Parameters
-    ----------
-    angular_diameter : float, default: 0.0
-        Angular diameter of the lights at infinity, in radians: the sun's 0.53 degrees are 0.00925.
-    samples : int, default: 16
-        Number of directions, equal in area, that stand for a light with an angular diameter.
-    lit : bool, default: False
-        Whether ``luminance`` is added, and ``rgb`` where the scene has a colour: the engine's
-        light with t in place of the cosine; a highlight keeps ``min(1, t / cos)``.
-    components : bool, default: False
-        Whether ``t_0``, ``t_1``, ..., one for each light, are added, and with ``lit`` the terms of
-        the engine.
-    name : str, default: "t"
-        Name of the result.
+    The fields are keywords of :func:`vizlight.relief_shadow`.
     """
 
     angular_diameter: float = 0.0
@@ -82,17 +62,31 @@ class ReliefOptions(CasterOptions):
         )
 
 
-@accepts(ReliefOptions)
+@named
 def relief_shadow(
     mesh: MeshT,
     /,
     scene: Scene | None = None,
     *,
     sun: Sequence[float] | None = None,
+    angular_diameter: float = 0.0,
+    samples: int = 16,
+    lit: bool = False,
+    components: bool = False,
+    name: str = "t",
+    depth: float | None = None,
+    elevation: str | None = None,
+    factor: float = 1.0,
+    base: float | None = None,
+    border: Border = "extend",
+    method: Method = "fast",
+    raster: float | None = None,
+    thickness: float | None = None,
+    feature_angle: FeatureAngle = None,
+    occluders: pv.PolyData | Sequence[pv.PolyData] = (),
     threads: int | None = None,
     inplace: bool = False,
     progress_bar: bool = False,
-    **options: Unpack[ReliefKeywords],
 ) -> MeshT:
     """Return a mesh with its cos-theta shadow: cosine, shadow and scattering in one number.
 
@@ -107,8 +101,41 @@ def relief_shadow(
     sun : (azimuth, altitude), optional
         Angles toward the sun in degrees, in place of the lights of the scene: azimuth clockwise
         from north, the y axis, and altitude above the horizon.
-    **options
-        Fields of ReliefOptions.
+    angular_diameter : float, default: 0.0
+        Angular diameter of the lights at infinity, in radians: the sun's 0.53 degrees are 0.00925.
+    samples : int, default: 16
+        Number of directions, equal in area, that stand for a light with an angular diameter.
+    lit : bool, default: False
+        Whether ``luminance`` is added, and ``rgb`` where the scene has a colour: the engine's
+        light with t in place of the cosine; a highlight keeps ``min(1, t / cos)``.
+    components : bool, default: False
+        Whether ``t_0``, ``t_1``, ..., one for each light, are added, and with ``lit`` the terms of
+        the engine.
+    name : str, default: "t"
+        Name of the result.
+    depth : float, optional
+        Depth d below the surface at which light is gathered, 0 or more, in the unit of the mesh:
+        a larger depth gives softer shadows, and fewer where it exceeds the relief. Default: for a
+        height field an eighth of a cell's width, but at most half the mean difference of heights
+        from node to node; for a closed surface 0.01 of the diagonal of its faces.
+    elevation : str, optional
+        Name of a point array of heights. Default: z of a StructuredGrid or of a surface that is
+        sampled, else the active scalars. NaN is a hole.
+    factor : float, default: 1.0
+        Factor of the heights; only for height fields.
+    base, border, method
+        As for :func:`vizlight.geometry.relief.inside_length`; only for height fields.
+    raster : float, optional
+        Spacing of an even grid on which curvilinear grids and open surfaces are sampled from
+        above, such as a TIN; 0 for the root of the mean area per point. Shadows then end within a
+        cell of it; what it does not cover has the height of the nearest covered node.
+    thickness : float, optional
+        Thickness of the shell, measured against the normals, that stands for an open surface.
+    feature_angle : float or "auto", optional
+        Angle in degrees above which edges of a closed surface are sharp, as for
+        :func:`vizlight.illuminate`. Default: none is.
+    occluders : pyvista.PolyData or sequence of pyvista.PolyData
+        Further closed surfaces between the surface and the light.
     threads : int, optional
         Number of threads. Default: the processors that this process may use.
     inplace, progress_bar
@@ -146,7 +173,7 @@ def relief_shadow(
     >>> round(float(vizlight.relief_shadow(flat, sun=(315, 30))["t"][7]), 9)
     0.5
     """
-    asked = ReliefOptions(**options)
+    asked = ReliefOptions.of(locals())
     inplace = _check.boolean("inplace", inplace)
     check_whole(mesh, "mesh")
     if sun is not None:

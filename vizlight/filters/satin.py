@@ -13,38 +13,52 @@ from vizlight.filters.illuminate import light_mesh
 from vizlight.filters.streamlines import StreamlineOptions, light_lines
 from vizlight.mesh import point_arrays
 from vizlight.reading.arrays import is_of_cells, tangents_of, vectors_of
-from vizlight.shading.options import LightOptions, accepts
+from vizlight.shading.options import LightOptions, named
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
-    from typing_extensions import Unpack
 
-    from vizlight.filters.streamlines import StreamlineKeywords
     from vizlight.scene import Scene
+    from vizlight.shading.options import Bundle, Exponent, Facing, FeatureAngle, Model, Precision
 
 
 @dataclass(frozen=True, kw_only=True)
 class SatinOptions(StreamlineOptions):
     """How the curves of satin are traced, and all panels are lit.
 
-    Parameters
-    ----------
-    seeds : int or array_like, shape (M, 3), or mesh, default: 300
-        Points at which curves start; a number stands for places on the surface, uniform in area.
+    The fields are keywords of :func:`vizlight.satin`.
     """
 
     seeds: int | ArrayLike | pv.DataSet = 300
 
 
-@accepts(SatinOptions, without=("conditioned", "vectors", "surface", "confined"))
+@named
 def satin(
     surface: pv.PolyData,
     /,
     scene: Scene | None = None,
     *,
+    seeds: int | ArrayLike | pv.DataSet = 300,
+    line_field: bool = False,
+    seed: int = 0,
+    spacing: float | None = None,
+    step: float = 0.3,
+    max_length: float | None = None,
+    max_steps: int = 4000,
+    tangents: str | ArrayLike | None = None,
+    positions: str | None = None,
+    normals: str | ArrayLike | None = None,
+    facing: Facing = "auto",
+    feature_angle: FeatureAngle = None,
+    refine: float = 0.0,
+    bundle: bool | Bundle = False,
+    name: str = "luminance",
+    exponent: Exponent = "compensated",
+    model: Model = "phong",
+    components: bool = False,
+    precision: Precision | None = None,
     threads: int | None = None,
     progress_bar: bool = False,
-    **options: Unpack[StreamlineKeywords],
 ) -> pv.MultiBlock:
     """Light a surface with a tangent field in four ways: the panels of Banks' illustration 2.
 
@@ -57,8 +71,14 @@ def satin(
         Lights, material and view, by default ``Scene()``. Banks' material is
         ``Material(ambient=0.1, diffuse=0.5, specular=1.0, color=(1.0, 0.25, 0.30))``, and his
         panels have ``exponent=1``.
-    **options
-        Fields of SatinOptions.
+    seeds : int or array_like, shape (M, 3), or mesh, default: 300
+        Points at which curves start; a number stands for places on the surface, uniform in area.
+    line_field, seed, spacing, step, max_length, max_steps
+        As for :func:`vizlight.streamlines`.
+    tangents, positions, normals, facing, feature_angle, refine, bundle, name, exponent, model
+        As for :func:`vizlight.illuminate`.
+    components, precision
+        As for :func:`vizlight.illuminate`.
     threads, progress_bar
         As for :func:`vizlight.illuminate`.
 
@@ -75,7 +95,7 @@ def satin(
     TypeError, ValueError
         As :func:`vizlight.illuminate` and :func:`vizlight.streamlines`.
     """
-    asked = SatinOptions(**options)
+    asked = SatinOptions.of(locals() | {"surface": None})
     if asked.tangents is None:
         raise ValueError(_check.message("tangents", "the name of a point array", None))
     traced, averaged = surface, False

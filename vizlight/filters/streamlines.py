@@ -20,16 +20,16 @@ from vizlight.reading import polylines
 from vizlight.reading.arrays import array_of, vectors_of
 from vizlight.reading.cells import check_whole, has_faces
 from vizlight.scene.scene import as_scene
-from vizlight.shading.options import LightKeywords, LightOptions, accepts
+from vizlight.shading.options import LightOptions, named
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from numpy.typing import ArrayLike
-    from typing_extensions import Unpack
 
     from vizlight._types import Array
     from vizlight.scene import Scene
+    from vizlight.shading.options import Bundle, Exponent, Facing, FeatureAngle, Model, Precision
 
 #: Name of the point array of the directions that were integrated, and by which the lines are lit.
 TANGENTS = "Tangents"
@@ -37,65 +37,11 @@ TANGENTS = "Tangents"
 OWN_TANGENTS = "vizlight tangents"
 
 
-class StreamlineKeywords(LightKeywords, total=False):
-    """The fields of :class:`StreamlineOptions` as keyword arguments."""
-
-    vectors: str | tuple[str, str] | None
-    line_field: bool
-    surface: pv.PolyData | None
-    confined: bool | None
-    seeds: int | ArrayLike | pv.DataSet
-    seed: int
-    spacing: float | None
-    step: float
-    max_length: float | None
-    max_steps: int
-
-
 @dataclass(frozen=True, kw_only=True)
 class StreamlineOptions(LightOptions):
     """How streamlines are traced and lit.
 
-    Parameters
-    ----------
-    vectors : str or tuple of 2 str, optional
-        Name of a point array of 3, 6 or 9 components, or two names. 6 components are a symmetric
-        tensor (XX, YY, ZZ, XY, YZ, XZ, as in VTK) and 9 a matrix, whose first eigenvector is traced
-        as a line field. Two names, of arrays of 3 components and with ``line_field=True``, are a
-        cross field, such as both principal directions: lines of either direction are traced. On the
-        command line they are ``u,v``. Default: the active vectors.
-    line_field : bool, default: False
-        Whether the vectors are directions without sign, such as principal directions. Each vector
-        is then aligned with the one before it on the line. Tensors are always line fields. Of a
-        cross field each of the two is continued by whichever of the next two is nearest to it:
-        signs, order and lengths do not matter.
-    surface : pyvista.PolyData, optional
-        Surface whose normals condition the light of the lines near it (Banks 6), and on which
-        confined lines stay. Default for a mesh that is a surface: the mesh itself.
-    confined : bool, optional
-        Whether the lines stay on the surface: the tangential part of the vectors is integrated.
-        Default: whether the mesh itself is a surface and no other is given.
-    seeds : int or array_like, shape (M, 3), or mesh, default: 200
-        Points at which lines start. A number is that of the lines, from points of the mesh drawn
-        without repetition, or, for confined lines and line fields, from random places, uniform in
-        area or volume. At a given point of a cross field two lines start. Has no effect as a number
-        with ``spacing``.
-    seed : int, default: 0
-        Seed of the random numbers.
-    spacing : float, optional
-        Distance between evenly spaced lines, in the unit of the mesh, at which they cover the whole
-        surface or volume; in a cross field once along each of the two directions. Lines of a cross
-        field keep their distance where the angle between them is below 45 degrees.
-    step : float, default: 0.3
-        Largest step of the integration, in cell lengths.
-    max_length : float, optional
-        Largest length of a line, in the unit of the mesh. Default: four diagonals of the bounding
-        box.
-    max_steps : int, default: 4000
-        Largest number of steps of a line.
-    conditioned : bool or str, optional
-        Whether the lines inherit the self-shadow of the surface, see
-        :func:`vizlight.illuminate`. Default: whether there is a surface.
+    The fields are keywords of :func:`vizlight.streamlines`.
     """
 
     vectors: str | tuple[str, str] | None = None
@@ -152,15 +98,37 @@ def _pair(names: Sequence[object], *, line_field: bool) -> tuple[str, str]:
     return one, other
 
 
-@accepts(StreamlineOptions)
+@named
 def streamlines(
     mesh: pv.DataSet,
     /,
     scene: Scene | None = None,
     *,
+    vectors: str | tuple[str, str] | None = None,
+    line_field: bool = False,
+    surface: pv.PolyData | None = None,
+    confined: bool | None = None,
+    seeds: int | ArrayLike | pv.DataSet = 200,
+    seed: int = 0,
+    spacing: float | None = None,
+    step: float = 0.3,
+    max_length: float | None = None,
+    max_steps: int = 4000,
+    conditioned: bool | str | None = None,
+    tangents: str | ArrayLike | None = None,
+    positions: str | None = None,
+    normals: str | ArrayLike | None = None,
+    facing: Facing = "auto",
+    feature_angle: FeatureAngle = None,
+    refine: float = 0.0,
+    bundle: bool | Bundle = False,
+    name: str = "luminance",
+    exponent: Exponent = "compensated",
+    model: Model = "phong",
+    components: bool = False,
+    precision: Precision | None = None,
     threads: int | None = None,
     progress_bar: bool = False,
-    **options: Unpack[StreamlineKeywords],
 ) -> pv.PolyData:
     """Integrate streamlines, light them by the field, condition them by a surface.
 
@@ -170,8 +138,48 @@ def streamlines(
         Mesh that carries the vectors; not changed.
     scene : Scene, optional
         Lights, material and view, by default ``Scene()``.
-    **options
-        Fields of StreamlineOptions.
+    vectors : str or tuple of 2 str, optional
+        Name of a point array of 3, 6 or 9 components, or two names. 6 components are a symmetric
+        tensor (XX, YY, ZZ, XY, YZ, XZ, as in VTK) and 9 a matrix, whose first eigenvector is traced
+        as a line field. Two names, of arrays of 3 components and with ``line_field=True``, are a
+        cross field, such as both principal directions: lines of either direction are traced. On the
+        command line they are ``u,v``. Default: the active vectors.
+    line_field : bool, default: False
+        Whether the vectors are directions without sign, such as principal directions. Each vector
+        is then aligned with the one before it on the line. Tensors are always line fields. Of a
+        cross field each of the two is continued by whichever of the next two is nearest to it:
+        signs, order and lengths do not matter.
+    surface : pyvista.PolyData, optional
+        Surface whose normals condition the light of the lines near it (Banks 6), and on which
+        confined lines stay. Default for a mesh that is a surface: the mesh itself.
+    confined : bool, optional
+        Whether the lines stay on the surface: the tangential part of the vectors is integrated.
+        Default: whether the mesh itself is a surface and no other is given.
+    seeds : int or array_like, shape (M, 3), or mesh, default: 200
+        Points at which lines start. A number is that of the lines, from points of the mesh drawn
+        without repetition, or, for confined lines and line fields, from random places, uniform in
+        area or volume. At a given point of a cross field two lines start. Has no effect as a number
+        with ``spacing``.
+    seed : int, default: 0
+        Seed of the random numbers.
+    spacing : float, optional
+        Distance between evenly spaced lines, in the unit of the mesh, at which they cover the whole
+        surface or volume; in a cross field once along each of the two directions. Lines of a cross
+        field keep their distance where the angle between them is below 45 degrees.
+    step : float, default: 0.3
+        Largest step of the integration, in cell lengths.
+    max_length : float, optional
+        Largest length of a line, in the unit of the mesh. Default: four diagonals of the bounding
+        box.
+    max_steps : int, default: 4000
+        Largest number of steps of a line.
+    conditioned : bool or str, optional
+        Whether the lines inherit the self-shadow of the surface, see
+        :func:`vizlight.illuminate`. Default: whether there is a surface.
+    tangents, positions, normals, facing, feature_angle, refine, bundle, name, exponent, model
+        As for :func:`vizlight.illuminate`.
+    components, precision
+        As for :func:`vizlight.illuminate`.
     threads, progress_bar
         As for :func:`vizlight.illuminate`.
 
@@ -229,7 +237,7 @@ def streamlines(
     True
     """
     return light_lines(
-        mesh, scene, StreamlineOptions(**options), threads=threads, progress_bar=progress_bar
+        mesh, scene, StreamlineOptions.of(locals()), threads=threads, progress_bar=progress_bar
     )
 
 

@@ -6,7 +6,7 @@ import dataclasses
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol, TypedDict
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 import pyvista as pv
@@ -16,7 +16,7 @@ from vizlight.geometry.relief import height_field, shadowing
 from vizlight.mesh import closed_meshes, normals
 from vizlight.mesh.height_grids import Grid, heights_of
 from vizlight.model import kernels
-from vizlight.shading.options import check_sides
+from vizlight.shading.options import Options, check_sides
 from vizlight.verify import rays
 
 if TYPE_CHECKING:
@@ -37,50 +37,11 @@ FAR = 1e100
 FIELD_ALONE = ("elevation", "factor", "base", "border", "method", "raster")
 
 
-class CasterKeywords(TypedDict, total=False):
-    """The fields of :class:`CasterOptions` as keyword arguments."""
-
-    depth: float | None
-    elevation: str | None
-    factor: float
-    base: float | None
-    border: Border
-    method: Method
-    raster: float | None
-    thickness: float | None
-    feature_angle: FeatureAngle
-    occluders: pv.PolyData | Sequence[pv.PolyData]
-
-
 @dataclass(frozen=True, kw_only=True)
-class CasterOptions:
+class CasterOptions(Options):
     """How a mesh casts shadows.
 
-    Parameters
-    ----------
-    depth : float, optional
-        Depth d below the surface at which light is gathered, 0 or more, in the unit of the mesh:
-        a larger depth gives softer shadows, and fewer where it exceeds the relief. Default: for a
-        height field an eighth of a cell's width, but at most half the mean difference of heights
-        from node to node; for a closed surface 0.01 of the diagonal of its faces.
-    elevation : str, optional
-        Name of a point array of heights. Default: z of a StructuredGrid or of a surface that is
-        sampled, else the active scalars. NaN is a hole.
-    factor : float, default: 1.0
-        Factor of the heights; only for height fields.
-    base, border, method
-        As for :func:`vizlight.geometry.relief.inside_length`; only for height fields.
-    raster : float, optional
-        Spacing of an even grid on which curvilinear grids and open surfaces are sampled from
-        above, such as a TIN; 0 for the root of the mean area per point. Shadows then end within a
-        cell of it; what it does not cover has the height of the nearest covered node.
-    thickness : float, optional
-        Thickness of the shell, measured against the normals, that stands for an open surface.
-    feature_angle : float or "auto", optional
-        Angle in degrees above which edges of a closed surface are sharp, as for
-        :func:`vizlight.illuminate`. Default: none is.
-    occluders : pyvista.PolyData or sequence of pyvista.PolyData
-        Further closed surfaces between the surface and the light.
+    The fields are keywords of :func:`vizlight.relief_shadow`.
     """
 
     depth: float | None = None

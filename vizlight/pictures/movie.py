@@ -21,17 +21,18 @@ from vizlight.filters.project import ProjectOptions, project
 from vizlight.mesh.blocks import all_blocks
 from vizlight.pictures import render
 from vizlight.pictures.cameras import Mesh, common_bounds
-from vizlight.shading.options import accepts
+from vizlight.shading.options import named
 from vizlight.shading.results import DEFAULT_NAME
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
-    from numpy.typing import NDArray
-    from typing_extensions import Unpack
+    from numpy.typing import ArrayLike, NDArray
 
-    from vizlight.filters.project import ProjectKeywords
+    from vizlight._types import VectorLike
+    from vizlight.filters.project import LightWhen
     from vizlight.scene import Scene
+    from vizlight.shading.options import Bundle, Exponent, Facing, FeatureAngle, Model, Precision
 
     Picture = NDArray[np.uint8]
 
@@ -121,7 +122,7 @@ def save(
         return writer(_counted(drawn, report, 0))
 
 
-@accepts(ProjectOptions)
+@named
 def turn(
     mesh: Mesh,
     path: str | Path,
@@ -134,9 +135,28 @@ def turn(
     fps: float = 24.0,
     camera: pv.Camera | None = None,
     picture: render.PlotterKeywords | None = None,
+    rotation: object = None,
+    hyperplane: tuple[VectorLike, float] | None = None,
+    distance: float | None = None,
+    positions: str | None = "position",
+    frame: str | None = "frame",
+    vectors: str | Sequence[str] | None = None,
+    cut: bool = False,
+    light: LightWhen = "before",
+    tangents: str | ArrayLike | None = None,
+    normals: str | ArrayLike | None = None,
+    facing: Facing = "auto",
+    feature_angle: FeatureAngle = None,
+    conditioned: bool | str | None = False,
+    refine: float = 0.0,
+    bundle: bool | Bundle = False,
+    name: str = "luminance",
+    exponent: Exponent = "compensated",
+    model: Model = "phong",
+    components: bool = False,
+    precision: Precision | None = None,
     threads: int | None = None,
     progress_bar: bool = False,
-    **options: Unpack[ProjectKeywords],
 ) -> list[Path]:
     """Rotate a mesh in a plane of n-space, light it at every step, and save the pictures.
 
@@ -170,9 +190,12 @@ def turn(
         Number of threads for the light. Default: the processors that this process may use.
     progress_bar : bool, default: False
         Show progress on standard error.
-    **options
-        Options of :func:`vizlight.project`; ``rotation=`` is applied before the rotation of the
-        movie.
+    rotation, hyperplane, distance, positions, frame, vectors, cut, light
+        As for :func:`vizlight.project`.
+    tangents, normals, facing, feature_angle, conditioned, refine, bundle, name, exponent
+        As for :func:`vizlight.illuminate`.
+    model, components, precision
+        As for :func:`vizlight.illuminate`.
 
     Returns
     -------
@@ -195,16 +218,18 @@ def turn(
     UserWarning
         Once, with the number of frames affected, if :func:`vizlight.project` warns.
     """
+    asked = ProjectOptions.of(locals())
     path = _check_movie(path)
     count = _check.integer("frames", frames, low=1)
     whole = _check.number("angle", angle)
     fps = _check.number("fps", fps, low=0.01, high=100.0)
     drawing = _drawing(picture)
     if scene is not None:
-        drawing.setdefault("scalars", options.get("name", DEFAULT_NAME))
+        drawing.setdefault("scalars", asked.name)
     else:
         _draw_active(mesh, drawing)
     writer = _writer(path, fps, drawing["size"])
+    options = asked.changed()
     before = options.pop("rotation", None)
     notes: list[str] = []
 

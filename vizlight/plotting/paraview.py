@@ -23,14 +23,16 @@ from vizlight.scene.light import WHITE
 from vizlight.shading.decide import decide
 from vizlight.shading.display import NO_DATA, NO_DATA_NAME
 from vizlight.shading.inputs import Layout
-from vizlight.shading.options import LightOptions, ShadingOptions, accepts
+from vizlight.shading.options import LightOptions, ShadingOptions, named
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     import pyvista as pv
+    from numpy.typing import ArrayLike
 
     from vizlight.plotting.program import Program
+    from vizlight.shading.options import Exponent, Facing, Model
     from vizlight.shading.plan import Plan
 
 __all__ = ["Shader", "save", "shader"]
@@ -143,8 +145,19 @@ def _colored(name: str) -> str:
     )
 
 
-@accepts(LightOptions, without=WITHOUT)
-def shader(scene: Scene, /, *, scalars: str | None = None, **options: Any) -> Shader:
+@named
+def shader(
+    scene: Scene,
+    /,
+    *,
+    scalars: str | None = None,
+    tangents: str | ArrayLike | None = None,
+    normals: str | ArrayLike | None = None,
+    facing: Facing = "auto",
+    conditioned: bool | str | None = False,
+    exponent: Exponent = "compensated",
+    model: Model = "phong",
+) -> Shader:
     """Return what shows the light of a scene in each fragment in an unchanged ParaView.
 
     The light follows ParaView's camera, which takes the place of the view of the scene; ParaView's
@@ -159,14 +172,8 @@ def shader(scene: Scene, /, *, scalars: str | None = None, **options: Any) -> Sh
     scalars : str, optional
         Name of the point array that gives the colours, by ``vizlight.maps.even`` unless PyVista's
         theme was changed. Default: the colour of the material.
-    **options
-        As for :func:`vizlight.illuminate`, but ``tangents`` and ``normals`` are names of point
-        arrays of 3 components that the data have in ParaView. Without tangents, and for
-        ``conditioned``, normals are needed: those of ParaView's filters are called ``"Normals"``,
-        which is the default. Beside tangents they are float32, as those filters make them.
-        ``facing``: ``"auto"`` turns a normal to the side of its face that is seen; lines have no
-        faces and take ``"eye"`` in its place; ``"outward"`` and ``"as given"`` leave normals as
-        they are.
+    tangents, normals, facing, conditioned, exponent, model
+        As for :func:`vizlight.illuminate`.
 
     Returns
     -------
@@ -192,7 +199,7 @@ def shader(scene: Scene, /, *, scalars: str | None = None, **options: Any) -> Sh
     by its own ``Position`` or ``Orientation``; move the data in place of that. The text does not
     reach what ParaView draws with shaders of its own: tubes, spheres, ray tracing and volumes.
     """
-    asked = LightOptions(**options)
+    asked = LightOptions.of(locals())
     tangents, normals = (_named(name, getattr(asked, name)) for name in ("tangents", "normals"))
     if isinstance(asked.conditioned, str):
         expected, remedy = "True or False in ParaView", "vizlight.illuminate lights the points"

@@ -12,15 +12,14 @@ from vizlight.model import brightness, kernels
 from vizlight.scene import Scene, View
 from vizlight.shading import compiled
 from vizlight.shading.inputs import Layout
-from vizlight.shading.options import ShadingOptions, accepts
+from vizlight.shading.options import ShadingOptions, named
 from vizlight.shading.plan import Highlight, Plan
 
 if TYPE_CHECKING:
     from numpy.typing import DTypeLike
-    from typing_extensions import Unpack
 
     from vizlight._types import Vector
-    from vizlight.shading.options import Model, ShadingKeywords
+    from vizlight.shading.options import Exponent, Model, Precision
 
 
 #: Least power at which |h_N|^q may be computed from the tangential part alone: a lower one is too
@@ -28,7 +27,7 @@ if TYPE_CHECKING:
 LEAST_POWER = 2.0
 
 
-@accepts(ShadingOptions)
+@named
 def plan(
     scene: Scene,
     /,
@@ -41,7 +40,11 @@ def plan(
     base_tangents: int | None = None,
     shadowed: bool = False,
     fur: float = 0.0,
-    **options: Unpack[ShadingKeywords],
+    exponent: Exponent = "compensated",
+    model: Model = "phong",
+    conditioned: bool | str | None = True,
+    components: bool = False,
+    precision: Precision | None = None,
 ) -> Plan:
     """Return what the light of a scene needs.
 
@@ -65,8 +68,8 @@ def plan(
         Whether t of a cos-theta shadow is given for each light.
     fur : float, default: 0.0
         Density in [0, 1] of fur that attenuates the light (Banks 7, 8); needs normals.
-    **options
-        Fields of ShadingOptions.
+    exponent, model, conditioned, components, precision
+        As for :func:`vizlight.shading.engine.shade`.
 
     Returns
     -------
@@ -90,7 +93,7 @@ def plan(
         n, k, normals, base_tangents or 0, shadowed, fur,
         two_sided=_check.boolean("two_sided", two_sided),
     )  # fmt: skip
-    made = decide(scene, layout, ShadingOptions(**options), dtype)
+    made = decide(scene, layout, ShadingOptions.of(locals()), dtype)
     return dataclasses.replace(made, code=compiled.why_not(made) or compiled.WHERE_IT_PAYS)
 
 

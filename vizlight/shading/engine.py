@@ -21,7 +21,7 @@ from vizlight.shading import compiled
 from vizlight.shading.block import Output, columns, shade_block, view_depth
 from vizlight.shading.decide import decide, plan
 from vizlight.shading.inputs import ArraySource, ShadingInputs, array_source
-from vizlight.shading.options import Model, Precision, ShadingOptions, accepts
+from vizlight.shading.options import Model, Precision, ShadingOptions, named
 from vizlight.shading.plan import Plan
 
 if TYPE_CHECKING:
@@ -29,10 +29,9 @@ if TYPE_CHECKING:
     from typing import TypeAlias
 
     from numpy.typing import ArrayLike
-    from typing_extensions import Unpack
 
     from vizlight._types import Array, Bools
-    from vizlight.shading.options import ShadingKeywords
+    from vizlight.shading.options import Exponent
 
     Observer: TypeAlias = Callable[[ShadingInputs, Scene, "Shading", ShadingOptions], None]
     Progress: TypeAlias = Callable[[int, int], None]
@@ -132,7 +131,7 @@ def observed(observer: Observer | None, /) -> Iterator[None]:
         _OBSERVER.reset(token)
 
 
-@accepts(ShadingOptions)
+@named
 def shade(
     points: ArrayLike | ArraySource,
     tangents: ArrayLike | ArraySource | None,
@@ -148,10 +147,14 @@ def shade(
     occlusion: ArrayLike | ArraySource | None = None,
     two_sided: bool = False,
     repeat: int = 1,
-    threads: int | None = None,
     block: int | None = None,
     progress: Progress | None = None,
-    **options: Unpack[ShadingKeywords],
+    exponent: Exponent = "compensated",
+    model: Model = "phong",
+    conditioned: bool | str | None = True,
+    components: bool = False,
+    precision: Precision | None = None,
+    threads: int | None = None,
 ) -> Shading:
     """Light points by a scene.
 
@@ -196,8 +199,23 @@ def shade(
     progress : callable, optional
         Function that is called from the caller's thread as ``progress(points done, N)`` after
         each block.
-    **options
-        Fields of ShadingOptions.
+    exponent : float or "compensated"
+        Exponent of the diffuse term, above 0 and up to 1e6. ``"compensated"`` is p(k, n), which
+        gives lines the contrast of a surface (Banks 5); 1 is the plain law; under lamps of several
+        colours in the picture plane 2 makes hue a code of direction. It has no effect on a
+        cylinder.
+    model : {"phong", "blinn", "cylinder"}
+        Reflection model of the highlight. ``"cylinder"``, for lines in 3-space, is the exact light
+        of a thin cylinder, diffuse and specular (Blinn's), by which the others are measured. As a
+        mean over the width it is dimmer than the brightest normal of a line: raise the
+        coefficients.
+    conditioned : bool or str
+        Whether tangents inherit the self-shadow of the surface that the normals belong to
+        (Banks 6).
+    components : bool, default: False
+        Whether the terms ``ambient``, ``diffuse`` and ``specular`` are kept, before any depth cue.
+    precision : {"float32", "float64"}, optional
+        Precision of the work and the result. Default: that of the tangents or normals.
 
     Returns
     -------
@@ -236,7 +254,7 @@ def shade(
         two_sided=two_sided,
         repeat=repeat,
     )
-    chosen = ShadingOptions(**options)
+    chosen = ShadingOptions.of(locals())
     return run(inputs, scene, chosen, threads=threads, block=block, progress=progress)
 
 

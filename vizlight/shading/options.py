@@ -6,20 +6,20 @@ import dataclasses
 import difflib
 import functools
 import inspect
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, TypeAlias, TypedDict, get_args
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
 import numpy as np
 
-from vizlight import _check, _words
+from vizlight import _check
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from typing import ParamSpec, TypeVar
 
     from numpy.typing import ArrayLike
+    from typing_extensions import Self
 
     P = ParamSpec("P")
     R = TypeVar("R")
@@ -111,57 +111,30 @@ class Bundle:
         _check.set_fields(self, depth=depth, directions=directions, grid=grid)
 
 
-class ShadingKeywords(TypedDict, total=False):
-    """The fields of :class:`ShadingOptions` as keyword arguments."""
+class Options:
+    """Base of the options of a filter, which stand as keywords in its signature."""
 
-    model: Model
-    exponent: Exponent
-    conditioned: bool | str | None
-    components: bool
-    precision: Precision | None
+    @classmethod
+    def of(cls, given: Mapping[str, Any]) -> Self:
+        """Return the options among the values of a function's parameters, ``locals()``."""
+        fields = dataclasses.fields(cls)  # type: ignore[arg-type]
+        return cls(**{field.name: given[field.name] for field in fields if field.name in given})
 
-
-class LightKeywords(ShadingKeywords, total=False):
-    """The fields of :class:`LightOptions` as keyword arguments."""
-
-    tangents: str | ArrayLike | None
-    positions: str | None
-    normals: str | ArrayLike | None
-    facing: Facing
-    feature_angle: FeatureAngle
-    refine: float
-    bundle: bool | Bundle
-    name: str
+    def changed(self) -> dict[str, Any]:
+        """Return the options that differ from their defaults."""
+        found = {}
+        for field in dataclasses.fields(self):  # type: ignore[arg-type]
+            value, default = getattr(self, field.name), field.default
+            if value is not default and not (type(value) is type(default) and value == default):
+                found[field.name] = value
+        return found
 
 
 @dataclass(frozen=True, kw_only=True)
-class ShadingOptions:
+class ShadingOptions(Options):
     """How light is computed at the points, whatever arrays describe them.
 
-    Parameters
-    ----------
-    exponent : float or "compensated"
-        Exponent of the diffuse term, above 0 and up to 1e6. ``"compensated"`` is p(k, n), which
-        gives lines the contrast of a surface (Banks 5); 1 is the plain law; under lamps of several
-        colours in the picture plane 2 makes hue a code of direction. It has no effect on a
-        cylinder.
-    model : {"phong", "blinn", "cylinder"}
-        Reflection model of the highlight. ``"cylinder"``, for lines in 3-space, is the exact light
-        of a thin cylinder, diffuse and specular (Blinn's), by which the others are measured. As a
-        mean over the width it is dimmer than the brightest normal of a line: raise the
-        coefficients.
-    conditioned : bool or str
-        Whether tangents inherit the self-shadow of the surface that the normals belong to
-        (Banks 6).
-    components : bool, default: False
-        Whether the terms ``ambient``, ``diffuse`` and ``specular`` are kept, before any depth cue.
-    precision : {"float32", "float64"}, optional
-        Precision of the work and the result. Default: that of the tangents or normals.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If a value does not fit.
+    The fields are keywords of :func:`vizlight.shading.engine.shade`.
     """
 
     model: Model = "phong"
@@ -190,49 +163,7 @@ class ShadingOptions:
 class LightOptions(ShadingOptions):
     """What a filter lights on a mesh, and how.
 
-    Parameters
-    ----------
-    tangents : str or array_like, optional
-        Name of a point array of ``k n`` components (k vectors of n, row after row), or its values.
-        The vectors may have any length: they are orthonormalised. A cell array is averaged to the
-        points as lines without sign, with a warning.
-    positions : str, optional
-        Name of a point array of n components with the places of the points in n-space. Default:
-        the points of the mesh.
-    normals : str or array_like, optional
-        Name of a point array of n components with normals, or its values. Default: the active
-        normals of the mesh (clear them after moving points), else those of its surface, which
-        stay with the result as ``vizlight_normals`` from 256 points on.
-    facing : {"auto", "eye", "outward", "as given"}
-        Side of the surface that is lit. ``"auto"``: each connected piece that is closed faces
-        outward, any other faces the eye at every point (with ``normals`` that are given the mesh
-        counts as one piece). ``"eye"``: every point faces the eye,
-        whatever piece it belongs to; with ``normals`` from data a surface in parts is then lit
-        as the whole. ``"outward"``: each piece faces outward as a whole, an open one away from its
-        centroid. ``"as given"``: normals as they are, those of the surface by the order of the
-        corners of its faces. Without a view both sides are lit alike where the eye would choose.
-    feature_angle : float or "auto", optional
-        Angle in degrees between two faces above which points on their common edge are split, so
-        that light does not bend across it; only for normals that are computed. ``"auto"``: 30 if
-        the sharp edges are creases, which stand apart from the others, else none is split.
-        Default: none is split.
-    conditioned : bool or str, default: False
-        Whether tangents inherit the self-shadow of the surface: diffuse and specular term of each
-        light times ``max(0, N . wi)`` (Banks 6). A surface of codimension 2 or more has no sides
-        and no such shadow: name the point array of its j tangents, such as ``"frame"``, and its
-        own brightness ``sin(a)^p(j, n)`` is the factor. In codimension 1 that is ``|N . wi|``.
-    refine : float, default: 0.0
-        Largest error between the points, such as 1/255: segments and triangles are split where
-        interpolation of the light would be further off, see :func:`vizlight.refine`. 0: the mesh
-        stays as it is.
-    bundle : bool or Bundle, default: False
-        Whether lines dim one another, and surfaces among them, as a bundle of thin cylinders; a
-        :class:`vizlight.Bundle` says how. The point arrays ``transmittance``, with one component
-        per light of intensity above 0, and ``occlusion``, 1 for a point that is open to all
-        sides, multiply each light and the ambient term. They are computed anew only where lines,
-        lights or points have changed.
-    name : str, default: "luminance"
-        Name of the result. Under another name the further arrays are ``<name>_diffuse`` and so on.
+    The fields are keywords of :func:`vizlight.illuminate`.
     """
 
     tangents: str | ArrayLike | None = None
@@ -299,74 +230,19 @@ def _is_auto(value: object) -> bool:
     return isinstance(value, str) and value == "auto"
 
 
-def documented(kind: type) -> dict[str, str]:
-    """Return the description of each field of an options class, those of its own first."""
-    found: dict[str, str] = {}
-    for owner in kind.__mro__:
-        for name, text in _words.parameters(owner.__dict__.get("__doc__")).items():
-            found.setdefault(name, text)
-    return found
+def named(function: Callable[P, R]) -> Callable[P, R]:
+    """Let the error for a keyword that a function does not have name the nearest that it has."""
+    known = list(inspect.signature(function).parameters)
 
+    @functools.wraps(function)
+    def method(*arguments: P.args, **keywords: P.kwargs) -> R:
+        for name in keywords:
+            if name not in known:
+                owner = function.__qualname__.removesuffix(".__init__")
+                raise TypeError(unknown_option(owner.rpartition(".")[2], name, known))
+        return function(*arguments, **keywords)
 
-def accepts(
-    kind: type,
-    *,
-    without: tuple[str, ...] = (),
-) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Let a function take the fields of an options class as keywords.
-
-    The function has ``**options``. They appear one by one in its signature and, in place of the
-    entry ``**options``, in its documentation; a keyword that is not among them is an error.
-
-    Parameters
-    ----------
-    kind : type
-        The options class, a dataclass.
-    without : tuple of str
-        Fields that the function does not take.
-    """
-
-    def decorate(function: Callable[P, R]) -> Callable[P, R]:
-        signature = inspect.signature(function)
-        own = [p for p in signature.parameters.values() if p.kind is not p.VAR_KEYWORD]
-        left_out = {*without, *(p.name for p in own)}
-        fields = {f.name: f for f in dataclasses.fields(kind) if f.name not in left_out}
-        texts = {name: text for name, text in documented(kind).items() if name in fields}
-        known = [*(p.name for p in own), *texts]
-
-        required = {name for name in texts if fields[name].default is dataclasses.MISSING}
-
-        @functools.wraps(function)
-        def method(*arguments: P.args, **keywords: P.kwargs) -> R:
-            for name in keywords:
-                if name not in known:
-                    owner = function.__qualname__.removesuffix(".__init__")
-                    raise TypeError(unknown_option(owner.rpartition(".")[2], name, known))
-            for name in required - keywords.keys():
-                raise TypeError(_check.message(name, f"a value for {function.__name__}", "none"))
-            return function(*arguments, **keywords)
-
-        added = [
-            inspect.Parameter(
-                name,
-                inspect.Parameter.KEYWORD_ONLY,
-                default=inspect.Parameter.empty if name in required else fields[name].default,
-                annotation=fields[name].type,
-            )
-            for name in texts
-        ]
-        listed = signature.replace(parameters=[*own, *added])
-        entries = "\n".join(filter(None, texts.values()))
-        text = re.sub(r"^\*\*options.*(\n    .*)*", lambda _: entries, _doc(function), flags=re.M)
-        method.__signature__ = listed  # type: ignore[attr-defined]
-        method.__doc__ = text
-        return method
-
-    return decorate
-
-
-def _doc(function: Callable[..., object]) -> str:
-    return inspect.cleandoc(function.__doc__ or "")
+    return method
 
 
 def unknown_option(function: str, name: str, known: list[str]) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import inspect
 import json
 from typing import TYPE_CHECKING, Any
 
@@ -20,11 +19,13 @@ from vizlight.scene import Scene
 from vizlight.scene.scene import as_scene
 from vizlight.shading import engine
 from vizlight.shading.inputs import ShadingInputs
-from vizlight.shading.options import LightOptions, accepts, documented
+from vizlight.shading.options import LightOptions, named
 from vizlight.shading.results import arrays_of, digest, of_light, record_key, unlit
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
+
+    from vizlight.shading.options import Exponent, Facing, Model, Precision
 
 __all__ = ["Illuminate"]
 
@@ -43,7 +44,7 @@ class _Option:
 
     def __set_name__(self, owner: type, name: str) -> None:
         self.name = name
-        self.__doc__ = inspect.cleandoc(documented(LightOptions)[name].partition("\n")[2])
+        self.__doc__ = f"Option ``{name}`` of light, as for :func:`vizlight.illuminate`."
         words = "".join(word.capitalize() for word in name.split("_"))
         setattr(owner, f"Get{words}", lambda own: getattr(own, name))
         setattr(owner, f"Set{words}", lambda own, value: setattr(own, name, value))
@@ -123,16 +124,31 @@ class Illuminate(VTKPythonAlgorithmBase):
     precision = _Option()
     name = _Option()
 
-    @accepts(LightOptions, without=_WITHOUT)
-    def __init__(self, scene: Scene | None = None, **options: Any) -> None:
+    @named
+    def __init__(
+        self,
+        scene: Scene | None = None,
+        *,
+        tangents: str | ArrayLike | None = None,
+        positions: str | None = None,
+        normals: str | ArrayLike | None = None,
+        facing: Facing = "auto",
+        conditioned: bool | str | None = False,
+        name: str = "luminance",
+        exponent: Exponent = "compensated",
+        model: Model = "phong",
+        components: bool = False,
+        precision: Precision | None = None,
+    ) -> None:
+        asked = LightOptions.of(locals())
         super().__init__(  # type: ignore[no-untyped-call]
             nInputPorts=1, nOutputPorts=1, inputType="vtkDataSet", outputType="vtkDataSet"
         )
         self._scene: Scene | None = None
         self._options = LightOptions()
         self.scene = scene
-        for name, value in options.items():
-            setattr(self, name, value)
+        for option, value in asked.changed().items():
+            setattr(self, option, value)
 
     @property
     def scene(self) -> Scene | None:
