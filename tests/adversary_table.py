@@ -19,6 +19,7 @@ from vizlight.geometry.solids.primitives import Solid
 from vizlight.pictures.render import PlotterKeywords
 from vizlight.scene.scene import SceneKeywords
 from vizlight.shading.engine import Shading
+from vizlight.shading.options import Options
 
 PAGES = Path(__file__).parent.parent / "gallery" / "pages" / "api.rst"
 #: Public modules that have no page of their own.
@@ -52,6 +53,7 @@ RETURNED = {
 PROTOCOLS = {
     Solid: {"combine", "moved", "inside", "box", "surfaces", "primitives"},
     Shading: {"part"},
+    Options: {"of"},
 }
 TYPED_DICTS = {"PlotterKeywords": lambda: PlotterKeywords, "SceneKeywords": lambda: SceneKeywords}
 
