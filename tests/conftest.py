@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import os
 from collections import defaultdict
+from pathlib import Path
 
 import hypothesis
 import numpy as np
@@ -15,6 +16,10 @@ hypothesis.settings.load_profile("suite")
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 FIGURES: dict[tuple[str, str, str], list[float]] = defaultdict(lambda: [0.0, 0.0, 0])
+
+
+def pytest_addoption(parser):
+    parser.addoption("--skipped", metavar="FILE", help="file of the names of skipped tests")
 
 
 @pytest.fixture
@@ -45,7 +50,10 @@ def pytest_collection_modifyitems(config, items):
             item.add_marker(pytest.mark.skip(reason=str(error)))
 
 
-def pytest_terminal_summary(terminalreporter):
+def pytest_terminal_summary(terminalreporter, config):
+    if path := config.getoption("--skipped"):
+        names = {report.nodeid for report in terminalreporter.stats.get("skipped", ())}
+        Path(path).write_text("\n".join(sorted(names)), encoding="utf-8")
     if not FIGURES:
         return
     terminalreporter.section("largest errors against 50 digits, in eps")

@@ -64,6 +64,7 @@ def test_a_disk_that_is_too_small_leaves_the_old_file(ball, tmp_path):
         assert {run.code for run in runs} == {0, 2}
 
 
+@pytest.mark.slow
 def test_kills_while_a_file_is_written(tmp_path):
     failed = []
     counts = kill_writers.run(4, 1, tmp_path, suffixes=("vtp",), say=failed.append)
@@ -106,6 +107,7 @@ BROKEN = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", BROKEN)
 def test_a_picture_is_drawn_or_refused_where_the_library_is_broken(name, ball, tmp_path):
     out = tmp_path / "lit.png"

@@ -13,6 +13,7 @@ pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="Li
 RUN = runner.Run(2, "", "vizlight: file: no\n", 0.1, [])
 
 
+@pytest.mark.slow
 def test_two_hundred_damaged_files(tmp_path):
     failed = []
     counts = mutate_files.run(200, 1, tmp_path, report=failed.append)

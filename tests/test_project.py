@@ -40,6 +40,7 @@ REASONS = {
     "pre-commit-hooks": "commands that .pre-commit-config.yaml names",
     "pydata-sphinx-theme": "theme of Sphinx, named in gallery/pages/conf.py",
     "pytest-pyvista": "plugin of pytest: the fixture that compares pictures",
+    "pytest-xdist": "plugin of pytest: its option -n",
     "ruff": "command",
     "scipy-stubs": "types of SciPy, which mypy reads",
     "sphinx-design": "extension of Sphinx, named in gallery/pages/conf.py",

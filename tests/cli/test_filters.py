@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from PIL import Image
+from rich.console import Console
 
 import vizlight
 from vizlight import cli
@@ -159,7 +160,8 @@ IN_SCRIPTS = {
 
 
 def shown(name, capfd, monkeypatch):
-    monkeypatch.setenv("COLUMNS", "100")
+    # The command line keeps its console, whatever the terminal of the first test was.
+    monkeypatch.setattr(cli.app, "console", Console(width=100))
     code, out, _ = run(capfd, name, "--help")
     assert code == 0
     return out

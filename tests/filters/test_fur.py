@@ -476,6 +476,7 @@ def varied():
     return mesh
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:.* fibres point into the surface")
 @pytest.mark.parametrize(
     "options",

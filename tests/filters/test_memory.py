@@ -136,6 +136,7 @@ print((status("VmHWM") - before) / mesh.actual_memory_size)
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/clear_refs").exists(), reason="Linux tells the peak")
 @pytest.mark.parametrize(
     "make",

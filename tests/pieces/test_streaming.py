@@ -65,6 +65,7 @@ CODE = """
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 def test_pieces_fit_where_the_whole_does_not(tmp_path):
     from vtkmodules.vtkIOHDF import vtkHDFWriter

@@ -123,6 +123,7 @@ def drawn(mesh, scene, options, camera):
     return picture
 
 
+@pytest.mark.slow
 @pytest.mark.opengl
 @real_paraview.needed
 def test_pixels_are_those_of_a_plotter(tmp_path):

@@ -215,6 +215,7 @@ unit = st.floats(0, 1)
 puts = st.lists(st.tuples(st.integers(0, 60), unit, unit), min_size=4, max_size=40)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kernel", suite.KERNELS)
 @settings(
     max_examples=8, phases=[Phase.generate, Phase.target], suppress_health_check=list(HealthCheck)

@@ -153,6 +153,7 @@ def test_light_is_that_of_vizlight_and_follows_the_eye(tmp_path, files):
         assert np.mean(error) < 0.5
 
 
+@pytest.mark.slow
 @real_paraview.needed
 def test_two_ranks_are_equal_to_one(tmp_path, files):
     said = start(tmp_path, files, RANKS, ".pvtp", ranks=2)
