@@ -11,6 +11,9 @@ import numpy as np
 import pytest
 
 from vizlight import _compiled
+from vizlight.geometry.lines import compiled as growing
+from vizlight.geometry.relief import compiled as walking
+from vizlight.geometry.relief import strips
 
 #: A module with two kernels, one of which calls the other.
 MODULE = """
@@ -240,3 +243,22 @@ def test_generated_code_is_kept(home):
     assert files == [".nbc", ".nbi", ".py"]
     again = _compiled.Kernel(_compiled.generated(text, names, "shift")["shifted"])
     assert again.start_up() <= _compiled.READ
+
+
+@pytest.mark.parametrize("own", [strips.lengths, walking.walk, growing.grow])
+def test_a_first_call_takes_at_most_twice_the_time_of_numpy(own, monkeypatch, tmp_path):
+    """Without a cache, a kernel is compiled only if the call wins half of that back."""
+    pytest.importorskip("numba")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setattr(_compiled.Kernel, "ready", lambda self: True)
+    monkeypatch.setattr(_compiled._Account, "prepared", False)
+    chosen = []
+    with _compiled.setting(""):
+        for saved in np.geomspace(0.01, 10, 40):
+            monkeypatch.setattr(_compiled._Account, "missed", 0.0)
+            again = _compiled.Kernel(own.function, seconds=own.seconds)
+            chosen.append(again.pays(saved))
+            if chosen[-1]:
+                assert _compiled.preparation() + own.seconds <= 2 * saved
+    assert chosen[-1]
+    assert not chosen[0]

@@ -41,11 +41,12 @@ OLDEST = (0, 59)
 #: one step, quotients as products, the sign of zero. Sums keep their order.
 ROUNDING = frozenset({"contract", "arcp", "nsz"})
 #: Seconds of processor time to import numba, to prepare its compiler for the first kernel of a
-#: process, to read a kernel from the disk, and to compile one, as measured with numba 0.68 for
-#: kernels of the engine.
+#: process, to read a kernel from the disk, and to compile one of the engine, as measured with numba
+#: 0.68. Other kernels state their own.
 IMPORT, PREPARE, READ, COMPILE = 0.2, 0.28, 0.02, 1.2
-#: Share of the time to compile that one process must win back, as the disk keeps the result.
-SHARED = 1 / 3
+#: Share of the time to compile that one process must win back, as the disk keeps the result. With a
+#: half, a call of which the kernel saves so much takes at most twice the time of NumPy.
+SHARED = 1 / 2
 #: What a damaged file of the cache raises when numba reads it.
 _DAMAGED = (pickle.UnpicklingError, EOFError, ValueError, LookupError, AttributeError, ImportError)
 #: What the import of numba raises beside other releases of NumPy or without its own libraries.
@@ -220,6 +221,8 @@ class Kernel(Generic[P, R]):
     apart : bool
         Whether no array that the function writes overlaps another argument. Else a loop that looks
         up a table is not compiled to vector instructions, which takes six times as long.
+    seconds : float
+        Processor time to compile the function and its helpers.
     """
 
     def __init__(
@@ -230,7 +233,9 @@ class Kernel(Generic[P, R]):
         rounding: frozenset[str] = frozenset(),
         uses: Iterable[str] = (),
         apart: bool = False,
+        seconds: float = COMPILE,
     ) -> None:
+        self.seconds = seconds
         self.function, self.inline, self.rounding = function, inline, rounding
         self.apart = apart
         self.uses = tuple(uses)
@@ -277,9 +282,9 @@ class Kernel(Generic[P, R]):
         """Return the seconds to read or to compile the function, as far as this process pays."""
         folder = self._folder()
         if folder is None:
-            return COMPILE
+            return self.seconds
         name = f"{self.function.__code__.co_name}-{self.function.__code__.co_firstlineno}.*.nbi"
-        return READ if any(folder.rglob(f"*{name}")) else COMPILE * SHARED
+        return READ if any(folder.rglob(f"*{name}")) else self.seconds * SHARED
 
     def ready(self) -> bool:
         """Import numba and prepare the function; return whether that worked.
@@ -411,12 +416,16 @@ def _apart() -> type:
 
 
 def kernel(
-    *, inline: bool = False, rounding: frozenset[str] = frozenset(), uses: Iterable[str] = ()
+    *,
+    inline: bool = False,
+    rounding: frozenset[str] = frozenset(),
+    uses: Iterable[str] = (),
+    seconds: float = COMPILE,
 ) -> Callable[[Callable[P, R]], Kernel[P, R]]:
     """Return a decorator that makes a :class:`Kernel` of a function; see there."""
 
     def decorate(function: Callable[P, R]) -> Kernel[P, R]:
-        return Kernel(function, inline=inline, rounding=rounding, uses=uses)
+        return Kernel(function, inline=inline, rounding=rounding, uses=uses, seconds=seconds)
 
     return decorate
 

@@ -243,7 +243,8 @@ def hang(
             heights[m * fibre + j] = highest - up
 
 
-@_compiled.kernel()
+# With lay, which is compiled before it.
+@_compiled.kernel(seconds=2.9)
 def grow(
     total: Array, place: Array, number: Array, jitter: Array, start: Array, triangle: int,
     mean: float, corners: Indices, table: Array, at: Indices, toward: Array, phase: Array,

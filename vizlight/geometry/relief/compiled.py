@@ -108,7 +108,7 @@ def child(edges: Array, cell: int, level: int, place: float) -> int:
     return left + (1 if place >= edges[min((left + 1) << level, len(edges) - 1)] else 0)
 
 
-@_compiled.kernel()
+@_compiled.kernel(seconds=1.4)
 def walk(
     start: Array, way: Array, reach: Array, x: Array, y: Array, corners: Array, bounds: Levels,
     base: float, top: float, out: Array,

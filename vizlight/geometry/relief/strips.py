@@ -211,7 +211,7 @@ def follow(
     fill(0, inside, columns[last], begin, since, length)
 
 
-@_compiled.kernel()
+@_compiled.kernel(seconds=4.2)
 def lengths(
     grid: Grid, way: Triple, per_step: float, slack: float, spacing: float, start: Array,
     rays: Indices, out: Array,
