@@ -181,7 +181,7 @@ def error(
                 tangents=None if bare else sample.tangents,
                 options=dataclasses.replace(
                     sample.options,
-                    **{k: v for k, v in how.items() if not (bare and k == "conditioned")},
+                    **how,
                 ),
             ),
             part,
@@ -239,6 +239,8 @@ def lights(places: Iterable[Place], noise: float = NOISE) -> list[Row]:
     found = []
     every = list(places)
     for question in ERRORS:
+        if question.startswith("value") and noise != NOISE:
+            continue  # values are read off the bytes, without noise
         asked = [place for place in every if question in questions(place)]
         base = [error(place, question, Scene(), {}, noise)[0] for place in asked]
         for name, make in LIGHTS.items():
@@ -268,6 +270,8 @@ def option(name: str, places: Iterable[Place], samples: int) -> list[Row]:
     """Return what an option changes in the best light of each question, and in the default."""
     chosen, every, found = OPTIONS[name], list(places), []
     for question in ERRORS:
+        if "conditioned" in dict(chosen.how) and question not in ("direction", "key"):
+            continue  # the others are asked of a surface without tangents
         asked = [place for place in every if question in questions(place)]
         asked = [place for place in asked if chosen.lines in (None, place.lines)]
         for light in (f"presets.{BEST[question]}", "Scene()"):
@@ -317,12 +321,12 @@ def verdict(rows: Sequence[Row]) -> str:
         parts += [f"{question} {words(row.cost)} to {words(row.error)}" for row in own]
     gains: dict[str, bool] = {}
     for row in rows:
-        if row.way in OPTIONS:
-            gain = float(row.more["best gain"]) > LEAST[str(row.parameter)]
+        if row.way in OPTIONS and row.more["beside"] != "Scene()":
+            gain = float(row.more["mean gain"]) > LEAST[str(row.parameter)]
             gains[row.way] = gains.get(row.way, False) or gain
     never = [name for name, gained in gains.items() if not gained]
     text = f"from Scene() to the preset: {', '.join(parts)}"
-    return text + (f"; never gains: {', '.join(never)}" if never else "")
+    return text + (f"; beside the presets no gain in the mean: {', '.join(never)}" if never else "")
 
 
 STUDY = Study(

@@ -46,18 +46,22 @@ def test_an_option_is_compared_with_the_light_that_it_changes(places):
             # The presets have no highlight.
             assert row.error == row.cost
     assert {row.parameter for row in rows} == set(legibility.ERRORS)
+    shadowed = legibility.option("conditioned=True", places, 64)
+    assert {row.parameter for row in shadowed} == {"direction", "key"}
     lines = legibility.option("bundle=True", places, 64)
     assert {row.parameter for row in lines} == {"slope", "heading"}
 
 
 def test_the_verdict_follows_from_the_rows():
-    more = {"best gain": 0.0}
+    more = {"mean gain": 0.0, "beside": "presets.shape"}
     rows = [
         Row("presets.shape", "shape", 3.0, 30.0, more),
         Row("exponent=2", "shape", 3.0, 3.0, more),
         Row("exponent=1", "shape", 3.0, 3.0, more),
-        Row("exponent=1", "slope", 1.0, 3.0, {"best gain": 2.0}),
+        Row("exponent=1", "slope", 1.0, 3.0, more | {"mean gain": 2.0}),
+        Row("color", "slope", 1.0, 3.0, {"mean gain": 2.0, "beside": "Scene()"}),
     ]
     assert legibility.verdict(rows) == (
-        "from Scene() to the preset: shape 30 to 3; never gains: exponent=2"
+        "from Scene() to the preset: shape 30 to 3; beside the presets no gain in the mean: "
+        "exponent=2"
     )
