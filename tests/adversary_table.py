@@ -148,9 +148,7 @@ KINDS = {
     ("pieces.run.light", "sources"): "object | Path",
 }
 #: Arguments that are not replaced, with the reason.
-SKIPPED = {
-    ("files.read", "isolated"): "starts Python, which takes seconds",
-}
+SKIPPED = {}
 #: The only arguments that are replaced where a function of the same arguments is walked anyway.
 ONLY = {name: ("mesh", "surface", "lit", "scene") for name in CALLS if name.startswith("accessor.")}
 #: Words by which an error may name an argument, where the command line says the same to its users.

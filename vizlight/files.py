@@ -9,10 +9,9 @@ import io
 import os
 import re
 import shutil
-import signal
-import subprocess
 import sys
 import tempfile
+import threading
 import uuid
 import warnings
 from pathlib import Path
@@ -64,11 +63,15 @@ _DAMAGE = re.compile(
 )
 
 
+#: Standard error is the process's: one thread at a time redirects it.
+_REDIRECTED = threading.RLock()
+
+
 class FileError(ValueError):
     """A file cannot be read or written."""
 
 
-def read(path: str | Path, /, *, salvage: bool = False, isolated: bool = False) -> pv.DataSet:
+def read(path: str | Path, /) -> pv.DataSet:
     """Read a mesh from a file: any that PyVista reads, tractograms and netCDF grids.
 
     Parameters
@@ -77,13 +80,6 @@ def read(path: str | Path, /, *, salvage: bool = False, isolated: bool = False) 
         Path of the file. Tractograms (.trk, .tck, .trx) need the extra ``tracts``; netCDF files
         (.nc, .cdf) and those that PyVista reads by meshio, such as .off, .mesh and .msh, need the
         extra ``formats``.
-    salvage : bool, default: False
-        Whether a file that its reader finds damaged is used as far as it was read, with a warning
-        that has the reader's words.
-    isolated : bool, default: False
-        Whether the file is first read in a process of its own, so that a reader that crashes, or
-        does not end within a minute and one second for each megabyte, is an error. It takes as
-        long as starting Python and reading the file once more.
 
     Returns
     -------
@@ -100,13 +96,14 @@ def read(path: str | Path, /, *, salvage: bool = False, isolated: bool = False) 
         If the file does not exist, cannot be read or is damaged, the package that reads it is not
         installed, or it has no points.
 
-    Warns
+    Notes
     -----
-    UserWarning
-        If a damaged file is used with ``salvage``.
+    Readers are libraries in C and C++: a file from others that is damaged on purpose may end the
+    process. The command line reads in a process of its own. A file is refused where its reader says
+    that it is damaged, and where it is shorter than its format states; a .obj file states nothing.
+    Threads read one after the other.
     """
     path = _path("file", path)
-    salvage, isolated = _check.boolean("salvage", salvage), _check.boolean("isolated", isolated)
     if not path.is_file():
         what = "a folder" if path.is_dir() else "no such file"
         raise FileError(_check.message("file", "a file", f"'{path}' ({what})"))
@@ -117,12 +114,9 @@ def read(path: str | Path, /, *, salvage: bool = False, isolated: bool = False) 
         raise FileError(_check.message("file", expected, ascii(str(path)), remedy))
     reason = "no points"
     mesh: pv.DataSet | None = None
-    limit = _supervise.read_limit(path.stat().st_size)
-    short = short_files.missing_part(path)
-    if short and not salvage:
+    if short := short_files.missing_part(path):
         raise _damaged(path, short)
-    if isolated:
-        _try_to_read(path, limit)
+    limit = _supervise.read_limit(path.stat().st_size)
     reading = _supervise.stage("read", path, seconds=limit)
     said = io.StringIO()
     with (
@@ -133,7 +127,7 @@ def read(path: str | Path, /, *, salvage: bool = False, isolated: bool = False) 
     ):
         warnings.simplefilter("ignore")
         try:
-            found = foreign_files.read(path, errors)
+            found = foreign_files.read(path)
             if found is None:
                 found = pv.read(path)
             if lacking := short_files.contradiction(found):
@@ -149,16 +143,13 @@ def read(path: str | Path, /, *, salvage: bool = False, isolated: bool = False) 
             reason = f"no points: {errors[0]}"
         got, remedy = f"'{path}' ({reason})", foreign_files.missing(path)
         raise FileError(_check.message("file", "a mesh that PyVista reads", got, remedy))
-    fault = errors[0] if errors else short
-    if fault and not salvage:
-        raise _damaged(path, fault)
+    if errors:
+        raise _damaged(path, errors[0])
     if isinstance(found, pv.MultiBlock) and (names := _left_out(found, mesh)):
         _check.warn(
             f"file: '{path}' has blocks whose cells are of a lower dimension than those of others, "
             f"which are left out: {names}; light pyvista.read(...) to keep all blocks"
         )
-    if fault:
-        _check.warn(f"file: '{path}' is damaged, what was read of it is used ({fault})")
     return mesh
 
 
@@ -183,24 +174,8 @@ def _dataset(mesh: object) -> None:
 
 
 def _damaged(path: Path, reason: str) -> FileError:
-    got, remedy = f"'{path}' ({reason})", "salvage= uses what could be read"
-    return FileError(_check.message("file", "a file that is not damaged", got, remedy))
-
-
-def _try_to_read(path: Path, limit: float) -> None:
-    """Read a file in a process of its own, and raise an error if it crashes or does not end."""
-    code = "import sys, vizlight.files as f; f.read(sys.argv[1], salvage=True)"
-    try:
-        run = subprocess.run(
-            [sys.executable, "-c", code, str(path)], capture_output=True, timeout=limit, check=False
-        )
-    except subprocess.TimeoutExpired:
-        reason = f"not read within {limit:.0f} s"
-    else:
-        if run.returncode >= 0:  # what the reader says is said by the second reading
-            return
-        reason = f"its reader was ended by {signal.Signals(-run.returncode).name}"
-    raise FileError(_check.message("file", "a file that can be read", f"'{path}' ({reason})"))
+    got = f"'{path}' ({reason})"
+    return FileError(_check.message("file", "a file that is not damaged", got))
 
 
 def _first_line(error: Exception | str) -> str:
@@ -243,19 +218,20 @@ def _samples(grid: pv.UnstructuredGrid) -> Iterator[tuple[int, int]]:
 def captured_errors() -> Iterator[list[str]]:
     """Capture the standard error of C and C++ readers; the list holds VTK's errors afterwards."""
     errors: list[str] = []
-    sys.stderr.flush()
-    with tempfile.TemporaryFile() as sink:
-        kept = os.dup(2)
-        os.dup2(sink.fileno(), 2)
-        try:
-            yield errors
-        finally:
-            sys.stderr.flush()
-            os.dup2(kept, 2)
-            os.close(kept)
-            sink.seek(0)
-            text = sink.read().decode(errors="replace")
-            errors += _DAMAGE.findall(text)
+    with _REDIRECTED:
+        sys.stderr.flush()
+        with tempfile.TemporaryFile() as sink:
+            kept = os.dup(2)
+            os.dup2(sink.fileno(), 2)
+            try:
+                yield errors
+            finally:
+                sys.stderr.flush()
+                os.dup2(kept, 2)
+                os.close(kept)
+                sink.seek(0)
+                text = sink.read().decode(errors="replace")
+                errors += _DAMAGE.findall(text)
 
 
 def surface_of(

@@ -49,15 +49,12 @@ class Part:
         Point array of which an isosurface is taken.
     level
         Value of the isosurface. Default: the middle of the range.
-    salvage
-        Use what could be read of a damaged file.
     """
 
     clip: Texts | None = None
     threshold: Texts | None = None
     contour: str | None = None
     level: float | None = None
-    salvage: Flag = False
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -141,7 +141,6 @@ def _refuse(target: Target, color: Color, out: Output) -> None:
         "--threshold": target.threshold,
         "--slice": target.slice,
         "--warp": target.warp,
-        "--salvage": target.salvage,
         "--scalars": color.scalars,
         "--report": out.report,
         "--paraview": out.paraview,

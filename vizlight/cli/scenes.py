@@ -69,7 +69,7 @@ def check_color(color: Color) -> None:
 
 def data(file: Path, target: Part) -> Step:
     """Return the step that reads a file, after those that raise and cut what is in it."""
-    mesh = Step("data", "vizlight.read", file, **({"salvage": True} if target.salvage else {}))
+    mesh = Step("data", "vizlight.read", file)
     warp = target.warp if isinstance(target, Shape) else None
     wanted = {target.contour, warp} - {None}
     if wanted and any(name in mesh.run().cell_data for name in wanted - {*mesh.run().point_data}):

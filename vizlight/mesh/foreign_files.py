@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import contextlib
 import importlib
-import io
-import re
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -59,14 +56,11 @@ def missing(path: Path) -> str:
     return ""
 
 
-def read(path: Path, faults: list[str]) -> pv.DataSet | None:
-    """Return the mesh of a file that PyVista cannot read; None where it is left to PyVista.
-
-    What is missing of a tractogram is appended to ``faults``; its whole streamlines are returned.
-    """
+def read(path: Path) -> pv.DataSet | None:
+    """Return the mesh of a file that PyVista cannot read; None where it is left to PyVista."""
     suffix = path.suffix.lower()
     if suffix in (".trk", ".tck"):
-        return _tracts(path, faults)
+        return _tracts(path)
     if suffix == ".trx":
         return _tracts_of_trx(path)
     if suffix in (".nc", ".cdf"):
@@ -103,23 +97,17 @@ def _refuse_narrow(path: Path) -> None:
         raise ValueError(f"{got} columns in the header, VTK reads {_DEM_LEAST} or more")
 
 
-def _tracts(path: Path, faults: list[str]) -> pv.PolyData:
+def _tracts(path: Path) -> pv.PolyData:
     import nibabel
 
-    tracts: Any
-    try:
-        tracts = nibabel.streamlines.load(path).tractogram
-    except nibabel.streamlines.tractogram_file.HeaderError:
-        raise
-    except Exception as error:  # noqa: BLE001 - of a cut file, of any type
-        tracts = _whole_streamlines(path)
-        faults.append(f"{type(error).__name__}: {error}")
+    tracts: Any = nibabel.streamlines.load(path).tractogram
     lines = tracts.streamlines
     if path.suffix.lower() == ".trk":
         # The header as it is in the file; nibabel takes a cut between two streamlines for the end.
         header = nibabel.streamlines.load(path, lazy_load=True).header
         if len(lines) < header["nb_streamlines"]:
-            faults.insert(0, f"{len(lines)} of {header['nb_streamlines']} streamlines are there")
+            reason = f"{len(lines)} of {header['nb_streamlines']} streamlines are there"
+            raise ValueError(reason)
     return _polylines(
         lines.get_data(),
         lines._offsets,
@@ -127,41 +115,6 @@ def _tracts(path: Path, faults: list[str]) -> pv.PolyData:
         {name: rows.get_data() for name, rows in tracts.data_per_point.items()},
         dict(tracts.data_per_streamline.items()),
     )
-
-
-def _whole_streamlines(path: Path) -> Any:
-    """Return the streamlines before the place where a file is cut, as nibabel's tractogram."""
-    import nibabel
-
-    data = path.read_bytes()
-    if start := re.match(rb"mrtrix tracks.*?^file: \. (\d+)", data, re.DOTALL | re.MULTILINE):
-        # nibabel reads no file of which a point, 12 bytes, is cut.
-        data = data[: len(data) - (len(data) - int(start[1])) % 12]
-    tracts = nibabel.streamlines.load(io.BytesIO(data), lazy_load=True).tractogram
-    found = _until_error(tracts)
-    first = found[0] if found else None
-    return nibabel.streamlines.Tractogram(
-        # Only these are in the space of the header.
-        _until_error(tracts.streamlines),
-        {
-            name: [line.data_for_streamline[name] for line in found]
-            for name in (first.data_for_streamline if first else ())
-        },
-        {
-            name: [line.data_for_points[name] for line in found]
-            for name in (first.data_for_points if first else ())
-        },
-    )
-
-
-def _until_error(values: Iterable[Any]) -> list[Any]:
-    """Return the values before an error."""
-    found = []
-    with contextlib.suppress(Exception):
-        # Extending the list would ask for the length, which is an error.
-        for value in values:
-            found.append(value)
-    return found
 
 
 def _tracts_of_trx(path: Path) -> pv.PolyData:

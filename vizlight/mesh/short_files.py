@@ -14,6 +14,7 @@ from vtkmodules.vtkCommonDataModel import vtkGenericCell
 from vizlight.mesh import blocks
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
     from vtkmodules.vtkCommonDataModel import vtkCellArray
@@ -67,10 +68,11 @@ _NO_NUMBERS = ("nan", "inf", "infinity")
 
 
 def missing_part(path: Path, /) -> str:
-    """Return what a DEM, PLY, STL, SU2 or legacy VTK file lacks of what it announces.
+    """Return what a file lacks of the size or the end that it states.
 
-    A cut is not seen where it leaves out whole arrays, and in binary PLY files with faces of more
-    than three corners. A text of STL announces its end.
+    These are the XML files of VTK, netCDF 3, TIFF, DEM, PLY, STL, SU2 and legacy VTK. A cut is not
+    seen where it leaves out whole arrays of a legacy file, and in binary PLY files with faces of
+    more than three corners.
 
     Parameters
     ----------
@@ -83,9 +85,15 @@ def missing_part(path: Path, /) -> str:
         Reason why the file cannot be whole; empty if it may be, or is of another format.
     """
     suffix = path.suffix.lower()
-    if suffix not in (".dem", ".ply", ".stl", ".su2", ".vtk"):
+    if suffix in (".nc", ".cdf"):
+        return _netcdf(path)
+    if suffix in (".tif", ".tiff"):
+        return _tiff(path)
+    if suffix not in (".dem", ".ply", ".stl", ".su2", ".vtk", *_XML):
         return ""
     with path.open("rb") as file:
+        if suffix in _XML:
+            return _xml(file)
         if suffix == ".dem":
             return _dem(file.read())
         if suffix == ".su2":
@@ -93,6 +101,54 @@ def missing_part(path: Path, /) -> str:
         if suffix == ".stl":
             return _stl(file, path)
         return _ply(file, path) if suffix == ".ply" else _legacy(file)
+
+
+#: Suffixes of the XML files of VTK, whose last element may hold raw data.
+_XML = (
+    *(".vti", ".vtm", ".vtp", ".vtr", ".vts", ".vtu"),
+    *(".pvti", ".pvtp", ".pvtr", ".pvts", ".pvtu"),
+)
+
+
+def _xml(file: BinaryIO) -> str:
+    """Look for the end of a file, which stands after its data."""
+    if not file.read(100).lstrip().startswith((b"<?xml", b"<VTKFile")):
+        return ""  # VTK's reader says so
+    file.seek(-min(512, file.seek(0, 2)), 2)
+    return "" if b"</VTKFile>" in file.read() else "its end is missing"
+
+
+def _netcdf(path: Path) -> str:
+    """Map each variable of a netCDF 3 file; the library of netCDF takes what is missing for 0."""
+    with path.open("rb") as file:
+        if file.read(4) not in (b"CDF\x01", b"CDF\x02"):
+            return ""  # HDF5, whose reader compares the size
+    from scipy.io import netcdf_file
+
+    try:
+        netcdf_file(path).close()
+    except Exception as error:  # noqa: BLE001 - of any type, by the place of the cut
+        return f"a variable is not whole: {error}"
+    return ""
+
+
+def _tiff(path: Path) -> str:
+    """Compare the size with the ends of the strips or tiles of a TIFF file."""
+    from PIL import Image
+
+    try:
+        with Image.open(path) as image:
+            tags: Mapping[int, tuple[int, ...]] = image.tag_v2  # type: ignore[attr-defined]
+            pairs = ((tags.get(at, ()), tags.get(at + size, ())) for at, size in _PARTS)
+            ends = [a + n for offsets, sizes in pairs for a, n in zip(offsets, sizes, strict=True)]
+    except Exception as error:  # noqa: BLE001 - of any type, by the place of the cut
+        return f"its tags cannot be read: {error}"
+    least, size = max(ends, default=0), path.stat().st_size
+    return f"{size} of {least} bytes are there" if size < least else ""
+
+
+#: Tags of the offsets of strips and of tiles, and what their sizes' tags are more.
+_PARTS = ((273, 6), (324, 1))
 
 
 #: Number of points of a cell, by VTK's number of its type; other types have any number.
@@ -240,19 +296,22 @@ def _ply(file: BinaryIO, path: Path) -> str:
     if file.readline().strip() != b"ply":
         return ""  # VTK's reader says so
     text, lines, size = False, 0, 0
-    count, faces = 0, False
+    count, faces, kinds = 0, False, list[str]()
     for _ in range(_LONGEST_HEADER):
-        words = file.readline().decode(errors="replace").split()
-        if not words:
-            return ""
+        line = file.readline()
+        words = line.decode(errors="replace").split()
+        if not words or not line.endswith(b"\n"):
+            return "its header is not whole"
         if words[0] == "end_header":
-            return _short(file, path, lines if text else None, size)
+            return _short(file, path, lines if text else None, size, kinds)
         if words[0] == "format":
             text = words[1:2] == ["ascii"]
         if words[0] == "element" and len(words) == 3 and words[2].isdecimal():
             count, faces = int(words[2]), words[1] == "face"
             lines += count
+            kinds = [] if count else kinds
         if words[0] == "property" and len(words) > 2:
+            kinds += [words[1]] * bool(count)
             size += count * _least_size(words, corners=_CORNERS if faces else 0)
     return ""
 
@@ -264,12 +323,24 @@ def _least_size(words: list[str], *, corners: int) -> int:
     return sum(n * _SIZES.get(word, 1) for n, word in zip((1, corners), words[2:4], strict=False))
 
 
-def _short(file: BinaryIO, path: Path, lines: int | None, size: int) -> str:
-    """Return what is missing after the header: lines of a text, bytes of a binary file."""
+def _short(file: BinaryIO, path: Path, lines: int | None, size: int, kinds: list[str]) -> str:
+    """Return what is missing after the header: lines of a text, bytes of a binary file.
+
+    The last line of a text has a word for each property of the last element, and the members of a
+    list that stands alone.
+    """
     if lines is None:
         there = path.stat().st_size - file.tell()
         return f"{there} of at least {size} bytes are there" if there < size else ""
-    found = sum(1 for line in file if line.strip())
+    found, last = 0, b""
+    for line in filter(bytes.strip, file):
+        found, last = found + 1, line
+    words = last.split()
+    least = len(kinds)
+    if kinds == ["list"] and words and words[0].isdigit():
+        least += int(words[0])
+    if found == lines and len(words) < least:
+        return f"{len(words)} of {least} numbers of its last line are there"
     return f"{found} of {lines} lines are there" if found < lines else ""
 
 
