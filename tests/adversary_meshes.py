@@ -202,6 +202,7 @@ CALLS = {
         "workers": 1,
         "tangents": "V",
     },
+    "pieces.workers.Processes": lambda: {"count": 1},
     "plotting.component.Component.add_mesh": lambda: {"mesh": ball(), "scene": SCENE},
     "plotting.component.Component.explain": lambda: {"actor": shown()},
     "plotting.component.Component.export_html": lambda: {
@@ -233,6 +234,7 @@ CALLS = {
     "scene.view.DepthCue": lambda: {"front": 0.0, "back": 1.0},
     "scene.view.View": lambda: {"position": (3.0, 0.0, 0.0)},
     "scene.view.View.from_camera": lambda: {"camera": pv.Camera()},
+    "scene.view.View.isometric": lambda: {"n": 3},
     "vtk.illuminate.Illuminate": lambda: {"scene": SCENE},
     "shading.decide.plan": lambda: {"scene": SCENE, "k": 1},
     "shading.engine.depth_range": lambda: {"points": unit(6, 3), "scene": SCENE},
