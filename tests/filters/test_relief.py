@@ -404,7 +404,6 @@ BALL = pv.Sphere(theta_resolution=8, phi_resolution=8)
         (BALL, {"depth": -1}, ValueError, "depth: expected a finite number of at least 0"),
         (BALL, {"elevation": "z"}, ValueError, "elevation: expected none on a surface"),
         (BALL, {"factor": 2}, ValueError, "factor: expected none on a surface, got 2"),
-        (BALL, {"base": 0}, ValueError, "base: expected none on a surface, got 0"),
         (BALL, {"border": "wall"}, ValueError, "border: expected none on a surface, got 'wall'"),
         (BALL, {"method": "exact"}, ValueError, "method: expected none on a surface, got 'exact'"),
         (BALL, {"thickness": 0}, ValueError, "thickness: expected more than 0"),

@@ -95,13 +95,13 @@ def test_depth_to_zero_on_a_closed_mesh():
 
 
 def test_field_and_the_same_solid_as_a_mesh_agree():
-    """A height field with walls and a base is the closed mesh that it bounds."""
+    """A height field with walls is the closed mesh that it bounds, which ends deep below."""
     x = np.linspace(0, 2, 21)
     z = 0.3 * np.maximum(0, 1 - 2 * np.abs(x - 1)) + 0 * x[:, None]
     grid = pv.StructuredGrid(*np.meshgrid(x, x, indexing="ij"), z.T)
-    field = relief_shadow(grid, SCENE, depth=0.05, border="wall", base=-0.2, method="exact")
+    field = relief_shadow(grid, SCENE, depth=0.05, border="wall", method="exact")
     top = grid.extract_surface(algorithm="geometry").triangulate()
-    side = pv.Plane(center=(1, 1, -0.2), direction=(0, 0, 1), i_size=4, j_size=4)
+    side = pv.Plane(center=(1, 1, -9.0), direction=(0, 0, 1), i_size=4, j_size=4)
     solid = top.extrude_trim((0, 0, -1), side.triangulate()).triangulate().clean()
     solid = solid.compute_normals(auto_orient_normals=True, split_vertices=False)
     for mesh in (solid,):

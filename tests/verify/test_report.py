@@ -99,7 +99,7 @@ def test_every_filter(name, surface):
 
 SHADOWS = {
     "two lights": (terrain, {"elevation": "z", "method": "exact"}),
-    "walls": (terrain, {"elevation": "z", "method": "exact", "border": "wall", "base": -5.0}),
+    "walls": (terrain, {"elevation": "z", "method": "exact", "border": "wall"}),
     "sun's disc": (terrain, {"elevation": "z", "method": "exact", "angular_diameter": 0.1}),
     "ball": (pv.Sphere, {"occluders": pv.Cube(center=(1, 1, 1)).triangulate()}),
     "ball, disc": (pv.Sphere, {"angular_diameter": 0.2}),

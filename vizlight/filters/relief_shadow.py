@@ -77,7 +77,6 @@ def relief_shadow(
     depth: float | None = None,
     elevation: str | None = None,
     factor: float = 1.0,
-    base: float | None = None,
     border: Border = "extend",
     method: Method = "fast",
     raster: float | None = None,
@@ -123,8 +122,9 @@ def relief_shadow(
         sampled, else the active scalars. NaN is a hole.
     factor : float, default: 1.0
         Factor of the heights; only for height fields.
-    base, border, method
-        As for :func:`vizlight.geometry.relief.inside_length`; only for height fields.
+    border, method
+        As for :func:`vizlight.geometry.relief.inside_length`; only for height fields. Walls reach
+        down without end.
     raster : float, optional
         Spacing of an even grid on which curvilinear grids and open surfaces are sampled from
         above, such as a TIN; 0 for the root of the mean area per point. Shadows then end within a

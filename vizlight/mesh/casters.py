@@ -34,7 +34,7 @@ DEPTH = 0.01
 #: squares do not overflow.
 FAR = 1e100
 #: Options that only height fields have.
-FIELD_ALONE = ("elevation", "factor", "base", "border", "method", "raster")
+FIELD_ALONE = ("elevation", "factor", "border", "method", "raster")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,7 +47,6 @@ class CasterOptions(Options):
     depth: float | None = None
     elevation: str | None = None
     factor: float = 1.0
-    base: float | None = None
     border: Border = "extend"
     method: Method = "fast"
     raster: float | None = None
@@ -121,9 +120,7 @@ class _FieldCaster:
         self, grid: Grid | pv.PolyData, options: CasterOptions, threads: int | None
     ) -> None:
         found = heights_of(grid, options.elevation, options.factor, options.raster)
-        self._field = height_field.make(
-            found.x, found.y, found.z, base=options.base, border=options.border
-        )
+        self._field = height_field.make(found.x, found.y, found.z, base=None, border=options.border)
         self._normal = height_field.normals(self._field)
         self._holes = np.isnan(found.z)
         self._to_points, self._method, self._threads = found.to_points, options.method, threads
@@ -164,7 +161,7 @@ class _FieldCaster:
             turn @ self.points[point] - field.origin, turn @ self.normals[point], self.depth,
             way=way,
             end=None if light.position is None else turn @ np.array(light.position) - field.origin,
-            base=field.base, wall=field.border != "extend",
+            wall=field.border != "extend",
         )  # fmt: skip
 
 
