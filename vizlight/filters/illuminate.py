@@ -199,11 +199,15 @@ def light_mesh(
         named, options.name, components=options.components, colored=scene.colored,
         bundle=bool(options.bundle),
     )  # fmt: skip
-    taken = [_split(block, path, options) for block, path in named]
+    taken, known = [], []
+    for block, path in named:
+        own, sided = _split(block, path, options)
+        taken.append(own)
+        known.append(sided)
     # A refined mesh, and shares of light inside a bundle, are those of each mesh.
     groups, parts = batches.parts_of(
         taken, [path for _, path in named], scene, options,
-        join=not (options.refine or options.bundle),
+        join=not (options.refine or options.bundle), known=known,
     )  # fmt: skip
     _tell_of_averages(named, options)
     rest: list[refining.Left] = []
@@ -246,9 +250,9 @@ def light_mesh(
                 block.ShallowCopy(own)
     if options.refine or not inplace:
         out = blocks.like(mesh, iter(lit))
-    for block, sided in zip(lit, sides, strict=True):
-        if sided is not None:
-            normals.keep(block, sided)
+    for block, kept in zip(lit, sides, strict=True):
+        if kept is not None:
+            normals.keep(block, kept)
         refining.forget(block, options.name)
     inside = sum(int(sided.inside) for sided in sides if sided is not None)
     lighting.finish(
@@ -271,15 +275,18 @@ def _tell_of_averages(named: list[tuple[pv.DataSet, str]], options: LightOptions
             )
 
 
-def _split(mesh: pv.DataSet, path: str, options: LightOptions) -> pv.DataSet:
-    """Return a mesh with points split at its sharp edges, if its normals will be computed."""
+def _split(mesh: pv.DataSet, path: str, options: LightOptions) -> tuple[pv.DataSet, Sided | None]:
+    """Return a mesh with points split at its sharp edges, if its normals will be computed.
+
+    Where there is nothing to split they may be known then.
+    """
     angle = options.feature_angle
     if angle is None or not uses_normals(mesh, options):
-        return mesh
+        return mesh, None
     if not normals.are_computed(mesh, options):
         if options.normals is None:
             normals.warn_of_idle(mesh, angle)
-        return mesh
+        return mesh, None
     where = f"block {path}: " if path else ""
     if not isinstance(mesh, pv.PolyData):
         expected, got = "a pyvista.PolyData, whose points can be split", type(mesh).__name__
@@ -290,7 +297,7 @@ def _split(mesh: pv.DataSet, path: str, options: LightOptions) -> pv.DataSet:
         expected, remedy = "the name of a point array beside feature_angle=", "attach the array"
         got = _check.describe(given)
         raise TypeError(where + _check.message("tangents", expected, got, remedy))
-    return normals.split_edges(mesh, angle)
+    return normals.split_or_normals(mesh, angle)
 
 
 def _warn_of_edges(

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Indices
     from vizlight.reading.inputs import Part
+    from vizlight.reading.normals import Sided
     from vizlight.scene import Scene
     from vizlight.shading.options import LightOptions
 
@@ -74,14 +75,20 @@ def parts_of(
     options: LightOptions,
     *,
     join: bool,
+    known: Sequence[Sided | None] = (),
 ) -> tuple[list[Batch], list[Part]]:
-    """Return what meshes are lit by, small ones joined; an error names the path of a mesh."""
+    """Return what meshes are lit by, small ones joined; an error names the path of a mesh.
+
+    ``known`` are the normals of their surfaces, of those where they were computed already.
+    """
     groups = _batches(meshes, options) if join else _alone(meshes, range(len(meshes)))
     made, parts = [], []
     while groups:
         group = groups.pop()
+        first = group.members[0]
+        own = known[first] if known and group.starts is None else None
         try:
-            part = part_of(group.mesh, paths[group.members[0]], scene, options, group.starts)
+            part = part_of(group.mesh, paths[first], scene, options, group.starts, own)
         except (TypeError, ValueError):
             if group.starts is None:
                 raise

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Indices
     from vizlight.reading.inputs import Part
+    from vizlight.reading.normals import Sided
     from vizlight.scene import Scene
     from vizlight.shading.inputs import ShadingInputs
     from vizlight.shading.options import LightOptions
@@ -31,8 +32,13 @@ def part_of(
     scene: Scene,
     options: LightOptions,
     starts: Indices | None = None,
+    known: Sided | None = None,
 ) -> Part:
-    """Return what one mesh is lit by; see :func:`vizlight.reading.inputs.part_of`."""
-    part = reading.part_of(mesh, path, scene, options, kept=_KEPT, starts=starts)
+    """Return what one mesh is lit by; see :func:`vizlight.reading.inputs.part_of`.
+
+    ``known`` are normals of its surface that were computed already.
+    """
+    kept = _KEPT if known is None else _KEPT._replace(normals=lambda _: known)
+    part = reading.part_of(mesh, path, scene, options, kept=kept, starts=starts)
     cells = lambda: splitting.simplices(mesh)  # noqa: E731
     return part._replace(inputs=dataclasses.replace(part.inputs, cells=cells))

@@ -124,12 +124,25 @@ def split_edges(mesh: pv.PolyData, angle: float | Literal["auto"]) -> pv.PolyDat
     ``"auto"`` is 30 degrees on a surface whose sharp edges are creases. All arrays go with the
     points; the mesh itself is not changed.
     """
+    return split_or_normals(mesh, angle)[0]
+
+
+def split_or_normals(
+    mesh: pv.PolyData, angle: float | Literal["auto"]
+) -> tuple[pv.PolyData, Sided | None]:
+    """Return what :func:`split_edges` does, and the normals that told that nothing is split."""
     if not has_faces(mesh) or not mesh.n_points:
-        return mesh
+        return mesh, None
     if angle == "auto":
-        if not (kept(mesh) or computed_normals(mesh)).sharp:
-            return mesh
+        found = kept(mesh) or computed_normals(mesh)
+        if not found.sharp:
+            return mesh, found
         angle = SHARP
+    return _split(mesh, angle), None
+
+
+def _split(mesh: pv.PolyData, angle: float) -> pv.PolyData:
+    """Return a surface with points split where faces meet at more than an angle in degrees."""
     ids, ends = connectivity(faces_only(mesh).GetPolys())
     strips = pv.PolyData()
     strips.SetPoints(mesh.GetPoints())

@@ -7,36 +7,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight import _pool
-from vizlight.reading.cells import mixed, places, triangles
-from vizlight.reading.orientation import BLOCK
+from vizlight.reading.cells import mixed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-    from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-    from vizlight._types import Bools
-    from vizlight.reading.orientation import Owners, Shape
+    from vizlight._types import Indices
 
+#: Number of points or triangles that are worked on at once.
+BLOCK = 1 << 16
 #: Odd numbers of 64 bits.
 _FACTORS = tuple(np.uint64(x) for x in (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9))
-
-
-def closed(surface: vtkPolyData, owners: Owners) -> Bools:
-    """Return of each mesh whether each of its edges has an even number of faces.
-
-    Places make an edge. The numbers of the edges, made from the coordinates of their ends,
-    cancel by pairs.
-    """
-    rows, number = triangles(surface), place_numbers(places(surface))
-    odd = np.zeros(owners.count, np.uint64)
-    for block in _pool.blocks(len(rows), BLOCK):
-        a, b = number[rows[block].ravel()], number[rows[block][:, [1, 2, 0]].ravel()]
-        edges = edge_numbers(a, b)
-        if owners.of is None:
-            odd ^= np.bitwise_xor.reduce(edges)
-        else:
-            np.bitwise_xor.at(odd, np.repeat(owners.of[rows[block][:, 0]], 3), edges)
-    return np.asarray(odd == 0)
 
 
 def place_numbers(points: NDArray[np.generic]) -> NDArray[np.uint64]:
@@ -65,11 +46,13 @@ def single_edges(lines: list[NDArray[np.uint64]]) -> tuple[NDArray[np.uint64], .
     return numbers[(times == 1) & (numbers != 0)], np.unique(np.concatenate([none, *lines]))
 
 
-def inner_edges(shape: Shape, ends: NDArray[np.uint64]) -> NDArray[np.uint64]:
+def inner_edges(
+    points: NDArray[np.generic], triangles: Indices, ends: NDArray[np.uint64]
+) -> NDArray[np.uint64]:
     """Return the edges between some places that have two faces."""
-    number, size = place_numbers(shape.points), len(shape.points)
+    number, size = place_numbers(points), len(points)
     near = np.isin(number, ends)
-    rows = shape.triangles[np.count_nonzero(near[shape.triangles], axis=1) > 1]
+    rows = triangles[np.count_nonzero(near[triangles], axis=1) > 1]
     a, b = rows.ravel(), rows[:, [1, 2, 0]].ravel()
     keys = np.minimum(a, b).astype(np.int64) * size + np.maximum(a, b)
     keys, times = np.unique(keys, return_counts=True)

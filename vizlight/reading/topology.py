@@ -1,0 +1,266 @@
+"""What triangles of a surface have in common: one sort of their edges tells borders and pieces."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from vizlight import _pool
+from vizlight.reading.cells import places, triangles
+from vizlight.reading.edges import BLOCK, edge_numbers, place_numbers
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+    from vtkmodules.vtkCommonDataModel import vtkPolyData
+
+    from vizlight._types import Bools, Indices
+
+#: Least number of edges that are sorted at once, and largest number of parts of these.
+EDGES, PARTS = 1 << 21, 8
+
+
+class Owners:
+    """Which mesh of a batch each point of a surface belongs to; of one mesh all do.
+
+    Parameters
+    ----------
+    starts : ndarray of int, or None
+        First point of each mesh of a batch, followed by the number of points.
+    origin : ndarray of int, or None
+        Point of the batch that each point of the surface is.
+    """
+
+    def __init__(self, starts: Indices | None = None, origin: Indices | None = None) -> None:
+        self.count = 1 if starts is None else len(starts) - 1
+        self.of: Indices | None = None
+        if starts is not None:
+            self.of = np.repeat(np.arange(self.count), np.diff(starts))
+            self.of = self.of if origin is None else self.of[origin]
+
+    def counts(self, points: Indices) -> Indices:
+        """Return how many of some points belong to each mesh."""
+        if self.of is None:
+            return np.array([len(points)])
+        return np.bincount(self.of[points], minlength=self.count)
+
+
+class Topology(NamedTuple):
+    """Connected pieces of the points of a surface, and which triangles share an edge.
+
+    Attributes
+    ----------
+    piece : ndarray of int, shape (n_points,)
+        Number of the piece of each point; coincident points are in one piece.
+    open : ndarray of bool, shape (n_pieces,)
+        Whether a piece has an edge of one triangle only.
+    shared : ndarray of int, shape (2, n), or None
+        Pairs of triangles that share an edge, where all edges have one triangle or two that are
+        wound alike.
+    """
+
+    piece: Indices
+    open: Bools
+    shared: Indices | None
+
+
+class SortedEdges(NamedTuple):
+    """Some edges of triangles, sorted by their ends; those of several triangles stand together.
+
+    Attributes
+    ----------
+    keys : ndarray of int64, shape (n,)
+        Lower end times the number of points, plus the upper end.
+    places : ndarray of int, shape (n,)
+        Corner at which an edge begins, among all corners.
+    forward : ndarray of bool, shape (n,)
+        Whether it begins at its lower end.
+    """
+
+    keys: NDArray[np.int64]
+    places: Indices
+    forward: Bools
+
+
+def sorted_edges(
+    corners: Indices, count: int, same: Indices | None = None
+) -> Iterator[SortedEdges]:
+    """Yield the edges of triangles by ranges of their lower ends; edges of no length are left out.
+
+    Parameters
+    ----------
+    corners : ndarray of int, shape (n, 3)
+        Corners of the triangles.
+    count : int
+        Number of points, below 2^31.
+    same : ndarray of int, optional
+        Point that stands for each point.
+    """
+    parts = min(-(-3 * len(corners) // EDGES), PARTS)
+    blocks = _pool.blocks(len(corners), BLOCK)
+    ranges = []
+    if parts > 1:
+        for block in blocks:
+            rows = corners[block] if same is None else same[corners[block]]
+            ranges.append((int(rows.min()), int(rows.max())))
+    for part in range(parts):
+        low, high = part * count // parts, (part + 1) * count // parts
+        keys, places, forward = [], [], []
+        for number, block in enumerate(blocks):
+            if ranges and not (ranges[number][0] < high and ranges[number][1] >= low):
+                continue
+            rows = corners[block] if same is None else same[corners[block]]
+            a, b = rows.ravel(), rows[:, [1, 2, 0]].ravel()
+            lower = np.minimum(a, b)
+            kept = a != b
+            if parts > 1:
+                kept &= (lower >= low) & (lower < high)
+            own = np.flatnonzero(kept)
+            if len(own) < len(a):
+                a, b, lower = a[own], b[own], lower[own]
+            keys.append(lower.astype(np.int64) * count + np.maximum(a, b))
+            places.append(own + 3 * block.start)
+            forward.append(lower == a)
+        if keys:
+            key = np.concatenate(keys)
+            # Keys of neighbouring faces are in order, which other sorts do not use.
+            order = np.argsort(key, kind="stable")
+            yield SortedEdges(
+                key[order], np.concatenate(places)[order], np.concatenate(forward)[order]
+            )
+
+
+def topology(corners: Indices, points: NDArray[np.generic], owners: Owners) -> Topology:
+    """Return the pieces of a surface, and the pairs of triangles that share an edge."""
+    count = len(points)
+    kind = np.int32 if max(count, len(corners)) < 2**31 else np.int64
+    same = coincident(points, owners)
+    lower: list[Indices] = []
+    upper: list[Indices] = []
+    single: list[Indices] = []
+    pairs = []
+    alike, edges = True, 0
+    for part in sorted_edges(corners, count):
+        twice = part.keys[1:] == part.keys[:-1]
+        edges += len(part.keys)
+        alike = alike and not (
+            np.any(twice & (part.forward[1:] == part.forward[:-1]))
+            or np.any(twice[1:] & twice[:-1])
+        )
+        if alike:
+            first = np.flatnonzero(twice)
+            pairs.append(np.stack([part.places[first], part.places[first + 1]]).astype(kind) // 3)
+        if same is None:
+            _record(part.keys, count, kind, lower, upper, single)
+    if same is not None:
+        for part in sorted_edges(corners, count, same):
+            _record(part.keys, count, kind, lower, upper, single)
+    none = np.empty(0, dtype=kind)
+    root = components(
+        np.concatenate([none, *lower]), np.concatenate([none, *upper]), count, kind=kind
+    )
+    own = root == np.arange(count)
+    if same is not None:
+        own &= same == np.arange(count)
+        root = root[same]
+    piece = (np.cumsum(own) - 1)[root]
+    borders = np.zeros(int(np.count_nonzero(own)), dtype=np.bool_)
+    borders[piece[np.concatenate([none, *single])]] = True
+    shared = None
+    if alike and edges == 3 * len(corners):
+        shared = np.concatenate([np.empty((2, 0), dtype=kind), *pairs], axis=1)
+    return Topology(piece, borders, shared)
+
+
+def _record(
+    keys: NDArray[np.int64], count: int, kind: type, lower: list[Indices], upper: list[Indices],
+    single: list[Indices],
+) -> None:  # fmt: skip
+    """Append the ends of sorted edges, and an end of those that stand there once."""
+    new = np.ones(len(keys) + 1, dtype=np.bool_)
+    np.not_equal(keys[1:], keys[:-1], out=new[1:-1])
+    first = keys[new[:-1]]
+    a = first // count
+    lower.append(a.astype(kind))
+    upper.append((first - a * count).astype(kind))
+    single.append((keys[new[:-1] & new[1:]] // count).astype(kind))
+
+
+def components(a: Indices, b: Indices, count: int, *, kind: type = np.intp) -> Indices:
+    """Return for each of some points the first of those that edges connect it with.
+
+    Points are hooked to neighbours of lower numbers until all edges lie in one tree each.
+
+    Parameters
+    ----------
+    a, b : ndarray of int, shape (n,)
+        Ends of the edges, the lower one first.
+    count : int
+        Number of points.
+    kind : type
+        Type of the result.
+    """
+    root: Indices = np.arange(count, dtype=kind)
+    root[b] = a
+    while True:
+        while not np.array_equal(further := root[root], root):
+            root = further
+        left_a, left_b = [], []
+        for block in _pool.blocks(len(a), EDGES):
+            one, other = root[a[block]], root[b[block]]
+            apart = one != other
+            left_a.append(np.minimum(one[apart], other[apart]))
+            left_b.append(np.maximum(one[apart], other[apart]))
+        a, b = (np.concatenate([root[:0], *left]) for left in (left_a, left_b))
+        if not len(a):
+            return root
+        np.minimum.at(root, b, a)
+
+
+def coincident(points: NDArray[np.generic], owners: Owners) -> Indices | None:
+    """Return the first point at the place of each point, None if all places differ.
+
+    Points that are not finite differ from all others, as do those of two meshes.
+    """
+    number = place_numbers(points)
+    if owners.of is not None:
+        number ^= place_numbers(np.repeat(owners.of[:, np.newaxis], 3, axis=1))
+    ordered = np.sort(number)
+    if not np.any(ordered[1:] == ordered[:-1]):
+        return None
+    del ordered
+    order = np.argsort(number, kind="stable")
+    new = np.ones(len(points), dtype=np.bool_)
+    new[1:] = number[order[1:]] != number[order[:-1]]
+    again = np.flatnonzero(~new)
+    one, other = order[again], order[again - 1]
+    new[again] = np.any(points[one] != points[other], axis=1)
+    if owners.of is not None:
+        new[again] |= owners.of[one] != owners.of[other]
+    if new.all():
+        return None
+    first = np.where(new, np.arange(len(points)), 0)
+    np.maximum.accumulate(first, out=first)
+    same = np.empty(len(points), dtype=np.intp)
+    same[order] = order[first]
+    return same
+
+
+def is_closed(surface: vtkPolyData, owners: Owners) -> Bools:
+    """Return of each mesh whether each of its edges has an even number of faces.
+
+    Places make an edge. The numbers of the edges, made from the coordinates of their ends,
+    cancel by pairs.
+    """
+    rows, number = triangles(surface), place_numbers(places(surface))
+    odd = np.zeros(owners.count, np.uint64)
+    for block in _pool.blocks(len(rows), BLOCK):
+        a, b = number[rows[block].ravel()], number[rows[block][:, [1, 2, 0]].ravel()]
+        edges = edge_numbers(a, b)
+        if owners.of is None:
+            odd ^= np.bitwise_xor.reduce(edges)
+        else:
+            np.bitwise_xor.at(odd, np.repeat(owners.of[rows[block][:, 0]], 3), edges)
+    return np.asarray(odd == 0)
