@@ -29,6 +29,16 @@ def dot(a: Array, b: Array) -> Array:
     return result
 
 
+def cross(a: Array, b: Array) -> Array:
+    """Return the vector products of two batches of 3-vectors."""
+    result = np.empty(np.broadcast_shapes(a.shape, b.shape), dtype=np.result_type(a, b))
+    for i, row in enumerate(result):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        np.multiply(a[j], b[k], out=row)
+        row -= a[k] * b[j]
+    return result
+
+
 def triple(a: Array, b: Array, c: Array) -> Array:
     """Return the triple products a x b . c of three batches of 3-vectors."""
     result: Array = (

@@ -23,6 +23,7 @@ from vtkmodules.vtkCommonDataModel import (
 from vtkmodules.vtkFiltersCore import vtkTriangleFilter
 
 from vizlight import _check, _pool
+from vizlight.model import kernels
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -183,12 +184,18 @@ def around(points: NDArray[Any], ids: Indices, ends: Indices, block: slice) -> A
 def first_twins(cells: vtkCellArray) -> Indices | None:
     """Return the first cell of the same points as each cell, None if they all differ."""
     ids, offsets = connectivity(cells)
-    number = np.empty(max(len(offsets) - 1, 0), dtype=np.uint64)
+    number = np.zeros(max(len(offsets) - 1, 0), dtype=np.uint64)
+    size = cells.IsHomogeneous()
     with np.errstate(over="ignore"):
+        of_point = mixed(np.arange(1, int(ids.max(initial=0)) + 2, dtype=np.uint64))
         for block in _pool.blocks(len(number), 1 << 16):
             ends = offsets[block.start : block.stop + 1]
-            of_points = mixed(ids[ends[0] : ends[-1]].astype(np.uint64) + np.uint64(1))
-            sums = np.concatenate([[np.uint64(0)], np.cumsum(of_points, dtype=np.uint64)])
+            corners = of_point[ids[ends[0] : ends[-1]]]
+            if size > 0:
+                for column in corners.reshape(-1, size).T:
+                    number[block] += column
+                continue
+            sums = np.concatenate([[np.uint64(0)], np.cumsum(corners, dtype=np.uint64)])
             number[block] = np.diff(sums[ends - ends[0]])
     ordered = np.sort(number)
     if not np.any(ordered[1:] == ordered[:-1]):
@@ -221,6 +228,10 @@ def used(surface: vtkPolyData) -> Bools:
 def triangles(surface: vtkPolyData) -> Indices:
     """Return the corners of the triangles of a surface."""
     polys = surface.GetPolys()
+    if not surface.GetNumberOfStrips() and polys.IsHomogeneous() == _QUAD:
+        quads = connectivity(polys)[0].reshape(-1, _QUAD)
+        if (halves := _halves(quads, places(surface))) is not None:
+            return halves
     if surface.GetNumberOfStrips() or (polys.GetNumberOfCells() and polys.IsHomogeneous() != 3):
         split = vtkTriangleFilter()
         split.PassVertsOff()
@@ -231,6 +242,36 @@ def triangles(surface: vtkPolyData) -> Indices:
         # VTK's are twice as long, and go with the filter.
         return found.astype(np.int32 if surface.GetNumberOfPoints() < 2**31 else np.intp)
     return connectivity(polys)[0].reshape(-1, 3)
+
+
+def _halves(quads: Indices, points: NDArray[np.generic]) -> Indices | None:
+    """Return the two triangles of each quadrilateral, those that VTK's filter makes.
+
+    They have its shorter diagonal in common. None where the halves by one of its diagonals turn
+    away from each other: such a quadrilateral is dented or folded.
+    """
+    found = np.empty((len(quads), 6), dtype=np.int32 if len(points) < 2**31 else np.intp)
+    columns = np.ascontiguousarray(points.T, dtype=np.float64)
+    for block in _pool.blocks(len(quads), 1 << 15):
+        at = np.ascontiguousarray(quads[block].T)
+        a, b, c, d = (columns.take(corner, axis=1) for corner in at)
+        sides = b - a, c - b, d - c, a - d
+        dots = [kernels.dot(sides[i - 1], sides[i]) for i in range(_QUAD)]
+        # Products of the area vectors of the halves, by Lagrange's identity.
+        across = kernels.dot(sides[0], sides[2]) * kernels.dot(sides[1], sides[3])
+        if not (np.all(across > dots[1] * dots[3]) and np.all(across > dots[0] * dots[2])):
+            return None
+        one, other = c - a, d - b
+        shorter = kernels.dot(one, one) < kernels.dot(other, other)
+        p, q, r, s = at
+        halves = p, q, np.where(shorter, r, s), np.where(shorter, p, q), r, s
+        for column, corner in zip(found[block].T, halves, strict=True):
+            column[:] = corner
+    return found.reshape(-1, 3)
+
+
+#: Number of corners of a quadrilateral.
+_QUAD = 4
 
 
 #: Number of each kind of cells of a vtkPolyData, and those cells.

@@ -172,7 +172,8 @@ class Shape:
         piece, n = self.piece, len(self.points)
         sums = Sums.zero(self.count)
         bend, least = np.zeros(n), np.ones(n)
-        faces = np.zeros((len(self.triangles), 3), dtype=np.float32)
+        faces = np.zeros((3, len(self.triangles)), dtype=np.float32)
+        columns = np.ascontiguousarray(normals.T)
         full = np.zeros(len(self.triangles), dtype=np.bool_)
         all_finite = bool(self.finite.all())
         for block in _pool.blocks(len(self.triangles), BLOCK):
@@ -184,17 +185,18 @@ class Shape:
             corners = [np.ascontiguousarray(at) for at in rows.T]
             a, b, c = (self.away.take(at, axis=1) for at in corners)
             u, v = b - a, c - a
-            across = _cross(u, v)
+            across = kernels.cross(u, v)
             unit, size = kernels.unit(across)
-            longest = np.maximum(np.maximum(kernels.dot(u, u), kernels.dot(v, v)), _square(c - b))
-            faces[numbers], full[numbers] = unit.T, size > NARROWEST * longest
+            sides = [kernels.dot(side, side) for side in (u, v, c - b)]
+            longest = np.maximum(np.maximum(sides[0], sides[1]), sides[2])
+            faces[:, numbers], full[numbers] = unit, size > NARROWEST * longest
             own = slice(None)
             if self.side is not None:
                 own = self.side[rows].min(axis=1) == 0
             sums.add(piece[corners[0][own]], a[:, own], across[:, own], size[own])
             # Three times the way from each corner to the centre of its triangle.
             for at, inward in zip(corners, (u + v, v - 2 * u, u - 2 * v), strict=True):
-                normal = normals.take(at, axis=0).T.astype(np.float64)
+                normal = columns.take(at, axis=1).astype(np.float64)
                 with np.errstate(invalid="ignore"):
                     np.minimum.at(least, at, kernels.dot(normal, unit))
                 np.add.at(bend, at, kernels.dot(normal, inward))
@@ -211,12 +213,11 @@ class Shape:
         counts = np.zeros((4, self.owners.count), dtype=np.intp)
         for pairs in self._pairs(full):
             for block in _pool.blocks(pairs.shape[1], BLOCK):
-                one, other = pairs[:, block]
-                cosine = np.einsum("ij,ij->i", faces[one], faces[other])
-                corner = self.triangles[one, 0]
-                counts[0] += self.owners.counts(corner)
-                for count, limit in zip(counts[1:], least, strict=True):
-                    count += self.owners.counts(corner[cosine < limit])
+                one, other = (faces.take(at, axis=1) for at in pairs[:, block])
+                cosine = kernels.dot(one, other)
+                beyond = [np.flatnonzero(cosine < limit) for limit in least]
+                for count, at in zip(counts, (np.arange(len(cosine)), *beyond), strict=True):
+                    count += self.owners.counts(self.triangles[pairs[0, block][at], 0])
         return counts
 
     def _pairs(self, full: Bools) -> Iterator[Indices]:
@@ -295,14 +296,3 @@ def crease_share(counts: Indices) -> Array:
     beyond, share, nearly = counts[1:] / np.maximum(counts[0], 1)
     apart = (beyond >= MANY_SHARP) & (share - beyond <= CORNERS_APART * beyond)
     return np.where(apart | (nearly - share <= STAND_APART * share), share, 0.0)
-
-
-def _cross(a: Array, b: Array) -> Array:
-    """Return the vector products of two batches of vectors of shape (3, n)."""
-    return np.stack([
-        a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
-    ])  # fmt: skip
-
-
-def _square(v: Array) -> Array:
-    return kernels.dot(v, v)

@@ -112,16 +112,18 @@ def sorted_edges(
             if ranges and not (ranges[number][0] < high and ranges[number][1] >= low):
                 continue
             rows = corners[block] if same is None else same[corners[block]]
-            a, b = rows.ravel(), rows[:, [1, 2, 0]].ravel()
+            a = rows.ravel()
+            b = np.empty_like(a)
+            b[:-1], b[2::3] = a[1:], a[::3]
             lower = np.minimum(a, b)
             kept = a != b
             if parts > 1:
                 kept &= (lower >= low) & (lower < high)
-            own = np.flatnonzero(kept)
-            if len(own) < len(a):
-                a, b, lower = a[own], b[own], lower[own]
+            place = np.arange(3 * block.start, 3 * block.stop)
+            if not kept.all():
+                a, b, lower, place = a[kept], b[kept], lower[kept], place[kept]
             keys.append(lower.astype(np.int64) * count + np.maximum(a, b))
-            places.append(own + 3 * block.start)
+            places.append(place)
             forward.append(lower == a)
         if keys:
             key = np.concatenate(keys)
