@@ -287,7 +287,9 @@ def computed_normals(
         if not as_wound:
             shape.orient(vectors, survey, view)
         if sides:
-            lean, sharp = survey.lean, crease_share(survey.counts)
+            # It takes up to twice the memory of the points, and the edges take as much.
+            del shape.away
+            lean, sharp = survey.lean, crease_share(shape.edge_counts(survey.faces, survey.full))
     if origin is not None:
         if dimension(mesh) == 3:
             size = [count] if starts is None else np.diff(starts)
@@ -327,7 +329,7 @@ def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> S
         sums.append(survey.sums._replace(score=shape.score(normals, view)))
         if sides:
             lean[part.origin[own]] = survey.lean[own]
-            counts += survey.counts
+            counts += shape.edge_counts(survey.faces, survey.full)
         if len(single):
             single = np.setdiff1d(single, edges.inner_edges(shape.points, shape.triangles, ends))
     border = np.array([len(single) > 0])

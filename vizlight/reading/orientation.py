@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -107,13 +108,16 @@ class Survey(NamedTuple):
     lean : ndarray of float32, shape (n_points,)
         How far the normal of each point may lean away from the eye; see
         :class:`~vizlight.reading.normals.Sided`.
-    counts : ndarray of int, shape (4, n_meshes)
-        Number of edges of two faces of each mesh, and of sharp ones by three limits.
+    faces : ndarray of float32, shape (3, n_triangles)
+        Unit normals of the triangles.
+    full : ndarray of bool, shape (n_triangles,)
+        Whether a triangle has an area to speak of.
     """
 
     sums: Sums
     lean: Array
-    counts: Indices
+    faces: Array
+    full: Bools
 
 
 class Shape:
@@ -131,41 +135,38 @@ class Shape:
     def __init__(self, surface: vtkPolyData, owners: Owners) -> None:
         self.points, self.owners = places(surface), owners
         self.triangles = triangles(surface)
-        self.piece, self.open, self.shared = topology(self.triangles, self.points, owners)
+        found = topology(self.triangles, self.points, owners)
+        self.piece, self.open, self.alike, self.shared = found
         if len(self.triangles) != sum(len(ids) - 2 * len(ends) for ids, ends in faces(surface)):
             # A polygon that cannot be split is wound in a way that is not known.
-            self.shared = None
+            self.alike, self.shared = False, None
         self.finite: Bools = np.all(np.isfinite(self.points), axis=1)
         self.count = len(self.open)
-        self._place()
-
-    @property
-    def alike(self) -> bool:
-        """Whether all edges have one face, or two that are wound alike."""
-        return self.shared is not None
 
     def rewind(self, surface: vtkPolyData) -> None:
         """Take the faces of a surface at the same points that are wound in another way."""
         self.triangles, self.shared = triangles(surface), None
 
-    def _place(self) -> None:
-        """Place each piece about its centroid, at a size of 1."""
+    @cached_property
+    def away(self) -> Array:
+        """Points of shape (3, n_points), each piece about its centroid, at a size of 1."""
         piece = self.piece
         size = np.maximum(np.bincount(piece, self.finite, self.count), 1)
-        self.away: Array = np.zeros((3, len(self.points)))
-        np.copyto(self.away, self.points.T, where=self.finite)
-        for axis in self.away:
+        away: Array = np.zeros((3, len(self.points)))
+        np.copyto(away, self.points.T, where=self.finite)
+        for axis in away:
             middle = np.bincount(piece, axis, self.count) / size
             axis -= middle[piece] if self.count > 1 else middle
         # Lengths are scaled, because products of tiny ones underflow and of huge ones overflow.
         if self.owners.of is None:
-            scale = np.maximum(-self.away.min(initial=0.0), self.away.max(initial=0.0))
-            self.away /= scale or 1.0
+            scale = np.maximum(-away.min(initial=0.0), away.max(initial=0.0))
+            away /= scale or 1.0
         else:
             scales = np.zeros(self.owners.count)
-            np.maximum.at(scales, self.owners.of, np.abs(self.away).max(axis=0))
+            np.maximum.at(scales, self.owners.of, np.abs(away).max(axis=0))
             scales[scales == 0] = 1.0
-            self.away /= scales[self.owners.of]
+            away /= scales[self.owners.of]
+        return away
 
     def survey(self, normals: Array) -> Survey:
         """Return what a walk over the triangles finds, given the normals of the points."""
@@ -173,7 +174,6 @@ class Shape:
         sums = Sums.zero(self.count)
         bend, least = np.zeros(n), np.ones(n)
         faces = np.zeros((3, len(self.triangles)), dtype=np.float32)
-        columns = np.ascontiguousarray(normals.T)
         full = np.zeros(len(self.triangles), dtype=np.bool_)
         all_finite = bool(self.finite.all())
         for block in _pool.blocks(len(self.triangles), BLOCK):
@@ -196,16 +196,16 @@ class Shape:
             sums.add(piece[corners[0][own]], a[:, own], across[:, own], size[own])
             # Three times the way from each corner to the centre of its triangle.
             for at, inward in zip(corners, (u + v, v - 2 * u, u - 2 * v), strict=True):
-                normal = columns.take(at, axis=1).astype(np.float64)
+                normal = normals.take(at, axis=0).T.astype(np.float64)
                 with np.errstate(invalid="ignore"):
                     np.minimum.at(least, at, kernels.dot(normal, unit))
                 np.add.at(bend, at, kernels.dot(normal, inward))
         sine = np.sqrt(np.clip(1 - least * least, 0, MOST_LEAN * MOST_LEAN))
         lean: Array = np.where(np.isfinite(bend), -np.sign(bend) * sine, 0)
-        return Survey(sums, lean.astype(np.float32), self._edge_counts(faces, full))
+        return Survey(sums, lean.astype(np.float32), faces, full)
 
-    def _edge_counts(self, faces: Array, full: Bools) -> Indices:
-        """Return the numbers of edges of two faces and of sharp ones, given unit normals of faces.
+    def edge_counts(self, faces: Array, full: Bools) -> Indices:
+        """Return of each mesh the number of edges of two faces, and of sharp ones by three limits.
 
         Faces without area, which many meshes have at a pole, have no direction and no sharp edges.
         """
@@ -282,16 +282,16 @@ class PartShape(Shape):
         self.triangles = triangles(surface)
         self.finite = np.all(np.isfinite(self.points), axis=1)
         self.piece, self.count = np.zeros(len(self.points), dtype=np.intp), 1
-        self.away = np.where(self.finite, self.points.T, 0).astype(np.float64)
-        self.away -= middle[:, np.newaxis]
-        self.away /= scale
+        away = np.where(self.finite, self.points.T, 0).astype(np.float64)
+        self.away = (away - middle[:, np.newaxis]) / scale
 
 
 def crease_share(counts: Indices) -> Array:
     """Return of each mesh the share of sharp edges where these are creases, else 0.
 
     Creases stand apart: few edges are nearly as sharp. On a coarse mesh of a smooth shape there
-    are more of those, and no edge is meant to be seen. ``counts`` are those of :class:`Survey`.
+    are more of those, and no edge is meant to be seen. ``counts`` are those of
+    :meth:`Shape.edge_counts`.
     """
     beyond, share, nearly = counts[1:] / np.maximum(counts[0], 1)
     apart = (beyond >= MANY_SHARP) & (share - beyond <= CORNERS_APART * beyond)

@@ -19,7 +19,9 @@ if TYPE_CHECKING:
     from vizlight._types import Bools, Indices
 
 #: Least number of edges that are sorted at once, and largest number of parts of these.
-EDGES, PARTS = 1 << 21, 8
+EDGES, PARTS = 1 << 19, 16
+#: Number of triangles up to which the pairs of them stay in memory.
+FEW = 1 << 20
 
 
 class Owners:
@@ -56,13 +58,15 @@ class Topology(NamedTuple):
         Number of the piece of each point; coincident points are in one piece.
     open : ndarray of bool, shape (n_pieces,)
         Whether a piece has an edge of one triangle only.
+    alike : bool
+        Whether all edges have one triangle, or two that are wound alike.
     shared : ndarray of int, shape (2, n), or None
-        Pairs of triangles that share an edge, where all edges have one triangle or two that are
-        wound alike.
+        Pairs of triangles that share an edge, where all are wound alike and not too many.
     """
 
     piece: Indices
     open: Bools
+    alike: bool
     shared: Indices | None
 
 
@@ -127,6 +131,7 @@ def sorted_edges(
             forward.append(lower == a)
         if keys:
             key = np.concatenate(keys)
+            keys.clear()
             # Keys of neighbouring faces are in order, which other sorts do not use.
             order = np.argsort(key, kind="stable")
             yield SortedEdges(
@@ -139,11 +144,12 @@ def topology(corners: Indices, points: NDArray[np.generic], owners: Owners) -> T
     count = len(points)
     kind = np.int32 if max(count, len(corners)) < 2**31 else np.int64
     same = coincident(points, owners)
-    lower: list[Indices] = []
-    upper: list[Indices] = []
     single: list[Indices] = []
-    pairs = []
-    alike, edges = True, 0
+    # What is not filled takes no memory.
+    ends: Indices = np.empty((2, 3 * len(corners)), dtype=kind)
+    pairs: Indices = np.empty((2, 3 * len(corners) // 2), dtype=kind)
+    few = len(corners) <= FEW
+    alike, edges, different, twofold = True, 0, 0, 0
     for part in sorted_edges(corners, count):
         twice = part.keys[1:] == part.keys[:-1]
         edges += len(part.keys)
@@ -151,43 +157,41 @@ def topology(corners: Indices, points: NDArray[np.generic], owners: Owners) -> T
             np.any(twice & (part.forward[1:] == part.forward[:-1]))
             or np.any(twice[1:] & twice[:-1])
         )
-        if alike:
+        if alike and few:
             first = np.flatnonzero(twice)
-            pairs.append(np.stack([part.places[first], part.places[first + 1]]).astype(kind) // 3)
+            into = slice(twofold, twofold + len(first))
+            pairs[0, into], pairs[1, into] = part.places[first] // 3, part.places[first + 1] // 3
+            twofold += len(first)
         if same is None:
-            _record(part.keys, count, kind, lower, upper, single)
+            different += _record(part.keys, count, ends[:, different:], single)
     if same is not None:
         for part in sorted_edges(corners, count, same):
-            _record(part.keys, count, kind, lower, upper, single)
-    none = np.empty(0, dtype=kind)
-    root = components(
-        np.concatenate([none, *lower]), np.concatenate([none, *upper]), count, kind=kind
-    )
+            different += _record(part.keys, count, ends[:, different:], single)
+    root = components(ends[0, :different], ends[1, :different], count, kind=kind)
     own = root == np.arange(count)
     if same is not None:
         own &= same == np.arange(count)
         root = root[same]
     piece = (np.cumsum(own) - 1)[root]
     borders = np.zeros(int(np.count_nonzero(own)), dtype=np.bool_)
-    borders[piece[np.concatenate([none, *single])]] = True
-    shared = None
-    if alike and edges == 3 * len(corners):
-        shared = np.concatenate([np.empty((2, 0), dtype=kind), *pairs], axis=1)
-    return Topology(piece, borders, shared)
+    for one in single:
+        borders[piece[one]] = True
+    alike = alike and edges == 3 * len(corners)
+    return Topology(piece, borders, alike, pairs[:, :twofold] if alike and few else None)
 
 
 def _record(
-    keys: NDArray[np.int64], count: int, kind: type, lower: list[Indices], upper: list[Indices],
-    single: list[Indices],
-) -> None:  # fmt: skip
-    """Append the ends of sorted edges, and an end of those that stand there once."""
+    keys: NDArray[np.int64], count: int, ends: Indices, single: list[Indices]
+) -> int:  # fmt: skip
+    """Write the ends of sorted edges, append those that stand there once, return their number."""
     new = np.ones(len(keys) + 1, dtype=np.bool_)
     np.not_equal(keys[1:], keys[:-1], out=new[1:-1])
     first = keys[new[:-1]]
-    a = first // count
-    lower.append(a.astype(kind))
-    upper.append((first - a * count).astype(kind))
-    single.append((keys[new[:-1] & new[1:]] // count).astype(kind))
+    into = ends[:, : len(first)]
+    np.floor_divide(first, count, out=into[0], casting="same_kind")
+    np.subtract(first, into[0].astype(np.int64) * count, out=into[1], casting="same_kind")
+    single.append(into[0][new[1:][new[:-1]]].copy())
+    return len(first)
 
 
 def components(a: Indices, b: Indices, count: int, *, kind: type = np.intp) -> Indices:
