@@ -105,6 +105,14 @@ def key(
 def question_of(scene: Scene) -> Question:
     """Return the question whose preset has the lights of a scene, ``"shape"`` if there is none.
 
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    {"direction", "slope", "heading", "shape", "value"}
+
     Raises
     ------
     TypeError
