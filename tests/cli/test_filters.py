@@ -100,6 +100,9 @@ COMMANDS = {
     "project": "project torus.vtp --rotation xw:0.5 --rotation yz:1/3 --distance 3 "
     "--light 0.7,0.6,0.38,0",
     "project, lit after": "project torus.vtp --when after --view 0,-1,0.5 --color red",
+    "for shape": "light flow.vti --contour r --tangents V --for shape",
+    "for slope": "streamlines flow.vti --vectors V --seeds 9 --for slope --diffuse 0.5 --no-key",
+    "for values": "light flow.vti --slice z:4 --scalars r --for value",
     "cut": "project torus.vtp --hyperplane 0,0,1,0.2:0.1",
 }
 
@@ -346,6 +349,10 @@ def test_report_stands_in_the_script_too(folder, capfd):
         ("light flow.vti --scene no.json", "--scene: expected a JSON file, got 'no.json' (No such"),
         ("light flow.vti --scene flow.vti", "--scene: expected a JSON file"),
         ("light flow.vti --scene list.json", "--scene 'list.json': values: expected a dict of"),
+        (
+            "light flow.vti --for shape --headlight",
+            "--for: expected lights of its own, got --headl",
+        ),
         ("light flow.vti --view list.json", "--view: expected a JSON list of the camera's"),
         ("light flow.vti --view no.json", "--view: expected a JSON file"),
         ("light flow.vti --view up", "--view: expected three numbers x,y,z"),

@@ -13,6 +13,7 @@ from cyclopts import Group, Parameter
 from vizlight._words import message
 
 Backend = Literal["egl", "osmesa"]
+Question = Literal["direction", "slope", "heading", "shape", "value"]
 Flag = Annotated[bool, Parameter(negative=(), show_default=False)]
 Text = Annotated[str, Parameter(allow_leading_hyphen=True)]
 Texts = Annotated[list[str], Parameter(allow_leading_hyphen=True, negative=())]
@@ -95,6 +96,10 @@ class Lights:
 
     Parameters
     ----------
+    question
+        Light for one question, with its key: direction, slope, heading, shape or value.
+    key
+        Draw the key of --for into the picture.
     light
         Direction x,y,z to a far light, or azimuth,altitude in degrees.
     light_position
@@ -107,6 +112,8 @@ class Lights:
         JSON file of Scene.to_dict(); other options replace its values.
     """
 
+    question: Annotated[Question | None, Parameter(name="--for")] = None
+    key: bool = True
     light: Texts | None = None
     light_position: Positions | None = None
     headlight: Flag = False

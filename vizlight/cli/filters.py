@@ -126,7 +126,8 @@ def _level_light(lights: Sequence[Light]) -> float:
     """Return the sine of the altitude of the highest light at infinity; 1 without one above."""
     import numpy as np
 
-    ways = [np.asarray(light.direction) for light in lights if light.direction is not None]
+    fixed = [light for light in lights if not light.follows_view]
+    ways = [np.asarray(light.direction) for light in fixed if light.direction is not None]
     sines = [float(way[2] / np.linalg.norm(way)) for way in ways]
     return max((sine for sine in sines if sine > 0), default=1.0)
 

@@ -30,6 +30,8 @@ GLTF = ".glb"
 HTML = ".html"
 #: Files that no writer of meshes writes, and the functions that do.
 SHOWN = {GLTF: "vizlight.save_gltf", HTML: "vizlight.live_html", ".py": "paraview.save"}
+#: Options of light that its key has too.
+KEY_OPTIONS: tuple[str, ...] = ("exponent", "conditioned")
 #: Files that hold all parts of a result.
 TOGETHER = (HTML, ".vtm")
 
@@ -200,6 +202,7 @@ def _picture(job: Job, path: Path, out: Output) -> Step:
         "line_width": None if out.line_width == 1 else out.line_width,
         "backend": out.backend,
         "clim": job.clim,
+        "key": _key(job),
     }
     return Step(
         "",
@@ -210,6 +213,19 @@ def _picture(job: Job, path: Path, out: Output) -> Step:
         size=job.look.size,
         **{key: value for key, value in options.items() if value is not None},
     )
+
+
+def _key(job: Job) -> Step | None:
+    """Return the step that makes the key of light for a question, if there is one."""
+    lights = job.look.lights
+    if lights.question is None or not lights.key:
+        return None
+    scene = job.lit.keywords.get("scene", job.lit.arguments[-1])
+    given = job.lit.keywords
+    options = {name: given[name] for name in KEY_OPTIONS if name in given}
+    if lights.question == "value" and job.color is not None and job.shown is not None:
+        options["cmap"] = job.color.cmap
+    return Step("key", "vizlight.presets.key", scene, **options)
 
 
 def _written(job: Job, mesh: Step, path: Path, out: Output) -> Step:
@@ -301,9 +317,15 @@ def _light(job: Job, out: Output) -> pv.DataSet:
 def _count_white(lit: pv.DataSet, name: str) -> None:
     """Print how many points are too bright for the picture."""
     from vizlight.mesh.blocks import all_blocks
+    from vizlight.shading.results import part_name
 
     blocks = [block for block in all_blocks(lit) if name in block.point_data]
-    bright = sum(int((block.point_data[name] > 1).sum()) for block in blocks)
+    bright = 0
+    for block in blocks:
+        # A picture in colour shows the channels; their light may be above 1 where they are not.
+        rgb = block.point_data.get(part_name(name, "rgb"))
+        shown = block.point_data[name] if rgb is None else rgb.max(axis=1, initial=0.0)
+        bright += int((shown > 1).sum())
     if bright:
         total = sum(block.n_points for block in blocks)
         complain(

@@ -27,6 +27,9 @@ from vizlight.cli.job import Job, carry_out
 from vizlight.cli.output import say
 from vizlight.cli.script import Step
 
+#: Questions whose light needs the self-shadow of a surface where tangents are lit.
+CONDITIONED = ("shape", "value")
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -95,6 +98,8 @@ def builder(
     if taken:
         # In a picture a crease is seen as one.
         given = {"feature_angle": "auto"} | given
+    if common.lights.question in CONDITIONED and "tangents" in given:
+        given = {"conditioned": True} | given
     asked = LightOptions(**given)
 
     def job(path: Path) -> Job:

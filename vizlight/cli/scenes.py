@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from typing import TypeAlias
 
     from vizlight._types import Vector
-    from vizlight.cli.arguments import Color, Common, Part
+    from vizlight.cli.arguments import Color, Common, Lights, Part
     from vizlight.scene import Scene, View
 
     #: Position, focal point and direction up of a camera that no mesh changes.
@@ -151,15 +151,19 @@ class Look:
         self, common: Common, *, fill: bool = True, material: Mapping[str, float] = MATERIAL
     ) -> None:
         self._fill = fill
-        self._lights, self._eye = common.lights, common.eye
+        self.lights, self._eye = common.lights, common.eye
+        _check_question(self.lights)
         self.size = arguments.pixels(common.out.size)
         file = common.lights.scene
         self._file = None if file is None else read_scene(file)
         base = vizlight.Scene() if self._file is None else self._file
+        question = self.lights.question
+        if question is not None:
+            base = getattr(vizlight.presets, question)()
         changes = _given(vars(common.finish))
         self._material: Step | None = None
         kept: dict[str, object] = dict(material) if fill else {}
-        if self._file is not None:
+        if self._file is not None or question is not None:
             kept = _given(vars(base.material)) if changes else {}
         if kept or changes:
             self._material = Step("", "vizlight.Material", **(kept | changes))
@@ -232,7 +236,9 @@ class Look:
         return self._scene(view, (*shoulder, *(0.0,) * (n - 3)), n)
 
     def _scene(self, view: Step, shoulder: object, n: int) -> Step:
-        asked = self._lights
+        asked = self.lights
+        if asked.question is not None:
+            return self._preset(asked.question, view)
         lights = [
             Step("", "vizlight.Light", direction=arguments.vector("light", text, n=n))
             for text in asked.light or ()
@@ -268,6 +274,27 @@ class Look:
         text = Step("", ".read_text", Step("", "pathlib.Path", asked.scene))
         read = Step("scene", "vizlight.Scene.from_dict", Step("", "json.loads", text))
         return Step("scene", ".replace", read, **values) if values else read
+
+    def _preset(self, question: str, view: Step) -> Step:
+        """Return the step that makes the scene of a question."""
+        cue = Step("", "vizlight.DepthCue", back_scale=0.5) if self.lights.depth_cue else None
+        changes = _given({"material": self._material, "depth_cue": cue})
+        made = Step("scene", f"vizlight.presets.{question}", view)
+        return Step("scene", ".replace", made, **changes) if changes else made
+
+
+def _check_question(lights: Lights) -> None:
+    """Check that light for a question has no lights beside it."""
+    if lights.question is None:
+        return
+    given = {
+        "light": lights.light, "light-position": lights.light_position,
+        "headlight": lights.headlight, "scene": lights.scene,
+    }  # fmt: skip
+    for name, value in given.items():
+        if value:
+            expected = "lights of its own"
+            raise ValueError(message("--for", expected, f"--{name} beside it", "leave one out"))
 
 
 def read_scene(path: Path) -> Scene:

@@ -15,6 +15,8 @@ from vizlight.shading import engine
 from vizlight.shading.display import LEAST, displayable, on_colors
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import pyvista as pv
     from numpy.typing import NDArray
 
@@ -30,7 +32,7 @@ WORDS = "words"
 #: Words beside the key of each question: below it, or at the two ends of a bar.
 TEXTS: dict[str, tuple[str, ...]] = {
     "direction": ("direction on the screen",),
-    "slope": ("across the view", "toward you"),
+    "slope": ("across", "toward you"),
     "heading": ("near end of a line",),
     "shape": ("a ball in this light",),
     "value": ("low", "high"),
@@ -51,6 +53,7 @@ def key(
     exponent: Exponent = "compensated",
     conditioned: bool = False,
     cmap: ColorMap = None,
+    clim: Sequence[float] | None = None,
 ) -> pv.PolyData:
     """Return the key of a scene's light as a mesh that faces the eye.
 
@@ -63,13 +66,15 @@ def key(
         ``"slope"``: a bar of lines, from across the view to toward the eye. ``"heading"``: a disc
         where each point is the near end of a line from the centre. ``"shape"``: a ball.
         ``"value"``: a bar of the colours of data, below in the least light and above in full.
-        Default: that of the preset whose lights the scene has, otherwise ``"shape"``.
+        Default: that of the preset whose light the scene has, otherwise ``"shape"``.
     exponent : float or "compensated"
         Exponent of the diffuse light of lines, as the data have it.
     conditioned : bool, default: False
         Whether tangents of the disc have the self-shadow of a surface that faces the eye.
     cmap : str or colour map, optional
         Colour map of ``"value"``. Default: :data:`vizlight.maps.even`.
+    clim : (float, float), optional
+        Values at the ends of that map, which become its words.
 
     Returns
     -------
@@ -98,12 +103,13 @@ def key(
     made[RGB] = colors_of(
         scene, x, y, question=asked, exponent=exponent, conditioned=conditioned, cmap=cmap
     )
-    made.field_data[WORDS] = list(TEXTS[asked])
+    ends = () if clim is None or asked != "value" else _check.vector("clim", clim)
+    made.field_data[WORDS] = [f"{end:.3g}" for end in ends] or list(TEXTS[asked])
     return made
 
 
 def question_of(scene: Scene) -> Question:
-    """Return the question whose preset has the lights of a scene, ``"shape"`` if there is none.
+    """Return the question whose preset has the light of a scene, ``"shape"`` if there is none.
 
     Parameters
     ----------
@@ -120,7 +126,9 @@ def question_of(scene: Scene) -> Question:
     """
     _check.instance("scene", scene, Scene)
     for name in get_args(Question):
-        if PRESETS[name]().lights == scene.lights:
+        preset = PRESETS[name]()
+        colorless = dataclasses.replace(scene.material, color=None)
+        if (preset.lights, preset.material) == (scene.lights, colorless):
             found: Question = name
             return found
     return "shape"

@@ -26,6 +26,7 @@ from vizlight.pictures.backends import (
 from vizlight.pictures.cameras import Mesh, camera_on, common_bounds, over_shoulder
 from vizlight.plotting import strokes
 from vizlight.plotting.component import add_recorded, name_no_data
+from vizlight.plotting.corner import CornerKey, ink_on
 from vizlight.plotting.program import Stroke
 from vizlight.reading import polylines
 from vizlight.reading.polylines import has_lines_only
@@ -64,6 +65,8 @@ LARGEST_SIDE, LARGEST_AREA = 8192, 33_000_000
 #: Distance by which lines are drawn nearer to the eye than a surface on which they lie, as a share
 #: of the size of what is drawn: enough for triangles not to hide the lines between them.
 LIFT = 3e-3
+#: Width of a key, as a share of the shorter side of the picture.
+KEY_SIZE = 0.2
 #: Width of a line that supersampling draws one pixel wide, as measured from pictures of lines of 1
 #: to 40 pixels: twice the size, and VTK's lines are a tenth narrower there.
 SUPERSAMPLED = 2 / 0.9
@@ -100,6 +103,7 @@ class PlotterKeywords(TypedDict, total=False):
     anti_aliasing: AntiAliasing | None
     backend: Backend | None
     light: PictureLight
+    key: pv.PolyData | None
 
 
 def make_plotter(
@@ -120,6 +124,7 @@ def make_plotter(
     anti_aliasing: AntiAliasing | None = "ssaa",
     backend: Backend | None = None,
     light: PictureLight = "auto",
+    key: pv.PolyData | None = None,
 ) -> pv.Plotter:
     """Return an offscreen plotter that shows lit meshes on a grid of panels with one camera.
 
@@ -168,6 +173,9 @@ def make_plotter(
         light of its record, computed in each fragment, where the array is a light of which that
         is possible (in gray from 0 to 1, or ``rgb``): it is right between the points too. A scene
         that is exported to a page needs "points", because the page has no such shaders.
+    key : pyvista.PolyData, optional
+        Key of the light, as :func:`vizlight.presets.key` returns it, in the corner of the last
+        panel where it covers the least of the data.
 
     Returns
     -------
@@ -196,7 +204,7 @@ def make_plotter(
     back = _background_of(shown, background)
     if camera is None:
         camera = _camera_on_all(shown, aspect=pixels[0] * rows / (pixels[1] * columns))
-    ink = "black" if sum(back.float_rgb) > 1.2 else "white"
+    ink = ink_on(back)
     with window_class(choose_backend(backend)):
         plotter = pv.Plotter(
             off_screen=True, shape=(rows, columns), window_size=pixels, border=False
@@ -224,6 +232,8 @@ def make_plotter(
                 text.GetTextProperty().SetLineOffset(8)
             plotter.camera = camera.copy()  # type: ignore[no-untyped-call]
             plotter.reset_camera_clipping_range()
+        if key is not None:
+            CornerKey(key, "auto", KEY_SIZE, ink_on(back)).show(plotter.renderer)
         if bar:
             made = plotter.add_scalar_bar(  # type: ignore[call-arg]
                 title=bar, color=ink, n_labels=3, fmt="%.1f", vertical=True, height=0.7, width=0.1,
@@ -328,7 +338,7 @@ def save_png(
         Path of the picture, in an existing folder.
     **options
         Options of :func:`make_plotter`: camera, rows, size, scalars, cmap, clim, bar, background,
-        line_width, line_diameter, render_lines_as_tubes, anti_aliasing, backend, light.
+        line_width, line_diameter, render_lines_as_tubes, anti_aliasing, backend, light, key.
 
     Returns
     -------

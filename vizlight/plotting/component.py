@@ -11,8 +11,10 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.files import check_output
 from vizlight.filters import relight
+from vizlight.filters.key import key
 from vizlight.filters.tint import RGB, default_map, default_nan_color
 from vizlight.mesh import blocks, records
+from vizlight.plotting.corner import PLACES, CornerKey, ink_on
 from vizlight.plotting.fragments import Fragments, unfit
 from vizlight.plotting.html import write_page
 from vizlight.plotting.live import LightAt, Live, colorless, items
@@ -35,7 +37,9 @@ if TYPE_CHECKING:
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
     from vizlight._types import ColorLike
+    from vizlight.filters.key import Question
     from vizlight.filters.relight import Source
+    from vizlight.plotting.corner import Corner
 
 __all__ = ["Component", "add_recorded", "plot"]
 
@@ -182,6 +186,77 @@ class Component:
         if not several and not actors:
             raise ValueError(_check.message("mesh", "a mesh with points", "none"))
         return actors if several else actors[0]
+
+    def add_key(
+        self,
+        scene: Scene | None = None,
+        /,
+        *,
+        question: Question | None = None,
+        corner: Corner = "auto",
+        size: float = 0.2,
+        color: ColorLike | None = None,
+        **options: Any,
+    ) -> pv.PolyData:
+        """Draw the key of the light in a corner of the picture, with its words.
+
+        Parameters
+        ----------
+        scene : Scene, optional
+            Scene whose light the key explains. Default: that of the first mesh of
+            :meth:`add_mesh`, with the exponent of its light.
+        question : {"direction", "slope", "heading", "shape", "value"}, optional
+            What the key tells. Default: the question of the preset, see
+            :func:`vizlight.presets.key`.
+        corner : {"auto", "lower left", "lower right", "upper left", "upper right"}
+            Corner of the picture. ``"auto"``: the one in which the data have the fewest points when
+            the first frame is drawn.
+        size : float, default: 0.2
+            Width of the key, as a share of the shorter side of the picture, from 0.02 to 1.
+        color : colour, optional
+            Colour of the words. Default: black on a light background, white on a dark one.
+        **options
+            Keywords of :func:`vizlight.presets.key`: exponent, conditioned, cmap, clim.
+
+        Returns
+        -------
+        pyvista.PolyData
+            The key.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If an argument does not fit; if there is neither a scene nor a mesh with live light.
+        RuntimeError
+            If the plotter is closed.
+
+        Notes
+        -----
+        Lights that follow the view have the same key in all views. The key of fixed lights is that
+        of the camera when it is added.
+        """
+        plotter = self._open_plotter()
+        _check.choice("corner", corner, ("auto", *PLACES))
+        size = _check.number("size", size, low=0.02, high=1.0)
+        if scene is None:
+            scene, own = self._first_light(plotter)
+            options = own | options
+        made = key(scene, question=question, **options)
+        ink = _check.color("color", color)
+        if ink is None:
+            ink = ink_on(plotter.background_color)
+        CornerKey(made, corner, size, ink).show(plotter.renderer)
+        return made
+
+    def _first_light(self, plotter: pv.BasePlotter) -> tuple[Scene, dict[str, Any]]:
+        """Return the scene of the first mesh with live light, and its options of a key."""
+        for actor in items(plotter.renderer.GetActors()):
+            live = self._live_of(actor)
+            if live is not None:
+                options = {"exponent": live.source.options.exponent}
+                return live.scene_of(plotter.renderer, actor), options
+        expected, remedy = "a scene, or a mesh with live light", "pass the scene of the picture"
+        raise ValueError(_check.message("scene", expected, None, remedy))
 
     def export_html(self, path: str | Path, /, *, title: str = "", panel: bool = True) -> Path:
         """Write one HTML file that shows the meshes, whose light follows the eye of the reader.
