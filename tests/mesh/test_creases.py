@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
+import vizlight
 from vizlight.mesh import creases
 from vizlight.reading import cells, normals, orientation, topology
 
@@ -78,3 +79,19 @@ def test_normals_are_those_of_vtk_and_do_not_depend_on_the_size_of_parts(name, m
         np.testing.assert_array_equal(after.lean, before.lean)
         np.testing.assert_array_equal(after.open, before.open)
         assert after.sharp == before.sharp
+
+
+def test_a_surface_without_creases_is_surveyed_once(monkeypatch):
+    made = []
+
+    class Counted(orientation.Shape):
+        def __init__(self, *given):
+            made.append(self)
+            super().__init__(*given)
+
+    monkeypatch.setattr(normals, "Shape", Counted)
+    ball = plain(pv.Sphere())
+    scene = vizlight.Scene(lights=vizlight.Light(direction=(1, 1, 1)))
+    lit = vizlight.illuminate(ball, scene, feature_angle="auto")
+    assert len(made) == 1
+    np.testing.assert_array_equal(lit["luminance"], vizlight.illuminate(ball, scene)["luminance"])
