@@ -110,6 +110,7 @@ def legibility(
     known; for a point without normal those about the line of sight. The reader by the key knows no
     normal: he finds the hue of a pixel on a small disc that faces the eye and has tangents in all
     directions, and takes the direction there; tangents that run toward the eye are not asked for.
+    Under a single hue he always takes one direction, which is right where the data have one.
     *slope*: rank correlation and information are those of CIELAB's lightness alone; the direction
     in space is that of an ideal observer who knows the course of a line in the picture.
     *shape*: 900 normals, with 24 tangents each where there are tangents, which are unknown.
