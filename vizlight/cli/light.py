@@ -129,7 +129,8 @@ def _read(made: Job, scene: Step, given: dict[str, object]) -> Step:
     names = [field for field in inspect.signature(vizlight.legibility).parameters if field in given]
     known = {name: given[name] for name in names}
     if made.shown is not None and made.shown.path == "vizlight.tint":
-        known |= {"scalars": made.shown.arguments[1], "cmap": made.shown.keywords["cmap"]}
+        known["scalars"] = made.shown.arguments[1]
+        known |= {name: made.shown.keywords[name] for name in made.shown.keywords.keys() & {"cmap"}}
     return Step("", "vizlight.legibility", made.lit, scene, **known, view=made.camera)
 
 
