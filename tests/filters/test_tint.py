@@ -10,6 +10,7 @@ import pyvista as pv
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View
 from vizlight.filters.tint import tint, unlit_colors
+from vizlight.shading import engine
 from vizlight.shading.display import NO_DATA
 
 VIEW = View(direction=(1, 0.3, 0.4))
@@ -205,6 +206,20 @@ def test_result_replaces_the_one_before_and_no_array_of_the_user():
     with pytest.raises(ValueError, match="name: expected one under which the mesh has no array"):
         tint(mine, "height")
     assert "shade" in tint(mine, "height", name="shade").point_data
+
+
+@pytest.mark.parametrize(
+    ("material", "components", "runs"),
+    [("matte", False, 0), ("dark", True, 0), ("dark", False, 1)],
+)
+def test_light_is_computed_at_most_once(material, components, runs):
+    """Not at all where the mesh carries it."""
+    scene = SCENE.replace(material=MATERIALS[material])
+    lit = vizlight.illuminate(ball(), scene, components=components)
+    seen = []
+    with engine.observed(lambda *run: seen.append(run)):
+        tint(lit, "height")
+    assert len(seen) == runs
 
 
 @pytest.mark.parametrize("components", [False, True])

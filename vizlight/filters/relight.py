@@ -156,11 +156,28 @@ def from_record(
         If there is no record of the light, it does not suffice, or the light of the record is not
         that of the mesh, because points or arrays have changed.
     """
+    found, recorded = _read_record(mesh, scene, name)
+    if scene is None and records.provenance(mesh, name).get("filter") != "fur":
+        _light_again(found, recorded, name)
+    return found, recorded
+
+
+def terms_from_record(
+    mesh: pv.DataSet | pv.MultiBlock, name: str
+) -> tuple[list[Source], Scene, list[engine.Shading]]:
+    """Return what :func:`from_record` does, and the light of each source in terms."""
+    found, scene = _read_record(mesh, None, name)
+    return found, scene, _light_again(found, scene, name, components=True)
+
+
+def _read_record(
+    mesh: pv.DataSet | pv.MultiBlock, scene: Scene | None, name: str
+) -> tuple[list[Source], Scene]:
+    """Return what a record says was lit, and its scene or the given one."""
     record = records.provenance(mesh, name)
-    made = str(record.get("filter"))
     recorded = Scene.from_dict(record["scene"])
     used = recorded if scene is None else scene
-    if made == "fur":
+    if record.get("filter") == "fur":
         return _of_fur(mesh, record["options"], used), used
     found: list[Source] = []
     for block, path in blocks.named_blocks(mesh):
@@ -169,8 +186,6 @@ def from_record(
             expected = f"a record of {name!r} on each block"
             raise ValueError(_check.message("mesh", expected, f"none on block {path or block}"))
         found.append(_of_block(block, path, own, used))
-    if scene is None:
-        _check_light(found, recorded, name)
     return found, used
 
 
@@ -284,9 +299,17 @@ def _of_fur(
     ]
 
 
-def _check_light(sources: list[Source], scene: Scene, name: str) -> None:
-    """Check that the light of the record is the light that the meshes have."""
-    parts = [(source.seen_from(scene.view, source.inputs), source.options) for source in sources]
+def _light_again(
+    sources: list[Source], scene: Scene, name: str, *, components: bool = False
+) -> list[engine.Shading]:
+    """Return the light of the record, which must be that of the meshes."""
+    parts = [
+        (
+            source.seen_from(scene.view, source.inputs),
+            dataclasses.replace(source.options, components=components),
+        )
+        for source in sources
+    ]
     results, _ = lighting.light(parts, scene, threads=None, progress_bar=False)
     for source, shading in zip(sources, results, strict=True):
         stored = _check.floats(f"mesh, {name}", source.mesh.point_data[name])
@@ -299,3 +322,4 @@ def _check_light(sources: list[Source], scene: Scene, name: str) -> None:
             expected = f"a mesh whose {name!r} is that of its record"
             remedy = "light it again: points or arrays have changed"
             raise ValueError(_check.message("mesh", expected, share, remedy))
+    return results

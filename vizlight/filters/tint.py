@@ -358,8 +358,22 @@ def _light_of(
     carried = [own for own in stored if own is not None]
     if len(carried) == len(meshes):
         return carried
-    sources, scene = relight.from_record(lit, name=light)
-    return [*light_on_colors(sources, scene)]
+    sources, scene, again = relight.terms_from_record(lit, light)
+    if scene.depth_cue is not None or _colored(scene):
+        return [*light_on_colors(sources, scene)]
+    least = max(scene.material.ambient, display.LEAST) * scene.ambient_intensity
+    found: list[tuple[Array, Bools | None]] = []
+    for source, shading in zip(sources, again, strict=True):
+        share = source.inputs.occlusion
+        ambient = least if share is None else least * np.asarray(share[:])
+        valid = shading.valid if shading.invalid else None
+        found.append((ambient + np.asarray(shading.diffuse), valid))
+    return found
+
+
+def _colored(scene: Scene) -> bool:
+    """Return whether light has a colour, on a material that has none."""
+    return scene.replace(material=dataclasses.replace(scene.material, color=None)).colored
 
 
 def _stored(mesh: pv.DataSet, light: str) -> tuple[Array, Bools | None] | None:
@@ -367,7 +381,7 @@ def _stored(mesh: pv.DataSet, light: str) -> tuple[Array, Bools | None] | None:
     scene = Scene.from_dict((records.read(mesh, light) or {})["scene"])
     material, ours = scene.material, records.made(mesh, light)
     valid = np.asarray(mesh[light + VALID], np.bool_) if light + VALID in ours else None
-    if scene.replace(material=dataclasses.replace(material, color=None)).colored:
+    if _colored(scene):
         return None
     if light in ours and not material.specular and material.ambient >= display.LEAST:
         return np.asarray(mesh.point_data[light]), valid

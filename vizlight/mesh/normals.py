@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import hashlib
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -26,6 +25,7 @@ from vizlight.reading.cells import (
 from vizlight.reading.normals import Sided, computed_normals, given_normals
 from vizlight.reading.orientation import MANY_SHARP, SHARP
 from vizlight.scene import View
+from vizlight.shading.results import digest
 
 if TYPE_CHECKING:
     from typing import TypeVar
@@ -219,17 +219,13 @@ def fingerprint(mesh: pv.DataSet) -> str | None:
         cells = [mesh.GetCells()]
     else:
         return None
-    digest = hashlib.sha256()
     arrays = [places(mesh)]
     for cell in cells:
         if cell is not None and cell.GetNumberOfCells():
             arrays += [as_numpy(cell.GetConnectivityArray()), as_numpy(cell.GetOffsetsArray())]
         else:
             arrays.append(_NONE)
-    for array in arrays:
-        digest.update(f"{array.dtype.str}{array.shape}".encode())
-        digest.update(np.ascontiguousarray(array).data)
-    return digest.hexdigest()
+    return " ".join(f"{array.dtype.str}{digest(array)}" for array in arrays)
 
 
 def _stay(mesh: pv.DataSet, normals: Sided) -> bool:
