@@ -9,8 +9,9 @@ import pyvista as pv
 from adversary_arrays import UP, unit
 
 import vizlight
-from vizlight import Light, Material, Scene, View, engine
+from vizlight import Light, Material, Scene, View, engine, presets
 from vizlight.geometry import manifolds
+from vizlight.scene.presets import PRESETS
 from vizlight.shading.inputs import ShadingInputs
 
 SCENE = Scene(
@@ -203,6 +204,7 @@ CALLS = {
         "tangents": "V",
     },
     "pieces.workers.Processes": lambda: {"count": 1},
+    "plotting.component.Component.add_key": lambda: {"scene": presets.shape()},
     "plotting.component.Component.add_mesh": lambda: {"mesh": ball(), "scene": SCENE},
     "plotting.component.Component.explain": lambda: {"actor": shown()},
     "plotting.component.Component.export_html": lambda: {
@@ -226,6 +228,8 @@ CALLS = {
     "scene.material.Material": dict,
     "scene.material.Material.from_property": lambda: {"source": pv.Property()},
     "scene.material.Material.to_property": dict,
+    **{f"scene.presets.{name}": dict for name in PRESETS},
+    "filters.key.key": lambda: {"scene": presets.shape()},
     "scene.scene.Scene": lambda: {"lights": Light(direction=UP), "view": View(direction=UP)},
     "scene.scene.Scene.from_dict": lambda: {"values": SCENE.to_dict()},
     "scene.scene.Scene.from_plotter": lambda: {"plotter": plotter()},

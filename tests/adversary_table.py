@@ -130,6 +130,7 @@ SELF = {
     "geometry.contours.banding.Laminae.order": lambda: vizlight.geometry.isoluminance.sphere(
         (0, 0, 0), 1.0, direction=adversary_arrays.UP, levels=4, form="laminae"
     ),
+    "plotting.component.Component.add_key": lambda: meshes.plotter().vizlight,
     "plotting.component.Component.add_mesh": lambda: meshes.plotter().vizlight,
     "plotting.component.Component.explain": lambda: meshes.LAST[0].vizlight,
     "plotting.component.Component.export_html": lambda: meshes.LAST[0].vizlight,

@@ -102,6 +102,6 @@ def test_bad_input():
     with pytest.raises(TypeError, match=r"scene: expected a vizlight\.Scene"):
         vizlight.presets.key(None)
     with pytest.raises(ValueError, match="view: expected a view in 3-space"):
-        presets.key(Scene(view=View(direction=(1, 0, 0, 0))))
+        presets.key(Scene(lights=Light(direction=(1, 2, 3)), view=View(position=(1, 2, 3))))
     dark = presets.key(Scene(lights=[], view=VIEW))["rgb"]
     assert np.unique(dark).size == 1

@@ -193,7 +193,7 @@ def colors_of(
 def _in_frame_of_eye(scene: Scene) -> Scene:
     """Return a scene seen along z from infinity, with its lights where the eye has them."""
     _check.instance("scene", scene, Scene)
-    axes = (View.isometric() if scene.view is None else scene.view).axes()
+    view = View.isometric() if scene.view is None else scene.view
     lights = []
     for light in scene.lights:
         if light.position is not None:
@@ -201,7 +201,7 @@ def _in_frame_of_eye(scene: Scene) -> Scene:
             raise ValueError(_check.message("scene", expected, light, remedy))
         if not light.follows_view and light.direction is not None:
             unit = np.divide(light.direction, np.abs(light.direction).max())
-            light = dataclasses.replace(light, direction=tuple(axes @ unit))
+            light = dataclasses.replace(light, direction=tuple(view.axes() @ unit))
         lights.append(light)
     return scene.replace(lights=lights, view=View(direction=(0, 0, 1)), depth_cue=None)
 

@@ -8,7 +8,7 @@ draws what hue and lightness mean.
 from __future__ import annotations
 
 import itertools
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -21,7 +21,12 @@ from vizlight.scene.view import View, as_view
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    import pyvista as pv
+    from vtkmodules.vtkRenderingCore import vtkCamera
+
     from vizlight._types import Array
+
+    Eye: TypeAlias = View | vtkCamera | pv.BasePlotter | None
 
 #: Share of red, green and blue in the luma of a colour (ITU-R BT.709).
 LUMA = np.array([0.2126, 0.7152, 0.0722])
@@ -32,7 +37,7 @@ AMBIENT, FLOOR = 0.08, 0.3
 FIRST_HUE, FIRST_AZIMUTH = 60.0, 90.0
 
 
-def direction(view: Any = None, /) -> Scene:
+def direction(view: Eye = None, /) -> Scene:
     """Return a scene in which hue tells the direction of tangents on the screen.
 
     Three lamps in the picture plane have hues of equal luma, and a weaker white one is at the eye.
@@ -66,7 +71,7 @@ def direction(view: Any = None, /) -> Scene:
     return _of_lines(_ring(0.0, 0.6, 0.4), view)
 
 
-def slope(view: Any = None, /) -> Scene:
+def slope(view: Eye = None, /) -> Scene:
     """Return a scene in which lightness tells how steeply lines run toward the eye.
 
     A lone headlight: a line across the view is white, one along it dark. Which end is nearer is
@@ -89,7 +94,7 @@ def slope(view: Any = None, /) -> Scene:
     return _of_lines([(np.array([0.0, 0.0, 1.0]), np.ones(3))], view)
 
 
-def heading(view: Any = None, /) -> Scene:
+def heading(view: Eye = None, /) -> Scene:
     """Return a scene in which lightness tells the slope of lines, and hue which end is nearer.
 
     The hues of :func:`direction`, 65 degrees above the picture plane, and a white lamp at the eye.
@@ -111,7 +116,7 @@ def heading(view: Any = None, /) -> Scene:
     return _of_lines(_ring(65.0, 0.6, 0.5), view)
 
 
-def shape(view: Any = None, /) -> Scene:
+def shape(view: Eye = None, /) -> Scene:
     """Return a scene in which hue and lightness tell the normal of a surface.
 
     The hues of :func:`direction`, 45 degrees above the picture plane, and a white lamp at the eye.
@@ -136,7 +141,7 @@ def shape(view: Any = None, /) -> Scene:
     return _scene(lamps, brightest_normal(lamps), AMBIENT, view)
 
 
-def value(view: Any = None, /) -> Scene:
+def value(view: Eye = None, /) -> Scene:
     """Return a scene in which colours of data stay readable by their scalar bar.
 
     A white lamp over the left shoulder and a weaker one at the eye, no highlight, and never less
@@ -230,11 +235,11 @@ def _ring(height: float, saturation: float, head: float) -> list[Lamp]:
     return [*lamps, (np.array([0.0, 0.0, 1.0]), np.full(3, head))]
 
 
-def _of_lines(lamps: Sequence[Lamp], view: object) -> Scene:
+def _of_lines(lamps: Sequence[Lamp], view: Eye) -> Scene:
     return _scene(lamps, brightest_tangent(lamps), AMBIENT, view)
 
 
-def _scene(lamps: Sequence[Lamp], brightest: float, ambient: float, view: object) -> Scene:
+def _scene(lamps: Sequence[Lamp], brightest: float, ambient: float, view: Eye) -> Scene:
     """Return the scene of lamps, the brightest light of which becomes white."""
     lights = []
     for toward, channels in lamps:
@@ -250,11 +255,12 @@ def _scene(lamps: Sequence[Lamp], brightest: float, ambient: float, view: object
     return Scene(lights=lights, material=material, view=_view(view))
 
 
-def _view(given: Any) -> View | None:
+def _view(given: Eye) -> View | None:
     """Return a view, that of a camera, or that of a plotter's camera."""
-    camera = getattr(given, "camera", None)
+    # A plotter has a camera; a view or a camera has none.
+    camera: View | vtkCamera | None = getattr(given, "camera", given)
     try:
-        return as_view(given if camera is None else camera)
+        return as_view(camera)
     except TypeError:
         expected = "a vizlight.View, a pyvista.Camera, a pyvista.Plotter or None"
         raise TypeError(_check.message("view", expected, _check.describe(given))) from None
