@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 
 from vizlight import _compiled
-from vizlight.geometry.lines import compiled as growing
 from vizlight.geometry.relief import compiled as walking
 from vizlight.geometry.relief import strips
 
@@ -245,7 +244,7 @@ def test_generated_code_is_kept(home):
     assert again.start_up() <= _compiled.READ
 
 
-@pytest.mark.parametrize("own", [strips.lengths, walking.walk, growing.grow])
+@pytest.mark.parametrize("own", [strips.lengths, walking.walk])
 def test_a_first_call_takes_at_most_twice_the_time_of_numpy(own, monkeypatch, tmp_path):
     """Without a cache, a kernel is compiled only if the call wins half of that back."""
     pytest.importorskip("numba")

@@ -466,59 +466,9 @@ def test_absorption_where_lengths_vary_is_that_of_the_mean_length():
             fur(mesh, SCENE, fibres=5, **options)
 
 
-def varied():
-    """Return a surface with arrays of all kinds, of which some vectors are zero or not finite."""
-    mesh, random = torus(24), np.random.default_rng(4)
-    vectors = random.normal(size=(mesh.n_points, 3)).astype(np.float32)
-    vectors[::10], vectors[1], vectors[2] = 0, 1e-30, 1e30
-    mesh["v"], mesh["to"] = vectors, random.normal(size=(mesh.n_points, 3))
-    mesh["size"] = random.random(mesh.n_points)
-    return mesh
-
-
-@pytest.mark.slow
-@pytest.mark.filterwarnings("ignore:.* fibres point into the surface")
-@pytest.mark.parametrize(
-    "options",
-    [
-        {},
-        {"segments": 1, "fibres": 70_000},
-        {"segments": 6, "toward": (0, 0, -1), "bend": 0.5},
-        {"vectors": "v", "length": "size"},
-        {"vectors": "v", "toward": "to", "bend": 0.7, "length": "size"},
-        {"segments": 2, "curl": 0.3, "turns": 2.0, "toward": "to", "bend": 0.4},
-        {"length": 0.0, "curl": 0.3, "conditioned": False, "absorption": 0},
-    ],
-)
-@pytest.mark.parametrize("origin", [0.0, 5e6])
-def test_compiled_code_grows_the_same_fibres(options, origin):
-    if not _compiled.active():
-        pytest.skip(_compiled.why_not())
-    mesh = varied()
-    if origin:
-        mesh.points = mesh.points.astype(np.float64) + origin
-    coats = []
-    for code in ("0", "1"):
-        with _compiled.setting(code):
-            coats.append(fur(mesh, SCENE, **{"fibres": 2000, "threads": 2, **options}))
-    exact, found = (coat["fibres"] for coat in coats)
-    assert found.points.dtype == exact.points.dtype
-    # A curl's sine and cosine are rounded otherwise.
-    spacing = np.spacing(np.float32(3)) if "curl" in options else 0
-    np.testing.assert_allclose(
-        found.points, exact.points, rtol=0, atol=spacing + 1e-9 * bool(origin)
-    )
-    np.testing.assert_array_equal(found.lines, exact.lines)
-    np.testing.assert_allclose(found["luminance"], exact["luminance"], rtol=0, atol=3e-5)
-    np.testing.assert_array_equal(coats[1]["skin"].points, coats[0]["skin"].points)
-
-
-def test_compiled_fibres_do_not_depend_on_the_number_of_threads():
-    if not _compiled.active():
-        pytest.skip(_compiled.why_not())
-    with _compiled.setting("1"):
-        coat = fur(torus(24), SCENE, fibres=500, segments=3, curl=0.2)
-        again = fur(torus(24), SCENE, fibres=500, segments=3, curl=0.2, threads=1)
+def test_fibres_do_not_depend_on_the_number_of_threads():
+    coat = fur(torus(24), SCENE, fibres=500, segments=3, curl=0.2)
+    again = fur(torus(24), SCENE, fibres=500, segments=3, curl=0.2, threads=1)
     np.testing.assert_array_equal(coat["fibres"].points, again["fibres"].points)
     np.testing.assert_array_equal(coat["fibres"]["luminance"], again["fibres"]["luminance"])
 

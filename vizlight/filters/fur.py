@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
-from vizlight import _check, _pool
+from vizlight import _check
 from vizlight.filters import lighting
-from vizlight.geometry.lines import compiled
 from vizlight.geometry.lines import fur as geometry
 from vizlight.mesh import blocks, bundles, point_arrays, surfaces
 from vizlight.mesh.normals import onlooker, split_where_computed
-from vizlight.mesh.strands import Grown, Room, Strands
+from vizlight.mesh.strands import Grown, Strands
 from vizlight.model import kernels
 from vizlight.reading.arrays import vectors_of
 from vizlight.scene.scene import as_scene
@@ -258,9 +257,7 @@ def _grow(
         [(surface, "")], name, components=False, colored=scene.colored, bundle=bool(options.bundle)
     )
     _check.holds("fibres, segments", (options.fibres, options.segments + 1, 3))
-    points = options.fibres * (options.segments + 1)
-    fast = compiled.grow.pays(compiled.SAVED * points / _pool.workers(threads))
-    coat = _Coat(surface, skin, options, fast=fast)
+    coat = _Coat(surface, skin, options)
     if options.fibres and not (len(coat.total) and coat.total[-1] > 0):
         raise ValueError(_check.message("surface", "faces of some area", "none"))
     far = any(coat.origin)
@@ -272,7 +269,6 @@ def _grow(
         straight=options.straight,
         threads=threads,
         unit=coat.unit,
-        fill=coat.fill if fast else None,
     )
     through = options.lost
     fibres = strands.inputs(
@@ -314,9 +310,7 @@ class _Coat:
     Points are less ``origin``, which is not 0 where the surface is far from there.
     """
 
-    def __init__(
-        self, surface: pv.PolyData, skin: pv.PolyData, options: FurOptions, *, fast: bool
-    ) -> None:
+    def __init__(self, surface: pv.PolyData, skin: pv.PolyData, options: FurOptions) -> None:
         self.options = options
         self.origin = blocks.near_origin(skin)
         size = float(skin.length)
@@ -324,7 +318,7 @@ class _Coat:
             remedy = "scale the mesh"
             raise ValueError(_check.message("surface", "a size from 1e-30 to 1e30", size, remedy))
         faces: Indices = np.asarray(skin.regular_faces, dtype=np.intp)
-        order, self.total = geometry.laid(np.asarray(skin.points), faces, fast=fast)
+        order, self.total = geometry.laid(np.asarray(skin.points), faces)
         self.faces = faces.take(order, axis=0)
         self._drawn: dict[int, geometry.Draws] = {}
         self._lock = threading.Lock()
@@ -380,28 +374,6 @@ class _Coat:
         phase = self._phases(start, part)
         offsets = self._strands(way, length, toward, phase)
         return Grown(root, offsets, way, normal, inside)
-
-    def fill(self, block: slice, room: Room) -> None:
-        """Write some of the fibres, by compiled code."""
-        start = block.start // geometry.SEED_BLOCK * geometry.SEED_BLOCK
-        part = slice(block.start - start, block.stop - start)
-        draws, phase = self._draws(start), self._phases(start, part)
-        options = self.options
-        whole = not isinstance(self.length, np.ndarray)
-        given = [self.vectors is not None, self.toward is not None and len(self.toward) > 1]
-        columns = np.cumsum([6, *(3 * there for there in given)])
-        at = [there * column for there, column in zip([*given, not whole], columns, strict=True)]
-        bend = 0.0 if self.toward is None else options.bend
-        length = self.length if whole else 0.0
-        compiled.grow(
-            self.total, draws.place[part], draws.number[part], draws.jitter[part], draws.starts,
-            draws.first, draws.mean, self.faces.reshape(-1), self._table.reshape(-1),
-            np.array([self._table.shape[1], *at]),
-            np.zeros(3, np.float32) if self.toward is None else self.toward[0],
-            np.empty(0) if phase is None else phase,
-            np.array([length, bend, options.curl, options.turns, self.unit], np.float64),
-            options.segments, *room,
-        )  # fmt: skip
 
     def _draws(self, start: int) -> geometry.Draws:
         """Return the random numbers of the block of seeds at ``start``, drawn once."""

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 #: Number of points that all threads grow at once: few compared with the points that are kept, but
 #: enough that threads seldom wait for the interpreter.
 POINTS_AT_ONCE = 1 << 18
-#: The same where compiled code fills blocks, which the cache of a processor should hold.
-POINTS_FILLED = 1 << 16
 
 
 class Grown(NamedTuple):
@@ -37,25 +35,11 @@ class Grown(NamedTuple):
     inside: Bools | None
 
 
-class Room(NamedTuple):
-    """Flat arrays that compiled code fills for a block of fibres, point after point.
-
-    ``normals`` and ``heights`` are empty where they are not needed; ``inside`` is per fibre.
-    """
-
-    points: Array
-    tangents: Array
-    normals: Array
-    heights: Array
-    inside: Bools
-
-
 class Strands:
     """Fibres as rows for the engine, which reads one block after the other and each block once.
 
     The vectors of a block are kept while a thread works on it; only points are kept for all.
-    ``unit`` is the length in which the heights of fur are counted. ``fill`` writes all of a block
-    at once in place of ``grow``.
+    ``unit`` is the length in which the heights of fur are counted.
     """
 
     def __init__(
@@ -68,10 +52,8 @@ class Strands:
         straight: bool,
         threads: int | None,
         unit: float = 1.0,
-        fill: Callable[[slice, Room], None] | None = None,
     ) -> None:
         self._grow, self._straight, self._threads = grow, straight, threads
-        self._fill, self._needed = fill, (False, False)
         self._block, self._unit = threading.local(), np.float32(unit)
         self.points = np.empty((count, m, 3), kind)
         self.inside = np.zeros(count, np.bool_)
@@ -84,8 +66,7 @@ class Strands:
     @property
     def block(self) -> int:
         """Number of fibres in a block, a power of two so that no block has seeds of two blocks."""
-        at_once = POINTS_AT_ONCE if self._fill is None else POINTS_FILLED
-        share = at_once // (self.m * _pool.workers(self._threads))
+        share = POINTS_AT_ONCE // (self.m * _pool.workers(self._threads))
         return min(SEED_BLOCK, 1 << max(share, 1).bit_length() - 1)
 
     def inputs(self, *, normals: bool, fur: float, origin: Vector) -> ShadingInputs:
@@ -94,24 +75,6 @@ class Strands:
         tangents = self._ways if self._straight else self._tangents
         rows = count if self._straight else count * m
         single = np.dtype(np.float32)
-        if self._fill is not None:
-            self._needed = normals, bool(fur)
-            return ShadingInputs(
-                points=_Rows((count * m, 3), self.points.dtype, lambda rows: self._made(rows, 0)),
-                tangents=_Rows((count * m, 3), single, lambda rows: self._made(rows, 1)),
-                normals=(
-                    _Rows((count * m, 3), single, lambda rows: self._made(rows, 2))
-                    if normals
-                    else None
-                ),
-                fur_height=(
-                    _Rows((count * m,), single, lambda rows: self._made(rows, 3)) if fur else None
-                ),
-                fur=fur,
-                block=self.block * m,
-                origin=origin,
-                generated=True,
-            )
         return ShadingInputs(
             points=_Rows((count * m, 3), self.points.dtype, self._points),
             tangents=_Rows((rows, 3), single, tangents),
@@ -123,30 +86,6 @@ class Strands:
             origin=origin,
             generated=True,
         )
-
-    def _made(self, rows: slice, part: int) -> Array:
-        """Return some rows of an array of :class:`Room`, whose block is filled if it is another."""
-        m = self.m
-        fibres = slice(rows.start // m, -(-rows.stop // m))
-        if getattr(self._block, "fibres", None) != fibres:
-            assert self._fill is not None
-            count = (fibres.stop - fibres.start) * m
-            kept: Array | None = getattr(self._block, "room", None)
-            if kept is None or kept.shape[1] < count:
-                kept = self._block.room = np.empty((7, count), np.float32)
-            widths = (3, 3 * self._needed[0], self._needed[1])
-            vectors = [
-                kept[i : i + w].reshape(-1)[: w * count]
-                for i, w in zip((0, 3, 6), widths, strict=True)
-            ]
-            points = self.points[fibres].reshape(-1)
-            room = Room(points, vectors[0], vectors[1], vectors[2], self.inside[fibres])
-            self._fill(fibres, room)
-            self._block.fibres, self._block.made = fibres, room
-        found: Array = self._block.made[part]
-        if part < 3:
-            found = found.reshape(-1, 3)
-        return found[rows.start - fibres.start * m : rows.stop - fibres.start * m]
 
     def _at(self, rows: slice) -> tuple[Grown, int]:
         """Return the block that rows belong to, and the index of their point within each fibre."""

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from vizlight import _compiled
 from vizlight.geometry import fur
 
 
@@ -202,21 +201,3 @@ def test_the_curve_through_triangles_that_are_not_finite_or_in_one_place():
     points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [np.nan, 0, 0], [np.inf, 1, 0.0]])
     faces = np.array([[0, 1, 2], [0, 1, 3], [0, 1, 4]])
     assert sorted(fur.along_curve(points, faces)) == [0, 1, 2]
-
-
-def test_compiled_code_lays_triangles_out_as_numpy_does():
-    if not _compiled.active():
-        pytest.skip(_compiled.why_not())
-    random = np.random.default_rng(5)
-    points = random.normal(size=(300, 3))
-    lost = points.copy()
-    lost[::7] = np.nan
-    lost[1] = np.inf
-    faces = random.integers(0, 300, (1000, 3))
-    for vertices in (points, points.astype(np.float32), 1e6 + 1e-3 * points, lost, 0 * points):
-        order, total = fur.laid(vertices, faces, fast=True)
-        # Triangles in one cell of the curve may be in any order.
-        expected, exact = fur.laid(vertices, faces)
-        assert np.array_equal(order, expected)
-        np.testing.assert_allclose(total, exact, rtol=1e-14)
-    assert fur.laid(points, faces[:0], fast=True)[0].shape == (0,)

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from vizlight import _check
-from vizlight.geometry.lines import compiled
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -83,25 +82,10 @@ def seeds(
     return face, weights
 
 
-def laid(vertices: Array, triangles: Indices, *, fast: bool = False) -> tuple[Indices, Array]:
-    """Return the order of triangles along a Hilbert curve, and their cumulative areas in it.
-
-    With ``fast`` compiled code finds both.
-    """
-    if not fast or not len(triangles):
-        order = along_curve(vertices, triangles)
-        return order, areas(vertices, triangles[order])
-    key, area = np.empty(len(triangles), np.intp), np.empty(len(triangles))
-    flat = np.ascontiguousarray(vertices).reshape(-1), np.ascontiguousarray(triangles).reshape(-1)
-    compiled.lay(*flat, curve_bits(len(triangles)), key, area)
-    order = np.argsort(key) if key.any() else np.arange(len(key))
-    return order, np.cumsum(area[order])
-
-
-def curve_bits(count: int) -> int:
-    """Return the bits per axis of a curve through the centres of a number of triangles."""
-    # Cells of a quarter of the mean distance of triangles on a flat surface.
-    return min(max(count.bit_length() // 2 + 2, 4), 20)
+def laid(vertices: Array, triangles: Indices) -> tuple[Indices, Array]:
+    """Return the order of triangles along a Hilbert curve, and their cumulative areas in it."""
+    order = along_curve(vertices, triangles)
+    return order, areas(vertices, triangles[order])
 
 
 def along_curve(vertices: Array, triangles: Indices) -> Indices:
@@ -117,7 +101,8 @@ def along_curve(vertices: Array, triangles: Indices) -> Indices:
         side = float(np.nanmax(centre - low, initial=0))
     if not 0 < side < np.inf:
         return np.arange(len(triangles))
-    bits = curve_bits(len(triangles))
+    # Cells of a quarter of the mean distance of triangles on a flat surface.
+    bits = min(max(len(triangles).bit_length() // 2 + 2, 4), 20)
     places = np.nan_to_num((centre - low) / side) * ((1 << bits) - 1)
     return np.argsort(hilbert(np.ascontiguousarray(places.T).astype(np.int64), bits))
 
