@@ -25,7 +25,6 @@ from vizlight.pictures.backends import (
 )
 from vizlight.pictures.cameras import Mesh, camera_on, common_bounds, over_shoulder
 from vizlight.plotting import strokes
-from vizlight.plotting.component import add_recorded, name_no_data
 from vizlight.plotting.corner import CornerKey, ink_on
 from vizlight.plotting.program import Stroke
 from vizlight.reading import polylines
@@ -240,6 +239,8 @@ def make_plotter(
                 position_x=0.82, position_y=0.12,
             )  # fmt: skip
             if any(panel.scalars + VALID in mesh.point_data for mesh in all_blocks(panel.mesh)):
+                from vizlight.plotting.component import name_no_data
+
                 name_no_data(made)
     except BaseException:
         plotter.close()
@@ -465,6 +466,8 @@ def _add_in_fragments(
     """Add a mesh whose light is computed in each fragment; lines that cannot be round are flat."""
     drawing = width | {"show_scalar_bar": False}
     flat = drawing | {"render_lines_as_tubes": False}
+    from vizlight.plotting.component import add_recorded
+
     return any(add_recorded(plotter, mesh, name, **options) for options in (drawing, flat))
 
 
