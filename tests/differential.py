@@ -22,7 +22,7 @@ from vizlight import DepthCue, Light, Material, Scene, View
 from vizlight.model import frames
 from vizlight.scene.light import NO_ATTENUATION
 from vizlight.shading import compiled
-from vizlight.shading.block import Output, shade_block
+from vizlight.shading.arrays import Output, shade_block
 from vizlight.shading.decide import decide
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import ShadingOptions
@@ -249,7 +249,7 @@ def truth(made: Case) -> Truth:
             base_tangents=vectors(inputs.base_tangents, i), fur=inputs.fur,
             fur_height=number(inputs.fur_height, i) or 0.0, shadow=number(inputs.shadow, i),
             transmittance=share, occlusion=open_, model=options.model,
-            compensate=options.compensate, conditioned=bool(options.conditioned),
+            exponent=options.exponent, conditioned=bool(options.conditioned),
             two_sided=inputs.two_sided, apart=apart,
         )  # fmt: skip
         known = np.isfinite(open_) and (share is None or np.isfinite(share).all())

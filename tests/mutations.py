@@ -24,30 +24,31 @@ PICTURES = ["tests/test_pictures.py"]
 #: What the pictures show: file, text in it, replacement.
 MUTATIONS = {
     "Phong: sign of wo's tangential part (the slip of Banks' equation 2)": (
-        "shading/manifold.py", "along = lit.along + eye.along\n            return kernels.phong",
-        "along = lit.along - eye.along\n            return kernels.phong",
+        "shading/terms.py",
+        "eye.along, strict=True))\n            return formulas.phong(along, ",
+        "eye.along, strict=True))\n            return formulas.phong(_square(lit.along), ",
     ),
     "Phong: normal parts added": (
-        "model/kernels.py", "deficit = sine_i - sine_o", "deficit = sine_i + sine_o",
+        "model/formulas.py", "apart = sine_i - sine_o", "apart = sine_i + sine_o",
     ),
     "Phong on a surface: half of the deficit": (
-        "model/kernels.py", "deficit *= deficit.dtype.type(0.5)", "deficit *= 1",
+        "model/formulas.py", "deficit = 0.5 * (along", "deficit = 1.0 * (along",
     ),
     "Blinn: power halved": (
-        "model/kernels.py", "power(normal / whole, shininess / 2, tangential / whole)",
-        "power(normal / whole, shininess / 4, tangential / whole)",
+        "model/formulas.py", "power(across * scale, along * scale, 0.5 * shininess)",
+        "power(across * scale, along * scale, 0.25 * shininess)",
     ),
     "Blinn, one half vector: power halved": (
-        "shading/manifold.py", "return kernels.power(self.side(cosine), shininess)",
-        "return kernels.power(self.side(cosine), shininess / 2)",
+        "shading/terms.py", "formulas.power(_side(plan, up), None, h.shininess)",
+        "formulas.power(_side(plan, up), None, h.shininess / 2)",
     ),
     "diffuse: cosine to the tangent for the sine": (
-        "model/kernels.py", "return along, length(residual)",
-        "return along, np.sqrt(np.maximum(1 - length(residual) ** 2, 0))",
+        "shading/terms.py", "return Split(x, along, rest, sqrt(w.dot(rest, rest)))",
+        "return Split(x, along, rest, sqrt(formulas.maximum(1 - w.dot(rest, rest), 0)))",
     ),
     "diffuse on a surface: not clamped": (
-        "shading/manifold.py", "if self.two_sided else np.maximum(cosine, 0)",
-        "if self.two_sided else np.abs(cosine)",
+        "shading/terms.py", "if plan.two_sided else formulas.one_side(cosine)",
+        "if plan.two_sided else formulas.both_sides(cosine)",
     ),
     "diffuse: no compensation": (
         "model/brightness.py", "def exponent(k: int, n: int) -> float:",
@@ -58,30 +59,37 @@ MUTATIONS = {
         "model/brightness.py", "a, d, h = (n - k) / 2,", "a, d, h = (n - k) / 4,",
     ),
     "highlight: on the dark side too": (
-        "shading/manifold.py", "return value * (lit.across > 0)", "return value",
+        "shading/terms.py",
+        "return value if plan.two_sided else formulas.lit_highlight(value, lit.size)",
+        "return value",
     ),
     "distance: no linear term": (
-        "model/falloff.py", "denominator += c2 * wide", "denominator += 0",
+        "model/formulas.py", "distance * (linear + distance * quadratic)",
+        "distance * (distance * quadratic)",
     ),
     "distance: d in place of its square": (
-        "model/falloff.py", "denominator += c3 * wide * wide", "denominator += c3 * wide",
+        "model/formulas.py", "distance * (linear + distance * quadratic)",
+        "distance * (linear + quadratic)",
     ),
     "depth cue: front and back exchanged": (
-        "model/falloff.py", "- back) / (front - back)", "- front) / (back - front)",
+        "model/formulas.py", "t = clamp((depth - back) / (front - back), 0.0, 1.0)",
+        "t = clamp((depth - front) / (back - front), 0.0, 1.0)",
     ),
     "depth cue: smooth step's 3 a 2": (
-        "model/falloff.py", "t = t * t * (3 - 2 * t)", "t = t * t * (2 - t)",
+        "model/formulas.py", "3.0 - 2.0 * u", "2.0 - u",
     ),
-    "fur: path times the sine": ("model/falloff.py", "height / sine", "height * sine"),
+    "fur: path times the sine": ("model/formulas.py", "height / sine", "height * sine"),
     "fur: density in place of 1 - density": (
         "model/falloff.py", "np.log1p(-density)", "np.log(density)",
     ),
     "exact line: alpha for pi - alpha": (
-        "model/cylinder_kernels.py", "np.arctan2(cross, -dot)", "np.arctan2(cross, dot)",
+        "model/formulas.py", "arctan2(cross, -dot)", "arctan2(cross, dot)",
     ),
-    "exact line: sine's term is missing": ("model/cylinder_kernels.py", "    value += cross\n", ""),
+    "exact line: sine's term is missing": (
+        "model/formulas.py", "-dot) * dot + cross)", "-dot) * dot)",
+    ),
     "exact line: highlight without its ends": (
-        "model/cylinder_kernels.py", "    mean += ends\n", "",
+        "model/formulas.py", "cos_b * integrals + ends", "cos_b * integrals",
     ),
     "turn in n-space: wrong way round": (
         "geometry/nspace/projection.py", "matrix[j, i] = math.sin(angle)",
@@ -99,19 +107,21 @@ MUTATIONS = {
         "geometry/relief/shadowing.py", "place - inset * normal", "place + inset * normal",
     ),
     "light 5 % too bright": (
-        "model/kernels.py", "return power(sine, exponent)", "return 1.05 * power(sine, exponent)",
+        "model/formulas.py", "return power(sine * sine, along, 0.5 * exponent)",
+        "return 1.05 * power(sine * sine, along, 0.5 * exponent)",
     ),
 }  # fmt: skip
 
 #: What no picture is needed for.
 OF_NUMBERS = {
     "Phong in numbers: sign of wo's tangential part": (
-        "shading/manifold.py", "along = lit.along + eye.along\n            return kernels.phong",
-        "along = lit.along - eye.along\n            return kernels.phong",
+        "shading/terms.py",
+        "eye.along, strict=True))\n            return formulas.phong(along, ",
+        "eye.along, strict=True))\n            return formulas.phong(_square(lit.along), ",
     ),
     "half vector: tangential parts subtracted": (
-        "shading/manifold.py", "kernels.split(lit.vector + eye.vector, self.frame)",
-        "kernels.split(lit.vector - eye.vector, self.frame)",
+        "shading/terms.py", "split(w, lit.vector + eye.vector, self.rows)",
+        "split(w, lit.vector - eye.vector, self.rows)",
     ),
     "fur of cylinders: the skin's own model is lost": (
         "filters/fur.py", "options.shading.for_surface()", "options.shading",

@@ -14,7 +14,7 @@ import pytest
 
 from vizlight import DepthCue, Light, Material, Scene, View, _compiled, engine
 from vizlight.shading import compiled, statements
-from vizlight.shading.block import Output
+from vizlight.shading.arrays import Output
 from vizlight.shading.decide import decide
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import ShadingOptions
@@ -89,7 +89,7 @@ def test_a_wrong_formula_is_found(name, old, new, cases, monkeypatch):
     import ast
     import inspect
 
-    from vizlight.shading import formulas
+    from vizlight.model import formulas
 
     text = inspect.getsource(getattr(formulas, name))
     assert old in text

@@ -151,7 +151,6 @@ UNTOLD = {
     "parametric.central_step": "a step, not an error",
     "parametric.parametric": "of any function: the study of frames measures both errors",
     "parametric._precision": "finds the type of a function's numbers",
-    "cylinder_kernels._gentle_power": "a part of cylinder.specular, which is in the table",
 }
 
 

@@ -29,7 +29,8 @@ from vizlight import (
 )
 from vizlight.geometry import manifolds
 from vizlight.mesh import casters
-from vizlight.shading import block
+from vizlight.model import formulas
+from vizlight.shading import algebra
 from vizlight.verify import oracle, rays
 
 SCENE = Scene(
@@ -172,7 +173,7 @@ def test_colours_are_checked_too(surface, monkeypatch):
     with vizlight.report() as told:
         illuminate(surface, scene, tangents="V")
     assert told.error < 3e-6
-    monkeypatch.setattr(block, "WHITE", (1.0, 0.9, 1.0))
+    monkeypatch.setattr(algebra, "WHITE", (1.0, 0.9, 1.0))
     with vizlight.report() as told:
         illuminate(surface, scene, tangents="V")
     assert told.error > 1e-2
@@ -192,8 +193,8 @@ def test_the_oracle_agrees_on_what_can_be_lit(random):
 
 
 def test_a_wrong_engine_is_found_out(surface, monkeypatch):
-    right = block.kernels.diffuse
-    monkeypatch.setattr(block.kernels, "diffuse", lambda *a: 1.01 * right(*a))
+    right = formulas.diffuse
+    monkeypatch.setattr(formulas, "diffuse", lambda *a: 1.01 * right(*a))
     with vizlight.report() as told:
         illuminate(surface, SCENE, tangents="V")
     assert told.error > 1e-3

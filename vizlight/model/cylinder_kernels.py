@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import scipy
 
-from vizlight.model import kernels
+from vizlight.model import formulas, kernels
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -79,15 +79,7 @@ def meet(rest_i: Array, a: Array, rest_o: Array, b: Array, tangent: Array) -> No
 def diffuse(met: NormalParts) -> Array:
     """Return the mean of Lambert's reflection over the visible half of a thin cylinder."""
     a, b, dot, cross, _, _ = met
-    value = np.arctan2(cross, -dot)
-    value *= dot
-    value += cross
-    end_on = b <= _least(b)
-    value /= np.where(end_on, 1, 4 * b)
-    if end_on.any():
-        # A cylinder seen end on shows all normals with equal weight.
-        value = np.where(end_on, a / a.dtype.type(np.pi), value)
-    return value
+    return np.asarray(formulas.cylinder_diffuse(a, b, dot, cross, _least(b)))
 
 
 def specular(met: NormalParts, tangential: Array, shininess: float) -> Array:
@@ -96,34 +88,26 @@ def specular(met: NormalParts, tangential: Array, shininess: float) -> Array:
     ``tangential`` is |(wi + wo)_T|^2.
     """
     a, b, _, cross, light, eye = met
-    number = a.dtype.type
     # The cosines come from the sum wi_N + wo_N, which is exact where wi_N is near -wo_N.
     whole = light + eye
     normal = kernels.length(whole)
-    value = kernels.blinn(tangential, normal * normal, shininess)
-    end_on, dark = b <= _least(b), a <= _least(a)
-    poor = end_on | dark | (normal == 0)
-    spoiled = bool(poor.any())
     to_eye, to_light = b * normal, a * normal
-    if spoiled:
-        to_eye, to_light = np.where(poor, 1, to_eye), np.where(poor, 1, to_light)
-    cos_b = np.clip(kernels.dot(eye, whole) / to_eye, -1, 1)
-    cos_c = np.clip(kernels.dot(light, whole) / to_light, -1, 1)
-    sin_b, sin_c = np.minimum(cross / to_eye, 1), np.minimum(cross / to_light, 1)
+    cos_b = formulas.cylinder_cosine(kernels.dot(eye, whole), to_eye)
+    cos_c = formulas.cylinder_cosine(kernels.dot(light, whole), to_light)
+    sin_b, sin_c = (formulas.cylinder_sine(cross, size) for size in (to_eye, to_light))
     integral = half_integral(shininess, a.dtype)
-    mean = integral(cos_b)
-    mean += integral(cos_c)
-    mean *= cos_b
-    ends = _gentle_power(sin_b, shininess + 1) - _gentle_power(sin_c, shininess + 1)
-    ends *= sin_b
-    ends /= number(shininess + 1)
-    mean += ends
-    mean /= 2
-    np.clip(mean, 0, 1, out=mean)
-    if spoiled:
-        mean = np.where(end_on, number(round_mean(shininess)), mean)
-        mean[np.broadcast_to(dark, mean.shape)] = 0
-    return value * mean
+    value = formulas.cylinder_specular(
+        formulas.blinn(tangential, normal * normal, shininess),
+        cos_b,
+        integral(np.asarray(cos_b)) + integral(np.asarray(cos_c)),
+        formulas.cylinder_ends(sin_b, sin_c, shininess) / (shininess + 1),
+        a,
+        b,
+        normal,
+        _least(b),
+        round_mean(shininess),
+    )
+    return np.asarray(value)
 
 
 def round_mean(shininess: float) -> float:
@@ -197,19 +181,5 @@ def table(shininess: float) -> tuple[float, Array]:
     return count / reach, np.concatenate([start[np.newaxis], slopes])
 
 
-def _gentle_power(x: Array, exponent: float) -> Array:
-    """Return x^e for e of 1 or more, with an absolute error of about eps.
-
-    The relative error grows with e, but x^e is small wherever digits are lost.
-    """
-    if exponent == int(exponent) and exponent <= kernels.DEFICIT_FROM:
-        return kernels.power(x, exponent)
-    with np.errstate(divide="ignore", under="ignore"):
-        result: Array = np.log(x)
-        result *= x.dtype.type(exponent)
-        return np.exp(result, out=result)
-
-
-def _least(x: Array) -> np.floating:
-    least: np.floating = x.dtype.type(ALONG * np.finfo(x.dtype).eps)
-    return least
+def _least(x: Array) -> float:
+    return float(ALONG * np.finfo(x.dtype).eps)

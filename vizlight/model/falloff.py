@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight import _check
+from vizlight.model import formulas
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -64,17 +65,12 @@ def attenuation(name: str, value: object) -> tuple[float, float, float]:
 
 def fading(d: Array, coefficients: tuple[float, float, float]) -> Array:
     """Return :func:`distance` for distances and coefficients that are already validated."""
-    c1, c2, c3 = coefficients
-    # In float64 for every type of d, because coefficients may exceed the range of float32. A term
-    # with a zero coefficient is left out: 0 times an infinite distance is NaN.
-    wide = d.astype(np.float64, copy=False)
-    denominator = np.full_like(wide, c1)
+    # In float64 for every type of d, because coefficients may exceed the range of float32. 0 times
+    # an infinite distance would be NaN.
+    wide = np.minimum(d.astype(np.float64, copy=False), np.finfo(np.float64).max)
     with np.errstate(over="ignore", under="ignore"):
-        if c2:
-            denominator += c2 * wide
-        if c3:
-            denominator += c3 * wide * wide
-        return (1 / np.maximum(denominator, 1)).astype(d.dtype, copy=False)
+        value = formulas.attenuation(wide, *coefficients)
+        return np.asarray(value).astype(d.dtype, copy=False)
 
 
 def depth_cue(
@@ -159,11 +155,10 @@ def depth_scale(
     wide = z.astype(np.float64, copy=False)
     if max(abs(front), abs(back)) > 1e300:  # differences would overflow
         wide, front, back = wide / 4, front / 4, back / 4
+    scale = formulas.smooth_depth_scale if smooth else formulas.depth_scale
     with np.errstate(over="ignore"):
-        t = np.clip((wide - back) / (front - back), 0, 1)
-    if smooth:
-        t = t * t * (3 - 2 * t)
-    return (back_scale + (front_scale - back_scale) * t).astype(z.dtype, copy=False)
+        value = scale(wide, front, back, front_scale, back_scale)
+    return np.asarray(value).astype(z.dtype, copy=False)
 
 
 def fur(height: ArrayLike, sin_alpha: ArrayLike, density: float, /) -> Array:
@@ -204,26 +199,17 @@ def fur(height: ArrayLike, sin_alpha: ArrayLike, density: float, /) -> Array:
         raise ValueError(_check.message("height", "heights of 0 or more", _check.describe(height)))
     sines = _check.floats_in("sin_alpha", sin_alpha, 0.0, 1.0, "sines")
     heights, sines = _check.together(height=heights, sin_alpha=sines)
-    return fur_passes(fur_path(heights, sines), density)
-
-
-def fur_path(height: Array, sine: Array) -> Array:
-    """Return the path d = h / sin(a) of Banks (7); it is 0 at h = 0 even where sin(a) is 0."""
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        path: Array = height / sine
-    if not height.all():
-        path = np.where(height == 0, path.dtype.type(0), path)
-    return path
-
-
-def fur_passes(path: Array, density: float) -> Array:
-    """Return the transmittance (1 - rho)^d of Banks (8), without taking the logarithm of 0."""
     if density == 0:
-        return np.ones_like(path)
+        return np.ones_like(sines)
     if density == 1:
-        opaque: Array = (path == 0).astype(path.dtype)
-        return opaque
-    with np.errstate(under="ignore", over="ignore"):
-        # A rate that underflows to 0 would give NaN for an infinite path.
-        rate = min(path.dtype.type(np.log1p(-density)), -np.finfo(path.dtype).tiny)
-        return np.exp(path * rate)
+        return np.asarray(heights == 0).astype(sines.dtype)
+    limits = np.finfo(sines.dtype)
+    rate = fur_rate(density, float(limits.tiny), float(limits.max))
+    with np.errstate(all="ignore"):
+        return np.asarray(formulas.fur_passes(formulas.fur_path(heights, sines), rate))
+
+
+def fur_rate(density: float, tiny: float, largest: float) -> float:
+    """Return log(1 - rho), neither 0 nor infinite: 0 times an infinite path is no number."""
+    rate = float(np.log1p(-density)) if density < 1 else -largest
+    return min(rate, -tiny)

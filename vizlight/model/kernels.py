@@ -1,4 +1,4 @@
-"""The shading formulas, each written once, on component-first arrays.
+"""Vector algebra and powers on component-first arrays.
 
 A batch of vectors has shape ``(n, B)``, of frames ``(k, n, B)``, of numbers ``(B,)``; a batch of
 one element broadcasts. The public functions of this package document and validate their arguments,
@@ -25,7 +25,7 @@ DEFICIT_FROM = 64.0
 
 def dot(a: Array, b: Array) -> Array:
     """Return the dot products of two batches of vectors."""
-    result: Array = np.einsum("ib,ib->b", a, b)
+    result: Array = np.einsum("i...,i...->...", a, b)
     return result
 
 
@@ -196,37 +196,3 @@ def power_error(p: float, q: float) -> float:
         return 1.0
     ratio = np.log(low / high) / (high - low)
     return float(np.exp(low * ratio) * (1 - low / high))
-
-
-def diffuse(sine: Array, exponent: float, along: Array | None = None) -> Array:
-    """Return sin(a)^p; the tangential coefficients ``along`` keep the digits of large powers."""
-    if exponent > DEFICIT_FROM and along is not None:
-        return power(sine * sine, exponent / 2, dot(along, along))
-    return power(sine, exponent)
-
-
-def phong(tangential: Array, sine_i: Array, sine_o: Array, shininess: float) -> Array:
-    """Return max(0, V.R)^s from 1 - V.R = (|wi_T + wo_T|^2 + (|wi_N| - |wo_N|)^2) / 2.
-
-    ``tangential`` is |wi_T + wo_T|^2. The difference 1 - V.R keeps its digits where V.R is near 1,
-    so the error of the power grows as sqrt(s) instead of s.
-    """
-    deficit = sine_i - sine_o
-    deficit *= deficit
-    deficit = deficit + tangential
-    deficit *= deficit.dtype.type(0.5)
-    return power(np.maximum(1 - deficit, 0), shininess, deficit)
-
-
-def blinn(tangential: Array, normal: Array, shininess: float) -> Array:
-    """Return |h_N|^q from the squared parts of wi + wo; 0 where no half vector exists."""
-    whole = tangential + normal
-    nothing = whole == 0
-    whole = np.where(nothing, 1, whole)
-    value = power(normal / whole, shininess / 2, tangential / whole)
-    return np.where(nothing, 0, value) if nothing.any() else value
-
-
-def blinn_of_unit(tangential: Array, shininess: float) -> Array:
-    """Return |h_N|^q for q of 2 or more from |h_T|^2 of a unit half vector."""
-    return power(np.maximum(1 - tangential, 0), shininess / 2, tangential)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal, get_args
 import numpy as np
 
 from vizlight import _check
-from vizlight.model import kernels, layout
+from vizlight.model import formulas, kernels, layout
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -58,7 +58,7 @@ def diffuse(wi: ArrayLike, frame: ArrayLike, /, *, exponent: float = 1.0) -> Arr
     shape, rows, (light,) = layout.batch("frame", rows, wi=light)
     light, size = kernels.unit(light)
     along, sine = kernels.split(light, rows)
-    value = np.where(size > 0, kernels.diffuse(sine, exponent, along), 0)
+    value = np.where(size > 0, formulas.diffuse(sine, kernels.dot(along, along), exponent), 0)
     return value.astype(sine.dtype, copy=False).reshape(shape)
 
 
@@ -125,9 +125,11 @@ def specular(
         along_i, sine_i = kernels.split(light, rows)
         along_o, sine_o = kernels.split(eye, rows)
         along_i += along_o
-        value = kernels.phong(kernels.dot(along_i, along_i), sine_i, sine_o, shininess)
+        tangential = kernels.dot(along_i, along_i)
+        value = np.asarray(formulas.phong(tangential, sine_i, sine_o, shininess))
     else:
         along, normal = kernels.split(light + eye, rows)
-        value = kernels.blinn(kernels.dot(along, along), normal * normal, shininess)
+        tangential = kernels.dot(along, along)
+        value = np.asarray(formulas.blinn(tangential, normal * normal, shininess))
     valid = (light_size > 0) & (eye_size > 0)
     return np.where(valid, value, 0).astype(value.dtype, copy=False).reshape(shape)

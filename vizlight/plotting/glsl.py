@@ -7,8 +7,9 @@ import functools
 import inspect
 from typing import TYPE_CHECKING
 
+from vizlight.model import formulas
 from vizlight.scene.light import NO_ATTENUATION
-from vizlight.shading import display, formulas
+from vizlight.shading import display
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -44,7 +45,7 @@ def functions(names: Iterable[str], *, plain: bool = False) -> str:
     Parameters
     ----------
     names : iterable of str
-        Names of functions of :mod:`vizlight.shading.formulas`.
+        Names of functions of :mod:`vizlight.model.formulas`.
     plain : bool, default: False
         Whether all powers are above 0 and not large, so that the power of GLSL serves.
 
@@ -102,6 +103,8 @@ def _function(name: str) -> tuple[str, tuple[str, ...]]:
             arguments = [expression(argument) for argument in e.args]
             if e.func.id == "where":
                 return "({} ? {} : {})".format(*arguments)
+            if e.func.id == "only":
+                return "({} ? {} : 0.0)".format(*arguments)
             if e.func.id not in _CALLS:
                 called.append(e.func.id)
             own = _CALLS.get(e.func.id, PREFIX + e.func.id)

@@ -1,8 +1,8 @@
 """Compiled light: a plan's terms in one pass over the points, where numba is installed and pays.
 
 The text of a kernel is made by :mod:`vizlight.shading.writer`. Unusual points are lit by NumPy's
-:func:`~vizlight.shading.block.shade_block`: vectors that are not finite or whose squares are out of
-the range of their type, nearly dependent tangents, a light or an eye at the point.
+:func:`~vizlight.shading.arrays.shade_block`: vectors that are not finite or whose squares are out
+of the range of their type, nearly dependent tangents, a light or an eye at the point.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 from vizlight import _compiled, _pool
 from vizlight.model import cylinder_kernels, frames, kernels
 from vizlight.scene.light import NO_ATTENUATION, WHITE
-from vizlight.shading.block import SMALLEST_HELD, Output, shade_block
+from vizlight.shading.arrays import SMALLEST_HELD, Output, shade_block
 from vizlight.shading.elementary import HELPERS
 from vizlight.shading.form import BITS, Form, LightForm
 from vizlight.shading.writer import write
@@ -88,7 +88,7 @@ class Compiled(NamedTuple):
     order: list[int]
 
     def shade_block(self, plan: Plan, rows: slice, inputs: ShadingInputs, output: Output) -> None:
-        """Light the points of some rows; as :func:`vizlight.shading.block.shade_block`."""
+        """Light the points of some rows; as :func:`vizlight.shading.arrays.shade_block`."""
         for at, part in _parts(rows, inputs):
             self._shade_points(plan, at, part, output)
 

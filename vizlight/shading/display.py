@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from vizlight import _check
-from vizlight.shading import formulas
+from vizlight.model import formulas
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

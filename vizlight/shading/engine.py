@@ -16,9 +16,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight import _check, _compiled, _pool
+from vizlight.model import kernels
 from vizlight.scene import Scene
 from vizlight.shading import compiled
-from vizlight.shading.block import Output, columns, shade_block, view_depth
+from vizlight.shading.arrays import Output, columns, shade_block
 from vizlight.shading.decide import decide, plan
 from vizlight.shading.inputs import ArraySource, ShadingInputs, array_source
 from vizlight.shading.options import Model, Precision, ShadingOptions, named
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from vizlight._types import Array, Bools
+    from vizlight.scene import View
     from vizlight.shading.options import Exponent
 
     Observer: TypeAlias = Callable[[ShadingInputs, Scene, "Shading", ShadingOptions], None]
@@ -308,7 +310,7 @@ def run(
     made = dataclasses.replace(made, compiled=code is not None, code=reason or compiled.IN_WORDS)
     light = shade_block if code is None else code.shade_block
     block = inputs.block if block is None else block
-    step = made.block if block is None else _check.integer("block", block, low=1)
+    step = _step(made, inputs) if block is None else _check.integer("block", block, low=1)
 
     def work(rows: slice) -> int:
         with np.errstate(all="ignore"):
@@ -332,6 +334,12 @@ def run(
     if (observer := _OBSERVER.get()) is not None:
         observer(inputs, scene, shading, options)
     return shading
+
+
+def _step(plan: Plan, inputs: ShadingInputs) -> int:
+    """Return the rows of a block: all blocks have about one size, as a small one costs as much."""
+    count = -(-inputs.rows // max(plan.block // inputs.repeat, 1))
+    return max(-(-inputs.rows // max(count, 1)), 1)
 
 
 def depth_range(
@@ -367,8 +375,17 @@ def depth_range(
     block = _check.integer("block", block, low=1)
     near, far = np.inf, -np.inf
     for start in range(0, points.shape[0], block):
-        depth = view_depth(scene.view, columns(points, slice(start, start + block)))
+        depth = _depth(scene.view, columns(points, slice(start, start + block)))
         depth = depth[np.isfinite(depth)]
         if depth.size:
             near, far = min(near, float(depth.min())), max(far, float(depth.max()))
     return near, far
+
+
+def _depth(view: View, points: Array) -> Array:
+    """Return the depth of points: along the axis of the view, or from the eye without an axis."""
+    origin = np.array(view.position or np.zeros(len(points)), dtype=np.float64)[:, np.newaxis]
+    if view.direction is None:
+        return kernels.length(points - origin)
+    axis, _ = kernels.unit(np.array(view.direction, dtype=np.float64)[:, np.newaxis])
+    return kernels.dot(axis, origin - points)

@@ -7,7 +7,7 @@ import inspect
 from functools import cache
 from typing import TYPE_CHECKING
 
-from vizlight.shading import formulas
+from vizlight.model import formulas
 from vizlight.shading.form import BITS
 
 if TYPE_CHECKING:
@@ -111,6 +111,9 @@ class Statements:
                 )
                 chosen = [self.name(self.expression(x, names)) for x in (yes, no)]
                 return self.name(f"{chosen[0]} if {a} {sign} {b} else {chosen[1]}")
+            case ast.Call(func=ast.Name(id="only"), args=[test, value]):
+                kept = ast.Call(ast.Name("where"), [test, value, ast.Constant(0.0)], [])
+                return self.expression(kept, names)
             case ast.Call(func=ast.Name(id=name), args=args):
                 return self.primitive(name, [self.name(self.expression(a, names)) for a in args])
         raise AssertionError(ast.dump(node))

@@ -1,6 +1,6 @@
 """The text of a compiled kernel: a loop over points that holds the terms of one form and no others.
 
-The optics come from :mod:`vizlight.shading.formulas`, written out statement by statement; vector
+The optics come from :mod:`vizlight.model.formulas`, written out statement by statement; vector
 algebra is unrolled for n components and k tangents. Arrays are flat, constants have the type of the
 work, sums keep their order.
 """
@@ -242,6 +242,7 @@ class _Body:
         table = f"table, {w.number('cells')}, {w.number('per_cell')}"
         both = w.name(f"integral_({cos_b}, {table}) + integral_({cos_c}, {table})")
         ends = w.call("cylinder_ends", sin_b, sin_c, shininess)
+        ends = w.name(f"{ends} / ({shininess} + {w.constant(1.0)})")
         return w.call(
             "cylinder_specular", value, cos_b, both, ends, a, b, normal, w.number("least"),
             w.number("end_on"),

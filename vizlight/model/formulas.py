@@ -1,44 +1,56 @@
-"""The light of one point as straight lines of arithmetic, of which other languages are made.
+"""The formulas of light as straight lines of arithmetic on numbers or arrays.
 
-Each function takes numbers, assigns names and returns one number. The bodies hold nothing but
-arithmetic, comparisons as the first argument of ``where``, calls of each other, and calls of the
-names in ``PRIMITIVES``; so they can be written as compiled code and as GLSL from their syntax
-trees. As they stand they run on plain numbers and on NumPy arrays. What is vector algebra, that is
-dot products, unit vectors and the part of a vector across a frame, is left to each language.
+The public functions of this package validate and call them on arrays; the engine's terms
+(:mod:`vizlight.shading.terms`) call them on blocks of arrays, and compiled code and GLSL are
+written from their syntax trees. The bodies hold nothing but arithmetic, comparisons as the first
+argument of ``where`` and ``only``, calls of each other, and calls of the names in ``PRIMITIVES``.
+What is vector algebra, that is dot products, unit vectors and the part of a vector across a frame,
+is left to the caller.
 
 Squared lengths and lengths are those of residuals: ``sine`` is the length of wi less its tangential
-part, never ``sqrt(1 - along^2)``. The engine's NumPy kernels (:mod:`vizlight.model.kernels`,
-:mod:`vizlight.model.falloff`, :mod:`vizlight.model.cylinder_kernels`) are the reference; equations
-and error bounds stand there.
+part, never ``sqrt(1 - along^2)``. Equations and error bounds stand at the public functions.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from numpy import absolute, arctan2, exp, log, log1p, maximum, minimum, where
+import numpy as np
+from numpy import absolute, arctan2, exp, maximum, minimum
+
+from vizlight.model import kernels
 
 if TYPE_CHECKING:
     from typing import TypeAlias
 
-    from vizlight._types import Array
+    from vizlight._types import Array, Bools
 
     Number: TypeAlias = float | Array
 
-#: Names that each language gives: ``power`` is one of them, see below.
-PRIMITIVES = ("absolute", "arctan2", "exp", "maximum", "minimum", "power", "where")
+#: Names that each language gives.
+PRIMITIVES = ("absolute", "arctan2", "exp", "maximum", "minimum", "only", "power", "where")
 #: Shares of red, green and blue in the luma of a colour (Rec. ITU-R BT.709).
 LUMA = (0.2126, 0.7152, 0.0722)
 
 
-def power(x: Number, deficit: Number, exponent: Number) -> Number:
-    """Return x to a power of 0 or more for x in [0, 1], with 0^0 = 1; the deficit is 1 - x.
+def power(x: Number, deficit: Number | None, exponent: float) -> Number:
+    """Return x to a power of 0 or more for x in [0, 1], with 0^0 = 1.
 
-    It is the one function here that other languages replace by their own.
+    The deficit is 1 - x where that has digits which x has lost.
     """
-    near = log1p(-minimum(deficit, 0.5))
-    raised = exp(exponent * where(deficit < 0.5, near, log(where(x > 0.0, x, 1.0))))
-    return where(x > 0.0, raised, where(exponent > 0.0, 0.0, 1.0))
+    rest = None if deficit is None else np.asarray(deficit)
+    return kernels.power(np.asarray(x), exponent, rest)
+
+
+def where(test: Bools | bool, yes: Number, no: Number) -> Number:
+    """Return ``yes`` where a test holds, else ``no``."""
+    # A random mask costs NumPy several times a product, and most masks hold everywhere.
+    return yes if np.all(test) else np.where(test, yes, no)
+
+
+def only(test: Bools | bool, value: Number) -> Number:
+    """Return a finite value where a test holds, else 0: for NumPy a product, which is faster."""
+    return value * test
 
 
 def clamp(x: Number, low: Number, high: Number) -> Number:
@@ -62,17 +74,17 @@ def both_sides(cosine: Number) -> Number:
     return absolute(cosine)
 
 
-def surface_diffuse(side: Number, exponent: Number) -> Number:
+def surface_diffuse(side: Number, exponent: float) -> Number:
     """Return the diffuse factor of a surface from the cosine of its lit side."""
     return power(side, 1.0 - side, exponent)
 
 
-def diffuse(sine: Number, along: Number, exponent: Number) -> Number:
+def diffuse(sine: Number, along: Number, exponent: float) -> Number:
     """Return |wi_N|^p from |wi_N| and |wi_T|^2 (Banks 1, 5)."""
     return power(sine * sine, along, 0.5 * exponent)
 
 
-def phong(along: Number, sine_i: Number, sine_o: Number, shininess: Number) -> Number:
+def phong(along: Number, sine_i: Number, sine_o: Number, shininess: float) -> Number:
     """Return max(0, V.R)^s from |wi_T + wo_T|^2, |wi_N| and |wo_N| (Banks 2, 3).
 
     On a surface the sines are the cosines to the normal.
@@ -82,28 +94,28 @@ def phong(along: Number, sine_i: Number, sine_o: Number, shininess: Number) -> N
     return power(maximum(1.0 - deficit, 0.0), deficit, shininess)
 
 
-def blinn(along: Number, across: Number, shininess: Number) -> Number:
+def blinn(along: Number, across: Number, shininess: float) -> Number:
     """Return |h_N|^s from the squared parts of wi + wo; 0 where there is no half vector."""
     whole = along + across
     scale = 1.0 / where(whole > 0.0, whole, 1.0)
     value = power(across * scale, along * scale, 0.5 * shininess)
-    return where(whole > 0.0, value, 0.0)
+    return only(whole > 0.0, value)
 
 
-def blinn_of_unit(along: Number, shininess: Number) -> Number:
+def blinn_of_unit(along: Number, shininess: float) -> Number:
     """Return |h_N|^s for s of 2 or more from |h_T|^2 of a unit half vector."""
     return power(maximum(1.0 - along, 0.0), along, 0.5 * shininess)
 
 
 def lit_highlight(value: Number, cosine: Number) -> Number:
     """Return the highlight of a surface where the light reaches its outer side, else 0."""
-    return where(cosine > 0.0, value, 0.0)
+    return only(cosine > 0.0, value)
 
 
 def shadowed_highlight(value: Number, passed: Number, side: Number) -> Number:
     """Return the highlight of a surface under t of a cos-theta shadow: min(1, t / cosine) of it."""
     share = passed / where(side > 0.0, side, 1.0)
-    return value * where(side > 0.0, minimum(share, 1.0), 0.0)
+    return only(side > 0.0, value * minimum(share, 1.0))
 
 
 def attenuation(distance: Number, constant: Number, linear: Number, quadratic: Number) -> Number:
@@ -118,7 +130,7 @@ def fur_path(height: Number, sine: Number) -> Number:
 
 def fur_passes(path: Number, rate: Number) -> Number:
     """Return (1 - rho)^d of Banks (8) from the rate log(1 - rho), which is finite."""
-    return exp(maximum(path * rate, -700.0))
+    return exp(path * rate)
 
 
 def depth_scale(
@@ -162,10 +174,10 @@ def cylinder_sine(cross: Number, size: Number) -> Number:
     return minimum(cross / where(size > 0.0, size, 1.0), 1.0)
 
 
-def cylinder_ends(sin_b: Number, sin_c: Number, shininess: Number) -> Number:
-    """Return sin(b) (sin(b)^(s+1) - sin(c)^(s+1)) / (s + 1)."""
+def cylinder_ends(sin_b: Number, sin_c: Number, shininess: float) -> Number:
+    """Return sin(b) (sin(b)^(s+1) - sin(c)^(s+1))."""
     e = shininess + 1.0
-    return sin_b * (power(sin_b, 1.0 - sin_b, e) - power(sin_c, 1.0 - sin_c, e)) / e
+    return sin_b * (power(sin_b, 1.0 - sin_b, e) - power(sin_c, 1.0 - sin_c, e))
 
 
 def cylinder_specular(
@@ -182,13 +194,11 @@ def cylinder_specular(
     """Return Blinn's mean over the visible half of a thin cylinder.
 
     ``value`` is :func:`blinn` of the line, ``integrals`` is G(cos b) + G(cos c), ``ends`` is
-    :func:`cylinder_ends`, ``normal`` is |wi_N + wo_N|, and ``end_on`` the mean of a cylinder that
-    is seen end on. The mean is 0 where the light comes along the line.
+    :func:`cylinder_ends` over s + 1, ``normal`` is |wi_N + wo_N|, and ``end_on`` the mean of a
+    cylinder that is seen end on. The mean is 0 where the light comes along the line.
     """
-    mean = clamp(0.5 * (cos_b * integrals + ends), 0.0, 1.0)
-    seen = where(b > least, mean, end_on)
-    met = where(normal > 0.0, seen, 0.0)
-    return value * where(a > least, where(b > least, met, seen), 0.0)
+    mean = only(normal > 0.0, clamp(0.5 * (cos_b * integrals + ends), 0.0, 1.0))
+    return only(a > least, value * where(b > least, mean, end_on))
 
 
 def luminance(

@@ -1,0 +1,201 @@
+"""What the terms ask of an algebra, and what all algebras share."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+
+from vizlight.model import cylinder_kernels
+from vizlight.scene.light import WHITE
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from vizlight._types import Color, Vector
+    from vizlight.shading.inputs import ShadingInputs
+    from vizlight.shading.plan import Highlight, Plan
+
+#: A number or a vector of an algebra: whatever NumPy's functions and operators accept, such as an
+#: array. No static type says that.
+Value: TypeAlias = Any
+
+
+class Lamp:
+    """A light of the scene, with its place among them and its highlight."""
+
+    def __init__(self, number: int, plan: Plan) -> None:
+        light = plan.scene.lights[number]
+        self.number = number
+        self.highlight: Highlight = plan.highlights[number]
+        self.position, self.direction = light.position, light.direction
+        self.intensity, self.attenuation, self.color = (
+            light.intensity, light.attenuation, light.color,
+        )  # fmt: skip
+
+
+class Algebra:
+    """Numbers, inputs and vector operations of the terms.
+
+    The numbers of an algebra are used with operators, NumPy's functions, and the formulas of
+    :mod:`vizlight.model.formulas`.
+
+    Parameters
+    ----------
+    plan : Plan
+    inputs : ShadingInputs, optional
+        Arrays of the points.
+    """
+
+    def __init__(self, plan: Plan, inputs: ShadingInputs | None) -> None:
+        self.plan, self.inputs, self.n = plan, inputs, plan.n
+        #: |x_N| up to which a direction is along a line.
+        self.least = cylinder_kernels.ALONG * float(np.finfo(plan.dtype).eps)
+
+    def read(self, name: str, lamp: Lamp | None = None) -> Value:
+        """Return an input at the point: a vector, or a number, perhaps that of a lamp."""
+        raise NotImplementedError
+
+    def vectors(self, name: str, k: int) -> Sequence[Value]:
+        """Return the k vectors of an input at the point."""
+        raise NotImplementedError
+
+    def number(self, value: float) -> Value:
+        """Return a number of the plan, in the precision of the work."""
+        raise NotImplementedError
+
+    def wide(self, value: float) -> Value:
+        """Return a number of the plan in float64."""
+        raise NotImplementedError
+
+    def vector(self, values: Sequence[float], *, wide: bool = False) -> Value:
+        """Return a vector of the plan, in the precision of the work or in float64."""
+        raise NotImplementedError
+
+    def difference(self, position: Vector, *, wide: bool = False) -> Value:
+        """Return a position less the point, without loss of digits."""
+        raise NotImplementedError
+
+    def work(self, x: Value) -> Value:
+        """Return a number or a vector in the precision of the work."""
+        raise NotImplementedError
+
+    def dot(self, a: Value, b: Value) -> Value:
+        """Return the dot product of two vectors."""
+        raise NotImplementedError
+
+    def unit(self, v: Value) -> tuple[Value, Value]:
+        """Return a unit vector and the length that the vector had."""
+        raise NotImplementedError
+
+    def apart(self, v: Value) -> Value:
+        """Return the length of a unit vector's residual up to which it is rounding."""
+        raise NotImplementedError
+
+    def integral(self, z: Value, shininess: float) -> Value:
+        """Return G(z) of a cylinder, see :mod:`vizlight.model.cylinder_kernels`."""
+        raise NotImplementedError
+
+    def need(self, test: Value) -> None:
+        """Take points where a test does not hold for points without light."""
+        raise NotImplementedError
+
+    def known(self, x: Value) -> None:
+        """Take points where a number is NaN for points without light."""
+        raise NotImplementedError
+
+    def present(self, x: Value, distance: Value | None) -> Value:
+        """Return x, and 0 where the distance of its cause is 0."""
+        raise NotImplementedError
+
+    def sound(self, x: Value, other: float) -> Value:
+        """Return x at points with light, else another number."""
+        raise NotImplementedError
+
+    def added(self, total: Value | None, value: Value) -> Value:
+        """Return the sum of a total over the lamps, None before the first, and a value."""
+        raise NotImplementedError
+
+    def put(self, name: str, value: Value) -> None:
+        """Take a value for a result."""
+        raise NotImplementedError
+
+    def has(self, name: str) -> bool:
+        """Return whether an input is there."""
+        return getattr(self.inputs, name) is not None
+
+    def lamps(self) -> Iterator[Lamp]:
+        """Yield the lights of the scene."""
+        for number in range(len(self.plan.scene.lights)):
+            yield Lamp(number, self.plan)
+
+    def way(self, direction: Vector, *, wide: bool = False) -> Value:
+        """Return the unit vector of a direction of the plan."""
+        column = np.array(direction, np.float64)
+        column /= np.abs(column).max()
+        return self.vector((column / np.sqrt(column @ column)).tolist(), wide=wide)
+
+    def direction(self, name: str) -> Value:
+        """Return the unit vector of an input; a point without one has no light."""
+        unit, size = self.unit(self.read(name))
+        self.need(size > 0.0)
+        return self.work(unit)
+
+    def frame(self, name: str, k: int) -> list[Value]:
+        """Return orthonormal rows that span k vectors: Gram-Schmidt, each projected twice."""
+        rows: list[Value] = []
+        for given in self.vectors(name, k):
+            v, size = self.unit(given)
+            self.need(size > 0.0)
+            for again in range(2 if rows else 0):
+                for row in rows:
+                    v = v - self.dot(row, v) * row
+                v, size = self.unit(v)
+                if not again:
+                    self.need(size > self.apart(v))
+            rows.append(v)
+        return [self.work(v) for v in rows]
+
+    def triple(self, a: Value, b: Value, c: Value) -> Value:
+        """Return a x b . c in 3-space."""
+        first, second, third = (
+            (a[i] * b[j] - a[j] * b[i]) * c[k] for i, j, k in ((1, 2, 0), (2, 0, 1), (0, 1, 2))
+        )
+        return first + second + third
+
+    def color(self, term: str, coefficient: float) -> Value:
+        """Return a coefficient times the colour of the material for a term."""
+        scene, material = self.plan.scene, self.plan.scene.material
+        own = material.specular_color if term == "specular" else material.color
+        rgb = np.multiply(own or WHITE, coefficient)
+        if term == "ambient":
+            rgb = rgb * (scene.ambient_color or WHITE)
+        return self.vector(rgb.tolist())
+
+    def total(self) -> Total:
+        """Return an empty sum over the lamps."""
+        tinted = any(light.color is not None for light in self.plan.scene.lights)
+        return Total(self, tinted=tinted and self.plan.colored)
+
+
+class Total:
+    """A sum over the lamps: white, and by channel where a lamp has a colour."""
+
+    def __init__(self, w: Algebra, *, tinted: bool) -> None:
+        self.w, self.tinted = w, tinted
+        self.white: Value = None
+        self.channels: Value = None
+
+    def __bool__(self) -> bool:
+        return self.white is not None
+
+    @property
+    def rgb(self) -> Value:
+        """The sum by channel, or the white one."""
+        return self.channels if self.tinted else self.white
+
+    def add(self, value: Value, color: Color | None) -> None:
+        """Add the light of one lamp."""
+        self.white = self.w.added(self.white, value)
+        if self.tinted:
+            self.channels = self.w.added(self.channels, self.w.vector(color or WHITE) * value)

@@ -1,0 +1,197 @@
+"""The algebra of NumPy: a number is an array of a block of points, a vector has n of them."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vizlight.model import cylinder_kernels, frames, kernels
+from vizlight.shading.algebra import Algebra
+from vizlight.shading.terms import light
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import DTypeLike
+
+    from vizlight._types import Array, Bools, Vector
+    from vizlight.shading.algebra import Lamp, Value
+    from vizlight.shading.inputs import ArraySource, ShadingInputs
+    from vizlight.shading.plan import Plan
+
+#: Coordinates below this leave no room in float32 for the rest beyond its digits.
+SMALLEST_HELD = 1e-30
+
+
+class Output:
+    """The arrays that a plan fills."""
+
+    def __init__(self, plan: Plan, count: int) -> None:
+        self.luminance: Array = np.empty(count, plan.dtype)
+        self.valid = np.empty(count, np.bool_)
+        parts = plan.components
+        self.diffuse: Array | None = np.empty(count, plan.dtype) if parts else None
+        self.specular: Array | None = np.empty(count, plan.dtype) if parts else None
+        self.rgb: Array | None = np.empty((count, 3), plan.dtype) if plan.colored else None
+
+
+def shade_block(plan: Plan, rows: slice, inputs: ShadingInputs, output: Output) -> None:
+    """Light the points of some rows of normals or tangents.
+
+    Overflow and underflow are handled; the caller silences NumPy's warnings about them.
+    """
+    w, m = Arrays(plan, inputs, rows), inputs.repeat
+    light(w, plan)
+    valid = np.True_ if w.valid is None else w.valid
+    at = slice(rows.start * m, rows.stop * m)
+    for name, value in (*w.made.items(), ("valid", valid)):
+        own: Array = getattr(output, name)[at]
+        # Points of one row stand one after the other.
+        view = own if m == 1 else own.reshape(-1, m, *own.shape[1:])
+        view.T[...] = value
+
+
+class Arrays(Algebra):
+    """NumPy's algebra of the points of some rows, which evaluates at once.
+
+    A number has the shape (rows,); where several points share a row it is (repeat, rows), or
+    (1, rows) where it depends on the row alone.
+    """
+
+    inputs: ShadingInputs
+
+    def __init__(self, plan: Plan, inputs: ShadingInputs, rows: slice) -> None:
+        super().__init__(plan, inputs)
+        self.rows, self.type = rows, plan.dtype.type
+        self.valid: Bools | None = None
+        self.made: dict[str, Value] = {}
+        self._shares: dict[str, Array] = {}
+
+    # Inputs and numbers.
+
+    def _columns(self, name: str) -> Array:
+        """Return an input component by component, in the wider precision of input and work."""
+        source: ArraySource = getattr(self.inputs, name)
+        rows, m = self.rows, self.inputs.repeat
+        if m == 1:
+            return columns(source, rows, self.plan.dtype)
+        if source.shape[0] != self.inputs.count:
+            return columns(source, rows, self.plan.dtype)[:, np.newaxis]
+        each = [
+            columns(source, slice(rows.start * m + j, rows.stop * m, m), self.plan.dtype)
+            for j in range(m)
+        ]
+        return np.stack(each, axis=1)
+
+    @cached_property
+    def _points(self) -> Array:
+        return self._columns("points")
+
+    def read(self, name: str, lamp: Lamp | None = None) -> Value:
+        """Return an input at the points."""
+        if name == "normals":
+            return self._columns(name)
+        if name not in self._shares:
+            self._shares[name] = self._columns(name)
+        return self._shares[name][lamp.number if lamp else 0].astype(self.type, copy=False)
+
+    def vectors(self, name: str, k: int) -> Sequence[Value]:
+        """Return the k vectors of an input at the points."""
+        array = self._columns(name)
+        return list(array.reshape(k, self.n, *array.shape[1:]))
+
+    def number(self, value: float) -> Value:
+        """Return a number of the plan."""
+        return self.type(value)
+
+    def wide(self, value: float) -> Value:
+        """Return a number of the plan in float64, which float32 does not take in."""
+        return np.array([value])
+
+    def vector(self, values: Sequence[float], *, wide: bool = False) -> Value:
+        """Return a vector of the plan, which broadcasts."""
+        column = np.array(values, np.float64 if wide else self.type)
+        return column.reshape(-1, *(1,) * (1 + (self.inputs.repeat > 1)))
+
+    def difference(self, position: Vector, *, wide: bool = False) -> Value:
+        """Return a position less the points.
+
+        float32 points in float32 work: the position is split into two float32 numbers, whose
+        differences lose nothing to the distance from the origin.
+        """
+        points, at = self._points, self.vector(position, wide=True)
+        high = at.astype(np.float32)
+        held = np.isfinite(high) & ((np.abs(high) > SMALLEST_HELD) | (at == 0))
+        if wide or points.dtype == np.float64 or not held.all():
+            return at - points
+        difference, low = high - points, (at - high).astype(np.float32)
+        return difference + low if low.any() else difference
+
+    def work(self, x: Value) -> Value:
+        """Return numbers in the precision of the work."""
+        return x.astype(self.type, copy=False)
+
+    # Vectors.
+
+    def dot(self, a: Value, b: Value) -> Value:
+        """Return dot products."""
+        return kernels.dot(a, b)
+
+    def unit(self, v: Value) -> tuple[Value, Value]:
+        """Return unit vectors and finite lengths: 0 of a zero vector, NaN of one not finite."""
+        unit, size = kernels.unit(v)
+        if not np.isfinite(size.max(initial=0)):
+            size = np.minimum(size, np.finfo(size.dtype).max)
+        return unit, size
+
+    def apart(self, v: Value) -> Value:
+        """Return the length of a residual up to which it is rounding."""
+        return frames.default_rtol(self.n, v.dtype)
+
+    def integral(self, z: Value, shininess: float) -> Value:
+        """Return G(z) of a cylinder."""
+        return cylinder_kernels.half_integral(shininess, z.dtype)(z)
+
+    # Points without light.
+
+    def need(self, test: Value) -> None:
+        """Take points where a test does not hold for points without light."""
+        if not test.all():
+            self.valid = test if self.valid is None else self.valid & test
+
+    def known(self, x: Value) -> None:
+        """Take points where a number is NaN for points without light."""
+        self.need(~np.isnan(x))
+
+    def present(self, x: Value, distance: Value | None) -> Value:
+        """Return x, and 0 where the distance of its cause is 0."""
+        return x if distance is None or distance.all() else x * (distance > 0)
+
+    def sound(self, x: Value, other: float) -> Value:
+        """Return x at points with light, else another number."""
+        return x if self.valid is None else np.where(self.valid, x, self.type(other))
+
+    # Results.
+
+    def added(self, total: Value | None, value: Value) -> Value:
+        """Return a sum, in place where it has the size."""
+        if total is None:
+            return value
+        return total + value if total.size < value.size else np.add(total, value, out=total)
+
+    def put(self, name: str, value: Value) -> None:
+        """Take a value for a result."""
+        self.made[name] = value
+
+
+def columns(rows: ArraySource, block: slice, work: DTypeLike = np.float32) -> Array:
+    """Return a block of rows component by component, in the wider precision of rows and work.
+
+    Float64 vectors are thus normalised before float32 work rounds them.
+    """
+    part = rows[block]
+    narrow = work == np.float32 and part.dtype in (np.float16, np.float32)
+    dtype = np.float32 if narrow else np.float64
+    return np.ascontiguousarray(part.reshape(len(part), -1).T, dtype=dtype)

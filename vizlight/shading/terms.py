@@ -1,0 +1,341 @@
+"""The light of a point: the one list of terms, written as the sources write it.
+
+:func:`light` is a plain function. It asks an algebra ``w`` (:mod:`vizlight.shading.algebra`) for
+numbers, inputs and a handful of vector operations; all else is arithmetic and the formulas of
+:mod:`vizlight.model.formulas`. Under :class:`vizlight.shading.arrays.Arrays` its values are NumPy
+arrays, and the light is there when it returns. Only what a plan needs is asked for: an ``if`` on
+the plan is a term that is not computed.
+
+Directions point away from the point: wi to the lamp, wo to the eye; x_T and x_N are the tangential
+and the normal part of x. Sources: Banks, *Illumination in Diverse Codimensions* (numbers in
+brackets); the Lecture on shading; cos-theta shadows.
+"""
+
+from __future__ import annotations
+
+from functools import reduce
+from operator import add
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+from numpy import absolute, finfo, sqrt
+
+from vizlight.model import cylinder_kernels, falloff, formulas
+from vizlight.model.formulas import where
+from vizlight.model.kernels import DEFICIT_FROM
+from vizlight.scene.light import NO_ATTENUATION, WHITE
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from vizlight._types import Vector
+    from vizlight.shading.algebra import Algebra, Lamp, Total, Value
+    from vizlight.shading.plan import Highlight, Plan
+
+#: Depths beyond this are divided by 4, so that their differences are finite.
+LARGEST_DEPTH = 1e300
+
+
+def light(w: Algebra, plan: Plan) -> None:
+    """Put I = ka Ia + sum of f (kd D + ks S) over the lamps, faded with depth.
+
+    Parameters
+    ----------
+    w : Algebra
+    plan : Plan
+    """
+    view = plan.scene.view
+    normal = w.direction("normals") if w.has("normals") else None
+    base = w.frame("base_tangents", plan.base) if plan.base else None
+    shape = _shape(w, plan, normal)
+    eye: Split | None = None
+    height: Value = None
+    path: Value = None
+    distance_o: Value = None
+    if plan.needs_eye and view is not None:
+        wo, distance_o = _toward(w, view.position, view.direction, far=view.parallel)
+        eye = shape.split(wo) if plan.splits_eye else None
+        if plan.fur:
+            height = w.read("fur_height")
+            w.need(height >= 0.0)
+            path = formulas.fur_path(height, absolute(w.dot(normal, wo)))
+    diffuse, specular = w.total(), w.total()
+    for lamp in w.lamps():
+        wi, distance = _toward(w, lamp.position, lamp.direction, far=lamp.position is None)
+        lit = shape.split(wi)
+        cosine: Value = None
+        if normal is not None:
+            cosine = lit.size if plan.surface else w.dot(normal, wi)
+        # f: what of the lamp's light reaches the point.
+        f = w.number(lamp.intensity)
+        if distance is not None:
+            if lamp.attenuation != NO_ATTENUATION:
+                fading = formulas.attenuation(distance, *map(w.wide, lamp.attenuation))
+                f = f * w.work(fading)
+            f = w.present(f, distance)
+        shadow = _share(w, "shadow", lamp) if plan.shadowed else None
+        if plan.dimmed:
+            f = f * _share(w, "transmittance", lamp)
+        if plan.conditioned:  # Banks (6)
+            f = f * (_side(plan, cosine) if shadow is None else shadow)
+        if path is not None:  # Banks (7), (8)
+            both = formulas.fur_path(height, absolute(cosine)) + path
+            f = f * formulas.fur_passes(both, w.number(_fur_rate(plan)))
+        if base is not None:
+            f = f * _sine_power(split(w, wi, base), plan.base_exponent)
+        # D and S: what the manifold reflects of it.
+        passed = shadow if plan.surface else None
+        if plan.diffuse:
+            value = shape.diffuse(lit, eye) if passed is None else passed
+            diffuse.add(value * f, lamp.color)
+        if plan.specular:
+            value = shape.specular(lit, eye, lamp.highlight)
+            if passed is not None:
+                value = formulas.shadowed_highlight(value, passed, _side(plan, cosine))
+            specular.add(w.present(value * f, distance_o), lamp.color)
+    _put(w, plan, diffuse, specular)
+
+
+def _put(w: Algebra, plan: Plan, diffuse: Total, specular: Total) -> None:
+    """Multiply by the material, add up, fade, and put the results."""
+    material, cue = plan.scene.material, plan.scene.depth_cue
+    occlusion = None
+    if plan.occluded:
+        occlusion = w.read("occlusion")
+        w.need(occlusion >= 0.0)
+        occlusion = where(occlusion >= 0.0, occlusion, 1.0)
+    scale = None if cue is None else w.sound(_depth_scale(w, plan), 1.0)
+
+    def whole(ambient: Value, terms: Iterable[Value], grey: Value) -> Value:
+        ambient = ambient if occlusion is None else ambient * occlusion
+        value = reduce(add, terms, ambient)
+        return value if scale is None else formulas.depth_cue(value, scale, grey)
+
+    parts = (
+        ("diffuse", diffuse, material.diffuse),
+        ("specular", specular, material.specular),
+    )
+    terms = {name: w.sound(total.white * w.number(k), 0.0) for name, total, k in parts if total}
+    grey = 0.0 if cue is None else w.number(cue.cue)
+    w.put("luminance", whole(w.number(plan.ambient), terms.values(), grey))
+    if plan.components:
+        for name, _, _ in parts:
+            w.put(name, terms.get(name, 0.0))
+    if plan.colored:
+        colors = [w.sound(total.rgb, 0.0) * w.color(name, k) for name, total, k in parts if total]
+        if cue is not None:
+            grey = w.vector([cue.cue * c for c in cue.color or WHITE])
+        w.put("rgb", whole(w.color("ambient", plan.ambient), colors, grey))
+
+
+class Split(NamedTuple):
+    """A direction at a manifold: itself, its tangential coefficients, its normal part and size."""
+
+    vector: Value
+    along: Sequence[Value] = ()
+    rest: Value = None
+    size: Value = None
+
+
+def split(w: Algebra, x: Value, frame: Sequence[Value]) -> Split:
+    """Return x = x_T + x_N; |x_N| is that of the residual, as sqrt(1 - |x_T|^2) loses digits."""
+    along, rest = [w.dot(t, x) for t in frame], x
+    for a, t in zip(along, frame, strict=True):
+        rest = rest - a * t
+    return Split(x, along, rest, sqrt(w.dot(rest, rest)))
+
+
+def _square(numbers: Iterable[Value]) -> Value:
+    return reduce(add, (a * a for a in numbers))
+
+
+def _toward(
+    w: Algebra, position: Vector | None, direction: Vector | None, *, far: bool
+) -> tuple[Value, Value | None]:
+    """Return the unit direction from the point to a lamp or the eye, and the distance."""
+    if far or position is None:
+        assert direction is not None
+        return w.way(direction), None
+    toward, distance = w.unit(w.difference(position))
+    w.known(distance)
+    return w.work(toward), distance
+
+
+def _share(w: Algebra, name: str, lamp: Lamp) -> Value:
+    share = w.read(name, lamp)
+    w.need(share >= 0.0)
+    return share
+
+
+def _side(plan: Plan, cosine: Value) -> Value:
+    """Return N.wi on the lit side or sides."""
+    return formulas.both_sides(cosine) if plan.two_sided else formulas.one_side(cosine)
+
+
+def _sine_power(lit: Split, p: float) -> Value:
+    """Return sin(a)^p = |wi_N|^p: Banks (1), and (5) with the exponent of Table 1."""
+    return lit.size if p == 1 else formulas.diffuse(lit.size, _square(lit.along), p)
+
+
+def _fur_rate(plan: Plan) -> float:
+    limits = finfo(plan.dtype)
+    return falloff.fur_rate(plan.fur, float(limits.tiny), float(limits.max))
+
+
+def _depth_scale(w: Algebra, plan: Plan) -> Value:
+    """Return S between the scales of front and back: the Lecture, atmospheric attenuation."""
+    view, cue = plan.scene.view, plan.scene.depth_cue
+    assert view is not None
+    assert cue is not None
+    assert cue.front is not None
+    assert cue.back is not None
+    away = w.difference(view.position or (0.0,) * w.n, wide=True)
+    if view.direction is None:
+        depth = sqrt(w.dot(away, away))
+    else:
+        depth = w.dot(w.way(view.direction, wide=True), away)
+    w.known(depth)
+    ends = cue.front, cue.back
+    if max(map(abs, ends)) > LARGEST_DEPTH:
+        depth, ends = depth * w.wide(0.25), (cue.front / 4, cue.back / 4)
+    scale = formulas.smooth_depth_scale if cue.smooth else formulas.depth_scale
+    return w.work(scale(depth, *map(w.wide, (*ends, cue.front_scale, cue.back_scale))))
+
+
+class _Shape(Protocol):
+    """What a point is lit as."""
+
+    def split(self, x: Value) -> Split:
+        """Split a unit direction."""
+
+    def diffuse(self, lit: Split, eye: Split | None) -> Value:
+        """Return D."""
+
+    def specular(self, lit: Split, eye: Split | None, h: Highlight) -> Value:
+        """Return S."""
+
+
+def _shape(w: Algebra, plan: Plan, normal: Value) -> _Shape:
+    if plan.surface:
+        return Surface(w, plan, normal)
+    rows = w.frame("tangents", plan.k)
+    return (Cylinder if plan.model == "cylinder" else Frame)(w, plan, rows)
+
+
+class Surface:
+    """An (n - 1)-manifold by its normal, with sides; the size of a split is N.x."""
+
+    def __init__(self, w: Algebra, plan: Plan, normal: Value) -> None:
+        self.w, self.plan, self.normal = w, plan, normal
+
+    def split(self, x: Value) -> Split:
+        """Split a unit direction."""
+        return Split(x, size=self.w.dot(self.normal, x))
+
+    def diffuse(self, lit: Split, eye: Split | None) -> Value:  # noqa: ARG002 - it has no part
+        """Return (N.wi)^p."""
+        side, p = _side(self.plan, lit.size), self.plan.exponent
+        return side if p == 1 else formulas.surface_diffuse(side, p)
+
+    def specular(self, lit: Split, eye: Split | None, h: Highlight) -> Value:
+        """Return the highlight on the side that the light reaches."""
+        w, plan = self.w, self.plan
+        if h.half is not None:
+            half = w.way(h.half)
+            up = w.dot(self.normal, half)
+            if h.shininess <= DEFICIT_FROM:
+                value = formulas.power(_side(plan, up), None, h.shininess)
+            else:
+                value = formulas.blinn_of_unit(self._along(half, up), h.shininess)
+                value = value if plan.two_sided else formulas.lit_highlight(value, up)
+        else:
+            assert eye is not None
+            half = lit.vector + eye.vector
+            up = w.dot(self.normal, half)
+            along = self._along(half, up)
+            if h.model == "phong":
+                sides = (lit.size, eye.size)
+                if plan.two_sided:
+                    sides = (formulas.both_sides(lit.size), formulas.both_sides(eye.size))
+                value = formulas.phong(along, *sides, h.shininess)
+            else:
+                up = _side(plan, up)
+                value = formulas.blinn(along, up * up, h.shininess)
+        return value if plan.two_sided else formulas.lit_highlight(value, lit.size)
+
+    def _along(self, half: Value, up: Value) -> Value:
+        """Return the square of the tangential part, up to its length that of the residual."""
+        rest = half - up * self.normal
+        return self.w.dot(rest, rest)
+
+
+class Frame:
+    """A k-manifold by an orthonormal frame: |wi_N| stands for N.wi, and it has no sides."""
+
+    def __init__(self, w: Algebra, plan: Plan, rows: Sequence[Value]) -> None:
+        self.w, self.plan, self.rows = w, plan, rows
+
+    def split(self, x: Value) -> Split:
+        """Split a unit direction."""
+        return split(self.w, x, self.rows)
+
+    def diffuse(self, lit: Split, eye: Split | None) -> Value:  # noqa: ARG002 - it has no part
+        """Return sin(a)^p."""
+        return _sine_power(lit, self.plan.exponent)
+
+    def specular(self, lit: Split, eye: Split | None, h: Highlight) -> Value:
+        """Return max(0, V.R)^s or |h_N|^s."""
+        w = self.w
+        if h.half is not None:
+            half = w.way(h.half)
+            return formulas.blinn_of_unit(_square(w.dot(t, half) for t in self.rows), h.shininess)
+        assert eye is not None
+        if h.model == "phong":
+            along = _square(a + b for a, b in zip(lit.along, eye.along, strict=True))
+            return formulas.phong(along, lit.size, eye.size, h.shininess)
+        both = split(w, lit.vector + eye.vector, self.rows)
+        return formulas.blinn(_square(both.along), w.dot(both.rest, both.rest), h.shininess)
+
+
+class Cylinder(Frame):
+    """A line in 3-space as a thin cylinder: Lambert and Blinn averaged over its visible half.
+
+    The closed forms stand in :mod:`vizlight.model.cylinder_kernels`.
+    """
+
+    _met: tuple[Split | None, Value] = (None, None)
+
+    def _cross(self, lit: Split, eye: Split) -> Value:
+        """Return |wi_N x wo_N|, which both terms need."""
+        if self._met[0] is not lit:
+            self._met = (lit, absolute(self.w.triple(lit.rest, eye.rest, self.rows[0])))
+        return self._met[1]
+
+    def diffuse(self, lit: Split, eye: Split | None) -> Value:
+        """Return Lambert's mean."""
+        assert eye is not None
+        dot, cross = self.w.dot(lit.rest, eye.rest), self._cross(lit, eye)
+        return formulas.cylinder_diffuse(lit.size, eye.size, dot, cross, self.w.least)
+
+    def specular(self, lit: Split, eye: Split | None, h: Highlight) -> Value:
+        """Return Blinn's mean."""
+        assert eye is not None
+        w, s, cross = self.w, h.shininess, self._cross(lit, eye)
+        whole = lit.rest + eye.rest
+        square = w.dot(whole, whole)
+        normal = sqrt(square)
+        to_eye, to_lamp = eye.size * normal, lit.size * normal
+        cos_b = formulas.cylinder_cosine(w.dot(eye.rest, whole), to_eye)
+        cos_c = formulas.cylinder_cosine(w.dot(lit.rest, whole), to_lamp)
+        sin_b, sin_c = (formulas.cylinder_sine(cross, size) for size in (to_eye, to_lamp))
+        along = _square(a + b for a, b in zip(lit.along, eye.along, strict=True))
+        return formulas.cylinder_specular(
+            formulas.blinn(along, square, s),
+            cos_b,
+            w.integral(cos_b, s) + w.integral(cos_c, s),
+            formulas.cylinder_ends(sin_b, sin_c, s) / w.number(s + 1),
+            lit.size,
+            eye.size,
+            normal,
+            w.least,
+            w.number(cylinder_kernels.round_mean(s)),
+        )
