@@ -8,7 +8,7 @@ draws what hue and lightness mean.
 from __future__ import annotations
 
 import itertools
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias, cast
 
 import numpy as np
 
@@ -258,9 +258,9 @@ def _scene(lamps: Sequence[Lamp], brightest: float, ambient: float, view: Eye) -
 def _view(given: Eye) -> View | None:
     """Return a view, that of a camera, or that of a plotter's camera."""
     # A plotter has a camera; a view or a camera has none.
-    camera: View | vtkCamera | None = getattr(given, "camera", given)
+    of_plotter: vtkCamera | None = getattr(given, "camera", None)
     try:
-        return as_view(camera)
+        return as_view(cast("vtkCamera", given) if of_plotter is None else of_plotter)
     except TypeError:
         expected = "a vizlight.View, a pyvista.Camera, a pyvista.Plotter or None"
         raise TypeError(_check.message("view", expected, _check.describe(given))) from None
