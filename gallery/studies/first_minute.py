@@ -80,7 +80,7 @@ def surface(count: int) -> pv.PolyData:
     plane = pv.Plane(i_resolution=side - 1, j_resolution=side - 1)
     plane.clear_data()
     x, y, _ = plane.points.T
-    plane.points[:, 2] = 0.05 * np.sin(20 * x) * np.cos(25 * y)
+    plane.points = np.stack([x, y, 0.05 * np.sin(20 * x) * np.cos(25 * y)], axis=1)
     return plane
 
 
