@@ -174,9 +174,6 @@ def _half(scene: Scene, index: int) -> Vector | None:
 
 def _needed(scene: Scene, layout: Layout) -> tuple[Scene, bool, bool]:
     """Return the scene with a view and the lights that have an effect, and the terms they need."""
-    if scene.view is None and scene.depth_cue is not None:
-        expected, remedy = "a View, which the depth cue needs", "pass view= to the Scene"
-        raise ValueError(_check.message("view", expected, None, remedy))
     lights = tuple(light for light in scene.lights if light.intensity > 0)
     specular = bool(scene.material.specular > 0 and lights and scene.view is not None)
     diffuse = bool(scene.material.diffuse > 0 and lights)
@@ -240,6 +237,9 @@ def _check_scene(scene: Scene, n: int) -> None:
                 f"for light in {scene.n}-space name the arrays by positions= and tangents=",
             )
         )
+    if scene.view is None and scene.depth_cue is not None:
+        expected, remedy = "a View, which the depth cue needs", "pass view= to the Scene"
+        raise ValueError(_check.message("view", expected, None, remedy))
     cue = scene.depth_cue
     if cue is not None and (cue.front is None or cue.back is None):
         raise ValueError(_check.message("depth_cue", "front= and back=", cue))
