@@ -1,4 +1,4 @@
-"""Demonstration from file to picture: light an isosurface of a simulated flow by its velocity."""
+"""Demonstration from file to picture: measured winds, lit so that hue is their direction."""
 
 from __future__ import annotations
 
@@ -6,94 +6,159 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pyvista as pv
 
 from vizlight import files
 from vizlight.data import load_example
 from vizlight.filters.illuminate import illuminate
+from vizlight.filters.streamlines import streamlines
+from vizlight.observers.legibility import legibility
 from vizlight.pictures import render
-from vizlight.reading.normals import sided_normals
-from vizlight.scene import Light, Scene, View
+from vizlight.pictures.backends import choose_backend, window_class
+from vizlight.scene import Scene, View, presets
 from vizlight.shading import engine
 from vizlight.verify import reference
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from pathlib import Path
 
-    import pyvista as pv
+    from vizlight.observers.record import Direction
+    from vizlight.pictures.backends import Backend
 
-LEVEL = 600.0
-EYE = (1.0, 0.5, 0.45)
-TOWARD_LIGHT = (1.0, 0.9, 0.5)
+EYE = (0.42, 1.0, 0.2)
+#: Distance between lines, and length of arrows, as shares of the globe's radius.
+SPACING = 0.05
+#: Distance of the lines above the globe, whose triangles would hide parts of them.
+ABOVE = 1.004
 
 
 @dataclass(frozen=True)
 class Row:
-    """Row of the table of the demonstration."""
+    """Row of the table of the demonstration: one light, its cost, and what a reader reads in it."""
 
     light: str
     points: int
     terms: str
     milliseconds: float
     error: float
+    read: Direction
 
 
-def flow_surface() -> pv.PolyData:
-    """Return the isosurface Temp = 600 of the rotating disk, with normals and velocity ``V``.
+@dataclass(frozen=True)
+class Demo:
+    """What the demonstration makes.
 
-    Each triangle is divided into 16, because the triangles of the simulation are too coarse for
-    a highlight. Normals and velocities are interpolated.
+    Attributes
+    ----------
+    globe : pyvista.PolyData
+        Globe with the wind and its light.
+    lines : pyvista.PolyData
+        Evenly spaced lines of the wind.
+    scene : Scene
+        Scene of the light.
+    camera : pyvista.Camera
+    rows : list of Row
+        A white light, and the light by direction.
+    plan : str
+        What was computed, in words.
     """
-    surface = files.surface_of(load_example(), "Temp", LEVEL).compute_normals(
+
+    globe: pv.PolyData
+    lines: pv.PolyData
+    scene: Scene
+    camera: pv.Camera
+    rows: list[Row]
+    plan: str
+
+
+def light_winds() -> Demo:
+    """Light the mean wind of July by its direction, and measure what can be read of it."""
+    globe = load_example("winds_of_july.vtp").compute_normals(
         cell_normals=False, split_vertices=False, auto_orient_normals=True
     )
-    fine: pv.PolyData = surface.triangulate().subdivide(2, "linear")
-    return fine
+    camera = render.camera_on(globe.bounds, EYE, zoom=1.35)
+    view = View.from_camera(camera)
+    points, wind = np.asarray(globe.points), np.asarray(globe["wind"])
+    rows = []
+    for title, scene in (
+        ("a white lamp at the eye", Scene(view=view)),
+        ("presets.direction", presets.direction(view)),
+    ):
+        globe = illuminate(globe, scene, tangents="wind", exponent=2)
+        runs = [engine.shade(points, wind, scene, exponent=2) for _ in range(5)]
+        plan = runs[0].plan
+        exact = reference.light(points, wind, scene, exponent=plan.exponent)
+        rows.append(
+            Row(
+                light=title,
+                points=globe.n_points,
+                terms=" + ".join(plan.terms),
+                milliseconds=1e3 * float(np.median([run.seconds for run in runs])),
+                error=float(np.abs(globe["luminance"] - exact).max()),
+                read=_read(globe, scene, camera),
+            )
+        )
+    lines = streamlines(globe, scene, vectors="wind", spacing=SPACING)
+    lines.points = ABOVE * np.asarray(lines.points)
+    return Demo(globe, lines, scene, camera, rows, plan.explain())
 
 
-def flow_scene(bounds: Sequence[float]) -> tuple[Scene, pv.Camera]:
-    """Return the scene of the demonstration and the camera of its view.
+def _read(globe: pv.PolyData, scene: Scene, camera: pv.Camera) -> Direction:
+    found = legibility(globe, scene, tangents="wind", exponent=2, view=camera).direction
+    assert found is not None
+    return found
+
+
+def save_picture(
+    demo: Demo, path: Path, /, *, size: tuple[int, int], backend: Backend | None = None
+) -> Path:
+    """Draw PyVista's picture of the winds beside that of the light, with its key.
 
     Parameters
     ----------
-    bounds : (xmin, xmax, ymin, ymax, zmin, zmax)
-        Bounds of the surface.
+    demo : Demo
+    path : pathlib.Path
+        Path of the PNG file.
+    size : (int, int)
+        Width and height in pixels.
+    backend : {"egl", "osmesa"}, optional
+        OpenGL library; see :func:`vizlight.render.choose_backend`.
+
+    Returns
+    -------
+    pathlib.Path
+        Path of the picture.
+
+    Raises
+    ------
+    BackendError
+        If no OpenGL library can draw here.
+    ValueError
+        If the file cannot be written, or a picture of that size cannot be drawn.
     """
-    camera = render.camera_on(bounds, EYE, zoom=1.5)
-    scene = Scene(
-        lights=Light(direction=TOWARD_LIGHT),
-        view=View.from_camera(camera),
-    )
-    return scene, camera
-
-
-def light_flow() -> tuple[pv.PolyData, pv.Camera, list[Row], str]:
-    """Return the lit surface, its camera, the table, and the explained plan of the flow's light."""
-    surface = flow_surface()
-    scene, camera = flow_scene(surface.bounds)
-    points = np.asarray(surface.points)
-    # The surface is open: its normals are turned to the eye.
-    normals = sided_normals(surface, None, 3, "auto").facing("auto", points, scene.view)[:]
-    rows = []
-    for title, name, tangents in (
-        ("as a surface", "surface_light", None),
-        ("by the flow", "flow_light", "V"),
-    ):
-        surface = illuminate(
-            surface, scene, tangents=tangents, conditioned=tangents is not None, name=name
+    with window_class(choose_backend(backend)):
+        plotter = pv.Plotter(
+            off_screen=True, shape=(1, 2), window_size=render.pixels_of(size), border=False
         )
-        vectors = None if tangents is None else np.asarray(surface[tangents])
-        runs = [engine.shade(points, vectors, scene, normals=normals) for _ in range(5)]
-        plan = runs[0].plan
-        exact = reference.light(points, vectors, scene, normals=normals, exponent=plan.exponent)
-        error = float(np.abs(surface[name] - exact).max())
-        seconds = float(np.median([run.seconds for run in runs]))
-        rows.append(Row(title, surface.n_points, " + ".join(plan.terms), 1e3 * seconds, error))
-    return surface, camera, rows, plan.explain()
+    try:
+        plotter.set_background("white", all_renderers=True)
+        arrows = demo.globe.glyph(orient="wind", scale=False, factor=SPACING, tolerance=SPACING / 2)
+        plotter.add_mesh(demo.globe, color="lightsteelblue", smooth_shading=True)
+        plotter.add_mesh(arrows, color="black")
+        _title(plotter, "PyVista: shape by light, direction by arrows")
+        plotter.camera = demo.camera.copy()  # type: ignore[no-untyped-call]
+        plotter.subplot(0, 1)
+        plotter.vizlight.add_mesh(demo.globe, scene=demo.scene, tangents="wind", exponent=2)
+        plotter.add_mesh(demo.lines, color="black", opacity=0.6, line_width=1.5)
+        plotter.vizlight.add_key(demo.scene, exponent=2)
+        wrong = demo.rows[-1].read.legend_median
+        _title(plotter, f"vizlight: hue is the direction, read by the key to {wrong:.0f} degrees")
+        plotter.camera = demo.camera.copy()  # type: ignore[no-untyped-call]
+        return files.replace_file(path, plotter.screenshot, doing="draw")
+    finally:
+        plotter.close()
 
 
-def panels(lit: pv.PolyData) -> list[render.Panel]:
-    """Return the two panels of the demonstration: light of the surface, and light of the flow."""
-    return [
-        render.Panel(lit, "surface_light", "lit as a surface"),
-        render.Panel(lit, "flow_light", "lit by the flow"),
-    ]
+def _title(plotter: pv.Plotter, text: str) -> None:
+    plotter.enable_anti_aliasing("msaa", multi_samples=8)
+    plotter.add_text(text, position="upper_edge", font_size=10, color="black")

@@ -81,10 +81,11 @@ def demo(
     size: str = "1200x500",
     backend: Backend | None = None,
 ) -> int:
-    """Light a real flow: an isosurface of the rotating disk, lit as a surface and by its flow.
+    """Light measured winds so that hue is their direction.
 
-    Writes flow.png and flow.vtp and prints a table: points, terms, time, and the error against
-    a float64 reference that shares no code with the engine.
+    Writes flow.png and flow.vtp and prints a table: points, terms, time, the error against a
+    float64 reference that shares no code with the engine, and how well the direction of the wind
+    can be read.
 
     Parameters
     ----------
@@ -97,31 +98,30 @@ def demo(
     """
     from rich.table import Table
 
-    from vizlight import demo, files, render
+    from vizlight import demo, files
 
     pixels = arguments.pixels(size)
     files.make_folder("out", out)
-    lit, camera, rows, explained = demo.light_flow()
-    mesh = files.write_mesh(lit, out / "flow.vtp")
-    table = Table(title="Isosurface Temp = 600 of the rotating disk")
-    for heading in ("lit", "points", "terms", "time, ms", "largest error"):
-        table.add_column(heading, justify="left" if heading in ("lit", "terms") else "right")
-    for row in rows:
+    made = demo.light_winds()
+    mesh = files.write_mesh(made.globe, out / "flow.vtp")
+    table = Table(title="The winds of July, lit by their direction")
+    for heading in ("light", "points", "terms", "time, ms", "error", "within 10°", "by the key"):
+        table.add_column(heading, justify="left" if heading in ("light", "terms") else "right")
+    for row in made.rows:
+        by_key = row.read.legend_median
         table.add_row(
-            row.light, f"{row.points}", row.terms, f"{row.milliseconds:.2f}", f"{row.error:.1e}"
-        )
+            row.light, f"{row.points}", row.terms, f"{row.milliseconds:.2f}", f"{row.error:.1e}",
+            f"{row.read.within_10:.0%}", "" if by_key is None else f"{by_key:.1f}°",
+        )  # fmt: skip
     console = _console.console()
     console.print(table)
-    console.print("Error: float32 luminance against plain NumPy in float64. The flow's plan:")
-    console.print(explained, highlight=False)
+    console.print("Error: the largest of float32 luminance against plain NumPy in float64.")
+    console.print("Within 10°: share of the picture where an ideal observer reads the direction.")
+    console.print("By the key: median error of a reader who matches hues; 45° is chance. The plan:")
+    console.print(made.plan, highlight=False)
     console.print(f"mesh     {mesh}", highlight=False)
     picture = functools.partial(
-        render.save_png,
-        demo.panels(lit),
-        out / "flow.png",
-        camera=camera,
-        size=pixels,
-        backend=backend,
+        demo.save_picture, made, out / "flow.png", size=pixels, backend=backend
     )
     return draw(picture)
 
