@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 EYE = (0.42, 1.0, 0.2)
 #: Distance between lines, and length of arrows, as shares of the globe's radius.
-SPACING = 0.05
+SPACING = 0.06
 #: Distance of the lines above the globe, whose triangles would hide parts of them.
 ABOVE = 1.004
 
@@ -76,7 +76,7 @@ def light_winds() -> Demo:
     globe = load_example("winds_of_july.vtp").compute_normals(
         cell_normals=False, split_vertices=False, auto_orient_normals=True
     )
-    camera = render.camera_on(globe.bounds, EYE, zoom=1.35)
+    camera = render.camera_on(globe.bounds, EYE, zoom=1.45)
     view = View.from_camera(camera)
     points, wind = np.asarray(globe.points), np.asarray(globe["wind"])
     rows = []
@@ -149,10 +149,10 @@ def save_picture(
         plotter.camera = demo.camera.copy()  # type: ignore[no-untyped-call]
         plotter.subplot(0, 1)
         plotter.vizlight.add_mesh(demo.globe, scene=demo.scene, tangents="wind", exponent=2)
-        plotter.add_mesh(demo.lines, color="black", opacity=0.6, line_width=1.5)
+        plotter.add_mesh(demo.lines, color="black", opacity=0.5, line_width=2)
         plotter.vizlight.add_key(demo.scene, exponent=2)
         wrong = demo.rows[-1].read.legend_median
-        _title(plotter, f"vizlight: hue is the direction, read by the key to {wrong:.0f} degrees")
+        _title(plotter, f"vizlight: hue is the direction, read to {wrong:.1f}\N{DEGREE SIGN}")
         plotter.camera = demo.camera.copy()  # type: ignore[no-untyped-call]
         return files.replace_file(path, plotter.screenshot, doing="draw")
     finally:
@@ -160,5 +160,7 @@ def save_picture(
 
 
 def _title(plotter: pv.Plotter, text: str) -> None:
-    plotter.enable_anti_aliasing("msaa", multi_samples=8)
-    plotter.add_text(text, position="upper_edge", font_size=10, color="black")
+    # VTK before 9.7 draws several supersampled panels in one place.
+    plotter.enable_anti_aliasing("ssaa" if pv.vtk_version_info >= (9, 7) else "msaa")
+    words = plotter.add_text(text, position="upper_edge", font_size=9, color="black")
+    words.GetTextProperty().SetLineOffset(8)
