@@ -41,5 +41,4 @@ plotter.show(auto_close=False)
 # What can be read in the light on the right, and in a white lamp at the eye:
 
 for light in (scene, vizlight.Scene()):
-    read = vizlight.legibility(wind, light, tangents="wind", exponent=2, view=plotter.camera)
-    print(read.direction)
+    print(vizlight.legibility(wind, light, tangents="wind", exponent=2, view=plotter.camera))

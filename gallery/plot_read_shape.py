@@ -36,4 +36,4 @@ plotter.show(auto_close=False)
 # What can be read in this light, and in PyVista's:
 
 for light in (scene, plain):
-    print(vizlight.legibility(fault, light, view=plotter.camera).shape)
+    print(vizlight.legibility(fault, light, view=plotter.camera))

@@ -23,20 +23,22 @@ from vtkmodules.vtkRenderingAnnotation import vtkCornerAnnotation
 import vizlight
 
 #: Scripts with an interactive scene: views of meshes of a few megabytes.
-INTERACTIVE = ("plot_flow", "plot_winds", "plot_complex_curve")
+INTERACTIVE = ("plot_winds", "plot_complex_curve")
 #: What the page of one view runs: it tells the others beside it how its camera was moved.
 LINK = (Path(__file__).parent / "link.js").read_text("utf-8")
 
-# Lines and flows, then surfaces, terrain, 4-space, formulas and their errors; scripts that are not
+# Questions of a reader, lines and flows, then surfaces, terrain, 4-space, formulas and their errors; scripts that are not
 # listed come last.
 ORDER = [
-    "plot_winds", "plot_flow", "plot_live", "plot_lines", "plot_bundle",
-    "plot_principal_lines", "plot_streaklines", "plot_tubes", "plot_satin", "plot_fur",
-    "plot_ambient", "plot_depth_cue", "plot_attenuation",
+    "plot_read_direction", "plot_read_slope", "plot_read_heading", "plot_read_shape",
+    "plot_read_value",
+    "plot_winds", "plot_live", "plot_lines", "plot_bundle",
+    "plot_principal_lines", "plot_streaklines", "plot_satin", "plot_fur",
+    "plot_depth_cue",
     "plot_terrain_day", "plot_terrain", "plot_earth", "plot_bas_relief", "plot_seeping_light",
-    "plot_codimension", "plot_turning", "plot_complex_curve", "plot_shapes",
+    "plot_codimension", "plot_turning", "plot_complex_curve",
     "plot_field_in_4_space", "plot_highlights", "plot_highlights_shapes",
-    "plot_isoluminance", "plot_isoluminance_painter",
+    "plot_isoluminance",
 ]  # fmt: skip
 
 #: Scripts whose thumbnail is made from the first picture; others have it from the last.
@@ -47,8 +49,6 @@ FIRST = (
 #: Part of a picture that its thumbnail shows: left, top, right and bottom as shares of 1. Other
 #: thumbnails show the whole.
 PARTS = {
-    "plot_ambient": (0.36, 0.32, 0.91, 0.78),
-    "plot_attenuation": (0.05, 0.0, 0.66, 0.62),
     "plot_bas_relief": (0.01, 0.045, 0.325, 0.46),
     "plot_bundle": (0.5, 0.08, 1.0, 0.92),
     "plot_codimension": (0.25, 0.6, 0.5, 1.0),
@@ -56,19 +56,20 @@ PARTS = {
     "plot_depth_cue": (0.67, 0.06, 1.0, 0.5),
     "plot_earth": (0.05, 0.06, 0.55, 0.46),
     "plot_field_in_4_space": (0.667, 0.07, 1.0, 1.0),
-    "plot_flow": (0.0, 0.1, 1.0, 1.0),
     "plot_highlights": (0.15, 0.06, 0.9, 0.5),
     "plot_highlights_shapes": (0.0, 0.08, 0.5, 0.92),
     "plot_isoluminance": (0.25, 0.56, 0.5, 1.0),
-    "plot_isoluminance_painter": (0.34, 0.0, 1.0, 1.0),
     "plot_lines": (0.5, 0.05, 1.0, 1.0),
     "plot_principal_lines": (0.5, 0.0, 1.0, 1.0),
+    "plot_read_direction": (0.5, 0.08, 1.0, 1.0),
+    "plot_read_heading": (0.5, 0.05, 1.0, 1.0),
+    "plot_read_shape": (0.5, 0.1, 1.0, 0.9),
+    "plot_read_slope": (0.5, 0.05, 1.0, 1.0),
+    "plot_read_value": (0.5, 0.1, 1.0, 1.0),
     "plot_satin": (0.0, 0.08, 0.5, 0.75),
     "plot_seeping_light": (0.67, 0.06, 1.0, 0.75),
-    "plot_shapes": (0.2, 0.07, 0.4, 1.0),
     "plot_terrain_day": (0.37, 0.05, 0.63, 0.49),
     "plot_terrain": (0.05, 0.08, 0.95, 0.98),
-    "plot_tubes": (0.37, 0.08, 1.0, 0.95),
     "plot_turning": (0.4, 0.06, 0.61, 0.5),
     "plot_winds": (0.08, 0.1, 0.92, 0.8),
 }
