@@ -2,15 +2,16 @@
 Which way does the field run?
 =============================
 
-The mean wind of July over the Indian Ocean. Left: PyVista's light shows the globe, and arrows show the
-wind where they stand. Right: the wind itself is lit, by three lamps around the eye whose colours are
-equally bright (:func:`vizlight.presets.direction`). Hue is the direction of the wind on the screen at
-every place: find it on the disc in the corner. Where hue changes at once, winds meet.
+The mean wind of July over the Indian Ocean. Left: PyVista's light shows the globe, and arrows show
+the wind where they stand. Right: the wind itself is lit, by three lamps around the eye whose
+colours are equally bright (:func:`vizlight.presets.direction`). Hue is the direction of the wind
+on the screen at every place: find it on the disc in the corner. Where hue changes at once, winds
+meet.
 
 The meter below the script says how well it can be read: an ideal observer is wrong by more than 10
-degrees on 1 % of the picture, and a reader with the disc by 2.5 degrees in the median. Under one white
-lamp it is 45 % and 45 degrees, which is chance. White places run toward the eye or away from it. Which
-of two opposite ways the wind blows is not told: lines have no sense.
+degrees on 1 % of the picture, and a reader with the disc by 2.5 degrees in the median. Under one
+white lamp it is 45 % and 45 degrees, which is chance. White places run toward the eye or away from
+it. Which of two opposite ways the wind blows is not told: lines have no sense.
 """
 
 import pyvista as pv

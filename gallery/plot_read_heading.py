@@ -2,13 +2,13 @@
 Which end of a line is near?
 ============================
 
-The fibres of :ref:`the example of slope <sphx_glr_examples_plot_read_slope.py>`, now with three coloured
-lamps close around the eye (:func:`vizlight.presets.heading`). Lightness tells how steeply a fibre runs
-toward you, and hue where its near end points on the screen: follow a fibre on the screen, and its hue
-on the disc says which of the two ways comes toward you.
+The fibres of :ref:`the example of slope <sphx_glr_examples_plot_read_slope.py>`, now with three
+coloured lamps close around the eye (:func:`vizlight.presets.heading`). Lightness tells how steeply
+a fibre runs toward you, and hue where its near end points on the screen: follow a fibre on the
+screen, and its hue on the disc says which of the two ways comes toward you.
 
-With the course on the screen known, the direction in space is read with a median error below half a
-degree. In white light it is a coin's toss which end is near.
+With the course on the screen known, the direction in space is read with a median error below half
+a degree. In white light it is a coin's toss which end is near.
 """
 
 import pyvista as pv

@@ -7,9 +7,9 @@ The speed of a gas on an isosurface of its temperature. Left: PyVista's light an
 (:func:`vizlight.presets.value`) on a map of one lightness and one chroma
 (:data:`vizlight.maps.even`), which light cannot turn into another colour of the bar.
 
-Each pixel is read by the colour of the bar that is nearest to it. On the right 95 of 100 pixels are
-read to 2 % of the range; ``viridis`` in the same light to 29 %, because its own lightness is taken for
-light.
+Each pixel is read by the colour of the bar that is nearest to it. On the right 95 of 100 pixels
+are read to 2 % of the range; ``viridis`` in the same light to 29 %, because its own lightness is
+taken for light.
 """
 
 import numpy as np

@@ -27,7 +27,7 @@ INTERACTIVE = ("plot_winds", "plot_complex_curve")
 #: What the page of one view runs: it tells the others beside it how its camera was moved.
 LINK = (Path(__file__).parent / "link.js").read_text("utf-8")
 
-# Questions of a reader, lines and flows, then surfaces, terrain, 4-space, formulas and their errors; scripts that are not
+# Questions of a reader, lines and flows, surfaces, terrain, 4-space, formulas; scripts that are not
 # listed come last.
 ORDER = [
     "plot_read_direction", "plot_read_slope", "plot_read_heading", "plot_read_shape",
