@@ -76,7 +76,7 @@ def light_winds() -> Demo:
     globe = load_example("winds_of_july.vtp").compute_normals(
         cell_normals=False, split_vertices=False, auto_orient_normals=True
     )
-    camera = render.camera_on(globe.bounds, EYE, zoom=1.45)
+    camera = render.camera_on(globe.bounds, EYE, zoom=1.35)
     view = View.from_camera(camera)
     points, wind = np.asarray(globe.points), np.asarray(globe["wind"])
     rows = []
@@ -150,7 +150,7 @@ def save_picture(
         plotter.subplot(0, 1)
         plotter.vizlight.add_mesh(demo.globe, scene=demo.scene, tangents="wind", exponent=2)
         plotter.add_mesh(demo.lines, color="black", opacity=0.5, line_width=2)
-        plotter.vizlight.add_key(demo.scene, exponent=2)
+        plotter.vizlight.add_key(demo.scene, corner="lower right", exponent=2)
         wrong = demo.rows[-1].read.legend_median
         _title(plotter, f"vizlight: hue is the direction, read to {wrong:.1f}\N{DEGREE SIGN}")
         plotter.camera = demo.camera.copy()  # type: ignore[no-untyped-call]

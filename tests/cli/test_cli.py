@@ -285,11 +285,11 @@ def test_demo(tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(tmp_path)
     code, out, _ = run(capfd, "demo", "--size", "200x100")
     assert code == 0
-    for part in ("points", "terms", "time", "largest error", "compute  diffuse: |wi_N|"):
+    for part in ("points", "terms", "time", "error", "by the key", "compute  diffuse: |wi_N|"):
         assert part in out
     assert {p.name for p in (tmp_path / "vizlight-demo").iterdir()} == {"flow.vtp", "flow.png"}
     lit = pv.read("vizlight-demo/flow.vtp")
-    assert {"surface_light", "flow_light"} <= set(lit.point_data)
+    assert {"luminance", "rgb", "wind"} <= set(lit.point_data)
 
 
 def test_paths_of_the_plugin_for_paraview(capfd):

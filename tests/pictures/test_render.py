@@ -16,7 +16,7 @@ import pyvista as pv
 from fields import half_known
 
 import vizlight
-from vizlight import Light, Material, Scene, View, demo, render
+from vizlight import Light, Material, Scene, View, render
 from vizlight.pictures import backends
 from vizlight.reading import polylines
 
@@ -327,8 +327,25 @@ def test_picture_of_the_flow(verify_image_cache):
     # VTK before 9.7 multisamples several panels, which gives 596 at the outline.
     limit = 250.0 if pv.vtk_version_info >= (9, 7) else 700.0
     verify_image_cache.error_value = verify_image_cache.warning_value = limit
-    lit, camera, _, _ = demo.light_flow()
-    render.make_plotter(demo.panels(lit), camera=camera, size=(600, 300)).show()
+    surface = (
+        vizlight.load_example()
+        .contour([600], scalars="Temp")
+        .compute_normals(cell_normals=False, split_vertices=False, auto_orient_normals=True)
+    )
+    lit = surface.triangulate().subdivide(2, "linear")
+    camera = render.camera_on(lit.bounds, (1.0, 0.5, 0.45), zoom=1.5)
+    scene = Scene(
+        lights=Light(direction=(1.0, 0.9, 0.5)),
+        material=Material(ambient=0.1, diffuse=0.5, specular=0.4),
+        view=View.from_camera(camera),
+    )
+    lit = vizlight.illuminate(lit, scene, name="surface_light")
+    lit = vizlight.illuminate(lit, scene, tangents="V", conditioned=True, name="flow_light")
+    panels = [
+        render.Panel(lit, "surface_light", "lit as a surface"),
+        render.Panel(lit, "flow_light", "lit by the flow"),
+    ]
+    render.make_plotter(panels, camera=camera, size=(600, 300)).show()
 
 
 def test_picture_of_a_coloured_ball(verify_image_cache):
