@@ -141,25 +141,25 @@ def save_picture(
             off_screen=True, shape=(1, 2), window_size=render.pixels_of(size), border=False
         )
     try:
-        plotter.set_background("white", all_renderers=True)
         arrows = demo.globe.glyph(orient="wind", scale=False, factor=SPACING, tolerance=SPACING / 2)
         plotter.add_mesh(demo.globe, color="lightsteelblue", smooth_shading=True)
         plotter.add_mesh(arrows, color="black")
-        _title(plotter, "PyVista: shape by light, direction by arrows")
+        _panel(plotter, "PyVista: shape by light, direction by arrows")
         plotter.camera = demo.camera.copy()  # type: ignore[no-untyped-call]
         plotter.subplot(0, 1)
         plotter.vizlight.add_mesh(demo.globe, scene=demo.scene, tangents="wind", exponent=2)
         plotter.add_mesh(demo.lines, color="black", opacity=0.5, line_width=2)
         plotter.vizlight.add_key(demo.scene, corner="lower right", exponent=2)
         wrong = demo.rows[-1].read.legend_median
-        _title(plotter, f"vizlight: hue is the direction, read to {wrong:.1f}\N{DEGREE SIGN}")
+        _panel(plotter, f"vizlight: hue is the direction, read to {wrong:.1f}\N{DEGREE SIGN}")
         plotter.camera = demo.camera.copy()  # type: ignore[no-untyped-call]
         return files.replace_file(path, plotter.screenshot, doing="draw")
     finally:
         plotter.close()
 
 
-def _title(plotter: pv.Plotter, text: str) -> None:
+def _panel(plotter: pv.Plotter, text: str) -> None:
+    plotter.background_color = pv.Color("white")
     # VTK before 9.7 draws several supersampled panels in one place.
     plotter.enable_anti_aliasing("ssaa" if pv.vtk_version_info >= (9, 7) else "msaa")
     words = plotter.add_text(text, position="upper_edge", font_size=9, color="black")
