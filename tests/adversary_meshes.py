@@ -200,7 +200,6 @@ CALLS = {
         "sources": saved(),
         "scene": SCENE,
         "out": Path("lit.pvtp"),
-        "workers": 1,
         "tangents": "V",
     },
     "pieces.workers.Processes": lambda: {"count": 1},

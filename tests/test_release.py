@@ -69,7 +69,7 @@ def test_the_wheel_holds_what_runs(wheel):
     names = set(wheel.namelist())
     data = {f"vizlight/datasets/{p.name}" for p in (ROOT / "datasets").glob("*.vt?")}
     web = {f"vizlight/plotting/web/{name}" for name in ("viewer.min.js", "page.html")}
-    assert data | web | {"vizlight/py.typed", "vizlight/render.pyi"} <= names
+    assert data | web | {"vizlight/py.typed"} <= names
     code = {p.relative_to(ROOT).as_posix() for p in (ROOT / "vizlight").rglob("*.py")}
     assert {name for name in names if name.endswith(".py")} == code
     assert {name.partition("/")[0] for name in names} == {"vizlight", INFO}

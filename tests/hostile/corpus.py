@@ -189,7 +189,7 @@ CASES = {
     "two-corners.vtk": Case(legacy(SQUARE, "POLYGONS 1 3", "2 0 1"), 0, "could not be lit"),
     "same-corner.vtk": Case(legacy(SQUARE, "POLYGONS 1 4", "3 0 0 0"), 0, "could not be lit"),
     # XML that is none
-    "not-closed.vtu": Case(b'<VTKFile type="UnstructuredGrid"><UnstructuredGrid>', 2, NOT_A_MESH),
+    "not-closed.vtu": Case(b'<VTKFile type="UnstructuredGrid"><UnstructuredGrid>', 2, DAMAGED),
     "entities.vtp": Case(
         b'<!DOCTYPE x [<!ENTITY a "aaaa"><!ENTITY b "&a;&a;">]><VTKFile>&b;</VTKFile>',
         2, NOT_A_MESH,

@@ -63,7 +63,7 @@ def light(
     explain
         Print what is computed and what is skipped.
     legibility
-        Print what an ideal reader reads back from the picture: direction, slope, shape, values.
+        Print what an ideal reader reads back from the picture.
     """
     given = options.keywords(how)
     if in_pieces.are_asked(common.out, pieces):

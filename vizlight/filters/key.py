@@ -92,7 +92,7 @@ def key(
     --------
     >>> import vizlight
     >>> disc = vizlight.presets.key(vizlight.presets.direction())
-    >>> disc.field_data["words"][0]
+    >>> str(disc.field_data["words"][0])
     'direction on the screen'
     """
     import pyvista as pv

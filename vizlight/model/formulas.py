@@ -158,7 +158,8 @@ def cylinder_diffuse(a: Number, b: Number, dot: Number, cross: Number, least: Nu
     """Return Lambert's mean over the visible half of a thin cylinder.
 
     ``a`` and ``b`` are |wi_N| and |wo_N|, ``dot`` and ``cross`` are wi_N . wo_N and
-    |wi_N x wo_N|. A cylinder with ``b`` up to ``least`` (8 eps) is seen end on.
+    |wi_N x wo_N|. A cylinder with ``b`` up to ``least``, 8 times the machine epsilon, is seen end
+    on.
     """
     mean = (arctan2(cross, -dot) * dot + cross) / (4.0 * where(b > least, b, 1.0))
     return where(b > least, mean, a * 0.3183098861837907)

@@ -288,7 +288,7 @@ def computed_normals(
             shape.orient(vectors, survey, view)
         if sides:
             # It takes up to twice the memory of the points, and the edges take as much.
-            del shape.away
+            vars(shape).pop("away", None)
             lean, sharp = survey.lean, crease_share(shape.edge_counts(survey.faces, survey.full))
     if origin is not None:
         if dimension(mesh) == 3:
