@@ -4,7 +4,7 @@ Which way does the field run?
 
 The mean wind of July over the Indian Ocean. Left: PyVista's light shows the globe, and arrows show
 the wind where they stand. Right: the wind itself is lit, by three lamps around the eye whose
-colours are equally bright (:func:`vizlight.presets.direction`). Hue is the direction of the wind
+colours are equally bright (``vizlight.presets.direction``). Hue is the direction of the wind
 on the screen at every place: find it on the disc in the corner. Where hue changes at once, winds
 meet.
 

@@ -2,8 +2,8 @@
 Which end of a line is near?
 ============================
 
-The fibres of :ref:`the example of slope <sphx_glr_examples_plot_read_slope.py>`, now with three
-coloured lamps close around the eye (:func:`vizlight.presets.heading`). Lightness tells how steeply
+The fibres of the example of slope, now with three
+coloured lamps close around the eye (``vizlight.presets.heading``). Lightness tells how steeply
 a fibre runs toward you, and hue where its near end points on the screen: follow a fibre on the
 screen, and its hue on the disc says which of the two ways comes toward you.
 

@@ -4,7 +4,7 @@ What is the shape?
 
 A mountain fault, three times as high as it is. Left: PyVista's light. Right: three coloured lamps
 half way between the eye and the picture plane, and a white one at the eye
-(:func:`vizlight.presets.shape`). Each slope has a colour of its own, which the ball in the corner
+(``vizlight.presets.shape``). Each slope has a colour of its own, which the ball in the corner
 shows at the place of the same slope; under white lamps many slopes look the same.
 
 The normal of the surface is read with a median error of some 3 degrees, in PyVista's light of more

@@ -3,11 +3,11 @@ How steeply do lines run toward you?
 ====================================
 
 300 fibres of a brain's white matter. Left: PyVista draws lines without light, so that the bundle
-is a flat shape. Right: under one lamp at the eye (:func:`vizlight.presets.slope`) a line is white
+is a flat shape. Right: under one lamp at the eye (``vizlight.presets.slope``) a line is white
 where it runs across the view and dark where it runs toward you or away from you, as the bar tells.
 
 Lightness orders the places of the fibres by their slope: the rank correlation is -0.98. Which of
-its ends is nearer is not told; :ref:`heading <sphx_glr_examples_plot_read_heading.py>` tells that
+its ends is nearer is not told; heading tells that
 too.
 """
 
