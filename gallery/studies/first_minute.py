@@ -201,7 +201,7 @@ def steps(quick: bool) -> list[Callable[[], Iterable[Row]]]:
         *(partial(picture, size, 1 if quick else 2) for size in sizes),
         partial(calls, 40_000 if quick else 400_000),
         compiled,
-        partial(memory, 60 if quick else 160),
+        partial(memory, 160),
     ]
 
 
