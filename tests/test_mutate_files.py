@@ -51,7 +51,7 @@ def test_an_input_that_is_changed_is_seen(tmp_path):
     assert "changed" in mutate_files.fault(RUN, path, b"a", out, mutate_files.cut, None)
 
 
-@pytest.mark.parametrize("mutation", set(mutate_files.MUTATIONS))
+@pytest.mark.parametrize("mutation", dict.fromkeys(mutate_files.MUTATIONS))
 def test_a_mutation_is_repeated_from_its_seed(mutation):
     data = b"POINTS 12 float " + bytes(range(256))
     made = {mutation(data, np.random.default_rng(seed)) for seed in range(20)}
