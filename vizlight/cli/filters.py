@@ -148,10 +148,11 @@ def fur(
     files
         Surface, or a mesh with one; of several each is lit by itself.
     """
-    from vizlight.filters.fur import FurOptions
+    from vizlight.filters.fur import MATERIAL, FurOptions
 
     scenes.check_target(shape)
-    look = scenes.Look(common, material=scenes.FUR)
+    names = ("ambient", "diffuse", "specular")
+    look = scenes.Look(common, material={name: getattr(MATERIAL, name) for name in names})
     given = {"feature_angle": "auto"} | options.keywords(how)
     asked = FurOptions(**given)
 

@@ -30,12 +30,6 @@ VIEW, MAP = (1.0, 1.0, 1.0), (0.0, 0.0, 1.0)
 BOX = (-1, 1, -1, 1, -1, 1)
 #: Name of the array of colours times light.
 TINT = "tint"
-#: Look where no scene is given: a material that stays below 1 under a key light and a fill, which
-#: comes from the eye and keeps faces legible that the key light does not reach.
-MATERIAL = {"ambient": 0.12, "diffuse": 0.6, "specular": 0.2}
-KEY, FILL = 0.78, 0.32
-#: Material of fur, which is lit through fur and seen through fur.
-FUR = {"ambient": 0.2, "diffuse": 1.4, "specular": 0.4}
 #: Name that stands for the direction of lines among the arrays that colour a picture.
 DIRECTION = "direction"
 #: Angle of view, in degrees.
@@ -148,7 +142,7 @@ class Look:
     """Camera and scene as the options describe them; what needs no mesh is checked first."""
 
     def __init__(
-        self, common: Common, *, fill: bool = True, material: Mapping[str, float] = MATERIAL
+        self, common: Common, *, fill: bool = True, material: Mapping[str, float] | None = None
     ) -> None:
         self._fill = fill
         self.lights, self._eye = common.lights, common.eye
@@ -162,7 +156,7 @@ class Look:
             base = getattr(vizlight.presets, question)()
         changes = _given(vars(common.finish))
         self._material: Step | None = None
-        kept: dict[str, object] = dict(material) if fill else {}
+        kept: dict[str, object] = dict(material or {})
         if self._file is not None or question is not None:
             kept = _given(vars(base.material)) if changes else {}
         if kept or changes:
@@ -253,13 +247,8 @@ class Look:
         ]
         if asked.headlight:
             lights.append(Step("", "vizlight.Light.headlight"))
-        if not lights and self._file is None:
+        if not lights and self._file is None and not self._fill:
             lights = [Step("", "vizlight.Light", direction=shoulder)]
-            if self._fill:
-                lights = [
-                    Step("", "vizlight.Light", direction=shoulder, intensity=KEY),
-                    Step("", "vizlight.Light.headlight", intensity=FILL),
-                ]
         cue = Step("", "vizlight.DepthCue", back_scale=0.5) if asked.depth_cue else None
         values = _given(
             {

@@ -17,6 +17,7 @@ from vizlight.mesh.normals import onlooker, split_where_computed
 from vizlight.mesh.strands import Grown, Strands
 from vizlight.model import kernels
 from vizlight.reading.arrays import vectors_of
+from vizlight.scene import Material, Scene
 from vizlight.scene.scene import as_scene
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import (
@@ -32,11 +33,12 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from vizlight._types import Array, Bools, Indices, VectorLike
-    from vizlight.scene import Scene
     from vizlight.shading.options import Exponent, FeatureAngle, Model
 
 #: Default absorption, and length of fibres as a share of the diagonal of the mesh.
 ABSORPTION, LENGTH = 0.5, 0.03
+#: Material of fur, which is lit through fur and seen through fur.
+MATERIAL = Material(ambient=0.4, diffuse=2.0, specular=0.3)
 #: Number of blocks of random numbers that are kept for threads that work on parts of them.
 KEPT = 8
 #: Largest length of a fibre: differences of longer ones leave the range of float32.
@@ -163,7 +165,8 @@ def fur(
         Surface that is covered; not changed. Its active point normals, or those computed, point
         outward.
     scene : Scene, optional
-        Scene, by default ``Scene()``.
+        Scene, by default ``Scene()`` with the material ``filters.fur.MATERIAL``, as bright as fur
+        that dims itself needs.
     absorption : float, optional
         Share of light from 0 to 1 that is lost on the way through the fur's own length, its mean
         over the points, along the normal, on its way in and out (Banks 7, 8): most at the root,
@@ -243,7 +246,7 @@ def _grow(
     progress_bar: bool,
 ) -> pv.MultiBlock:
     """Return fibres and skin, lit."""
-    scene = as_scene(scene)
+    scene = Scene(material=MATERIAL) if scene is None else as_scene(scene)
     if scene.n not in (None, 3):
         raise ValueError(_check.message("scene", "vectors of 3 components", scene.n))
     if options.feature_angle is not None and np.asarray(options.length, dtype=object).ndim:

@@ -14,7 +14,8 @@ from vizlight.filters import relight
 from vizlight.filters.tint import values_of
 from vizlight.mesh import hull, point_arrays
 from vizlight.scene import Light, Material, Scene, View
-from vizlight.scene.vtk import lights_of
+from vizlight.scene.light import default_lights
+from vizlight.scene.vtk import is_light_kit, lights_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
     from vizlight._types import Array, Indices, Vector
     from vizlight.shading.inputs import ShadingInputs
 
+#: Coefficients ka, kd and ks of an actor that PyVista was not told others for.
+UNTOUCHED = (0.0, 1.0, 0.0)
 #: Place where the light is computed.
 LightAt = Literal["auto", "points", "fragments"]
 #: Names of the arrays that the drawn copy of a mesh has beside those of the mesh.
@@ -264,13 +267,19 @@ class Live:
 
 
 def scene_of(renderer: vtkRenderer, actor: vtkActor, model: str) -> Scene:
-    """Return the scene of a renderer: its lights, its camera and the material of an actor."""
+    """Return the scene of a renderer: its lights, its camera and the material of an actor.
+
+    Lights and coefficients that are as PyVista sets them stand for those of ``Scene()``.
+    """
     camera = renderer.GetActiveCamera()
     view = View.from_camera(camera)
-    lights = list(lights_of(items(renderer.GetLights()), camera))
+    given = list(items(renderer.GetLights()))
+    lights = default_lights(view) if is_light_kit(given) else tuple(lights_of(given, camera))
     kind = "phong" if model == "phong" else "blinn"
     prop = actor.GetProperty()
     material = Material.from_property(prop, lights=lights, view=view, model=kind)
+    if (material.ambient, material.diffuse, material.specular) == UNTOUCHED:
+        material = Material(color=material.color)
     return Scene(lights=lights, material=material, view=view)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -178,7 +179,7 @@ class Light:
         TypeError
             If the view is not a :class:`vizlight.View`.
         ValueError
-            If a light beside the eye follows a view without a direction, or not in 3-space.
+            If a light beside the eye follows a view without a direction.
         """
         _check.instance("view", view, View, optional=True)
         if not self.follows_view:
@@ -191,6 +192,34 @@ class Light:
             direction = tuple(np.divide(self.direction, scale) @ view.axes())
         position = view.position if direction is None else None
         return dataclasses.replace(self, follows_view=False, direction=direction, position=position)
+
+
+#: Azimuth and altitude in the frame of the eye of the lamp over the left shoulder, in degrees, from
+#: right toward up and toward the eye, and the intensities of it and of the lamp at the eye.
+SHOULDER, KEY, FILL = (125.0, 45.0), 0.8, 0.3
+
+
+def default_lights(view: View | None) -> tuple[Light, ...]:
+    """Return the lights of a scene that names none: a lamp over the shoulder and one at the eye.
+
+    No normal and no tangent has more than 1 of their diffuse light; see the study of legibility
+    for what can be read in it. A view without a direction has no shoulder: one lamp at the eye.
+    """
+    if view is not None and view.direction is None:
+        return (Light.headlight(),)
+    azimuth, altitude = map(math.radians, SHOULDER)
+    toward = (
+        math.cos(altitude) * math.cos(azimuth),
+        math.cos(altitude) * math.sin(azimuth),
+        math.sin(altitude),
+    )
+    # sum(w |wi_N|) is at most sqrt(W sum(w |wi_N|^2)); of two lamps the least eigenvalue of
+    # sum(w L L^T) is 0, for a tangent across both, so that the bound is W.
+    white = KEY + FILL
+    return (
+        Light(direction=toward, follows_view=True, intensity=KEY / white),
+        Light.headlight(intensity=FILL / white),
+    )
 
 
 def as_lights(lights: object) -> tuple[Light, ...]:

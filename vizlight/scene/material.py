@@ -24,8 +24,9 @@ class Material:
 
     Parameters
     ----------
-    ambient, diffuse, specular : float, default: 0.1, 0.5, 0.4
-        Coefficients ka, kd and ks, unitless, from 0 to 1e9.
+    ambient, diffuse, specular : float, default: 0.3, 0.7, 0.0
+        Coefficients ka, kd and ks, unitless, from 0 to 1e9. White highlights hide what is below
+        them, so that there is none by default; the study of legibility measures both.
     shininess : float, default: 20.0
         Power of the specular term, from 0 to 1e9.
     color : (r, g, b) or str, optional
@@ -51,9 +52,9 @@ class Material:
     def __init__(
         self,
         *,
-        ambient: float = 0.1,
-        diffuse: float = 0.5,
-        specular: float = 0.4,
+        ambient: float = 0.3,
+        diffuse: float = 0.7,
+        specular: float = 0.0,
         shininess: float = 20.0,
         color: ColorLike | None = None,
         specular_color: ColorLike | None = None,

@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 
 #: Share of red, green and blue in the luma of a colour (ITU-R BT.709).
 LUMA = np.array([0.2126, 0.7152, 0.0722])
-#: Light between black and white that is left to lamps, for data without and with colours.
-AMBIENT, FLOOR = 0.08, 0.3
+#: Ambient light of data without colours.
+AMBIENT = 0.08
 #: Hue of the first lamp, in degrees in the plane of equal luma, and azimuth of the first lamp, in
 #: degrees from right toward up.
 FIRST_HUE, FIRST_AZIMUTH = 60.0, 90.0
@@ -138,14 +138,15 @@ def shape(view: Eye = None, /) -> Scene:
         If the argument is none of these.
     """
     lamps = _ring(45.0, 0.5, 1.0)
-    return _scene(lamps, brightest_normal(lamps), AMBIENT, view)
+    return _scene(lamps, brightest_normal(lamps), view)
 
 
 def value(view: Eye = None, /) -> Scene:
     """Return a scene in which colours of data stay readable by their scalar bar.
 
-    A white lamp over the left shoulder and a weaker one at the eye, no highlight, and never less
-    than 0.3 of the light. Colours of one lightness, :data:`vizlight.maps.even`, read best.
+    The default of :class:`vizlight.Scene`: a white lamp over the left shoulder and a weaker one at
+    the eye, no highlight, and never less than 0.3 of the light. Colours of one lightness,
+    :data:`vizlight.maps.even`, read best.
 
     Parameters
     ----------
@@ -162,8 +163,7 @@ def value(view: Eye = None, /) -> Scene:
     TypeError
         If the argument is none of these.
     """
-    lamps = [(_toward(125.0, 45.0), np.full(3, 0.8)), (_toward(0.0, 90.0), np.full(3, 0.3))]
-    return _scene(lamps, brightest_tangent(lamps), FLOOR, view)
+    return Scene(view=_view(view))
 
 
 #: The presets by the names of their questions.
@@ -236,10 +236,10 @@ def _ring(height: float, saturation: float, head: float) -> list[Lamp]:
 
 
 def _of_lines(lamps: Sequence[Lamp], view: Eye) -> Scene:
-    return _scene(lamps, brightest_tangent(lamps), AMBIENT, view)
+    return _scene(lamps, brightest_tangent(lamps), view)
 
 
-def _scene(lamps: Sequence[Lamp], brightest: float, ambient: float, view: Eye) -> Scene:
+def _scene(lamps: Sequence[Lamp], brightest: float, view: Eye) -> Scene:
     """Return the scene of lamps, the brightest light of which becomes white."""
     lights = []
     for toward, channels in lamps:
@@ -251,7 +251,7 @@ def _scene(lamps: Sequence[Lamp], brightest: float, ambient: float, view: Eye) -
                 intensity=most / brightest,
             )
         )  # fmt: skip
-    material = Material(ambient=ambient, diffuse=1 - ambient, specular=0.0)
+    material = Material(ambient=AMBIENT, diffuse=1 - AMBIENT, specular=0.0)
     return Scene(lights=lights, material=material, view=_view(view))
 
 

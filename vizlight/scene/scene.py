@@ -43,8 +43,10 @@ class Scene:
     Parameters
     ----------
     lights : Light or sequence of Light, optional
-        Lights of the scene. Default: one headlight. A ``pyvista.Light`` is taken as a Light; one
-        that has a position and moves with the camera needs that camera as ``view``.
+        Lights of the scene. Default: a white lamp over the left shoulder and a weaker one at the
+        eye, which turn with the view, as of :func:`vizlight.presets.value`. A ``pyvista.Light``
+        is taken as a Light; one that has a position and moves with the camera needs that camera
+        as ``view``.
     material : Material, optional
         Material of the lit manifold. Default: ``Material()``.
     view : View or pyvista.Camera, optional

@@ -123,26 +123,38 @@ class View:
         return cls(direction=(1.0,) * _check.integer("n", n, low=2))
 
     def axes(self) -> Array:
-        """Return the frame of the eye in 3-space.
+        """Return the frame of the eye.
+
+        In n-space up is the third axis as far as it stands across the direction of the view, and
+        right is in the space of the first three axes as far as it can. In the plane up is 0.
 
         Returns
         -------
-        ndarray, shape (3, 3)
+        ndarray, shape (3, n)
             Unit vectors to the right, up and toward the eye, one per row, orthogonal within 4 eps.
 
         Raises
         ------
         ValueError
-            If the view is not in 3-space, or has no direction.
+            If the view has no direction.
         """
-        if self.direction is None or len(self.direction) != 3:
-            expected = "a view in 3-space with a direction, by which a light beside the eye turns"
+        if self.direction is None:
+            expected = "a view with a direction, by which a light beside the eye turns"
             remedy = "pass View(direction=), or View.from_camera(camera)"
             raise ValueError(_check.message("view", expected, self, remedy))
         toward = _unit(self.direction)
-        up = np.eye(3)[1 if abs(toward[2]) > STEEP else 2] if self.up is None else _unit(self.up)
-        right = _unit(np.cross(up, toward))
-        return np.stack([right, np.cross(toward, right), toward])
+        n = len(toward)
+        if n == 2:
+            return np.stack([np.array([toward[1], -toward[0]]), np.zeros(2), toward])
+        up = np.eye(n)[1 if abs(toward[2]) > STEEP else 2] if self.up is None else _unit(self.up)
+        if n == 3:
+            right = _unit(np.cross(up, toward))
+            return np.stack([right, np.cross(toward, right), toward])
+        up = _unit(_across(up, toward[np.newaxis]))
+        sides = [_across(axis, np.stack([toward, up])) for axis in np.eye(n)[:3]]
+        right = _unit(max(sides, key=lambda side: float(np.linalg.norm(side))))
+        turn = float(np.linalg.det(np.stack([right, up, toward])[:, :3]))
+        return np.stack([-right if turn < 0 else right, up, toward])
 
     @classmethod
     def from_camera(cls, camera: vtkCamera) -> View:
@@ -264,6 +276,13 @@ def _unit(vector: VectorLike) -> Array:
     v = np.asarray(vector, dtype=np.float64)
     v = v / np.abs(v).max()
     return np.asarray(v / np.linalg.norm(v))
+
+
+def _across(vector: Array, rows: Array) -> Array:
+    """Return what of a vector stands across orthonormal rows."""
+    for _ in range(2):
+        vector = vector - rows.T @ (rows @ vector)
+    return vector
 
 
 def _parallel(a: Vector, b: Vector) -> bool:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal, TypedDict
 import numpy as np
 
 from vizlight import _check
-from vizlight.scene.light import WHITE, Light, as_lights
+from vizlight.scene.light import WHITE, Light, as_lights, default_lights
 from vizlight.scene.view import View, as_view, is_camera
 
 if TYPE_CHECKING:
@@ -121,7 +121,7 @@ def _color(channels: Sequence[float]) -> Color | None:
 
 
 def all_lights(lights: Lights, view: AnyView) -> tuple[Light, ...]:
-    """Return lights, by default one headlight; those of VTK and PyVista are converted.
+    """Return lights, or the default ones; those of VTK and PyVista are converted.
 
     Raises
     ------
@@ -129,7 +129,7 @@ def all_lights(lights: Lights, view: AnyView) -> tuple[Light, ...]:
         If something is no light, or a light moves with a camera and the view is not one.
     """
     if lights is None:
-        return (Light.headlight(),)
+        return default_lights(as_view(view))
     if _is_vtk(lights):
         return _fixed(lights, view)
     if isinstance(lights, Light | str) or not isinstance(lights, Iterable):
@@ -156,7 +156,7 @@ def _is_vtk(light: object) -> TypeGuard[vtkLight]:
 
 
 def _check_lights(lights: Lights, view: AnyView) -> tuple[Light, ...]:
-    """Return the lights, by default one headlight, after checking that they are in 3-space."""
+    """Return the lights, or the default ones, after checking that they are in 3-space."""
     given = all_lights(lights, view)
     for light in given:
         n = len(light.direction or light.position or ()) or 3
@@ -241,6 +241,26 @@ def _warn_of_error(
         f"highlight can differ by {error:.1f} of 255 from that of the {model.capitalize()} model "
         f"with power {wanted:g}{remedy}"
     )
+
+
+def is_light_kit(lights: Iterable[vtkLight], /) -> bool:
+    """Return whether lights are VTK's light kit as it is, with which PyVista's plotters begin."""
+    from vtkmodules.vtkRenderingCore import vtkLight, vtkLightKit, vtkRenderer
+
+    renderer = vtkRenderer()
+    vtkLightKit().AddLightsToRenderer(renderer)
+    kit = renderer.GetLights()
+    every = (vtkLight.SafeDownCast(kit.GetItemAsObject(i)) for i in range(kit.GetNumberOfItems()))
+    return sorted(map(_kind, lights)) == sorted(map(_kind, every))
+
+
+def _kind(light: vtkLight) -> tuple[float, ...]:
+    numbers = (
+        light.GetLightType(), light.GetSwitch(), light.GetPositional(), light.GetIntensity(),
+        *light.GetPosition(), *light.GetFocalPoint(), *light.GetDiffuseColor(),
+    )  # fmt: skip
+    # PyVista keeps colours as bytes.
+    return tuple(round(float(x), 2) for x in numbers)
 
 
 def lights_of(lights: Iterable[vtkLight], camera: vtkCamera | None) -> Iterator[Light]:
