@@ -98,13 +98,7 @@ class Scene:
             ambient_color=_check.color("ambient_color", ambient_color),
             depth_cue=depth_cue,
         )
-        sizes = {
-            len(v)
-            for owner in (*lights, view)
-            if owner is not None
-            for v in (owner.position, owner.direction)
-            if v is not None
-        }
+        sizes = _sizes(lights, view)
         if len(sizes) > 1:
             raise ValueError(
                 _check.message("Scene", "vectors of one space", f"{sorted(sizes)} components")
@@ -113,11 +107,7 @@ class Scene:
     @property
     def n(self) -> int | None:
         """Dimension of the space of lights and view, or None if no vector determines it."""
-        for owner in (*self.lights, self.view):
-            for v in (owner.position, owner.direction) if owner is not None else ():
-                if v is not None:
-                    return len(v)
-        return None
+        return next(iter(_sizes(self.lights, self.view)), None)
 
     @property
     def colored(self) -> bool:
@@ -260,6 +250,18 @@ class Scene:
                 own = View.from_camera(camera)
                 fields["view"] = dataclasses.replace(own, parallel=True)
         return cls(**fields)
+
+
+def _sizes(lights: Iterable[Light], view: View | None) -> set[int]:
+    """Return the numbers of components of vectors of a space; the frame of the eye is none."""
+    owners = [*(light for light in lights if not light.follows_view), view]
+    return {
+        len(v)
+        for owner in owners
+        if owner is not None
+        for v in (owner.position, owner.direction)
+        if v is not None
+    }
 
 
 def as_scene(scene: Scene | None) -> Scene:
