@@ -2,8 +2,25 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+import numpy as np
+
 from vizlight import Light, Material
 
+
+def shiny(**changes: Any) -> Material:
+    """Return a material with every term, but for what is given."""
+    return Material(**({"ambient": 0.1, "diffuse": 0.5, "specular": 0.4} | changes))
+
+
+#: Direction of the default lamp over the shoulder in PyVista's isometric view, in which
+#: (-1, 1, 0), (-1, -1, 2) and (1, 1, 1) point to the right, up and toward the eye.
+SHOULDER = (
+    -0.405580 * np.array((-1, 1, 0)) / 2**0.5
+    + 0.579228 * np.array((-1, -1, 2)) / 6**0.5
+    + 0.707107 * np.array((1, 1, 1)) / 3**0.5
+)
 #: A material with every term, and one lamp at the eye with it.
-SHINY = Material(ambient=0.1, diffuse=0.5, specular=0.4)
+SHINY = shiny()
 HEADLIT = {"lights": Light.headlight(), "material": SHINY}

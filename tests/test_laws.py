@@ -7,6 +7,7 @@ import math
 import numpy as np
 import oracles
 import pytest
+from lamps import SHINY, shiny
 from scipy.stats import special_ortho_group
 
 from vizlight import Light, Material, Scene, View, engine
@@ -146,7 +147,7 @@ def test_in_codimension_1_the_carrier_is_the_surface_seen_from_both_sides(random
     normal = np.cross(frame[:, 0], frame[:, 1])
     field = np.einsum("bk,bkn->bn", random.standard_normal((300, 2)), frame)
     scene = Scene(
-        lights=Light(direction=(1, 0.4, 0.8)), view=View(direction=(0, 0.3, 1)), material=Material()
+        lights=Light(direction=(1, 0.4, 0.8)), view=View(direction=(0, 0.3, 1)), material=SHINY
     )
     points = np.zeros((300, 3))
     by_frame = engine.shade(points, field, scene, base_tangents=frame)
@@ -181,7 +182,7 @@ def test_dependent_tangents_of_a_carrier_are_marked(random):
     carrier = random.standard_normal((4, 2, 4))
     carrier[1, 1] = 3 * carrier[1, 0]
     carrier[2] = np.nan
-    scene = Scene(lights=Light(direction=(1, 2, 0.5, -1)), material=Material(specular=0))
+    scene = Scene(lights=Light(direction=(1, 2, 0.5, -1)), material=shiny(specular=0))
     lit = engine.shade(np.zeros((4, 4)), carrier[[0, 0, 0, 0], 0], scene, base_tangents=carrier)
     np.testing.assert_array_equal(lit.valid, [True, False, False, True])
     np.testing.assert_array_equal(lit.luminance[1:3], 0.1)

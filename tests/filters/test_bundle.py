@@ -7,6 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 import pyvista as pv
+from lamps import SHINY, shiny
 
 import vizlight
 from vizlight import _compiled
@@ -20,7 +21,9 @@ from vizlight.shading.options import LightOptions
 FAR = vizlight.Light(direction=(0, 0, 1))
 NEAR = vizlight.Light(position=(0.2, 0.1, 3.0), intensity=0.5)
 OFF = vizlight.Light(direction=(1, 0, 0), intensity=0.0)
-SCENE = vizlight.Scene(lights=[FAR, OFF, NEAR], view=vizlight.View(direction=(0, -1, 0.3)))
+SCENE = vizlight.Scene(
+    lights=[FAR, OFF, NEAR], view=vizlight.View(direction=(0, -1, 0.3)), material=SHINY
+)
 QUICK = vizlight.Bundle(grid=24, directions=8)
 
 
@@ -70,7 +73,7 @@ def test_points_deep_inside_are_darker_and_the_outermost_are_not():
 
 
 def test_the_reference_of_a_report_takes_the_shares_too():
-    red = vizlight.Material(color=(1.0, 0.3, 0.2))
+    red = shiny(color=(1.0, 0.3, 0.2))
     with vizlight.report(sample=60) as report:
         vizlight.illuminate(lines(100), SCENE.replace(material=red), bundle=QUICK)
     assert report.error < 2e-6
@@ -165,7 +168,7 @@ def test_a_surface_is_dimmed_by_the_lines_above_it():
     """Lines above a plate: dark below their middle, bright beside, like the lines' own medium."""
     mesh = lines(3000)
     plate = pv.Plane(center=(0, 0, -1.2), i_size=6, j_size=6, i_resolution=30, j_resolution=30)
-    scene = vizlight.Scene(lights=[FAR], view=vizlight.View(direction=(0, 0, 1)))
+    scene = vizlight.Scene(lights=[FAR], view=vizlight.View(direction=(0, 0, 1)), material=SHINY)
     lit = vizlight.illuminate(plate, scene, bundle=dataclasses.replace(QUICK, lines=mesh))
     away = np.abs(plate.points[:, :2]).max(axis=1)
     assert lit["transmittance"][away < 0.3].max() < 0.3

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 import vtk
+from lamps import SHINY, SHOULDER, shiny
 
 import vizlight
 from studies import fur as study
@@ -202,7 +203,9 @@ def test_far_from_the_origin(kind):
     light, eye = np.array([-2000.0, -1500, 1800]), np.array([500, -5000, 4000])
     cue = vizlight.DepthCue(back_scale=0.5)
     for view in ({"position": eye}, {"direction": (0.3, -1, 0.8)}):
-        scene = Scene(lights=Light(position=light), view=View(**view), depth_cue=cue)
+        scene = Scene(
+            lights=Light(position=light), view=View(**view), depth_cue=cue, material=SHINY
+        )
         moved = (
             scene.moved(offset)
             if "position" in view
@@ -285,7 +288,7 @@ def test_memory_is_at_most_half_above_the_output():
 
 
 def test_colour_name_and_provenance():
-    scene = SCENE.replace(material=Material(color="tan"))
+    scene = SCENE.replace(material=shiny(color="tan"))
     coat = fur(torus(), scene, density=0.02, fibres=10, name="x")
     for block in coat:
         assert {"x", "x_rgb"} <= set(block.point_data)
@@ -330,7 +333,7 @@ def test_no_fibres():
     coat = fur(torus(), SCENE, density=0.02, fibres=0)
     assert coat["fibres"].n_points == 0
     assert "luminance" in coat["skin"].point_data
-    red = SCENE.replace(material=Material(color="red"))
+    red = SCENE.replace(material=shiny(color="red"))
     coat = fur(torus(), red, density=0.02, fibres=0)
     assert coat["fibres"].point_data["rgb"].shape == (0, 3)
     assert vizlight.illuminate(pv.PolyData(), red).n_points == 0
@@ -372,7 +375,7 @@ def test_bad_surfaces_and_scenes():
         fur(pv.ImageData(dimensions=(2, 2, 2)), SCENE, density=0.02)
     with pytest.raises(ValueError, match="surface: expected a surface with faces"):
         fur(pv.Line(), SCENE, density=0.02)
-    flat = Scene(lights=Light(direction=(1, 0)), view=View(position=(0, 0)))
+    flat = Scene(lights=Light(direction=(1, 0)), view=View(position=(0, 0)), material=SHINY)
     with pytest.raises(ValueError, match="scene: expected vectors of 3 components, got 2"):
         fur(torus(), flat, density=0.02)
     huge = torus()
@@ -386,12 +389,16 @@ def test_bad_surfaces_and_scenes():
 
 def test_fur_without_a_scene_is_seen_from_infinity():
     seen = Scene(
-        lights=Light(direction=(1, 1, 1)), view=View(direction=(1, 1, 1)),
-        material=Material(specular=0),
-    )  # fmt: skip
+        lights=[
+            Light(direction=SHOULDER, intensity=8 / 11),
+            Light(direction=(1, 1, 1), intensity=3 / 11),
+        ],
+        view=View(direction=(1, 1, 1)),
+        material=Material(ambient=0.4, diffuse=2.0, specular=0),
+    )
     one, other = (fur(torus(), scene, density=0.2, fibres=50) for scene in (None, seen))
     for part in ("fibres", "skin"):
-        np.testing.assert_array_equal(one[part]["luminance"], other[part]["luminance"])
+        np.testing.assert_allclose(one[part]["luminance"], other[part]["luminance"], atol=3e-6)
 
 
 def test_surfaces_of_whole_numbers_have_fibres_between():
@@ -402,7 +409,7 @@ def test_surfaces_of_whole_numbers_have_fibres_between():
     mesh = pv.PolyData()
     mesh.SetPoints(places)
     mesh.faces = [3, 0, 1, 2]
-    hair = fur(mesh, Scene(view=View(direction=(0, 0, 1))), density=0.1, fibres=5)[0]
+    hair = fur(mesh, Scene(**HEADLIT, view=View(direction=(0, 0, 1))), density=0.1, fibres=5)[0]
     assert hair.points.dtype.kind == "f"
     assert np.any(hair.points % 1)
 
@@ -477,7 +484,7 @@ def test_points_of_the_skin_are_split_at_sharp_edges():
     box = pv.Cube().triangulate().subdivide(3).clean()
     box.clear_data()
     box["long"] = np.full(box.n_points, 0.1)
-    scene = Scene(lights=Light(direction=(1, 2, 3)), view=View(direction=(1, 1, 1)))
+    scene = Scene(lights=Light(direction=(1, 2, 3)), view=View(direction=(1, 1, 1)), material=SHINY)
     with pytest.warns(UserWarning, match="8% of the edges are sharper than 30 degrees"):
         fur(box, scene, fibres=10)
     found = fur(box, scene, fibres=600, feature_angle=30, length="long")
@@ -501,7 +508,9 @@ def test_fibres_dim_one_another_and_the_skin_as_a_bundle(origin, fast, monkeypat
     monkeypatch.setenv("VIZLIGHT_FAST", fast if not _compiled._missing() else "0")
     ball = pv.Sphere(radius=1.0, theta_resolution=30, phi_resolution=30)
     ball.points = np.asarray(ball.points, float) + np.array(origin)
-    scene = Scene(lights=Light(direction=(0, 0, 1)), view=View(direction=(0, -1, 0.4)))
+    scene = Scene(
+        lights=Light(direction=(0, 0, 1)), view=View(direction=(0, -1, 0.4)), material=SHINY
+    )
     asked = Bundle(diameter=0.01, grid=48, directions=8)
     coat = fur(ball, scene, fibres=4000, length=0.3, bundle=asked)
     fibres, skin = coat["fibres"], coat["skin"]
@@ -531,4 +540,8 @@ def test_fibres_dim_one_another_and_the_skin_as_a_bundle(origin, fast, monkeypat
 )
 def test_what_does_not_go_with_a_bundle(options, words):
     with pytest.raises((TypeError, ValueError), match=words):
-        fur(pv.Sphere(), Scene(view=View(direction=(0, 0, 1))), **{"bundle": True} | options)
+        fur(
+            pv.Sphere(),
+            Scene(**HEADLIT, view=View(direction=(0, 0, 1))),
+            **{"bundle": True} | options,
+        )

@@ -7,11 +7,12 @@ import warnings
 import numpy as np
 import pytest
 import pyvista as pv
+from lamps import SHINY, SHOULDER, shiny
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View, engine, illuminate
 
-SCENE = Scene(lights=Light(direction=(0.3, 0.2, 1)), view=View(position=(0, 0, 20)))
+SCENE = Scene(lights=Light(direction=(0.3, 0.2, 1)), view=View(position=(0, 0, 20)), material=SHINY)
 
 
 def image():
@@ -57,7 +58,7 @@ def test_normals_decide_without_tangents():
     lit = illuminate(sphere, SCENE)
     toward = np.array([0.3, 0.2, 1]) / np.linalg.norm([0.3, 0.2, 1])
     outward = np.asarray(sphere.points) / 0.5
-    scene = SCENE.replace(material=Material(specular=0))
+    scene = SCENE.replace(material=shiny(specular=0))
     lambert = 0.1 + 0.5 * np.maximum(outward @ toward, 0)
     np.testing.assert_allclose(illuminate(sphere, scene)["luminance"], lambert, atol=2e-2)
     dark = outward @ toward < -0.1
@@ -125,7 +126,9 @@ def test_points_in_4_space():
     random = np.random.default_rng(1)
     cloud["x"] = random.standard_normal((6, 4))
     cloud["frame"] = random.standard_normal((6, 8))
-    scene = Scene(lights=Light(position=(1, 2, 3, 4)), view=View(position=(0, 0, 0, 9)))
+    scene = Scene(
+        lights=Light(position=(1, 2, 3, 4)), view=View(position=(0, 0, 0, 9)), material=SHINY
+    )
     lit = illuminate(cloud, scene, tangents="frame", positions="x")
     expected = engine.shade(cloud["x"], np.asarray(cloud["frame"]).reshape(6, 2, 4), scene)
     np.testing.assert_allclose(lit["luminance"], expected.luminance, atol=1e-14)
@@ -159,7 +162,7 @@ def test_one_depth_cue_for_all_blocks():
     scene = Scene(
         lights=[],
         view=View(direction=(0, 0, 1)),
-        material=Material(ambient=1),
+        material=shiny(ambient=1),
         depth_cue=DepthCue(back_scale=0.25, cue=0),
     )
     lit = illuminate(pv.MultiBlock([near, far]), scene)
@@ -185,14 +188,16 @@ def test_one_depth_cue_for_all_blocks():
 )
 def test_one_end_of_a_depth_cue(cue, ends):
     blocks = pv.MultiBlock([pv.Plane(center=(0, 0, 4)), pv.Plane(center=(0, 0, -6))])
-    scene = Scene(lights=[], view=View(direction=(0, 0, 1)), depth_cue=DepthCue(**cue))
+    scene = Scene(
+        lights=[], view=View(direction=(0, 0, 1)), depth_cue=DepthCue(**cue), material=SHINY
+    )
     told = vizlight.provenance(illuminate(blocks, scene)[0])["scene"]["depth_cue"]
     assert (told["front"], told["back"]) == ends
 
 
 def test_colour_gives_rgb():
     plane = meshes()["PolyData"]
-    scene = SCENE.replace(material=Material(color=(1, 0.25, 0.5), specular=0))
+    scene = SCENE.replace(material=shiny(color=(1, 0.25, 0.5), specular=0))
     lit = illuminate(plane, scene, tangents="V")
     np.testing.assert_allclose(
         lit["rgb"], lit["luminance"][:, np.newaxis] * [1, 0.25, 0.5], rtol=1e-6
@@ -386,10 +391,11 @@ def test_bad_meshes_and_scenes():
         illuminate(pv.Sphere(), Scene(depth_cue=DepthCue()))
 
 
-def test_no_scene_is_a_headlight_from_the_isometric_view_without_highlight():
+def test_no_scene_is_two_lamps_of_the_isometric_view_without_highlight():
     ball = pv.Sphere()
     normals = np.asarray(ball.point_data.active_normals, float)
-    expected = 0.1 + 0.5 * np.maximum(normals @ (3**-0.5 * np.ones(3)), 0)
+    key, fill = (np.maximum(normals @ w, 0) for w in (SHOULDER, 3**-0.5 * np.ones(3)))
+    expected = 0.3 + 0.7 * (8 * key + 3 * fill) / 11
     for lit in (illuminate(ball), illuminate(ball, Scene()), ball.vizlight.illuminate()):
         np.testing.assert_allclose(lit["luminance"], expected, atol=1e-6)
 

@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from lamps import SHINY, shiny
 
 import vizlight
-from vizlight import Light, Material, Scene, View, engine, presets
+from vizlight import Light, Scene, View, engine, presets
 from vizlight.filters.key import BAR, HOLE, question_of
 from vizlight.shading.display import displayable
 
@@ -73,20 +74,20 @@ def test_values_have_their_colours_in_least_and_full_light():
 def test_questions_are_those_of_the_preset():
     for name in ("direction", "slope", "heading", "shape", "value"):
         assert question_of(getattr(presets, name)(VIEW)) == name
-    own = Scene(lights=Light(direction=(1, 2, 3)), view=VIEW)
+    own = Scene(lights=Light(direction=(1, 2, 3)), view=VIEW, material=SHINY)
     assert question_of(own) == "shape"
     assert presets.key(own, question="direction").n_points == presets.key(own).n_points
 
 
 def test_fixed_lights_and_highlights_are_as_the_eye_has_them():
-    scene = Scene(lights=Light(direction=(1, 2, 3)), view=VIEW, material=Material(shininess=5))
+    scene = Scene(lights=Light(direction=(1, 2, 3)), view=VIEW, material=shiny(shininess=5))
     color, (x, y, _) = found(presets.key(scene), 0.3, -0.4)
     outward = (x, y, np.sqrt(1 - x * x - y * y))
     np.testing.assert_allclose(color, light(scene, outward, surface=True), atol=1)
 
 
 def test_conditioned_tangents_lie_in_a_surface_that_faces_the_eye():
-    scene = Scene(lights=Light(direction=(1, 0, 1), follows_view=True), view=VIEW)
+    scene = Scene(lights=Light(direction=(1, 0, 1), follows_view=True), view=VIEW, material=SHINY)
     free = presets.key(scene, question="direction")["rgb"]
     bound = presets.key(scene, question="direction", conditioned=True)["rgb"]
     assert (bound <= free).all()
@@ -94,14 +95,16 @@ def test_conditioned_tangents_lie_in_a_surface_that_faces_the_eye():
 
 
 def test_bad_input():
-    near = Scene(lights=Light(position=(1, 2, 3)), view=VIEW)
+    near = Scene(lights=Light(position=(1, 2, 3)), view=VIEW, material=SHINY)
     with pytest.raises(ValueError, match="scene: expected lights at infinity for a key"):
         presets.key(near)
     with pytest.raises(ValueError, match="question: expected 'direction', 'slope'"):
         presets.key(Scene(), question="colour")
     with pytest.raises(TypeError, match=r"scene: expected a vizlight\.Scene"):
         vizlight.presets.key(None)
-    with pytest.raises(ValueError, match="view: expected a view in 3-space"):
-        presets.key(Scene(lights=Light(direction=(1, 2, 3)), view=View(position=(1, 2, 3))))
-    dark = presets.key(Scene(lights=[], view=VIEW))["rgb"]
+    with pytest.raises(ValueError, match="view: expected a view with a direction"):
+        presets.key(
+            Scene(lights=Light(direction=(1, 2, 3)), view=View(position=(1, 2, 3)), material=SHINY)
+        )
+    dark = presets.key(Scene(lights=[], view=VIEW, material=SHINY))["rgb"]
     assert np.unique(dark).size == 1

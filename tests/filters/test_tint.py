@@ -6,6 +6,7 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 import pyvista as pv
+from lamps import SHINY, shiny
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View
@@ -14,7 +15,7 @@ from vizlight.shading import engine
 from vizlight.shading.display import NO_DATA
 
 VIEW = View(direction=(1, 0.3, 0.4))
-SCENE = Scene(lights=Light(direction=(1, 1, 1)), view=VIEW)
+SCENE = Scene(lights=Light(direction=(1, 1, 1)), view=VIEW, material=SHINY)
 #: Light that leaves colours as they are.
 WHITE = Scene(
     lights=Light(direction=(1, 1, 1)), material=Material(ambient=1, diffuse=0, specular=0)
@@ -142,14 +143,14 @@ def test_coloured_lights_and_cue_count_by_their_luma():
             Light(direction=(1, 1, 1), color=(1, 0.7, 0.4)),
             Light(position=(0, 2, 1), intensity=0.4, color="skyblue"),
         ],
-        material=Material(ambient=0.3, specular_color=(0.9, 1, 0.8)),
+        material=shiny(ambient=0.3, specular_color=(0.9, 1, 0.8)),
         view=VIEW,
         ambient_color=(0.8, 0.9, 1),
         depth_cue=DepthCue(back_scale=0.4, cue=0.3, color=(0.2, 0.3, 0.9)),
     )
     mesh = ball()
     mesh["same"] = np.zeros(mesh.n_points)
-    matte = scene.replace(material=Material(ambient=0.3, specular=0))
+    matte = scene.replace(material=shiny(ambient=0.3, specular=0))
     light = vizlight.illuminate(mesh, matte)["rgb"] @ (0.2126, 0.7152, 0.0722)
     expected = np.clip(light, 0.3, 1)[:, None] * (51, 153, 204)
     got = tint(vizlight.illuminate(mesh, scene), "same", cmap=["#3399cc"] * 2, clim=(-1, 1))["rgb"]

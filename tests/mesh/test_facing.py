@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import pyvista as pv
+from lamps import SHINY, shiny
 
 import vizlight
-from vizlight import Light, Material, Scene, View, illuminate, reading
+from vizlight import Light, Scene, View, illuminate, reading
 from vizlight.mesh import normals
 
-HEAD = Scene(lights=Light.headlight(), view=View(position=(2.0, 3.0, 4.0)))
-MATTE = Material(specular=0)
+HEAD = Scene(lights=Light.headlight(), view=View(position=(2.0, 3.0, 4.0)), material=SHINY)
+MATTE = shiny(specular=0)
 
 
 @pytest.fixture(scope="module")
@@ -143,6 +144,7 @@ def test_light_in_pieces_is_that_of_the_whole(way, kind, isosurface, random):
     scene = Scene(
         lights=[Light(direction=(1, -2, 1)), Light.headlight(intensity=0.4)],
         view=View(position=tuple(5 * mesh.length * np.array([0.4, 0.5, 0.7]))),
+        material=SHINY,
     )
     facings = ("auto", "eye") if kind == "open" else ("eye", "as given")
     for facing in facings:
@@ -174,7 +176,9 @@ def box():
 
 
 def test_no_highlight_on_the_edges_of_a_box():
-    scene = Scene(lights=Light(direction=(1, 2, 3)), view=View(direction=(3, 2, 1.5)))
+    scene = Scene(
+        lights=Light(direction=(1, 2, 3)), view=View(direction=(3, 2, 1.5)), material=SHINY
+    )
     plain = box()
     plain["x"] = np.asarray(plain.points)[:, 0].copy()
     with pytest.warns(UserWarning, match=r"% of the edges are sharper than 30 .*feature_angle=30"):
@@ -321,7 +325,9 @@ def test_vertices_and_lines_do_not_change_where_faces_are_split():
     mesh.verts = np.ravel([(1, i) for i in range(7)])
     mesh.lines = np.ravel([(2, i, i + 1) for i in range(0, 40, 2)])
     mesh.cell_data["own"] = np.arange(mesh.n_cells)
-    scene = Scene(lights=Light(direction=(1, 0.5, 2)), view=View(direction=(1, 1, 1)))
+    scene = Scene(
+        lights=Light(direction=(1, 0.5, 2)), view=View(direction=(1, 1, 1)), material=SHINY
+    )
     ours, others = (reading.normals.computed_normals(surface).vectors for surface in (mesh, plain))
     np.testing.assert_array_equal(ours, others)
     lit = vizlight.illuminate(mesh, scene, feature_angle=30)
@@ -343,7 +349,9 @@ def test_faces_that_a_mesh_has_again_do_not_count(make, step, turned):
     more = faces[::step, ::-1] if turned else np.roll(faces[::step], 1, axis=1)
     mesh = pv.PolyData.from_regular_faces(plain.points, np.concatenate([more, faces]))
     mesh.cell_data["own"] = np.arange(mesh.n_cells)
-    scene = Scene(lights=Light(direction=(1, 0.5, 2)), view=View(direction=(1, 1, 1)))
+    scene = Scene(
+        lights=Light(direction=(1, 0.5, 2)), view=View(direction=(1, 1, 1)), material=SHINY
+    )
     for angle in ("auto", 30):
         lit = vizlight.illuminate(mesh, scene, feature_angle=angle)
         expected = vizlight.illuminate(plain, scene, feature_angle=angle)
@@ -374,7 +382,9 @@ def test_strips_are_split_with_their_cell_arrays():
 
 
 def test_an_angle_that_normals_make_idle_is_said_to_be():
-    scene = Scene(lights=Light(direction=(1, 0.5, 2)), view=View(direction=(1, 1, 1)))
+    scene = Scene(
+        lights=Light(direction=(1, 0.5, 2)), view=View(direction=(1, 1, 1)), material=SHINY
+    )
     rounded = pv.Box().triangulate().clean()
     rounded.clear_data()
     rounded["N"] = rounded.points / np.linalg.norm(rounded.points, axis=1, keepdims=True)

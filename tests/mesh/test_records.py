@@ -8,14 +8,15 @@ from fractions import Fraction
 import numpy as np
 import pytest
 import pyvista as pv
+from lamps import HEADLIT, SHINY, shiny
 
 import vizlight
-from vizlight import Light, Material, Scene, View
+from vizlight import Light, Scene, View
 from vizlight.geometry import manifolds
 
 SCENE = Scene(
     lights=[Light(position=(1, 2, 9), color="red"), Light.headlight(intensity=0.5)],
-    material=Material(color="wheat", shininess=12.5),
+    material=shiny(color="wheat", shininess=12.5),
     view=View(position=(0, 0, 20)),
 )
 
@@ -71,7 +72,7 @@ def test_lighting_again_keeps_the_users_own_arrays():
     mesh["rgb"] = np.full((mesh.n_points, 3), 7)
     mesh["diffuse"] = np.arange(mesh.n_points)
     for _ in range(2):
-        vizlight.illuminate(mesh, Scene(view=View(direction=(0, 0, 1))), inplace=True)
+        vizlight.illuminate(mesh, Scene(**HEADLIT, view=View(direction=(0, 0, 1))), inplace=True)
     np.testing.assert_array_equal(mesh["rgb"], 7)
     np.testing.assert_array_equal(mesh["diffuse"], np.arange(mesh.n_points))
     with pytest.raises(ValueError, match=r"name: expected one .* got 'rgb'"):
@@ -79,7 +80,7 @@ def test_lighting_again_keeps_the_users_own_arrays():
 
 
 def test_lighting_again_leaves_nothing_stale():
-    lit = vizlight.illuminate(lit_mesh(), Scene(view=View(direction=(0, 0, 1))))
+    lit = vizlight.illuminate(lit_mesh(), Scene(**HEADLIT, view=View(direction=(0, 0, 1))))
     assert {"luminance", "V"} <= set(lit.point_data)
     assert not {"rgb", "diffuse", "specular", "ambient"} & set(lit.point_data)
 
@@ -94,7 +95,9 @@ def test_the_users_own_mark_of_what_is_valid_is_not_replaced():
 def test_several_turns_make_the_light_again():
     torus = vizlight.manifold(manifolds.torus(1.5, 0.75, resolution=8))
     scene = Scene(
-        lights=Light(direction=(0.7, 0.6, 0.4, 0.2)), view=View(direction=(0, -1, 0.5, 0))
+        lights=Light(direction=(0.7, 0.6, 0.4, 0.2)),
+        view=View(direction=(0, -1, 0.5, 0)),
+        material=SHINY,
     )
     lit = vizlight.project(torus, rotation=[("xw", 0.5), ("yz", 0.3)], scene=scene)
     told = vizlight.provenance(lit)
@@ -174,7 +177,9 @@ def test_kept_normals_of_unknown_origin_are_computed_again():
 def test_filters_take_their_own_light_along():
     mesh = pv.Plane(i_resolution=3, j_resolution=3)
     mesh.clear_data()
-    scene = Scene(lights=Light(position=(0.2, 0.1, 0.5)), view=View(direction=(0, 0, 1)))
+    scene = Scene(
+        lights=Light(position=(0.2, 0.1, 0.5)), view=View(direction=(0, 0, 1)), material=SHINY
+    )
     fine = vizlight.refine(mesh, scene, components=True)
     again = vizlight.refine(vizlight.illuminate(mesh, scene, components=True), scene)
     assert "diffuse" in fine.point_data

@@ -7,13 +7,14 @@ import warnings
 import numpy as np
 import pytest
 import pyvista as pv
+from lamps import SHINY, shiny
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View, illuminate, refine, streamlines
 from vizlight.mesh import refining
 
 LIGHT, EYE = np.array([0.7, 0.6, 0.38]), np.array([0.1, 0.3, 0.9])
-SCENE = Scene(lights=Light(direction=LIGHT), view=View(direction=EYE))
+SCENE = Scene(lights=Light(direction=LIGHT), view=View(direction=EYE), material=SHINY)
 PIXEL = 1 / 255
 
 
@@ -74,7 +75,7 @@ def test_light_at_every_place_is_within_the_error(dtype, shininess):
     """Each triangle of the result is lit at 16 parts of its sides, by the formula of this file."""
     mesh = ball()
     mesh["normal"] = mesh["normal"].astype(dtype)
-    scene = SCENE.replace(material=Material(shininess=shininess))
+    scene = SCENE.replace(material=shiny(shininess=shininess))
     rough = illuminate(mesh, scene, normals="normal")
     normals = between(rough, mesh["normal"], 16)
     before = np.abs(between(rough, rough["luminance"], 16) - phong(unit(normals), shininess))
@@ -194,7 +195,7 @@ def line_light(tangents, scene):
 
 @pytest.mark.parametrize("given", [True, False])
 def test_polylines_are_split_along_themselves(given):
-    scene = SCENE.replace(material=Material(shininess=100))
+    scene = SCENE.replace(material=shiny(shininess=100))
     mesh = arc(9)
     mesh.cell_data["name"] = [7]
     fine = refine(mesh, scene, tangents="t" if given else None)
@@ -343,7 +344,7 @@ def test_a_jump_of_the_light_is_confined():
     scene = Scene(
         lights=Light(direction=(0, 0.2, -1)),
         view=View(direction=(0, 0, 1)),
-        material=Material(specular=1.0, shininess=3),
+        material=shiny(specular=1.0, shininess=3),
     )
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -382,13 +383,17 @@ def test_a_record_makes_the_same_mesh():
 
 
 def test_colour_depth_cue_and_frames_of_n_space():
-    cue = SCENE.replace(depth_cue=DepthCue(back_scale=0.3), material=Material(color="tomato"))
+    cue = SCENE.replace(depth_cue=DepthCue(back_scale=0.3), material=shiny(color="tomato"))
     fine = refine(ball(), cue)
     assert fine["rgb"].shape == (fine.n_points, 3)
     from vizlight.geometry import manifolds
 
     torus = vizlight.manifold(manifolds.torus(1.5, 0.75, resolution=12))
-    scene = Scene(lights=Light(direction=(0.7, 0.6, 0.38, 0)), view=View(direction=(0, -1, 0.5, 0)))
+    scene = Scene(
+        lights=Light(direction=(0.7, 0.6, 0.38, 0)),
+        view=View(direction=(0, -1, 0.5, 0)),
+        material=SHINY,
+    )
     fine = refine(torus, scene, tangents="frame", positions="position", error=0.02)
     frames = fine["frame"].reshape(-1, 2, 4)
     square = np.einsum("mkn,mln->mkl", frames, frames)

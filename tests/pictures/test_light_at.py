@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import pyvista as pv
+from lamps import shiny
 
 import vizlight
-from vizlight import Light, Material, Scene, View, render
+from vizlight import Light, Scene, View, render
 
 pytestmark = pytest.mark.opengl
 
@@ -32,7 +33,7 @@ def picture(mesh, **options):
 CAMERA = render.camera_on((-1, 1, -1, 1, -1, 1), (1, 0.5, 0.6))
 SCENE = Scene(
     lights=Light(direction=(1, 0.9, 0.5)),
-    material=Material(shininess=60),
+    material=shiny(shininess=60),
     view=View.from_camera(CAMERA),
 )
 
@@ -50,7 +51,7 @@ def test_pictures_are_right_between_the_points():
 def test_light_is_that_of_the_record_whatever_the_camera():
     mesh = pv.Sphere(theta_resolution=150, phi_resolution=150)
     aside = render.camera_on((-1, 1, -1, 1, -1, 1), (-0.2, 1, 0.3))
-    for scene in (SCENE, SCENE.replace(material=Material(color="tan"))):
+    for scene in (SCENE, SCENE.replace(material=shiny(color="tan"))):
         lit = vizlight.illuminate(mesh, scene)
         name = "rgb" if scene.colored else "luminance"
         options = {"camera": aside, "scalars": name}
@@ -61,7 +62,7 @@ def test_light_is_that_of_the_record_whatever_the_camera():
 def test_tinted_pictures_are_right_between_the_points():
     shown = []
     # Colours of data have no highlight: what bends between the points is the diffuse light.
-    scene = SCENE.replace(material=Material(ambient=0.0, diffuse=1.0))
+    scene = SCENE.replace(material=shiny(ambient=0.0, diffuse=1.0))
     for count, light in ((6001, "points"), (61, "auto"), (61, "points")):
         mesh = helix(count)
         mesh["height"] = np.array(mesh.points[:, 2])

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from fields import half_known
+from lamps import HEADLIT, SHINY, shiny
 
 import vizlight
 from vizlight import Light, Material, Scene, View, render
@@ -28,7 +29,7 @@ def ball(**material):
     camera = render.camera_on(mesh.bounds, (0, -1, 0))
     scene = Scene(
         lights=Light(direction=(-1, -1, 1)),
-        material=Material(**material),
+        material=shiny(**material),
         view=View.from_camera(camera),
     )
     return vizlight.illuminate(mesh, scene), camera
@@ -145,7 +146,7 @@ def test_several_panels_stand_side_by_side(tmp_path):
 
 def test_a_tinted_mesh_is_shown_in_its_colours(tmp_path):
     ball = pv.Sphere()
-    scene = Scene(view=View(direction=(1, 1, 1)))
+    scene = Scene(**HEADLIT, view=View(direction=(1, 1, 1)))
     shown = vizlight.tint(vizlight.illuminate(ball, scene), ball.points[:, 2], cmap="plasma")
     pictures = [
         pixels(render.save_png(one, tmp_path / f"{i}.png", size=(60, 40)))
@@ -384,7 +385,9 @@ def test_picture_of_a_furry_ball(verify_image_cache):
     verify_image_cache.error_value = verify_image_cache.warning_value = 1400.0
     mesh = pv.Sphere(radius=1, theta_resolution=60, phi_resolution=60)
     camera = render.camera_on(mesh.bounds, (0.2, -1, 0.35))
-    scene = Scene(lights=Light(direction=(1, -1, 0.8)), view=View.from_camera(camera))
+    scene = Scene(
+        lights=Light(direction=(1, -1, 0.8)), view=View.from_camera(camera), material=SHINY
+    )
     coat = vizlight.fur(mesh, scene, density=0.9, fibres=20_000, length=0.25)
     render.make_plotter(coat, camera=camera, size=(300, 300), background="white").show()
 
@@ -437,7 +440,7 @@ def test_a_surface_does_not_hide_the_lines_on_it(parallel):
 @pytest.mark.parametrize("light", ["auto", "points"])
 @pytest.mark.parametrize("scalars", ["luminance", "rgb"])
 def test_what_is_not_data_is_grey(light, scalars, tmp_path):
-    material = Material(color="tan" if scalars == "rgb" else None)
+    material = shiny(color="tan" if scalars == "rgb" else None)
     scene = Scene(lights=Light(direction=(1, 0, 1)), material=material)
     with pytest.warns(UserWarning, match="210 of 441"):
         lit = vizlight.illuminate(half_known(), scene, tangents="V")
@@ -455,7 +458,9 @@ def test_holes_of_a_height_field_are_grey(tmp_path):
     height[15:26, 15:26] = np.nan
     grid = pv.ImageData(dimensions=(40, 40, 1))
     grid["height"] = height.ravel()
-    scene = Scene(lights=Light(direction=(-1, 1, 1)), view=View(direction=(0, 0, 1)))
+    scene = Scene(
+        lights=Light(direction=(-1, 1, 1)), view=View(direction=(0, 0, 1)), material=SHINY
+    )
     with pytest.warns(UserWarning, match="121 of 1600 points have no height"):
         lit = vizlight.relief_shadow(grid, scene, elevation="height", lit=True)
     camera = render.camera_on(lit, (0, 0, 1), parallel=True)

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from fields import half_known
+from lamps import SHINY
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View
@@ -22,7 +23,7 @@ from vizlight.shading.display import displayable
 pytestmark = pytest.mark.opengl
 
 LAMP = Light(direction=(1, 0.9, 0.5))
-SCENE = Scene(lights=LAMP)
+SCENE = Scene(lights=LAMP, material=SHINY)
 
 
 @pytest.fixture
@@ -114,6 +115,7 @@ def test_colours_and_cue_are_those_of_the_filter(plotter):
     scene = Scene(
         lights=[LAMP, Light(position=(2, -1, 1), color=(1, 0.6, 0.3))],
         depth_cue=DepthCue(back_scale=0.3, cue=0.2, color=(0.2, 0.3, 1.0)),
+        material=SHINY,
     )
     mesh = ball()
     plotter.vizlight.add_mesh(mesh, scene=scene, light="points")
@@ -164,7 +166,7 @@ def test_another_scene_is_that_of_a_new_mesh(plotter, light):
         plotter.vizlight.set_scene(bare, bright)
 
 
-VIEWED = Scene(lights=LAMP, view=View(direction=(1, 1, 1)))
+VIEWED = Scene(lights=LAMP, view=View(direction=(1, 1, 1)), material=SHINY)
 LIT = {
     "illuminate": lambda: vizlight.illuminate(ball(), VIEWED, tangents="around", conditioned=True),
     "streamlines": lambda: vizlight.streamlines(
@@ -198,7 +200,7 @@ def test_light_of_filters_is_lit_again_from_its_record(plotter, kind):
 
 def test_manifolds_of_four_space_keep_their_eye_or_follow_the_camera(plotter):
     view = View(direction=(0, 0, 1, 1))
-    scene = Scene(lights=Light(direction=(1, 1, 1, 0)), view=view)
+    scene = Scene(lights=Light(direction=(1, 1, 1, 0)), view=view, material=SHINY)
     torus = manifolds.clifford_torus(resolution=24)
     lit = vizlight.manifold(torus, scene=scene, distance=2.0)
     actor = plotter.vizlight.add_mesh(lit)
@@ -218,13 +220,14 @@ def test_manifolds_of_four_space_keep_their_eye_or_follow_the_camera(plotter):
                 direction=(*camera.direction, 0),
                 parallel=camera.parallel,
             ),
+            material=SHINY,
         )
         expected = vizlight.illuminate(lit, lifted, **names)
         np.testing.assert_array_equal(picture(plotter), baked(expected, plotter.camera))
 
 
 def test_fur_is_lit_again(plotter):
-    scene = Scene(lights=LAMP, view=View(direction=(1, 1, 1)))
+    scene = Scene(lights=LAMP, view=View(direction=(1, 1, 1)), material=SHINY)
     coat = vizlight.fur(ball(16), scene, density=0.7, fibres=60, length=0.3)
     actors = plotter.vizlight.add_mesh(coat, light="points", name="coat")
     assert len(actors) == 2
@@ -235,7 +238,29 @@ def test_fur_is_lit_again(plotter):
     assert not plotter.vizlight.has_live_light or len(plotter.actors) == 0
 
 
+def test_a_plotter_as_pyvista_makes_it_has_the_default_light(plotter):
+    mesh = ball()
+    plotter.vizlight.add_mesh(mesh, light="points", color="tan")
+    for _ in turned(plotter, 2):
+        view = View.from_camera(plotter.camera)
+        lamps = [
+            Light(direction=(-0.405580, 0.579228, 0.707107), follows_view=True, intensity=8 / 11),
+            Light.headlight(intensity=3 / 11),
+        ]
+        material = Material(ambient=0.3, diffuse=0.7, specular=0, color="tan")
+        lit = vizlight.illuminate(mesh, Scene(lights=lamps, material=material, view=view))
+        default = vizlight.illuminate(mesh, Scene(view=view, material=Material(color="tan")))
+        np.testing.assert_allclose(default["rgb"], lit["rgb"], atol=1e-6)
+        assert np.abs(picture(plotter) - baked(lit, plotter.camera, "rgb")).max() <= 1
+    plotter.renderer.lights[0].intensity += 0.1
+    changed = Scene.from_plotter(plotter, material=material)
+    lit = vizlight.illuminate(mesh, changed)
+    lit["rgb"] = np.clip(lit["rgb"], 0, 1)
+    assert np.abs(picture(plotter) - baked(lit, plotter.camera, "rgb")).max() <= 1
+
+
 def test_without_a_scene_the_light_is_that_of_the_plotter(plotter):
+    plotter.add_light(pv.Light(position=(1, 2, 3), light_type="scene light", intensity=0.2))
     mesh = ball()
     actor = plotter.vizlight.add_mesh(mesh, light="points", specular=0.4, color="tan")
     for _ in turned(plotter, 2):
@@ -466,7 +491,7 @@ def test_bad_arguments(plotter):
     with pytest.raises(TypeError, match="scene: expected a vizlight.Scene"):
         add(mesh, scene="day")
     with pytest.raises(ValueError, match="scene: expected vectors of 3 components"):
-        add(mesh, scene=Scene(lights=Light(direction=(1, 0, 0, 0))))
+        add(mesh, scene=Scene(lights=Light(direction=(1, 0, 0, 0)), material=SHINY))
     with pytest.raises(TypeError, match="mesh: expected a PyVista mesh"):
         add("ball.vtp")
     assert not plotter.actors
@@ -570,7 +595,7 @@ def test_shares_of_light_inside_a_bundle_are_kept_when_the_eye_moves(plotter, mo
 def test_what_is_not_data_is_grey_and_the_bar_names_it(light, scalars):
     plotter = pv.Plotter(off_screen=True, window_size=(200, 200))
     plotter.disable_anti_aliasing()
-    scene = Scene(lights=Light(direction=(1, 0, 1)))
+    scene = Scene(lights=Light(direction=(1, 0, 1)), material=SHINY)
     with pytest.warns(UserWarning, match="210 of 441"):
         plotter.vizlight.add_mesh(
             half_known(), scene=scene, light=light, tangents="V", scalars=scalars
@@ -595,7 +620,10 @@ def test_a_bar_of_whole_data_has_no_such_name():
     plotter = pv.Plotter(off_screen=True)
     mesh = half_known().clip("x", origin=(-0.1, 0, 0)).clip("y", origin=(0, -0.1, 0))
     plotter.vizlight.add_mesh(
-        mesh, scene=Scene(lights=Light(direction=(1, 0, 1))), tangents="V", scalars="height"
+        mesh,
+        scene=Scene(lights=Light(direction=(1, 0, 1)), material=SHINY),
+        tangents="V",
+        scalars="height",
     )
     (bar,) = plotter.scalar_bars.values()
     assert not bar.GetDrawNanAnnotation()

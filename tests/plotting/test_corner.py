@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import pyvista as pv
+from lamps import HEADLIT
 
 import vizlight
 from vizlight import Scene, View, presets
@@ -81,4 +82,4 @@ def test_pictures_have_keys():
 def test_a_bar_has_a_word_at_each_end():
     bar = presets.key(presets.value(), clim=(2, 70))
     assert list(bar.field_data["words"]) == ["2", "70"]
-    assert list(presets.key(Scene()).field_data["words"]) == ["a ball in this light"]
+    assert list(presets.key(Scene(**HEADLIT)).field_data["words"]) == ["a ball in this light"]

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from fields import swatches
+from lamps import SHINY, shiny
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View
@@ -79,10 +80,12 @@ SURFACE = {
     "conditioned": {"tangents": "around", "conditioned": True},
 }
 SCENES = {
-    "far": Scene(lights=FAR),
-    "near": Scene(lights=NEAR, material=Material(specular=0.3, shininess=35.5)),
-    "two in fog": Scene(lights=[FAR, NEAR], depth_cue=CUE, ambient_color=(0.7, 0.8, 1)),
-    "headlight": Scene(material=Material(color="tan", specular_color=(1, 0.9, 0.8))),
+    "far": Scene(lights=FAR, material=SHINY),
+    "near": Scene(lights=NEAR, material=shiny(specular=0.3, shininess=35.5)),
+    "two in fog": Scene(
+        lights=[FAR, NEAR], depth_cue=CUE, ambient_color=(0.7, 0.8, 1), material=SHINY
+    ),
+    "headlight": Scene(material=shiny(color="tan", specular_color=(1, 0.9, 0.8))),
 }
 
 
@@ -151,7 +154,9 @@ def test_colours_of_data_in_bright_light_are_the_same_baked_and_live(cmap, tmp_p
 
 @pytest.mark.filterwarnings("ignore:light='fragments'")
 def test_fur_within_four():
-    scene = Scene(lights=Light(direction=(1, 0.5, 0.3)), view=View(direction=(1, 0, 0)))
+    scene = Scene(
+        lights=Light(direction=(1, 0.5, 0.3)), view=View(direction=(1, 0, 0)), material=SHINY
+    )
     coat = vizlight.fur(
         pv.Sphere(theta_resolution=90, phi_resolution=90), scene, density=0.6, fibres=300,
         length=0.2, segments=40,
@@ -210,7 +215,7 @@ def test_coarse_data_are_as_if_they_were_split():
     coarse["t"] = np.concatenate(coarse_tangents)
     split = pv.PolyData(np.concatenate(rows), lines=np.concatenate(cells))
     split["t"] = np.concatenate(tangents)
-    scene = Scene(lights=FAR, material=Material(shininess=40))
+    scene = Scene(lights=FAR, material=shiny(shininess=40))
     fragments, at_points = pictures(coarse, scene, tangents="t", line_width=2)
     _, expected = pictures(split, scene, tangents="t", line_width=2)
     covered = np.all([p.max(axis=-1) > 0 for p in (fragments, at_points, expected)], axis=0)
@@ -231,7 +236,7 @@ def test_open_surface_faces_the_eye_in_each_fragment():
 
 
 def test_coarse_lines_are_right_between_their_points():
-    scene = Scene(lights=Light(direction=(1, 0.9, 0.5)), material=Material(shininess=60))
+    scene = Scene(lights=Light(direction=(1, 0.9, 0.5)), material=shiny(shininess=60))
     coarse, coarse_points = pictures(helix(73), scene, line_width=3)
     fine, _ = pictures(helix(73 * 120 + 1), scene, line_width=3)
     # The courses of both lines differ by less than the width, so pixels that both cover count.
@@ -311,17 +316,17 @@ def strands():
 
 FALLBACKS = {
     "2 tangents per point": (
-        lambda: manifolds_mesh("after"), Scene(lights=FAR), {"tangents": "projected_frame"}
+        lambda: manifolds_mesh("after"), Scene(lights=FAR, material=SHINY), {"tangents": "projected_frame"}
     ),
     "4-space": (
-        lambda: manifolds_mesh("before"), Scene(lights=FAR),
+        lambda: manifolds_mesh("before"), Scene(lights=FAR, material=SHINY),
         {"tangents": "frame", "positions": "position"},
     ),
-    "cylinder": (helix, Scene(lights=FAR), {"model": "cylinder"}),
-    "sign is arbitrary": (reversing, Scene(lights=FAR), {"tangents": "around"}),
-    "spheres and tubes": (torus, Scene(lights=FAR), {"render_lines_as_tubes": True}),
+    "cylinder": (helix, Scene(lights=FAR, material=SHINY), {"model": "cylinder"}),
+    "sign is arbitrary": (reversing, Scene(lights=FAR, material=SHINY), {"tangents": "around"}),
+    "spheres and tubes": (torus, Scene(lights=FAR, material=SHINY), {"render_lines_as_tubes": True}),
     "alone can be round": (
-        strands, Scene(lights=FAR),
+        strands, Scene(lights=FAR, material=SHINY),
         {"render_lines_as_tubes": True, "line_width": 3, "conditioned": True},
     ),
 }  # fmt: skip

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from fields import half_known, swatches
+from lamps import SHINY, shiny
 
 import vizlight
 from vizlight import Light, Material, Scene, View
@@ -51,13 +52,13 @@ def seen(colors):
 def test_colours_are_ambient_and_diffuse_light(tmp_path):
     ball = pv.Sphere().translate((5e6, 0, 0))
     ball.points = np.asarray(ball.points, dtype=np.float64)
-    scene = Scene(lights=FAR, material=Material(color="tan", specular=0.9))
+    scene = Scene(lights=FAR, material=shiny(color="tan", specular=0.9))
     path = vizlight.save_gltf(ball, scene, tmp_path / "lit.glb")
     text, arrays = content(path)
     assert "ambient and diffuse light only" in text["asset"]["extras"]["light"]
     (primitive,) = text["meshes"][0]["primitives"]
     places, colors = (arrays[primitive["attributes"][key]] for key in ("POSITION", "COLOR_0"))
-    bare = Scene(lights=FAR, material=Material(color="tan", specular=0))
+    bare = Scene(lights=FAR, material=shiny(color="tan", specular=0))
     expected = vizlight.illuminate(ball, bare)["rgb"]
     np.testing.assert_allclose(seen(colors), np.clip(expected, 0, 1), atol=0.6 / 255)
     moved = places + np.asarray(text["nodes"][1]["translation"])
@@ -83,10 +84,17 @@ def test_a_lit_mesh_is_written_by_its_record_and_colours_of_data_count(tmp_path)
     lines = vizlight.load_example("fibre_bundle.vtp")
     lines["x"] = np.asarray(lines.points[:, 0], dtype=np.float64)
     lit = vizlight.tint(
-        vizlight.illuminate(lines, Scene(lights=FAR, view=View(direction=(1, 0, 0)))), "x"
+        vizlight.illuminate(
+            lines, Scene(lights=FAR, view=View(direction=(1, 0, 0)), material=SHINY)
+        ),
+        "x",
     )
     by_record = content(vizlight.save_gltf(lit, None, tmp_path / "a.glb"))
-    by_hand = content(vizlight.save_gltf(lines, Scene(lights=FAR), tmp_path / "b.glb", scalars="x"))
+    by_hand = content(
+        vizlight.save_gltf(
+            lines, Scene(lights=FAR, material=SHINY), tmp_path / "b.glb", scalars="x"
+        )
+    )
     for ours, others in zip(by_record[1], by_hand[1], strict=True):
         np.testing.assert_array_equal(ours, others)
     assert by_record[0]["meshes"][0]["primitives"][0]["mode"] == 1
@@ -105,7 +113,7 @@ def test_a_terrain_is_lit_on_one_side_as_a_whole(height, tmp_path):
     z = np.sin(2 * x)[:, np.newaxis] * np.cos(2 * x)
     hills = pv.StructuredGrid(*np.meshgrid(x, x), z).extract_surface(algorithm="dataset_surface")
     light = Light(direction=(0, 0, np.sign(height)))
-    scene = Scene(lights=light, view=View(direction=(1, 0.3, height)))
+    scene = Scene(lights=light, view=View(direction=(1, 0.3, height)), material=SHINY)
     with pytest.warns(UserWarning, match="the lit side of open surfaces"):
         path = vizlight.save_gltf(hills, scene, tmp_path / "lit.glb")
     normals = hills.compute_normals(cell_normals=False)["Normals"]
@@ -125,7 +133,10 @@ def test_a_terrain_is_lit_on_one_side_as_a_whole(height, tmp_path):
     ],
 )
 def test_what_does_not_fit_is_refused_and_nothing_is_written(options, message, tmp_path):
-    mesh, scene = options.pop("mesh", pv.Sphere()), options.pop("scene", Scene(lights=FAR))
+    mesh, scene = (
+        options.pop("mesh", pv.Sphere()),
+        options.pop("scene", Scene(lights=FAR, material=SHINY)),
+    )
     path = tmp_path / options.pop("path", "lit.glb")
     with pytest.raises((FileError, TypeError, ValueError), match=message):
         vizlight.save_gltf(mesh, scene, path, **options)
@@ -139,7 +150,7 @@ def test_what_does_not_fit_is_refused_and_nothing_is_written(options, message, t
 def test_the_validator_of_gltf_has_no_objection(tmp_path):
     both = pv.MultiBlock({"ball": pv.Sphere(), "lines": vizlight.load_example("fibre_bundle.vtp")})
     both["grid"] = pv.ImageData(dimensions=(4, 4, 4))
-    path = vizlight.save_gltf(both, Scene(lights=FAR), tmp_path / "lit.glb")
+    path = vizlight.save_gltf(both, Scene(lights=FAR, material=SHINY), tmp_path / "lit.glb")
     script = """
     const { validateBytes } = require(process.argv[1] + '/gltf-validator');
     validateBytes(new Uint8Array(require('fs').readFileSync(process.argv[2])))
@@ -156,7 +167,7 @@ def test_the_validator_of_gltf_has_no_objection(tmp_path):
 @pytest.mark.parametrize("scalars", [None, "height"])
 def test_what_is_not_data_is_grey(tmp_path, scalars):
     mesh = half_known()
-    scene = Scene(lights=FAR)
+    scene = Scene(lights=FAR, material=SHINY)
     vizlight.save_gltf(mesh, scene, tmp_path / "a.glb", tangents="V", scalars=scalars)
     text, arrays = content(tmp_path / "a.glb")
     colors = arrays[text["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"]]

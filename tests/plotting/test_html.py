@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from fields import half_known, swatches
+from lamps import HEADLIT, SHINY, shiny
 from PIL import Image
 
 import vizlight
@@ -64,19 +65,19 @@ def winding():
 
 AWAY = (5e6, -5e6, 2e6)
 CASES = {
-    "lines": (winding, Scene(lights=FAR), {}),
-    "conditioned lines": (winding, Scene(lights=FAR), {"conditioned": True, "normals": "n"}),
+    "lines": (winding, Scene(lights=FAR, material=SHINY), {}),
+    "conditioned lines": (winding, Scene(lights=FAR, material=SHINY), {"conditioned": True, "normals": "n"}),
     "surface with a field": (
-        torus, Scene(lights=FAR), {"tangents": "around", "conditioned": True, "normals": "n"}
+        torus, Scene(lights=FAR, material=SHINY), {"tangents": "around", "conditioned": True, "normals": "n"}
     ),
-    "compensated with colours": (torus, Scene(lights=FAR), {"tangents": "around"}),
+    "compensated with colours": (torus, Scene(lights=FAR, material=SHINY), {"tangents": "around"}),
     "two lights, one near, in fog": (
-        torus, Scene(lights=[FAR, NEAR], depth_cue=CUE, ambient_color=(0.7, 0.8, 1)),
+        torus, Scene(lights=[FAR, NEAR], depth_cue=CUE, ambient_color=(0.7, 0.8, 1), material=SHINY),
         {"normals": "n", "model": "blinn"},
     ),
     "far from the origin": (
         lambda: torus(AWAY),
-        Scene(lights=[FAR, Light(position=np.add(AWAY, (3, 4, 5)), intensity=0.2)]),
+        Scene(lights=[FAR, Light(position=np.add(AWAY, (3, 4, 5)), intensity=0.2)], material=SHINY),
         {"normals": "n"},
     ),
 }  # fmt: skip
@@ -241,7 +242,7 @@ def test_the_page_reads_the_numbers_that_were_packed(browser, tmp_path):
     mesh.points[9] = (0, np.inf, 2)
     camera = first_camera((3.0, -2.0, 1.0))
     path = vizlight.live_html(
-        mesh, Scene(lights=FAR), tmp_path / "a.html", normals="n", camera=camera
+        mesh, Scene(lights=FAR, material=SHINY), tmp_path / "a.html", normals="n", camera=camera
     )
     page, _ = opened(browser, path)
     read = """() => {
@@ -267,7 +268,7 @@ def test_the_page_reads_the_numbers_that_were_packed(browser, tmp_path):
 
 @needs_browser
 def test_page_has_the_picture_of_the_plotter(browser, tmp_path):
-    mesh, scene = torus(), Scene(lights=[FAR, NEAR])
+    mesh, scene = torus(), Scene(lights=[FAR, NEAR], material=SHINY)
     plotter = pv.Plotter(off_screen=True, window_size=list(SIZE.values()))
     plotter.background_color = "black"
     plotter.render_window.SetMultiSamples(4)
@@ -292,7 +293,7 @@ def test_page_has_the_picture_of_the_plotter(browser, tmp_path):
 
 def plain_page(tmp_path, **options):
     ball = pv.Sphere(theta_resolution=60, phi_resolution=60)
-    scene = Scene(lights=Light(direction=(1, 0.2, 0.3)))
+    scene = Scene(lights=Light(direction=(1, 0.2, 0.3)), material=SHINY)
     return vizlight.live_html(ball, scene, tmp_path / "ball.html", background="black", **options)
 
 
@@ -365,7 +366,9 @@ def test_keys_and_fingers_turn_the_page(browser, tmp_path):
 @needs_browser
 def test_several_meshes_can_be_switched_off_each(browser, tmp_path):
     both = pv.MultiBlock({"ball": pv.Sphere(), "ring": torus().translate((0, 0, 1))})
-    path = vizlight.live_html(both, Scene(lights=FAR), tmp_path / "a.html", background="black")
+    path = vizlight.live_html(
+        both, Scene(lights=FAR, material=SHINY), tmp_path / "a.html", background="black"
+    )
     page, _ = opened(browser, path)
     opened_panel(page)
     every = shot(page)
@@ -381,7 +384,9 @@ def test_several_meshes_can_be_switched_off_each(browser, tmp_path):
 @needs_browser
 def test_many_meshes_stand_in_a_closed_list_after_the_sliders(browser, tmp_path):
     many = pv.MultiBlock({f"ball {i}": pv.Sphere(radius=0.1, center=(i, 0, 0)) for i in range(40)})
-    path = vizlight.live_html(many, Scene(lights=FAR), tmp_path / "a.html", background="black")
+    path = vizlight.live_html(
+        many, Scene(lights=FAR, material=SHINY), tmp_path / "a.html", background="black"
+    )
     page, _ = opened(browser, path)
     opened_panel(page)
     meshes = page.locator("details.meshes")
@@ -413,7 +418,7 @@ def test_page_without_webgl_says_so(chromium, tmp_path):
 
 
 def test_light_that_cannot_follow_is_fixed_and_said_to_be(tmp_path):
-    mesh, scene = torus(), Scene(lights=FAR)
+    mesh, scene = torus(), Scene(lights=FAR, material=SHINY)
     with pytest.warns(UserWarning, match="does not follow the eye, because .*cylinder.*ambient"):
         path = vizlight.live_html(
             mesh, scene, tmp_path / "a.html", tangents="around", model="cylinder"
@@ -426,7 +431,7 @@ def test_light_that_cannot_follow_is_fixed_and_said_to_be(tmp_path):
     _, _, content = scene_in(path)
     packed = content["meshes"][0]["colors"]["data"]
     colors = np.frombuffer(zlib.decompress(base64.b64decode(packed)), np.uint8).reshape(-1, 4)
-    bare = Scene(lights=FAR, material=Material(specular=0))
+    bare = Scene(lights=FAR, material=shiny(specular=0))
     expected = vizlight.illuminate(pv.Sphere(), bare)["luminance"]
     assert np.abs(colors[:, 0] - 255 * np.clip(expected, 0, 1)).max() <= 1
 
@@ -435,8 +440,8 @@ def test_plotter_writes_its_meshes_with_their_own_light(tmp_path):
     plotter = pv.Plotter(off_screen=True)
     with pytest.raises(ValueError, match="plotter: expected a mesh with live light"):
         plotter.vizlight.export_html(tmp_path / "a.html")
-    plotter.vizlight.add_mesh(torus(), scene=Scene(lights=FAR), scalars="height")
-    plotter.vizlight.add_mesh(winding(), scene=Scene(), line_width=3, name="coil")
+    plotter.vizlight.add_mesh(torus(), scene=Scene(lights=FAR, material=SHINY), scalars="height")
+    plotter.vizlight.add_mesh(winding(), scene=Scene(**HEADLIT), line_width=3, name="coil")
     plotter.add_mesh(pv.Cube())
     with pytest.warns(UserWarning, match="1 actors without light of vizlight"):
         path = plotter.vizlight.export_html(tmp_path / "a.html", title="Both")
@@ -462,7 +467,7 @@ def test_plotter_writes_its_meshes_with_their_own_light(tmp_path):
 def test_what_does_not_fit_is_refused_and_nothing_is_written(options, message, tmp_path):
     path = tmp_path / options.pop("path", "lit.html")
     with pytest.raises((FileError, TypeError, ValueError), match=message):
-        vizlight.live_html(torus(), Scene(lights=FAR), path, **options)
+        vizlight.live_html(torus(), Scene(lights=FAR, material=SHINY), path, **options)
     assert not list(tmp_path.iterdir())
 
 
@@ -481,7 +486,7 @@ def test_viewer_is_the_one_of_the_recipe():
     ("mesh", "colour"), [(pv.Line(), "0, 0, 0"), (pv.Plane(), "255, 255, 255")]
 )
 def test_lines_alone_stand_before_black(mesh, colour, tmp_path):
-    path = vizlight.live_html(mesh, Scene(lights=FAR), tmp_path / "a.html")
+    path = vizlight.live_html(mesh, Scene(lights=FAR, material=SHINY), tmp_path / "a.html")
     assert f"rgb({colour})" in path.read_text(encoding="utf-8")
 
 
@@ -491,7 +496,7 @@ def test_what_is_not_data_is_grey_and_has_a_name(browser, tmp_path):
     camera = vizlight.render.camera_on((-0.5, 0.5, -0.5, 0.5, 0, 0), (0, 0, 1), parallel=True)
     camera.parallel_scale = 0.5
     path = vizlight.live_html(
-        half_known(), Scene(lights=Light(direction=(1, 0, 1))), tmp_path / "a.html",
+        half_known(), Scene(lights=Light(direction=(1, 0, 1)), material=SHINY), tmp_path / "a.html",
         camera=camera, tangents="V", scalars="height", panel=False,
     )  # fmt: skip
     page, _ = opened(browser, path)

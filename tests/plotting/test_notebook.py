@@ -11,6 +11,7 @@ import sys
 import numpy as np
 import pytest
 import pyvista as pv
+from lamps import SHINY
 from PIL import Image
 
 import vizlight
@@ -25,20 +26,21 @@ MISSING = [
     for name in ("trame_pyvista", "nest_asyncio2", "playwright")
     if importlib.util.find_spec(name) is None
 ] + ([] if CHROMIUM else ["chromium"])
-SCENE = Scene(lights=Light(direction=(1, 0.6, 0.5)))
+SCENE = Scene(lights=Light(direction=(1, 0.6, 0.5)), material=SHINY)
 
 #: A notebook's kernel in small: an event loop, in which PyVista shows a plotter in its default way.
 KERNEL = """
 import asyncio, json, sys
 import pyvista as pv
 import vizlight.plotting.component
-from vizlight import Light, Scene
+from vizlight import Light, Material, Scene
 
 async def kernel():
     plotter = pv.Plotter(notebook=True, off_screen=True, window_size=(400, 400))
     plotter.background_color = "black"
     ball = pv.Sphere(theta_resolution=90, phi_resolution=90)
-    scene = Scene(lights=Light(direction=(1, 0.6, 0.5)))
+    shiny = Material(ambient=0.1, diffuse=0.5, specular=0.4)
+    scene = Scene(lights=Light(direction=(1, 0.6, 0.5)), material=shiny)
     plotter.vizlight.add_mesh(ball, scene=scene, light="points")
     plotter.view_vector((1, 0.2, 0.1))
     how = {"handler": lambda viewer, url, **_: url, "server_proxy_enabled": False}

@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import pyvista as pv
+from lamps import SHINY
 
 import vizlight
 from vizlight import Light, Scene, View, illuminate
 from vizlight.reading import polylines
 
-SCENE = Scene(lights=Light(direction=(1, 0.4, 1)), view=View(direction=(0, 0.2, 1)))
+SCENE = Scene(lights=Light(direction=(1, 0.4, 1)), view=View(direction=(0, 0.2, 1)), material=SHINY)
 
 
 def circle(count=40, *, closed=True):
@@ -92,7 +93,9 @@ def test_a_mesh_with_faces_is_no_mesh_of_lines():
 def test_lines_as_thin_cylinders():
     """The exact line light through every filter of lines; refused where there are no lines."""
     flow = vizlight.load_example()
-    scene = Scene(lights=Light(direction=(1, 0.9, 0.5)), view=View(direction=(0.2, 1, 0.3)))
+    scene = Scene(
+        lights=Light(direction=(1, 0.9, 0.5)), view=View(direction=(0.2, 1, 0.3)), material=SHINY
+    )
     lines = vizlight.streamlines(flow, scene, vectors="V", seeds=10, model="cylinder")
     assert vizlight.provenance(lines)["options"]["model"] == "cylinder"
     again = vizlight.illuminate(lines, scene, tangents="Tangents", model="cylinder", name="again")

@@ -128,10 +128,8 @@ def test_a_light_toward_the_eye_is_a_headlight():
     shoulder = Light(direction=(-1, 1, 1), follows_view=True)
     assert eval(repr(shoulder), {"Light": Light}) == shoulder
     assert shoulder.seen_from(None) == shoulder.seen_from(View(direction=(1, 1, 1)))
-    with pytest.raises(ValueError, match="view: expected a view in 3-space with a direction"):
+    with pytest.raises(ValueError, match="view: expected a view with a direction"):
         shoulder.seen_from(View(position=(1, 2, 3)))
-    with pytest.raises(ValueError, match="view: expected a view in 3-space with a direction"):
-        shoulder.seen_from(View.isometric(4))
 
 
 def test_scene_lights_keep_position_attenuation_colour_and_transform():

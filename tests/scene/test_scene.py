@@ -30,9 +30,14 @@ def full_scene():
 
 
 def test_defaults_are_those_documented():
-    assert Material() == Material(ambient=0.1, diffuse=0.5, specular=0.4, shininess=20.0)
+    assert Material() == Material(ambient=0.3, diffuse=0.7, specular=0.0, shininess=20.0)
     scene = Scene()
-    assert scene.lights[0].follows_view
+    shoulder, fill = scene.lights
+    # Azimuth 125 and altitude 45 degrees in the frame of the eye.
+    np.testing.assert_allclose(shoulder.direction, (-0.405580, 0.579228, 0.707107), atol=1e-6)
+    assert shoulder.follows_view
+    assert fill.is_headlight
+    assert (shoulder.intensity, fill.intensity) == pytest.approx((8 / 11, 3 / 11))
     assert (scene.ambient_intensity, scene.view, scene.depth_cue) == (1.0, None, None)
     assert not scene.colored
 
@@ -109,7 +114,7 @@ def test_lights_and_cameras_of_pyvista_are_taken_as_they_are():
     assert Scene(lights=beside).lights == scene.lights[2:]
     assert scene.replace(lights=sun).lights == scene.lights[:1]
     assert Scene(lights=pv.Light(light_type="headlight")).lights[0].follows_view
-    made = Material(specular=0).to_property(lights=sun, view=camera)
+    made = Material(specular=0, diffuse=0.5).to_property(lights=sun, view=camera)
     assert made.diffuse == 0.5
 
 

@@ -127,7 +127,7 @@ def test_values_of_the_property():
     assert made.diffuse_color == made.ambient_color == "red"
     assert made.specular_color == "gold"
     assert made.interpolation.name == "PHONG"
-    exchanged = material.to_property()
+    exchanged = material.to_property(lights=Light.headlight())
     assert exchanged.specular_power == pytest.approx(4 * 25, rel=0.02)
     dark = [Light.headlight(), Light(direction=(1, 0, 0), intensity=0)]
     assert material.to_property(lights=dark).specular_power == 25
@@ -184,7 +184,7 @@ def test_warnings_tell_what_vtk_cannot():
     with pytest.warns(
         UserWarning, match=r"the Blinn model and power 128; .* exactly one light is switched on"
     ):
-        assert shiny.to_property().specular_power == 128
+        assert shiny.to_property(lights=Light.headlight()).specular_power == 128
     with pytest.warns(
         UserWarning, match=r"the Phong model and power 128; .* Phong model with power 500"
     ):

@@ -11,6 +11,7 @@ import math
 import differential
 import numpy as np
 import pytest
+from lamps import SHINY, shiny
 
 from vizlight import DepthCue, Light, Material, Scene, View, _compiled, engine
 from vizlight.shading import compiled, statements
@@ -23,7 +24,7 @@ from vizlight.shading.writer import write
 LAMP = Light(position=(0.5, 4, 2), intensity=0.7)
 SUN = Light(direction=(1, 2, 0.5))
 NEAR = View(position=(0, 1, 6))
-SCENE = Scene(lights=LAMP, view=NEAR)
+SCENE = Scene(lights=LAMP, view=NEAR, material=SHINY)
 
 
 @pytest.fixture(autouse=True, scope="module")
@@ -276,7 +277,9 @@ def test_light_does_not_depend_on_blocks(fast, random, block):
 def test_where_it_does_not_pay_numpy_runs(random):
     points, tangents, _ = cloud(random, 10)
     with _compiled.setting(""):
-        lit = engine.shade(points, tangents, Scene(lights=SUN, view=NEAR), model="blinn")
+        lit = engine.shade(
+            points, tangents, Scene(lights=SUN, view=NEAR, material=SHINY), model="blinn"
+        )
         words = "10 points do not pay" if _compiled.active() else "numba"
     assert not lit.plan.compiled
     assert words in lit.plan.explain()
@@ -295,7 +298,7 @@ def test_what_has_no_compiled_form_says_why(given, words):
     scene = Scene(
         lights=Light(direction=np.ones(n)),
         view=View(direction=np.arange(n) + 1.0),
-        material=Material(shininess=5),
+        material=shiny(shininess=5),
     )
     assert words in engine.plan(scene, **given).explain()
     assert "code: where" in engine.plan(SCENE, k=1).explain()
@@ -312,7 +315,7 @@ def test_ambient_light_alone_needs_none():
 def test_a_text_has_the_terms_of_its_form_and_no_others(random):
     points, _, normals = cloud(random, 4)
     inputs = compiled_inputs(points, normals)
-    plain = engine.plan(Scene(lights=SUN, view=NEAR), normals=True)
+    plain = engine.plan(Scene(lights=SUN, view=NEAR, material=SHINY), normals=True)
     form, order = compiled._form(plain, inputs)
     text = write(form).source
     body = text[text.index("def light(") :]
@@ -335,7 +338,7 @@ def test_seven_lights_of_two_kinds(fast, random):
     lamps = [Light(position=random.standard_normal(3) * 4, intensity=0.2) for _ in range(4)]
     suns = [Light(direction=random.standard_normal(3), intensity=0.3) for _ in range(3)]
     mixed = [lamps[0], suns[0], lamps[1], suns[1], lamps[2], suns[2], lamps[3]]
-    scene = Scene(lights=mixed, view=NEAR)
+    scene = Scene(lights=mixed, view=NEAR, material=SHINY)
     shadow = random.random((500, 7))
     lit = engine.shade(points, None, scene, normals=normals, shadow=shadow)
     assert lit.plan.compiled

@@ -10,6 +10,7 @@ import sys
 import numpy as np
 import oracles
 import pytest
+from lamps import SHINY, shiny
 
 from studies import peak_memory
 from vizlight import DepthCue, Light, Material, Scene, View, _compiled, engine
@@ -30,7 +31,7 @@ SCENES = {
     "three lights, colours": Scene(
         lights=[SUN, LAMP, Light.headlight(intensity=0.3, color=(0, 1, 0.5))],
         view=NEAR,
-        material=Material(color=(1, 0.25, 0.3), specular_color=(0.9, 0.9, 1), shininess=7.5),
+        material=shiny(color=(1, 0.25, 0.3), specular_color=(0.9, 0.9, 1), shininess=7.5),
         ambient_intensity=0.5,
         ambient_color=(0.2, 0.3, 0.9),
     ),
@@ -44,6 +45,7 @@ SCENES = {
         lights=LAMP,
         view=NEAR,
         depth_cue=DepthCue(front=4, back=8, cue=0.5, color=(0.5, 0.6, 1), smooth=True),
+        material=SHINY,
     ),
     "parallel depth cue": Scene(
         lights=SUN, view=FAR, material=WHITE, depth_cue=DepthCue(front=-2, back=2)
@@ -157,7 +159,7 @@ def test_shadow_takes_the_place_of_the_cosine(random):
 
 def test_bad_shadow(random):
     points, normals = random.standard_normal((2, 5, 3))
-    scene = Scene(lights=SUN, view=NEAR)
+    scene = Scene(lights=SUN, view=NEAR, material=SHINY)
     with pytest.raises(ValueError, match=r"shadow: expected shape \(5, 1\), normals, got shape"):
         engine.shade(points, None, scene, normals=normals, shadow=np.ones((5, 2)))
     with pytest.raises(ValueError, match="shadow: .* got no normals"):
@@ -329,12 +331,17 @@ def test_light_and_eye_on_the_point(dtype):
     points = np.array([[0, 0, 0], [1, 0, 0]], dtype=dtype)
     tangents = np.array([[0, 1, 0], [0, 1, 0]], dtype=dtype)
     here = Light(position=(0, 0, 0), attenuation=(0, 0, 1))
-    shaded = engine.shade(points, tangents, Scene(lights=here, view=NEAR), components=True)
+    shaded = engine.shade(
+        points, tangents, Scene(lights=here, view=NEAR, material=SHINY), components=True
+    )
     assert shaded.valid.all()
     assert (shaded.diffuse[0], shaded.specular[0]) == (0, 0)
     assert shaded.diffuse[1] > 0
     eye = engine.shade(
-        points, tangents, Scene(lights=SUN, view=View(position=(0, 0, 0))), components=True
+        points,
+        tangents,
+        Scene(lights=SUN, view=View(position=(0, 0, 0)), material=SHINY),
+        components=True,
     )
     assert eye.valid.all()
     assert eye.specular[0] == 0
@@ -344,7 +351,9 @@ def test_light_and_eye_on_the_point(dtype):
 def test_a_light_on_the_point_is_dark_in_any_dimension():
     """With p(1, 60) = 175 the power is taken through the deficit, which is 0 for no direction."""
     points, tangents = np.zeros((1, 60)), np.eye(60)[:1]
-    scene = Scene(lights=Light(position=np.zeros(60)), view=View(position=np.ones(60)))
+    scene = Scene(
+        lights=Light(position=np.zeros(60)), view=View(position=np.ones(60)), material=SHINY
+    )
     shaded = engine.shade(points, tangents, scene, components=True)
     assert shaded.plan.exponent > 128
     assert (shaded.diffuse[0], shaded.specular[0]) == (0, 0)
@@ -367,26 +376,30 @@ def test_lights_very_near_and_very_far(dtype):
     tangents = np.array([[0, 1, 0]], dtype=dtype)
     view = View(direction=(0, 0, 1))
     far = engine.shade(
-        points, tangents, Scene(lights=Light(direction=(1, 0, 1)), view=view)
+        points, tangents, Scene(lights=Light(direction=(1, 0, 1)), view=view, material=SHINY)
     ).luminance
     for size in (1e-30, 1e30, 1e300):
-        scene = Scene(lights=Light(position=(size, 0, size)), view=view)
+        scene = Scene(lights=Light(position=(size, 0, size)), view=view, material=SHINY)
         np.testing.assert_allclose(engine.shade(points, tangents, scene).luminance, far, rtol=1e-5)
-        scene = Scene(lights=Light(position=(size, 0, size), attenuation=(1, 0, 1)), view=view)
+        scene = Scene(
+            lights=Light(position=(size, 0, size), attenuation=(1, 0, 1)), view=view, material=SHINY
+        )
         assert np.isfinite(engine.shade(points, tangents, scene).luminance).all()
 
 
 @pytest.mark.parametrize("shininess", [0.0, 1e6])
 def test_extreme_shininess(shininess, dtype, random):
     points, tangents, _ = cloud(random, 100, dtype)
-    scene = Scene(lights=SUN, view=NEAR, material=Material(shininess=shininess))
+    scene = Scene(lights=SUN, view=NEAR, material=shiny(shininess=shininess))
     for model in ("phong", "blinn"):
         assert np.isfinite(engine.shade(points, tangents, scene, model=model).luminance).all()
 
 
 def test_one_sided_surface_is_dark_behind():
     normals = np.array([[0, 0, 1.0], [0, 0, -1.0]])
-    scene = Scene(lights=Light(direction=(0.3, 0, 1)), view=View(direction=(0, 0, 1)))
+    scene = Scene(
+        lights=Light(direction=(0.3, 0, 1)), view=View(direction=(0, 0, 1)), material=SHINY
+    )
     shaded = engine.shade(np.zeros((2, 3)), None, scene, normals=normals, components=True)
     assert shaded.diffuse[0] > 0
     assert shaded.specular[0] > 0
@@ -512,7 +525,7 @@ def test_points_that_share_a_normal(kind, random):
     tangents, normals = random.standard_normal((2, 100, 3)).astype(kind)
     depth = random.random(300).astype(kind)
     lights = [Light(direction=(1, 2, 3)), Light(position=(4, 0, 1), attenuation=(1, 0.1, 0))]
-    scene = Scene(lights=lights, view=View(position=(0, 0, 9)))
+    scene = Scene(lights=lights, view=View(position=(0, 0, 9)), material=SHINY)
     whole = {"normals": np.repeat(normals, 3, axis=0), "fur_height": depth, "fur": 0.3}
     expected = engine.shade(points, np.repeat(tangents, 3, axis=0), scene, **whole)
     shared = {**whole, "normals": normals, "repeat": 3, "block": 7}
@@ -534,7 +547,7 @@ def test_points_that_share_a_normal(kind, random):
 @pytest.mark.parametrize("role", ["tangents", "normals", "base_tangents", "points"])
 def test_masked_rows_are_invalid(role):
     rng = np.random.default_rng(5)
-    scene = Scene(lights=Light(position=(1, 2, 3)), material=Material(specular=0))
+    scene = Scene(lights=Light(position=(1, 2, 3)), material=shiny(specular=0))
     arrays = {name: rng.normal(size=(9, 3)) for name in ("points", "tangents", role)}
     arrays[role] = np.ma.array(arrays[role], mask=np.zeros((9, 3), bool))
     arrays[role][2] = np.ma.masked
@@ -564,6 +577,7 @@ def test_light_does_not_depend_on_the_unit_of_length(vectors, fast):
             scene = Scene(
                 lights=Light(position=unit * place, attenuation=(1, 0.1 / unit, 0)),
                 view=View(position=unit * eye),
+                material=SHINY,
             )
             lit = engine.shade(points * unit, None, scene, normals=normals)
             base = lit.luminance if base is None else base
@@ -573,7 +587,7 @@ def test_light_does_not_depend_on_the_unit_of_length(vectors, fast):
 
 def test_a_light_nearer_than_float32_resolves_has_a_direction():
     points, normals = np.zeros((1, 3), np.float32), np.float32([[0, 0, 1]])
-    scene = Scene(lights=Light(position=(0, 0, 1e-60)), material=Material(specular=0, ambient=0))
+    scene = Scene(lights=Light(position=(0, 0, 1e-60)), material=shiny(specular=0, ambient=0))
     lit = engine.shade(points, None, scene, normals=normals)
     np.testing.assert_allclose(lit.luminance, scene.material.diffuse)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import oracles
 import pytest
+from lamps import SHINY, shiny
 
 from vizlight import Light, Material, Scene, View, engine
 from vizlight.model import cylinder
@@ -18,7 +19,7 @@ NEAR = Light(position=(3, 2, 4))
 def test_a_half_vector_of_all_points_needs_no_eye(random):
     """Blinn's model under a parallel view and a light at infinity, against the light of each."""
     points, tangents = random.standard_normal((2, 2000, 3))
-    scene = Scene(lights=[SUN, LOW], view=FAR)
+    scene = Scene(lights=[SUN, LOW], view=FAR, material=SHINY)
     made = engine.shade(points, tangents, scene, model="blinn")
     assert all(h.half is not None for h in made.plan.highlights)
     assert not made.plan.splits_eye
@@ -33,12 +34,12 @@ def test_a_half_vector_of_all_points_needs_no_eye(random):
 @pytest.mark.parametrize(
     ("scene", "model"),
     [
-        (Scene(lights=[NEAR], view=FAR), "blinn"),
-        (Scene(lights=[SUN], view=View(position=(0, 0, 9))), "blinn"),
-        (Scene(lights=[SUN], view=FAR, material=Material(shininess=1.9)), "blinn"),
-        (Scene(lights=[Light(direction=(0, 0, -1))], view=FAR), "blinn"),
-        (Scene(lights=[SUN], view=FAR), "phong"),
-        (Scene(lights=[SUN], view=FAR), "cylinder"),
+        (Scene(lights=[NEAR], view=FAR, material=SHINY), "blinn"),
+        (Scene(lights=[SUN], view=View(position=(0, 0, 9)), material=SHINY), "blinn"),
+        (Scene(lights=[SUN], view=FAR, material=shiny(shininess=1.9)), "blinn"),
+        (Scene(lights=[Light(direction=(0, 0, -1))], view=FAR, material=SHINY), "blinn"),
+        (Scene(lights=[SUN], view=FAR, material=SHINY), "phong"),
+        (Scene(lights=[SUN], view=FAR, material=SHINY), "cylinder"),
     ],
 )
 def test_no_half_vector_where_it_moves_or_is_none(scene, model):
@@ -91,9 +92,9 @@ def test_hard_points_of_cylinders(dtype):
         [[0, 0, 0], [np.nan, 1, 0], [np.inf, 0, 0], [1, 0, 0], [1, 0, 0], [1, 0, 0], [0, 1, 0],
          [0, 1, 9]]
     ).astype(dtype)  # fmt: skip
-    scene = Scene(lights=[NEAR, SUN], view=View(position=(0, 1, 9)))
+    scene = Scene(lights=[NEAR, SUN], view=View(position=(0, 1, 9)), material=SHINY)
     for shininess in (0.0, 5.0, 1e6):
-        here = scene.replace(material=Material(shininess=shininess))
+        here = scene.replace(material=shiny(shininess=shininess))
         shading = engine.shade(points, tangents, here, model="cylinder")
         assert shading.valid.tolist() == [False] * 4 + [True] * 4
         assert np.isfinite(shading.luminance).all()
@@ -102,11 +103,11 @@ def test_hard_points_of_cylinders(dtype):
 
 
 def test_cylinder_in_words_and_what_it_needs():
-    said = plan(Scene(lights=SUN, view=FAR), k=1, model="cylinder").explain()
+    said = plan(Scene(lights=SUN, view=FAR, material=SHINY), k=1, model="cylinder").explain()
     assert "diffuse: Lambert's law averaged over the visible half of a thin cylinder" in said
     assert "specular: cylinder, shininess 20 averaged over the visible half" in said
-    dull = Scene(lights=SUN, material=Material(specular=0))
+    dull = Scene(lights=SUN, material=shiny(specular=0))
     assert plan(dull, k=1, model="cylinder").needs_eye
     for options in ({"k": 2}, {"normals": True}, {"k": 1, "n": 4}):
         with pytest.raises(ValueError, match="model: expected lines in 3-space for 'cylinder'"):
-            plan(Scene(lights=[]), model="cylinder", **options)
+            plan(Scene(lights=[], material=SHINY), model="cylinder", **options)

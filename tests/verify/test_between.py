@@ -7,6 +7,7 @@ import warnings
 import numpy as np
 import pytest
 import pyvista as pv
+from lamps import SHINY, shiny
 
 import vizlight
 from vizlight import Light, Material, Scene, View, engine, illuminate
@@ -18,7 +19,7 @@ from vizlight.verify.between import Between, Places
 from vizlight.verify.report import Run, unseen
 
 LIGHT, EYE = np.array([0.7, 0.6, 0.38]), np.array([0.1, 0.3, 0.9])
-SCENE = Scene(lights=Light(direction=LIGHT), view=View(direction=EYE))
+SCENE = Scene(lights=Light(direction=LIGHT), view=View(direction=EYE), material=SHINY)
 
 
 def unit(v):
@@ -95,7 +96,7 @@ def test_a_resolution_that_is_not_enough_is_named():
     normals = np.array([[0.0, 0, 1], [0, 0, 1], [0.1, 0, -1]])
     mesh = pv.PolyData(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), [3, 0, 1, 2])
     mesh["n"] = normals
-    scene = Scene(lights=Light(direction=(0, 0, 1)), view=View(direction=(0, 0, 1)))
+    scene = Scene(lights=Light(direction=(0, 0, 1)), view=View(direction=(0, 0, 1)), material=SHINY)
     found = report_of(lambda: illuminate(mesh, scene, normals="n", facing="as given"))
     assert found.runs[0].finer is None
     assert "cells 1/128 as long would not do; refine=1/255 leaves" in str(found)
@@ -147,7 +148,7 @@ def test_lines_surfaces_and_volumes_have_an_error_and_clouds_have_none():
 
 
 def test_what_is_not_measured_is_named():
-    scene = Scene(lights=Light(direction=(1, 2, 3)), view=View(direction=(0, 0, 1)))
+    scene = Scene(lights=Light(direction=(1, 2, 3)), view=View(direction=(0, 0, 1)), material=SHINY)
     told = report_of(lambda: vizlight.relief_shadow(pv.Sphere(), scene, lit=True))
     words = "not measured between points: cast shadows"
     assert str(told).count(words) == len(told.runs) == 2
@@ -156,7 +157,7 @@ def test_what_is_not_measured_is_named():
     told = report_of(lambda: illuminate(ball, scene, tangents=pair))
     assert told.runs[0].places
     assert "not measured between points: the peaks of highlights" in str(told)
-    dull = scene.replace(material=vizlight.Material(specular=0))
+    dull = scene.replace(material=shiny(specular=0))
     between = "not measured between points"
     assert between not in str(report_of(lambda: illuminate(ball, dull, tangents=pair)))
     told = str(report_of(lambda: illuminate(ball, scene)))

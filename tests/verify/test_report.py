@@ -8,6 +8,7 @@ import numpy as np
 import oracles
 import pytest
 import pyvista as pv
+from lamps import SHINY, shiny
 
 import vizlight
 from vizlight import (
@@ -37,6 +38,7 @@ SCENE = Scene(
     lights=[Light(direction=(1, 1, 1)), Light(position=(2, 3, 4), attenuation=(1, 0.1, 0.01))],
     view=View(position=(5, 4, 6)),
     depth_cue=DepthCue(back_scale=0.5, smooth=True),
+    material=SHINY,
 )
 PLAIN = SCENE.replace(depth_cue=None)
 
@@ -57,7 +59,11 @@ def torus():
     return vizlight.manifold(manifolds.torus(1.5, 0.75, resolution=24))
 
 
-SCENE_4 = Scene(lights=Light(direction=(0.7, 0.6, 0.38, 0)), view=View(direction=(0, -1, 0.5, 0)))
+SCENE_4 = Scene(
+    lights=Light(direction=(0.7, 0.6, 0.38, 0)),
+    view=View(direction=(0, -1, 0.5, 0)),
+    material=SHINY,
+)
 SUN = PLAIN.replace(lights=Light(direction=(1, 0.5, 1)))
 FILTERS = {
     "surface": lambda s: illuminate(s, SCENE),
@@ -150,7 +156,7 @@ def test_points_of_a_lit_shadow_count_once():
 @pytest.mark.parametrize("specular", [0.0, 0.4])
 @pytest.mark.parametrize("what", [Sphere(), Sphere() - Frustum(axis=(0, 0, 4)), pv.Sphere()])
 def test_bands_are_one_run(what, specular, levels):
-    material = Material(diffuse=0.5, specular=specular, color="tomato")
+    material = shiny(diffuse=0.5, specular=specular, color="tomato")
     scene = Scene(
         lights=Light(direction=(1, 1, 1)), view=View(direction=(0, 0, 1)), material=material
     )
@@ -166,7 +172,7 @@ def test_bands_are_one_run(what, specular, levels):
 def test_colours_are_checked_too(surface, monkeypatch):
     scene = PLAIN.replace(
         lights=[Light(direction=(1, 1, 1), color="gold"), Light(position=(9, 8, 7))],
-        material=Material(color="tomato", specular_color=(0.2, 1, 0.5)),
+        material=shiny(color="tomato", specular_color=(0.2, 1, 0.5)),
         depth_cue=DepthCue(back_scale=0.3, color="navy", cue=0.4),
         ambient_color="green",
     )
@@ -310,9 +316,7 @@ def test_command_line(tmp_path, monkeypatch, capfd):
 def test_light_above_one_is_counted():
     sphere = pv.Sphere(theta_resolution=40, phi_resolution=40)
     bright = SCENE.replace(material=Material(ambient=0.4, diffuse=0.7, specular=0.4))
-    red = SCENE.replace(
-        material=Material(ambient=0.3, specular=0), lights=Light(direction=(1, 0, 0))
-    )
+    red = SCENE.replace(material=shiny(ambient=0.3, specular=0), lights=Light(direction=(1, 0, 0)))
     with vizlight.report() as found:
         lit = illuminate(sphere, bright)
         illuminate(sphere, red)

@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 import pyvista as pv
 import real_paraview
+from lamps import SHINY, shiny
 from PIL import Image
 from scipy.spatial import cKDTree
 
 import vizlight
-from vizlight import Light, Material, Scene, View, cli
+from vizlight import Light, Scene, View, cli
 
 SIZE = 240
 CAMERAS = ([30, 15, 13.5], [-10, 30, 25])
@@ -102,7 +103,7 @@ def test_light_is_that_of_vizlight_and_follows_the_eye(tmp_path, files):
     assert "offered None Normals V\n" in said, said
     assert "Light, direction: expected a direction of non-zero length" in said
     far, eye = Light(direction=(1, 0.9, 0.5)), View(direction=(0.3, 0.4, 1))
-    orange = Material(specular=0.3, color=(1, 0.5, 0))
+    orange = shiny(specular=0.3, color=(1, 0.5, 0))
     scenes = {
         "flow": (
             Scene(lights=far, view=eye, material=orange),
@@ -111,11 +112,11 @@ def test_light_is_that_of_vizlight_and_follows_the_eye(tmp_path, files):
         "near": (
             Scene(
                 lights=Light(position=(1, 0.9, 0.5)), view=View(position=(0.3, 0.4, 1)),
-                material=Material(shininess=9),
+                material=shiny(shininess=9),
             ),
             {"model": "blinn"},
         ),
-        "head": (Scene(lights=Light.headlight(), view=eye), {}),
+        "head": (Scene(lights=Light.headlight(), view=eye, material=SHINY), {}),
     }  # fmt: skip
     for name, (scene, options) in scenes.items():
         found = pv.read(tmp_path / f"{name}.vtp")
@@ -130,7 +131,7 @@ def test_light_is_that_of_vizlight_and_follows_the_eye(tmp_path, files):
     assert len(places) == len(CAMERAS)
     for i, place in enumerate(places):
         position, focal = np.reshape([float(x) for x in place.split()], (2, 3)).tolist()
-        scene = Scene(lights=far, view=View(position=position))
+        scene = Scene(lights=far, view=View(position=position), material=SHINY)
         mine = vizlight.illuminate(surface, scene, tangents="V", conditioned=True, facing="eye")
         plotter = pv.Plotter(off_screen=True, window_size=[SIZE, SIZE])
         plotter.background_color = "black"
