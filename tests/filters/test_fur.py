@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 import vtk
-from lamps import SHINY, SHOULDER, shiny
+from lamps import HEADLIT, SHINY, SHOULDER, shiny
 
 import vizlight
 from studies import fur as study

@@ -6,6 +6,7 @@ import banded
 import numpy as np
 import pytest
 import pyvista as pv
+from lamps import shiny
 
 import vizlight
 from studies import fur
@@ -13,7 +14,7 @@ from vizlight import Block, Frustum, Light, Material, Scene, Sphere, View, isolu
 
 TOWARD = np.array([1.0, -0.6, 0.8]) / np.linalg.norm([1.0, -0.6, 0.8])
 EYE = np.array([0.2, -1, 0.5]) / np.linalg.norm([0.2, -1, 0.5])
-DULL = Scene(lights=Light(direction=TOWARD), material=Material(diffuse=0.8, specular=0))
+DULL = Scene(lights=Light(direction=TOWARD), material=shiny(diffuse=0.8, specular=0))
 SHINY = Scene(
     lights=Light(direction=TOWARD),
     view=View(direction=EYE),
@@ -66,7 +67,7 @@ def test_a_shiny_sphere_is_right_everywhere(levels, random):
 
 def test_closed_forms_and_halved_edges_agree():
     """A dull sphere and truncus have closed forms; with the least highlight they do not."""
-    nearly = DULL.replace(material=Material(diffuse=0.8, specular=1e-12), view=View(direction=EYE))
+    nearly = DULL.replace(material=shiny(diffuse=0.8, specular=1e-12), view=View(direction=EYE))
     levels = [0.2, 0.4, 0.6, 0.8]
     for solid in (Sphere(), Frustum(radii=(0.2, 0.6)), Frustum(radii=(0, 0.6))):
         closed, general = (isoluminance(solid, scene, levels=levels) for scene in (DULL, nearly))
@@ -120,7 +121,7 @@ def test_solids_with_several_lights(random):
 
 def test_a_sharp_highlight_is_not_missed():
     """It is far smaller than the triangles that the search begins with."""
-    scene = SHINY.replace(material=Material(diffuse=0.5, specular=0.4, shininess=3000))
+    scene = SHINY.replace(material=shiny(diffuse=0.5, specular=0.4, shininess=3000))
     found = isoluminance(Sphere(), scene, levels=8)["bands"]
     peak = np.max(exact_sharp(np.asarray(found.points), 3000))
     half = (TOWARD + EYE) / np.linalg.norm(TOWARD + EYE)
@@ -375,13 +376,15 @@ def test_picture_of_bands(verify_image_cache):
 
 @pytest.mark.parametrize("color", [None, "tomato"])
 def test_nothing_of_a_solid_is_left(color):
-    scene = Scene(lights=Light(direction=(0, 0, 1)), material=Material(specular=0, color=color))
+    scene = Scene(lights=Light(direction=(0, 0, 1)), material=shiny(specular=0, color=color))
     nothing = isoluminance(Sphere() - Sphere(radius=2), scene)
     assert [block.n_cells for block in nothing] == [0, 0]
 
 
 def test_progress_is_shown_on_standard_error(capsys):
-    scene = Scene(lights=Light(direction=(1, 1, 1)), view=View(direction=(1, 0, 0.3)))
+    scene = Scene(
+        lights=Light(direction=(1, 1, 1)), view=View(direction=(1, 0, 0.3)), material=shiny()
+    )
     vizlight.isoluminance(pv.Sphere(), scene, progress_bar=True)
     shown = capsys.readouterr()
     assert "contours" in shown.err
@@ -395,9 +398,7 @@ def test_a_box_has_one_band_per_face(grid):
     cube.clear_data()
     cube = cube.clean()
     mesh = pv.ImageData(dimensions=(2, 2, 2)) if grid else cube
-    scene = vizlight.Scene(
-        lights=vizlight.Light(direction=(1, 2, 3)), material=vizlight.Material(specular=0)
-    )
+    scene = vizlight.Scene(lights=vizlight.Light(direction=(1, 2, 3)), material=shiny(specular=0))
     for angle in (30, "auto"):
         bands = vizlight.isoluminance(mesh, scene, levels=[0.2, 0.35, 0.5], feature_angle=angle)[
             "bands"
@@ -417,7 +418,7 @@ def test_point_data_are_carried_onto_bands(tangents):
     ball["label"] = np.arange(ball.n_points)
     ball["way"] = np.cross(ball.points, [0.3, 0.1, 1.0])
     before = ball.copy()
-    scene = Scene(lights=Light(direction=(1, 0, 0.5)), material=Material(specular=0))
+    scene = Scene(lights=Light(direction=(1, 0, 0.5)), material=shiny(specular=0))
     bands = isoluminance(ball, scene, levels=6, tangents=tangents)["bands"]
     # Positions are interpolated like the points themselves.
     np.testing.assert_allclose(bands["place"], bands.points, atol=1e-6)

@@ -274,7 +274,7 @@ def test_without_a_scene_the_light_is_that_of_the_plotter(plotter):
         lit["rgb"] = np.clip(lit["rgb"], 0, 1)
         np.testing.assert_array_equal(picture(plotter), baked(lit, plotter.camera, "rgb"))
     before = picture(plotter)
-    actor.prop.specular = 0.0
+    actor.prop.specular, actor.prop.diffuse = 0.0, 0.9
     assert np.abs(picture(plotter) - before).max() > 10
     plotter.remove_all_lights()
     assert picture(plotter).max() <= 1

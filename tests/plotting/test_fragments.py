@@ -316,7 +316,8 @@ def strands():
 
 FALLBACKS = {
     "2 tangents per point": (
-        lambda: manifolds_mesh("after"), Scene(lights=FAR, material=SHINY), {"tangents": "projected_frame"}
+        lambda: manifolds_mesh("after"), Scene(lights=FAR, material=SHINY),
+        {"tangents": "projected_frame"},
     ),
     "4-space": (
         lambda: manifolds_mesh("before"), Scene(lights=FAR, material=SHINY),
@@ -324,7 +325,9 @@ FALLBACKS = {
     ),
     "cylinder": (helix, Scene(lights=FAR, material=SHINY), {"model": "cylinder"}),
     "sign is arbitrary": (reversing, Scene(lights=FAR, material=SHINY), {"tangents": "around"}),
-    "spheres and tubes": (torus, Scene(lights=FAR, material=SHINY), {"render_lines_as_tubes": True}),
+    "spheres and tubes": (
+        torus, Scene(lights=FAR, material=SHINY), {"render_lines_as_tubes": True}
+    ),
     "alone can be round": (
         strands, Scene(lights=FAR, material=SHINY),
         {"render_lines_as_tubes": True, "line_width": 3, "conditioned": True},

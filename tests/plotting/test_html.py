@@ -66,13 +66,17 @@ def winding():
 AWAY = (5e6, -5e6, 2e6)
 CASES = {
     "lines": (winding, Scene(lights=FAR, material=SHINY), {}),
-    "conditioned lines": (winding, Scene(lights=FAR, material=SHINY), {"conditioned": True, "normals": "n"}),
+    "conditioned lines": (
+        winding, Scene(lights=FAR, material=SHINY), {"conditioned": True, "normals": "n"}
+    ),
     "surface with a field": (
-        torus, Scene(lights=FAR, material=SHINY), {"tangents": "around", "conditioned": True, "normals": "n"}
+        torus, Scene(lights=FAR, material=SHINY),
+        {"tangents": "around", "conditioned": True, "normals": "n"},
     ),
     "compensated with colours": (torus, Scene(lights=FAR, material=SHINY), {"tangents": "around"}),
     "two lights, one near, in fog": (
-        torus, Scene(lights=[FAR, NEAR], depth_cue=CUE, ambient_color=(0.7, 0.8, 1), material=SHINY),
+        torus,
+        Scene(lights=[FAR, NEAR], depth_cue=CUE, ambient_color=(0.7, 0.8, 1), material=SHINY),
         {"normals": "n", "model": "blinn"},
     ),
     "far from the origin": (

@@ -255,9 +255,11 @@ def is_light_kit(lights: Iterable[vtkLight], /) -> bool:
 
 
 def _kind(light: vtkLight) -> tuple[float, ...]:
+    """Return what a light is, in numbers; a headlight is at the eye wherever it was put last."""
+    place = () if light.LightTypeIsHeadlight() else (*light.GetPosition(), *light.GetFocalPoint())
     numbers = (
         light.GetLightType(), light.GetSwitch(), light.GetPositional(), light.GetIntensity(),
-        *light.GetPosition(), *light.GetFocalPoint(), *light.GetDiffuseColor(),
+        *light.GetDiffuseColor(), *place,
     )  # fmt: skip
     # PyVista keeps colours as bytes.
     return tuple(round(float(x), 2) for x in numbers)
