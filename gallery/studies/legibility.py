@@ -96,21 +96,25 @@ def _white() -> Scene:
     return Scene(lights=lamps, material=Material(ambient=0.08, diffuse=0.92, specular=0.0))
 
 
-def _shoulder() -> Scene:
-    """Return a white lamp over the shoulder and one at the eye, with a highlight."""
-    lamps = [
-        Light(direction=(-0.6, 0.6, 1), follows_view=True, intensity=0.78),
-        Light.headlight(intensity=0.32),
-    ]
-    return Scene(lights=lamps, material=Material(ambient=0.12, diffuse=0.6, specular=0.2))
+def _eye() -> Scene:
+    """Return a white lamp at the eye, with a highlight."""
+    material = Material(ambient=0.1, diffuse=0.5, specular=0.4)
+    return Scene(lights=Light.headlight(), material=material)
+
+
+def _highlight() -> Scene:
+    """Return the lamps of the default scene with a highlight."""
+    return Scene(material=Material(ambient=0.12, diffuse=0.6, specular=0.2))
 
 
 LIGHTS: dict[str, Callable[[], Scene]] = {
-    "Scene()": Scene,
-    "white shoulder and eye": _shoulder,
+    "default with a highlight": _highlight,
+    "white lamp at the eye": _eye,
     "three white lamps": _white,
     **{f"presets.{name}": make for name, make in PRESETS.items()},
 }
+#: Name of the light of a scene that names none.
+DEFAULT = "presets.value"
 
 
 class Place(NamedTuple):
@@ -235,7 +239,7 @@ def _row(
 
 
 def lights(places: Iterable[Place], noise: float = NOISE) -> list[Row]:
-    """Return the error of each question under each light, beside that under ``Scene()``."""
+    """Return the error of each question under each light, beside that under the default."""
     found = []
     every = list(places)
     for question in ERRORS:
@@ -251,7 +255,7 @@ def lights(places: Iterable[Place], noise: float = NOISE) -> list[Row]:
                 grays.append(gray)
             way = name if noise == NOISE else f"{name}, noise {255 * noise:g}/255"
             if pairs:
-                found.append(_row(way, question, "Scene()", pairs, float(np.mean(grays))))
+                found.append(_row(way, question, DEFAULT, pairs, float(np.mean(grays))))
     return found
 
 
@@ -274,7 +278,7 @@ def option(name: str, places: Iterable[Place], samples: int) -> list[Row]:
             continue  # the others are asked of a surface without tangents
         asked = [place for place in every if question in questions(place)]
         asked = [place for place in asked if chosen.lines in (None, place.lines)]
-        for light in (f"presets.{BEST[question]}", "Scene()"):
+        for light in dict.fromkeys((f"presets.{BEST[question]}", DEFAULT)):
             pairs, grays = [], []
             for place in asked:
                 scene = LIGHTS[light]().replace(view=place.view)
@@ -321,11 +325,11 @@ def verdict(rows: Sequence[Row]) -> str:
         parts += [f"{question} {words(row.cost)} to {words(row.error)}" for row in own]
     gains: dict[str, bool] = {}
     for row in rows:
-        if row.way in OPTIONS and row.more["beside"] != "Scene()":
+        if row.way in OPTIONS and row.more["beside"] == f"presets.{BEST[str(row.parameter)]}":
             gain = float(row.more["mean gain"]) > LEAST[str(row.parameter)]
             gains[row.way] = gains.get(row.way, False) or gain
     never = [name for name, gained in gains.items() if not gained]
-    text = f"from Scene() to the preset: {', '.join(parts)}"
+    text = f"from the default to the preset: {', '.join(parts)}"
     return text + (f"; beside the presets no gain in the mean: {', '.join(never)}" if never else "")
 
 

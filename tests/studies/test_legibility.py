@@ -34,7 +34,7 @@ def test_presets_are_better_than_the_default_where_they_are_asked(places):
         row = rows[f"presets.{legibility.BEST[question]}", question]
         assert row.error < 0.5 * row.cost, question
         assert row.more["gains on"] == "1 of 1"
-    same = rows["Scene()", "slope"]
+    same = rows[legibility.DEFAULT, "slope"]
     assert same.error == same.cost
     assert same.more["best gain"] == 0
 
@@ -42,9 +42,8 @@ def test_presets_are_better_than_the_default_where_they_are_asked(places):
 def test_an_option_is_compared_with_the_light_that_it_changes(places):
     rows = legibility.option("specular=0", places, 64)
     for row in rows:
-        if row.more["beside"] != "Scene()":
-            # The presets have no highlight.
-            assert row.error == row.cost
+        # Neither the presets nor the default have a highlight.
+        assert row.error == row.cost
     assert {row.parameter for row in rows} == set(legibility.ERRORS)
     shadowed = legibility.option("conditioned=True", places, 64)
     assert {row.parameter for row in shadowed} == {"direction", "key"}
@@ -58,10 +57,10 @@ def test_the_verdict_follows_from_the_rows():
         Row("presets.shape", "shape", 3.0, 30.0, more),
         Row("exponent=2", "shape", 3.0, 3.0, more),
         Row("exponent=1", "shape", 3.0, 3.0, more),
-        Row("exponent=1", "slope", 1.0, 3.0, more | {"mean gain": 2.0}),
-        Row("color", "slope", 1.0, 3.0, {"mean gain": 2.0, "beside": "Scene()"}),
+        Row("exponent=1", "slope", 1.0, 3.0, {"mean gain": 2.0, "beside": "presets.slope"}),
+        Row("color", "slope", 1.0, 3.0, {"mean gain": 2.0, "beside": legibility.DEFAULT}),
     ]
     assert legibility.verdict(rows) == (
-        "from Scene() to the preset: shape 30 to 3; beside the presets no gain in the mean: "
+        "from the default to the preset: shape 30 to 3; beside the presets no gain in the mean: "
         "exponent=2"
     )
