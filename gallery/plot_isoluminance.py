@@ -21,7 +21,9 @@ far = Light(direction=(0.8, -1, 1.1))
 dull = Scene(lights=far, material=Material(ambient=0.1, diffuse=0.9, specular=0))
 camera = render.camera_on((-1, 1, -1, 1, -1, 1), (0.5, -1, 0.6), zoom=1.2)
 shiny = Scene(
-    lights=far, view=View.from_camera(camera), material=Material(diffuse=0.5, specular=0.4)
+    lights=far,
+    view=View.from_camera(camera),
+    material=Material(ambient=0.1, diffuse=0.5, specular=0.4),
 )
 near = dull.replace(lights=Light(position=(1.0, -1.2, 0.6)))
 

@@ -12,6 +12,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight import Light, Scene, View
+from vizlight.filters.fur import MATERIAL
 
 SCENE = Scene(lights=Light(direction=(0, 0, 1)), view=View(direction=(0, 0, 1)))
 
@@ -55,7 +56,8 @@ def test_without_a_scene_there_is_the_default_one(name, options):
     mesh = pv.Sphere()
     mesh["V"] = np.cross(mesh.points, (0, 0, 1.0)) + 1e-3
     found = getattr(mesh.vizlight, name)(**options)
-    expected = getattr(vizlight, name)(mesh, Scene(), **options)
+    default = Scene(material=MATERIAL) if name == "fur" else Scene()
+    expected = getattr(vizlight, name)(mesh, default, **options)
     for one, other in zip(*map(blocks_of, (found, expected)), strict=True):
         np.testing.assert_array_equal(one.active_scalars, other.active_scalars)
 

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import pyvista as pv
+from lamps import SHINY
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View, render, testing
@@ -41,6 +42,10 @@ def ball(**options):
     mesh["Normals"] = np.array(mesh.points)
     mesh.point_data.active_normals_name = "Normals"
     return mesh
+
+
+def lit_from(toward, camera):
+    return Scene(lights=Light(direction=toward), view=View.from_camera(camera), material=SHINY)
 
 
 def plot(panels, camera, **options):
@@ -112,7 +117,7 @@ def flow_lines(**options):
     scene = Scene(
         lights=Light(direction=options.pop("light", (1, 0.9, 0.5))),
         view=View.from_camera(camera),
-        material=options.pop("material", Material()),
+        material=options.pop("material", SHINY),
         depth_cue=options.pop("depth_cue", None),
     )
     seeds = flow.points[:: flow.n_points // 60]
@@ -140,7 +145,9 @@ def confined_streamlines():
     flow = vizlight.load_example()
     surface = flow.contour([400], scalars="Temp")
     camera = render.camera_on(flow.bounds, (1, 0.5, 0.3), zoom=1.9)
-    scene = Scene(lights=Light(direction=(1, 0.9, 0.5)), view=View.from_camera(camera))
+    scene = Scene(
+        lights=Light(direction=(1, 0.9, 0.5)), view=View.from_camera(camera), material=SHINY
+    )
     lines = vizlight.streamlines(
         flow, scene, vectors="V", surface=surface, confined=True, seeds=80, max_length=20
     )
@@ -150,7 +157,9 @@ def confined_streamlines():
 def fibres():
     bundle = vizlight.load_example("fibre_bundle.vtp")
     camera = render.camera_on(bundle.bounds, (0.3, -1, 0.4), zoom=1.5)
-    scene = Scene(lights=Light(direction=(-0.5, -1, 1)), view=View.from_camera(camera))
+    scene = Scene(
+        lights=Light(direction=(-0.5, -1, 1)), view=View.from_camera(camera), material=SHINY
+    )
     return plot(vizlight.illuminate(bundle, scene), camera, line_width=0.9)
 
 
@@ -160,7 +169,9 @@ def satin():
     normals = np.asarray(mesh.points)
     mesh["satin"] = np.array([0, 0, 1], dtype=np.float32) - normals[:, 2:] * normals
     camera = render.camera_on(mesh.bounds, (0.2, -1, 0.35))
-    scene = Scene(lights=Light(direction=(1, -1, 0.8)), view=View.from_camera(camera))
+    scene = Scene(
+        lights=Light(direction=(1, -1, 0.8)), view=View.from_camera(camera), material=SHINY
+    )
     lit = [
         vizlight.illuminate(mesh, scene, tangents="satin", conditioned=conditioned)
         for conditioned in (False, True)
@@ -186,9 +197,13 @@ def turning():
     torus = vizlight.manifold(manifolds.torus(1.5, 0.75, resolution=96))
     camera = render.camera_on((-3, 3, -2, 2, -1, 1), (0.3, -1, 0.8), zoom=1.4)
     four = Scene(
-        lights=Light(direction=(0.2, -0.8, 0.9, 0.3)), view=View(direction=(0.3, -1, 0.8, 0))
+        lights=Light(direction=(0.2, -0.8, 0.9, 0.3)),
+        view=View(direction=(0.3, -1, 0.8, 0)),
+        material=SHINY,
     )
-    three = Scene(lights=Light(direction=(0.2, -0.8, 0.9)), view=View.from_camera(camera))
+    three = Scene(
+        lights=Light(direction=(0.2, -0.8, 0.9)), view=View.from_camera(camera), material=SHINY
+    )
     panels = [
         vizlight.project(torus, rotation=("xw", a), distance=3.0, scene=scene, light=light)
         for light, scene in (("before", four), ("after", three))
@@ -200,7 +215,9 @@ def turning():
 def complex_curve():
     curve = manifolds.complex_curve(lambda z: z**3 / 3 - z / 2, resolution=120)
     scene = Scene(
-        lights=Light(direction=(-0.4, -0.9, 0.9, 0.4)), view=View(direction=(0.5, -1, 0.7, 0))
+        lights=Light(direction=(-0.4, -0.9, 0.9, 0.4)),
+        view=View(direction=(0.5, -1, 0.7, 0)),
+        material=SHINY,
     )
     lit = vizlight.manifold(curve, scene=scene, rotation=("xw", 1.0))
     camera = render.camera_on(lit.bounds, (0.5, -1, 0.7), zoom=1.0)
@@ -214,7 +231,9 @@ def field_in_4_space():
     frame = np.asarray(torus["frame"]).reshape(-1, 2, 4)
     torus["field"] = frame[:, 0] + frame[:, 1]
     scene = Scene(
-        lights=Light(direction=(0.5, -0.7, 0.6, 0.2)), view=View(direction=(0.3, -1, 0.8, 0))
+        lights=Light(direction=(0.5, -0.7, 0.6, 0.2)),
+        view=View(direction=(0.3, -1, 0.8, 0)),
+        material=SHINY,
     )
     lit = [
         vizlight.illuminate(

@@ -20,6 +20,8 @@ from typing import TYPE_CHECKING, Literal, NamedTuple, TypeVar
 
 import numpy as np
 
+from vizlight.scene import Material
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
@@ -27,6 +29,8 @@ if TYPE_CHECKING:
 Axis = Literal["parameter", "error", "cost"]
 Key = TypeVar("Key")
 
+#: Material with every term of the light, whose errors are measured where none other is named.
+SHINY = Material(ambient=0.1, diffuse=0.5, specular=0.4)
 #: One pixel value of a picture of 8 bits, an error that is not visible.
 PIXEL = 1 / 255
 #: Ratio of costs below which one is clearly lower than the other, in spite of timing noise.

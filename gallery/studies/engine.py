@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from studies import PIXEL, Row, Study, cheapest, note_spread, peak_memory, words
+from studies import PIXEL, SHINY, Row, Study, cheapest, note_spread, peak_memory, words
 from vizlight import _compiled
 from vizlight.model import brightness
 from vizlight.scene import Light, Scene, View
@@ -28,7 +28,9 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array
 
-SCENE = Scene(lights=Light(position=(4.0, 5.0, 6.0)), view=View(position=(0.0, 1.0, 9.0)))
+SCENE = Scene(
+    lights=Light(position=(4.0, 5.0, 6.0)), view=View(position=(0.0, 1.0, 9.0)), material=SHINY
+)
 KINDS: dict[str, type[np.float32] | type[np.float64]] = {
     "float32": np.float32,
     "float64": np.float64,

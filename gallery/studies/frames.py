@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from studies import PIXEL, Row, Study, holding, order, take_turns, words
+from studies import PIXEL, SHINY, Row, Study, holding, order, take_turns, words
 from vizlight._types import Array, Numbers
 from vizlight.geometry.nspace import manifolds
 from vizlight.geometry.nspace.parametric import CENTRAL_STEP
@@ -27,7 +27,9 @@ if TYPE_CHECKING:
 R1, R2 = 1.5, 0.75
 DOMAIN = [(0.0, 2 * np.pi)] * 2
 SCENE = Scene(
-    lights=Light(direction=(0.7, 0.6, 0.38, 0.2)), view=View(direction=(0.1, 0.3, 0.9, -0.2))
+    lights=Light(direction=(0.7, 0.6, 0.38, 0.2)),
+    view=View(direction=(0.1, 0.3, 0.9, -0.2)),
+    material=SHINY,
 )
 #: Default step of the differences, and steps that are measured, as fractions of the domain.
 DEFAULT = float(f"{CENTRAL_STEP:.2g}")

@@ -15,6 +15,7 @@ compensated exponent is not exact anywhere.
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
@@ -22,9 +23,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
-from studies import Curve, Panel, Row, Study, cheapest, take_turns, words
+from studies import SHINY, Curve, Panel, Row, Study, cheapest, take_turns, words
 from vizlight.model import brightness, cylinder, highlights, reflection
-from vizlight.scene import Light, Material, Scene, View
+from vizlight.scene import Light, Scene, View
 from vizlight.shading import engine
 
 if TYPE_CHECKING:
@@ -173,7 +174,7 @@ def _costs(repeats: int, count: int = 200_000) -> dict[str, tuple[float, float]]
     scene = Scene(
         lights=Light(position=(4.0, 5.0, 6.0)),
         view=View(position=(0.0, 1.0, 9.0)),
-        material=Material(shininess=SHININESS),
+        material=dataclasses.replace(SHINY, shininess=SHININESS),
     )
 
     light = partial(engine.shade, points, tangents, scene, threads=1)

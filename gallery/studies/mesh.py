@@ -8,14 +8,15 @@ kink, the order is 1.
 
 from __future__ import annotations
 
+import dataclasses
 from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from studies import PIXEL, Row, Study, holding, order, span, take_turns, words
+from studies import PIXEL, SHINY, Row, Study, holding, order, span, take_turns, words
 from vizlight.geometry.nspace import manifolds
-from vizlight.scene import Light, Material, Scene, View
+from vizlight.scene import Light, Scene, View
 from vizlight.shading import engine
 
 if TYPE_CHECKING:
@@ -53,7 +54,7 @@ def scene(n: int, shininess: float) -> Scene:
     return Scene(
         lights=Light(direction=(0.7, 0.6, 0.38, 0.2)[:n]),
         view=View(direction=(0.1, 0.3, 0.9, -0.2)[:n]),
-        material=Material(shininess=shininess),
+        material=dataclasses.replace(SHINY, shininess=shininess),
     )
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
-from studies import PIXEL, Curve, Panel, Row, Study, peak_memory, span, take_turns, words
+from studies import PIXEL, SHINY, Curve, Panel, Row, Study, peak_memory, span, take_turns, words
 from vizlight.filters.project import project
 from vizlight.scene import Light, Scene, View
 from vizlight.shading import engine
@@ -27,7 +27,8 @@ def cost(k: int, n: int, count: int = 500_000, repeats: int = 3) -> list[Row]:
     """Return one row for each operation, for one k and n."""
     random = np.random.default_rng(0)
     points, tangents = random.standard_normal((count, n)), random.standard_normal((count, k, n))
-    scene = Scene(lights=Light(direction=np.arange(1.0, n + 1)), view=View(position=np.ones(n)))
+    lamp, view = Light(direction=np.arange(1.0, n + 1)), View(position=np.ones(n))
+    scene = Scene(lights=lamp, view=view, material=SHINY)
     mesh = pv.PointSet(points[:, :3].copy())
     mesh.point_data["position"], mesh.point_data["frame"] = points, tangents.reshape(count, -1)
     matrix = np.linalg.qr(random.standard_normal((n, n)))[0]

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import pyvista as pv
 
-from studies import PIXEL, Curve, Row, Study, span, words
+from studies import PIXEL, SHINY, Curve, Row, Study, span, words
 from vizlight import data
 from vizlight.filters.refine import refine
 from vizlight.mesh import splitting
@@ -31,7 +31,9 @@ if TYPE_CHECKING:
 
     from vizlight._types import Indices
 
-SCENE = Scene(lights=Light(direction=(0.7, 0.6, 0.38)), view=View(direction=(0.1, 0.3, 0.9)))
+SCENE = Scene(
+    lights=Light(direction=(0.7, 0.6, 0.38)), view=View(direction=(0.1, 0.3, 0.9)), material=SHINY
+)
 #: Number of random places at which errors are measured.
 PLACES = 4096
 #: Numbers of equal parts of each side, and errors allowed.

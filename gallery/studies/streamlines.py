@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
-from studies import Curve, Panel, Row, Study, holding, order, take_turns, words
+from studies import SHINY, Curve, Panel, Row, Study, holding, order, take_turns, words
 from vizlight.filters.streamlines import streamlines
 from vizlight.scene import Light, Scene, View
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 #: Largest drift allowed, relative to the radius, and step of the tracer for varied cell sizes.
 ALLOWED, FINE = 1e-3, 0.1
-SCENE = Scene(lights=Light(direction=(1, 1, 1)), view=View(direction=(0, 0, 1)))
+SCENE = Scene(lights=Light(direction=(1, 1, 1)), view=View(direction=(0, 0, 1)), material=SHINY)
 #: Radii at which lines start, some cells from the centre and within the grid.
 RADII, HEIGHT = (0.3, 0.5, 0.7), 0.4
 STEP, CELL, SPHERE = "rigid rotation, step", "swirl, cell size", "sphere, cell size"

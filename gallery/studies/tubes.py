@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from studies import PIXEL, Row, Study, cheapest, holding, lines, take_turns, words
+from studies import PIXEL, SHINY, Row, Study, cheapest, holding, lines, take_turns, words
 from vizlight.data import load_example
 from vizlight.filters.illuminate import illuminate
 from vizlight.filters.streamlines import streamlines
 from vizlight.model import cylinder
 from vizlight.pictures import render
-from vizlight.scene import Light, Material, Scene, View
+from vizlight.scene import Light, Scene, View
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -26,15 +26,14 @@ if TYPE_CHECKING:
     import pyvista as pv
 
 SIDES = (4, 6, 8, 10, 12, 14, 16, 18, 20)
-MATERIAL = Material()
 
 
 def shape_error(sides: int, count: int = 5000) -> float:
-    """Return the RMS error of the luminance of a tube with the default material."""
+    """Return the RMS error of the luminance of a tube with a shiny material."""
     wi, wo, t = lines.directions(count, headlight=False)
-    diffuse, specular = lines.tube(wi, wo, t, sides, shininess=MATERIAL.shininess)
-    error = MATERIAL.diffuse * (diffuse - cylinder.diffuse(wi, wo, t)) + MATERIAL.specular * (
-        specular - cylinder.specular(wi, wo, t, shininess=MATERIAL.shininess)
+    diffuse, specular = lines.tube(wi, wo, t, sides, shininess=SHINY.shininess)
+    error = SHINY.diffuse * (diffuse - cylinder.diffuse(wi, wo, t)) + SHINY.specular * (
+        specular - cylinder.specular(wi, wo, t, shininess=SHINY.shininess)
     )
     return float(np.sqrt(np.mean(error * error)))
 
@@ -43,7 +42,8 @@ def measure(seeds: int = 300, repeats: int = 5) -> tuple[list[Row], list[pv.Poly
     """Return the rows of the study, the meshes and the camera."""
     flow = load_example()
     camera = render.camera_on(flow.bounds, (1, 0.5, 0.3))
-    scene = Scene(lights=Light(direction=(1, 0.9, 0.5)), view=View.from_camera(camera))
+    lamp = Light(direction=(1, 0.9, 0.5))
+    scene = Scene(lights=lamp, view=View.from_camera(camera), material=SHINY)
     bare = streamlines(flow, scene, vectors="V", seeds=seeds)
     bare.clear_data()
     radius = float(flow.length) / 800

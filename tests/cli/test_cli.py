@@ -155,6 +155,8 @@ def test_more_options(volume, capfd):
         "--parallel",
         "--model",
         "blinn",
+        "--specular",
+        "0.2",
         "--explain",
         "--precision",
         "float64",

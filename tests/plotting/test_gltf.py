@@ -102,7 +102,7 @@ def test_a_lit_mesh_is_written_by_its_record_and_colours_of_data_count(tmp_path)
 
 
 def test_what_depends_on_the_eye_is_fixed_and_said_to_be(tmp_path):
-    with pytest.warns(UserWarning, match=r"lit.glb: .*; the headlight as from the scene's view"):
+    with pytest.warns(UserWarning, match=r"lit.glb: .*; the headlight and the light that follows"):
         path = vizlight.save_gltf(pv.Sphere(), Scene(), tmp_path / "lit.glb")
     assert "the headlight" in content(path)[0]["asset"]["extras"]["light"]
 
