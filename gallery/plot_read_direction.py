@@ -9,9 +9,9 @@ on the screen at every place: find it on the disc in the corner. Where hue chang
 meet.
 
 The meter below the script says how well it can be read: an ideal observer is wrong by more than 10
-degrees on 1 % of the picture, and a reader with the disc by 2.5 degrees in the median. Under one
-white lamp it is 45 % and 45 degrees, which is chance. White places run toward the eye or away from
-it. Which of two opposite ways the wind blows is not told: lines have no sense.
+degrees on 1 % of the picture, and a reader with the disc by 2.5 degrees in the median. Under the
+white light of ``Scene()`` it is 45 % and 46 degrees, which is chance. White places run toward the
+eye or away from it. Which of two opposite ways the wind blows is not told: lines have no sense.
 """
 
 import pyvista as pv
@@ -39,7 +39,7 @@ plotter.enable_anti_aliasing("msaa")
 plotter.show(auto_close=False)
 
 # %%
-# What can be read in the light on the right, and in a white lamp at the eye:
+# What can be read in the light on the right, and in the default light, which is white:
 
 for light in (scene, vizlight.Scene()):
     print(vizlight.legibility(wind, light, tangents="wind", exponent=2, view=plotter.camera))
