@@ -27,7 +27,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING, Generic, ParamSpec, TypeVar
 
-from vizlight import _check
+from vizlight import _cache, _check
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -47,6 +47,8 @@ IMPORT, PREPARE, READ, COMPILE = 0.2, 0.28, 0.02, 1.2
 #: Share of the time to compile that one process must win back, as the disk keeps the result. With a
 #: half, a call of which the kernel saves so much takes at most twice the time of NumPy.
 SHARED = 1 / 2
+#: Folder of compiled code among those of what is kept.
+KERNELS = "kernels"
 #: What a damaged file of the cache raises when numba reads it.
 _DAMAGED = (pickle.UnpicklingError, EOFError, ValueError, LookupError, AttributeError, ImportError)
 #: What the import of numba raises beside other releases of NumPy or without its own libraries.
@@ -107,7 +109,7 @@ def status() -> str:
     reason = why_not()
     if reason:
         return f"off: {reason}"
-    folder = cache_folder()
+    folder = _cache.folder(KERNELS)
     kept = f"kept in {folder}" if folder else "compiled anew in each process: no folder to keep it"
     when = "always" if wanted() == "1" else "where it pays"
     return f"on ({when}), by numba {version('numba')}, {kept}"
@@ -175,31 +177,6 @@ def _missing() -> str:
     if release < OLDEST:
         return f"numba {found} is older than {OLDEST[0]}.{OLDEST[1]} (try: {remedy})"
     return ""
-
-
-def cache_folder() -> Path | None:
-    """Return the user's folder for compiled code, or None where none can be written.
-
-    It is ``vizlight/kernels`` in ``$XDG_CACHE_HOME``, or in the system's folder for caches.
-    """
-    home = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA", "")
-    if not home:
-        own = "Library/Caches" if sys.platform == "darwin" else ".cache"
-        home = str(Path.home() / own)
-    return _writable(Path(home, "vizlight", "kernels"))
-
-
-@lru_cache(maxsize=512)
-def _writable(folder: Path) -> Path | None:
-    """Return the folder, made if it was not there; None if no file can be written to it."""
-    if not folder.is_absolute():
-        return None
-    try:
-        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            return folder
-    except OSError:
-        return None
 
 
 class Kernel(Generic[P, R]):
@@ -383,10 +360,9 @@ class Kernel(Generic[P, R]):
 
     def _folder(self) -> Path | None:
         """Return the folder of this function's code as it stands, or None where none is kept."""
-        home = cache_folder()
-        if home is None or not Path(self.function.__code__.co_filename).is_file():
+        if not Path(self.function.__code__.co_filename).is_file():
             return None
-        return _writable(home / _key(self._sources()))
+        return _cache.folder(KERNELS, _key(self._sources()))
 
     def _sources(self) -> tuple[str, ...]:
         """Return the texts of which the code is made: its own file and those of its helpers."""
@@ -448,7 +424,7 @@ def generated(text: str, names: Mapping[str, object], stem: str) -> dict[str, ob
         Names of the text and their values. The file is written where a folder can be written; it
         is never read, but numba keeps no code of a function without one.
     """
-    home = cache_folder()
+    home = _cache.folder(KERNELS)
     path = Path(f"<{stem}>")
     if home is not None:
         path = home / f"{stem}_{hashlib.sha256(text.encode()).hexdigest()[:16]}.py"

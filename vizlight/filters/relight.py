@@ -11,10 +11,6 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.filters import lighting
-from vizlight.filters.fur import FurOptions, fur
-from vizlight.filters.project import ProjectOptions
-from vizlight.filters.relief_shadow import ReliefOptions, relief_shadow
-from vizlight.filters.streamlines import OWN_TANGENTS, TANGENTS
 from vizlight.mesh import blocks, bundles, records
 from vizlight.mesh.inputs import part_of
 from vizlight.mesh.nspace import PROJECTED
@@ -230,6 +226,8 @@ def _own(kind: type, options: Mapping[str, Any]) -> dict[str, Any]:
 
 def _of_lines(mesh: pv.DataSet, options: dict[str, Any]) -> LightOptions:
     """Return the options of streamlines: beside a surface their normals condition the light."""
+    from vizlight.filters.streamlines import OWN_TANGENTS, TANGENTS
+
     beside = "Normals" in mesh.point_data
     light = _own(LightOptions, options)
     if light.get("conditioned") is None:
@@ -245,6 +243,8 @@ def _of_lines(mesh: pv.DataSet, options: dict[str, Any]) -> LightOptions:
 
 def _of_projection(mesh: pv.DataSet, options: dict[str, Any]) -> LightOptions:  # noqa: ARG001
     """Return the options of light in n-space before a projection, or in 3-space after it."""
+    from vizlight.filters.project import ProjectOptions
+
     kept = {name: value for name, value in options.items() if name not in ("rotation", "cut")}
     asked = ProjectOptions(**_own(ProjectOptions, kept))
     before = asked.light == "before"
@@ -254,6 +254,8 @@ def _of_projection(mesh: pv.DataSet, options: dict[str, Any]) -> LightOptions:  
 
 def _of_relief(mesh: pv.DataSet, options: dict[str, Any], scene: Scene) -> Source:
     """Return the source of light with a cos-theta shadow, which is cast again."""
+    from vizlight.filters.relief_shadow import ReliefOptions, relief_shadow
+
     kept = {name: value for name, value in options.items() if name != "occluders" or value}
     made = ReliefOptions(**_own(ReliefOptions, kept) | {"lit": True, "components": False})
     arguments = {field.name: getattr(made, field.name) for field in dataclasses.fields(made)}
@@ -282,6 +284,8 @@ def _of_fur(
     mesh: pv.DataSet | pv.MultiBlock, options: Mapping[str, Any], scene: Scene
 ) -> list[Source]:
     """Return the sources of fibres and skin, which grow again."""
+    from vizlight.filters.fur import FurOptions, fur
+
     _refuse_described("fur", options)
     if not isinstance(mesh, pv.MultiBlock) or {"fibres", "skin"} - set(mesh.keys()):
         expected, remedy = "the fibres and the skin of fur", "pass the MultiBlock that fur returned"

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import hashlib
 import os
+import platform
 import subprocess
 import sys
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal, cast, get_args
 
-from vizlight import _check
+from vizlight import _cache, _check
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -26,6 +29,16 @@ _INSTALL: dict[str, str] = {
     "osmesa": "apt-get install -y libosmesa6",
 }
 
+#: What decides which libraries and devices there are: variables, and files that change with them.
+_VARIABLES = (
+    "CUDA_", "DISPLAY", "EGL", "GALLIUM", "GBM", "LD_", "LIBGL", "MESA", "NVIDIA", "VTK", "WAYLAND",
+    "__EGL", "__GL",
+)  # fmt: skip
+_PLACES = (
+    "/etc/ld.so.cache", "/dev/dri", "/dev/nvidiactl", "/etc/glvnd/egl_vendor.d",
+    "/usr/share/glvnd/egl_vendor.d", "/usr/lib/x86_64-linux-gnu/dri",
+    "/usr/lib/aarch64-linux-gnu/dri", "/usr/lib64/dri",
+)  # fmt: skip
 # VTK ends the process if the library is missing, so the probe runs in a process of its own.
 _PROBE = """
 import vtkmodules.vtkRenderingOpenGL2
@@ -77,6 +90,36 @@ def probe(backend: Backend) -> Probe:
     if found.works and _class_of(found) != _WINDOWS[backend]:
         return Probe(backend, works=False, detail=f"not available ({remedy})")
     return found
+
+
+def _drew_before(backend: Backend) -> bool:
+    """Return whether a backend is known to draw, or does so now; what draws is kept in a file."""
+    folder = _cache.folder("windows")
+    kept = None if folder is None else folder / _setting(backend)
+    if kept is not None and kept.exists():
+        return True
+    works = probe(backend).works
+    if works and kept is not None:
+        # Without the file it is found out again.
+        with contextlib.suppress(OSError):
+            kept.touch()
+    return works
+
+
+def _setting(backend: str) -> str:
+    """Return a name for all on which it depends whether a backend draws."""
+    from vtkmodules.vtkCommonCore import vtkVersion
+
+    facts = [
+        backend, vtkVersion.GetVTKVersionFull(), _PROBE,
+        sys.executable, sys.version, platform.node(),
+    ]  # fmt: skip
+    facts += [f"{k}={v}" for k, v in sorted(os.environ.items()) if k.startswith(_VARIABLES)]
+    for path in _PLACES:
+        with contextlib.suppress(OSError):
+            found = Path(path).stat()
+            facts.append(f"{path} {found.st_mtime_ns} {found.st_size}")
+    return hashlib.sha256("\0".join(facts).encode()).hexdigest()[:32]
 
 
 def _class_of(found: Probe) -> str:
@@ -143,7 +186,7 @@ def choose_backend(backend: Backend | None = None) -> Backend | None:
         return None
     candidates: tuple[Backend, ...] = ("egl", "osmesa") if backend is None else (backend,)
     for name in candidates:
-        if probe(name).works:
+        if _drew_before(name):
             return name
     remedy = " or ".join(f"{_INSTALL[name]} ({name.upper()})" for name in candidates)
     raise BackendError(f"no picture: no OpenGL library can draw here; as root: {remedy}")

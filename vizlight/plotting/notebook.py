@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import sys
 import weakref
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
 
 #: Backends that draw in the browser, or may: there nothing computes the light.
 DRAWN_BY_THE_BROWSER = ("client", "html", "trame")
+#: Component of a plotter for notebooks.
+TRAME = "trame"
 #: Methods of a plotter, and of its component ``trame``, that write scenes for other renderers.
 EXPORTS = ("export_html", "export_vtksz", "export_gltf", "export_obj", "export_vrml")
 
@@ -95,12 +98,31 @@ class _Export:
         return getattr(type(owner), self.name)(owner, *arguments, **options)
 
 
+class _Component:
+    """The component ``trame`` of a plotter, which is imported when something of it is asked for."""
+
+    def __init__(self, plotter: pv.BasePlotter) -> None:
+        self._plotter = weakref.ref(plotter)
+
+    def __getattr__(self, name: str) -> object:
+        plotter = self._plotter()
+        if plotter is None:
+            raise AttributeError(name)
+        vars(plotter).pop(TRAME, None)
+        _guard(plotter, getattr(plotter, TRAME))
+        return getattr(getattr(plotter, TRAME), name)
+
+
 def guard_exports(plotter: pv.BasePlotter) -> None:
     """Let the methods of a plotter that export its scene know of live light."""
-    owners: list[Any] = [plotter]
-    if importlib.util.find_spec("trame_pyvista") is not None:
-        owners.append(getattr(plotter, "trame", plotter))
-    for owner in owners:
-        for name in EXPORTS:
-            if callable(getattr(owner, name, None)) and name not in vars(owner):
-                setattr(owner, name, _Export(plotter, owner, name))
+    _guard(plotter, plotter)
+    if "trame_pyvista" in sys.modules:
+        _guard(plotter, getattr(plotter, TRAME))
+    elif importlib.util.find_spec("trame_pyvista") is not None:
+        vars(plotter).setdefault(TRAME, _Component(plotter))
+
+
+def _guard(plotter: pv.BasePlotter, owner: Any) -> None:
+    for name in EXPORTS:
+        if callable(getattr(owner, name, None)) and name not in vars(owner):
+            setattr(owner, name, _Export(plotter, owner, name))

@@ -1,0 +1,34 @@
+"""The user's folder for what is found out once: compiled code, and what draws on this machine."""
+
+from __future__ import annotations
+
+import os
+import sys
+import tempfile
+from functools import lru_cache
+from pathlib import Path
+
+
+def folder(*parts: str) -> Path | None:
+    """Return a folder for what is kept, made if it was not there, or None where none can be.
+
+    It is in ``vizlight`` in ``$XDG_CACHE_HOME``, or in the system's folder for caches.
+    """
+    home = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA", "")
+    if not home:
+        own = "Library/Caches" if sys.platform == "darwin" else ".cache"
+        home = str(Path.home() / own)
+    return _writable(Path(home, "vizlight", *parts))
+
+
+@lru_cache(maxsize=512)
+def _writable(path: Path) -> Path | None:
+    """Return a folder, made if it was not there; None if no file can be written to it."""
+    if not path.is_absolute():
+        return None
+    try:
+        path.mkdir(mode=0o700, parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=path):
+            return path
+    except OSError:
+        return None
