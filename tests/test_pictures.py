@@ -49,7 +49,8 @@ def lit_from(toward, camera):
 
 
 def plot(panels, camera, **options):
-    return render.make_plotter(panels, camera=camera, **{"size": SIZE, **options})
+    options = {"size": SIZE, "anti_aliasing": "ssaa", **options}
+    return render.make_plotter(panels, camera=camera, **options)
 
 
 def grid(lit, columns, light="auto", **options):

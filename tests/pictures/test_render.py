@@ -194,7 +194,10 @@ def test_bad_input(tmp_path):
     for options, words in (
         ({"clim": (0, 1, 2)}, "clim: expected a lower and a higher number"),
         ({"cmap": "greyish"}, "cmap: expected the name of a colour map, got 'greyish'"),
-        ({"anti_aliasing": "best"}, "anti_aliasing: expected 'ssaa', 'msaa', 'fxaa' or None"),
+        (
+            {"anti_aliasing": "best"},
+            "anti_aliasing: expected 'auto', 'ssaa', 'msaa', 'fxaa'",
+        ),
         ({"size": (np.nan, 5)}, "size: expected finite components"),
     ):
         with pytest.raises(ValueError, match=words):
@@ -346,7 +349,8 @@ def test_picture_of_the_flow(verify_image_cache):
         render.Panel(lit, "surface_light", "lit as a surface"),
         render.Panel(lit, "flow_light", "lit by the flow"),
     ]
-    render.make_plotter(panels, camera=camera, size=(600, 300)).show()
+    options = {"size": (600, 300), "anti_aliasing": "ssaa"}
+    render.make_plotter(panels, camera=camera, **options).show()
 
 
 def test_picture_of_a_coloured_ball(verify_image_cache):
@@ -470,3 +474,34 @@ def test_holes_of_a_height_field_are_grey(tmp_path):
             shown, tmp_path / "a.png", scalars=name, camera=camera, size=(200, 200)
         )
         np.testing.assert_array_equal(pixels(path)[90:110, 90:110], 128)
+
+
+def test_lines_are_supersampled_and_surfaces_multisampled():
+    surface, line = ball()[0], pv.Spline(np.random.default_rng(3).random((5, 3)), 50)
+    lit = vizlight.illuminate(line)
+    for panels, expected in ((surface, False), (lit, True), ([surface, lit], True)):
+        plotter = render.make_plotter(panels, size=(40, 40))
+        drawn = plotter.renderers[0].GetPass()
+        supersampled = drawn is not None and drawn.IsA("vtkSSAAPass")
+        together = isinstance(panels, list) and pv.vtk_version_info < (9, 7)
+        assert supersampled is (expected and not together)
+        plotter.close()
+
+
+def test_what_draws_is_found_out_once_for_each_setting(monkeypatch, tmp_path):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.delenv("VTK_DEFAULT_OPENGL_WINDOW", raising=False)
+    asked = []
+    answer = backends.Probe("egl", works=True, detail="")
+    monkeypatch.setattr(backends, "probe", lambda name: asked.append(name) or answer)
+    assert [backends.choose_backend("egl") for _ in range(3)] == ["egl"] * 3
+    assert asked == ["egl"]
+    monkeypatch.setenv("LD_LIBRARY_PATH", str(tmp_path))
+    backends.choose_backend("egl")
+    assert asked == ["egl"] * 2
+    answer = backends.Probe("egl", works=False, detail="")
+    monkeypatch.setenv("LD_LIBRARY_PATH", str(tmp_path / "other"))
+    for _ in range(2):
+        with pytest.raises(backends.BackendError):
+            backends.choose_backend("egl")
+    assert asked == ["egl"] * 4

@@ -10,7 +10,6 @@ import scipy
 
 from vizlight import _check
 from vizlight._version import __version__
-from vizlight.geometry.solids import triangle_mesh
 from vizlight.mesh import hull, normals, point_arrays, records
 from vizlight.model import kernels
 from vizlight.reading import polylines
@@ -201,6 +200,8 @@ class Cells:
             ])  # fmt: skip
             owner = np.tile(np.arange(len(rows)), 2)
         else:
+            from vizlight.geometry.solids import triangle_mesh
+
             made, owner = triangle_mesh.split(old, middles)
         # One part takes the place of the old one, the others stand at the end.
         _, first = np.unique(owner, return_index=True)

@@ -20,7 +20,6 @@ from vizlight.scene.light import NO_ATTENUATION, WHITE
 from vizlight.shading.arrays import SMALLEST_HELD, Output, shade_block
 from vizlight.shading.elementary import HELPERS
 from vizlight.shading.form import BITS, Form, LightForm
-from vizlight.shading.writer import write
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -31,6 +30,7 @@ if TYPE_CHECKING:
     from vizlight.scene import Light
     from vizlight.shading.inputs import ArraySource, ShadingInputs
     from vizlight.shading.plan import Highlight, Plan
+    from vizlight.shading.writer import Text
 
 #: Number of points of which a multiple fills all vectors of a processor, in unrolled loops too.
 LANES = 64
@@ -226,7 +226,14 @@ def _kernel(form: Form) -> _compiled.Kernel[..., None]:
 
 def _functions(form: Form, sqrt: Callable[[float], float]) -> dict[str, object]:
     """Return the functions of a kernel's text, with a square root that keeps the type."""
-    return _compiled.generated(write(form).source, {"sqrt": sqrt}, "light")
+    return _compiled.generated(_written(form).source, {"sqrt": sqrt}, "light")
+
+
+def _written(form: Form) -> Text:
+    """Return the text of a kernel; what writes it is imported where compiled code pays."""
+    from vizlight.shading.writer import write
+
+    return write(form)
 
 
 def _type(source: ArraySource | None, plan: Plan) -> str:
@@ -304,7 +311,7 @@ def _given(
         table = cells.astype(plan.dtype).ravel()
         values["cells"], values["per_cell"] = cells.shape[1], inverse
         values["end_on"] = cylinder_kernels.round_mean(plan.highlights[0].shininess)
-    text = write(form)
+    text = _written(form)
     # One number at least, so that the arrays have a type.
     numbers = np.array([values[name] for name in text.numbers] or [0], plan.dtype)
     wide = np.array([values[name] for name in text.wide] or [0], np.float64)
