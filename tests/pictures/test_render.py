@@ -484,7 +484,7 @@ def test_lines_are_supersampled_and_surfaces_multisampled():
         drawn = plotter.renderers[0].GetPass()
         supersampled = drawn is not None and drawn.IsA("vtkSSAAPass")
         together = isinstance(panels, list) and pv.vtk_version_info < (9, 7)
-        assert supersampled is (expected and not together)
+        assert bool(supersampled) is (expected and not together)
         plotter.close()
 
 
