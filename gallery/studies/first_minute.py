@@ -198,7 +198,7 @@ def steps(quick: bool) -> list[Callable[[], Iterable[Row]]]:
     sizes = SIZES[:1] if quick else SIZES
     return [
         partial(starts, 2 if quick else 3),
-        *(partial(picture, size, 1 if quick else 2) for size in sizes),
+        *(partial(picture, size, 3 if size < 1e5 else 1) for size in sizes),
         partial(calls, 40_000 if quick else 400_000),
         compiled,
         partial(memory, 160),

@@ -109,7 +109,11 @@ def builder(
         camera = look.camera(mesh)
         progress = {"progress_bar": True} if common.out.progress else {}
         scene = look.scene(camera)
-        lit = Step("lit", "vizlight.illuminate", mesh, scene, **given, **progress)
+        source, place = mesh, {}
+        if not asked.refine:
+            # The lit mesh shares the arrays of the file.
+            source, place = Step("", ".copy", mesh, deep=False), {"inplace": True}
+        lit = Step("lit", "vizlight.illuminate", source, scene, **given, **place, **progress)
         made = Job(lit, asked.name, look, camera, suffix=".vtp" if taken or asked.refine else "")
         made.before = None if asked.refine else mesh
         made.tint(scenes.tinted(lit, asked.name, data, color), color)
