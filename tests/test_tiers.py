@@ -18,6 +18,7 @@ TIERS = [
     {
         "_check",
         "_colors",
+        "_cache",
         "_compiled",
         "_console",
         "_pool",

@@ -113,14 +113,14 @@ def test_a_wrong_formula_is_found(name, old, new, cases, monkeypatch):
     ],
 )
 def test_a_wrong_statement_of_a_loop_is_found(old, new, cases, monkeypatch):
-    right = compiled.write
+    right = compiled._written
 
     def broken(form):
         text = right(form)
         head, loop = text.source.split("    for i in range", 1)
         return text._replace(source=f"{head}    for i in range{loop.replace(old, new, 1)}")
 
-    monkeypatch.setattr(compiled, "write", broken)
+    monkeypatch.setattr(compiled, "_written", broken)
     assert worst_of(cases, differential.by_text) > 1
 
 
