@@ -8,10 +8,11 @@ colours are equally bright (``vizlight.presets.direction``). Hue is the directio
 on the screen at every place: find it on the disc in the corner. Where hue changes at once, winds
 meet.
 
-The meter below the script says how well it can be read: an ideal observer is wrong by more than 10
-degrees on 1 % of the picture, and a reader with the disc by 2.5 degrees in the median. Under the
-white light of ``Scene()`` it is 45 % and 46 degrees, which is chance. White places run toward the
-eye or away from it. Which of two opposite ways the wind blows is not told: lines have no sense.
+The meter below the script says how well it can be read: an ideal observer is wrong by more than
+10 degrees on less than 1 % of the picture, and a reader with the disc by 2.5 degrees in the
+median. Under the white light of ``Scene()`` it is 45 % and 46 degrees, which is chance. White
+places run toward the eye or away from it. Which of two opposite ways the wind blows is not told:
+lines have no sense.
 """
 
 import pyvista as pv

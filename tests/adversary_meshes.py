@@ -229,6 +229,7 @@ CALLS = {
     "scene.material.Material.to_property": dict,
     **{f"scene.presets.{name}": dict for name in PRESETS},
     "filters.key.key": lambda: {"scene": presets.shape()},
+    "filters.key.key_picture": lambda: {"scene": presets.shape()},
     "scene.scene.Scene": lambda: {"lights": Light(direction=UP), "view": View(direction=UP)},
     "scene.scene.Scene.from_dict": lambda: {"values": SCENE.to_dict()},
     "scene.scene.Scene.from_plotter": lambda: {"plotter": plotter()},

@@ -190,6 +190,16 @@ def no_light_tells_no_slope():
     near(slope.mutual_information(*_steepness(lines(Light.headlight(), DARK), NOISE)), 0, 0.03)
 
 
+@case
+def few_places_tell_no_slope_either():
+    dark = lines(Light.headlight(), DARK)
+    found = []
+    for start in range(0, len(dark) - 256, 256):
+        some = dark.take(slice(start, start + 256))
+        found.append(slope.mutual_information(*_steepness(some, NOISE)))
+    near(np.mean(found), 0, 0.05)
+
+
 def _ball(material):
     """Return places of a ball that three lamps at right angles reach, and the light of those."""
     ways = np.linalg.qr(np.random.default_rng(6).normal(size=(3, 3)))[0]
@@ -202,6 +212,17 @@ def _ball(material):
         for way, name in zip(ways, ("red", "lime", "blue"), strict=True)
     ]
     return places(scene_of(lamps, material), normals=normals)
+
+
+@case
+def of_a_dark_ball_the_eye_is_the_best_guess():
+    random = np.random.default_rng(7)
+    radius, angle = np.sqrt(random.uniform(size=4000)), random.uniform(0, 2 * np.pi, 4000)
+    height = np.sqrt(1 - radius**2)
+    normals = np.stack([radius * np.cos(angle), radius * np.sin(angle), height], axis=1)
+    found = shape.ideal(places(scene_of([], DARK), normals=normals), random, NOISE)
+    near(np.median(found.error), 45, 2)
+    near(found.bits.mean(), 0, 1e-9)
 
 
 @case

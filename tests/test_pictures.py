@@ -44,10 +44,6 @@ def ball(**options):
     return mesh
 
 
-def lit_from(toward, camera):
-    return Scene(lights=Light(direction=toward), view=View.from_camera(camera), material=SHINY)
-
-
 def plot(panels, camera, **options):
     options = {"size": SIZE, "anti_aliasing": "ssaa", **options}
     return render.make_plotter(panels, camera=camera, **options)

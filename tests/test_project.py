@@ -45,6 +45,7 @@ REASONS = {
     "scipy-stubs": "types of SciPy, which mypy reads",
     "sphinx-design": "extension of Sphinx, named in gallery/pages/conf.py",
     "twine": "command",
+    "vulture": "command",
     "uv": "command: installs the lowest versions",
     "tomli": "read above on Python 3.10 only",
 }

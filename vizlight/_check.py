@@ -266,7 +266,7 @@ def path(name: str, value: object) -> Path:
     if not isinstance(given, str):
         raise TypeError(message(name, expected, describe(value)))
     try:
-        # Bytes that are no characters of the locale are those of files all the same.
+        # Bytes that are no characters of the locale name files all the same.
         valid = "\0" not in os.fsencode(given).decode("latin-1")
     except UnicodeEncodeError:
         valid = False

@@ -1,4 +1,4 @@
-"""Colours by name, those of PyVista, from the table of VTK."""
+"""Colours by PyVista's names, from the table of VTK."""
 
 from __future__ import annotations
 

@@ -45,9 +45,9 @@ ROUNDING = frozenset({"contract", "arcp", "nsz"})
 #: 0.68. Other kernels state their own.
 IMPORT, PREPARE, READ, COMPILE = 0.2, 0.28, 0.02, 1.2
 #: Share of the time to compile that one process must win back, as the disk keeps the result. With a
-#: half, a call of which the kernel saves so much takes at most twice the time of NumPy.
+#: half, a call that the kernel saves so much takes at most twice the time of NumPy.
 SHARED = 1 / 2
-#: Folder of compiled code among those of what is kept.
+#: Folder of compiled code among the folders of what is kept.
 KERNELS = "kernels"
 #: What a damaged file of the cache raises when numba reads it.
 _DAMAGED = (pickle.UnpicklingError, EOFError, ValueError, LookupError, AttributeError, ImportError)
@@ -84,7 +84,7 @@ def wanted() -> str:
 
 @contextlib.contextmanager
 def setting(value: str) -> Iterator[None]:
-    """Take a value in place of that of VIZLIGHT_FAST while this context is entered."""
+    """Take a value in place of VIZLIGHT_FAST's while this context is entered."""
     token = _SETTING.set(value)
     try:
         yield
@@ -193,7 +193,7 @@ class Kernel(Generic[P, R]):
     rounding : set of str
         Changes of rounding that the compiler may make, such as ``ROUNDING``; none by default.
     uses : iterable of str
-        Text of sources, beside the function's own file, of which the code is made: the disk cache
+        Text of sources, beside the function's own file, that the code is made of: the disk cache
         forgets it when one of them changes.
     apart : bool
         Whether no array that the function writes overlaps another argument. Else a loop that looks
@@ -365,7 +365,7 @@ class Kernel(Generic[P, R]):
         return _cache.folder(KERNELS, _key(self._sources()))
 
     def _sources(self) -> tuple[str, ...]:
-        """Return the texts of which the code is made: its own file and those of its helpers."""
+        """Return the texts that make the code: its own file and its helpers' texts."""
         texts = [
             _text(self.function.__code__.co_filename),
             *self.uses,

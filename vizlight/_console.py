@@ -15,6 +15,6 @@ def console() -> Console:
     """Return a console as wide as the terminal, or ``WIDTH`` wide where there is no terminal."""
     from rich.console import Console
 
-    # Brackets in the text, such as those of an extra of a package, are not markup.
+    # Brackets in the text, as in an extra of a package, are not markup.
     own = Console(markup=False)
     return own if own.is_terminal else Console(width=WIDTH, markup=False)

@@ -28,7 +28,7 @@ __all__ = ["Doing", "end_with", "read_limit", "run", "stage"]
 
 Doing: TypeAlias = Literal["read", "write", "draw"]
 
-#: Exit codes, those of the command line: a machine that lacks something; bad input.
+#: Exit codes of the command line: a machine that lacks something; bad input.
 LACKING, BAD_INPUT = 1, 2
 #: Time that a file may take to be read, in seconds, and what each megabyte adds.
 READ_SECONDS, READ_SECONDS_PER_MB = 60.0, 1.0

@@ -37,7 +37,7 @@ def describe(value: object) -> str:
 
 
 def _is_array(value: object) -> bool:
-    """Return whether a value is an array, of which there is none before NumPy is loaded."""
+    """Return whether a value is an array; there is none before NumPy is loaded."""
     numpy = sys.modules.get("numpy")
     return numpy is not None and isinstance(value, numpy.ndarray)
 

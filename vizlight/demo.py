@@ -112,7 +112,7 @@ def _read(globe: pv.PolyData, scene: Scene, camera: pv.Camera) -> Direction:
 def save_picture(
     demo: Demo, path: Path, /, *, size: tuple[int, int], backend: Backend | None = None
 ) -> Path:
-    """Draw PyVista's picture of the winds beside that of the light, with its key.
+    """Draw PyVista's picture of the winds beside the lit one, with its key.
 
     Parameters
     ----------

@@ -147,7 +147,7 @@ def read(path: str | Path, /) -> pv.DataSet:
         raise _damaged(path, errors[0])
     if isinstance(found, pv.MultiBlock) and (names := _left_out(found, mesh)):
         _check.warn(
-            f"file: '{path}' has blocks whose cells are of a lower dimension than those of others, "
+            f"file: '{path}' has blocks whose cells are of a lower dimension than other blocks', "
             f"which are left out: {names}; light pyvista.read(...) to keep all blocks"
         )
     return mesh
@@ -357,7 +357,7 @@ def check_output(path: str | Path, /, formats: tuple[str, ...], *, name: str = "
 
 
 def check_format(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
-    """Return the path, if its extension is that of a format for this type of mesh.
+    """Return the path, if its extension belongs to a format for this type of mesh.
 
     Raises
     ------

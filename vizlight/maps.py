@@ -32,8 +32,8 @@ _EVEN = (
     "eb9768ea9767e99867e99866e89965e79965e69a64e69a63e59a63e49b62e39b61e29c61e19c60e19d5fe09d5fdf9e5e"
     "de9e5ddd9f5ddc9f5cdba05cdaa05bd8a15bd7a15ad6a259d5a259d4a359d2a358d1a458cfa457cea557cca657cba656"
 )
-#: Blue over rose to yellow, by the name ``"vizlight.even"`` also where PyVista or Matplotlib take
-#: a name. It is the map of data where none is named.
+#: Blue over rose to yellow; once this module is loaded, PyVista and Matplotlib know it by the name
+#: ``"vizlight.even"`` too. It is the map of data where none is named.
 even = ListedColormap(
     [f"#{_EVEN[i : i + 6]}" for i in range(0, len(_EVEN), 6)], name="vizlight.even"
 )

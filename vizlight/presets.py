@@ -10,10 +10,11 @@
 
 Their lamps turn with the eye, and options of filters keep their defaults, except that tangents on
 a surface need ``conditioned=True`` with ``shape`` and ``value``. :func:`key` draws what the colours
-mean; ``plotter.vizlight.add_key()`` puts it in a corner of the picture.
+mean, and :func:`key_picture` as an array of pixels; ``plotter.vizlight.add_key()`` puts it in a
+corner of the picture.
 """
 
-from vizlight.filters.key import key
+from vizlight.filters.key import key, key_picture
 from vizlight.scene.presets import direction, heading, shape, slope, value
 
-__all__ = ["direction", "heading", "key", "shape", "slope", "value"]
+__all__ = ["direction", "heading", "key", "key_picture", "shape", "slope", "value"]

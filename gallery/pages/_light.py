@@ -27,7 +27,7 @@ def lighten(text):
 
 
 def lighten_all(app, error):
-    """Rewrite the pages that were built, but for that of the search."""
+    """Rewrite the pages that were built, except the search page."""
     if error is None and app.builder.format == "html":
         for page in app.outdir.rglob("*.html"):
             if page.name != "search.html" and "_static" not in page.parts:

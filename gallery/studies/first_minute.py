@@ -197,8 +197,8 @@ def steps(quick: bool) -> list[Callable[[], Iterable[Row]]]:
     """Return the steps: quick, the smallest file alone."""
     sizes = SIZES[:1] if quick else SIZES
     return [
-        partial(starts, 2 if quick else 3),
-        *(partial(picture, size, 3 if size < 1e5 else 1) for size in sizes),
+        partial(starts, 2),
+        *(partial(picture, size, 2 if size < 2e6 else 1) for size in sizes),
         partial(calls, 40_000 if quick else 400_000),
         compiled,
         partial(memory, 160),

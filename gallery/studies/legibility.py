@@ -113,6 +113,8 @@ LIGHTS: dict[str, Callable[[], Scene]] = {
     "three white lamps": _white,
     **{f"presets.{name}": make for name, make in PRESETS.items()},
 }
+#: Number of places on lines for each on a surface: information is counted in classes.
+ON_LINES = 8
 #: Name of the light of a scene that names none.
 DEFAULT = "presets.value"
 
@@ -297,11 +299,11 @@ def option(name: str, places: Iterable[Place], samples: int) -> list[Row]:
 def steps(quick: bool) -> list[Callable[[], list[Row]]]:
     """Return the steps: lights at two noises, and each option."""
     names = ("nut", "childress") if quick else tuple(known())
-    count, samples = (1, 96) if quick else (2, 128)
+    count, samples = (1, 96) if quick else (2, 512)
 
     def places() -> list[Place]:
         return [
-            _place(name, (i + 4 * j) % len(VIEWS), samples)
+            _place(name, (i + 4 * j) % len(VIEWS), samples * (ON_LINES if name in LINES else 1))
             for i, name in enumerate(names)
             for j in range(count)
         ]

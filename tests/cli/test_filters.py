@@ -102,14 +102,43 @@ COMMANDS = {
     "project, lit after": "project torus.vtp --when after --view 0,-1,0.5 --color red",
     "for shape": "light flow.vti --contour r --tangents V --for shape",
     "for slope": "streamlines flow.vti --vectors V --seeds 9 --for slope --diffuse 0.5 --no-key",
+    "colours of cells": "light tract.vtp --scalars bundle --cmap viridis",
+    "relief for a question": "relief terrain.vti --for shape --elevation height",
     "for values": "light flow.vti --slice z:4 --scalars r --for value",
     "cut": "project torus.vtp --hyperplane 0,0,1,0.2:0.1",
 }
 
 
 @pytest.mark.opengl
+@pytest.mark.parametrize("missing", [False, True])
+def test_the_key_of_colours_names_what_they_are(missing, folder, capfd, monkeypatch):
+    terrain = pv.read("terrain.vti")
+    if missing:
+        terrain["height"][3] = np.nan
+    terrain["paint"] = np.zeros((terrain.n_points, 3), np.uint8)
+    terrain.save("terrain.vti")
+    made = []
+    key = vizlight.presets.key
+    monkeypatch.setattr(
+        vizlight.presets,
+        "key",
+        lambda *args, **options: made.append(key(*args, **options)) or made[-1],
+    )
+    for name in ("height", "paint"):
+        code, _, err = run(capfd, *f"light terrain.vti --scalars {name} -o a.png".split(), *SMALL)
+        assert code == 0, err
+    (mesh,) = made
+    low, title, high = mesh.field_data["words"]
+    assert title == ("height (grey: no data)" if missing else "height")
+    ends = np.nanmin(terrain["height"]), np.nanmax(terrain["height"])
+    assert (float(low), float(high)) == pytest.approx(ends, rel=1e-2)
+
+
+@pytest.mark.opengl
 @pytest.mark.parametrize("line", COMMANDS.values(), ids=COMMANDS)
 def test_the_printed_script_does_the_same(line, folder, tmp_path, monkeypatch, capfd):
+    # Code that is compiled between the two runs would round the second otherwise.
+    monkeypatch.setenv("VIZLIGHT_FAST", "0")
     Path("scene.json").write_text(json.dumps(SCENE))
     Path("view.json").write_text(json.dumps(SCENE | {"view": VIEW}))
     Path("camera.json").write_text(json.dumps([[30, -10, 20], [5, 5, 5], [0, 0, 1]]))
@@ -190,7 +219,7 @@ def test_help_has_groups_and_an_example_and_fits_a_screen(name, capfd, monkeypat
         out.index(f"─ {group} ─") for group in groups
     )
     assert f"Example: vizlight {name} " in out
-    assert len(out.splitlines()) <= 84
+    assert len(out.splitlines()) <= 85
 
 
 def test_the_first_clause_of_an_option():
@@ -306,7 +335,7 @@ def test_report_stands_in_the_script_too(folder, capfd):
     code, out, _ = run(capfd, *arguments)
     for text in (printed, out):
         assert "points" in text
-        assert "error" in text
+        assert "from samples along each ray" in text
 
 
 @pytest.mark.parametrize(
@@ -352,6 +381,16 @@ def test_report_stands_in_the_script_too(folder, capfd):
         (
             "light flow.vti --for shape --headlight",
             "--for: expected lights of its own, got --headl",
+        ),
+        ("light flow.vti --view 0,0,0", "--view: expected a direction x,y,z, not all zero"),
+        (
+            "light flow.vti --contour r --for direction",
+            "--for direction: expected --tangents with it where there are no lines",
+        ),
+        ("light flow.vti --for value", "--for value: expected --scalars with it, one of ['r', 'V'"),
+        (
+            "light flow.vti --contour r --scalars r --for shape",
+            "--for shape: expected no --scalars beside it",
         ),
         ("light flow.vti --view list.json", "--view: expected a JSON list of the camera's"),
         ("light flow.vti --view no.json", "--view: expected a JSON file"),

@@ -7,6 +7,9 @@ import sys
 
 import pytest
 import pyvista as pv
+from cyclopts import App
+
+from vizlight import cli
 
 #: Counts the reads of PyVista, runs a command, and prints the count and what is loaded.
 COUNTED = """
@@ -46,3 +49,17 @@ def test_a_picture_reads_its_file_once(ball):
     assert reads == 1
     assert not modules & {"vizlight.pieces.run", "numba", "scipy.optimize", "scipy.spatial"}
     assert "vizlight.plotting.component" in modules
+
+
+def test_help_reads_the_arguments_of_its_command_once(monkeypatch, capsys):
+    asked = []
+    assemble = App.assemble_argument_collection
+
+    def counted(app, **options):
+        asked.append(app.name)
+        return assemble(app, **options)
+
+    monkeypatch.setattr(App, "assemble_argument_collection", counted)
+    assert cli.main(["fur", "--help"]) == 0
+    assert "--density" in capsys.readouterr().out
+    assert asked == [("fur",)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import warnings
 
 import numpy as np
@@ -119,6 +120,25 @@ def test_a_line_gets_a_surface_contrast_unless_told_otherwise():
     )
     plain = illuminate(line, scene, tangents="T", exponent=1)
     np.testing.assert_allclose(plain["luminance"], 0.5**0.5, rtol=1e-12)
+
+
+def test_normals_of_points_that_float32_rounds_are_warned_of():
+    """The light itself holds there: with normals of their own nothing is lost."""
+    ball = pv.Sphere(theta_resolution=60, phi_resolution=60)
+    for offset, warned in ((1e3, False), (1e5, True)):
+        at = ball.copy()
+        at.points = at.points.astype(np.float32) + np.float32(offset)
+        lamp = Light(position=offset + np.array([1.5, 1, 2]))
+        scene = Scene(lights=lamp, material=Material(ambient=0.3, diffuse=0.7, specular=0))
+        given = illuminate(at, scene)["luminance"]
+        way = np.array(lamp.position) - np.asarray(at.points, float)
+        way /= np.linalg.norm(way, axis=1, keepdims=True)
+        cosine = np.einsum("ij,ij->i", way, np.asarray(ball["Normals"], float))
+        np.testing.assert_allclose(given, 0.3 + 0.7 * np.maximum(cosine, 0), atol=1e-6)
+        at.point_data.clear()
+        expected = pytest.warns(UserWarning, match="so far from the origin that they are rounded")
+        with expected if warned else contextlib.nullcontext():
+            illuminate(at, scene, facing="outward")
 
 
 def test_points_in_4_space():

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from lamps import shiny
+from scipy.spatial import cKDTree
 
 import vizlight
 from studies import fur
@@ -176,6 +177,23 @@ def test_the_error_on_a_mesh_falls_with_subdivision():
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     expected = 0.1 + 0.8 * np.maximum(normal[lines.lines[1::3]] @ TOWARD, 0)
     assert np.abs(expected - lines["luminance"]).max() < 1e-7
+
+
+def test_both_sides_of_an_open_surface_face_the_eye():
+    """Inside and outside of a bowl: each place has the light of the filter, to a step."""
+    bowl = sphere_mesh(60).clip("z", origin=(0, 0, 0.2)).clean()
+    bowl.point_data.clear()
+    view = View(direction=(1, 0.2, 0.9))
+    scene = Scene(view=view)
+    found = isoluminance(bowl, scene, levels=10)["bands"]
+    lit = vizlight.illuminate(bowl, scene)
+    middle = found.cell_centers().points
+    nearest = cKDTree(lit.points).query(middle)[1]
+    off = np.abs(found.cell_data["luminance"] - lit["luminance"][nearest])
+    area = found.compute_cell_sizes(length=False, volume=False)["Area"]
+    inside = np.einsum("ij,j->i", middle, view.direction) < 0
+    assert 0.2 < area[inside].sum() / area.sum() < 0.8
+    assert (area * (off < 0.15)).sum() > 0.95 * area.sum()
 
 
 def test_coarse_meshes_keep_the_allowed_error(random):

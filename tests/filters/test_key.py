@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import pyvista as pv
 from lamps import SHINY, shiny
 
 import vizlight
@@ -108,3 +109,32 @@ def test_bad_input():
         )
     dark = presets.key(Scene(lights=[], view=VIEW, material=SHINY))["rgb"]
     assert np.unique(dark).size == 1
+
+
+def test_the_bar_of_a_lookup_table_has_its_ends_and_a_title():
+    table = pv.LookupTable("viridis", scalar_range=(-1, 250))
+    bar = presets.key(presets.value(VIEW), cmap=table, title="m/s")
+    assert list(bar.field_data["words"]) == ["-1", "m/s", "250"]
+    np.testing.assert_allclose(found(bar, 1, BAR)[0], (253, 231, 37), atol=1)
+
+
+@pytest.mark.parametrize("question", ["direction", "slope", "shape"])
+def test_the_picture_of_a_key_is_its_mesh(question):
+    scene = getattr(presets, question)(VIEW)
+    mesh = presets.key(scene)
+    seen = presets.key_picture(scene, 64)
+    assert seen.shape[1:] == (64, 4)
+    tall = seen.shape[0]
+    inner = 0
+    for row in range(0, tall, 5):
+        for column in range(0, 64, 5):
+            x, y = (column + 0.5) / 32 - 1, (tall / 2 - row - 0.5) / 32
+            if seen[row, column, 3] == 255:
+                color, at = found(mesh, x, y)
+                assert np.hypot(at[0] - x, at[1] - y) < 0.08
+                assert np.abs(seen[row, column, :3] - color).max() <= 24
+                inner += 1
+            elif question == "shape":
+                assert np.hypot(x, y) > 0.95
+    assert inner > 20
+    assert (seen[tall // 2, 32, 3] == 0) == (question == "direction")

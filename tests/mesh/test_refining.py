@@ -237,7 +237,9 @@ def test_refined_lines_keep_their_tangents_until_they_are_moved():
 
 
 def test_signs_of_a_line_field_do_not_matter(random):
-    plain, signed = refine(arc(9), SCENE, tangents="t"), refine(arc(9, random), SCENE, tangents="t")
+    plain, signed = (
+        refine(arc(9, signs), SCENE, tangents="t", line_field=True) for signs in (None, random)
+    )
     assert plain.n_points == signed.n_points
     np.testing.assert_allclose(plain["luminance"], signed["luminance"], atol=1e-12)
     np.testing.assert_allclose(np.linalg.norm(signed["t"], axis=1), 1, atol=1e-12)
@@ -245,7 +247,7 @@ def test_signs_of_a_line_field_do_not_matter(random):
     field = unit(np.cross(sheet["normal"], [0.3, 0.2, 1.0]))
     for name, sign in (("a", 1), ("b", random.choice([-1, 1], len(field))[:, None])):
         sheet[name] = sign * field
-    a, b = (refine(sheet, SCENE, tangents=name) for name in "ab")
+    a, b = (refine(sheet, SCENE, tangents=name, line_field=True) for name in "ab")
     assert a.n_points == b.n_points
     np.testing.assert_allclose(a["luminance"], b["luminance"], atol=1e-9)
 
@@ -519,3 +521,155 @@ def test_points_at_distance_1_from_the_origin_stay_on_their_cells():
     np.testing.assert_allclose(np.linalg.norm(fine["normal"], axis=1), 1, atol=1e-6)
     named = refine(mesh, SCENE, normals="normal", positions="place", facing="as given")
     np.testing.assert_allclose(named["place"].sum(axis=1), 1, atol=1e-12)
+
+
+def reversed_once():
+    """Return a sheet with a flow, and the same sheet with the flow of one point turned round."""
+    mesh = pv.Plane(i_resolution=4, j_resolution=4).triangulate()
+    mesh.clear_data()
+    flow = np.tile([1.0, 0.2, 0.3], (mesh.n_points, 1))
+    flow[12] = -flow[12] + [0.0, 0.4, 0.0]
+    mesh["flow"] = flow
+    return mesh
+
+
+def test_a_flow_that_reverses_in_a_triangle_is_interpolated_as_vtk_does():
+    """By VTK's own probe of the vectors at places in the triangles."""
+    mesh = reversed_once()
+    random = np.random.default_rng(3)
+    probe = pv.PolyData(np.c_[random.uniform(-0.5, 0.5, (20_000, 2)), np.zeros(20_000)])
+    lit = illuminate(mesh, SCENE, tangents="flow")
+    seen = probe.sample(lit)
+    true = illuminate(probe, SCENE, tangents=np.asarray(seen["flow"]))["luminance"]
+    off = np.abs(true - seen["luminance"])
+    share, largest = np.mean(off > PIXEL), off.max()
+    assert share > 0.1
+    assert largest > 0.3
+    with vizlight.report() as found:
+        illuminate(mesh, SCENE, tangents="flow")
+    assert found.runs[0].visible == pytest.approx(share, abs=0.02)
+    assert found.runs[0].between == pytest.approx(largest, rel=0.1)
+    with vizlight.report() as found:
+        illuminate(mesh, SCENE, tangents="flow", line_field=True)
+    assert found.runs[0].between < largest / 5
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        fine = refine(mesh, SCENE, tangents="flow")
+    shown = probe.sample(fine)["luminance"]
+    assert np.mean(np.abs(true - shown) > PIXEL) < 0.01
+
+
+def test_opposite_vectors_in_one_triangle_meet_at_zero():
+    """The lines of the two are one line, so that nothing is split; as vectors they turn round."""
+    mesh = pv.PolyData(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), [3, 0, 1, 2])
+    mesh["t"] = np.array([[1.0, 0, 0], [-1, 0, 0], [0, 0.8, 0.6]])
+    shares = np.random.default_rng(1).dirichlet(np.ones(3), 4096)
+    true = line_light(unit(shares @ mesh["t"]), SCENE)
+    off = np.abs(true - shares @ illuminate(mesh, SCENE, tangents="t")["luminance"])
+    with vizlight.report() as found:
+        illuminate(mesh, SCENE, tangents="t")
+    assert found.runs[0].visible == pytest.approx(np.mean(off > PIXEL), abs=0.03)
+    assert found.runs[0].between == pytest.approx(off.max(), rel=0.1)
+    flat = mesh.copy()
+    flat["t"] = np.array([[1.0, 0, 0], [-1, 0, 0], [1, 0, 0]])
+    lines = refine(flat, SCENE, tangents="t", line_field=True)
+    assert lines.n_points == 3
+    assert lines.field_data["luminance_error"][0] < 1e-12
+
+
+def part_with_creases():
+    made = pv.Cylinder(radius=0.5, height=1, resolution=24).triangulate()
+    return made.compute_normals(feature_angle=30, split_vertices=True)
+
+
+def terrain():
+    x = np.linspace(0, 1, 40)
+    x, y = np.meshgrid(x, x, indexing="ij")
+    z = sum(np.sin(7 * k * (x * np.cos(k) + y * np.sin(k)) + k) / k / 20 for k in range(1, 9))
+    return pv.StructuredGrid(x, y, z).extract_surface(algorithm=None).triangulate()
+
+
+def torus_with_tangents():
+    made = pv.ParametricTorus(u_res=24, v_res=12, w_res=12).clean().triangulate()
+    made.clear_data()
+    x, y, z = np.asarray(made.points, dtype=np.float64).T
+    made["t"] = np.column_stack([-y, x, 0.4 * z])
+    return made
+
+
+def isosurface():
+    return vizlight.load_example().contour([600.0], scalars="Temp")
+
+
+def blob():
+    made = pv.Icosphere(radius=1, nsub=3)
+    made.clear_data()
+    x, y, z = np.asarray(made.points, dtype=np.float64).T
+    radius = 1 + 0.25 * np.sin(3 * x) * np.cos(4 * y) + 0.15 * np.sin(5 * z)
+    made.points = np.asarray(made.points) * radius[:, np.newaxis]
+    return made
+
+
+def opposite():
+    made = pv.PolyData(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), [3, 0, 1, 2])
+    made["t"] = np.array([[1.0, 0, 0], [-0.9, 0, 0], [0, 0.8, 0.6]])
+    return made
+
+
+def slivers():
+    """Return a ribbon under a highlight, narrower than any edge that is split, and a triangle."""
+    x = np.linspace(0, 1, 9)
+    ribbon = [np.column_stack([x, np.full(9, y), 0 * x]) for y in (0, 1e-4)]
+    faces = [[3, i, i + 1, i + 10, 3, i, i + 10, i + 9] for i in range(8)]
+    made = pv.PolyData(
+        np.vstack([*ribbon, [[0, 0.01, 0], [1, 0.01, 0], [0, 1.0, 0]]]),
+        np.hstack([*faces, [3, 18, 19, 20]]),
+    )
+    slant = np.concatenate([*2 * [np.linspace(-1.4, 1.4, 9)], np.zeros(3)])
+    made["n"] = np.column_stack([np.sin(slant), 0 * slant, np.cos(slant)])
+    return made
+
+
+#: Meshes, options, and bounds of the share of the places that are off and of the largest error in
+#: units of that allowed.
+STATED = {
+    "sphere": (ball, {}, 8e-4, 3),
+    "part": (part_with_creases, {"facing": "as given"}, 8e-4, 3),
+    "terrain": (terrain, {}, 8e-4, 3),
+    "torus": (torus_with_tangents, {"tangents": "t"}, 8e-4, 3),
+    "flow": (isosurface, {"tangents": "V"}, 8e-4, 3),
+    "blob": (blob, {}, 8e-4, 3),
+    "a rim": (isosurface, {}, 2e-3, 0.4 / PIXEL),
+    "opposite vectors": (opposite, {"tangents": "t"}, 5e-3, 0.7 / PIXEL),
+    "slivers": (slivers, {"normals": "n", "facing": "as given"}, 8e-4, 10),
+}
+
+
+@pytest.mark.parametrize("name", STATED)
+def test_the_share_of_the_places_within_the_error_is_the_one_stated(name, monkeypatch):
+    make, options, most, largest = STATED[name]
+    found = []
+    left = refining._Refinement.left
+
+    def measured(self):
+        told = left(self)
+        with monkeypatch.context() as patch:
+            patch.setattr(refining, "CHECKS", 100_000)
+            found.append(self._at_random()[1])
+        return told
+
+    monkeypatch.setattr(refining._Refinement, "left", measured)
+    fine = refine(make(), SCENE, **options)
+    (off,) = found
+    told, share = fine.field_data["luminance_error"]
+    assert np.mean(off > PIXEL) < most
+    assert off.max() < largest * PIXEL
+    if name in ("a rim", "opposite vectors", "slivers"):
+        assert off.max() > 5 * PIXEL
+    else:
+        assert share == 0
+        assert told <= PIXEL
+
+
+def test_a_share_of_places_that_is_missed_is_the_one_stated():
+    assert (1 - 8e-4) ** refining.CHECKS < 0.05

@@ -17,7 +17,7 @@ from vizlight import DepthCue, Light, Material, Scene, View
 from vizlight.geometry import manifolds
 from vizlight.geometry.lines import bundle
 from vizlight.plotting import component
-from vizlight.plotting.live import COLORS
+from vizlight.plotting.live import COLORS, LUMINANCE, scene_of
 from vizlight.shading.display import displayable
 
 pytestmark = pytest.mark.opengl
@@ -105,7 +105,7 @@ def test_light_at_points_is_that_of_the_filter(plotter, options):
 def test_open_surface_faces_each_new_camera(plotter):
     half = ball().clip(normal="x").extract_surface(algorithm=None)
     half.point_data.clear()
-    plotter.vizlight.add_mesh(half, scene=SCENE, light="points")
+    plotter.vizlight.add_mesh(half, scene=SCENE, light="points", feature_angle=None)
     for _ in turned(plotter, 4):
         lit = vizlight.illuminate(half, seen_by(plotter))
         np.testing.assert_array_equal(picture(plotter), baked(lit, plotter.camera))
@@ -488,6 +488,8 @@ def test_bad_arguments(plotter):
             add(mesh, scene=SCENE, **options)
     with pytest.raises(TypeError, match="linewidth"):
         add(mesh, scene=SCENE, linewidth=3)
+    with pytest.raises(TypeError, match=r"tangent: .* did you mean tangents=\?"):
+        plotter.vizlight.add_mesh(ball(), tangent="around")
     with pytest.raises(TypeError, match="scene: expected a vizlight.Scene"):
         add(mesh, scene="day")
     with pytest.raises(ValueError, match="scene: expected vectors of 3 components"):
@@ -588,6 +590,66 @@ def test_shares_of_light_inside_a_bundle_are_kept_when_the_eye_moves(plotter, mo
     lines.Modified()
     picture(plotter)
     assert len(asked) == 2
+
+
+DRAWN = {
+    "thin": {},
+    "wide": {"line_width": 4},
+    "tubes": {"line_width": 4, "render_lines_as_tubes": True},
+    "diameter": {"line_diameter": 0.05},
+}
+
+
+@pytest.mark.parametrize("drawn", DRAWN)
+@pytest.mark.parametrize("lights", ["kit", "none", "one", "two"])
+@pytest.mark.parametrize("model", ["phong", "cylinder"])
+def test_a_bundle_dims_the_lights_of_the_plotter_where_they_are_now(drawn, lights, model):
+    """Against the filter by the scene of the plotter, before and after everything has moved."""
+    plotter = pv.Plotter(
+        off_screen=True, window_size=(60, 60), lighting="light kit" if lights == "kit" else "none"
+    )
+    given = [pv.Light(position=(0, 3, 4), light_type="scene light") for _ in range(2)]
+    for lamp in given[: {"one": 1, "two": 2}.get(lights, 0)]:
+        plotter.add_light(lamp)
+    given[1].positional, given[1].position, given[1].cone_angle = True, (5, 3, 4), 90
+    points = np.random.default_rng(1).normal(size=(60, 3))
+    lines = pv.MultipleLines(points).compute_arc_length()
+    few = vizlight.Bundle(grid=16, directions=4)
+    actor = plotter.vizlight.add_mesh(lines, model=model, bundle=few, **DRAWN[drawn])
+
+    def check():
+        picture(plotter)
+        scene = scene_of(plotter.renderer, actor, model)
+        lit = vizlight.illuminate(lines, scene, model=model, bundle=few)
+        light = lit["rgb"] if "rgb" in lit.point_data else lit["luminance"][:, np.newaxis]
+        shown = np.asarray(actor.mapper.dataset.point_data[COLORS])
+        np.testing.assert_allclose(shown, displayable(light * np.ones(3)), atol=1e-6)
+
+    check()
+    plotter.camera.azimuth = 60
+    given[0].position = (4, -1, 0)
+    check()
+    lines.points[0] += 0.5
+    lines.Modified()
+    check()
+    plotter.add_light(pv.Light(position=(0, -3, 4), light_type="scene light"))
+    check()
+    plotter.close()
+
+
+def test_a_bundle_dims_the_lights_of_another_scene(plotter):
+    points = np.random.default_rng(1).normal(size=(60, 3))
+    lines = pv.MultipleLines(points)
+    few = vizlight.Bundle(grid=16, directions=4)
+    actor = plotter.vizlight.add_mesh(lines, scene=SCENE, bundle=few)
+    two = SCENE.replace(lights=[Light(direction=(1, 0, 1)), Light(direction=(0, 1, 1))])
+    plotter.vizlight.set_scene(actor, two)
+    picture(plotter)
+    scene = two.replace(view=vizlight.View.from_camera(plotter.camera))
+    lit = vizlight.illuminate(lines, scene, bundle=few)["luminance"]
+    name = COLORS if two.colored else LUMINANCE
+    shown = np.asarray(actor.mapper.dataset.point_data[name])
+    np.testing.assert_allclose(shown, lit, atol=1e-6)
 
 
 @pytest.mark.parametrize("light", ["points", "fragments"])

@@ -66,6 +66,23 @@ def test_the_key_of_the_live_light_has_its_exponent():
     assert (made["rgb"] != presets.key(presets.direction())["rgb"]).any()
 
 
+@pytest.mark.parametrize("valued", [True, False])
+def test_the_default_light_has_the_key_of_what_it_shows(valued):
+    ball = pv.Sphere()
+    ball["speed"] = np.linspace(2, 5, ball.n_points)
+    ball["speed"][7] = np.nan
+    plotter = pv.Plotter(off_screen=True, window_size=SIZE)
+    given = {"scalars": "speed", "cmap": "viridis"} if valued else {}
+    plotter.vizlight.add_mesh(ball, show_scalar_bar=False, **given)
+    made = plotter.vizlight.add_key()
+    plotter.close()
+    words = ["2", "speed (grey: no data)", "5"] if valued else ["a ball in this light"]
+    assert list(made.field_data["words"]) == words
+    if valued:
+        expected = presets.key(vizlight.Scene(), cmap="viridis", clim=(2, 5))
+        np.testing.assert_array_equal(made["rgb"], expected["rgb"])
+
+
 def test_pictures_have_keys():
     ball = vizlight.illuminate(pv.Sphere(), presets.shape())
     key = presets.key(presets.shape())

@@ -89,6 +89,22 @@ SCENES = {
 }
 
 
+@pytest.mark.parametrize("light", ["fragments", "points"])
+@pytest.mark.parametrize("lighting", ["light kit", "none"])
+def test_without_a_scene_the_material_is_that_of_the_default_scene(light, lighting):
+    """The lights are those of the plotter: its kit stands for those of the default scene."""
+    scene = Scene() if lighting == "light kit" else Scene(lights=[])
+    seen = []
+    for given in (scene, None):
+        plotter = pv.Plotter(off_screen=True, window_size=(120, 90), lighting=lighting)
+        plotter.vizlight.add_mesh(torus(), scene=given, color="white", light=light)
+        seen.append(np.asarray(plotter.screenshot(return_img=True)).astype(int))
+        plotter.close()
+    assert np.abs(seen[0] - seen[1]).max() <= 1
+    drawn = (seen[0] != seen[0][0, 0]).any(axis=2)
+    assert seen[0][drawn].min() >= 0.29 * 255
+
+
 @pytest.mark.parametrize("scene", SCENES)
 @pytest.mark.parametrize("model", ["phong", "blinn"])
 @pytest.mark.parametrize("shape", [*SURFACE, "lines"])
@@ -174,13 +190,41 @@ def test_grids_have_their_light_too():
     np.testing.assert_array_equal(a, b)
 
 
+@pytest.mark.parametrize("kind", ["surface", "volume"])
+def test_creases_are_sharp_and_round_shapes_are_left_whole(kind):
+    box = pv.ImageData(dimensions=(5, 5, 5)).cast_to_unstructured_grid()
+    box["value"] = np.arange(box.n_points) * 1.0
+    box = box if kind == "volume" else box.extract_surface(algorithm=None)
+    options = {"scene": Scene(), "scalars": "value", "cmap": ["white", "white"]}
+    colors = []
+    for angle in ("auto", None):
+        plotter = pv.Plotter(off_screen=True, window_size=(160, 120))
+        actor = plotter.vizlight.add_mesh(
+            box, feature_angle=angle, show_scalar_bar=False, **options
+        )
+        seen = shot(plotter, plotter.camera)
+        colors.append(len(np.unique(seen.reshape(-1, 3), axis=0)))
+        if angle is None:
+            assert actor.mapper.dataset.n_points == len(box.extract_surface(algorithm=None).points)
+        plotter.close()
+    # Three flat faces, their edges, and the background; and shades from edge to edge.
+    assert colors[0] < 40 < 60 < colors[1]
+    ball = torus()
+    ball.point_data.clear()
+    plotter = pv.Plotter(off_screen=True)
+    actor = plotter.vizlight.add_mesh(ball)
+    assert actor.mapper.dataset.n_points == ball.n_points
+    plotter.close()
+
+
 def test_volumes_are_lit_by_the_normals_of_their_surface():
     grid = pv.ImageData(dimensions=(41, 41, 41), origin=(-1, -1, -1), spacing=(0.05,) * 3)
     grid["r"] = np.linalg.norm(grid.points, axis=1)
     volume = grid.threshold(0.9, scalars="r", invert=True)
     for mesh in (volume, grid):
-        fragments, points = pictures(mesh, SCENES["near"])
-        of_surface, _ = pictures(mesh.extract_surface(algorithm="geometry"), SCENES["near"])
+        fragments, points = pictures(mesh, SCENES["near"], feature_angle=None)
+        surface = mesh.extract_surface(algorithm="geometry")
+        of_surface, _ = pictures(surface, SCENES["near"], feature_angle=None)
         assert points.std() > 10
         assert np.abs(fragments - of_surface).mean() < 0.1
 

@@ -20,7 +20,7 @@ from lamps import HEADLIT, SHINY, shiny
 from PIL import Image
 
 import vizlight
-from vizlight import DepthCue, Light, Material, Scene, View
+from vizlight import DepthCue, Light, Material, Scene, View, presets
 from vizlight.files import FileError
 
 pytestmark = pytest.mark.opengl
@@ -513,3 +513,21 @@ def test_what_is_not_data_is_grey_and_has_a_name(browser, tmp_path):
     bars = scene_in(path)[2]["bars"]
     assert [bar["title"] for bar in bars] == ["height", "no data"]
     assert bars[1]["colors"] == ["#808080"] * 2
+
+
+def test_a_page_has_the_key_of_its_light(tmp_path):
+    ball = pv.Sphere()
+    ball["flow"] = np.cross((0.3, 0.2, 1.0), ball.points)
+    ball["z"] = ball.points[:, 2]
+
+    def figures(scene, **options):
+        path = vizlight.live_html(ball, scene, tmp_path / "a.html", **options)
+        return path.read_text().count('<figure class="key"><img src="data:image/png;base64,')
+
+    scene = presets.direction()
+    assert figures(scene, tangents="flow") == 1
+    assert figures(scene, tangents="flow", key=False) == 0
+    # The bar tells values, and hues of data hide those of the light.
+    assert figures(scene, tangents="flow", scalars="z") == 0
+    assert figures(Scene(), scalars="z") == 0
+    assert figures(Scene(lights=Light(direction=(1, 2, 3)))) == 0

@@ -119,3 +119,44 @@ def test_faces_without_area_have_no_sharp_edges():
     assert normals.computed_normals(mesh).sharp == 0
     assert split_edges(mesh, "auto") is mesh
     assert normals.computed_normals(pv.Cube().triangulate().clean()).sharp > 0.5
+
+
+@pytest.mark.filterwarnings("ignore:.* of the edges are sharper")
+@pytest.mark.parametrize("joined", [False, True])
+@pytest.mark.parametrize("make", [pv.ParametricBoy, pv.ParametricKlein, pv.ParametricRoman])
+def test_closed_surfaces_with_one_side_face_the_eye(make, joined):
+    """No side of such a surface is the outer one, along seams of coincident points too."""
+    mesh = make(u_res=60, v_res=60, w_res=10)
+    mesh = mesh.clean() if joined else mesh
+    mesh.point_data.clear()
+    scene = vizlight.Scene(view=vizlight.View(direction=(1, 1, 1)))
+    found = vizlight.illuminate(mesh, scene)["luminance"]
+    toward_eye = vizlight.illuminate(mesh, scene, facing="eye")["luminance"]
+    assert np.mean(np.abs(found - toward_eye) > 0.01) < 0.03
+
+
+def test_a_closed_surface_wound_at_random_has_an_outer_side():
+    ball = pv.Sphere(theta_resolution=20, phi_resolution=20)
+    ball.point_data.clear()
+    every_other = np.arange(ball.n_cells)[:, np.newaxis] % 2 == 0
+    faces = ball.regular_faces
+    ball.regular_faces = np.where(every_other, faces, faces[:, ::-1])
+    assert not normals.computed_normals(ball).any_open
+
+
+@pytest.mark.parametrize("kind", ["grid", "surface"])
+def test_the_rim_of_a_hole_has_normals(kind):
+    """A corner that is missing takes its faces away, not the normals of its neighbours."""
+    x, y = np.meshgrid(np.linspace(-1, 1, 30), np.linspace(-1, 1, 30), indexing="ij")
+    z = 0.3 * x - 0.2 * y
+    z[10:14, 12:20] = np.nan
+    mesh = pv.StructuredGrid(x, y, z)
+    if kind == "surface":
+        quads = mesh.cast_to_unstructured_grid().cells
+        mesh = pv.PolyData(np.asarray(mesh.points), quads)
+    found = normals.computed_normals(mesh, view=View(direction=(0, 0, 1)))
+    known = np.isfinite(mesh.points).all(axis=1)
+    up = np.array([-0.3, 0.2, 1]) / np.linalg.norm([0.3, 0.2, 1])
+    np.testing.assert_allclose(found.vectors[known], np.tile(up, (known.sum(), 1)), atol=1e-6)
+    assert not found.vectors[~known].any()
+    assert found.any_open

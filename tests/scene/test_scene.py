@@ -274,7 +274,11 @@ def test_an_actor_coloured_by_data_gives_no_colour():
             TypeError,
             "lights: expected a vizlight.Light, a pyvista.Light or a sequence of them, got 3",
         ),
-        (lambda: Scene(view=(0, 0, 1)), TypeError, "view: expected a vizlight.View or None"),
+        (
+            lambda: Scene(view=(0, 0, 1)),
+            TypeError,
+            "view: expected a vizlight.View, a camera or None",
+        ),
         (lambda: Scene(material=0.5), TypeError, "material: expected a vizlight.Material"),
         (lambda: Scene(depth_cue=True), TypeError, "depth_cue: expected a vizlight.DepthCue"),
         (

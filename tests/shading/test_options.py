@@ -40,7 +40,7 @@ FUNCTIONS = [
     (vizlight.relief_day, ReliefOptions, {"lit", "components"}),
     (vizlight.refine, RefineOptions, {"refine"}),
     (paraview.shader, LightOptions, set(paraview.WITHOUT)),
-    (vizlight.vtk.Illuminate, LightOptions, {"feature_angle", "refine", "bundle"}),
+    (vizlight.vtk.Illuminate, LightOptions, {"feature_angle", "line_field", "refine", "bundle"}),
 ]
 IDS = [function.__qualname__ for function, _, _ in FUNCTIONS]
 

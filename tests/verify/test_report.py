@@ -325,3 +325,15 @@ def test_light_above_one_is_counted():
     assert [run.bright for run in found.runs] == [above, 0]
     assert found.bright == above
     assert f"{above} points are brighter than 1, which a picture shows as 1" in str(found)
+
+
+def test_a_shadow_and_bands_say_what_they_are_compared_with():
+    scene = Scene(view=View(direction=(1, 1, 1)))
+    with vizlight.report() as shadow:
+        relief_shadow(terrain(), SUN, depth=0.5)
+    assert "from samples along each ray, which err by as much" in str(shadow)
+    with vizlight.report() as bands:
+        vizlight.isoluminance(pv.Sphere(), scene)
+    assert "difference" in str(bands)
+    assert "places from their band; stated bound" in str(bands)
+    assert "rounding error" not in str(shadow) + str(bands)

@@ -47,7 +47,7 @@ class Part:
     threshold
         Range NAME:LOW:HIGH of an array that is kept; an end may be empty.
     contour
-        Point array of which an isosurface is taken.
+        Point array whose isosurface is taken.
     level
         Value of the isosurface. Default: the middle of the range.
     """
@@ -65,7 +65,7 @@ class Shape(Part):
     Parameters
     ----------
     slice
-        Plane NORMAL:OFFSET of which the section is taken.
+        Plane NORMAL:OFFSET whose section is taken.
     warp
         Point array, such as heights, by which points are raised.
     warp_factor
@@ -128,11 +128,11 @@ class Finish:
     Parameters
     ----------
     ambient
-        Coefficient of the ambient term. Default: 0.12.
+        Coefficient of the ambient term. Default: 0.3; of fur 0.4.
     diffuse
-        Coefficient of the diffuse term. Default: 0.6.
+        Coefficient of the diffuse term. Default: 0.7; of fur 2.
     specular
-        Coefficient of the specular term. Default: 0.2.
+        Coefficient of the specular term. Default: 0; of fur 0.3.
     shininess
         Power of the specular term. Default: 20.
     color

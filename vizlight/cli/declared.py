@@ -20,7 +20,7 @@ ROOT = Path(__file__).parents[1]
 
 
 class Option(NamedTuple):
-    """Keyword of a filter; its default is that of a parameter without one, if it is required."""
+    """Keyword of a filter; if it is required, its default is that of a parameter without one."""
 
     annotation: str
     required: bool

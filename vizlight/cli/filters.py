@@ -61,11 +61,12 @@ def streamlines(
 
     def job(path: Path) -> Job:
         mesh = scenes.data(path, part)
+        scenes.check_answers(common.lights.question, mesh, color, asked.vectors)
         on = {} if part.contour is None else {"surface": scenes.surface(mesh, part)}
         camera = look.camera(on.get("surface", mesh) if asked.confined else mesh)
         lit = _step("lit", "streamlines", mesh, look.scene(camera), given | on, common.out)
         made = Job(lit, asked.name, look, camera)
-        made.tint(scenes.tinted(lit, asked.name, mesh, color), color)
+        made.tint(lit, mesh, color)
         return made
 
     return carry_out(files, job, common.out, "streamlines")
@@ -90,9 +91,11 @@ def relief(
     from vizlight.filters.relief_shadow import ReliefOptions
 
     scenes.check_target(shape)
-    # The shadow is that of one light.
+    # The shadow is cast by one light.
     look = scenes.Look(common, fill=False)
     given = options.keywords(how)
+    # A shadow alone answers no question.
+    given |= {"lit": True} if common.lights.question is not None else {}
     asked = ReliefOptions(**given)
 
     def job(path: Path) -> Job:
@@ -101,7 +104,9 @@ def relief(
         if shape.contour is not None or shape.slice is not None or not _is_field(found):
             mesh = scenes.surface(mesh, shape)
             found = None
-        on = {} if found is not None or asked.raster is not None else {"feature_angle": "auto"}
+        on: dict[str, object] = {}
+        if found is None and asked.raster is None:
+            on["feature_angle"] = "auto"
         heights = None if found is None else _heights(found, asked)
         raised = mesh if heights is None else Step("raised", "files.warped", mesh, *heights)
         camera = look.camera(raised, is_map=found is not None)
@@ -115,7 +120,7 @@ def relief(
         elif found is not None and (white := 3 * _level_light(scene.run().lights)) < 1:
             made.clim = (0.0, round(white, 3))
             made.explain = lambda _: say(
-                f"note     white in the picture is t = {white:.2f}, 3 times that of level ground"
+                f"note     white in the picture is t = {white:.2f}, 3 times the t of level ground"
             )
         return made
 
@@ -165,7 +170,7 @@ def fur(
     return carry_out(files, job, common.out, "fur")
 
 
-# The tolerance is that of solids, which no file holds.
+# The tolerance is for solids, which no file holds.
 @options.takes("isoluminance", "Contours", without=("tolerance",))
 def contours(
     files: list[Path],
@@ -211,7 +216,7 @@ def project(
     """Turn, cut and project a mesh of n-space to 3-space, lit before or after.
 
     Lights and eye have 3 numbers, or n before the projection; what they lack is 0. The light is
-    that of an eye at infinity.
+    computed for an eye at infinity.
 
     Parameters
     ----------

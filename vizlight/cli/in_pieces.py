@@ -74,7 +74,7 @@ def light(
     shown = {"progress_bar": True} if out.progress else {}
     asked: dict[str, Any] = {"contour": target.contour, "level": target.level, "slab": pieces.slab}
     what = {key: value for key, value in asked.items() if value is not None}
-    # The eye is that of the lit whole, which no piece knows: it is found before the light.
+    # The eye belongs to the lit whole, which no piece knows: it is found before the light.
     camera = look.camera(list(files), by="vizlight.pieces.camera_on", **what, **runs, **shown)
     scene = look.scene(camera)
     lit = Step(

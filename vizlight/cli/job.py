@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import vizlight
 from vizlight._words import message
 from vizlight.cli.output import BAD_INPUT, OK, complain, draw, one_line, say
-from vizlight.cli.scenes import TINT
+from vizlight.cli.scenes import TINT, tinted, title_of
 from vizlight.cli.script import Step, source
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 #: File name extension of glTF, which holds what of the light does not depend on the eye.
 GLTF = ".glb"
-#: That of a page in which the light follows the eye.
+#: File name extension of a page in which the light follows the eye.
 HTML = ".html"
 #: Files that no writer of meshes writes, and the functions that do.
 SHOWN = {GLTF: "vizlight.save_gltf", HTML: "vizlight.live_html", ".py": "paraview.save"}
@@ -62,6 +62,8 @@ class Job:
         Format of the mesh where none is given, none to write only a picture.
     color
         Array and colour map of that mesh.
+    title
+        What its colours stand for, which a key tells; empty where they are colours already.
     clim
         Values that are black and white in the picture. Default: 0 and 1.
     hint
@@ -83,6 +85,7 @@ class Job:
     parts: Sequence[str] = ()
     suffix: str = ".vtp"
     color: Color | None = None
+    title: str = ""
     clim: tuple[float, float] | None = None
     hint: Callable[[], str] = lambda: ""
     explain: Callable[[pv.DataSet], None] | None = None
@@ -90,10 +93,12 @@ class Job:
     meshes: list[tuple[Step, Path]] = field(default_factory=list)
     pictures: list[Path] = field(default_factory=list)
 
-    def tint(self, shown: Step | None, color: Color) -> None:
-        """Show another mesh by its colours, if there is one."""
-        if shown is not None:
+    def tint(self, lit: Step, data: Step, color: Color) -> None:
+        """Show the colours of an array of the data, lit, if one is asked for."""
+        shown = tinted(lit, self.name, data, color)
+        if shown is not None and color.scalars is not None:
             self.shown, self.scalars, self.color = shown, TINT, color
+            self.title = title_of(data, color.scalars)
 
     def of_parts(self, path: Path) -> list[tuple[Step, Path]]:
         """Return what is written for the path of a mesh: the mesh, or each part beside it."""
@@ -216,15 +221,17 @@ def _picture(job: Job, path: Path, out: Output) -> Step:
 
 
 def _key(job: Job) -> Step | None:
-    """Return the step that makes the key of light for a question, if there is one."""
+    """Return the step that makes the key of light for a question or of colours, if there is one."""
     lights = job.look.lights
-    if lights.question is None or not lights.key:
+    scaled = job.title and lights.question in (None, "value")
+    if not lights.key or not (lights.question or scaled):
         return None
     scene = job.lit.keywords.get("scene", job.lit.arguments[-1])
     given = job.lit.keywords
     options = {name: given[name] for name in KEY_OPTIONS if name in given}
-    if lights.question == "value" and job.color is not None and job.shown is not None:
-        options["cmap"] = job.color.cmap
+    if scaled:
+        colors = Step("", "vizlight.unlit_colors", job.shown, TINT)
+        options = {"question": "value", "cmap": colors, "title": job.title}
     return Step("key", "vizlight.presets.key", scene, **options)
 
 
@@ -240,6 +247,7 @@ def _written(job: Job, mesh: Step, path: Path, out: Output) -> Step:
         chosen["cmap"] = color.cmap
     if suffix == HTML:
         chosen |= {"camera": job.camera}
+        chosen |= {} if job.look.lights.key else {"key": False}
         chosen |= {} if out.background is None else {"background": out.background}
         chosen |= {} if out.line_width == 1 else {"line_width": out.line_width}
     return Step("", writer, mesh, None, path, **chosen)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import shlex
 from pathlib import Path  # noqa: TC003 - cyclopts reads the annotations
 from typing import TYPE_CHECKING, Annotated
 
@@ -57,7 +58,7 @@ def light(
     Parameters
     ----------
     files
-        Mesh to light; of several each by itself, or all as pieces of one where the output ends in
+        Mesh to light; several are lit one by one, or all as pieces of one where the output ends in
         .pvtp, .pvtu, .pvti, .pvtr or .pvts: a grid slab by slab. Only one file is split at its
         creases by itself, pieces by --feature-angle.
     explain
@@ -106,6 +107,7 @@ def builder(
         mesh = data = scenes.data(path, target)
         if taken:
             mesh = scenes.surface(data, target)
+        scenes.check_answers(common.lights.question, mesh, color, given.get("tangents"))
         camera = look.camera(mesh)
         progress = {"progress_bar": True} if common.out.progress else {}
         scene = look.scene(camera)
@@ -116,7 +118,7 @@ def builder(
         lit = Step("lit", "vizlight.illuminate", source, scene, **given, **place, **progress)
         made = Job(lit, asked.name, look, camera, suffix=".vtp" if taken or asked.refine else "")
         made.before = None if asked.refine else mesh
-        made.tint(scenes.tinted(lit, asked.name, data, color), color)
+        made.tint(lit, data, color)
         if not (target.contour or target.warp or target.slice):
             made.hint = lambda: _hint(data.run(), surface=target.surface)
         if explain:
@@ -139,7 +141,7 @@ def _read(made: Job, scene: Step, given: dict[str, object]) -> Step:
 
 
 def _hint(mesh: pv.DataSet | pv.MultiBlock, *, surface: bool) -> str:
-    """Return what may have been meant for a volume, of which the hull is lit, or a flat field."""
+    """Return what may have been meant for a volume, whose hull is lit, or a flat field."""
     from vizlight.mesh.blocks import all_blocks
 
     parts = [block for block in all_blocks(mesh) if block.n_cells]
@@ -148,11 +150,12 @@ def _hint(mesh: pv.DataSet | pv.MultiBlock, *, surface: bool) -> str:
     ]
     if not names:
         return ""
+    name = shlex.quote(names[0])
     if any(block.GetMaxSpatialDimension() == 3 for block in parts):
-        hull = f"the hull of a volume is lit; --contour {names[0]} lights an isosurface of it"
+        hull = f"the hull of a volume is lit; --contour {name} lights an isosurface of it"
         return hull if surface else ""
     if all(block.GetMaxSpatialDimension() == 2 and not min(block.bounds_size) for block in parts):
-        return f"the mesh is flat; --warp {names[0]} raises it by its heights"
+        return f"the mesh is flat; --warp {name} raises it by its heights"
     return ""
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import shlex
+import sys
 import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
@@ -19,11 +20,14 @@ from vizlight.cli.output import BAD_INPUT, LACKING, OK, complain, draw, one_line
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+#: Words that ask for help.
+HELP = frozenset({"--help", "-h"})
 app = App(
     name="vizlight",
     help="Light that makes scientific data legible.",
     # Markdown takes longer to load than all of NumPy, and no text of the help has marks.
     help_format="plaintext",
+    help_flags=sorted(HELP),
     version=__version__,
     result_action="return_value",
     suppress_keyboard_interrupt=False,
@@ -36,17 +40,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Parameters
     ----------
     arguments : sequence of str, optional
-        Words after ``vizlight``. Default: those of the process.
+        Words after ``vizlight``. Default: the process's own.
     """
+    words = sys.argv[1:] if arguments is None else list(arguments)
     try:
         with warnings.catch_warnings():
             warnings.showwarning = _complain
-            result = app(
-                None if arguments is None else list(arguments),
-                exit_on_error=False,
-                print_error=False,
-                help_on_error=False,
-            )
+            if HELP.intersection(words):
+                # By itself the app reads all arguments of the command before it prints its help.
+                app.help_print([word for word in words if word not in HELP])
+                return OK
+            result = app(words, exit_on_error=False, print_error=False, help_on_error=False)
     except CycloptsError as error:
         return _fail(str(error).replace("Unused Tokens", "arguments that belong to no option"))
     except (TypeError, ValueError, OSError) as error:
@@ -170,6 +174,7 @@ for _name, (_module, _help, _example) in LIGHTING.items():
         f"vizlight.cli.{_module}:{_name}",
         name=_name,
         help=_help,
+        usage=f"Usage: vizlight {_name} FILES [OPTIONS]",
         help_epilogue=f"Example: vizlight {_name} {_example}",
     )
 app.register_install_completion_command(help="Install shell completion.")

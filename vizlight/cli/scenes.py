@@ -138,6 +138,23 @@ def tinted(lit: Step, name: str, data: Step, color: Color) -> Step | None:
     return Step("shown", "vizlight.tint", lit, Step("", "numpy.uint8", rgb), light=name, name=TINT)
 
 
+def title_of(data: Step, scalars: str) -> str:
+    """Return the words of the key of an array that colours a picture, none where it is colours."""
+    from numpy import isfinite
+
+    from vizlight.filters.tint import are_colors
+    from vizlight.shading.display import titled
+
+    found = data.run()
+    arrays = found.point_data if scalars in found.point_data else found.cell_data
+    if scalars not in arrays:
+        return ""
+    values = arrays[scalars]
+    if are_colors(values):
+        return ""
+    return titled(scalars, lacking=values.dtype.kind == "f" and not isfinite(values).all())
+
+
 class Look:
     """Camera and scene as the options describe them; what needs no mesh is checked first."""
 
@@ -164,7 +181,7 @@ class Look:
             base = base.replace(material=self._material.run())
         #: Whether the light has a colour.
         self.colored = base.colored
-        #: View of the scene's file, if it is that of the picture.
+        #: View of the scene's file, if the picture has it.
         self._view = base.view if self._eye.view is None else None
         self._toward, self._fixed = (
             _asked_view(self._eye.view) if self._view is None else _file_view(self._view)
@@ -286,6 +303,40 @@ def _check_question(lights: Lights) -> None:
             raise ValueError(message("--for", expected, f"--{name} beside it", "leave one out"))
 
 
+def check_answers(question: str | None, mesh: Step, color: Color, tangents: object) -> None:
+    """Check that there is what light for a question tells of.
+
+    Raises
+    ------
+    ValueError
+        If the mesh has none of it, or the colours of data would hide the answer.
+    """
+    if question is None:
+        return
+    from vizlight.mesh.blocks import all_blocks
+
+    found = list(all_blocks(mesh.run()))
+    asked, needs = f"--for {question}", ""
+    if question == "value" and color.scalars is None:
+        scalars = [name for one in found for name in (*one.point_data, *one.cell_data)]
+        needs = f"--scalars with it, {one_of([*dict.fromkeys(scalars)])}"
+    if question in ("direction", "slope", "heading") and tangents is None:
+        vectors = [
+            name
+            for one in found
+            for name, values in one.point_data.items()
+            if values.ndim == 2 and values.shape[1] == 3
+        ]
+        if any(one.GetMaxSpatialDimension() != 1 for one in found):
+            named = one_of([*dict.fromkeys(vectors)])
+            needs = f"--tangents with it where there are no lines, {named}"
+    if needs:
+        raise ValueError(message(asked, needs, "none"))
+    if question in ("direction", "heading", "shape") and color.scalars is not None:
+        expected = "no --scalars beside it, whose hues would hide the hues of the light"
+        raise ValueError(message(asked, expected, f"--scalars {color.scalars}"))
+
+
 def read_scene(path: Path) -> Scene:
     """Return the scene of a JSON file.
 
@@ -319,7 +370,8 @@ def _asked_view(view: str | None) -> tuple[Vector | None, Fixed | None]:
     if view.lower().endswith(".json"):
         return None, _saved_camera(view)
     # In n-space the eye has n components.
-    return arguments.numbers(view, tuple(range(3, 100))) or arguments.vector("view", view), None
+    toward = arguments.numbers(view, tuple(range(4, 100)))
+    return toward if any(toward) else arguments.vector("view", view), None
 
 
 def _file_view(view: View) -> tuple[Vector | None, Fixed | None]:

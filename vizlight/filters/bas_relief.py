@@ -122,7 +122,7 @@ def _eye_frame(direction: VectorLike, up: VectorLike | None) -> Array:
         up = (0.0, 1.0, 0.0) if abs(toward[2]) > 0.999 else (0.0, 0.0, 1.0)
     right = np.cross(_check.unit("up", up), toward)
     if np.linalg.norm(right) < 1e-6:
-        remedy = "name another direction than that of the eye"
+        remedy = "name another direction than the eye's"
         raise ValueError(_check.message("up", "a direction across the view", tuple(up), remedy))
     right /= np.linalg.norm(right)
     return np.stack([right, np.cross(toward, right), toward])

@@ -173,7 +173,7 @@ def fur(
         not at all at the tip. 0: light is not attenuated. Default: 0.5, without ``density``.
     density : float, optional
         Share rho of light from 0 to 1 that fur absorbs over a unit of length, in place of
-        ``absorption``: that of fur of length L is ``1 - (1 - rho)^L``.
+        ``absorption``, which is ``1 - (1 - rho)^L`` for fur of length L.
     fibres : int, default: 50_000
         Number of fibres, uniform in area, jittered, the same for the same seed.
     length : float, str or array_like, optional

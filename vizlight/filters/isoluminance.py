@@ -287,8 +287,9 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
             normals=_on_surface(mesh, "normals", asked.normals, ids),
             tangents=_on_surface(mesh, "tangents", asked.tangents, ids),
         )
+    inputs = inputs_of(surface, "", scene, asked)
     (lit,), fitted = lighting.light(
-        [(inputs_of(surface, "", scene, asked), asked)],
+        [(inputs, asked)],
         scene,
         threads=light.threads,
         progress_bar=False,
@@ -314,10 +315,21 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
         )
         unit = kernels.unit_rows(np.asarray(found, dtype=np.float64))
         rows = np.concatenate([points, unit, *carried.values()], axis=1)
+        valid = lit.valid
+        assert inputs.normals is not None
+        shown = np.asarray(inputs.normals[0 : len(unit)], dtype=np.float64)
+        averted: Bools = np.einsum("ij,ij->i", unit, shown) < 0
+        if averted.any():
+            # Of an open piece each triangle shows one side, also where the normals between its
+            # corners would turn over.
+            other = np.count_nonzero(averted[triangles], axis=1) > 1
+            back = np.concatenate([points, -unit, *carried.values()], axis=1)
+            rows, valid = np.concatenate([rows, back]), np.tile(valid, 2)
+            triangles = triangles + len(unit) * other[:, np.newaxis]
         near = any(lamp.position is not None for lamp in scene.lights)
         near |= scene.view is not None and scene.view.position is not None
         placed = near or scene.depth_cue is not None
-        lit_facets = facets.Facets(rows, triangles, light, lit.valid, placed)
+        lit_facets = facets.Facets(rows, triangles, light, valid, placed)
         bands = refinement.refine(lit_facets, levels, progress=light.progress)
     else:
         values = np.asarray(lit.luminance[triangles], dtype=np.float64)
@@ -350,7 +362,7 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
 def _on_surface(
     mesh: pv.DataSet, name: str, value: str | ArrayLike | None, ids: Indices
 ) -> str | ArrayLike | None:
-    """Return values of a mesh as those of its outer surface; the name of an array stays."""
+    """Return values of a mesh on its outer surface; the name of an array stays."""
     if value is None or isinstance(value, str):
         return value
     rows = array_of(mesh, name, value)
@@ -419,7 +431,7 @@ def _rgb(bands: Bands, light: _Light) -> Array | None:
 
 
 def _as_bright(rgb: Array, value: Array, bands: Bands) -> Array:
-    """Return colours scaled from their luminance to that of the band of each polygon."""
+    """Return colours scaled from their luminance to the luminance of each polygon's band."""
     share = np.divide(bands.values, value, out=np.ones_like(value), where=value > 0)
     return np.asarray(rgb * share[:, np.newaxis])
 

@@ -22,9 +22,10 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array
     from vizlight.filters.tint import ColorMap
+    from vizlight.shading.display import Bytes
     from vizlight.shading.options import Exponent
 
-__all__ = ["colors_of", "key", "question_of"]
+__all__ = ["colors_of", "key", "key_picture", "preset_of", "question_of"]
 
 Question: TypeAlias = Literal["direction", "slope", "heading", "shape", "value"]
 #: Name of the field array with the words that stand beside a key.
@@ -43,6 +44,8 @@ HOLE = 0.3
 BAR = 0.16
 #: Numbers of rings, of points around, and of points along a bar.
 RINGS, AROUND, ALONG = 24, 96, 97
+#: Number of places along each side of a pixel of a key's picture.
+FINE = 4
 
 
 def key(
@@ -54,6 +57,7 @@ def key(
     conditioned: bool = False,
     cmap: ColorMap = None,
     clim: Sequence[float] | None = None,
+    title: str = "",
 ) -> pv.PolyData:
     """Return the key of a scene's light as a mesh that faces the eye.
 
@@ -66,15 +70,18 @@ def key(
         ``"slope"``: a bar of lines, from across the view to toward the eye. ``"heading"``: a disc
         where each point is the near end of a line from the centre. ``"shape"``: a ball.
         ``"value"``: a bar of the colours of data, below in the least light and above in full.
-        Default: that of the preset whose light the scene has, otherwise ``"shape"``.
+        Default: the question of the preset whose light the scene has, otherwise ``"shape"``.
     exponent : float or "compensated"
         Exponent of the diffuse light of lines, as the data have it.
     conditioned : bool, default: False
         Whether tangents of the disc have the self-shadow of a surface that faces the eye.
     cmap : str or colour map, optional
-        Colour map of ``"value"``. Default: :data:`vizlight.maps.even`.
+        Colour map of ``"value"``, such as :func:`vizlight.unlit_colors` returns. Default:
+        :data:`vizlight.maps.even`.
     clim : (float, float), optional
-        Values at the ends of that map, which become its words.
+        Values at the ends of that map, which become its words. Default: the ends of a lookup table.
+    title : str, optional
+        What the values are, which stands above the bar.
 
     Returns
     -------
@@ -103,8 +110,13 @@ def key(
     made[RGB] = colors_of(
         scene, x, y, question=asked, exponent=exponent, conditioned=conditioned, cmap=cmap
     )
-    ends = () if clim is None or asked != "value" else _check.vector("clim", clim)
-    made.field_data[WORDS] = [f"{end:.3g}" for end in ends] or list(TEXTS[asked])
+    words = list(TEXTS[asked])
+    if asked == "value":
+        if clim is None and isinstance(cmap, pv.LookupTable):
+            clim = cmap.scalar_range
+        words = words if clim is None else [f"{end:.3g}" for end in _check.vector("clim", clim)]
+        words[1:1] = [_check.text("title", title)] if title else []
+    made.field_data[WORDS] = words
     return made
 
 
@@ -124,14 +136,38 @@ def question_of(scene: Scene) -> Question:
     TypeError
         If it is no scene.
     """
+    return preset_of(scene) or "shape"
+
+
+def preset_of(scene: Scene) -> Question | None:
+    """Return the question whose preset has the light of a scene, None if there is none.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    {"direction", "slope", "heading", "shape", "value"} or None
+
+    Raises
+    ------
+    TypeError
+        If it is no scene.
+    """
     _check.instance("scene", scene, Scene)
+    material = scene.material
     for name in get_args(Question):
         preset = PRESETS[name]()
-        colorless = dataclasses.replace(scene.material, color=None)
-        if (preset.lights, preset.material) == (scene.lights, colorless):
+        own = preset.material
+        # Without a highlight its colour and its power are of no account.
+        alike = (own.ambient, own.diffuse, own.specular) == (
+            material.ambient, material.diffuse, material.specular,
+        )  # fmt: skip
+        if preset.lights == scene.lights and alike:
             found: Question = name
             return found
-    return "shape"
+    return None
 
 
 def colors_of(
@@ -188,6 +224,68 @@ def colors_of(
     )  # fmt: skip
     light = shading.luminance[:, np.newaxis] if shading.rgb is None else shading.rgb
     return np.rint(255 * displayable(np.broadcast_to(light, (len(x), 3)))).astype(np.uint8)
+
+
+def key_picture(
+    scene: Scene,
+    width: int = 240,
+    /,
+    *,
+    question: Question | None = None,
+    exponent: Exponent = "compensated",
+    conditioned: bool = False,
+    cmap: ColorMap = None,
+) -> Bytes:
+    """Return the picture of a key, transparent around it.
+
+    Parameters
+    ----------
+    scene : Scene
+    width : int, default: 240
+        Width in pixels, from 8 to 4096.
+    question, exponent, conditioned, cmap
+        As for :func:`key`.
+
+    Returns
+    -------
+    ndarray of uint8, shape (H, width, 4)
+        Red, green, blue and opacity, from the upper left.
+
+    Raises
+    ------
+    TypeError, ValueError
+        As :func:`key`.
+
+    Examples
+    --------
+    >>> import vizlight
+    >>> vizlight.presets.key_picture(vizlight.presets.shape(), 64).shape
+    (64, 64, 4)
+    """
+    width = _check.integer("width", width, low=8, high=4096)
+    question = question_of(scene) if question is None else question
+    bar = question in ("slope", "value")
+    fine = FINE * width
+    across = (np.arange(fine) + 0.5) / fine * 2 - 1
+    tall = FINE * max(round(width * BAR), 1) if bar else fine
+    down = ((np.arange(tall) + 0.5) / tall * 2 - 1) * (BAR if bar else 1.0)
+    x, y = (part.ravel() for part in np.meshgrid(across, -down))
+    radius = np.hypot(x, y)
+    inside = np.ones(len(x), dtype=np.bool_) if bar else radius <= 1
+    if question == "direction":
+        inside &= radius >= HOLE
+    rgb = colors_of(
+        scene, x[inside], y[inside], question=question, exponent=exponent,
+        conditioned=conditioned, cmap=cmap,
+    )  # fmt: skip
+    seen = np.zeros((len(x), 4))
+    seen[inside, :3], seen[inside, 3] = rgb, 1.0
+    # Each pixel is the mean of what is within the key.
+    blocks: Array = seen.reshape(tall // FINE, FINE, width, FINE, 4).sum(axis=(1, 3))
+    share = blocks[..., 3:]
+    blocks[..., :3] /= np.maximum(share, 1)
+    blocks[..., 3:] = 255 * share / FINE**2
+    return np.asarray(np.rint(blocks), dtype=np.uint8)
 
 
 def _in_frame_of_eye(scene: Scene) -> Scene:

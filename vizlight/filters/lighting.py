@@ -138,7 +138,7 @@ def finish(
 ) -> None:
     """Attach the light to the meshes with its record; warn once if points could not be lit.
 
-    Points inside volumes, of which there are ``inside``, have no normal and are not counted.
+    Points inside volumes, ``inside`` in number, have no normal and are not counted.
     """
     shared: dict[int, str] = {}
     invalid = -inside

@@ -44,6 +44,7 @@ def manifold(
     facing: Facing = "auto",
     feature_angle: FeatureAngle = None,
     conditioned: bool | str | None = False,
+    line_field: bool = False,
     refine: float = 0.0,
     bundle: bool | Bundle = False,
     name: str = "luminance",
@@ -64,9 +65,9 @@ def manifold(
         As for :func:`project`.
     rotation, hyperplane, distance, positions, frame, vectors, cut, light
         As for :func:`vizlight.project`.
-    tangents, normals, facing, feature_angle, conditioned, refine, bundle, name, exponent
+    tangents, normals, facing, feature_angle, conditioned, line_field, refine, bundle, name
         As for :func:`vizlight.illuminate`.
-    model, components, precision
+    exponent, model, components, precision
         As for :func:`vizlight.illuminate`.
 
     Returns

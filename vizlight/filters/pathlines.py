@@ -84,6 +84,7 @@ def pathlines(
     facing: Facing = "auto",
     feature_angle: FeatureAngle = None,
     conditioned: bool | str | None = False,
+    line_field: bool = False,
     refine: float = 0.0,
     bundle: bool | Bundle = False,
     name: str = "luminance",
@@ -121,9 +122,9 @@ def pathlines(
         Duration that the lines show, in the unit of the times. Default: all since the first time.
     step : float, default: 0.3
         Largest step of the integration, in cell lengths; lines have a point at each.
-    tangents, positions, normals, facing, feature_angle, conditioned, refine, bundle, name
+    tangents, positions, normals, facing, feature_angle, conditioned, line_field, refine, bundle
         As for :func:`vizlight.illuminate`.
-    exponent, model, components, precision
+    name, exponent, model, components, precision
         As for :func:`vizlight.illuminate`.
     threads, progress_bar
         As for :func:`vizlight.illuminate`.

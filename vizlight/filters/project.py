@@ -94,6 +94,7 @@ def project(
     facing: Facing = "auto",
     feature_angle: FeatureAngle = None,
     conditioned: bool | str | None = False,
+    line_field: bool = False,
     refine: float = 0.0,
     bundle: bool | Bundle = False,
     name: str = "luminance",
@@ -140,9 +141,9 @@ def project(
     light : {"before", "after"}
         Light in n-space, with lights and eye of n components, before the projection; or in
         3-space, by the projected points and frame, after it.
-    tangents, normals, facing, feature_angle, conditioned, refine, bundle, name, exponent
+    tangents, normals, facing, feature_angle, conditioned, line_field, refine, bundle, name
         As for :func:`vizlight.illuminate`.
-    model, components, precision
+    exponent, model, components, precision
         As for :func:`vizlight.illuminate`.
     threads : int, optional
         Number of threads of the light. Default: the processors that this process may use.
@@ -177,9 +178,9 @@ def project(
     -----
     Where the projection flattens the tangent space (at a silhouette) ``projected_frame`` has rows
     of zero past its rank, which is what is left of unit tangents beyond rounding (see
-    :func:`vizlight.geometry.nspace.projection.push_frame`). Light after the projection is there
-    that of the limit of the tangent spaces along the surface, from points around, with an error of
-    second order in their distance. Where there is none (a pinch point, or points around that
+    :func:`vizlight.geometry.nspace.projection.push_frame`). Light after the projection is computed
+    there for the limit of the tangent spaces along the surface, from points around, with an error
+    of second order in their distance. Where there is none (a pinch point, or points around that
     have lost their rank too) it is the ambient one, and ``luminance_valid`` marks the points; light
     before the projection knows of no silhouette.
     A frame on a cut is a mean of those at the points around, of second order in their distance,
@@ -273,7 +274,7 @@ def _each(
 def _check_space(
     mesh: pv.DataSet | pv.MultiBlock, scene: Scene, light: LightWhen, positions: str
 ) -> None:
-    """Check that lights and eye live in the space that is lit: that of positions, or 3-space."""
+    """Check that lights and eye live in the lit space, the space of positions or 3-space."""
     for block in blocks.all_blocks(mesh):
         n = block.point_data[positions].shape[1]
         lit, other, when = (n, 3, "after") if light == "before" else (3, n, "before")

@@ -53,6 +53,7 @@ def refine(
     facing: Facing = "auto",
     feature_angle: FeatureAngle = None,
     conditioned: bool | str | None = False,
+    line_field: bool = False,
     bundle: bool | Bundle = False,
     name: str = "luminance",
     exponent: Exponent = "compensated",
@@ -67,7 +68,8 @@ def refine(
     Between the points of a mesh a picture shows interpolated light, which misses highlights and
     blurs the terminator where cells are coarse. The light of the interpolated normals or tangents,
     as a fragment shader computes it, is the reference: edges are split where interpolated light
-    differs from it by more than ``error``, and nowhere else.
+    differs from it by more than ``error``, and nowhere else. The error is not a bound for each
+    place: see the notes.
 
     Parameters
     ----------
@@ -76,13 +78,14 @@ def refine(
     scene : Scene, optional
         Lights, material and view for which the mesh is refined, by default ``Scene()``.
     error : float, default: 1/255
-        Largest difference, in luminance and in each channel of a colour, of the light that is
-        interpolated between the points from the light there; 1e-5 or more.
+        Difference, in luminance and in each channel of a colour, of the light that is interpolated
+        between the points from the light there, that all but a small share of the places keep;
+        1e-5 or more.
     max_points : int, optional
         Largest number of points of each mesh. Default: one million, or twice those that it has.
-    tangents, positions, normals, facing, feature_angle, conditioned, bundle, name, exponent
+    tangents, positions, normals, facing, feature_angle, conditioned, line_field, bundle, name
         As for :func:`vizlight.illuminate`.
-    model, components, precision
+    exponent, model, components, precision
         As for :func:`vizlight.illuminate`.
     threads, progress_bar
         As for :func:`vizlight.illuminate`.
@@ -95,7 +98,7 @@ def refine(
         share of those places that are off by more than ``error``. The points of the mesh come
         first and keep their index and their light. New points lie on its segments and triangles,
         without T-junctions. Point arrays are interpolated: unit vectors keep their length, tangents
-        are interpolated as a line field, whose signs have no meaning, several tangents as the space
+        of a ``line_field`` are turned alike before, several tangents are interpolated as the space
         that they span. Integers, which may be labels, are taken from the nearest corner. Cell
         arrays are carried.
 
@@ -115,9 +118,22 @@ def refine(
     -----
     The error is measured at 3 places of each edge, 4 of each triangle, where each highlight would
     peak on an edge and in a triangle, which finds those that are smaller than a triangle, and at
-    last at 4,096 random places. For several tangents per point no closed form gives the peaks. The
-    error holds for the view and the lights of the scene alone. Cost:
-    about 20 us for each triangle of the mesh and 30 us for each new point.
+    last at 4,096 random places, uniform in area or length. For several tangents per point no
+    closed form gives the peaks.
+
+    Where the share in ``luminance_error`` is 0, none of these random places
+    is off by more than ``error``. Were a share p of all places, it would be missed with
+    probability ``(1 - p)^4096``: with 95 % confidence fewer than 0.08 % are. At 400,000 places the
+    share was at most 0.011 % and the largest error 2.6 times that allowed, for 1/255 on a sphere, a
+    cylinder with creases, a terrain, a torus with tangents, the flow on an isosurface and a
+    blob of 642 points. It is more at these places: where light jumps, as where a surface with a rim
+    turns to the eye, up to 0.36 at 0.05 % of an isosurface; where tangents vanish between opposite
+    ones, up to 0.65 at 0.3 % of a triangle; in slivers narrower than 1/4096 of the diagonal, which
+    are not split, 8 times that allowed. Where 0.5 % of the places or fewer are off there is no
+    warning.
+
+    The error holds for the view and the lights of the scene alone. Cost: about 20 us for each
+    triangle of the mesh and 30 us for each new point.
 
     Examples
     --------

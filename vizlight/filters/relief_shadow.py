@@ -228,7 +228,7 @@ def relief_shadow(
 
 
 def _check_names(own: set[str]) -> None:
-    """Check that the arrays of the shadow do not replace those of the light."""
+    """Check that the arrays of the shadow do not replace the light's."""
     taken = own & {DEFAULT_NAME, DEFAULT_NAME + VALID, *PARTS}
     if taken:
         expected = "a name that the light does not use, with lit=True"

@@ -39,7 +39,7 @@ class Source(NamedTuple):
     ``named`` are options of a filter, from which the inputs are read again after the mesh has
     changed; None where that takes the filter itself. Where normals are turned to the eye,
     ``inputs`` has them as they are and ``sided`` turns them. ``inside`` is the number of points of
-    a volume that are not on its surface.
+    a volume that are not on its surface. ``shares`` gives the shares of light inside a bundle.
     """
 
     mesh: pv.DataSet
@@ -48,11 +48,19 @@ class Source(NamedTuple):
     named: LightOptions | None
     sided: Sided | None = None
     inside: int = 0
+    shares: bundles.Live | None = None
 
     @property
     def facing(self) -> Facing:
         """Side of the surface that is lit."""
         return "as given" if self.named is None else self.named.facing
+
+    def dimmed_by(self, scene: Scene) -> Source:
+        """Return the source with the shares of the lights of a scene, where a bundle dims them."""
+        if self.shares is None:
+            return self
+        inputs = self.shares.dimmed(self.inputs, scene)
+        return self if inputs is self.inputs else self._replace(inputs=inputs)
 
     def seen_from(self, view: View | None, inputs: ShadingInputs) -> ShadingInputs:
         """Return inputs with the normals turned to an eye."""
@@ -81,10 +89,15 @@ def read(mesh: pv.DataSet, path: str, scene: Scene, options: LightOptions) -> So
         raise ValueError(_check.message("feature_angle", expected, got, remedy))
     part = part_of(mesh, path, scene, options)
     inputs, sided = part.inputs, part.sided
+    shares: bundles.Live | None = None
     if isinstance(options.bundle, Bundle):
-        inputs = _dimmed(mesh, inputs, scene, options.bundle, options.name)
+        _refuse_following(scene, bundled=True)
+        names = [part_name(options.name, part) for part in lighting.BUNDLE_PARTS]
+        given = (options.name, names[0], names[1])
+        shares = bundles.Live(mesh, inputs, options.bundle, given)
+        inputs = shares.dimmed(inputs, scene)
     inside = 0 if sided is None else int(sided.inside)
-    source = Source(mesh, inputs, part.options, options, None, inside)
+    source = Source(mesh, inputs, part.options, options, None, inside, shares)
     turned = sided is not None and (
         source.facing == "eye" or (source.facing == "auto" and sided.any_open)
     )
@@ -92,16 +105,6 @@ def read(mesh: pv.DataSet, path: str, scene: Scene, options: LightOptions) -> So
         return source
     inputs = dataclasses.replace(inputs, normals=sided.vectors)
     return source._replace(inputs=inputs, sided=sided)
-
-
-def _dimmed(
-    mesh: pv.DataSet, inputs: ShadingInputs, scene: Scene, bundle: Bundle, name: str
-) -> ShadingInputs:
-    """Return inputs with the shares of light inside a bundle, which do not depend on the eye."""
-    _refuse_following(scene, bundled=True)
-    names = [part_name(name, part) for part in lighting.BUNDLE_PARTS]
-    (own,) = bundles.dim([mesh], [inputs], scene, bundle, (name, names[0], names[1]))
-    return dataclasses.replace(inputs, transmittance=own.transmittance, occlusion=own.occlusion)
 
 
 def _refuse_following(scene: Scene, *, bundled: bool) -> None:
@@ -149,8 +152,8 @@ def from_record(
     Raises
     ------
     TypeError, ValueError
-        If there is no record of the light, it does not suffice, or the light of the record is not
-        that of the mesh, because points or arrays have changed.
+        If there is no record of the light, it does not suffice, or the light of the record differs
+        from the mesh's, because points or arrays have changed.
     """
     found, recorded = _read_record(mesh, scene, name)
     if scene is None and records.provenance(mesh, name).get("filter") != "fur":
@@ -202,7 +205,7 @@ def _of_block(mesh: pv.DataSet, path: str, record: Mapping[str, Any], scene: Sce
     if made not in readers:
         expected = "light that follows the view"
         remedy = "draw its arrays by plotter.add_mesh"
-        raise ValueError(_check.message("mesh", expected, f"that of {made}", remedy))
+        raise ValueError(_check.message("mesh", expected, f"light of {made}", remedy))
     light = readers[made](mesh, options)
     # The points of the result are split already.
     return read(mesh, path, scene, dataclasses.replace(light, feature_angle=None))
@@ -306,7 +309,7 @@ def _of_fur(
 def _light_again(
     sources: list[Source], scene: Scene, name: str, *, components: bool = False
 ) -> list[engine.Shading]:
-    """Return the light of the record, which must be that of the meshes."""
+    """Return the light of the record, which must match the light of the meshes."""
     parts = [
         (
             source.seen_from(scene.view, source.inputs),
@@ -323,7 +326,7 @@ def _light_again(
         differs = ~(np.abs(shading.luminance - stored) <= SEEN)
         if np.count_nonzero(differs) > CHANGED * differs.size:
             share = f"other light at {np.mean(differs):.0%} of the points"
-            expected = f"a mesh whose {name!r} is that of its record"
+            expected = f"a mesh whose {name!r} matches its record"
             remedy = "light it again: points or arrays have changed"
             raise ValueError(_check.message("mesh", expected, share, remedy))
     return results

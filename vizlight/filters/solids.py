@@ -26,8 +26,8 @@ def to_polydata(solid: Solid, /, *, tolerance: float = 3e-3) -> pv.PolyData:
     -------
     pyvista.PolyData
         Triangles, counter-clockwise seen from outside, with the cell array ``patch``: the index of
-        the exact surface of each. Field data ``volume_error`` is a bound of the difference of the
-        volume from that of the exact solid, in the cubed unit of the solid.
+        the exact surface of each. Field data ``volume_error`` is a bound of the difference between
+        this volume and the exact solid's, in the cubed unit of the solid.
 
     Raises
     ------

@@ -45,7 +45,6 @@ class StreamlineOptions(LightOptions):
     """
 
     vectors: str | tuple[str, str] | None = None
-    line_field: bool = False
     surface: pv.PolyData | None = None
     confined: bool | None = None
     seeds: int | ArrayLike | pv.DataSet = 200
@@ -156,7 +155,7 @@ def streamlines(
         Whether the lines stay on the surface: the tangential part of the vectors is integrated.
         Default: whether the mesh itself is a surface and no other is given.
     seeds : int or array_like, shape (M, 3), or mesh, default: 200
-        Points at which lines start. A number is that of the lines, from points of the mesh drawn
+        Points at which lines start. A number is the number of lines, from points of the mesh drawn
         without repetition, or, for confined lines and line fields, from random places, uniform in
         area or volume. At a given point of a cross field two lines start. Has no effect as a number
         with ``spacing``.
@@ -193,8 +192,9 @@ def streamlines(
         ``Tangents_valid`` marks points at which a tensor has a first eigenvector, where it is
         isotropic at some. Confined lines have the field array ``drift``, the largest distance
         from the surface; evenly spaced ones ``largest_gap``, the largest distance of any place
-        from a line, ``nearest``, the distance to the next line that 5 % of the places on lines fall
-        below, both in spacings, and ``closed``, the number of closed lines.
+        from a line as it is drawn, understated by at most 0.01, ``nearest``, the distance to the
+        next line that 5 % of the places on lines fall below, both in spacings, and ``closed``, the
+        number of closed lines.
 
     Raises
     ------
@@ -221,7 +221,7 @@ def streamlines(
     Evenly spaced lines start a spacing beside others and end where they come nearer to one than
     half of it; lines that meet their own start are closed. Lines that others cut short are kept if
     they are two spacings long; in gaps wider than 1.15 spacings 0.7 of that is enough, or 0.35 from
-    a boundary. The largest gap was at most 1.22 spacings on surfaces and in volumes with saddles,
+    a boundary. The largest gap was at most 1.35 spacings on surfaces and in volumes with saddles,
     vortices and walls. On a surface distances include half a spacing times the difference of
     normals, so that two sides of a thin sheet are apart.
     Sources: Banks 4.1 and (6); Jobard and Lefer, Creating evenly-spaced streamlines of arbitrary
@@ -430,7 +430,7 @@ def _in_space(
     moving = np.any(np.asarray(mesh.point_data[TRACED])[rest] != 0, axis=1)
     rest, lines = rest[moving], tracers.in_space(mesh, points[chosen], how, report)
     while (missing := count - lines.n_lines) > 0 and len(rest):
-        # Seeds beside those of which some fail.
+        # Further seeds, because some failed.
         chosen, rest = np.append(chosen, rest[:missing]), rest[missing:]
         more = tracers.in_space(mesh, points[chosen[-min(missing, len(chosen)) :]], how, report)
         lines = lines.append_polydata(more) if lines.n_lines else more

@@ -65,8 +65,8 @@ def tint(
         scalars, if they are not the light. The length of vectors is taken, unless ``component``;
         three or four unsigned bytes are colours.
     cmap : str, list, matplotlib colormap or pyvista.LookupTable, optional
-        Colour map, as for ``pyvista.Plotter.add_mesh``. Default: that of PyVista's theme if it was
-        changed, otherwise ``vizlight.maps.even``, which can be read in any light.
+        Colour map, as for ``pyvista.Plotter.add_mesh``. Default: the map of PyVista's theme if it
+        was changed, otherwise ``vizlight.maps.even``, which can be read in any light.
     clim : (float, float) or float, optional
         Values at the ends of the colour map; one number stands for itself and its negative.
         Default: smallest and largest value, over all blocks.
@@ -152,10 +152,15 @@ def tint(
 
 
 def _holds_light(meshes: Sequence[pv.DataSet], name: str) -> bool:
-    """Return whether a name is that of a colour that came with the light."""
+    """Return whether a name belongs to a colour that came with the light."""
     return name == RGB and all(
         name not in mesh.point_data or name in records.all_made(mesh) for mesh in meshes
     )
+
+
+def are_colors(array: NDArray[np.generic]) -> bool:
+    """Return whether an array holds colours as bytes, not values."""
+    return array.ndim == 2 and array.dtype == np.uint8 and array.shape[1] in (3, 4)
 
 
 def values_of(
@@ -183,7 +188,7 @@ def values_of(
             expected = f"{mesh.n_points} rows, one per point"
             raise ValueError(_check.message("scalars", expected, array))
     if array.ndim == 2:
-        if component is None and array.dtype == np.uint8 and array.shape[1] in (3, 4):
+        if component is None and are_colors(array):
             return array
         if component is None:
             return np.asarray(np.linalg.norm(array.astype(np.float64), axis=1))
@@ -434,7 +439,7 @@ def unlit_colors(mesh: pv.DataSet | pv.MultiBlock, /, name: str = RGB) -> pv.Loo
     """
     record = records.provenance(mesh, name)
     if record.get("filter") != "tint":
-        got = f"that of {record.get('filter')}"
+        got = f"the result of {record.get('filter')}"
         raise ValueError(_check.message("name", "the result of tint", got))
     options = record["options"]
     table = pv.LookupTable()

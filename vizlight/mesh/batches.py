@@ -104,7 +104,7 @@ def parts_of(
 
 
 def _alone(meshes: Sequence[pv.DataSet], members: Iterable[int]) -> list[Batch]:
-    """Return some meshes, each by itself, the last one first."""
+    """Return some meshes as batches of one, the last one first."""
     return [Batch(meshes[i], [i]) for i in reversed(list(members))]
 
 
@@ -255,7 +255,7 @@ def _end_to_end(arrays: Sequence[vtkDataArray], starts: Indices) -> vtkDataArray
 
 
 def _cells(cells: Sequence[vtkCellArray], starts: Indices) -> vtkCellArray:
-    """Return cells of meshes as those of one, whose points follow each other."""
+    """Return cells of meshes as cells of one mesh, which has their points one after the other."""
     out = pv.CellArray()
     for own, start in zip(cells, starts.tolist(), strict=False):
         out.Append(own, start)

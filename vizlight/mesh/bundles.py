@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import hashlib
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -99,6 +100,28 @@ def dim(
     TypeError, ValueError
         If there are no lines, or points that are not in 3-space.
     """
+    work = _work_of(meshes, inputs, bundle, threads)
+    lights = _lights(scene)
+    made = []
+    for number, (mesh, given) in enumerate(zip(meshes, inputs, strict=True)):
+        done = number * (len(lights) + bundle.directions // 2)
+        total = len(meshes) * (len(lights) + bundle.directions // 2)
+
+        def report(count: int, done: int = done, total: int = total) -> None:
+            if progress is not None:
+                progress(done + count, total)
+
+        made.append(_Target(work, mesh, given, names).dim(lights, report))
+    return made
+
+
+def _work_of(
+    meshes: Sequence[pv.DataSet],
+    inputs: Sequence[ShadingInputs],
+    bundle: Bundle,
+    threads: int | None,
+) -> _Work:
+    """Return the lines that dim meshes."""
     for given in inputs:
         if given.points.shape[1] != 3:
             got = f"points of {given.points.shape[1]} components"
@@ -110,19 +133,46 @@ def dim(
         raise ValueError(_check.message("bundle", "a mesh with lines", "none", remedy))
     asked = [bundle.diameter, bundle.depth, bundle.directions, bundle.grid]
     source = _digest(lines.points, lines.ids, lines.offsets, np.array(repr([asked, own])))
-    lights = [light.seen_from(scene.view) for light in scene.lights if light.intensity > 0]
-    work = _Work(lines, source, bundle, threads)
-    made = []
-    for number, (mesh, given) in enumerate(zip(meshes, inputs, strict=True)):
-        done = number * (len(lights) + bundle.directions // 2)
-        total = len(meshes) * (len(lights) + bundle.directions // 2)
+    return _Work(lines, source, bundle, threads)
 
-        def report(count: int, done: int = done, total: int = total) -> None:
-            if progress is not None:
-                progress(done + count, total)
 
-        made.append(work.dim(mesh, given, lights, names, report))
-    return made
+def _lights(scene: Scene) -> list[Light]:
+    """Return the lights that shine, where the view of a scene has them."""
+    return [light.seen_from(scene.view) for light in scene.lights if light.intensity > 0]
+
+
+class Live:
+    """Shares of light of one mesh, computed again only for lights that have moved.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh that is lit.
+    inputs : ShadingInputs
+        Its points with tangents or normals.
+    bundle : Bundle
+        How the lines dim the light.
+    names : tuple of str
+        As for :func:`dim`.
+    """
+
+    def __init__(
+        self, mesh: pv.DataSet, inputs: ShadingInputs, bundle: Bundle, names: tuple[str, str, str]
+    ) -> None:
+        self._target = _Target(_work_of([mesh], [inputs], bundle, None), mesh, inputs, names)
+
+    def dimmed(self, inputs: ShadingInputs, scene: Scene) -> ShadingInputs:
+        """Return inputs with the shares of the lights of a scene.
+
+        They are the same object where they have those shares already.
+        """
+        known = self._target.known
+        made = self._target.dim(_lights(scene))
+        if known is made and inputs.transmittance is made.transmittance:
+            return inputs
+        return dataclasses.replace(
+            inputs, transmittance=made.transmittance, occlusion=made.occlusion
+        )
 
 
 class _Work:
@@ -131,64 +181,6 @@ class _Work:
     def __init__(self, lines: _Lines, source: str, bundle: Bundle, threads: int | None) -> None:
         self.lines, self.source, self.bundle, self.threads = lines, source, bundle, threads
         self._made: tuple[Medium, float] | None = None
-
-    def dim(
-        self,
-        mesh: pv.DataSet,
-        given: ShadingInputs,
-        lights: Sequence[Light],
-        names: tuple[str, str, str],
-        progress: Callable[[int], None],
-    ) -> Dimming:
-        """Return the shares of one mesh, kept ones where they still hold."""
-        points = np.asarray(given.points[:])
-        if given.origin is not None and any(given.origin):
-            points = points.astype(np.float64) + np.array(given.origin)
-        vectors = given.normals if given.tangents is None else given.tangents
-        rows = None if vectors is None else np.asarray(vectors[:])
-        lengths: Array | None = None
-        if given.tangents is not None:
-            lengths = np.zeros(len(points))
-            if self.bundle.lines is None and polylines.has_lines_only(mesh):
-                lengths = _lengths(mesh)
-        if rows is not None and len(rows) * given.repeat == len(points):
-            rows = np.repeat(rows, given.repeat, axis=0)
-        if rows is not None and rows.shape != points.shape:
-            # Several tangents per point: a surface or a volume that light reaches from all sides.
-            rows = lengths = None
-        empty = np.empty(0)
-        digest = _digest(
-            np.array(self.source), points, *(empty if x is None else x for x in (rows, lengths))
-        )
-        keys = [_key(light) for light in lights]
-        kept = _kept(mesh, names, digest)
-        columns: dict[str, Array] = {}
-        sides: Array | None = None
-        if kept is not None:
-            columns = dict(zip(kept[0], kept[1].T, strict=True))
-            sides = kept[2]
-        missing = [i for i, key in enumerate(keys) if key not in columns]
-        count = self.bundle.directions if sides is None else 0
-        facts = {} if kept is None else kept[3]
-        if missing or count:
-            medium, diameter = self.medium()
-            targets = medium.targets(points, rows, lengths)
-            found, new = medium.dimmed(
-                targets,
-                diameter,
-                [_place(lights[i]) for i in missing],
-                count,
-                threads=self.threads,
-                progress=progress,
-            )
-            columns |= {keys[i]: found[:, j] for j, i in enumerate(missing)}
-            sides = new if count else sides
-            facts = {"diameter": diameter, "voxel": medium.voxel}
-        transmittance = np.empty((len(points), len(keys)), np.float32)
-        for i, key in enumerate(keys):
-            transmittance[:, i] = columns[key]
-        record: Record = {**facts, "source": digest, "lights": keys}
-        return Dimming(transmittance, sides, record)
 
     def medium(self) -> tuple[Medium, float]:
         """Return the medium of the lines and their diameter."""
@@ -220,6 +212,82 @@ class _Work:
         return geometry.medium(*lines, voxel=voxel), diameter
 
 
+class _Target:
+    """A mesh that lines dim, and the shares that are known of it."""
+
+    def __init__(
+        self, work: _Work, mesh: pv.DataSet, given: ShadingInputs, names: tuple[str, str, str]
+    ) -> None:
+        self._work = work
+        points = np.asarray(given.points[:])
+        if given.origin is not None and any(given.origin):
+            points = points.astype(np.float64) + np.array(given.origin)
+        vectors = given.normals if given.tangents is None else given.tangents
+        rows = None if vectors is None else np.asarray(vectors[:])
+        lengths: Array | None = None
+        if given.tangents is not None:
+            lengths = np.zeros(len(points))
+            if work.bundle.lines is None and polylines.has_lines_only(mesh):
+                lengths = _lengths(mesh)
+        if rows is not None and len(rows) * given.repeat == len(points):
+            rows = np.repeat(rows, given.repeat, axis=0)
+        if rows is not None and rows.shape != points.shape:
+            # Several tangents per point: a surface or a volume that light reaches from all sides.
+            rows = lengths = None
+        self._points, self._rows, self._lengths = points, rows, lengths
+        empty = np.empty(0)
+        self._digest = _digest(
+            np.array(work.source),
+            points,
+            *(empty if x is None else x for x in (rows, lengths)),
+        )
+        kept = _kept(mesh, names, self._digest)
+        #: Shares that still hold, and the keys of their lights.
+        self.known = None if kept is None else kept[1]
+        self._keys = [] if kept is None else kept[0]
+
+    def dim(
+        self, lights: Sequence[Light], progress: Callable[[int], None] | None = None
+    ) -> Dimming:
+        """Return the shares of some lights, known ones where they still hold."""
+        keys, known = [_key(light) for light in lights], self.known
+        columns: dict[str, Array] = {}
+        sides: Array | None = None
+        facts: Record = {}
+        if known is not None:
+            if self._keys == keys and not self._lacks(known.occlusion):
+                return known
+            columns = dict(zip(self._keys, known.transmittance.T, strict=True))
+            sides = known.occlusion
+            facts = {name: known.record.get(name) for name in ("diameter", "voxel")}
+        missing = [i for i, key in enumerate(keys) if key not in columns]
+        count = self._work.bundle.directions if sides is None else 0
+        if missing or count:
+            medium, diameter = self._work.medium()
+            found, new = medium.dimmed(
+                medium.targets(self._points, self._rows, self._lengths),
+                diameter,
+                [_place(lights[i]) for i in missing],
+                count,
+                threads=self._work.threads,
+                progress=progress,
+            )
+            columns |= {keys[i]: found[:, j] for j, i in enumerate(missing)}
+            sides = new if count else sides
+            facts = {"diameter": diameter, "voxel": medium.voxel}
+        transmittance = np.empty((len(self._points), len(keys)), np.float32)
+        for i, key in enumerate(keys):
+            transmittance[:, i] = columns[key]
+        record: Record = {**facts, "source": self._digest, "lights": keys}
+        made = Dimming(transmittance, sides, record)
+        self.known, self._keys = made, keys
+        return made
+
+    def _lacks(self, occlusion: Array | None) -> bool:
+        """Return whether light from all sides is asked for and not known."""
+        return occlusion is None and self._work.bundle.directions > 0
+
+
 def _tangents(points: Array, ids: Indices, offsets: Indices) -> Array:
     """Return a vector along a line through each point."""
     first = geometry.segment_starts(ids, offsets)
@@ -249,8 +317,8 @@ def _key(light: Light) -> str:
 
 def _kept(
     mesh: pv.DataSet, names: tuple[str, str, str], digest: str
-) -> tuple[list[str], Array, Array | None, Record] | None:
-    """Return keys of lights, transmittance, occlusion and facts that still hold for a mesh."""
+) -> tuple[list[str], Dimming] | None:
+    """Return the keys of lights and the shares of a mesh that still hold."""
     whole = records.read(mesh, names[0])
     record = (whole or {}).get("bundle")
     if not isinstance(record, dict) or record.get("source") != digest:
@@ -265,7 +333,7 @@ def _kept(
     if names[2] in made and names[2] in mesh.point_data:
         sides = np.asarray(mesh.point_data[names[2]])
     facts: Record = {name: record.get(name) for name in ("diameter", "voxel")}
-    return keys, shares, sides, facts
+    return keys, Dimming(shares, sides, {**facts, "source": digest, "lights": keys})
 
 
 def _digest(*arrays: NDArray[np.generic]) -> str:

@@ -34,8 +34,8 @@ STEEP = 1e-4
 class Solid:
     """Triangles of a closed surface in float64, relative to an origin.
 
-    Parallel rays are projected along their direction. Others need a search tree, which is that of
-    Embree if ``embree`` and the package embreex is installed, else that of VTK.
+    Parallel rays are projected along their direction. Others need a search tree: Embree's if
+    ``embree`` and the package embreex is installed, else VTK's.
     """
 
     vertices: Array

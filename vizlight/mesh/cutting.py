@@ -24,7 +24,7 @@ _SIMPLICES = (pv.CellType.TETRA, pv.CellType.TRIANGLE, pv.CellType.LINE)
 _FACES = np.array(
     [[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
 )
-#: Corners of a voxel in the order of those of a hexahedron.
+#: Corners of a voxel in the order of a hexahedron's.
 _VOXEL = [0, 1, 3, 2, 4, 5, 7, 6]
 #: Number of frames that are interpolated at once: each takes about n k numbers.
 BLOCK = 1 << 15

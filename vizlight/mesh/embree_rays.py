@@ -71,7 +71,7 @@ def hits(
         cells.append(cell)
         against = np.einsum("ij,ij->i", way[row], normal[cell])
         gap = np.einsum("ij,ij->i", corner[cell] - start[row], normal[cell])
-        # Along the plane of a triangle there is no such distance, so that of Embree is used.
+        # Along the plane of a triangle there is no such distance, so Embree's is used.
         place = np.divide(gap, against, out=s[row] + far, where=against != 0)
         near = np.abs(place - s[row] - far) < 1e-3 * size
         s[row] = np.maximum(np.where(near, place, s[row] + far), s[row]) + STEP * size

@@ -162,7 +162,7 @@ def _polylines(
 
 
 def _attach(data: pv.DataSetAttributes, name: object, array: NDArray[np.generic]) -> None:
-    """Attach numbers as rows, of which those of one component are flat."""
+    """Attach numbers as rows; rows of one component become flat."""
     if array.dtype.kind not in "biuf":
         return
     native = np.float32 if array.dtype == np.float16 else array.dtype.newbyteorder("=")

@@ -37,7 +37,7 @@ class Heights:
     place : ndarray of int, shape (ny, nx)
         Index of each node among the points of the grid.
     turn : ndarray, shape (3, 3), optional
-        Rotation about the vertical from the axes of the mesh to those of x and y; None where they
+        Rotation about the vertical from the axes of the mesh to the axes x and y; None where they
         are the same.
     """
 
@@ -111,8 +111,8 @@ def heights_of(
     Raises
     ------
     TypeError, ValueError
-        If the grid has more than one layer, is tilted, has no such elevation, or its x and y are
-        not those of straight rows and columns at right angles.
+        If the grid has more than one layer, is tilted, has no such elevation, or its x and y do not
+        form straight rows and columns at right angles.
     """
     factor = _check.number("factor", factor)
     if raster is not None:

@@ -10,7 +10,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight._version import __version__
-from vizlight.mesh import creases, point_arrays, records
+from vizlight.mesh import blocks, creases, point_arrays, records
 from vizlight.reading.cells import (
     POLYDATA,
     as_numpy,
@@ -28,6 +28,7 @@ from vizlight.scene import View
 from vizlight.shading.results import digest
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from typing import TypeVar
 
     from vtkmodules.vtkCommonDataModel import vtkCellArray
@@ -42,14 +43,16 @@ if TYPE_CHECKING:
 #: Name of the point array in which normals that had to be computed stay with a result: three
 #: components of the normal, its lean, and 1 on an open piece.
 KEPT = "vizlight_normals"
-#: Number of points from which normals are kept. Those of smaller meshes are computed for many at
+#: Share of the spacing between points to which they may be rounded without a warning.
+ROUNDED = 0.05
+#: Number of points from which normals are kept. Normals of smaller meshes are computed for many at
 #: once, sooner than what is kept is checked.
 FEWEST = 256
 _NONE = np.empty(0)
 
 
 def are_computed(mesh: pv.DataSet, options: LightOptions) -> bool:
-    """Return whether the normals of a mesh are those of its surface, not an array."""
+    """Return whether the normals of a mesh are computed from its surface, not an array."""
     return options.normals is None and mesh.point_data.active_normals is None
 
 
@@ -58,7 +61,7 @@ def normals_of(
 ) -> Array:
     """Return normals that agree on a side: those in ``value``, of the mesh, or of its surface.
 
-    Those of the surface point outward on closed and nearly closed pieces, else as a whole to the
+    Normals of the surface point outward on closed and nearly closed pieces, else as a whole to the
     eye and away from the centroid. With ``warn`` a warning is given if they were averaged across
     many sharp edges.
     """
@@ -78,6 +81,22 @@ def warn_of_edges(share: float, splits: bool) -> None:
         _check.warn(
             f"{share:.0%} of the edges are sharper than {SHARP:g} degrees, and light is averaged "
             f"across them; {first}pass feature_angle={SHARP:g} to split the points there"
+        )
+
+
+def warn_of_rounding(meshes: Sequence[pv.DataSet]) -> None:
+    """Warn if float32 points so far from the origin are rounded that computed normals suffer."""
+    worst = 0.0
+    for mesh in meshes:
+        if isinstance(mesh, pv.PointSet | pv.PolyData) and mesh.points.dtype == np.float32:
+            middle, side = blocks.box(mesh)
+            step = float(np.spacing(np.float32(np.abs(middle).max() + side / 2)))
+            worst = max(worst, step * mesh.n_points**0.5 / side)
+    if worst > ROUNDED:
+        _check.warn(
+            f"the float32 points lie so far from the origin that they are rounded to {worst:.0%} "
+            "of the spacing between them, and normals computed from them are off by as much; "
+            "subtract an origin from them before they become float32, or keep them in float64"
         )
 
 
@@ -157,7 +176,7 @@ def _split(mesh: pv.PolyData, angle: float) -> pv.PolyData:
         ends, split = _with_twins(mesh.GetPolys(), split, ends, origin)
     found = pv.PolyData()
     found.SetPoints(pv.vtk_points(places(mesh)[origin]))
-    # Points that were split stand behind those of the mesh.
+    # Points that were split stand behind the mesh's own.
     found.SetVerts(mesh.GetVerts())
     found.SetLines(mesh.GetLines())
     found.SetPolys(creases.cell_array(split, ends))
@@ -180,7 +199,7 @@ def _with_twins(
     cells : vtkCellArray
         Polygons before the split.
     split, ends : ndarray of int
-        Corners and ends of those of them that differ, and of more faces, after the split.
+        Corners and ends of the polygons that differ, and of more faces, after the split.
     origin : ndarray of int
         Point before the split of each point.
     """
@@ -189,7 +208,7 @@ def _with_twins(
     ids, before = connectivity(cells)
     size, count = np.diff(before), len(origin)
     kept = first == np.arange(len(first))
-    # The corner of a polygon is that of its first twin which was the same point.
+    # Each corner of a polygon is the corner of its first twin that was the same point.
     corners = np.repeat(np.arange(len(ends) - 1), np.diff(ends)) * count + origin[split]
     order = np.argsort(corners)
     row = (np.cumsum(kept) - 1)[first]
@@ -236,7 +255,7 @@ def _stay(mesh: pv.DataSet, normals: Sided) -> bool:
 
 
 def to_keep(mesh: pv.DataSet, normals: Sided | None) -> Sided | None:
-    """Return normals, without those of the points where these do not stay with a mesh."""
+    """Return normals, without the rows of points where these do not stay with a mesh."""
     if normals is None or _stay(mesh, normals):
         return normals
     return dataclasses.replace(normals, vectors=_NONE, lean=None, open=False)

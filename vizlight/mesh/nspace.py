@@ -61,7 +61,7 @@ class Turning:
         if isinstance(mesh, pv.ImageData | pv.RectilinearGrid):
             mesh = mesh.cast_to_structured_grid()
         out = mesh.copy(deep=True)
-        # The normals of the mesh are not those of the result.
+        # The normals of the mesh are not the result's.
         out.point_data.active_normals_name = None
         arrays = self._arrays(out)
         n = arrays[self.positions].shape[1]

@@ -126,7 +126,7 @@ def all_made(mesh: pv.DataSet) -> set[str]:
 
 
 def _names(mesh: pv.DataSet) -> list[str]:
-    """Return the names of the arrays of which a mesh has records."""
+    """Return the names of the arrays whose records a mesh has."""
     fields = getattr(mesh, "field_data", ())
     return [name.removesuffix(record_key("")) for name in fields if name.endswith(record_key(""))]
 

@@ -41,8 +41,8 @@ WITHIN = np.array([[1 / 3, 1 / 3, 1 / 3], [0.6, 0.2, 0.2], [0.2, 0.6, 0.2], [0.2
 CHECKS = 4096
 #: Largest number of rounds; each may halve every edge.
 ROUNDS = 40
-#: Share of the diagonal of the bounding box below which an edge is not split: that of a pixel of
-#: a large picture, to which a jump of the light is thus confined.
+#: Share of the diagonal of the bounding box below which an edge is not split: the share of a pixel
+#: in a large picture, to which a jump of the light is thus confined.
 SHORTEST = 1 / 4096
 #: Share of the allowed error that chosen places must keep: between them it may be larger.
 KEPT = 0.9

@@ -48,7 +48,7 @@ class Series:
         if hasattr(source, "time_values") and hasattr(source, "set_active_time_value"):
             if times is not None:
                 remedy = "leave times= out"
-                raise ValueError(_check.message("times", "those of the reader", "both", remedy))
+                raise ValueError(_check.message("times", "the times of the reader", "both", remedy))
             self._reader, times = source, source.time_values
         elif isinstance(source, Sequence):
             self._meshes = source
@@ -70,7 +70,7 @@ class Series:
         self._first: pv.DataSet | None = None
 
     def mesh(self, step: int) -> pv.DataSet:
-        """Return the mesh of a step, whose points are those of the first.
+        """Return the mesh of a step, which has the points of the first.
 
         Raises
         ------

@@ -208,7 +208,7 @@ _MOST_POINTS = 1 << 40
 
 
 def _of_cells(cells: vtkCellArray, count: int) -> str:
-    """Return how cells contradict their points, of which there are ``count``."""
+    """Return how cells contradict their ``count`` points."""
     ids = pv.convert_array(cells.GetConnectivityArray())
     offsets = pv.convert_array(cells.GetOffsetsArray())
     if ids.size and not 0 <= ids.min() <= ids.max() < count:

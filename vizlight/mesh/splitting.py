@@ -124,7 +124,7 @@ class Cells:
     Attributes
     ----------
     corners : ndarray of int, shape (T, s)
-        Points of the parts: first those of the mesh, then new ones in the order of their making.
+        Points of the parts: first the mesh's own, then new ones in the order of their making.
     parent : ndarray of int, shape (T,)
         Cell of the mesh that each part lies in.
     twin : ndarray of int
@@ -149,7 +149,7 @@ class Cells:
         ndarray of int, shape (M, 1) or (M, 3)
             Number of the edge that begins at each corner.
         ndarray of bool
-            Whether the edge runs from the twin of the larger number to that of the smaller.
+            Whether the edge runs from the twin of the larger number to the twin of the smaller.
         """
         start = self.twin[self.corners[cells]]
         stop = np.roll(start, -1, axis=1)
@@ -313,9 +313,9 @@ def _split_lines(lines: vtkCellArray, parts: Cells, shares: scipy.sparse.csr_arr
 def _interpolated(
     rows: NDArray[np.generic], shares: scipy.sparse.csr_array, *, places: bool = False
 ) -> NDArray[np.generic]:
-    """Return values of a point array at new points, given the shares of those of the mesh.
+    """Return values of a point array at new points, given the shares of the mesh's points.
 
-    Places are not directions, although they may have the length 1, such as those of a sphere.
+    Places are not directions, although they may have the length 1, as on a sphere.
     """
     colour = rows.dtype == np.uint8 and rows.ndim == 2 and rows.shape[1] in (3, 4)
     if rows.dtype.kind != "f" and not colour:
@@ -336,7 +336,7 @@ def _interpolated(
 def keep_tangents(mesh: pv.PolyData, tangents: Array) -> None:
     """Attach the tangents of lines, with a digest of the points and lines that they belong to.
 
-    New points lie on the segments of a line, whose direction is not that of the line there. Where
+    New points lie on the segments of a line, whose direction is not the line's there. Where
     the user has an array of that name nothing is attached.
     """
     ours = TANGENTS in records.made(mesh, TANGENTS)

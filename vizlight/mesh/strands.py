@@ -116,7 +116,7 @@ class Strands:
         return self._at(rows)[0].normals.T
 
     def _tangents(self, rows: slice) -> Array:
-        """Return tangents of any length, those of the parabola through three points.
+        """Return tangents, of any length, of the parabola through three points.
 
         The tangent of a fibre of length 0 is the direction in which it would grow.
         """

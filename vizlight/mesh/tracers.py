@@ -12,7 +12,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 from vtkmodules.vtkFiltersFlowPaths import vtkStreamTracer
 
 from vizlight import _check
-from vizlight.geometry.lines import crosses, even, fur, samples
+from vizlight.geometry.lines import crosses, even, evenness, fur, samples
 from vizlight.geometry.lines.simplices import Places, Simplices
 from vizlight.geometry.lines.tracing import AT_REST, Curves, Flow, trace
 from vizlight.mesh import polylines
@@ -196,7 +196,7 @@ class CellTracer:
             seed=how.seed,
             report=lambda done: report(100 * done // total),
         )
-        gap, near = even.gaps(self.flow, self.normals, asked, curves)
+        gap, near = evenness.evenness(self.flow, self.normals, asked, curves)
         return curves, {"largest_gap": gap, "nearest": near, "closed": closed}
 
     def lines(self, curves: Curves, unsigned: Vectors | None = None) -> pv.PolyData:
@@ -222,7 +222,7 @@ class CellTracer:
         return lines
 
     def _along(self, vectors: Array, curves: Curves) -> Array:
-        """Return vectors at the places of curves, those of each cell turned along the curve."""
+        """Return vectors at the places of curves; in each cell they are turned along the curve."""
         corners = np.asarray(vectors, dtype=np.float64)[self.cells.cells[curves.places.cell]]
         against = np.einsum("nij,nj->ni", corners, curves.along) < 0
         weights = np.where(against, -curves.places.weights, curves.places.weights)
@@ -242,7 +242,7 @@ def check_spacing(tracer: CellTracer, spacing: float, size: float) -> None:
 def scaled(mesh: pv.DataSet, vectors: Array) -> pv.DataSet:
     """Attach vectors as TRACED, scaled to a median length of 1, zero where they are not finite.
 
-    Below a millionth of that a line has come to rest. Those of a cross field, shape (N, 6), get
+    Below a millionth of that a line has come to rest. Vectors of a cross field, shape (N, 6), get
     length 1 or, below a millionth, 0.
     """
     array: Array = np.array(vectors, dtype=np.float64).reshape(-1, 3)

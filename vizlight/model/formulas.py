@@ -7,7 +7,7 @@ argument of ``where`` and ``only``, calls of each other, and calls of the names 
 What is vector algebra, that is dot products, unit vectors and the part of a vector across a frame,
 is left to the caller.
 
-Squared lengths and lengths are those of residuals: ``sine`` is the length of wi less its tangential
+Lengths and their squares come from residuals: ``sine`` is the length of wi less its tangential
 part, never ``sqrt(1 - along^2)``. Equations and error bounds stand at the public functions.
 """
 

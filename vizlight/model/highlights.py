@@ -55,7 +55,7 @@ class MaximumError(NamedTuple):
     Attributes
     ----------
     error : ndarray
-        Phong minus Blinn, in pixel values; the sign is that of Fisher and Woo's table 3.
+        Phong minus Blinn, in pixel values, with the sign as in Fisher and Woo's table 3.
     theta, phi : ndarray
         Angles of the normal ``(-sin theta cos phi, cos theta, sin theta sin phi)``, in radians,
         where E is along +z and L in the xz plane with x <= 0 (figure 4).
@@ -177,8 +177,8 @@ def max_pixel_error(
     one root, which bisection finds to the last digit; there is no starting value and no local
     optimum. The result bounds the error **in every codimension**. The absolute error of ``error``
     is at most ``255 (4 eps)`` for every exponent. As r goes to infinity with f = 4 it tends to
-    ``255 (1 - C) C^(C / (1 - C))``, C = cos^2(beta). Source: Fisher and Woo, table 3, some last
-    digits of which are off by one.
+    ``255 (1 - C) C^(C / (1 - C))``, C = cos^2(beta). Source: Fisher and Woo, table 3, where some
+    last digits are off by one.
     """
     angle = _angles("light_eye_angle", light_eye_angle)
     r, factor = _powers("r", r), _powers("factor", factor)
@@ -279,7 +279,7 @@ def simple_factor(light_eye_angle: ArrayLike, r: ArrayLike | None = None, /) -> 
     c = cos(beta) instead of cos^2(beta): 63.75 at 120 degrees instead of 120.5. On a surface it is
     also the factor for which both highlights contain the same amount of light. The correction is
     fitted to :func:`best_factor`: from r = 10 on and up to 120 degrees its worst error is within a
-    tenth, or half a pixel value, of the least, and at most 0.1 above that of the factor 4.
+    tenth, or half a pixel value, of the least, and at most 0.1 above the error of the factor 4.
     """
     angle = _angles("light_eye_angle", light_eye_angle)
     if r is None:

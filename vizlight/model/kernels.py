@@ -150,7 +150,7 @@ def coefficients(x: Array, frame: Array) -> Array:
 def split(x: Array, frame: Array) -> tuple[Array, Array]:
     """Return the tangential coefficients ``(k, B)`` and the length of the normal part.
 
-    The length is that of the residual, because sqrt(1 - cos^2) would lose half the digits.
+    The length comes from the residual, because sqrt(1 - cos^2) would lose half the digits.
     """
     along = coefficients(x, frame)
     residual = x - along[0] * frame[0]
@@ -185,14 +185,3 @@ def _integer_power(x: Array, exponent: int) -> Array:
         exponent >>= 1
         x = x * x
     return x if result is None else result * x
-
-
-def power_error(p: float, q: float) -> float:
-    """Return the exact maximum of |x^p - x^q| over [0, 1], attained where the derivatives agree."""
-    low, high = sorted((p, q))
-    if low == high:
-        return 0.0
-    if low == 0:
-        return 1.0
-    ratio = np.log(low / high) / (high - low)
-    return float(np.exp(low * ratio) * (1 - low / high))

@@ -85,7 +85,7 @@ def mean(tangents: Array, weights: Array) -> Array:
     tangents : ndarray, shape (..., m, k, n)
         Tangents of m places, of any length.
     weights : ndarray, shape (..., m)
-        Weights of the places, such as those of an interpolation.
+        Weights of the places, for example of an interpolation.
 
     Returns
     -------

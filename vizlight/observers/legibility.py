@@ -55,7 +55,7 @@ def legibility(
     knows the lamps, the material and how light is computed, tells by the noisy colour which
     answer is likeliest. No person reads a picture as well: its figures are an **upper bound** of
     what a person can read, and what it cannot read is not in the picture. The errors by the key,
-    of ``direction``, and those of ``value`` are of readers who know nothing but what stands
+    of ``direction``, and the errors of ``value`` belong to readers who know nothing but what stands
     beside the picture.
 
     Parameters
@@ -111,9 +111,9 @@ def legibility(
     normal: he finds the hue of a pixel on a small disc that faces the eye and has tangents in all
     directions, and takes the direction there; tangents that run toward the eye are not asked for.
     Under a single hue he always takes one direction, which is right where the data have one.
-    *slope*: rank correlation and information are those of CIELAB's lightness alone; the direction
-    in space is that of an ideal observer who knows the course of a line in the picture.
-    *shape*: 900 normals, with 24 tangents each where there are tangents, which are unknown.
+    *slope*: rank correlation and information use CIELAB's lightness alone; an ideal observer
+    who knows the course of a line in the picture tells its direction in space.
+    *shape*: 900 normals; where there are tangents, which are unknown, 300 with 72 tangents each.
     *value*: the nearest colour of the bar in CIELAB, and the nearest chromaticity.
 
     The meter is held by cases with known answers. A plane that faces the eye under one oblique
@@ -125,9 +125,9 @@ def legibility(
     the normal of a ball (photometric stereo, Woodham 1980). Unlit colours are read to half a step
     of the bar, and colours of other values at random, 0.29 of the range.
 
-    A million points take about 6 s of processor time, of which the picture takes 2 and the normals
-    of the surface 2. Beside what these two need, and the tangents, memory does not depend on the
-    number of points; it is up to 200 MB.
+    A million points take about 6 s of processor time, including 2 s for the picture and 2 s for the
+    normals of the surface. Beside what these two need, and the tangents, memory does not depend on
+    the number of points; it is up to 200 MB.
 
     Examples
     --------

@@ -20,9 +20,9 @@ def posterior(observed: Array, table: Array, noise: float) -> Array:
     observed : ndarray, shape (M, 3)
         Colours of pixels, from 0 to 1.
     table : ndarray, shape (A, 3) or (M, A, 3)
-        Colours of the candidates without noise, the same for all pixels or those of each.
+        Colours of the candidates without noise, the same for all pixels or separate for each.
     noise : float
-        Standard deviation of each channel, to which that of rounding to bytes is added.
+        Standard deviation of each channel, to which the deviation of rounding to bytes is added.
 
     Returns
     -------

@@ -60,7 +60,8 @@ class Slope:
         Rank correlation of lightness with steepness, the cosine of the angle between a line and
         the line of sight; -1 or 1 where lightness orders all lines, 0 by chance.
     bits : float
-        Information that lightness in 32 classes gives of steepness in 16, 4 bits at most.
+        Information that lightness in 32 classes gives of steepness in 16, 4 bits at most; less from
+        fewer than 4096 places, because each class of lightness has 128 or more.
     within_10, median : float or None
         Share of the places where the direction in space is wrong by 10 degrees at most, and the
         median error in degrees, for an ideal observer who knows the course of the line in the
@@ -92,10 +93,11 @@ class Shape:
     Attributes
     ----------
     median : float
-        Median error in degrees of the normal, for an ideal observer to whom tangents are unknown;
-        2 at best, since the candidates are that far apart.
+        Median error in degrees of the normal, for an ideal observer to whom tangents are unknown,
+        who answers with the mean of what may be; 45 if the picture of a ball tells nothing.
     bits : float
-        Information that the colour of a pixel gives of 900 normals, 9.8 bits at most.
+        Information that the colour of a pixel gives of 900 normals, 9.8 bits at most; where there
+        are tangents, of 300 normals, 8.2 bits at most.
     samples : int
         Number of places.
     """
@@ -106,7 +108,7 @@ class Shape:
 
     def rows(self) -> Iterator[Row]:
         """Yield rows of the table."""
-        yield "shape", "median error of the normal", f"{self.median:.2f} degrees", ""
+        yield "shape", "median error of the normal", f"{self.median:.2f} degrees", "45 degrees"
         yield "", "information", f"{self.bits:.2f} bits", "0"
 
 
@@ -120,7 +122,7 @@ class Value:
         Median, 95 % quantile and largest error of a reader who takes the nearest colour of the
         bar, in CIELAB.
     median_chromaticity, p95_chromaticity, largest_chromaticity : float
-        Those of a reader who takes the nearest chromaticity, which light does not change.
+        Errors of a reader who takes the nearest chromaticity, which light does not change.
     samples : int
         Number of places.
     """

@@ -160,7 +160,7 @@ def weights(corners: Array, sight: Rays) -> Array:
     Returns
     -------
     ndarray, shape (M, s)
-        Shares, 0 or more and with sum 1; of a segment those of its point nearest to the line.
+        Shares, 0 or more and with sum 1; for a segment, of its point nearest to the line.
     """
     m, s, _ = corners.shape
     if s == 1:

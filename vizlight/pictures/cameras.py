@@ -109,10 +109,10 @@ def outermost(
     Parameters
     ----------
     points : array_like, shape (n, 3)
-        Points, of which those that are not finite are ignored.
+        Points; any that are not finite are ignored.
     direction, up, aspect
         As for :func:`camera_on`, which gives the same camera for a mesh of all points and for one
-        of the points that are returned, also of those of several parts together.
+        of the points that are returned, also if these come from several parts.
 
     Returns
     -------

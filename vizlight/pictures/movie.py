@@ -148,6 +148,7 @@ def turn(
     facing: Facing = "auto",
     feature_angle: FeatureAngle = None,
     conditioned: bool | str | None = False,
+    line_field: bool = False,
     refine: float = 0.0,
     bundle: bool | Bundle = False,
     name: str = "luminance",
@@ -192,9 +193,9 @@ def turn(
         Show progress on standard error.
     rotation, hyperplane, distance, positions, frame, vectors, cut, light
         As for :func:`vizlight.project`.
-    tangents, normals, facing, feature_angle, conditioned, refine, bundle, name, exponent
+    tangents, normals, facing, feature_angle, conditioned, line_field, refine, bundle, name
         As for :func:`vizlight.illuminate`.
-    model, components, precision
+    exponent, model, components, precision
         As for :func:`vizlight.illuminate`.
 
     Returns
@@ -205,7 +206,7 @@ def turn(
     Raises
     ------
     MovieError
-        If the path is that of a movie and imageio is not installed. Raised before anything is
+        If the path names a movie and imageio is not installed. Raised before anything is
         drawn.
     BackendError
         If no OpenGL library can draw here.

@@ -159,8 +159,8 @@ def make_plotter(
         wider. They are bands that face the eye, at least half a pixel wide.
     render_lines_as_tubes : bool, default: False
         Whether lines wider than a pixel have, across their width, the light of the cylinder that
-        they stand for: its mean is that of ``model="cylinder"``. Lines keep their own light where
-        it cannot be computed in each fragment, as with ``light="points"``, on a surface that
+        they stand for: its mean is the light of ``model="cylinder"``. Lines keep their own light
+        where it cannot be computed in each fragment, as with ``light="points"``, on a surface that
         conditions it, or in a bundle.
     anti_aliasing : {"auto", "ssaa", "msaa", "fxaa"} or None, default: "auto"
         Method of anti-aliasing: supersampling, multisampling, FXAA, or none. "auto" is
@@ -171,9 +171,9 @@ def make_plotter(
         OpenGL library; see :func:`choose_backend`.
     light : {"auto", "points"}
         What is drawn: "points", the array as it is, interpolated between the points. "auto", the
-        light of its record, computed in each fragment, where the array is a light of which that
-        is possible (in gray from 0 to 1, or ``rgb``): it is right between the points too. A scene
-        that is exported to a page needs "points", because the page has no such shaders.
+        light of its record, computed in each fragment, where the array is a light that allows it
+        (in gray from 0 to 1, or ``rgb``): it is right between the points too. A scene that is
+        exported to a page needs "points", because the page has no such shaders.
     key : pyvista.PolyData, optional
         Key of the light, as :func:`vizlight.presets.key` returns it, in the corner of the last
         panel where it covers the least of the data.
@@ -267,7 +267,7 @@ def _default_scalars(mesh: object) -> str:
 def _check_panels(
     panels: Mesh | Panel | Sequence[Mesh | Panel], scalars: str | None
 ) -> list[Panel]:
-    """Return the panels to draw, each of which has the array that colours it."""
+    """Return the panels to draw, each with the array that colours it."""
     items: Sequence[Any] = panels if isinstance(panels, list | tuple) else [panels]
     shown = [
         item

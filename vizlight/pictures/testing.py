@@ -3,7 +3,7 @@
 Graphics drivers draw the edges of lines and surfaces differently, so pixels cannot be compared one
 by one. The mean brightness of a picture does not reveal a displaced highlight, and the mean of all
 errors does not reveal thin lines that are 5 % too bright. The comparison therefore uses three
-errors, each of which is insensitive to edges; together they reveal wrong light.
+errors, each insensitive to edges; together they reveal wrong light.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Ghost cells: those of other pieces that touch a piece, joined to it and cut off again."""
+"""Ghost cells: cells of other pieces that touch a piece, joined to it and cut off again."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def with_layer(
 
     The rest is kept only where it is asked for: others are then in memory one at a time.
 
-    Points of the mesh keep their indices; those of the layer follow, and cells of the layer use
+    Points of the mesh keep their indices; points of the layer follow, and cells of the layer use
     the mesh's own points where their places are the same bit for bit.
     """
     if GHOST not in mesh.cell_data:

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     Extent = tuple[int, ...]
 
-#: Suffix of a piece by its type of mesh, and that of an index of pieces by the suffix of those.
+#: Suffix of a piece by its type of mesh, and suffix of an index of pieces by theirs.
 SUFFIX = {kind: formats[0] for kind, formats in files.FORMATS.items() if kind != "MultiBlock"}
 INDEX = {suffix: f".p{suffix[1:]}" for suffix in SUFFIX.values()}
 #: Readers of structured grids, which read any box of nodes out of a file.
@@ -103,7 +103,7 @@ class FilePiece(Piece):
     partition, partitions : int
         Index of the partition, and their number.
     beside : tuple of FilePiece
-        Pieces whose bounding boxes touch that of this one.
+        Pieces whose bounding boxes touch this one's.
     """
 
     path: Path

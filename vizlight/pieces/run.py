@@ -109,10 +109,10 @@ def light(
         Lights, material and view. The ends of a depth cue that are not given are taken from the
         bounding box of all pieces.
     filter : {"illuminate", "streamlines"}
-        Filter of vizlight. Streamlines end where their piece ends, and ``seeds`` counts those of
-        each piece.
+        Filter of vizlight. Streamlines end where their piece ends, and ``seeds`` counts the seeds
+        of each piece.
     contour : str, optional
-        Name of a point array of one component, of which an isosurface is lit.
+        Name of a point array of one component, whose isosurface is lit.
     level : float, optional
         Value of the array on the isosurface. Default: the middle of its range over all pieces,
         which costs a first reading.
@@ -163,8 +163,8 @@ def light(
 
     Notes
     -----
-    Light of a piece equals that of the whole by the same options (``facing="eye"``, unless it is
-    given) within 1e-6, normals on borders and the ends of a depth cue included. The memory of a
+    Light of a piece equals the light of the whole by the same options (``facing="eye"``, unless it
+    is given) within 1e-6, normals on borders and the ends of a depth cue included. The memory of a
     process is bounded by its piece with its ghost cells, one neighbour at a time (all of them with
     ``ghost`` above 1), and the result: 0.55 GB for slabs of 64 MB of a file of any size. The files
     move to their place when all are written, so that a worker that is killed leaves no part of one;
@@ -291,7 +291,7 @@ def _named_by(path: Path, folder: Path) -> set[str]:
 
 
 def _clear(folder: Path) -> None:
-    """Remove drafts, those of runs that were killed too, and the folder if nothing is in it."""
+    """Remove drafts, also from runs that were killed, and the folder if nothing is in it."""
     for draft in folder.glob(".vizlight-*"):
         shutil.rmtree(draft, ignore_errors=True)
     with contextlib.suppress(OSError):  # it holds pieces

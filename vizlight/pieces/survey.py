@@ -53,7 +53,8 @@ def camera_on(
     Returns
     -------
     pyvista.Camera
-        That of :func:`vizlight.pictures.render.camera_on` for the mesh of all pieces, to rounding.
+        The camera of :func:`vizlight.pictures.render.camera_on` for the mesh of all pieces, to
+        rounding.
 
     Raises
     ------
@@ -151,7 +152,7 @@ def _middle(found: Sequence[Survey], job: Job) -> float:
 def check_alike(
     piece: Piece, found: dict[str, Any], first: Piece, expected: dict[str, Any]
 ) -> None:
-    """Check that a piece has the arrays of the first, and the grid of which both are boxes."""
+    """Check that a piece has the arrays of the first, and that both are boxes of one grid."""
     for name in expected | found:
         here, there = found.get(name), expected.get(name)
         if here != there:
@@ -163,7 +164,7 @@ def check_alike(
 
 
 def _neighbours(parts: list[Piece], boxes: Any, ghost: int) -> list[Piece]:
-    """Return the pieces, those of files with the pieces whose boxes touch theirs."""
+    """Return the pieces; pieces of files come with the pieces whose boxes touch theirs."""
     if not ghost:
         return parts
     found: list[Piece] = []

@@ -210,7 +210,7 @@ def _lit(mesh: pv.DataSet, piece: Piece, job: Job) -> tuple[Any, float | None]:
     kept = records.read(lit, normals.KEPT)
     sharp = None if kept is None else records.share(kept, "sharp")
     for stale in records.made(lit, normals.KEPT):
-        # They are those of the piece with its ghost cells, and would be checked in vain.
+        # They belong to the piece with its ghost cells, and would be checked in vain.
         del lit.point_data[stale]
         del lit.field_data[record_key(stale)]
     own = piece.own(lit) if job.filter == "illuminate" else lit

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
+import difflib
+import inspect
 import weakref
 from typing import TYPE_CHECKING, Any, get_args
 
@@ -11,7 +13,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.files import check_output
 from vizlight.filters import relight
-from vizlight.filters.key import key
+from vizlight.filters.key import key, question_of
 from vizlight.filters.tint import RGB, default_map, default_nan_color
 from vizlight.mesh import blocks, records
 from vizlight.plotting.corner import PLACES, CornerKey, ink_on
@@ -24,9 +26,9 @@ from vizlight.plotting.points import Points
 from vizlight.plotting.program import Stroke
 from vizlight.plotting.sources import sources_of, tinted
 from vizlight.reading.polylines import has_lines_only
-from vizlight.scene import Scene
-from vizlight.shading.display import NO_DATA_NAME
-from vizlight.shading.options import LightOptions
+from vizlight.scene import Material, Scene
+from vizlight.shading.display import NO_DATA_NAME, titled
+from vizlight.shading.options import LightOptions, unknown_option
 from vizlight.shading.results import DEFAULT_NAME, unlit
 
 if TYPE_CHECKING:
@@ -48,7 +50,7 @@ LIGHT = {field.name for field in dataclasses.fields(LightOptions)} - {"name", "c
 #: Keywords of PyVista that stand for another light or another surface than the one that is lit.
 REFUSED = {
     "lighting": "the light is vizlight's",
-    "smooth_shading": "normals are those of the points; pass normals= for others",
+    "smooth_shading": "normals belong to the points; pass normals= for others",
     "split_sharp_edges": "call mesh.compute_normals(split_vertices=True) first",
     "pbr": "leave it out, or add the mesh by plotter.add_mesh",
     "metallic": "leave it out, or add the mesh by plotter.add_mesh",
@@ -62,7 +64,9 @@ REFUSED = {
 #: Endings of the names of pictures that VTK writes.
 PICTURES = (".png", ".jpeg", ".jpg", ".bmp", ".tif", ".tiff")
 #: Coefficients that a scene has and PyVista takes as keywords.
-MATERIAL = ("ambient", "diffuse", "specular", "specular_power")
+MATERIAL = {"ambient", "diffuse", "specular", "specular_power"}
+#: Coefficients ka, kd and ks of an actor that PyVista was not told others for.
+UNTOUCHED = (0.0, 1.0, 0.0)
 
 
 @pv.register_plotter_component("vizlight")
@@ -99,8 +103,8 @@ class Component:
             Mesh that is lit and drawn; not changed. One with the light of a filter is lit again
             from its record, unless options of light are given.
         scene : Scene, optional
-            Lights, material and depth cue. Default: those of the record of the mesh, otherwise
-            the lights of the plotter and the material of the actor (``ambient=``, ``diffuse=``,
+            Lights, material and depth cue. Default: the scene of the mesh's record, otherwise the
+            lights of the plotter and the material of the actor (``ambient=``, ``diffuse=``,
             ``specular=``, ``specular_power=``, ``color=``). The camera takes the place of its
             view, unless the view is one of n-space.
         light : {"auto", "points", "fragments"}
@@ -111,18 +115,20 @@ class Component:
         scalars : str, optional
             Name of the array that gives the colours. Light keeps them readable, as in
             :func:`vizlight.tint`: there is no highlight, and values that are missing are grey.
-            Default: none, or that of :func:`vizlight.tint` for a mesh that it returned.
+            Default: none, or the array of :func:`vizlight.tint` for a mesh that it returned.
         line_diameter : float, optional
             Diameter of lines in the unit of the mesh, at least a pixel, in place of PyVista's
             ``line_width`` in pixels: nearer lines are wider.
         **options
             Options of :func:`vizlight.illuminate`, such as ``tangents=`` and ``conditioned=``,
-            except ``name`` and ``components``; and keywords of ``pyvista.Plotter.add_mesh``, such
+            except ``name`` and ``components``, with ``feature_angle="auto"`` by default: where
+            edges are creases a copy is drawn whose points are split there, which does not follow
+            later changes of the mesh; and keywords of ``pyvista.Plotter.add_mesh``, such
             as ``clim``, ``name``, ``opacity``, ``line_width``, ``pickable``, and ``cmap``, which is
             ``vizlight.maps.even`` unless the theme's was changed. With
             ``render_lines_as_tubes=True`` lines wider than a pixel have, where light is in
-            fragments, the light of the cylinder that they stand for across their width: its mean
-            is that of ``model="cylinder"``.
+            fragments, the light of the cylinder that they stand for across their width: its mean is
+            the light of ``model="cylinder"``.
 
         Returns
         -------
@@ -149,7 +155,11 @@ class Component:
         ``export_gltf`` and the like raise a ValueError with the remedy while there is any.
         :meth:`export_html` of this component can.
 
-        Light at the points is bit-identical to that of the filter for the same camera. Light in
+        With ``bundle`` the shares of light are computed again only for lights that have moved. The
+        lights of a scene must stay fixed; those of the plotter may follow the camera, at the cost
+        of one grid for each of them in each frame.
+
+        Light at the points is bit-identical to the filter's for the same camera. Light in
         fragments is within 4 of 255 of it on fine meshes.
         """
         plotter = self._open_plotter()
@@ -203,8 +213,9 @@ class Component:
         Parameters
         ----------
         scene : Scene, optional
-            Scene whose light the key explains. Default: that of the first mesh of
-            :meth:`add_mesh`, with the exponent of its light.
+            Scene whose light the key explains. Default: the scene of the first mesh of
+            :meth:`add_mesh`, with the exponent of its light, and its colour map where it is
+            coloured by values.
         question : {"direction", "slope", "heading", "shape", "value"}, optional
             What the key tells. Default: the question of the preset, see
             :func:`vizlight.presets.key`.
@@ -232,33 +243,46 @@ class Component:
 
         Notes
         -----
-        Lights that follow the view have the same key in all views. The key of fixed lights is that
-        of the camera when it is added.
+        Lights that follow the view have the same key in all views. The key of fixed lights is made
+        for the camera when it is added.
         """
         plotter = self._open_plotter()
         _check.choice("corner", corner, ("auto", *PLACES))
         size = _check.number("size", size, low=0.02, high=1.0)
         if scene is None:
-            scene, own = self._first_light(plotter)
+            scene, own = self._first_light(plotter, question)
             options = own | options
-        made = key(scene, question=question, **options)
+        made = key(scene, **({"question": question} | options))
         ink = _check.color("color", color)
         if ink is None:
             ink = ink_on(plotter.background_color)
         CornerKey(made, corner, size, ink).show(plotter.renderer)
         return made
 
-    def _first_light(self, plotter: pv.BasePlotter) -> tuple[Scene, dict[str, Any]]:
+    def _first_light(
+        self, plotter: pv.BasePlotter, question: Question | None
+    ) -> tuple[Scene, dict[str, Any]]:
         """Return the scene of the first mesh with live light, and its options of a key."""
         for actor in items(plotter.renderer.GetActors()):
             live = self._live_of(actor)
             if live is not None:
-                options = {"exponent": live.source.options.exponent}
-                return live.scene_of(plotter.renderer, actor), options
+                lit_by = live.scene_of(plotter.renderer, actor)
+                options: dict[str, Any] = {"exponent": live.source.options.exponent}
+                table = actor.GetMapper().GetLookupTable()
+                valued = live.scalars is not None and isinstance(table, pv.LookupTable)
+                # The default light is made for values; without values it tells the shape.
+                if question is None and question_of(lit_by) == "value":
+                    question = "value" if valued else "shape"
+                if question == "value" and valued:
+                    title = titled(str(live.given), lacking=live.lacks_values())
+                    options |= {"cmap": table, "title": title}
+                return lit_by, options | {"question": question}
         expected, remedy = "a scene, or a mesh with live light", "pass the scene of the picture"
         raise ValueError(_check.message("scene", expected, None, remedy))
 
-    def export_html(self, path: str | Path, /, *, title: str = "", panel: bool = True) -> Path:
+    def export_html(
+        self, path: str | Path, /, *, title: str = "", panel: bool = True, key: bool = True
+    ) -> Path:
         """Write one HTML file that shows the meshes, whose light follows the eye of the reader.
 
         The page has the meshes of :meth:`add_mesh` that are visible, and the camera, the
@@ -272,6 +296,8 @@ class Component:
             Title of the page.
         panel : bool, default: True
             Whether the panel of the sliders is open at first.
+        key : bool, default: True
+            Whether the key is shown where the light of the first mesh comes from a preset.
 
         Returns
         -------
@@ -309,7 +335,7 @@ class Component:
             raise ValueError(_check.message("plotter", "a mesh with live light", "none", remedy))
         if not plotter.camera_set:
             plotter.renderer.view_isometric(render=False)
-        written = write_page(path, shown, plotter, title=title, panel=panel)
+        written = write_page(path, shown, plotter, title=title, panel=panel, key=key)
         if others:
             _check.warn(f"{others} actors without light of vizlight are not in the page")
         return written
@@ -416,6 +442,11 @@ class Component:
         actor: pv.Actor = plotter.add_mesh(
             live.drawn, smooth_shading=False, split_sharp_edges=False, render=False, **drawing
         )
+        if scene is None and not drawing.keys() & MATERIAL:
+            own, default = actor.prop, Material()
+            if (own.ambient, own.diffuse, own.specular) == UNTOUCHED:
+                own.ambient, own.diffuse = default.ambient, default.diffuse
+                own.specular = default.specular
         try:
             painter.start(live, actor)
             live.start(plotter.renderer, actor)
@@ -507,8 +538,11 @@ def _address(thing: vtkObject) -> str:
 
 
 def _check_drawing(drawing: dict[str, Any], scene: Scene | None) -> None:
-    """Refuse keywords of PyVista that contradict the light."""
+    """Refuse keywords of PyVista that contradict the light, and slips of the light's options."""
+    drawn = inspect.signature(pv.Plotter.add_mesh).parameters
     for name, value in drawing.items():
+        if name not in drawn and difflib.get_close_matches(name, LIGHT, n=1):
+            raise TypeError(unknown_option("plotter.vizlight.add_mesh", name, [*LIGHT]))
         if name in REFUSED and value is not None and value is not False:
             expected = "no such keyword for a mesh with light of its own"
             got = _check.describe(value)
@@ -556,7 +590,7 @@ def add_recorded(
     mesh : pyvista.DataSet
         Mesh with the light of a filter; not changed.
     name : str
-        Name of the light, or ``"rgb"`` for its colours or those of :func:`vizlight.tint`.
+        Name of the light, or ``"rgb"`` for its colours or the colours of :func:`vizlight.tint`.
     **drawing
         Keywords of ``pyvista.Plotter.add_mesh``, and ``line_diameter``.
 
@@ -622,7 +656,7 @@ def plot(
     window_size : (int, int), optional
         Width and height in pixels.
     background : colour, optional
-        Background colour. Default: that of PyVista's theme.
+        Background colour. Default: the colour of PyVista's theme.
     camera : pyvista.Camera, optional
         First camera. Default: one that shows the whole mesh.
     screenshot : path, optional

@@ -66,9 +66,10 @@ class CornerKey:
         self.actor = vtkActor2D()
         self.actor.SetMapper(mapper)
         self.words = [_text(str(word), ink) for word in mesh.field_data[WORDS]]
-        if len(self.words) == 2:
+        self._bar = len(self.words) > 1
+        if self._bar:
             self.words[0].GetTextProperty().SetJustificationToLeft()
-            self.words[1].GetTextProperty().SetJustificationToRight()
+            self.words[-1].GetTextProperty().SetJustificationToRight()
 
     def show(self, renderer: vtkRenderer) -> None:
         """Draw the key over the pictures of a renderer from now on."""
@@ -84,25 +85,32 @@ class CornerKey:
             return
         self._pixels, short = (width, height), min(width, height)
         half, letters, margin = self._size * short / 2, LETTERS * short, MARGIN * short
-        half *= len(self.words)  # A bar is twice as wide, for a word at each end.
+        half *= 1 + self._bar  # A bar is twice as wide, for a word at each end.
         tall = half * np.ptp(self._flat[:, 1]) / 2
         # The words stand below and may be wider than the key.
-        wide = max(half, 0.3 * letters * max(len(text.GetInput()) for text in self.words))
-        box = np.array([2 * wide, 2 * tall + 1.6 * letters])
+        words = [len(text.GetInput()) for text in self.words]
+        title = len(words) > 2
+        below = words[0] + words[-1] + 2 if self._bar else words[0]
+        wide = max(half, 0.3 * letters * max(below, *words))
+        line = 1.6 * letters
+        box = np.array([2 * wide, 2 * tall + line * (1 + title)])
         if self._corner == "auto":
             self._corner = _freest(renderer, box + 2 * margin)
         right, upper = PLACES[self._corner]
         x = margin + wide if not right else width - margin - wide
         low = margin if not upper else height - margin - box[1]
         moved = vtkPoints()
-        y = low + 1.6 * letters + tall
+        y = low + line + tall
         for point in self._flat * half + (x, y, 0):
             moved.InsertNextPoint(*point)
         self._mesh.SetPoints(moved)
-        ends = (x - half, x + half) if len(self.words) == 2 else (x,)
-        for text, at in zip(self.words, ends, strict=True):
+        # The numbers stand below the ends of a bar, and what they are above it.
+        places = [(x - half, low), (x + half, low)] if self._bar else [(x, low)]
+        if title:
+            places.insert(1, (x, y + tall + line - 1.3 * letters))
+        for text, at in zip(self.words, places, strict=True):
             text.GetTextProperty().SetFontSize(max(round(letters), 8))
-            text.SetPosition(at, low)
+            text.SetPosition(*at)
 
 
 def ink_on(background: pv.Color) -> Color:

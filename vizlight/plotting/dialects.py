@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from vizlight.plotting.program import Program, Uniform
 
-#: Matrix from the coordinates of a buffer of VTK to those of the world.
+#: Matrix from the coordinates of a buffer of VTK to world coordinates.
 WORLD = "MCWCMatrix"
 
 
@@ -189,7 +189,7 @@ VTK_JS = Dialect(
     declares=True,
 )
 
-#: ParaView 5.11, which has VTK 9.1 and takes text alone. The eye is that of its camera.
+#: ParaView 5.11, which has VTK 9.1 and takes text alone. The eye is its camera's.
 PARAVIEW = dataclasses.replace(VTK, constant=True)
 
 #: The same with tangents. VTK 9.1 takes an array of any type as the normals, but as the tangents

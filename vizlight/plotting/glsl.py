@@ -170,7 +170,7 @@ def fragment(plan: Plan, *, turned: bool = False, data: bool = False) -> tuple[s
     turned : bool, default: False
         Whether the normal is turned to the eye, unless it leans away by ``vizLean`` at most.
     data : bool, default: False
-        Whether the renderer's colours are those of data.
+        Whether the renderer's colours come from data.
 
     Returns
     -------

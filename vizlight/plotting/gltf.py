@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 __all__ = ["save_gltf"]
 
-#: Component types of glTF by those of NumPy, and targets of buffers.
+#: Component types of glTF by NumPy's, and targets of buffers.
 _KINDS = {"<f4": 5126, "<u2": 5123, "<u4": 5125}
 _VERTICES, _INDICES = 34962, 34963
 #: Quaternion that turns z, which is up in PyVista, to y, which is up in glTF.
@@ -49,7 +49,7 @@ def save_gltf(
     clim: Sequence[float] | float | None = None,
     **options: Any,
 ) -> Path:
-    """Write a glTF file (.glb) whose colours are those of a lit mesh, as any viewer shows them.
+    """Write a glTF file (.glb) with the colours of a lit mesh, as any viewer shows them.
 
     The colours of the points hold ambient and diffuse light. The highlight and the depth cue depend
     on the eye, which the file does not know, and are left out; ``asset.extras`` of the file says

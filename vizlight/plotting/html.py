@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import base64
 import html
+import io
 import json
 import string
 from importlib import resources
@@ -10,19 +12,21 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pyvista as pv
+from PIL import Image
 
 from vizlight import _check, files
+from vizlight.filters.key import TEXTS, key_picture, preset_of
 from vizlight.mesh.blocks import all_blocks
 from vizlight.mesh.polylines import backdrop
 from vizlight.plotting.page import Page
+from vizlight.scene import Scene, View
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from vizlight._types import ColorLike
-    from vizlight.plotting.live import LightAt
+    from vizlight.plotting.live import LightAt, Live
     from vizlight.plotting.page import Shown
-    from vizlight.scene import Scene
 
 __all__ = ["live_html"]
 
@@ -42,6 +46,7 @@ def live_html(
     camera: pv.Camera | None = None,
     background: ColorLike | None = None,
     panel: bool = True,
+    key: bool = True,
     **options: Any,
 ) -> Path:
     """Write one HTML file that shows a mesh, whose light follows the eye of the reader.
@@ -74,6 +79,8 @@ def live_html(
         Background colour. Default: black for lines alone, otherwise white.
     panel : bool, default: True
         Whether the panel of the sliders is open at first.
+    key : bool, default: True
+        Whether the key is shown where the light comes from a preset; scalar bars are shown always.
     **options
         As for ``plotter.vizlight.add_mesh``: options of :func:`vizlight.illuminate`, such as
         ``tangents=`` and ``conditioned=``, and keywords of ``pyvista.Plotter.add_mesh``, such as
@@ -122,7 +129,7 @@ def live_html(
             raise TypeError(_check.message("camera", "a pyvista.Camera", got))
         if camera is not None:
             plotter.camera = camera.copy()  # type: ignore[no-untyped-call]
-        return plotter.vizlight.export_html(path, title=title, panel=panel)  # type: ignore[no-any-return]
+        return plotter.vizlight.export_html(path, title=title, panel=panel, key=key)  # type: ignore[no-any-return]
     finally:
         plotter.close()
 
@@ -134,6 +141,7 @@ def write_page(
     *,
     title: str = "",
     panel: bool = True,
+    key: bool = True,
 ) -> Path:
     """Write the page of meshes with live light.
 
@@ -147,6 +155,8 @@ def write_page(
         Title of the page.
     panel : bool
         Whether the panel is open at first.
+    key : bool
+        Whether the key of a preset's light is shown.
 
     Returns
     -------
@@ -159,7 +169,7 @@ def write_page(
     """
     path = files.check_output(path, SUFFIXES)
     _check.text("title", title)
-    panel = _check.boolean("panel", panel)
+    panel, key = _check.boolean("panel", panel), _check.boolean("key", key)
     renderer = plotter.renderer
     page = Page(renderer)
     for one in shown:
@@ -175,6 +185,7 @@ def write_page(
         background=f"rgb({', '.join(map(str, channels))})",
         open=" open" if panel else "",
         # A tag within the text would end the script.
+        key=_key(shown[0].live, plotter) if key else "",
         scene=json.dumps(page.content(), allow_nan=False).replace("<", "\\u003c"),
         viewer=_web("viewer.min.js").replace("</script", "<\\/script"),
     )
@@ -182,6 +193,24 @@ def write_page(
     for notice in page.notices:
         _check.warn(notice)
     return written
+
+
+def _key(live: Live, plotter: pv.BasePlotter) -> str:
+    """Return the figure of a key where the light comes from a preset, with its words."""
+    if live.scene is None or live.scalars is not None:
+        return ""
+    question = preset_of(live.scene)
+    if question in (None, "value"):
+        return ""
+    scene = live.scene.replace(view=View.from_camera(plotter.camera))
+    seen = key_picture(scene, question=question, exponent=live.source.options.exponent)
+    file = io.BytesIO()
+    Image.fromarray(seen).save(file, "PNG")
+    data = base64.b64encode(file.getvalue()).decode()
+    words = "".join(f"<span>{html.escape(word)}</span>" for word in TEXTS[question])
+    alt = html.escape(f"Key: {' to '.join(TEXTS[question])}", quote=True)
+    image = f'<img src="data:image/png;base64,{data}" alt="{alt}" width="{seen.shape[1] // 2}">'
+    return f'<figure class="key">{image}<figcaption class="numbers">{words}</figcaption></figure>'
 
 
 def _web(name: str) -> str:

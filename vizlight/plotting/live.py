@@ -27,11 +27,9 @@ if TYPE_CHECKING:
     from vizlight._types import Array, Indices, Vector
     from vizlight.shading.inputs import ShadingInputs
 
-#: Coefficients ka, kd and ks of an actor that PyVista was not told others for.
-UNTOUCHED = (0.0, 1.0, 0.0)
 #: Place where the light is computed.
 LightAt = Literal["auto", "points", "fragments"]
-#: Names of the arrays that the drawn copy of a mesh has beside those of the mesh.
+#: Names of the arrays that the drawn copy of a mesh has beside the mesh's own.
 LUMINANCE, COLORS, VALUES = "vizlight luminance", "vizlight colors", "vizlight values"
 TANGENTS, NORMALS = "vizlight tangents", "vizlight normals"
 
@@ -66,7 +64,7 @@ class Live:
     Parameters
     ----------
     source : Source
-        What is lit. Its mesh is that of the caller.
+        What is lit. Its mesh is the caller's.
     scene : Scene or None
         Scene; None for the lights and the material of the plotter.
     follow : bool
@@ -88,9 +86,9 @@ class Live:
         self.painter: Painter | None = None
         #: Name of the mesh, for a page.
         self.name = ""
-        #: Name of the array that gives the colours, or None.
+        #: Name of the drawn array that gives the colours, and of the one it is made of, or None.
         self.scalars: str | None = None
-        self._given: str | None = None
+        self.given: str | None = None
         self._component: int | None = None
         self._of_cells = False
         self._changed = source.mesh.GetMTime()
@@ -105,7 +103,7 @@ class Live:
 
     @property
     def own_eye(self) -> bool:
-        """Whether the scene has an eye in n-space, which is not that of the camera."""
+        """Whether the scene has an eye in n-space, which is not the camera's."""
         scene = self.scene
         return scene is not None and scene.view is not None and scene.n == self.n > 3
 
@@ -132,7 +130,7 @@ class Live:
         TypeError, ValueError
             If there is no such array, or it is a cell array and the light is at the points.
         """
-        self._given, self._component = scalars, component
+        self.given, self._component = scalars, component
         self.scalars = scalars
         mesh = self.source.mesh
         self._of_cells = scalars in mesh.cell_data and scalars not in mesh.point_data
@@ -153,8 +151,7 @@ class Live:
         TypeError, ValueError
             If the scene does not fit.
         """
-        assert self.painter is not None
-        self.painter.paint(self, self.scene_of(renderer, actor), renderer, actor)
+        self._paint(renderer, actor)
 
     def set_scene(self, scene: Scene, actor: vtkActor) -> None:
         """Take another scene, by which the next frame is lit."""
@@ -190,8 +187,7 @@ class Live:
             return
         try:
             self._read(renderer, actor)
-            scene = self.scene_of(renderer, actor)
-            self.painter.paint(self, scene, renderer, actor)
+            self._paint(renderer, actor)
             self._warned = False
         except (KeyError, TypeError, ValueError) as error:
             if not self._warned:
@@ -199,6 +195,15 @@ class Live:
                 _check.warn(f"the mesh keeps the light that it has: {error}")
         # Painting itself changes the actor.
         self._state = self._state_of(renderer, actor)
+
+    def _paint(self, renderer: vtkRenderer, actor: vtkActor) -> None:
+        """Show the light of the scene of a frame, dimmed where its lights are now."""
+        assert self.painter is not None
+        scene = self.scene_of(renderer, actor)
+        source = self.source.dimmed_by(scene)
+        if source is not self.source:
+            self.source, self._placed = source, None
+        self.painter.paint(self, scene, renderer, actor)
 
     def _state_of(self, renderer: vtkRenderer, actor: vtkActor) -> tuple[object, ...]:
         """Return what the light depends on, in a form that can be compared."""
@@ -223,9 +228,14 @@ class Live:
             return
         self._changed = mesh.GetMTime()
         # What cannot be lit or coloured any more stays as it is drawn.
-        source, given, values = self.source, self._given, None
+        source, given, values = self.source, self.given, None
         if named is not None:
-            source = relight.read(mesh, "", self.scene_of(renderer, actor), named)
+            scene = self.scene_of(renderer, actor)
+            if self.scene is None:
+                # Shares of light inside a bundle are those of the lights of each frame.
+                fixed = [light.seen_from(scene.view) for light in scene.lights]
+                scene = scene.replace(lights=fixed)
+            source = relight.read(mesh, "", scene, named)
         if given is not None and not self._of_cells:
             values = values_of(mesh, given, self._component)
         self.source, self._placed = source, None
@@ -269,7 +279,7 @@ class Live:
 def scene_of(renderer: vtkRenderer, actor: vtkActor, model: str) -> Scene:
     """Return the scene of a renderer: its lights, its camera and the material of an actor.
 
-    Lights and coefficients that are as PyVista sets them stand for those of ``Scene()``.
+    Lights that are as PyVista sets them stand for the lights of ``Scene()``.
     """
     camera = renderer.GetActiveCamera()
     view = View.from_camera(camera)
@@ -278,8 +288,6 @@ def scene_of(renderer: vtkRenderer, actor: vtkActor, model: str) -> Scene:
     kind = "phong" if model == "phong" else "blinn"
     prop = actor.GetProperty()
     material = Material.from_property(prop, lights=lights, view=view, model=kind)
-    if (material.ambient, material.diffuse, material.specular) == UNTOUCHED:
-        material = Material(color=material.color)
     return Scene(lights=lights, material=material, view=view)
 
 

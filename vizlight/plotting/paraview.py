@@ -41,7 +41,7 @@ __all__ = ["Shader", "save", "shader"]
 EYE = View(direction=(0, 0, 1))
 #: Options of light that a program of fragments has no use for.
 WITHOUT = (
-    "positions", "feature_angle", "refine", "bundle",
+    "positions", "feature_angle", "line_field", "refine", "bundle",
     "name", "components", "precision",
 )  # fmt: skip
 #: How normals are turned, by ``facing``; otherwise they stay as they are.
@@ -162,7 +162,7 @@ def shader(
 
     The light follows ParaView's camera, which takes the place of the view of the scene; ParaView's
     own lights have no effect. The properties Ambient and Diffuse scale it, but not on colours of
-    data, which stay readable as those of :func:`vizlight.tint`.
+    data, which stay readable as in :func:`vizlight.tint`.
 
     Parameters
     ----------

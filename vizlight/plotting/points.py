@@ -74,7 +74,7 @@ class Points:
         return drawing | plain | {"scalars": COLORS, "rgb": True, "color": own}
 
     def start(self, live: Live, actor: vtkActor) -> None:
-        """Let an actor draw lit colours as they are, in place of those of the data."""
+        """Let an actor draw lit colours as they are, in place of the data's."""
         prop = actor.GetProperty()
         if self._diameter is not None:
             strokes.widen(actor, Stroke(self._diameter))

@@ -49,8 +49,8 @@ class Varying(NamedTuple):
     """Vector that is interpolated between vertices, and its value at a vertex.
 
     ``value`` holds ``{position}``, ``{normal}`` or ``{tangent}``, in view coordinates,
-    ``{length}``, that of the normal as it was given, or ``{along}``, the normal as a direction in
-    clip coordinates.
+    ``{length}``, the length of the normal as it was given, or ``{along}``, the normal as a
+    direction in clip coordinates.
     """
 
     name: str
@@ -59,7 +59,7 @@ class Varying(NamedTuple):
 
 
 class Stroke(NamedTuple):
-    """How wide lines are drawn, and whether light is that of a cylinder across them.
+    """How wide lines are drawn, and whether they are lit as a cylinder across their width.
 
     Attributes
     ----------
@@ -149,9 +149,9 @@ def write(
         Where normals have no such length: whether they are turned to the eye, or to the side of
         the face that is seen, which may lean away between the corners. A line has no face.
     stroke : Stroke
-        Width of lines; the plan of round ones is that of the surface of their cylinders.
+        Width of lines; round ones have the plan of the surface of their cylinders.
     data : bool, default: False
-        Whether the renderer's colours are those of data, which light keeps readable.
+        Whether the renderer's colours come from data, which light keeps readable.
 
     Returns
     -------
@@ -204,7 +204,7 @@ def numbers(
     tallest : float
         Height of the fur whose normal has the length 2.
     data : bool, default: False
-        Whether the renderer's colours are those of data.
+        Whether the renderer's colours come from data.
 
     Returns
     -------

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pyvista as pv
 
 from vizlight import _check
 from vizlight.filters import relight
 from vizlight.filters.tint import RGB, unlit_colors
-from vizlight.mesh import blocks, records
+from vizlight.mesh import blocks, hull, records
+from vizlight.mesh.normals import are_computed, split_where_computed
 from vizlight.plotting.live import headlight_scene, lifted
+from vizlight.reading.inputs import uses_normals
 from vizlight.shading.options import LightOptions
 
 if TYPE_CHECKING:
-    import pyvista as pv
-
     from vizlight.filters.relight import Source
     from vizlight.scene import Scene
 
@@ -23,10 +25,15 @@ if TYPE_CHECKING:
 def sources_of(
     mesh: pv.DataSet | pv.MultiBlock, scene: Scene | None, options: dict[str, Any]
 ) -> tuple[list[Source], Scene | None]:
-    """Return what is lit: by the record of the mesh, or by options."""
+    """Return what is lit: by the record of the mesh, or by options.
+
+    Without a record surfaces are split at their creases, unless ``feature_angle`` is None.
+    """
     if not options and relight.is_lit(mesh):
         return relight.from_record(mesh, scene)
-    asked = LightOptions(**options)
+    asked = LightOptions(**({"feature_angle": "auto"} | options))
+    mesh = blocks.like(mesh, (_split(block, asked) for block in blocks.all_blocks(mesh)))
+    asked = dataclasses.replace(asked, feature_angle=None)
     spaces = {
         np.shape(block.point_data[asked.positions])[-1]
         for block in blocks.all_blocks(mesh)
@@ -38,6 +45,21 @@ def sources_of(
         # Which side of an open surface is lit is then the camera's to say.
         provisional = provisional.replace(view=headlight_scene(n).view)
     return relight.from_options(mesh, provisional, asked), scene
+
+
+def _split(mesh: pv.DataSet, asked: LightOptions) -> pv.DataSet:
+    """Return a surface whose points are split at sharp edges, the mesh itself if there are none."""
+    if not (mesh.n_points and mesh.n_cells and isinstance(asked.tangents, str | None)):
+        return mesh
+    if asked.positions is not None or not (uses_normals(mesh, asked) and are_computed(mesh, asked)):
+        return mesh
+    surface = mesh
+    if isinstance(mesh, pv.UnstructuredGrid):
+        surface = hull.outer_surface(mesh)[0]
+    if not isinstance(surface, pv.PolyData):
+        return mesh
+    split = split_where_computed(surface, asked.feature_angle)
+    return mesh if split is surface else split
 
 
 def tinted(mesh: pv.DataSet, *, warn: bool = True) -> tuple[str | None, dict[str, Any]]:

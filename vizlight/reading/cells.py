@@ -118,14 +118,37 @@ def faces_only(mesh: vtkPolyData) -> vtkPolyData:
     bare.SetStrips(mesh.GetStrips())
     polys = mesh.GetPolys()
     if (first := first_twins(polys)) is not None:
-        kept, own = first == np.arange(len(first)), polys
-        ids, offsets = connectivity(own)
-        size = np.diff(offsets)
-        ends = np.concatenate([[0], np.cumsum(size[kept])])
-        polys = vtkCellArray()
-        polys.SetData(as_vtk(ends), as_vtk(ids[np.repeat(kept, size)]))
+        polys = _cells(polys, first == np.arange(len(first)))
     bare.SetPolys(polys)
     return bare
+
+
+def finite_faces(surface: vtkPolyData) -> vtkPolyData:
+    """Return a surface without its polygons that have a corner which is not finite.
+
+    VTK would take such a corner, as of a hole in a terrain, into the normals of its neighbours.
+    """
+    known = np.isfinite(places(surface)).all(axis=1)
+    polys = surface.GetPolys()
+    if known.all() or not polys.GetNumberOfCells():
+        return surface
+    ids, offsets = connectivity(polys)
+    lost = np.concatenate([[0], np.cumsum(~known[ids])])[offsets]
+    found = vtkPolyData()
+    found.SetPoints(surface.GetPoints())
+    found.SetStrips(surface.GetStrips())
+    found.SetPolys(_cells(polys, np.diff(lost) == 0))
+    return found
+
+
+def _cells(cells: vtkCellArray, kept: Bools) -> vtkCellArray:
+    """Return some of the cells of an array."""
+    ids, offsets = connectivity(cells)
+    size = np.diff(offsets)
+    found = vtkCellArray()
+    ends = np.concatenate([[0], np.cumsum(size[kept])])
+    found.SetData(as_vtk(ends), as_vtk(ids[np.repeat(kept, size)]))
+    return found
 
 
 #: Least number of points of a part of a surface that VTK works on, and largest number of parts.

@@ -33,7 +33,7 @@ def place_numbers(points: NDArray[np.generic]) -> NDArray[np.uint64]:
 
 
 def edge_numbers(a: NDArray[np.uint64], b: NDArray[np.uint64]) -> NDArray[np.uint64]:
-    """Return numbers of edges, made of those of their ends; 0 for edges of no length."""
+    """Return numbers of edges, made of the numbers of their ends; 0 for edges of no length."""
     with np.errstate(all="ignore"):
         return np.where(a == b, np.uint64(0), mixed((a + b) ^ mixed(a ^ b)))
 

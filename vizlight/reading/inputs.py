@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from vizlight import _check
 from vizlight.reading import polylines
-from vizlight.reading.arrays import points_of, tangents_of
+from vizlight.reading.arrays import is_of_cells, points_of, tangents_of
 from vizlight.reading.normals import Sided, sided_normals
 from vizlight.shading.decide import not_a_line
 from vizlight.shading.inputs import ShadingInputs, Sides
@@ -88,6 +88,7 @@ def part_of(
         normals=normals,
         base_tangents=base,
         two_sided=alike,
+        line_field=options.line_field or _has_no_sign(mesh, options),
         sides=None if sided is None else partial(_sides, sided, scene.view, options),
     )
     return Part(inputs, options, sided)
@@ -110,13 +111,18 @@ def _alike(sided: Sided, facing: Facing) -> bool:
 
 
 def _tangents(mesh: Dataset, n: int, options: LightOptions, kept: Kept | None) -> Array | None:
-    """Return the tangents in the options, or those of a mesh of lines."""
+    """Return the tangents in the options, or the lines' own for a mesh of lines."""
     if options.tangents is not None:
         return tangents_of(mesh, options.tangents, n)
     if n == 3 and polylines.has_lines_only(mesh):
         known = None if kept is None else kept.tangents(mesh)
         return polylines.line_tangents(mesh) if known is None else known
     return None
+
+
+def _has_no_sign(mesh: Dataset, options: LightOptions) -> bool:
+    """Return whether tangents are means over cells, which are taken of lines without sign."""
+    return isinstance(options.tangents, str) and is_of_cells(mesh, options.tangents)
 
 
 def _check_options(tangents: Array | None, n: int, options: LightOptions) -> None:

@@ -1,4 +1,4 @@
-"""Normals of a dataset: an array that it has or those of its surface, and the side that is seen."""
+"""Normals of a dataset: its own array or the surface's normals, and the side that is seen."""
 
 from __future__ import annotations
 
@@ -16,13 +16,15 @@ from vizlight.reading.cells import (
     as_numpy,
     connectivity,
     faces_only,
+    finite_faces,
     has_faces,
     places,
     triangles,
     used,
 )
 from vizlight.reading.hull import dimension, outer_surface, scattered
-from vizlight.reading.orientation import PartShape, Shape, Sums, crease_share
+from vizlight.reading.joints import common_normals, joined
+from vizlight.reading.orientation import SHARP, PartShape, Shape, Sums, crease_share
 from vizlight.reading.topology import Owners, is_closed, topology
 
 if TYPE_CHECKING:
@@ -51,14 +53,15 @@ class Sided:
         longer than the first where it is concave (negative), but by
         :data:`~vizlight.reading.orientation.MOST_LEAN` at most. None: 0 everywhere.
     open : ndarray of bool, shape (n_points,), or bool
-        Points of pieces with a border, of which either side may be seen.
+        Points of pieces with a border, or whose faces have no common side, as in a Klein bottle:
+        either side may be seen.
     sharp : float or ndarray
         Share of edges that are creases, across which normals were averaged; one for each mesh of
         a batch.
     kept : bool
         Whether the normals come from an earlier result.
     computed : bool
-        Whether they are those of the surface, not an array of the user.
+        Whether they are computed from the surface, not an array of the user.
     inside : int or ndarray
         Number of points of a volume that are not on its surface; one for each mesh of a batch.
     """
@@ -245,7 +248,9 @@ def computed_normals(
     VTK computes them in float32 and orients them consistently. They point outward on a closed
     surface and on a connected piece that is nearly closed. Any other piece has no outside: its
     normals are flipped together if on average they point away from the eye, or toward the
-    centroid of the piece.
+    centroid of the piece. Points at one place that triangles without area join, as isosurfaces
+    through nodes of a grid have them, have one normal, where their own are within
+    :data:`~vizlight.reading.orientation.SHARP` degrees of it.
 
     Parameters
     ----------
@@ -279,7 +284,12 @@ def computed_normals(
     shape = Shape(surface, owners)
     vectors = _by_vtk(surface, shape, as_wound=as_wound)
     vectors[~used(surface)] = 0
-    lean, border = None, shape.open[shape.piece]
+    first = None if shape.same is None else joined(surface, shape.same)
+    if first is not None:
+        least = float(np.cos(np.radians(SHARP)))
+        vectors, first = common_normals(shape.points, shape.triangles, vectors, first, least)
+        shape.triangles = first[shape.triangles]
+    lean, border = None, (shape.open | shape.inside_out)[shape.piece]
     sharp: Array = np.zeros(owners.count)
     inside = np.zeros(owners.count, dtype=np.intp)
     if sides or not as_wound:
@@ -289,7 +299,8 @@ def computed_normals(
         if sides:
             # It takes up to twice the memory of the points, and the edges take as much.
             vars(shape).pop("away", None)
-            lean, sharp = survey.lean, crease_share(shape.edge_counts(survey.faces, survey.full))
+            lean = survey.lean if first is None else survey.lean[first]
+            sharp = crease_share(shape.edge_counts(survey.faces, survey.full))
     if origin is not None:
         if dimension(mesh) == 3:
             size = [count] if starts is None else np.diff(starts)
@@ -321,7 +332,7 @@ def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> S
     single, ends = edges.single_edges(lines)
     sums, counts = [], np.zeros((4, 1), dtype=np.intp)
     for part in grids.parts(mesh):
-        surface, own = part.surface, part.side == 0
+        surface, own = finite_faces(part.surface), part.side == 0
         normals = _by_vtk(surface, as_wound=True)
         shape = PartShape(surface, part.side, middle, scale or 1.0)
         vectors[part.origin[own]] = normals[own]
@@ -350,8 +361,8 @@ def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> S
 def _by_vtk(surface: vtkPolyData, shape: Shape | None = None, *, as_wound: bool) -> Array:
     """Return the normals of a surface that VTK computes.
 
-    Where the faces are not wound alike and ``as_wound`` is False, those of ``shape`` become the
-    faces as VTK winds them.
+    Where the faces are not wound alike and ``as_wound`` is False, ``shape`` takes the faces as VTK
+    winds them.
     """
     rewound = shape is not None and not (as_wound or shape.alike)
     normals = vtkPolyDataNormals()
@@ -382,7 +393,7 @@ def piece_numbers(mesh: Dataset) -> Indices:
 def _skin(mesh: Dataset) -> tuple[vtkPolyData | None, Indices | None]:
     """Return the faces of the outer surface and its points' indices, None where it has none."""
     surface, origin = (mesh, None) if isinstance(mesh, vtkPolyData) else outer_surface(mesh)
-    return (faces_only(surface) if has_faces(surface) else None), origin
+    return (finite_faces(faces_only(surface)) if has_faces(surface) else None), origin
 
 
 def _same_cells(one: vtkPolyData, other: vtkPolyData) -> bool:

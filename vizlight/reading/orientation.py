@@ -11,7 +11,7 @@ from vizlight import _pool
 from vizlight.model import kernels
 from vizlight.reading.cells import faces, places, triangles
 from vizlight.reading.edges import BLOCK
-from vizlight.reading.topology import Owners, sorted_edges, topology
+from vizlight.reading.topology import Owners, ends_of, sorted_edges, topology
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -43,7 +43,7 @@ MOST_LEAN = 0.05
 
 
 class Sums(NamedTuple):
-    """Sums over each piece of a surface, which tell its sides; those of parts add up.
+    """Sums over each piece of a surface, which tell its sides; sums of parts add up.
 
     Attributes
     ----------
@@ -126,7 +126,7 @@ class Shape:
     Coincident points are connected, so that triangles that share no point can form one piece.
     """
 
-    #: Of a part of a surface: 0 for its own points, 1 for those of the next part, -1 for those of
+    #: Of a part of a surface: 0 for its own points, 1 for points of the next part, -1 for points of
     #: the one before. Cells belong to the part in which they begin.
     side: NDArray[np.int8] | None = None
     #: Pairs of triangles that share an edge, where all are wound alike.
@@ -136,16 +136,25 @@ class Shape:
         self.points, self.owners = places(surface), owners
         self.triangles = triangles(surface)
         found = topology(self.triangles, self.points, owners)
-        self.piece, self.open, self.alike, self.shared = found
+        self.piece, self.open, self.alike, self.shared, folded, self.same = found
         if len(self.triangles) != sum(len(ids) - 2 * len(ends) for ids, ends in faces(surface)):
             # A polygon that cannot be split is wound in a way that is not known.
             self.alike, self.shared = False, None
         self.finite: Bools = np.all(np.isfinite(self.points), axis=1)
         self.count = len(self.open)
+        self._note_folded(folded)
 
     def rewind(self, surface: vtkPolyData) -> None:
         """Take the faces of a surface at the same points that are wound in another way."""
         self.triangles, self.shared = triangles(surface), None
+        edges = sorted_edges(self.triangles, len(self.points), self.same)
+        self._note_folded([part.folded() for part in edges])
+
+    def _note_folded(self, folded: list[Indices]) -> None:
+        """Note the pieces whose faces have no common side, as in a Klein bottle."""
+        self.inside_out = np.zeros(self.count, dtype=np.bool_)
+        for ends in folded:
+            self.inside_out[self.piece[ends]] = True
 
     @cached_property
     def away(self) -> Array:
@@ -172,7 +181,7 @@ class Shape:
         """Return what a walk over the triangles finds, given the normals of the points."""
         piece, n = self.piece, len(self.points)
         sums = Sums.zero(self.count)
-        bend, least = np.zeros(n), np.ones(n)
+        bend, least = np.zeros(n), np.ones(n, dtype=np.float32)
         faces = np.zeros((3, len(self.triangles)), dtype=np.float32)
         full = np.zeros(len(self.triangles), dtype=np.bool_)
         all_finite = bool(self.finite.all())
@@ -196,9 +205,9 @@ class Shape:
             sums.add(piece[corners[0][own]], a[:, own], across[:, own], size[own])
             # Three times the way from each corner to the centre of its triangle.
             for at, inward in zip(corners, (u + v, v - 2 * u, u - 2 * v), strict=True):
-                normal = normals.take(at, axis=0).T.astype(np.float64)
+                normal = np.ascontiguousarray(normals.take(at, axis=0).T, dtype=np.float64)
                 with np.errstate(invalid="ignore"):
-                    np.minimum.at(least, at, kernels.dot(normal, unit))
+                    np.minimum.at(least, at, kernels.dot(normal, unit).astype(np.float32))
                 np.add.at(bend, at, kernels.dot(normal, inward))
         sine = np.sqrt(np.clip(1 - least * least, 0, MOST_LEAN * MOST_LEAN))
         lean: Array = np.where(np.isfinite(bend), -np.sign(bend) * sine, 0)
@@ -229,7 +238,7 @@ class Shape:
             face = corners // 3
             there = full[face]
             if self.side is not None:
-                lower, upper = np.divmod(keys, len(self.points))
+                lower, upper = ends_of(keys)
                 there &= np.minimum(self.side[lower], self.side[upper]) == 0
             keys, face = keys[there], face[there]
             twice = np.flatnonzero(keys[1:] == keys[:-1])
@@ -244,7 +253,7 @@ class Shape:
         if not turned.any():
             return
         for block in _pool.blocks(len(normals), BLOCK):
-            flipped = turned[self.piece[block]]
+            flipped = turned[self.piece[block]] if len(turned) > 1 else slice(None)
             normals[block][flipped] *= -1
             survey.lean[block][flipped] *= -1
 
@@ -290,7 +299,7 @@ def crease_share(counts: Indices) -> Array:
     """Return of each mesh the share of sharp edges where these are creases, else 0.
 
     Creases stand apart: few edges are nearly as sharp. On a coarse mesh of a smooth shape there
-    are more of those, and no edge is meant to be seen. ``counts`` are those of
+    are more of those, and no edge is meant to be seen. ``counts`` come from
     :meth:`Shape.edge_counts`.
     """
     beyond, share, nearly = counts[1:] / np.maximum(counts[0], 1)

@@ -37,7 +37,7 @@ def has_lines_only(mesh: Dataset) -> bool:
 def line_tangents(mesh: Dataset) -> Array:
     """Return the unit tangents of a mesh of lines; zero at points that no line uses.
 
-    Consecutive segments, such as those of contour lines, are joined first.
+    Consecutive segments, as in contour lines, are joined first.
     """
     return of_points(mesh, _tangents)
 

@@ -128,7 +128,7 @@ class Light:
         if self.direction is None:
             return
         if len(self.direction) != 3:
-            expected = "3 components with follows_view=True, those of the frame of the eye"
+            expected = "3 components with follows_view=True, in the frame of the eye"
             raise ValueError(_check.message("direction", expected, len(self.direction)))
         x, y, z = self.direction
         if x == y == 0 and z > 0:

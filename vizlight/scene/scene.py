@@ -129,7 +129,7 @@ class Scene:
         Raises
         ------
         TypeError, ValueError
-            If the offset is not one finite vector of as many components as those of the scene.
+            If the offset is not one finite vector with as many components as the scene's vectors.
         """
         offset = _check.vector("offset", offset)
         if self.n not in (None, len(offset)):
@@ -205,8 +205,8 @@ class Scene:
             Plotter, whose active renderer is read. If its camera is not set yet, it is set as
             ``show`` would set it.
         actor : pyvista.Actor, optional
-            Actor of the plotter, whose material the scene takes, and whose light then matches that
-            of VTK within 3 of 255 under perspective. VTK computes the highlight of a lone headlight
+            Actor of the plotter, whose material the scene takes, and whose light then matches VTK's
+            within 3 of 255 under perspective. VTK computes the highlight of a lone headlight
             as if the eye were at infinity: the view of the scene is then parallel. An actor that is
             coloured by data gives no colour of the material: its picture is the data colours times
             the light without highlight, plus the highlight.
@@ -230,8 +230,8 @@ class Scene:
         Notes
         -----
         In parallel projection VTK computes highlights as if the eye were at the position of the
-        camera, except those of a lone headlight. The scene has the eye at infinity, as the picture
-        shows it, and highlights of other lights differ from VTK's.
+        camera, except the highlight of a lone headlight. The scene has the eye at infinity, as the
+        picture shows it, and highlights of other lights differ from VTK's.
         """
         renderer = getattr(plotter, "renderer", None)
         if renderer is None or not hasattr(renderer, "GetLights"):

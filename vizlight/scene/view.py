@@ -249,7 +249,7 @@ class DepthCue:
 
 
 def as_view(view: View | vtkCamera | None) -> View | None:
-    """Return a view, that of a camera, or None as it is.
+    """Return a view or None as it is, or the view of a camera.
 
     Raises
     ------
@@ -261,8 +261,8 @@ def as_view(view: View | vtkCamera | None) -> View | None:
     if is_camera(view):
         return View.from_camera(view)
     remedy = "pass its .camera" if is_camera(getattr(view, "camera", None)) else ""
-    _check.instance("view", view, View, optional=True, remedy=remedy)
-    return None
+    expected = "a vizlight.View, a camera or None"
+    raise TypeError(_check.message("view", expected, _check.describe(view), remedy))
 
 
 def is_camera(value: object) -> TypeGuard[vtkCamera]:

@@ -121,7 +121,7 @@ def _color(channels: Sequence[float]) -> Color | None:
 
 
 def all_lights(lights: Lights, view: AnyView) -> tuple[Light, ...]:
-    """Return lights, or the default ones; those of VTK and PyVista are converted.
+    """Return lights, or the default ones; lights of VTK and PyVista are converted.
 
     Raises
     ------

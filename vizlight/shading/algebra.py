@@ -53,7 +53,7 @@ class Algebra:
         self.least = cylinder_kernels.ALONG * float(np.finfo(plan.dtype).eps)
 
     def read(self, name: str, lamp: Lamp | None = None) -> Value:
-        """Return an input at the point: a vector, or a number, perhaps that of a lamp."""
+        """Return an input at the point: a vector, or a number, perhaps of one lamp."""
         raise NotImplementedError
 
     def vectors(self, name: str, k: int) -> Sequence[Value]:

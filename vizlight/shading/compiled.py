@@ -32,11 +32,11 @@ if TYPE_CHECKING:
     from vizlight.shading.plan import Highlight, Plan
     from vizlight.shading.writer import Text
 
-#: Number of points of which a multiple fills all vectors of a processor, in unrolled loops too.
+#: Number of points whose multiples fill all vectors of a processor, in unrolled loops too.
 LANES = 64
 #: Largest space and number of tangents for which code is written out.
 MOST_COMPONENTS, MOST_TANGENTS = 6, 3
-#: Largest coefficient of a distance of which float32 holds the products.
+#: Largest coefficient of a distance whose products float32 holds.
 MOST_FADING = 1e9
 #: Seconds that compiled code saves per point: of the whole, and for each light.
 SAVED, SAVED_PER_LIGHT = 10e-9, 15e-9

@@ -62,7 +62,7 @@ def plan(
     dtype : dtype, optional
         float32 or float64. Default: ``precision``, else float64.
     base_tangents : int, optional
-        Number of base tangents per point, k or more and less than n: those of the manifold in
+        Number of base tangents per point, k or more and less than n: the frame of the manifold in
         which the tangents lie.
     shadowed : bool, default: False
         Whether t of a cos-theta shadow is given for each light.

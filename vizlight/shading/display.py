@@ -36,6 +36,11 @@ _LARGEST = 1e30
 _BLOCK = 1 << 14
 
 
+def titled(name: str, *, lacking: bool) -> str:
+    """Return the title of a key of values, with the colour of those that are lacking."""
+    return f"{name} (grey: {NO_DATA_NAME})" if lacking else name
+
+
 def for_colors(scene: Scene) -> Scene:
     """Return the scene whose luminance is the light on colours of data.
 

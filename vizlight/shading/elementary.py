@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 #: Elementary functions: exp of numbers of 0 or less, log of x where d = 1 - x is known, arctan2 of
-#: y of 0 or more, and the table of the cylinder's integral. Polynomials are those of Cephes.
+#: y of 0 or more, and the table of the cylinder's integral. Polynomials are from Cephes.
 PRELUDE = """
 def log_(x, d):
     bits = F(x).view(I)

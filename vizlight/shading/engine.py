@@ -192,7 +192,7 @@ def shade(
     two_sided : bool, default: False
         Whether the normals have no side: the surface is lit by ``|N . wi|``.
     repeat : int, default: 1
-        Number of points, one after the other, that share a normal, such as those of a fibre:
+        Number of points, one after the other, that share a normal, such as the points of a fibre:
         N = M repeat. Tangents have N rows or M. What depends on the row alone is computed once.
     threads : int, optional
         Number of threads. Default: the processors that this process may use.
@@ -217,7 +217,7 @@ def shade(
     components : bool, default: False
         Whether the terms ``ambient``, ``diffuse`` and ``specular`` are kept, before any depth cue.
     precision : {"float32", "float64"}, optional
-        Precision of the work and the result. Default: that of the tangents or normals.
+        Precision of the work and the result. Default: the precision of the tangents or normals.
 
     Returns
     -------

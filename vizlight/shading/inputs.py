@@ -23,7 +23,7 @@ class ArraySource(Protocol):
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """The shape; the first axis is that of the points."""
+        """The shape; the first axis counts the points."""
 
     @property
     def dtype(self) -> np.dtype[np.generic]:
@@ -100,7 +100,7 @@ class ShadingInputs:
     normals : ArraySource, shape (M, n), optional
         Outward normals.
     base_tangents : ArraySource, shape (M, j n), optional
-        Tangents of the manifold in which those of ``tangents`` lie.
+        Tangents of the manifold in which ``tangents`` lie.
     fur_height : ArraySource, shape (N,), optional
         Height of the fur above each point.
     fur : float, default: 0.0
@@ -113,6 +113,8 @@ class ShadingInputs:
         Share of the ambient light that reaches the points.
     two_sided : bool, default: False
         Whether the normals have no side: the surface is lit by ``|N . wi|``.
+    line_field : bool, default: False
+        Whether a single tangent per point is a line without sign, which matters between the points.
     repeat : int, default: 1
         Number of points, one after the other, that share a normal.
     block : int, optional
@@ -138,6 +140,7 @@ class ShadingInputs:
     transmittance: ArraySource | None = None
     occlusion: ArraySource | None = None
     two_sided: bool = False
+    line_field: bool = False
     repeat: int = 1
     block: int | None = None
     origin: Vector | None = None

@@ -74,12 +74,24 @@ class Bundle:
     the point toward the light w (Beer and Lambert). Banks (7) is this law for fibres across the
     light: ``1 - rho = exp(-d l / V)``, l the length in the volume V; he leaves out ``|w x t|``. A
     medium has no single lines: where few, thick lines stand in the way, points are evenly dim in
-    place of dark and bright. For isotropic, parallel and layered lines the mean share of all points
-    differs from rays among cylinders by at most 0.01, for a light outside, one among the lines and
-    light from all sides; the study ``bundle`` measures it. At other places among the lines a light
-    gave up to 0.02, and up to 0.13 where it touches a line or stands inside one, which rays find
-    dark all round. Single points differ by up to 1, in magnitude by 0.06 to 0.14 on average. The
-    share at a point of a single line is within 0.06 of 1.
+    place of dark and bright.
+
+    The mean share of all points differs from rays among cylinders, as a mean over 8 bundles of
+    random lines, by
+
+    - at most 0.01 under a far light for isotropic lines, layers and parallel lines that it crosses,
+      and for light from all sides, which the study ``bundle`` measures;
+    - at most 0.05 under a far light within 10 degrees of parallel lines, bright or dark;
+    - at most 0.04 for a lamp among the lines or close outside, and up to 0.13 where it touches a
+      line or stands inside one, which rays find dark all round.
+
+    Single bundles of 1200 lines differ by up to 0.06, as the lines are random.
+
+    The medium does not know of order: in a hexagonal lattice of parallel lines, 5 diameters apart,
+    light at 4 degrees to the lines passes with a share of 1.00 or 0.41, by its angle to the rows,
+    where the medium gives 0.85 and 0.77; across the lines, along a row, with 0.08 in place of 0.23.
+    Single points differ by up to 1, in magnitude by 0.06 to 0.14 on average. The share at a point
+    of a single line is within 0.06 of 1.
 
     Examples
     --------
@@ -172,6 +184,7 @@ class LightOptions(ShadingOptions):
     facing: Facing = "auto"
     feature_angle: FeatureAngle = None
     conditioned: bool | str | None = False
+    line_field: bool = False
     refine: float = 0.0
     bundle: bool | Bundle = False
     name: str = "luminance"

@@ -137,7 +137,7 @@ class Split(NamedTuple):
 
 
 def split(w: Algebra, x: Value, frame: Sequence[Value]) -> Split:
-    """Return x = x_T + x_N; |x_N| is that of the residual, as sqrt(1 - |x_T|^2) loses digits."""
+    """Return x = x_T + x_N; |x_N| comes from the residual, as sqrt(1 - |x_T|^2) loses digits."""
     along, rest = [w.dot(t, x) for t in frame], x
     for a, t in zip(along, frame, strict=True):
         rest = rest - a * t
@@ -263,7 +263,7 @@ class Surface:
         return value if plan.two_sided else formulas.lit_highlight(value, lit.size)
 
     def _along(self, half: Value, up: Value) -> Value:
-        """Return the square of the tangential part, up to its length that of the residual."""
+        """Return the squared length of the tangential part, which is a residual."""
         rest = half - up * self.normal
         return self.w.dot(rest, rest)
 

@@ -1,7 +1,8 @@
 """Light between the points of a mesh: what interpolation of the light at the points leaves out.
 
 The reference is the light of interpolated vectors, as a fragment shader computes it: normals and
-tangents are interpolated over a segment or a triangle, normalised and lit.
+tangents are interpolated linearly over a segment or a triangle, as VTK interpolates any array,
+normalised and lit. Only tangents that stand for lines without sign are turned alike before.
 """
 
 from __future__ import annotations
@@ -72,7 +73,7 @@ class Between:
     points : ndarray, shape (N, n)
         Points.
     vectors : dict of str to ndarray, shape (N, k, n)
-        Those of unit ``normals``, ``tangents`` and ``base_tangents`` that the inputs have. At
+        Unit ``normals``, ``tangents`` and ``base_tangents``, if the inputs have them. At
         points that were added they are as interpolation leaves them, shorter than the others, so
         that parts of a cell interpolate to the same directions as the cell; see :meth:`rows`.
     scales : dict of str to float
@@ -118,12 +119,18 @@ class Between:
     def _interpolated(self, places: Places) -> tuple[Array, dict[str, Array], Array]:
         found: dict[str, Array] = {}
         for name, rows in self.vectors.items():
-            mean = interpolated if name == "normals" else mean_spaces
+            mean = mean_spaces if self._unsigned(name) else interpolated
             found[name] = mean(rows, places)
         return interpolated(self.points, places), found, interpolated(self.facts, places)
 
+    def _unsigned(self, name: str) -> bool:
+        """Return whether vectors stand for lines or spaces, on which no sign depends."""
+        if name == "tangents":
+            return self.inputs.line_field or self.vectors[name].shape[1] > 1
+        return name == "base_tangents"
+
     def rows(self, name: str) -> Array:
-        """Return vectors of all points, of length 1 where those of the mesh are."""
+        """Return vectors of all points, of length 1 where the mesh's are."""
         rows = self.vectors[name]
         return kernels.unit_rows(rows[:, 0])[:, np.newaxis] if name in self._unit else rows
 
@@ -186,6 +193,10 @@ class Between:
             turned = self.turned(kernels.unit_rows(normals), self.facts[at], self.points[at])
             length = np.linalg.norm(normals, axis=1, keepdims=True)
             given = (length * turned).reshape(rows.shape)
+        if lines and self.inputs.line_field:
+            # Signs mean nothing: all are turned as the first.
+            with_first = np.einsum("msn,mn->ms", given, given[:, 0])
+            given = np.where(with_first < 0, -1.0, 1.0)[..., np.newaxis] * given
         solve = _across if lines else _toward_half
         found = []
         for light in scene.lights:
@@ -467,9 +478,6 @@ def _across(lines: Array, half: Array) -> Array:
     """Return weights where interpolated lines are normal to a half vector, or most nearly so."""
     m, s, _ = lines.shape
     along = np.einsum("msn,mn->ms", lines, np.broadcast_to(half, (m, lines.shape[2])))
-    # Signs of lines mean nothing: all are turned as the first.
-    with_first = np.einsum("msn,mn->ms", lines, lines[:, 0])
-    along = np.where(with_first < 0, -along, along)
     low, high = along.argmin(axis=1), along.argmax(axis=1)
     rows = np.arange(m)
     gap = along[rows, high] - along[rows, low]

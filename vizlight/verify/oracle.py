@@ -295,8 +295,8 @@ class Oracle:
     ) -> tuple[Real, Real]:
         """Return the means of Lambert's and Blinn's terms over the visible half of a thin cylinder.
 
-        In closed form, with alpha the angle between wi_N and wo_N, beta and gamma those of their
-        sum with wo_N and with wi_N, and C(x, p) the integral of cos^p from 0 to x:
+        In closed form, with alpha the angle between wi_N and wo_N, beta and gamma the angles of
+        their sum with wo_N and with wi_N, and C(x, p) the integral of cos^p from 0 to x:
         ``|wi_N| (sin alpha + (pi - alpha) cos alpha) / 4`` and ``|h_N|^s / 2`` times
         ``cos beta (C(pi/2 - beta, s + 1) + C(pi/2 - gamma, s + 1)) +
         sin beta (sin(beta)^(s+1) - sin(gamma)^(s+1)) / (s + 1)``.

@@ -107,7 +107,7 @@ def solid_ratio(
         ahead = (s > 0) & (s < reach)
         if np.any(ahead & (np.abs(near) < 1e-9)):
             return math.nan
-        # The ray leaves where it runs with the outward normal e x f, of which scale is the inverse.
+        # The ray leaves where it runs with the outward normal e x f: where scale is negative.
         hit = ahead & (near > 0)
         inside += [
             (float(at), 1 if side < 0 else -1) for at, side in zip(s[hit], scale[hit], strict=True)

@@ -189,10 +189,13 @@ def _lines(run: Run) -> list[str]:
     """Return the errors of a run in words."""
     if run.sample:
         what = f"{run.sample} points" if run.missed else f"all {run.sample} points"
-        text = (
-            f"  rounding error {run.error:.2g} at most, {run.rms:.2g} RMS, {what} computed again "
-            "one by one in float64"
-        )
+        error, how = "rounding error", f"{what} computed again one by one in float64"
+        if run.terms == SHADOW:
+            # The check samples each ray, which the shadow does not.
+            error, how = "difference", f"{what} from samples along each ray, which err by as much"
+        elif not math.isnan(run.bound):
+            error, how = "difference", f"light at {run.sample} places from their band"
+        text = f"  {error} {run.error:.2g} at most, {run.rms:.2g} RMS, {how}"
         if run.missed:
             text += f"; {_confident(run.missed)} of the points are worse"
     else:
@@ -274,7 +277,7 @@ def report(*, sample: int = 4096, seed: int = 0) -> Iterator[Report]:
     40 µs, 60 µs for ``model="cylinder"``, and a ray 3 ms; this time is not part of the reported
     time.
 
-    The error between the points is that of the picture: light that is interpolated over segments
+    The error between the points is the picture's: light that is interpolated over segments
     and triangles, against the light of normals and tangents that are interpolated and normalised,
     as a fragment shader computes it. It is computed by the engine in float64, in some 4 ms for
     4,096 places and 0.1 µs for each cell. It is not measured for fur, for cast shadows, for

@@ -31,8 +31,8 @@ __all__ = ["Illuminate"]
 
 #: Options that are names of arrays: a pipeline has no others.
 _NAMES = ("tangents", "normals", "positions")
-#: Options that give a mesh new points, need PyVista, or have been replaced.
-_WITHOUT = ("feature_angle", "refine", "bundle")
+#: Options that matter between points, give a mesh new ones, or need PyVista.
+_WITHOUT = ("feature_angle", "line_field", "refine", "bundle")
 _NO_GHOSTS = (
     "light at the borders of the pieces is computed without their neighbours; give the pieces a "
     "layer of ghost cells before they are contoured, or normals as a point array"
@@ -95,7 +95,7 @@ class Illuminate(VTKPythonAlgorithmBase):
     Where a pipeline runs in several pieces, light does not depend on the cut: ``facing="auto"``
     then means ``"eye"``, which lights both sides alike if the scene has no view, ``"outward"`` is
     an error, and ``luminance_valid`` is always there. Normals that come from data, such as the
-    gradient of a contoured field, need nothing else. Those of faces, which contours of
+    gradient of a contoured field, need nothing else. Normals of faces, which contours of
     unstructured grids have too, need a layer of ghost cells that the pieces have before they are
     contoured: where the filter itself computes them without any, it warns.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import vizlight
 from vizlight import _compiled
 from vizlight.geometry.lines import bundle, lamps, voxels
 
@@ -109,18 +110,24 @@ def test_a_lamp_beside_a_line_sees_the_width_of_a_cylinder(gap):
     assert hidden == pytest.approx(np.arcsin(0.5 / gap) / np.pi, abs=0.01)
 
 
-def shaded(origins, toward, own, middles, tangents, length, diameter):
-    """Return whether rays meet a cylinder other than their own, one ray after the other."""
-    across = np.cross(tangents, toward)
-    sine = np.maximum(np.linalg.norm(across, axis=1), 1e-12)
-    cosine = tangents @ toward
+def shaded(origins, toward, own, middles, tangents, length, diameter, reach=np.inf):
+    """Return whether rays meet a cylinder other than their own, one ray after the other.
+
+    They go toward one direction, or one direction each, as far as their reach.
+    """
     found = np.zeros(len(origins), np.bool_)
+    reach = np.broadcast_to(reach, len(origins))
     for i, origin in enumerate(origins):
+        if i == 0 or toward.ndim > 1:
+            one = toward if toward.ndim == 1 else toward[i]
+            across = np.cross(tangents, one)
+            sine = np.maximum(np.linalg.norm(across, axis=1), 1e-12)
+            cosine = tangents @ one
         way = middles - origin
         gap = np.abs((way * across).sum(axis=1)) / sine
-        x, y = way @ toward, (way * tangents).sum(axis=1)
+        x, y = way @ one, (way * tangents).sum(axis=1)
         at, along = (x - cosine * y) / sine**2, (cosine * x - y) / sine**2
-        met = (gap < diameter / 2) & (at > 0) & (np.abs(along) < length / 2)
+        met = (gap < diameter / 2) & (at > 0) & (at < reach[i]) & (np.abs(along) < length / 2)
         met[own[i]] = False
         found[i] = met.any()
     return found
@@ -154,6 +161,97 @@ def test_the_mean_light_among_real_tubes(kind):
     assert difference.std() / np.sqrt(tries) < 0.012
     without = np.exp(-diameter * depths(lines, places, toward)[0])
     assert abs(without - free).mean() > abs(difference).mean()
+
+
+def some_lines(kind, random, count=1200, length=0.5):
+    """Return middles and tangents of straight lines, in the unit ball or in layers."""
+    middles = unit(random.normal(size=(count, 3))) * random.uniform(size=(count, 1)) ** (1 / 3)
+    tangents = unit(random.normal(size=(count, 3)))
+    if kind == "aligned":
+        tangents = unit([1, 0, 0] + 0.1 * tangents)
+    elif kind == "parallel":
+        tangents = np.tile([1.0, 0, 0], (count, 1))
+    elif kind == "layered":
+        layer = random.integers(6, size=count)
+        middles = random.uniform(-0.8, 0.8, (count, 3))
+        middles[:, 2] = (layer - 2.5) / 4 + random.uniform(-0.04, 0.04, count)
+        tangents = unit(np.eye(3)[layer % 2] + 0.05 * tangents * [1, 1, 0.2])
+    return middles, tangents
+
+
+def shares(middles, tangents, light, near, length, diameter, random, tries):
+    """Return the mean share of a light at points of lines by rays, and by the medium."""
+    own = random.integers(len(middles), size=tries)
+    places = middles[own] + random.uniform(-0.5, 0.5, (tries, 1)) * length * tangents[own]
+    way = np.asarray(light) - places if near else np.tile(np.asarray(light, float), (tries, 1))
+    reach = np.linalg.norm(way, axis=1) if near else np.full(tries, np.inf)
+    way = unit(way)
+    side = unit(np.cross(way, tangents[own]) + 1e-15)
+    free = [
+        ~shaded(places + x * diameter * side, way, own, middles, tangents, length, diameter, reach)
+        for x in (-0.375, -0.125, 0.125, 0.375)
+    ]
+    lines = pieces(middles, tangents, length, 2 * diameter)
+    targets = lines.targets(places, tangents[own], np.full(tries, length))
+    left = lines.dimmed(targets, diameter, [(light, near)], 0)[0][:, 0]
+    return np.mean(free), left.mean()
+
+
+def near_the_axis(degrees):
+    return (np.cos(np.radians(degrees)), np.sin(np.radians(degrees)), 0)
+
+
+#: Lines, a light, whether it has a place, and the largest error of the mean share that is stated.
+STATED = {
+    "isotropic": ("isotropic", (0.3, -0.4, 0.866), False, 0.01),
+    "across parallel lines": ("aligned", (0.3, -0.4, 0.866), False, 0.01),
+    "layered": ("layered", (0.3, -0.4, 0.866), False, 0.01),
+    "2 degrees from parallel lines": ("parallel", near_the_axis(2), False, 0.05),
+    "5 degrees from parallel lines": ("parallel", near_the_axis(5), False, 0.05),
+    "10 degrees from parallel lines": ("parallel", near_the_axis(10), False, 0.05),
+    "along nearly parallel lines": ("aligned", near_the_axis(0), False, 0.05),
+    "a lamp among isotropic lines": ("isotropic", (0.1, 0.05, -0.08), True, 0.04),
+    "a lamp in a layer": ("layered", (0.1, 0.05, 0.125), True, 0.04),
+    "a lamp close outside": ("isotropic", (0, 0, 1.1), True, 0.04),
+    "a lamp at the end of parallel lines": ("parallel", (1.25, 0, 0), True, 0.04),
+}
+
+
+@pytest.mark.parametrize("name", STATED)
+def test_the_mean_share_of_each_case_is_as_right_as_stated(name):
+    """Over 8 bundles, beside the random error of their mean."""
+    kind, light, near, most = STATED[name]
+    random, diameter, length = np.random.default_rng(11), 0.02, 0.5
+    found = [
+        shares(*some_lines(kind, random), light, near, length, diameter, random, 200)
+        for _ in range(8)
+    ]
+    error = np.diff(found, axis=1)
+    assert 0.1 < np.mean(found, axis=0)[0] < 0.97
+    assert abs(error.mean()) < most + 2 * error.std() / np.sqrt(len(error))
+    assert error.std() / np.sqrt(len(error)) < 0.012
+    assert np.abs(error).max() < 0.06
+    assert f"{most:g}" in vizlight.Bundle.__doc__.partition("Notes")[2]
+
+
+@pytest.mark.parametrize(
+    ("degrees", "around", "rays", "medium"),
+    [(4, 15, 1.0, 0.85), (4, 0, 0.41, 0.77), (90, 0, 0.08, 0.23)],
+)
+def test_the_medium_does_not_know_of_a_lattice(degrees, around, rays, medium):
+    """A hexagonal lattice of parallel lines, 5 diameters apart, is open or shut by the angle."""
+    i, j = (x.ravel() for x in np.meshgrid(*2 * [np.arange(-21, 22)]))
+    y, z = 0.05 * (i + 0.5 * j), 0.05 * np.sqrt(0.75) * j
+    inside = y * y + z * z < 0.25
+    middles = np.stack([0 * y, y, z], axis=1)[inside]
+    tangents = np.tile([1.0, 0, 0], (len(middles), 1))
+    a, b = np.radians([degrees, around])
+    light = (np.cos(a), np.sin(a) * np.cos(b), np.sin(a) * np.sin(b))
+    random = np.random.default_rng(0)
+    found = shares(middles, tangents, light, False, 2.0, 0.01, random, 500)
+    assert found == pytest.approx((rays, medium), abs=0.04)
+    assert f"{rays:.2f}" in vizlight.Bundle.__doc__
+    assert f"{medium:.2f}" in vizlight.Bundle.__doc__
 
 
 def test_compiled_and_plain_grids_agree(monkeypatch):

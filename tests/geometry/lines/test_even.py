@@ -103,6 +103,20 @@ def test_a_spiral_is_not_closed():
     assert not any(np.array_equal(piece[0], piece[-1]) for piece in parts(lines))
 
 
+@pytest.mark.parametrize("missing", [0, np.nan])
+@pytest.mark.parametrize("line_field", [False, True])
+@pytest.mark.filterwarnings("ignore:.*could not be lit:UserWarning")
+def test_where_there_is_no_field_there_are_no_lines(missing, line_field):
+    mesh = ball()
+    mesh["orbits"][mesh.points[:, 0] > 0.3] = missing
+    lines = streamlines(mesh, SCENE, vectors="orbits", spacing=0.2, line_field=line_field)
+    assert lines.n_cells > 3
+    assert lines.points[:, 0].max() < 0.45
+    mesh["orbits"][:] = 0
+    with pytest.raises(ValueError, match="where the vectors are not zero"):
+        streamlines(mesh, SCENE, vectors="orbits", spacing=0.2, line_field=line_field)
+
+
 def test_parts_of_a_surface_have_lines_of_their_own():
     small = ball(20).scale(0.03).translate((1.6, 0, 0))
     mesh = ball(30).append_polydata(small, ball(20).scale(0.5).translate((2.9, 0, 0)))

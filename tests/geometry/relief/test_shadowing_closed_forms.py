@@ -236,3 +236,45 @@ def test_the_hard_boundary_is_that_of_the_horizon_angle():
         assert np.abs(margin[differs]).max(initial=0) < 2
         soft = relief.shadow(x, y, z, depth=0.03, direction=sun(elevation, azimuth))
         assert soft[1:-1, 1:-1][margin > 5].max() < 0.4
+
+
+@pytest.mark.parametrize(("fall", "least", "most"), [(2.5, 0, 4e-3), (1.2, 0.01, 0.06)])
+def test_profiles_are_right_on_smooth_ground_and_stated_to_be_wrong_on_rough(
+    fall, least, most, monkeypatch, random
+):
+    monkeypatch.setenv("VIZLIGHT_FAST", "0")
+    n = 160
+    frequency = np.hypot(*np.meshgrid(np.fft.fftfreq(n), np.fft.fftfreq(n)))
+    frequency[0, 0] = 1
+    z = np.fft.ifft2(frequency**-fall * np.exp(2j * np.pi * random.random((n, n)))).real
+    z *= 0.15 / np.ptp(z)
+    x = np.linspace(0, 1, n)
+    found = [
+        relief.shadow(x, x, z, depth=0.005, direction=sun(40, 20), method=method)
+        for method in METHODS
+    ]
+    error = np.abs(found[0] - found[1])
+    assert least <= error.mean() <= most
+    assert error.max() <= 0.95
+
+
+@pytest.mark.parametrize("depth", [0.05, 0.2, 0.5])
+def test_what_turns_away_is_dark_by_the_ratio_alone(depth):
+    """A roof z = -2 |x| under a sun at 45 degrees: no rule of its own darkens its far side."""
+    x = np.linspace(-3, 3, 601)
+    z = np.tile(-2 * np.abs(x), (3, 1))
+    way = np.array([1, 0, 1]) / np.sqrt(2)
+    normal = np.array([-2, 0, 1]) / np.sqrt(5)
+    t = relief.shadow(
+        x, [-1, 0, 1], z, depth=depth, direction=way, method="exact",
+        normals=np.broadcast_to(normal, (3, 601, 3)),
+    )[1]  # fmt: skip
+    assert normal @ way < -0.3
+    for i in (150, 250, 290):
+        start = np.array([x[i], z[1, i]]) - depth * normal[[0, 2]]
+        # The ray leaves through the near side of the roof, z = -2 x; behind a thin one it is out.
+        inside = start[1] < -2 * abs(start[0])
+        length = (-2 * start[0] - start[1]) / (3 * np.sqrt(0.5)) if inside else 0.0
+        expected = 1.0 if length <= depth else depth / length
+        assert t[i] == pytest.approx(expected, rel=1e-9)
+    assert t[290] > t[150]

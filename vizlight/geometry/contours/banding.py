@@ -93,7 +93,7 @@ class Bands:
         """Return the mean unit normal of each polygon, zero where it has no area."""
         corners, owner = self.triangles()
         a, b, c = (self.points[corners[:, i], :3] for i in range(3))
-        # Relative to the extent: squares of tiny lengths underflow and those of huge ones overflow.
+        # Relative to the extent: squares of tiny lengths underflow, squares of huge ones overflow.
         unit = float(np.ptp(self.points[:, :3], axis=0).max(initial=0)) or 1.0
         across = np.cross((b - a) / unit, (c - a) / unit)
         total = np.stack([np.bincount(owner, x, len(self.values)) for x in across.T], axis=1)
@@ -353,7 +353,7 @@ def _pieces(
 
 
 def _sorted(triangle: Indices, band: Indices, position: Indices) -> Indices:
-    """Return the order by triangle, band and position, no two of which are equal."""
+    """Return the order by triangle, band and position; no two are equal."""
     low = int(position.min(initial=0))
     places = int(position.max(initial=0)) - low + 1
     count = int(band.max(initial=0)) + 1
@@ -434,8 +434,8 @@ def _sides(
 ) -> tuple[Indices, Indices, Indices, Indices, Array]:
     """Return the sides of each triangle, the edge of each side, and ends, patches and values.
 
-    A side is an edge as part of one patch; edge i of a triangle begins at corner i. The ends are
-    those of edges, patches and values those of sides.
+    A side is an edge as part of one patch; edge i of a triangle begins at corner i. Ends are given
+    for each edge, patches and values for each side.
     """
     start, stop = triangles, np.roll(triangles, -1, axis=1)
     low, high = np.minimum(start, stop), np.maximum(start, stop)
@@ -495,8 +495,8 @@ def _bracketed(
 ) -> Array:  # fmt: skip
     """Return the fraction of its side at which each level is crossed.
 
-    The levels of a side are those from ``first`` to ``last``; the result has those of one side
-    after those of the other.
+    The levels of a side run from ``first`` to ``last``; the result has all levels of one side, then
+    all levels of the next.
 
     Notes
     -----

@@ -241,7 +241,7 @@ def _bands(side: _Rulings, steps: Steps, segments: int) -> Bands:
         quads = np.stack([top, bottom, np.roll(bottom, -1), np.roll(top, -1)], axis=1)
         # At an apex quadrilaterals become triangles.
         cells += list(quads[:, [0, 1, 2] if first == 0 else [0, 1, 3] if second == 0 else slice(4)])
-        # No contour lies within a strip, so the band at its middle is that of the strip.
+        # No contour lies within a strip, so the band at its middle is the strip's.
         band = steps.band(side.luminance((angle + np.append(angle[1:], 2 * np.pi)) / 2))
         parts += [(0, int(k), float(steps.values[k])) for k in band]
         on = np.flatnonzero(contour >= 0)

@@ -116,7 +116,7 @@ class LitTriangles(Protocol):
         """
 
     def measure(self, bands: Bands, triangle: Indices, allowed: float) -> Array:
-        """Return the largest error of each polygon; up to ``allowed`` also that of slivers."""
+        """Return the largest error of each polygon; up to ``allowed`` also of slivers."""
 
     def peaks(self, rows: Indices) -> Array:
         """Return the highest luminance found at a grid of points inside some triangles."""
@@ -465,7 +465,7 @@ def _without_slivers(worst: Array, bands: Bands, triangle: Indices, allowed: flo
     start = np.cumsum(size) - size
     places = np.repeat(bands.offsets[rows] - start, size) + np.arange(size.sum())
     columns = bands.points[:, :3].T
-    # Relative to the extent: squares of tiny lengths underflow and those of huge ones overflow.
+    # Relative to the extent: squares of tiny lengths underflow, squares of huge ones overflow.
     unit = float(np.ptp(columns, axis=1).max()) or 1.0
     few = dataclasses.replace(
         bands, offsets=np.append(start, size.sum()), corners=bands.corners[places]

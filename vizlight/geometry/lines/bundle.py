@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from vizlight import _check, _pool
+from vizlight import _pool
 from vizlight.geometry.lines import lamps, voxels
 
 if TYPE_CHECKING:
@@ -378,20 +378,6 @@ def line_lengths(points: Array, connectivity: Indices, offsets: Indices, /) -> A
     found = np.zeros(len(points))
     np.maximum.at(found, connectivity, np.repeat(length, np.diff(offsets)))
     return found
-
-
-def check_count(name: str, value: object, /) -> int:
-    """Return an even number of 2 or more.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If it is none.
-    """
-    count = _check.integer(name, value, low=2)
-    if count % 2:
-        raise ValueError(_check.message(name, "an even number", count))
-    return count
 
 
 def _left(depth: Array, own: Array | float, thick: float, /) -> Array:

@@ -1,4 +1,4 @@
-"""Cross fields: two directions at each point, of which neither is the first and none has a sign."""
+"""Cross fields: two directions at each point; neither is the first and none has a sign."""
 
 from __future__ import annotations
 

@@ -113,7 +113,7 @@ class _Lines:
 
     def tangents(self, block: slice) -> Array:
         """Return the tangents at a block of vertices."""
-        # Two more on each side decide on those of the block.
+        # Two more vertices on each side decide on the tangents of the block.
         wide = slice(max(block.start - 2, 0), min(block.stop + 2, len(self.vertices)))
         line = np.searchsorted(self.starts, self.vertices[wide], side="right")
         inside = slice(block.start - wide.start, block.stop - wide.start)

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import scipy
 
-from vizlight.geometry.lines.samples import SAMPLES, Samples, parallel
+from vizlight.geometry.lines.samples import SAMPLES, Samples
 from vizlight.geometry.lines.simplices import Places
 from vizlight.geometry.lines.tracing import Curves, Flow, Trail, Walkers
 
@@ -16,6 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vizlight._types import Array, Bools, Indices
+    from vizlight.geometry.lines.simplices import Simplices
 
 #: Largest number of curves that grow at the same time.
 CROWD = 64
@@ -60,6 +60,34 @@ class Spacing:
     max_steps: int
 
 
+def with_normals(normals: Array, points: Array, spacing: float) -> Array:
+    """Return points with their normals beside them, both of shape (M, 3), as (M, 6)."""
+    size = np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
+    return np.hstack([points, NORMALS * spacing / size * normals])
+
+
+def embedded(
+    mesh: Simplices, normals: Array | None, spacing: float, places: Places, points: Array
+) -> Array:
+    """Return positions and, on a surface, scaled normals, in which distances are measured.
+
+    Parameters
+    ----------
+    mesh : Simplices
+    normals : ndarray, shape (N, 3), or None
+        Normals at the vertices of a surface; None in a volume.
+    spacing : float
+    places : Places
+    points : ndarray, shape (M, 3)
+        Their positions.
+    """
+    return (
+        points
+        if normals is None
+        else with_normals(mesh.interpolated(normals, places), points, spacing)
+    )
+
+
 class Growth:
     """Curves while they grow; see :func:`evenly_spaced`."""
 
@@ -91,12 +119,8 @@ class Growth:
         self.beside = nowhere
 
     def embedded(self, places: Places, points: Array) -> Array:
-        """Return positions and, on a surface, scaled normals, in which distances are measured."""
-        if self.normals is None:
-            return points
-        normal = self.flow.mesh.interpolated(self.normals, places)
-        size = np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-30)
-        return np.hstack([points, NORMALS * self.asked.spacing / size * normal])
+        """Return what :func:`embedded` does."""
+        return embedded(self.flow.mesh, self.normals, self.asked.spacing, places, points)
 
     def distances(self, places: Places, radius: float) -> Array:
         """Return the distance of places from the nearest sample; infinite beyond a radius."""
@@ -107,14 +131,18 @@ class Growth:
         return np.asarray(self.samples.near(embedded, radius, 4, along)[0].min(axis=1))
 
     def start(self, seeds: Places) -> Bools:
-        """Let curves grow from seeds that are apart from each other; return which were taken."""
+        """Let curves grow from seeds that are apart from each other; return which were taken.
+
+        Seeds without a direction are taken too, and nothing grows there.
+        """
         points = self.flow.mesh.positions(seeds)
         embedded = self.embedded(seeds, points)
         room = CROWD - len(self.growing)
-        chosen = _apart(embedded, self.apart * self.asked.spacing, room)
+        taken: Bools = ~self.flow.directions(seeds, None, np.ones(len(seeds.cell)))[1]
+        moving = np.flatnonzero(~taken)
+        chosen = moving[_apart(embedded[moving], self.apart * self.asked.spacing, room)]
         wide = len(chosen) >= room // 4
         self.apart = min(APART, 1.5 * self.apart) if wide else max(NEAR, self.apart / 1.5)
-        taken = np.zeros(len(points), dtype=np.bool_)
         taken[chosen] = True
         numbers = self.count + np.arange(len(chosen))
         self.count += len(chosen)
@@ -198,7 +226,7 @@ class Growth:
         # Along an orbit the other end of the curve comes the opposite way.
         opposite = np.where(seed, np.abs(facing), -facing) > 0.8
         orbit = own & (seed | (samples.sign[row] != sign)) & np.isfinite(distance)
-        # Also a small circle, all of which is near, as soon as the other end is ahead.
+        # Also a small circle, which is near all around, as soon as the other end is ahead.
         orbit &= opposite & (lateral < 0.3 * spacing) & (hit | (along > 0))
         # Of the samples of the other end the outermost is reached first.
         place = np.where(orbit, -samples.length[row], np.inf).argmin(axis=1)
@@ -352,53 +380,6 @@ def place_count(flow: Flow, spacing: float, dense: int = DENSE) -> int:
     """Return the number of places of :func:`places_of`."""
     count = dense * flow.mesh.extent / spacing**flow.mesh.k
     return int(np.clip(count, 1000, MOST_PLACES * dense // DENSE))
-
-
-def gaps(
-    flow: Flow, normals: Array | None, asked: Spacing, curves: Curves, /, *, seed: int = 1
-) -> tuple[float, float]:
-    """Return how even curves are.
-
-    Returns
-    -------
-    gap : float
-        Largest distance of random places from the nearest curve, in spacings.
-    near : float
-        Distance of a curve's place to the nearest other curve that 5 % of the places fall below, in
-        spacings; infinite for a single curve.
-    """
-    random = np.random.default_rng(seed)
-    growth = Growth(flow, normals, asked, random)
-    places = places_of(flow, asked.spacing, random, DENSER**flow.mesh.k)
-    # The field has no curve where it has no direction.
-    along, moving = flow.directions(places, None, np.ones(len(places.cell)))
-    places, along = places[moving], along[moving]
-    there = growth.embedded(curves.places, flow.mesh.positions(curves.places))
-    tree = scipy.spatial.cKDTree(there)
-    own = np.repeat(np.arange(len(curves.offsets) - 1), np.diff(curves.offsets))
-    picked = random.choice(len(there), min(len(there), 4000), replace=False)
-
-    def nearest(at: Array, along: Array, curve: Indices, count: int) -> Array:
-        """Return distances from other curves of the same family; infinite where none is found."""
-        found, left = np.full(len(at), np.inf), np.arange(len(at))
-        # Neighbours are looked for in larger and larger sets until one is of such a curve.
-        while len(left) and len(there) and count <= 4096:
-            ranks = np.arange(1, min(count, len(there)) + 1)
-            distance, row = tree.query(at[left], k=ranks)
-            counted = own[row] != curve[left][:, np.newaxis]
-            if growth.crossing:
-                counted &= parallel(curves.along[row], along[left][:, np.newaxis])
-            found[left] = np.where(counted, distance, np.inf).min(axis=1)
-            left = left[~np.isfinite(found[left])]
-            count = 4 * count if count < len(there) else 4097
-        return found
-
-    at = growth.embedded(places, flow.mesh.positions(places))
-    gap = nearest(at, along, np.full(len(at), -1), 1)
-    found = nearest(there[picked], curves.along[picked], own[picked], 32)
-    found = found[np.isfinite(found)]
-    near = float(np.percentile(found, 5)) if len(found) else np.inf
-    return float(gap.max(initial=0)) / asked.spacing, near / asked.spacing
 
 
 def _apart(embedded: Array, distance: float, most: int) -> Indices:

@@ -41,8 +41,8 @@ def depths(
     lamp : sequence of float, shape (3,)
         Place of the light, inside or outside the bundle, in voxels.
     thick : float, default: 0.0
-        Diameter of the lines in voxels, of which the depth includes the factor for lines in
-        one another's shadow.
+        Diameter of the lines in voxels; the depth includes its factor for lines in one another's
+        shadow.
 
     Returns
     -------

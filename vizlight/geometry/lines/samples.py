@@ -53,6 +53,8 @@ class Samples:
     def add(self, walkers: Walkers, points: Array, embedded: Array) -> None:
         """Add where ends are now."""
         count, size = len(points), self._size
+        if not count:
+            return
         if size + count > len(self.curve):
             columns = embedded.shape[1], walkers.places.weights.shape[1]
             self._grow(max(4096, 2 * (size + count)), *columns)

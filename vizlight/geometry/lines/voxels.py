@@ -139,7 +139,7 @@ def depths(
     places : ndarray of float32, shape (3, N)
         Places, in voxels.
     frame : ndarray of float32, shape (3, 3)
-        Orthonormal frame in rows, the last of which is the direction.
+        Orthonormal frame in rows; the last row is the direction.
     rooms : Rooms
         Grids that are used again.
 

@@ -154,7 +154,7 @@ def parametric(
     Notes
     -----
     For a step h in the parameter's own unit, the error of each component of a tangent by central
-    differences is ``(h^2/6) |f'''| + eps (|f| + |u f'|) / h``, with eps that of the type which the
+    differences is ``(h^2/6) |f'''| + eps (|f| + |u f'|) / h``, with eps of the type that the
     function returns. For a function that varies over its domain like one period of a sine this is
     about 1e-10 of the extent in float64 and 3e-4 in float32. The complex step ``Im f(u + i h) / h``
     subtracts nothing, so h may be tiny, and its error is only the rounding of the function itself,

@@ -48,8 +48,8 @@ def plane_rotation(n: int, plane: str | Sequence[int], angle: float, /) -> Array
     n : int
         Dimension of the space, 2 or more.
     plane : str or (int, int)
-        Two axes, the first of which rotates toward the second: letters of ``xyzw``, such as
-        ``"xw"``, or indices from 0, such as ``(0, 3)``.
+        Two axes, as letters of ``xyzw``, such as ``"xw"``, or indices from 0, such as ``(0, 3)``;
+        the first rotates toward the second.
     angle : float
         Angle in radians.
 
@@ -81,8 +81,8 @@ def rotation(n: int, turns: object, /) -> Array:
     n : int
         Dimension of the space, 2 or more.
     turns : array_like, shape (n, n), or ``(plane, angle)``, or a list of these
-        Matrix of SO(n), a plane and an angle as for :func:`plane_rotation`, or several of these, of
-        which the first is applied first.
+        Matrix of SO(n), a plane and an angle as for :func:`plane_rotation`, or several of these;
+        the first is applied first.
 
     Returns
     -------
@@ -223,8 +223,8 @@ def perspective(points: ArrayLike, /, *, distance: float | None = None) -> Array
     Notes
     -----
     ``x -> x d / (d - x_n)``. With d the radius of a sphere in 4-space this is the stereographic
-    projection from its pole. The relative error is 3 eps for each projected axis, divided by those
-    of the depths ``(d - x)/d`` whose magnitude is less than 1.
+    projection from its pole. The relative error is 3 eps for each projected axis, divided by each
+    depth ``(d - x)/d`` whose magnitude is less than 1.
     """
     return image_and_depth(points, distance=distance)[0]
 
@@ -252,7 +252,7 @@ def image_and_depth(points: ArrayLike, /, *, distance: float | None = None) -> t
 
     Notes
     -----
-    The error of the image is that of :func:`perspective`. The error of the depth in 4-space is 2
+    The image has the error of :func:`perspective`. The error of the depth in 4-space is 2
     eps of the larger of the depth and 1.
     """
     positions = _check.vectors("points", points)
@@ -296,7 +296,7 @@ def push_forward(
 
     Notes
     -----
-    For ``y = x d/(d - x_n)`` it is ``dy = (d/(d - x_n)) (v + y v_n / d)``. The error is that of
+    For ``y = x d/(d - x_n)`` it is ``dy = (d/(d - x_n)) (v + y v_n / d)``. It has the error of
     :func:`perspective`, relative to the sum of the lengths of both terms, which cancel for a vector
     that points at the eye.
     """

@@ -49,7 +49,7 @@ def torus(*radii: float, resolution: int | Sequence[int] = 64) -> Manifold:
     Notes
     -----
     The tangents are orthonormal by construction. The error of points, relative to the largest
-    radius, and of tangents is 8 eps per component, including that of the angle. Source: Banks,
+    radius, and of tangents is 8 eps per component, including the error of the angle. Source: Banks,
     section 3.
     """
     if not 1 <= len(radii) <= 3:
@@ -159,7 +159,7 @@ def hopf_fibres(
     radius: float = 1.0,
     resolution: int = 96,
 ) -> Manifold:
-    """Return fibres of the Hopf map: great circles of the 3-sphere, no two of which intersect.
+    """Return fibres of the Hopf map: great circles of the 3-sphere that do not intersect.
 
     Parameters
     ----------

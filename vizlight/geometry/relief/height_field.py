@@ -158,7 +158,7 @@ def default_depth(field: Field) -> float:
     """Return a depth d whose shadows are about as large as hard ones.
 
     It is an eighth of a cell's width, and not more than half the mean difference of heights from
-    node to node. Under a sun 10 degrees high the share of nodes with t below half of that of level
+    node to node. Under a sun 10 degrees high the share of nodes with t below half the t of level
     ground is then 0.92 to 1.04 of the share for d = 0, on terrains of any exaggeration whose hard
     shadows cover 7 % to 80 %.
     """
@@ -184,7 +184,7 @@ def filled(heights: Array) -> Array:
 def normals(field: Field) -> Array:
     """Return the upward unit normal at each node, shape (ny, nx, 3).
 
-    The slope at a node is that of the parabola through it and its two neighbours; at a border or
+    A node has the slope of the parabola through it and its two neighbours; at a border or
     next to a hole it is the slope of the only cell there.
     """
     normal = np.empty((*field.heights.shape, 3))

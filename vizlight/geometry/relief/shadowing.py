@@ -94,9 +94,11 @@ def inside_length(
     has the mirrored shadow. Along a ray its height is a quadratic in each cell, whose roots are
     found in closed form. The error of "exact" is at most ``3 eps`` times the size of the field for
     each time that a ray crosses the surface without grazing it. The error of profiles decreases
-    with the square of the spacing, as does that of the bilinear surface for a smooth one. The cost
-    is O(log N) squares, or steps of a profile, for each time that a ray crosses the surface. Per
-    ray, with a sun from 40 to 5 degrees high over 512 x 512 or 1024 x 1024 nodes, compiled code
+    with the square of the spacing, as does the error of the bilinear surface for a smooth one; on
+    ground that is rough from node to node it does not: the mean error of t is 1e-3 on smooth hills,
+    2e-2 on rough mountains and up to 8e-2 on noise, where single points are off by up to 0.94. The
+    cost is O(log N) squares, or steps of a profile, for each time that a ray crosses the surface.
+    Per ray, with a sun from 40 to 5 degrees high over 512 x 512 or 1024 x 1024 nodes, compiled code
     takes 0.2 to 0.6 microseconds of processor time, profiles 0.7 to 2, "exact" without the extra
     ``fast`` 3 to 20: without it neither of the two replaces the other.
     Source: cos-theta, section 2.

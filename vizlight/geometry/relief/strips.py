@@ -3,8 +3,8 @@
 The rise of the light's rays is subtracted from the heights, so that each ray is level. The rays of
 one strip along the light's azimuth are sorted by their levels, and the columns of the strip are
 gone through once, in the direction of the light. In a column, rays below all of its heights are
-inside, rays above all of them are outside, and the rays between cross its cells: their lengths are
-those of the closed form of :mod:`marching`, for several rays at once.
+inside, rays above all of them are outside, and the rays between cross its cells: the closed form of
+:mod:`marching` gives their lengths, for several rays at once.
 """
 
 from __future__ import annotations

@@ -71,7 +71,7 @@ def _placed(mesh: Mesh, tolerance: float) -> Array:
 
 
 def _kept(mesh: Mesh, points: Array) -> Mesh:
-    """Return a mesh with moved points, except those of triangles that they would flip."""
+    """Return a mesh with moved points, except at corners of triangles that they would flip."""
     points = points.copy()
     while True:
         found = mesh.replace(points, mesh.triangles, mesh.patch)

@@ -34,9 +34,8 @@ __all__ = ["tessellate", "volume_bounds"]
 
 #: Largest number of points of all primitives together.
 MOST = 400_000
-#: Thinnest wall or gap, as a share of the size, between surfaces that need fine facets to keep it.
-#: The number of points is that of a unit sphere whose facets are half as far from it.
-THINNEST = 1e-4
+#: That number where finer facets are tried, which keep thin walls between surfaces: the points
+#: of a unit sphere whose facets are 5e-5 from it.
 PATIENCE = 60_000
 #: Fewest segments of a circle, and ratio of radii below which circles have equal segments: the
 #: facets of a thin wall between them are then parallel.

@@ -41,7 +41,7 @@ class Mesh:
     scale : float
         Length of one normalised unit.
     volume_error : float
-        Bound of the difference of the volume from that of the exact solid, in normalised lengths.
+        Bound of the difference between this volume and the exact solid's, in normalised lengths.
     """
 
     points: Array

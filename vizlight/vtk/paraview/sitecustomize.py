@@ -1,7 +1,7 @@
 """Lets ParaView's Python import vizlight, and nothing else from beside it.
 
 Put this folder on PYTHONPATH: Python imports this file at its start. The packages beside vizlight,
-which are those of another Python, would stand in the way of ParaView's own NumPy and VTK. Besides,
+which belong to another Python, would stand in the way of ParaView's own NumPy and VTK. Besides,
 ParaView 5.11 of Debian calls inspect.getargspec, which its Python 3.11 no longer has.
 """
 

@@ -8,7 +8,7 @@ from paraview.simple import GetActiveViewOrCreate, GetSources
 
 
 def follow(filters=None, view=None):
-    """Set the eye of filters to that of a view now, and before each picture.
+    """Set the eye of filters to the eye of a view now, and before each picture.
 
     Parameters
     ----------

@@ -1,0 +1,295 @@
+"""How even curves are: the largest gap between them, bounded all over, and the narrowest ones."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import scipy
+
+from vizlight.geometry.lines.even import embedded, with_normals
+from vizlight.geometry.lines.samples import CROSSING, parallel
+from vizlight.geometry.lines.simplices import Places
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from vizlight._types import Array, Bools, Indices
+    from vizlight.geometry.lines.even import Spacing
+    from vizlight.geometry.lines.tracing import Curves, Flow
+
+#: What a gap is known to, in spacings.
+KNOWN = 0.005
+#: Side of the boxes, in spacings, in which the distances of all cells are bounded by that of one.
+BOX = 0.25
+#: Number of parts of cells that are halved at once, and most halves that are smaller than boxes:
+#: along each axis per spacing, but at least so many.
+BATCH, MOST_PARTS, LEAST_PARTS = 256, 4, 4000
+#: Number of places from which the first distances are measured exactly.
+FIRST = 64
+#: Points of curves by whose segments a distance is measured, and most that are looked at for it.
+NEIGHBOURS, MOST_NEIGHBOURS = 8, 4096
+#: Number of places on curves at which the distance to others is measured.
+ON_CURVES = 1000
+
+
+class Distances:
+    """Distances from curves, as :meth:`~vizlight.geometry.lines.even.Growth.embedded`.
+
+    Parameters
+    ----------
+    flow : Flow
+    normals : ndarray, shape (N, 3), or None
+        Normals at the vertices of a surface; None in a volume.
+    spacing : float
+    curves : Curves
+    """
+
+    def __init__(self, flow: Flow, normals: Array | None, spacing: float, curves: Curves) -> None:
+        self.flow, self.normals, self.spacing = flow, normals, spacing
+        self.there, self.along = self.embedded(curves.places), curves.along
+        self.curve = np.repeat(np.arange(len(curves.offsets) - 1), np.diff(curves.offsets))
+        self._tree = scipy.spatial.cKDTree(self.there)
+        #: Whether there are two families of curves, each with gaps of its own.
+        self.crossing = flow.mesh.sheets is not None
+
+    def embedded(self, places: Places) -> Array:
+        """Return positions and, on a surface, scaled normals, in which distances are measured."""
+        mesh = self.flow.mesh
+        return embedded(mesh, self.normals, self.spacing, places, mesh.positions(places))
+
+    @property
+    def vertices(self) -> Array:
+        """Embedded vertices of the mesh."""
+        points = self.flow.mesh.points
+        return points if self.normals is None else with_normals(self.normals, points, self.spacing)
+
+    @property
+    def squares(self) -> float:
+        """Area of the mesh in squares, or volume in cubes, of the spacing."""
+        return float(self.flow.mesh.extent / self.spacing**self.flow.mesh.k)
+
+    def directions(self, places: Places) -> tuple[Array, Bools]:
+        """Return directions of curves at places, and where there is one."""
+        return self.flow.directions(places, None, np.ones(len(places.cell)))
+
+    def of_points(
+        self, at: Array, along: Array, curve: Indices | None, count: int
+    ) -> tuple[Array, Indices]:
+        """Return distances from points of other curves of the same family, and these points.
+
+        Parameters
+        ----------
+        at, along : ndarray, shape (N, m) and (N, 3)
+            Embedded places and directions there.
+        curve : ndarray of int, shape (N,), or None
+            Curves whose own points do not count.
+        count : int
+            Number of points that are looked at first.
+
+        Returns
+        -------
+        distance : ndarray, shape (N, K)
+            Infinite for points that do not count, and where none is found.
+        row : ndarray of int, shape (N, K)
+        """
+        count = min(count, len(self.there))
+        distance = np.full((len(at), count), np.inf)
+        row = np.zeros((len(at), count), dtype=np.intp)
+        left, looked = np.arange(len(at)), count
+        # Neighbours are looked for in larger and larger sets until one is of such a curve.
+        while len(left) and looked:
+            found = self._tree.query(at[left], k=np.arange(1, looked + 1))
+            far, near = np.asarray(found[0]), np.asarray(found[1])
+            if curve is not None:
+                far[self.curve[near] == curve[left][:, np.newaxis]] = np.inf
+            if self.crossing:
+                far[~parallel(self.along[near], along[left][:, np.newaxis])] = np.inf
+            if looked > count:
+                order = np.argsort(far, axis=1)[:, :count]
+                far = np.take_along_axis(far, order, axis=1)
+                near = np.take_along_axis(near, order, axis=1)
+            distance[left], row[left] = far, near
+            left = left[~np.isfinite(far.min(axis=1))]
+            more = looked < min(len(self.there), MOST_NEIGHBOURS)
+            looked = min(4 * looked, len(self.there), MOST_NEIGHBOURS) if more else 0
+        return distance, row
+
+    def of_lines(self, at: Array, along: Array) -> Array:
+        """Return distances from the lines, segments between points; infinite if none is found."""
+        count = NEIGHBOURS + (CROSSING if self.crossing else 0)
+        distance, row = self.of_points(at, along, None, count)
+        found = distance.min(axis=1)
+        a = self.there[row]
+        away = at[:, np.newaxis] - a
+        for step in (-1, 1):
+            other = np.clip(row + step, 0, len(self.there) - 1)
+            u = self.there[other] - a
+            size = np.einsum("nki,nki->nk", u, u)
+            share = np.einsum("nki,nki->nk", away, u) / np.where(size > 0, size, 1)
+            rest = away - np.clip(share, 0, 1)[..., np.newaxis] * u
+            counted = np.isfinite(distance) & (self.curve[other] == self.curve[row])
+            far = np.where(counted, np.einsum("nki,nki->nk", rest, rest), np.inf)
+            found = np.minimum(found, np.sqrt(far.min(axis=1)))
+        return np.asarray(found)
+
+
+@dataclass
+class Parts:
+    """Parts of cells: simplices in them, which are halved.
+
+    Attributes
+    ----------
+    cell : ndarray of int, shape (N,)
+        Cell of each.
+    weights : ndarray, shape (N, k + 1, k + 1)
+        Barycentric coordinates of its corners.
+    corners : ndarray, shape (N, k + 1, m)
+        Embedded corners.
+    far, radius : ndarray, shape (N,)
+        Distance of its middle from the curves, and largest distance of its places from there.
+    """
+
+    cell: Indices
+    weights: Array
+    corners: Array
+    far: Array
+    radius: Array
+
+    def __getitem__(self, rows: Indices | Bools) -> Parts:
+        """Return some of the parts."""
+        return Parts(
+            self.cell[rows], self.weights[rows], self.corners[rows], self.far[rows],
+            self.radius[rows],
+        )  # fmt: skip
+
+    def joined(self, other: Parts) -> Parts:
+        """Return these parts and then others."""
+        return Parts(
+            np.concatenate([self.cell, other.cell]),
+            np.concatenate([self.weights, other.weights]),
+            np.concatenate([self.corners, other.corners]),
+            np.concatenate([self.far, other.far]),
+            np.concatenate([self.radius, other.radius]),
+        )
+
+    def halved(self, distances: Distances) -> tuple[Parts, Bools]:
+        """Return both halves of each part, cut across its longest side, and which have curves.
+
+        The field has no curve where it has no direction.
+        """
+        one, other = np.triu_indices(self.weights.shape[1], 1)
+        side = self.corners[:, one] - self.corners[:, other]
+        longest = np.einsum("nei,nei->ne", side, side).argmax(axis=1)
+        count = len(self.cell)
+        both = self.joined(self)
+        cell, weights, corners = both.cell, both.weights, both.corners
+        rows, ends = np.arange(2 * count), np.concatenate([one[longest], other[longest]])
+        opposite = np.roll(ends, count)
+        weights[rows, ends] = (weights[rows, ends] + weights[rows, opposite]) / 2
+        corners[rows, ends] = distances.embedded(Places(cell, weights[rows, ends]))
+        middles = Places(cell, weights.mean(axis=1))
+        at = distances.embedded(middles)
+        along, moving = distances.directions(middles)
+        far = distances.of_lines(at, along)
+        return Parts(cell, weights, corners, far, radii(np.swapaxes(corners, 0, 1), at)), moving
+
+
+def radii(corners: Iterable[Array], middles: Array) -> Array:
+    """Return the largest distance of corners, each of shape (N, m), from middles, shape (N, m)."""
+    position, normal = np.zeros((2, len(middles)))
+    for corner in corners:
+        away = corner - middles
+        # Farthest by position and by normal can be two different corners.
+        np.maximum(position, np.einsum("ni,ni->n", away[:, :3], away[:, :3]), out=position)
+        np.maximum(normal, np.einsum("ni,ni->n", away[:, 3:], away[:, 3:]), out=normal)
+    return np.sqrt(position + normal)
+
+
+def largest_gap(distances: Distances) -> float:
+    """Return the largest distance of a place from the nearest curve.
+
+    Notes
+    -----
+    Branch and bound: no place of a part of a cell is farther than its middle is, and its radius.
+    Parts that can hold a place that is farther by :data:`KNOWN` than the farthest one that was
+    found are halved, the farthest first. That ends, with what was found, after :data:`MOST_PARTS`,
+    between very many parallel lines of one distance. In a cross field, where the lines that count
+    change with the direction, the bound is not strict.
+    """
+    if not len(distances.there):
+        return np.inf
+    known = KNOWN * distances.spacing
+    parts, gap = _first_parts(distances)
+    room = max(LEAST_PARTS, int(MOST_PARTS**distances.flow.mesh.k * distances.squares))
+    while len(parts.cell) and room > 0:
+        # Large parts come first and are not counted: what is in them is not known yet.
+        large = parts.radius > BOX * distances.spacing
+        first = np.where(large, np.inf, parts.far)
+        order = np.argpartition(-first, min(BATCH, len(first)) - 1)
+        halves, moving = parts[order[:BATCH]].halved(distances)
+        room -= 0 if large.any() else len(halves.cell)
+        gap = max(gap, float(halves.far[moving].max(initial=0)))
+        parts = parts[order[BATCH:]].joined(halves[halves.radius > known])
+        parts = parts[parts.far + parts.radius > gap + known]
+    return gap
+
+
+def _first_parts(distances: Distances) -> tuple[Parts, float]:
+    """Return the cells that can hold the largest gap, and one that was found."""
+    mesh, spacing = distances.flow.mesh, distances.spacing
+    vertices, used = distances.vertices, mesh.measures > 0
+    resting = ~np.any(distances.flow.vectors, axis=1)
+    if resting.any():
+        used &= ~resting[mesh.cells].all(axis=1)
+    cell = np.flatnonzero(used)
+    corners = [vertices[corner] for corner in mesh.cells[cell].T]
+    middle = np.add(corners[0], corners[1])
+    for corner in corners[2:]:
+        middle += corner
+    middle /= len(corners)
+    radius = radii(corners, middle)
+    # One cell of each box tells which others can be far.
+    number = np.zeros(len(middle))
+    for axis in middle[:, :3].T:
+        box = np.floor((axis - axis.min(initial=0)) / (BOX * spacing))
+        number = number * (box.max(initial=0) + 1) + box
+    _, first, same = np.unique(number, return_index=True, return_inverse=True)
+    share = np.full((len(first), mesh.k + 1), 1 / (mesh.k + 1))
+    along, there = distances.directions(Places(cell[first], share))
+    near = distances.of_points(middle[first], along, None, 1)[0].min(axis=1)
+    away = middle - middle[first[same]]
+    far = near[same] + np.sqrt(np.einsum("ni,ni->n", away, away))
+    rows = np.flatnonzero(there)
+    rows = rows[np.argsort(-near[rows], kind="stable")[:FIRST]]
+    gap = float(distances.of_lines(middle[first[rows]], along[rows]).max(initial=0))
+    kept = np.flatnonzero(far + radius > gap + KNOWN * spacing)
+    whole = np.tile(np.eye(mesh.k + 1), (len(kept), 1, 1))
+    found = np.stack([corner[kept] for corner in corners], axis=1)
+    return Parts(cell[kept], whole, found, far[kept], radius[kept]), gap
+
+
+def evenness(
+    flow: Flow, normals: Array | None, asked: Spacing, curves: Curves, /, *, seed: int = 1
+) -> tuple[float, float]:
+    """Return how even curves are.
+
+    Returns
+    -------
+    gap : float
+        Largest distance of a place from the nearest curve, in spacings; see :func:`largest_gap`.
+    near : float
+        Distance of a curve's place to the nearest other curve that 5 % of the places fall below, in
+        spacings; infinite for a single curve.
+    """
+    distances = Distances(flow, normals, asked.spacing, curves)
+    gap = largest_gap(distances)
+    random, count = np.random.default_rng(seed), len(distances.there)
+    picked = random.choice(count, min(count, ON_CURVES), replace=False)
+    found = distances.of_points(
+        distances.there[picked], curves.along[picked], distances.curve[picked], 32
+    )[0].min(axis=1, initial=np.inf)
+    found = found[np.isfinite(found)]
+    near = float(np.percentile(found, 5)) if len(found) else np.inf
+    return gap / asked.spacing, near / asked.spacing
