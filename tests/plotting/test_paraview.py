@@ -210,7 +210,7 @@ def test_properties_and_script():
     other = colored.script("it's.vtp")
     assert "ColorBy(display, (\"POINTS\", 'Temp'))" in other
     assert "bar.DrawNanAnnotation, bar.NanAnnotation = 1, 'no data'" in other
-    assert "if (!vizGood) vizColor = vec3(0.501960784" in colored.shader_replacements
+    assert "vizGood ? " in colored.shader_replacements
     # The colour of the data is what ParaView multiplied by Ambient and Diffuse.
     assert "float vizColorGain = 0.833333333;" in colored.shader_replacements
     for text in (own, other):

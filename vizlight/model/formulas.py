@@ -38,12 +38,18 @@ def power(x: Number, deficit: Number | None, exponent: float) -> Number:
 
     The deficit is 1 - x where that has digits which x has lost.
     """
+    if hasattr(x, "power"):  # a symbol
+        symbol: Number = x.power(deficit, exponent)
+        return symbol
     rest = None if deficit is None else np.asarray(deficit)
     return kernels.power(np.asarray(x), exponent, rest)
 
 
 def where(test: Bools | bool, yes: Number, no: Number) -> Number:
     """Return ``yes`` where a test holds, else ``no``."""
+    if hasattr(test, "select"):  # a symbol
+        symbol: Number = test.select(yes, no)
+        return symbol
     # A random mask costs NumPy several times a product, and most masks hold everywhere.
     return yes if np.all(test) else np.where(test, yes, no)
 

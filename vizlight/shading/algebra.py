@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from vizlight.model import cylinder_kernels
+from vizlight.model import cylinder_kernels, falloff
 from vizlight.scene.light import WHITE
 
 if TYPE_CHECKING:
@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from vizlight.shading.inputs import ShadingInputs
     from vizlight.shading.plan import Highlight, Plan
 
+#: Depths beyond this are divided by 4, so that their differences are finite.
+LARGEST_DEPTH = 1e300
 #: A number or a vector of an algebra: whatever NumPy's functions and operators accept, such as an
 #: array. No static type says that.
 Value: TypeAlias = Any
@@ -49,6 +51,7 @@ class Algebra:
 
     def __init__(self, plan: Plan, inputs: ShadingInputs | None) -> None:
         self.plan, self.inputs, self.n = plan, inputs, plan.n
+        self.colored = plan.colored
         #: |x_N| up to which a direction is along a line.
         self.least = cylinder_kernels.ALONG * float(np.finfo(plan.dtype).eps)
 
@@ -135,6 +138,53 @@ class Algebra:
         column /= np.abs(column).max()
         return self.vector((column / np.sqrt(column @ column)).tolist(), wide=wide)
 
+    def toward(
+        self, position: Vector | None, direction: Vector | None, *, far: bool
+    ) -> tuple[Value, Value | None]:
+        """Return the unit direction from the point to a lamp or the eye, and the distance."""
+        if far or position is None:
+            assert direction is not None
+            return self.way(direction), None
+        toward, distance = self.unit(self.difference(position))
+        self.known(distance)
+        return self.work(toward), distance
+
+    def eye(self) -> tuple[Value, Value | None]:
+        """Return the unit direction to the eye and the distance."""
+        view = self.plan.scene.view
+        assert view is not None
+        return self.toward(view.position, view.direction, far=view.parallel)
+
+    def depth(self) -> tuple[Value, Sequence[Value]]:
+        """Return the depth of the point, and the ends and the scales of the depth cue."""
+        view, cue = self.plan.scene.view, self.plan.scene.depth_cue
+        assert view is not None
+        assert cue is not None
+        assert cue.front is not None
+        assert cue.back is not None
+        away = self.difference(view.position or (0.0,) * self.n, wide=True)
+        if view.direction is None:
+            depth = np.sqrt(self.dot(away, away))
+        else:
+            depth = self.dot(self.way(view.direction, wide=True), away)
+        self.known(depth)
+        ends = cue.front, cue.back
+        if max(map(abs, ends)) > LARGEST_DEPTH:
+            depth, ends = depth * self.wide(0.25), (cue.front / 4, cue.back / 4)
+        return depth, [self.wide(x) for x in (*ends, cue.front_scale, cue.back_scale)]
+
+    def cue_color(self) -> Value:
+        """Return the colour that the depth cue fades to."""
+        cue = self.plan.scene.depth_cue
+        assert cue is not None
+        return self.vector([cue.cue * c for c in cue.color or WHITE])
+
+    def fur_rate(self) -> Value:
+        """Return the rate log(1 - rho) at which fur lets light through, as a finite number."""
+        limits = np.finfo(self.plan.dtype)
+        rate = falloff.fur_rate(self.plan.fur, float(limits.tiny), float(limits.max))
+        return self.number(rate)
+
     def direction(self, name: str) -> Value:
         """Return the unit vector of an input; a point without one has no light."""
         unit, size = self.unit(self.read(name))
@@ -175,7 +225,7 @@ class Algebra:
     def total(self) -> Total:
         """Return an empty sum over the lamps."""
         tinted = any(light.color is not None for light in self.plan.scene.lights)
-        return Total(self, tinted=tinted and self.plan.colored)
+        return Total(self, tinted=tinted and self.colored)
 
 
 class Total:

@@ -17,22 +17,18 @@ from functools import reduce
 from operator import add
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
-from numpy import absolute, finfo, sqrt
+from numpy import absolute, sqrt
 
-from vizlight.model import cylinder_kernels, falloff, formulas
+from vizlight.model import cylinder_kernels, formulas
 from vizlight.model.formulas import where
 from vizlight.model.kernels import DEFICIT_FROM
-from vizlight.scene.light import NO_ATTENUATION, WHITE
+from vizlight.scene.light import NO_ATTENUATION
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from vizlight._types import Vector
     from vizlight.shading.algebra import Algebra, Lamp, Total, Value
     from vizlight.shading.plan import Highlight, Plan
-
-#: Depths beyond this are divided by 4, so that their differences are finite.
-LARGEST_DEPTH = 1e300
 
 
 def light(w: Algebra, plan: Plan) -> None:
@@ -43,7 +39,6 @@ def light(w: Algebra, plan: Plan) -> None:
     w : Algebra
     plan : Plan
     """
-    view = plan.scene.view
     normal = w.direction("normals") if w.has("normals") else None
     base = w.frame("base_tangents", plan.base) if plan.base else None
     shape = _shape(w, plan, normal)
@@ -51,8 +46,8 @@ def light(w: Algebra, plan: Plan) -> None:
     height: Value = None
     path: Value = None
     distance_o: Value = None
-    if plan.needs_eye and view is not None:
-        wo, distance_o = _toward(w, view.position, view.direction, far=view.parallel)
+    if plan.needs_eye:
+        wo, distance_o = w.eye()
         eye = shape.split(wo) if plan.splits_eye else None
         if plan.fur:
             height = w.read("fur_height")
@@ -60,7 +55,7 @@ def light(w: Algebra, plan: Plan) -> None:
             path = formulas.fur_path(height, absolute(w.dot(normal, wo)))
     diffuse, specular = w.total(), w.total()
     for lamp in w.lamps():
-        wi, distance = _toward(w, lamp.position, lamp.direction, far=lamp.position is None)
+        wi, distance = w.toward(lamp.position, lamp.direction, far=lamp.position is None)
         lit = shape.split(wi)
         cosine: Value = None
         if normal is not None:
@@ -79,7 +74,7 @@ def light(w: Algebra, plan: Plan) -> None:
             f = f * (_side(plan, cosine) if shadow is None else shadow)
         if path is not None:  # Banks (7), (8)
             both = formulas.fur_path(height, absolute(cosine)) + path
-            f = f * formulas.fur_passes(both, w.number(_fur_rate(plan)))
+            f = f * formulas.fur_passes(both, w.fur_rate())
         if base is not None:
             f = f * _sine_power(split(w, wi, base), plan.base_exponent)
         # D and S: what the manifold reflects of it.
@@ -120,10 +115,10 @@ def _put(w: Algebra, plan: Plan, diffuse: Total, specular: Total) -> None:
     if plan.components:
         for name, _, _ in parts:
             w.put(name, terms.get(name, 0.0))
-    if plan.colored:
+    if w.colored:
         colors = [w.sound(total.rgb, 0.0) * w.color(name, k) for name, total, k in parts if total]
         if cue is not None:
-            grey = w.vector([cue.cue * c for c in cue.color or WHITE])
+            grey = w.cue_color()
         w.put("rgb", whole(w.color("ambient", plan.ambient), colors, grey))
 
 
@@ -148,18 +143,6 @@ def _square(numbers: Iterable[Value]) -> Value:
     return reduce(add, (a * a for a in numbers))
 
 
-def _toward(
-    w: Algebra, position: Vector | None, direction: Vector | None, *, far: bool
-) -> tuple[Value, Value | None]:
-    """Return the unit direction from the point to a lamp or the eye, and the distance."""
-    if far or position is None:
-        assert direction is not None
-        return w.way(direction), None
-    toward, distance = w.unit(w.difference(position))
-    w.known(distance)
-    return w.work(toward), distance
-
-
 def _share(w: Algebra, name: str, lamp: Lamp) -> Value:
     share = w.read(name, lamp)
     w.need(share >= 0.0)
@@ -176,29 +159,13 @@ def _sine_power(lit: Split, p: float) -> Value:
     return lit.size if p == 1 else formulas.diffuse(lit.size, _square(lit.along), p)
 
 
-def _fur_rate(plan: Plan) -> float:
-    limits = finfo(plan.dtype)
-    return falloff.fur_rate(plan.fur, float(limits.tiny), float(limits.max))
-
-
 def _depth_scale(w: Algebra, plan: Plan) -> Value:
     """Return S between the scales of front and back: the Lecture, atmospheric attenuation."""
-    view, cue = plan.scene.view, plan.scene.depth_cue
-    assert view is not None
+    cue = plan.scene.depth_cue
     assert cue is not None
-    assert cue.front is not None
-    assert cue.back is not None
-    away = w.difference(view.position or (0.0,) * w.n, wide=True)
-    if view.direction is None:
-        depth = sqrt(w.dot(away, away))
-    else:
-        depth = w.dot(w.way(view.direction, wide=True), away)
-    w.known(depth)
-    ends = cue.front, cue.back
-    if max(map(abs, ends)) > LARGEST_DEPTH:
-        depth, ends = depth * w.wide(0.25), (cue.front / 4, cue.back / 4)
     scale = formulas.smooth_depth_scale if cue.smooth else formulas.depth_scale
-    return w.work(scale(depth, *map(w.wide, (*ends, cue.front_scale, cue.back_scale))))
+    depth, ends = w.depth()
+    return w.work(scale(depth, *ends))
 
 
 class _Shape(Protocol):
