@@ -14,12 +14,12 @@ import pytest
 from lamps import SHINY, shiny
 
 from vizlight import DepthCue, Light, Material, Scene, View, _compiled, engine
-from vizlight.shading import compiled, statements
+from vizlight.model import formulas
+from vizlight.shading import compiled, loops
 from vizlight.shading.arrays import Output
 from vizlight.shading.decide import decide
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import ShadingOptions
-from vizlight.shading.writer import write
 
 LAMP = Light(position=(0.5, 4, 2), intensity=0.7)
 SUN = Light(direction=(1, 2, 0.5))
@@ -66,7 +66,7 @@ def test_light_is_that_of_the_oracle_within_the_stated_bounds(cases, light):
 @pytest.mark.parametrize("seed", [1001, 1002])
 def test_compiled_light_is_that_of_the_oracle_within_the_stated_bounds(seed):
     pytest.importorskip("numba")
-    form = differential.frame(np.random.default_rng(seed))._replace(dimmed=False)
+    form = differential.frame(np.random.default_rng(seed))
     random = np.random.default_rng(seed)
     with _compiled.setting("1"):
         for _ in range(40):
@@ -87,40 +87,37 @@ def test_compiled_light_is_that_of_the_oracle_within_the_stated_bounds(seed):
 )
 def test_a_wrong_formula_is_found(name, old, new, cases, monkeypatch):
     """The comparison can fail: one term of one formula is broken."""
-    import ast
     import inspect
-
-    from vizlight.model import formulas
 
     text = inspect.getsource(getattr(formulas, name))
     assert old in text
-    broken = ast.parse(text.replace(old, new)).body[0]
-    functions = dict(statements.functions())
-    monkeypatch.setattr(statements, "functions", lambda: functions | {name: broken})
-    write.cache_clear()
+    scope = dict(vars(formulas))
+    exec(text.replace(old, new), scope)
+    monkeypatch.setattr(formulas, name, scope[name])
+    loops.program.cache_clear()
     try:
         assert worst_of(cases, differential.by_text) > 1
     finally:
-        write.cache_clear()
+        loops.program.cache_clear()
 
 
 @pytest.mark.parametrize(
     ("old", "new"),
     [
-        ("d = d + ", "d = d - "),
+        ("sum0 = sum0 + ", "sum0 = sum0 - "),
         ("odd = odd | (not ", "odd = odd | ("),
         ("sqrt(", "("),
     ],
 )
 def test_a_wrong_statement_of_a_loop_is_found(old, new, cases, monkeypatch):
-    right = compiled._written
+    right = compiled._program
 
-    def broken(form):
-        text = right(form)
-        head, loop = text.source.split("    for i in range", 1)
-        return text._replace(source=f"{head}    for i in range{loop.replace(old, new, 1)}")
+    def broken(plan, inputs):
+        made = right(plan, inputs)
+        head, loop = made.source.split("    for i in range", 1)
+        return made._replace(source=f"{head}    for i in range{loop.replace(old, new, 1)}")
 
-    monkeypatch.setattr(compiled, "_written", broken)
+    monkeypatch.setattr(compiled, "_program", broken)
     assert worst_of(cases, differential.by_text) > 1
 
 
@@ -316,10 +313,8 @@ def test_a_text_has_the_terms_of_its_form_and_no_others(random):
     points, _, normals = cloud(random, 4)
     inputs = compiled_inputs(points, normals)
     plain = engine.plan(Scene(lights=SUN, view=NEAR, material=SHINY), normals=True)
-    form, order = compiled._form(plain, inputs)
-    text = write(form).source
+    text = compiled._program(plain, inputs).source
     body = text[text.index("def light(") :]
-    assert order == [0]
     assert "tangents[" not in body
     assert "shadow[" not in body
     assert "rgb[" not in body

@@ -1,8 +1,9 @@
 """Compiled light: a plan's terms in one pass over the points, where numba is installed and pays.
 
-The text of a kernel is made by :mod:`vizlight.shading.writer`. Unusual points are lit by NumPy's
-:func:`~vizlight.shading.arrays.shade_block`: vectors that are not finite or whose squares are out
-of the range of their type, nearly dependent tangents, a light or an eye at the point.
+The text of a kernel is written by the terms (:mod:`vizlight.shading.loops`). Unusual points are lit
+by NumPy's :func:`~vizlight.shading.arrays.shade_block`: vectors that are not finite or whose
+squares are out of the range of their type, nearly dependent tangents, a light or an eye at the
+point.
 """
 
 from __future__ import annotations
@@ -15,22 +16,20 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from vizlight import _compiled, _pool
-from vizlight.model import cylinder_kernels, frames, kernels
-from vizlight.scene.light import NO_ATTENUATION, WHITE
+from vizlight.model import cylinder_kernels
 from vizlight.shading.arrays import SMALLEST_HELD, Output, shade_block
 from vizlight.shading.elementary import HELPERS
-from vizlight.shading.form import BITS, Form, LightForm
+from vizlight.shading.inputs import PLACED, SHARES
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
-    from vizlight._types import Array, Vector
-    from vizlight.scene import Light
+    from vizlight._types import Array
     from vizlight.shading.inputs import ArraySource, ShadingInputs
-    from vizlight.shading.plan import Highlight, Plan
-    from vizlight.shading.writer import Text
+    from vizlight.shading.loops import Program
+    from vizlight.shading.plan import Plan
 
 #: Number of points whose multiples fill all vectors of a processor, in unrolled loops too.
 LANES = 64
@@ -45,8 +44,8 @@ SAVED, SAVED_PER_LIGHT = 10e-9, 15e-9
 IN_WORDS = "compiled for these terms and types (numba), unusual points by NumPy"
 WHERE_IT_PAYS = "where the number of points pays for its start-up (see vizlight doctor)"
 
-#: Seconds that compiled code would have saved so far, by form.
-_MISSED: dict[Form, float] = {}
+#: Seconds that compiled code would have saved so far, by what most texts depend on.
+_MISSED: dict[tuple[object, ...], float] = {}
 
 
 def why_not(plan: Plan) -> str:
@@ -57,8 +56,6 @@ def why_not(plan: Plan) -> str:
         return f"{plan.k} tangents per point, more than {MOST_TANGENTS}"
     if not (plan.diffuse or plan.specular or plan.scene.depth_cue):
         return "the ambient term alone needs none"
-    if plan.dimmed or plan.occluded:
-        return "shares of light, as inside a bundle, are multiplied in by NumPy"
     least = cylinder_kernels.TABLE_FROM
     if plan.model == "cylinder" and plan.specular and plan.scene.material.shininess < least:
         return f"a cylinder's highlight of a shininess below {least:g} is no table"
@@ -66,26 +63,10 @@ def why_not(plan: Plan) -> str:
 
 
 class Compiled(NamedTuple):
-    """The kernel of a plan and the numbers that it is given.
-
-    Attributes
-    ----------
-    kernel : callable
-        Function of the arrays in :data:`vizlight.shading.writer.ARRAYS`.
-    form : Form
-        What its text depends on.
-    numbers, wide, table : ndarray
-        Numbers in the type of the work, numbers in float64, table of a cylinder's integral.
-    order : list of int
-        Lights in the order in which the kernel takes them.
-    """
+    """The kernel of a plan, and the program with the numbers that it is given."""
 
     kernel: Callable[..., None]
-    form: Form
-    numbers: Array
-    wide: Array
-    table: Array
-    order: list[int]
+    program: Program
 
     def shade_block(self, plan: Plan, rows: slice, inputs: ShadingInputs, output: Output) -> None:
         """Light the points of some rows; as :func:`vizlight.shading.arrays.shade_block`."""
@@ -93,22 +74,14 @@ class Compiled(NamedTuple):
             self._shade_points(plan, at, part, output)
 
     def _shade_points(self, plan: Plan, at: slice, part: ShadingInputs, output: Output) -> None:
-        form, kind, count = self.form, plan.dtype, part.count
-        shadow = None if part.shadow is None else np.asarray(part.shadow[:])[:, self.order]
-        whole = at.step is None
+        kind, count, whole = plan.dtype, part.count, at.step is None
         light: Array = output.luminance[at] if whole else np.empty(count, kind)
-        terms = np.empty((2, count if form.components else 0), kind)
-        color = np.empty(3 * count if form.colored else 0, kind)
-        given = [
-            _flat(part.points if form.points else None, form.points),
-            _flat(part.tangents, form.tangents),
-            _flat(part.normals, form.normals),
-            _flat(part.base_tangents, form.base_tangents),
-            _flat(shadow, form.work),
-            _flat(part.fur_height if form.fur else None, form.work),
-        ]
+        terms = np.empty((2, count if plan.components else 0), kind)
+        color = np.empty(3 * count if plan.colored else 0, kind)
+        kinds = self.program.kinds
+        read = [_flat(getattr(part, name), kinds.get(name, "")) for name in (*PLACED, *SHARES)]
         try:
-            self._run(given, [light, terms[0], terms[1], color], count)
+            self._run(read, [light, terms[0], terms[1], color], count)
         except _compiled.FailedError:
             light[...] = np.nan
         if not whole:
@@ -121,28 +94,27 @@ class Compiled(NamedTuple):
         if np.isnan(light.sum()):
             _light_again(plan, at, np.flatnonzero(np.isnan(light)), part, output)
 
-    def _run(self, given: list[Array], made: list[Array], count: int) -> None:
+    def _run(self, read: list[Array], made: list[Array], count: int) -> None:
         """Run the kernel on rows in multiples of LANES, so that all go through the same code.
 
         The compiler's code for the rest of a vector rounds otherwise, and the light of a point
         would depend on how points are cut into blocks.
         """
-        numbers = (self.numbers, self.wide, self.table)
-        whole = count - count % LANES
+        numbers, whole = self.program.given, count - count % LANES
         if whole:
             self.kernel(
-                *(a[: a.size // count * whole] for a in given),
+                *(a[: a.size // count * whole] for a in read),
                 *numbers,
                 *(a[: a.size // count * whole] for a in made),
             )
         if whole == count:
             return
-        widths = [a.size // count for a in (*given, *made)]
-        rest = [np.ones(w * LANES, a.dtype) for w, a in zip(widths, (*given, *made), strict=True)]
-        for own, a, w in zip(rest, given, widths, strict=False):
+        widths = [a.size // count for a in (*read, *made)]
+        rest = [np.ones(w * LANES, a.dtype) for w, a in zip(widths, (*read, *made), strict=True)]
+        for own, a, w in zip(rest, read, widths, strict=False):
             own[: a.size - w * whole] = a[w * whole :]
-        self.kernel(*rest[: len(given)], *numbers, *rest[len(given) :])
-        for own, a, w in zip(rest[len(given) :], made, widths[len(given) :], strict=True):
+        self.kernel(*rest[: len(read)], *numbers, *rest[len(read) :])
+        for own, a, w in zip(rest[len(read) :], made, widths[len(read) :], strict=True):
             a[w * whole :] = own[: a.size - w * whole]
 
 
@@ -166,16 +138,17 @@ def prepare(plan: Plan, inputs: ShadingInputs, threads: int | None) -> tuple[Com
     reason = _compiled.why_not() or why_not(plan) or _beyond(plan)
     if reason:
         return None, reason
-    form, order = _form(plan, inputs)
-    saved = inputs.count * (SAVED + SAVED_PER_LIGHT * len(form.lights))
+    saved = inputs.count * (SAVED + SAVED_PER_LIGHT * len(plan.scene.lights))
     saved *= plan.dtype.itemsize / 4 / _pool.workers(threads)
-    # The text itself takes milliseconds: it is not written while nothing could pay for it.
-    missed = _MISSED.get(form, 0.0)
-    _MISSED[form] = missed + saved
+    # The text itself takes a millisecond: it is not written while nothing could pay for it.
+    sort = _sort(plan)
+    missed = _MISSED.get(sort, 0.0)
+    _MISSED[sort] = missed + saved
     if _compiled.could_pay(saved, missed):
-        kernel = _kernel(form)
+        made = _program(plan, inputs)
+        kernel = _kernel(made.source)
         if kernel.pays(missed + saved - kernel.missed, counted=True):
-            return _given(plan, form, order, kernel), ""
+            return Compiled(kernel, made), ""
     return None, _compiled.why_not() or f"{inputs.count} points do not pay for its start-up"
 
 
@@ -184,11 +157,11 @@ def given(plan: Plan, inputs: ShadingInputs, *, interpreted: bool = False) -> Co
 
     With ``interpreted`` the kernel's text runs as Python, point by point: a check of the text.
     """
-    form, order = _form(plan, inputs)
+    made = _program(plan, inputs)
     if not interpreted:
-        return _given(plan, form, order, _kernel(form))
-    function: Callable[..., None] = _functions(form, np.sqrt)["light"]  # type: ignore[assignment]
-    return _given(plan, form, order, function)
+        return Compiled(_kernel(made.source), made)
+    function: Callable[..., None] = _functions(made.source, np.sqrt)["light"]  # type: ignore[assignment]
+    return Compiled(function, made)
 
 
 def _beyond(plan: Plan) -> str:
@@ -210,9 +183,9 @@ def _beyond(plan: Plan) -> str:
 
 
 @lru_cache(maxsize=256)
-def _kernel(form: Form) -> _compiled.Kernel[..., None]:
-    """Return the kernel of a form, which is not compiled before its first call."""
-    scope = _functions(form, math.sqrt)
+def _kernel(source: str) -> _compiled.Kernel[..., None]:
+    """Return the kernel of a text, which is not compiled before its first call."""
+    scope = _functions(source, math.sqrt)
     for name in HELPERS:
         scope[name] = _compiled.Kernel(
             scope[name],  # type: ignore[arg-type]
@@ -224,176 +197,34 @@ def _kernel(form: Form) -> _compiled.Kernel[..., None]:
     return _compiled.Kernel(light, rounding=_compiled.ROUNDING, apart=True)
 
 
-def _functions(form: Form, sqrt: Callable[[float], float]) -> dict[str, object]:
+def _functions(source: str, sqrt: Callable[[float], float]) -> dict[str, object]:
     """Return the functions of a kernel's text, with a square root that keeps the type."""
-    return _compiled.generated(_written(form).source, {"sqrt": sqrt}, "light")
+    return _compiled.generated(source, {"sqrt": sqrt}, "light")
 
 
-def _written(form: Form) -> Text:
-    """Return the text of a kernel; what writes it is imported where compiled code pays."""
-    from vizlight.shading.writer import write
-
-    return write(form)
-
-
-def _type(source: ArraySource | None, plan: Plan) -> str:
-    """Return the type in which a kernel reads an array: "f4" where nothing is lost by it."""
-    if source is None:
-        return ""
-    narrow = plan.dtype == np.float32 and source.dtype in (np.float16, np.float32)
-    return "f4" if narrow or source.dtype == np.float32 else "f8"
+def _sort(plan: Plan) -> tuple[object, ...]:
+    """Return what tells most texts apart, for the account of what each would have saved."""
+    models = frozenset(h.model for h in plan.highlights)
+    near = sum(light.position is not None for light in plan.scene.lights)
+    sizes = (plan.n, plan.k, plan.dtype, len(plan.scene.lights), near)
+    return (*sizes, models, plan.surface, plan.conditioned, plan.terms, plan.colored)
 
 
-def _form(plan: Plan, inputs: ShadingInputs) -> tuple[Form, list[int]]:
-    """Return the form of a plan and the order of its lights."""
-    scene, view, cue = plan.scene, plan.scene.view, plan.scene.depth_cue
-    lights = [_kind(*pair) for pair in zip(scene.lights, plan.highlights, strict=True)]
-    order = sorted(range(len(lights)), key=lambda i: lights[i])
-    seen = "" if view is None or not plan.needs_eye else "far" if view.parallel else "near"
-    form = Form(
-        work="f4" if plan.dtype == np.float32 else "f8",
-        n=plan.n,
-        k=0 if plan.surface else plan.k,
-        base=plan.base,
-        points=_type(inputs.points, plan) if plan.needs_points else "",
-        tangents=_type(inputs.tangents, plan),
-        normals=_type(inputs.normals, plan),
-        base_tangents=_type(inputs.base_tangents, plan),
-        surface=plan.surface,
-        cylinder=plan.model == "cylinder",
-        two_sided=plan.two_sided,
-        conditioned=plan.conditioned,
-        shadowed=plan.shadowed,
-        fur=plan.fur > 0 and seen != "",
-        diffuse=("plain" if plan.exponent == 1 else "power") if plan.diffuse else "",
-        based=("plain" if plan.base_exponent == 1 else "power") if plan.base else "",
-        specular=plan.specular,
-        eye=seen,
-        splits_eye=plan.splits_eye,
-        cue="" if cue is None else "smooth" if cue.smooth else "linear",
-        axis=cue is not None and view is not None and view.direction is not None,
-        tinted=plan.colored and any(light.color is not None for light in scene.lights),
-        colored=plan.colored,
-        components=plan.components,
-        lights=tuple(lights[i] for i in order),
-    )
-    return form, order
+def _program(plan: Plan, inputs: ShadingInputs) -> Program:
+    """Return the program of a plan; what writes it is imported where compiled code pays."""
+    from vizlight.shading.loops import program
 
-
-def _kind(light: Light, highlight: Highlight) -> LightForm:
-    """Return the kind of a light."""
-    near = light.position is not None
-    power = _power(highlight)
-    return LightForm(
-        near=near,
-        faded=near and light.attenuation != NO_ATTENUATION,
-        highlight=highlight.model if highlight.half is None else "half",
-        whole=highlight.model != "cylinder" and power == int(power) and power < 2**BITS,
-    )
-
-
-def _power(highlight: Highlight) -> float:
-    """Return the power that is computed: Blinn's is one of squares."""
-    return highlight.shininess / (1 if highlight.model == "phong" else 2)
-
-
-def _given(
-    plan: Plan, form: Form, order: list[int], kernel: Callable[..., None]
-) -> Compiled:  # fmt: skip
-    """Return a kernel with the numbers of a plan."""
-    values = _scene_numbers(plan)
-    table = np.zeros(1, plan.dtype)
-    for number, i in enumerate(order):
-        own = _light_numbers(plan.scene.lights[i], plan.highlights[i])
-        values.update({f"light{number}.{name}": value for name, value in own.items()})
-    if form.cylinder and plan.specular:
-        inverse, cells = cylinder_kernels.table(plan.highlights[0].shininess)
-        table = cells.astype(plan.dtype).ravel()
-        values["cells"], values["per_cell"] = cells.shape[1], inverse
-        values["end_on"] = cylinder_kernels.round_mean(plan.highlights[0].shininess)
-    text = _written(form)
-    # One number at least, so that the arrays have a type.
-    numbers = np.array([values[name] for name in text.numbers] or [0], plan.dtype)
-    wide = np.array([values[name] for name in text.wide] or [0], np.float64)
-    return Compiled(kernel, form, numbers, wide, table, order)
-
-
-def _scene_numbers(plan: Plan) -> dict[str, float]:
-    """Return the numbers of a kernel that all lights share."""
-    scene, material, view, cue = (
-        plan.scene, plan.scene.material, plan.scene.view, plan.scene.depth_cue,
-    )  # fmt: skip
-    eps, tiny, most = (float(getattr(np.finfo(plan.dtype), x)) for x in ("eps", "tiny", "max"))
-    kd, ks = material.diffuse, material.specular
-    values = {
-        "ambient": plan.ambient,
-        "kd": kd,
-        "ks": ks,
-        "exponent": plan.exponent,
-        "base_exponent": plan.base_exponent,
-        # Not 0, which times an infinite path is no number.
-        "rate": min(float(np.log1p(-plan.fur)), -tiny) if plan.fur < 1 else -most,
-        "least": cylinder_kernels.ALONG * eps,
-        # Four times what NumPy takes for dependent, so that NumPy decides what is near.
-        "rank": 4 * frames.default_rtol(plan.n, plan.dtype),
-    }
-    ambient = np.multiply(material.color or WHITE, scene.ambient_color or WHITE)
-    for c in range(3):
-        values[f"ambient{c}"] = plan.ambient * float(ambient[c])
-        values[f"kd{c}"] = kd * (material.color or WHITE)[c]
-        values[f"ks{c}"] = ks * (material.specular_color or WHITE)[c]
-    if view is not None:
-        values |= _toward("eye", view.position, view.direction, near=not view.parallel)
-        values |= _vector("origin", view.position or (0.0,) * plan.n)
-        if view.direction is not None:
-            values |= _vector("axis", _unit(view.direction))
-    if cue is not None and cue.front is not None and cue.back is not None:
-        values |= {
-            "front": cue.front,
-            "back": cue.back,
-            "front_scale": cue.front_scale,
-            "back_scale": cue.back_scale,
-            "cue": cue.cue,
-        }
-        values |= _vector("cue", [cue.cue * x for x in cue.color or WHITE])
-    return values
-
-
-def _light_numbers(light: Light, highlight: Highlight) -> dict[str, float]:
-    """Return the numbers of a kernel that belong to one light."""
-    values = {"intensity": light.intensity, "shininess": highlight.shininess}
-    values |= _vector("c", light.attenuation)
-    power = _power(highlight)
-    for bit in range(BITS):
-        taken = int(power) >> bit & 1
-        values |= {f"bit{bit}": taken, f"bit{bit}not": 1 - taken}
-    values |= _vector("color", light.color or WHITE)
-    values |= _toward("", light.position, light.direction, near=light.position is not None)
-    if highlight.half is not None:
-        values |= _vector("half", highlight.half)
-    return values
-
-
-def _toward(
-    name: str, position: Vector | None, direction: Vector | None, *, near: bool
-) -> dict[str, float]:
-    """Return a place, with the rest that float32 leaves, or a unit direction."""
-    if not near or position is None:
-        assert direction is not None
-        return _vector(name, _unit(direction))
-    high = np.array(position, np.float64)
-    with np.errstate(over="ignore"):
-        low = high - high.astype(np.float32)
-    return _vector(name, position) | _vector(f"{name}low", low.tolist())
-
-
-def _unit(direction: Vector) -> Sequence[float]:
-    column, _ = kernels.unit(np.array(direction, np.float64)[:, np.newaxis])
-    return [float(x) for x in column[:, 0]]
-
-
-def _vector(name: str, values: Sequence[float]) -> dict[str, float]:
-    return {f"{name}{c}": float(value) for c, value in enumerate(values)}
+    work = "f4" if plan.dtype == np.float32 else "f8"
+    kinds = []
+    for name in (*PLACED, *SHARES):
+        source: ArraySource | None = getattr(inputs, name)
+        needed = name != "points" or plan.needs_points
+        if source is not None and needed:
+            # In float32 where nothing is lost by it.
+            narrow = source.dtype == np.float32 or (source.dtype == np.float16 and work == "f4")
+            kinds.append((name, work if name in SHARES else "f4" if narrow else "f8"))
+    bare = dataclasses.replace(plan, compiled=False, code="")
+    return program(bare, tuple(kinds))
 
 
 def _flat(source: ArraySource | NDArray[np.generic] | None, kind: str) -> Array:
@@ -406,26 +237,13 @@ def _flat(source: ArraySource | NDArray[np.generic] | None, kind: str) -> Array:
 
 def _parts(rows: slice, inputs: ShadingInputs) -> Iterator[tuple[slice, ShadingInputs]]:
     """Yield the places of one point of each row, and their inputs as arrays."""
-    repeat, tangents = inputs.repeat, inputs.tangents
-    each = tangents is not None and tangents.shape[0] == inputs.points.shape[0]
-    normals = None if inputs.normals is None else inputs.normals[rows]
-    base = None if inputs.base_tangents is None else inputs.base_tangents[rows]
-    own = None if tangents is None or each else tangents[rows]
+    repeat, count = inputs.repeat, inputs.count
+    sources = {name: x for name in (*PLACED, *SHARES) if (x := getattr(inputs, name)) is not None}
+    shared = {name: x[rows] for name, x in sources.items() if x.shape[0] != count}
     for j in range(repeat):
         at = rows if repeat == 1 else slice(rows.start * repeat + j, rows.stop * repeat, repeat)
-        yield (
-            at,
-            dataclasses.replace(
-                inputs,
-                points=inputs.points[at],
-                tangents=tangents[at] if each and tangents is not None else own,
-                normals=normals,
-                base_tangents=base,
-                fur_height=None if inputs.fur_height is None else inputs.fur_height[at],
-                shadow=None if inputs.shadow is None else inputs.shadow[at],
-                repeat=1,
-            ),
-        )
+        own = {name: x[at] for name, x in sources.items() if name not in shared}
+        yield at, dataclasses.replace(inputs, repeat=1, **shared, **own)
 
 
 def _light_again(
@@ -436,7 +254,7 @@ def _light_again(
         part,
         **{
             name: source[:][odd]
-            for name in ("points", "tangents", "normals", "base_tangents", "fur_height", "shadow")
+            for name in (*PLACED, *SHARES)
             if (source := getattr(part, name)) is not None
         },
     )

@@ -18,6 +18,11 @@ if TYPE_CHECKING:
     from vizlight._types import Array, Indices, Vector
 
 
+#: Names of the arrays: vectors of the space, and numbers.
+PLACED = ("points", "tangents", "normals", "base_tangents")
+SHARES = ("fur_height", "shadow", "transmittance", "occlusion")
+
+
 class ArraySource(Protocol):
     """Anything that gives rows by slice: an array, or points that are made on demand."""
 

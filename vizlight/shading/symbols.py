@@ -52,8 +52,26 @@ class Symbol:
         return self.writer.power(self, deficit, exponent)
 
 
-def _operator(sign: str, *, turned: bool = False) -> Callable[[Symbol, Value], Value]:
-    def apply(self: Symbol, other: Value) -> Value:
+class Components(tuple[Symbol, ...]):
+    """A vector as the symbols of its components."""
+
+    __slots__ = ()
+
+    def each(self, sign: str, other: Value, *, turned: bool) -> Components:
+        """Return an operation component by component, with a number or another vector."""
+        others = other if isinstance(other, Components) else [other] * len(self)
+        pairs = zip(self, others, strict=True)
+        return Components(
+            a.writer.operation(sign, *((b, a) if turned else (a, b))) for a, b in pairs
+        )
+
+
+def _operator(sign: str, *, turned: bool = False) -> Callable[[Symbol | Components, Value], Value]:
+    def apply(self: Symbol | Components, other: Value) -> Value:
+        if isinstance(self, Components):
+            return self.each(sign, other, turned=turned)
+        if isinstance(other, Components):
+            return NotImplemented
         pair = (other, self) if turned else (self, other)
         return self.writer.operation(sign, *pair)
 
@@ -62,8 +80,9 @@ def _operator(sign: str, *, turned: bool = False) -> Callable[[Symbol, Value], V
 
 for _name, _shorter in (("add", "add"), ("sub", "subtract"), ("mul", "multiply"),
                         ("truediv", "divide")):  # fmt: skip
-    setattr(Symbol, f"__{_name}__", _operator(_SIGNS[_shorter]))
-    setattr(Symbol, f"__r{_name}__", _operator(_SIGNS[_shorter], turned=True))
+    for _kind in (Symbol, Components):
+        setattr(_kind, f"__{_name}__", _operator(_SIGNS[_shorter]))
+        setattr(_kind, f"__r{_name}__", _operator(_SIGNS[_shorter], turned=True))
 for _name in ("gt", "ge", "lt", "le"):
     setattr(Symbol, f"__{_name}__", _operator(_SIGNS[_name]))
 

@@ -1,0 +1,365 @@
+"""The algebra of a compiled loop: the terms of a plan as straight-line code of one point.
+
+The text depends on the structure of a plan alone; its numbers are two lists, ``g`` in the type of
+the work and ``h`` in float64. Arrays are flat, constants have the type of the work, sums keep their
+order. Points out of the common range (a vector that is not finite or whose square has no digits,
+nearly dependent tangents, a lamp or the eye at the point) are marked: NumPy lights them.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from vizlight.model import cylinder_kernels, frames
+from vizlight.scene.light import NO_ATTENUATION
+from vizlight.shading.elementary import prelude
+from vizlight.shading.inputs import PLACED, SHARES
+from vizlight.shading.symbols import Components, Symbol, Writer
+from vizlight.shading.terms import light
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from numpy.typing import NDArray
+
+    from vizlight._types import Array, Vector
+    from vizlight.shading.algebra import Lamp, Value
+    from vizlight.shading.plan import Plan
+
+#: Up to this many lamps of a kind are written out; more are a loop.
+UNROLLED = 4
+#: Whole powers below 2^BITS are products, by the same text for all of them.
+BITS = 6
+RESULTS = ("luminance", "diffuse", "specular", "rgb")
+#: Parameters of a kernel.
+PARAMETERS = (*PLACED, *SHARES, "g", "h", "columns", "table", *RESULTS)
+_CALLS = {
+    "maximum": "{0} if {0} > {1} else {1}", "minimum": "{0} if {0} < {1} else {1}",
+    "absolute": "abs({0})", "sqrt": "sqrt({0})", "exp": "exp_({0})",
+    "arctan2": "arctan2_({0}, {1})",
+}  # fmt: skip
+
+
+class Program(NamedTuple):
+    """The text of a loop, and the numbers that it is given.
+
+    Attributes
+    ----------
+    source : str
+        Text of a function ``light`` of the arrays in ``PARAMETERS``; it needs the name ``sqrt``.
+        The luminance of points that NumPy must light is NaN: a count would halve the number of
+        points in a vector.
+    kinds : dict
+        Types in which the loop reads its inputs, by name.
+    given : tuple of ndarray
+        Numbers, wide numbers, columns of lamps, table of a cylinder's integral.
+    """
+
+    source: str
+    kinds: dict[str, str]
+    given: tuple[Array, Array, NDArray[np.int64], Array]
+
+
+@lru_cache(maxsize=64)
+def program(plan: Plan, kinds: tuple[tuple[str, str], ...]) -> Program:
+    """Return the program of a plan.
+
+    Parameters
+    ----------
+    plan : Plan
+    kinds : tuple of (str, str)
+        Inputs by name, and the types in which they are read: "f4" or "f8".
+
+    Returns
+    -------
+    Program
+    """
+    w = Loop(plan, dict(kinds))
+    light(w, plan)
+    return w.program()
+
+
+class _Length(Symbol):
+    """The length of a vector, which is above 0 where the point is not marked."""
+
+    def __gt__(self, other: Value) -> Value:
+        return True if isinstance(other, float) else self.writer.operation(">", self, other)
+
+
+class Loop(Writer):
+    """Writes the light of one point; kinds are "f4", "f8" and "bool"."""
+
+    def __init__(self, plan: Plan, kinds: dict[str, str]) -> None:
+        super().__init__(plan, None)
+        self.type, self.kinds = "f4" if plan.dtype == np.float32 else "f8", kinds
+        self.constants: dict[tuple[float, str], str] = {}
+        self.numbers: dict[str, list[float]] = {"g": [], "h": []}
+        #: Numbers of the lamp that is being written.
+        self.lamp: dict[str, list[float]] | None = None
+        #: Squared lengths by their type, since they were last checked.
+        self.squares: dict[str, list[str]] = {}
+        self.sums: list[str] = []
+        self.puts: list[str] = []
+        self.columns: list[int] = []
+        self.table: Array = np.zeros(1, plan.dtype)
+
+    # Statements.
+
+    def statement(self, name: str, text: str, kind: str) -> str:
+        """Return an assignment."""
+        del kind
+        return f"{name} = {text}"
+
+    def kind(self, *args: Value) -> str:
+        """Return the wider type of some numbers."""
+        return "f8" if any(getattr(a, "kind", "") == "f8" for a in args) else self.type
+
+    def literal(self, value: float, kind: str) -> str:
+        """Return the name of a typed constant."""
+        return self.constants.setdefault((value, kind), f"C{len(self.constants)}")
+
+    def call(self, name: str, *args: Value) -> Value:
+        """Return a function of numbers."""
+        kind = self.kind(*args)
+        return self.named(_CALLS[name].format(*(self.text(a, kind) for a in args)), kind)
+
+    def select(self, test: Symbol, yes: Value, no: Value) -> Value:
+        """Return one of two numbers."""
+        kind = self.kind(yes, no)
+        pair = [self.text(x, kind) for x in (yes, no)]
+        return self.named(f"{pair[0]} if {test.text} else {pair[1]}", kind)
+
+    def power(self, x: Value, deficit: Value, exponent: float) -> Value:
+        """Return a power; a whole one takes a factor in, or 1, for each of its bits."""
+        if exponent == int(exponent) and exponent < 2**BITS:
+            value: Value = None
+            for bit in range(BITS):
+                x = x * x if bit else x
+                taken = int(exponent) >> bit & 1
+                factor = self.number(taken) * x + self.number(1 - taken)
+                value = value * factor if bit else factor
+            return value
+        zero, e = self.literal(0.0, self.type), self.number(exponent)
+        rest = 1.0 - x if deficit is None else deficit
+        least = self.named(f"{zero} if {e.text} > {zero} else {self.literal(1.0, x.kind)}", x.kind)
+        raised = self.named(f"exp_({e.text} * log_({x.text}, {rest.text}))", x.kind)
+        return self.select(x > 0.0, raised, least)
+
+    # Inputs and numbers.
+
+    def has(self, name: str) -> bool:
+        """Return whether an input is there."""
+        return name in self.kinds
+
+    def _row(self, name: str, start: int, count: int, width: int) -> Components:
+        kind = self.kinds[name]
+        texts = [f"{name}[{width} * i + {start + c}]" for c in range(count)]
+        texts = [f"F({text})" for text in texts] if self.type == "f8" else texts
+        return Components(self.named(text, max(kind, self.type)) for text in texts)
+
+    def read(self, name: str, lamp: Lamp | None = None) -> Value:
+        """Return an input at the point."""
+        if name in PLACED:
+            return self._row(name, 0, self.n, self.n)
+        text = f"{name}[i]"
+        if lamp is not None:
+            text = f"{name}[{len(self.plan.scene.lights)} * i + LAMP]"
+        return self.named(text, self.type)
+
+    def vectors(self, name: str, k: int) -> Sequence[Value]:
+        """Return the k vectors of an input at the point."""
+        return [self._row(name, j * self.n, self.n, k * self.n) for j in range(k)]
+
+    def number(self, value: Value, array: str = "g") -> Value:
+        """Return a number of the plan; those of a lamp count from its own first one."""
+        if isinstance(value, Symbol):
+            return value
+        own = self.numbers if self.lamp is None else self.lamp
+        own[array].append(float(value))
+        text = f"{array}{'' if self.lamp is None else '_'}{len(own[array]) - 1}"
+        return Symbol(self, text, "f8" if array == "h" else self.type)
+
+    def wide(self, value: Value) -> Value:
+        """Return a number of the plan in float64."""
+        return self.number(value, "h")
+
+    def vector(self, values: Sequence[float], *, wide: bool = False) -> Value:
+        """Return a vector of the plan."""
+        return Components(self.number(x, "h" if wide else "g") for x in values)
+
+    def difference(self, position: Vector, *, wide: bool = False) -> Value:
+        """Return a position less the point; as two float32 numbers where both are float32."""
+        points = self.read("points")
+        if wide or points[0].kind == "f8":
+            return self.vector(position, wide=True) - points
+        low = np.subtract(position, np.asarray(position, np.float32), dtype=np.float64)
+        return (self.vector(position) - points) + self.vector(low.tolist())
+
+    def toward(
+        self, position: Vector | None, direction: Vector | None, *, far: bool
+    ) -> tuple[Value, Value | None]:
+        """Return a unit direction and the distance, in the type of the work."""
+        way, distance = super().toward(position, direction, far=far)
+        return way, None if distance is None else self.work(distance)
+
+    def work(self, x: Value) -> Value:
+        """Return numbers in the type of the work."""
+        if isinstance(x, Components):
+            return Components(map(self.work, x))
+        return x if x.kind == self.type else self.named(f"F({x.text})", self.type)
+
+    # Vectors.
+
+    def dot(self, a: Value, b: Value) -> Value:
+        """Return a dot product."""
+        text = " + ".join(f"{x.text} * {y.text}" for x, y in zip(a, b, strict=True))
+        return self.named(text, self.kind(*a, *b))
+
+    def unit(self, v: Value) -> tuple[Value, Value]:
+        """Return a unit vector and its length, and note the square."""
+        square = self.dot(v, v)
+        self.squares.setdefault(square.kind, []).append(square.text)
+        one = self.literal(1.0, square.kind)
+        inverse = self.named(f"{one} / sqrt({square.text})", square.kind)
+        return v * inverse, _Length(self, (square * inverse).text, square.kind)
+
+    def apart(self, v: Value) -> Value:
+        """Return four times what NumPy takes for dependent, so that NumPy decides what is near."""
+        del v
+        return self.number(4 * frames.default_rtol(self.n, self.plan.dtype))
+
+    def integral(self, z: Value, shininess: float) -> Value:
+        """Return G(z) of a cylinder by its table."""
+        inverse, cells = cylinder_kernels.table(shininess)
+        self.table = cells.astype(self.plan.dtype).ravel()
+        given = f"{self.number(cells.shape[1]).text}, {self.number(inverse).text}"
+        return self.named(f"integral_({z.text}, table, {given})", self.type)
+
+    # Points that NumPy lights.
+
+    def need(self, test: Value) -> None:
+        """Mark the point where a test does not hold."""
+        if test is not True:
+            self.lines.append(f"odd = odd | (not {test.text})")
+
+    def known(self, x: Value) -> None:
+        """Mark the point where a number is not finite; lengths are checked by their squares."""
+        if not isinstance(x, _Length):
+            self.lines.append(f"odd = odd | (not abs({x.text}) < MOST_{x.kind})")
+
+    def check(self) -> None:
+        """Mark the point if a square is out of range: the least too small or the sum too large."""
+        for kind, squares in self.squares.items():
+            least = squares[0]
+            for square in squares[1:]:
+                least = self.named(f"{least} if {least} < {square} else {square}", kind).text
+            limit = kind if kind == self.type else f"{kind}_of_{self.type}"
+            good = f"({least} > LEAST_{limit}) & ({' + '.join(squares)} < MOST_{limit})"
+            self.lines.append(f"odd = odd | (not ({good}))")
+        self.squares = {}
+
+    def present(self, x: Value, distance: Value | None) -> Value:
+        """Return x: a point at a lamp or at the eye is marked."""
+        del distance
+        return x
+
+    def sound(self, x: Value, other: float) -> Value:
+        """Return x."""
+        del other
+        return x
+
+    # Lamps and results.
+
+    def lamps(self) -> Iterator[Lamp]:
+        """Yield the lamps; those of a kind leave the same text, and many of them become a loop."""
+        self.check()
+        lines, names, count, most = self.lines, self.names, self.count, self.count
+        kinds: dict[tuple[str, ...], list[tuple[int, dict[str, list[float]]]]] = {}
+        for lamp in super().lamps():
+            self.lines, self.names, self.count = [], dict(names), count
+            self.lamp = {"g": [], "h": []}
+            if lamp.attenuation != NO_ATTENUATION:
+                lamp.attenuation = tuple(map(self.number, lamp.attenuation))
+            yield lamp
+            self.check()
+            kinds.setdefault(tuple(self.lines), []).append((lamp.number, self.lamp))
+            most = max(most, self.count)
+        self.lines, self.names, self.count, self.lamp = lines, names, most, None
+        for text, found in kinds.items():
+            self._place("\n".join(text), found)
+
+    def _place(self, text: str, lamps: list[tuple[int, dict[str, list[float]]]]) -> None:
+        """Write the lamps of a kind, with the places of their numbers."""
+        start = {array: len(own) for array, own in self.numbers.items()}
+        width = {array: len(own) for array, own in lamps[0][1].items()}
+        for _, own in lamps:
+            for array, values in own.items():
+                self.numbers[array] += values
+        if len(lamps) > UNROLLED:
+            column = f"columns[{len(self.columns)} + m]"
+            self.columns += [number for number, _ in lamps]
+            text = re.sub(
+                r"\b([gh])_(\d+)\b",
+                lambda m: f"{m[1]}[{start[m[1]] + int(m[2])} + {width[m[1]]} * m]",
+                text.replace("LAMP", column),
+            )
+            self.lines.append(f"for m in range({len(lamps)}):")
+            self.lines += [f"    {line}" for line in text.split("\n")]
+            return
+        for j, (number, _) in enumerate(lamps):
+            own_text = re.sub(
+                r"\b([gh])_(\d+)\b",
+                lambda m, j=j: f"{m[1]}{start[m[1]] + j * width[m[1]] + int(m[2])}",  # type: ignore[misc]
+                text.replace("LAMP", str(number)),
+            )
+            self.lines += own_text.split("\n")
+
+    def added(self, total: Value | None, value: Value) -> Value:
+        """Add to a sum, which is 0 before the lamps."""
+        if isinstance(value, Components):
+            totals = total or [None] * len(value)
+            return Components(self.added(a, b) for a, b in zip(totals, value, strict=True))
+        if total is None:
+            total = Symbol(self, f"sum{len(self.sums)}", self.type)
+            self.sums.append(f"{total.text} = {self.literal(0.0, self.type)}")
+        self.lines.append(f"{total.text} = {total.text} + {value.text}")
+        return total
+
+    def put(self, name: str, value: Value) -> None:
+        """Write a result."""
+        values = value if isinstance(value, Components) else [value]
+        for c, x in enumerate(values):
+            place = f"{name}[{len(values)} * i + {c}]" if len(values) > 1 else f"{name}[i]"
+            text = self.text(x, self.type)
+            self.puts.append(f"{place} = LOST if odd else {text}" if name == "luminance" else
+                             f"{place} = {text}")  # fmt: skip
+
+    def program(self) -> Program:
+        """Return what was written."""
+        self.check()
+        body = [*self.sums, *self.lines, *self.puts]
+        used = sorted(set(re.findall(r"\b[gh]\d+\b", "\n".join(body))))
+        types = {"f4": "np.float32", "f8": "np.float64"}
+        text = [
+            *(f"{name} = {types[k]}({x!r})" for (x, k), name in self.constants.items()),
+            "",
+            f"def light({', '.join(PARAMETERS)}):",
+            *(f"    {name} = {name[0]}[{name[1:]}]" for name in used),
+            "    for i in range(luminance.shape[0]):",
+            "        odd = False",
+            *(f"        {line}" for line in body),
+            "",
+        ]
+        kind = self.plan.dtype
+        # One number at least, so that the arrays have a type.
+        given = (
+            np.array(self.numbers["g"] or [0], kind),
+            np.array(self.numbers["h"] or [0], np.float64),
+            np.array(self.columns or [0], np.int64),
+            self.table,
+        )
+        return Program(prelude(self.type) + "\n".join(text), self.kinds, given)
