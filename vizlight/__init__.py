@@ -16,80 +16,106 @@ if TYPE_CHECKING:
     from vizlight import pieces as pieces
     from vizlight import presets as presets
     from vizlight import vtk as vtk
-    from vizlight.data import example_path, load_example
-    from vizlight.files import read
-    from vizlight.filters.bas_relief import bas_relief
-    from vizlight.filters.fur import fur
-    from vizlight.filters.illuminate import illuminate
-    from vizlight.filters.isoluminance import isoluminance
-    from vizlight.filters.manifold import manifold
-    from vizlight.filters.pathlines import pathlines
-    from vizlight.filters.project import project
-    from vizlight.filters.refine import refine
-    from vizlight.filters.relief_day import relief_day
-    from vizlight.filters.relief_shadow import relief_shadow
-    from vizlight.filters.satin import satin
-    from vizlight.filters.solids import to_polydata
-    from vizlight.filters.streamlines import streamlines
-    from vizlight.filters.tint import tint
+    from vizlight.data import example_path as example_path
+    from vizlight.data import load_example as load_example
+    from vizlight.files import read as read
+    from vizlight.filters.bas_relief import bas_relief as bas_relief
+    from vizlight.filters.fur import fur as fur
+    from vizlight.filters.illuminate import illuminate as illuminate
+    from vizlight.filters.isoluminance import isoluminance as isoluminance
+    from vizlight.filters.manifold import manifold as manifold
+    from vizlight.filters.pathlines import pathlines as pathlines
+    from vizlight.filters.project import project as project
+    from vizlight.filters.refine import refine as refine
+    from vizlight.filters.relief_day import relief_day as relief_day
+    from vizlight.filters.relief_shadow import relief_shadow as relief_shadow
+    from vizlight.filters.satin import satin as satin
+    from vizlight.filters.solids import to_polydata as to_polydata
+    from vizlight.filters.streamlines import streamlines as streamlines
+    from vizlight.filters.tint import tint as tint
     from vizlight.filters.tint import unlit_colors as unlit_colors
-    from vizlight.geometry.solids.polyhedra import HalfSpace, Polyhedron, Prism
-    from vizlight.geometry.solids.primitives import Block, Frustum, Sphere, Torus
-    from vizlight.mesh.polylines import direction_colors
-    from vizlight.mesh.records import provenance
-    from vizlight.observers.legibility import legibility
-    from vizlight.observers.record import Legibility
+    from vizlight.geometry.solids.polyhedra import (
+        HalfSpace as HalfSpace,
+    )
+    from vizlight.geometry.solids.polyhedra import (
+        Polyhedron as Polyhedron,
+    )
+    from vizlight.geometry.solids.polyhedra import (
+        Prism as Prism,
+    )
+    from vizlight.geometry.solids.primitives import (
+        Block as Block,
+    )
+    from vizlight.geometry.solids.primitives import (
+        Frustum as Frustum,
+    )
+    from vizlight.geometry.solids.primitives import (
+        Sphere as Sphere,
+    )
+    from vizlight.geometry.solids.primitives import (
+        Torus as Torus,
+    )
+    from vizlight.mesh.polylines import direction_colors as direction_colors
+    from vizlight.mesh.records import provenance as provenance
+    from vizlight.observers.legibility import legibility as legibility
+    from vizlight.observers.record import Legibility as Legibility
     from vizlight.pictures import movie as movie
     from vizlight.pictures import render as render
     from vizlight.pictures import testing as testing
     from vizlight.plotting import paraview as paraview
-    from vizlight.plotting.gltf import save_gltf
-    from vizlight.plotting.html import live_html
-    from vizlight.scene import DepthCue, Light, Material, Scene, View
+    from vizlight.plotting.gltf import save_gltf as save_gltf
+    from vizlight.plotting.html import live_html as live_html
+    from vizlight.scene import (
+        DepthCue as DepthCue,
+    )
+    from vizlight.scene import (
+        Light as Light,
+    )
+    from vizlight.scene import (
+        Material as Material,
+    )
+    from vizlight.scene import (
+        Scene as Scene,
+    )
+    from vizlight.scene import (
+        View as View,
+    )
     from vizlight.shading import engine as engine
-    from vizlight.shading.options import Bundle
-    from vizlight.verify.report import report
+    from vizlight.shading.options import Bundle as Bundle
+    from vizlight.verify.report import report as report
 
-_HOMES = {
-    "Block": "vizlight.geometry.solids.primitives",
-    "Bundle": "vizlight.shading.options",
-    "DepthCue": "vizlight.scene",
-    "Frustum": "vizlight.geometry.solids.primitives",
-    "HalfSpace": "vizlight.geometry.solids.polyhedra",
-    "Legibility": "vizlight.observers.record",
-    "Light": "vizlight.scene",
-    "Material": "vizlight.scene",
-    "Polyhedron": "vizlight.geometry.solids.polyhedra",
-    "Prism": "vizlight.geometry.solids.polyhedra",
-    "Scene": "vizlight.scene",
-    "Sphere": "vizlight.geometry.solids.primitives",
-    "Torus": "vizlight.geometry.solids.primitives",
-    "View": "vizlight.scene",
-    "bas_relief": "vizlight.filters.bas_relief",
-    "direction_colors": "vizlight.mesh.polylines",
-    "example_path": "vizlight.data",
-    "fur": "vizlight.filters.fur",
-    "illuminate": "vizlight.filters.illuminate",
-    "isoluminance": "vizlight.filters.isoluminance",
-    "legibility": "vizlight.observers.legibility",
-    "live_html": "vizlight.plotting.html",
-    "load_example": "vizlight.data",
-    "manifold": "vizlight.filters.manifold",
-    "pathlines": "vizlight.filters.pathlines",
-    "project": "vizlight.filters.project",
-    "provenance": "vizlight.mesh.records",
-    "read": "vizlight.files",
-    "refine": "vizlight.filters.refine",
-    "relief_day": "vizlight.filters.relief_day",
-    "relief_shadow": "vizlight.filters.relief_shadow",
-    "report": "vizlight.verify.report",
-    "satin": "vizlight.filters.satin",
-    "save_gltf": "vizlight.plotting.gltf",
-    "streamlines": "vizlight.filters.streamlines",
-    "tint": "vizlight.filters.tint",
-    "unlit_colors": "vizlight.filters.tint",
-    "to_polydata": "vizlight.filters.solids",
+
+#: Public names by their modules.
+_NAMES = {
+    "data": "example_path load_example",
+    "files": "read",
+    "filters.bas_relief": "bas_relief",
+    "filters.fur": "fur",
+    "filters.illuminate": "illuminate",
+    "filters.isoluminance": "isoluminance",
+    "filters.manifold": "manifold",
+    "filters.pathlines": "pathlines",
+    "filters.project": "project",
+    "filters.refine": "refine",
+    "filters.relief_day": "relief_day",
+    "filters.relief_shadow": "relief_shadow",
+    "filters.satin": "satin",
+    "filters.solids": "to_polydata",
+    "filters.streamlines": "streamlines",
+    "filters.tint": "tint unlit_colors",
+    "geometry.solids.polyhedra": "HalfSpace Polyhedron Prism",
+    "geometry.solids.primitives": "Block Frustum Sphere Torus",
+    "mesh.polylines": "direction_colors",
+    "mesh.records": "provenance",
+    "observers.legibility": "legibility",
+    "observers.record": "Legibility",
+    "plotting.gltf": "save_gltf",
+    "plotting.html": "live_html",
+    "scene": "DepthCue Light Material Scene View",
+    "shading.options": "Bundle",
+    "verify.report": "report",
 }
+_HOMES = {name: module for module, names in _NAMES.items() for name in names.split()}
 #: Places of the modules that are attributes of the package.
 _MODULES = {
     "accessor": "accessor",
@@ -108,57 +134,21 @@ _MODULES = {
     "vtk": "vtk",
 }
 
-__all__ = [
-    "Block",
-    "Bundle",
-    "DepthCue",
-    "Frustum",
-    "HalfSpace",
-    "Legibility",
-    "Light",
-    "Material",
-    "Polyhedron",
-    "Prism",
-    "Scene",
-    "Sphere",
-    "Torus",
-    "View",
-    "bas_relief",
-    "direction_colors",
-    "example_path",
-    "fur",
-    "illuminate",
-    "isoluminance",
-    "legibility",
-    "live_html",
-    "load_example",
-    "manifold",
-    "pathlines",
-    "project",
-    "provenance",
-    "read",
-    "refine",
-    "relief_day",
-    "relief_shadow",
-    "report",
-    "satin",
-    "save_gltf",
-    "streamlines",
-    "tint",
-    "to_polydata",
-]
+__all__ = sorted(_HOMES.keys() - {"unlit_colors"})  # noqa: PLE0605
 
 
-def __getattr__(name: str) -> object:
-    """Load a public name on first use."""
-    if name in _HOMES:
-        value = getattr(importlib.import_module(_HOMES[name]), name)
-        globals()[name] = value
-        return value
-    if name in _MODULES:
-        return importlib.import_module(f"vizlight.{_MODULES[name]}")
-    raise AttributeError(f"module 'vizlight' has no attribute {name!r}")
+if not TYPE_CHECKING:  # a name that is not there is an error to a type checker
+
+    def __getattr__(name: str) -> object:
+        """Load a public name on first use."""
+        if name in _HOMES:
+            value = getattr(importlib.import_module(f"vizlight.{_HOMES[name]}"), name)
+            globals()[name] = value
+            return value
+        if name in _MODULES:
+            return importlib.import_module(f"vizlight.{_MODULES[name]}")
+        raise AttributeError(f"module 'vizlight' has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
-    return sorted([*__all__, *_MODULES, "__all__", "__version__"])
+    return sorted([*__all__, *_MODULES, "__version__"])

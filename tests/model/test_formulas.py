@@ -1,9 +1,7 @@
-"""The scalar formulas: straight lines that other languages can be made from, and the oracle's."""
+"""The scalar formulas are the oracle's."""
 
 from __future__ import annotations
 
-import ast
-import inspect
 import math
 
 import bounds
@@ -16,48 +14,6 @@ from vizlight.model import cylinder_kernels, formulas, kernels
 from vizlight.verify.oracle import FLOATS
 
 EPS = float(np.finfo(float).eps)
-BODIES = {
-    node.name: node
-    for node in ast.parse(inspect.getsource(formulas)).body
-    if isinstance(node, ast.FunctionDef)
-}
-ALLOWED = (
-    ast.Add, ast.Sub, ast.Mult, ast.Div, ast.USub, ast.BinOp, ast.UnaryOp, ast.Name, ast.Load,
-    ast.Store, ast.Constant, ast.Assign, ast.Return,
-)  # fmt: skip
-
-
-@pytest.mark.parametrize("name", [name for name in BODIES if name not in formulas.PRIMITIVES])
-def test_a_body_is_a_straight_line_of_arithmetic(name):
-    body = BODIES[name].body
-    assert isinstance(body[0], ast.Expr)
-    assert isinstance(body[-1], ast.Return)
-    known = {argument.arg for argument in BODIES[name].args.args}
-    for statement in body[1:]:
-        for node in ast.walk(statement):
-            if isinstance(node, ast.Call):
-                assert node.func.id in {*BODIES, *formulas.PRIMITIVES}
-                if node.func.id in ("where", "only"):
-                    assert isinstance(node.args[0], ast.Compare)
-            elif isinstance(node, ast.Compare):
-                assert len(node.ops) == 1
-                assert isinstance(node.ops[0], ast.Gt | ast.Lt)
-            elif not isinstance(node, ast.Gt | ast.Lt):
-                assert isinstance(node, ALLOWED), ast.dump(node)
-            if isinstance(node, ast.Constant):
-                assert isinstance(node.value, float)
-            if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
-                # Assigned once: a language without reassignment can hold it too.
-                assert node.id not in known
-                known.add(node.id)
-
-
-def test_a_function_calls_only_those_before_it():
-    order = list(BODIES)
-    for name, node in BODIES.items():
-        for inner in () if name in formulas.PRIMITIVES else ast.walk(node):
-            if isinstance(inner, ast.Call) and inner.func.id in BODIES:
-                assert order.index(inner.func.id) < order.index(name)
 
 
 def unit(random, count):

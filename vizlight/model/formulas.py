@@ -1,11 +1,10 @@
-"""The formulas of light as straight lines of arithmetic on numbers or arrays.
+"""The formulas of light as straight lines of arithmetic on numbers, arrays or symbols.
 
 The public functions of this package validate and call them on arrays; the engine's terms
-(:mod:`vizlight.shading.terms`) call them on blocks of arrays, and compiled code and GLSL are
-written from their syntax trees. The bodies hold nothing but arithmetic, comparisons as the first
-argument of ``where`` and ``only``, calls of each other, and calls of the names in ``PRIMITIVES``.
-What is vector algebra, that is dot products, unit vectors and the part of a vector across a frame,
-is left to the caller.
+(:mod:`vizlight.shading.terms`) call them on blocks of arrays, and on symbols that write compiled
+code and GLSL. The bodies hold nothing but arithmetic, comparisons as the first argument of
+``where`` and ``only``, NumPy's functions, and calls of each other. What is vector algebra, that is
+dot products, unit vectors and the part of a vector across a frame, is left to the caller.
 
 Lengths and their squares come from residuals: ``sine`` is the length of wi less its tangential
 part, never ``sqrt(1 - along^2)``. Equations and error bounds stand at the public functions.
@@ -27,8 +26,6 @@ if TYPE_CHECKING:
 
     Number: TypeAlias = float | Array
 
-#: Names that each language gives.
-PRIMITIVES = ("absolute", "arctan2", "exp", "maximum", "minimum", "only", "power", "where")
 #: Shares of red, green and blue in the luma of a colour (Rec. ITU-R BT.709).
 LUMA = (0.2126, 0.7152, 0.0722)
 
@@ -206,13 +203,6 @@ def cylinder_specular(
     """
     mean = only(normal > 0.0, clamp(0.5 * (cos_b * integrals + ends), 0.0, 1.0))
     return only(a > least, value * where(b > least, mean, end_on))
-
-
-def luminance(
-    ambient: Number, kd: Number, diffuse_light: Number, ks: Number, specular_light: Number
-) -> Number:
-    """Return the ambient term and the two others, each summed over the lights."""
-    return ambient + (kd * diffuse_light + ks * specular_light)
 
 
 def color_factor(light: Number, least: Number) -> Number:
