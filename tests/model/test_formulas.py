@@ -109,7 +109,6 @@ def test_highlights_of_a_surface():
     np.testing.assert_array_equal(formulas.lit_highlight(0.7, cosine), [0, 0, 0.7, 0.7, 0.7])
     side = formulas.one_side(cosine)
     close(formulas.shadowed_highlight(0.7, 0.25, side), [0, 0, 0.7, 0.7, 0.35])
-    assert formulas.luminance(0.1, 0.5, 1.0, 0.4, 0.5) == pytest.approx(0.8)
 
 
 def test_plain_numbers():
