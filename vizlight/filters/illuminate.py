@@ -249,7 +249,11 @@ def light_mesh(
     groups.clear()
     out, lit = mesh, taken
     if not (inplace or options.refine):
-        lit = [own.copy() for own in taken]
+        # Split meshes are new.
+        lit = [
+            own.copy() if own is block else own
+            for own, (block, _) in zip(taken, named, strict=True)
+        ]
     elif not options.refine:
         lit = [block for block, _ in named]
         for block, own in zip(lit, taken, strict=True):

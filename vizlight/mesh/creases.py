@@ -8,7 +8,6 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
 
-from vizlight import _pool
 from vizlight.reading.cells import around, as_numpy, as_vtk, connectivity, part_size
 
 if TYPE_CHECKING:
@@ -49,11 +48,8 @@ def split(
     size = part_size(count) if size is None else size
     new, added = ids.copy(), [np.arange(count)]
     total = count
-    for block in _pool.blocks(count, size):
-        part = around(points, ids, ends, block)
-        if part is None:
-            continue
-        used, at = part.used, np.flatnonzero(part.corner)
+    for block, part in around(points, ids, ends, size):
+        used, at = part.used, part.corners
         found, origin = _by_vtk(part.surface, angle)
         was = used[origin[found]]
         if not np.array_equal(was, ids[at]):

@@ -161,7 +161,10 @@ def split_or_normals(
 
 
 def _split(mesh: pv.PolyData, angle: float) -> pv.PolyData:
-    """Return a surface with points split where faces meet at more than an angle in degrees."""
+    """Return a surface with points split where faces meet at more than an angle in degrees.
+
+    One that is split shares no memory with the mesh.
+    """
     ids, ends = connectivity(faces_only(mesh).GetPolys())
     strips = pv.PolyData()
     strips.SetPoints(mesh.GetPoints())
@@ -177,14 +180,16 @@ def _split(mesh: pv.PolyData, angle: float) -> pv.PolyData:
     found = pv.PolyData()
     found.SetPoints(pv.vtk_points(places(mesh)[origin]))
     # Points that were split stand behind the mesh's own.
-    found.SetVerts(mesh.GetVerts())
-    found.SetLines(mesh.GetLines())
+    for put, cells in ((found.SetVerts, mesh.GetVerts()), (found.SetLines, mesh.GetLines())):
+        own = pv.CellArray()
+        own.DeepCopy(cells)
+        put(own)
     found.SetPolys(creases.cell_array(split, ends))
     for key, array in mesh.point_data.items():
         point_arrays.attach_rows(found, key, np.asarray(array)[origin])
     _carry_cells(mesh, found)
     point_arrays.carry_active(mesh, found)
-    found.GetFieldData().ShallowCopy(mesh.GetFieldData())
+    found.GetFieldData().DeepCopy(mesh.GetFieldData())
     records.carry(mesh, found)
     return found
 
@@ -226,7 +231,7 @@ def _carry_cells(mesh: pv.PolyData, split: pv.PolyData) -> None:
     rows = np.repeat(np.arange(mesh.n_cells - len(size), mesh.n_cells), np.maximum(size - 2, 0))
     rows = np.concatenate([np.arange(mesh.n_cells - len(size)), rows])
     for key, array in mesh.cell_data.items():
-        split.cell_data[key] = np.asarray(array)[rows] if len(size) else array
+        split.cell_data[key] = np.asarray(array)[rows] if len(size) else np.array(array)
 
 
 def fingerprint(mesh: pv.DataSet) -> str | None:

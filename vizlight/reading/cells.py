@@ -169,39 +169,55 @@ class Around(NamedTuple):
         Those faces and their points, in the order of the surface.
     used : ndarray of int
         Point of the whole surface that each point is.
-    corner : ndarray of bool
-        Whether each corner of all faces is one of a face there.
+    corners : ndarray of int
+        Place of each of their corners among the corners of all faces.
     """
 
     surface: vtkPolyData
     used: Indices
-    corner: Bools
+    corners: Indices
 
 
-def around(points: NDArray[Any], ids: Indices, ends: Indices, block: slice) -> Around | None:
-    """Return the faces around points of a range, None if there are none.
+def around(
+    points: NDArray[Any], ids: Indices, ends: Indices, size: int
+) -> Iterator[tuple[slice, Around]]:
+    """Yield ranges of ``size`` points with the faces around them, where there are any.
 
     ``ids`` has the corners of all faces one after the other, ``ends`` the place at which each face
-    begins, followed by the end of the last.
+    begins, followed by the end of the last. Only what is around those points takes memory.
     """
-    near = np.flatnonzero((ids >= block.start) & (ids < block.stop))
-    if not len(near):
-        return None
-    face = np.zeros(len(ends) - 1, dtype=np.bool_)
-    face[np.searchsorted(ends, near, side="right") - 1] = True
-    size = np.diff(ends)
-    corner = np.repeat(face, size)
-    own, there = ids[corner], np.zeros(len(points), dtype=np.bool_)
+    runs = _pool.blocks(len(ids), PART)
+    least, most = (np.array([own(ids[run]) for run in runs]) for own in (np.min, np.max))
+    for block in _pool.blocks(len(points), size):
+        near = [ids[:0]]
+        for i in np.flatnonzero((least < block.stop) & (most >= block.start)):
+            own = ids[runs[i]]
+            near.append(runs[i].start + np.flatnonzero((own >= block.start) & (own < block.stop)))
+        face = np.searchsorted(ends, np.concatenate(near), side="right") - 1
+        if len(face):
+            yield block, _faces(points, ids, ends, face[np.diff(face, prepend=-1) > 0])
+
+
+def _faces(points: NDArray[Any], ids: Indices, ends: Indices, face: Indices) -> Around:
+    """Return some faces and their points."""
+    size = ends[face + 1] - ends[face]
+    starts = np.concatenate([[0], np.cumsum(size)])
+    corners = np.arange(starts[-1]) + np.repeat(ends[face] - starts[:-1], size)
+    own = ids[corners]
+    least = own.min()
+    own -= least
+    there = np.zeros(own.max() + 1, dtype=np.bool_)
     there[own] = True
     used = np.flatnonzero(there)
-    number = np.empty(len(points), dtype=np.intp)
+    number = np.empty(len(there), dtype=np.intp)
     number[used] = np.arange(len(used))
+    used += least
     surface, where, cells = vtkPolyData(), vtkPoints(), vtkCellArray()
     where.SetData(as_vtk(points[used]))
-    cells.SetData(as_vtk(np.concatenate([[0], np.cumsum(size[face])])), as_vtk(number[own]))
+    cells.SetData(as_vtk(starts), as_vtk(number[own]))
     surface.SetPoints(where)
     surface.SetPolys(cells)
-    return Around(surface, used, corner)
+    return Around(surface, used, corners)
 
 
 def first_twins(cells: vtkCellArray) -> Indices | None:

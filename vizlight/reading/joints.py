@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vizlight import _pool
 from vizlight.model import kernels
 from vizlight.reading.cells import connectivity
+from vizlight.reading.edges import BLOCK
 from vizlight.reading.topology import components
 
 if TYPE_CHECKING:
@@ -39,15 +41,15 @@ def joined(surface: vtkPolyData, same: Indices) -> Indices | None:
     first = offsets[:-1][np.diff(offsets) == 3]
     if not len(first):
         return None
-    corners = [ids[first + i] for i in range(3)]
     lower, upper = [], []
-    for i in range(3):
-        one, other = corners[i], corners[i - 1]
-        # Most edges of most meshes have a length.
-        near = np.flatnonzero(same[one] == same[other])
-        near = near[one[near] != other[near]]
-        lower.append(np.minimum(one[near], other[near]))
-        upper.append(np.maximum(one[near], other[near]))
+    for block in _pool.blocks(len(first), BLOCK):
+        corners = [ids[first[block] + i] for i in range(3)]
+        for one, other in zip(corners, corners[-1:] + corners[:-1], strict=True):
+            # Most edges of most meshes have a length.
+            near = np.flatnonzero(same[one] == same[other])
+            near = near[one[near] != other[near]]
+            lower.append(np.minimum(one[near], other[near]))
+            upper.append(np.maximum(one[near], other[near]))
     if not sum(map(len, lower)):
         return None
     return components(np.concatenate(lower), np.concatenate(upper), len(same))

@@ -13,11 +13,13 @@ from vizlight import _check
 from vizlight.reading import edges, grids
 from vizlight.reading.arrays import vectors_of
 from vizlight.reading.cells import (
+    around,
     as_numpy,
     connectivity,
     faces_only,
     finite_faces,
     has_faces,
+    part_size,
     places,
     triangles,
     used,
@@ -297,8 +299,6 @@ def computed_normals(
         if not as_wound:
             shape.orient(vectors, survey, view)
         if sides:
-            # It takes up to twice the memory of the points, and the edges take as much.
-            vars(shape).pop("away", None)
             lean = survey.lean if first is None else survey.lean[first]
             sharp = crease_share(shape.edge_counts(survey.faces, survey.full))
     if origin is not None:
@@ -365,17 +365,42 @@ def _by_vtk(surface: vtkPolyData, shape: Shape | None = None, *, as_wound: bool)
     winds them.
     """
     rewound = shape is not None and not (as_wound or shape.alike)
+    # Points at one place, as of split edges, need memory too: there VTK works part by part, which
+    # takes it twice as long.
+    if shape is not None and shape.same is not None and not rewound:
+        return _by_parts(surface)
+    found = _vtk_normals(surface, rewind=rewound)
+    if rewound and shape is not None and not _same_cells(surface, found):
+        shape.rewind(found)
+    return np.array(as_numpy(found.GetPointData().GetNormals()))
+
+
+def _by_parts(surface: vtkPolyData) -> Array:
+    """Return the normals of a surface as its faces are wound, made part by part if it is large."""
+    points = places(surface)
+    size = part_size(len(points))
+    if len(points) <= size or surface.GetNumberOfStrips():
+        return np.array(as_numpy(_vtk_normals(surface).GetPointData().GetNormals()))
+    vectors = np.zeros((len(points), 3), dtype=np.float32)
+    ids, ends = connectivity(surface.GetPolys())
+    for block, part in around(points, ids, ends, size):
+        found = as_numpy(_vtk_normals(part.surface).GetPointData().GetNormals())
+        own = (part.used >= block.start) & (part.used < block.stop)
+        vectors[part.used[own]] = found[own]
+    return vectors
+
+
+def _vtk_normals(surface: vtkPolyData, *, rewind: bool = False) -> vtkPolyData:
+    """Return a surface with normals by VTK."""
     normals = vtkPolyDataNormals()
     normals.SplittingOff()
     normals.NonManifoldTraversalOff()
     # It takes twice to six times as long, and changes nothing on faces that are wound alike.
-    normals.SetConsistency(rewound)
+    normals.SetConsistency(rewind)
     normals.SetInputData(surface)
     normals.Update()
-    found = normals.GetOutput()
-    if rewound and shape is not None and not _same_cells(surface, found):
-        shape.rewind(found)
-    return np.array(as_numpy(found.GetPointData().GetNormals()))
+    found: vtkPolyData = normals.GetOutput()
+    return found
 
 
 def piece_numbers(mesh: Dataset) -> Indices:

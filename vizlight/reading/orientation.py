@@ -157,25 +157,45 @@ class Shape:
             self.inside_out[self.piece[ends]] = True
 
     @cached_property
-    def away(self) -> Array:
-        """Points of shape (3, n_points), each piece about its centroid, at a size of 1."""
+    def frame(self) -> tuple[Array, Array]:
+        """The centroid of each piece, shape (3, n_pieces), and the size of each mesh about it."""
         piece = self.piece
         size = np.maximum(np.bincount(piece, self.finite, self.count), 1)
-        away: Array = np.zeros((3, len(self.points)))
-        np.copyto(away, self.points.T, where=self.finite)
-        for axis in away:
-            middle = np.bincount(piece, axis, self.count) / size
-            axis -= middle[piece] if self.count > 1 else middle
+        middle = np.empty((3, self.count))
+        for row, axis in zip(middle, self.points.T, strict=True):
+            own = np.where(self.finite, axis, 0).astype(np.float64)
+            row[:] = np.bincount(piece, own, self.count) / size
+        largest = np.zeros(self.owners.count)
+        for block in _pool.blocks(len(self.points), BLOCK):
+            far = np.abs(self._from_middle(block, middle)).max(axis=0)
+            if self.owners.of is None:
+                largest[0] = max(largest[0], far.max())
+            else:
+                np.maximum.at(largest, self.owners.of[block], far)
         # Lengths are scaled, because products of tiny ones underflow and of huge ones overflow.
-        if self.owners.of is None:
-            scale = np.maximum(-away.min(initial=0.0), away.max(initial=0.0))
-            away /= scale or 1.0
-        else:
-            scales = np.zeros(self.owners.count)
-            np.maximum.at(scales, self.owners.of, np.abs(away).max(axis=0))
-            scales[scales == 0] = 1.0
-            away /= scales[self.owners.of]
+        largest[largest == 0] = 1.0
+        return middle, largest
+
+    def _from_middle(self, rows: Indices | slice, middle: Array) -> Array:
+        """Return the ways from the centroids of the pieces to some points."""
+        points = self.points[rows]
+        if not self.all_finite:
+            points = np.where(self.finite[rows, np.newaxis], points, 0)
+        away = np.array(points.T, dtype=np.float64, order="C")
+        away -= middle[:, self.piece[rows]] if self.count > 1 else middle
         return away
+
+    def away(self, rows: Indices | slice) -> Array:
+        """Return some points, shape (3, n), each piece about its centroid, at a size of 1."""
+        middle, largest = self.frame
+        away = self._from_middle(rows, middle)
+        away /= largest[0] if self.owners.of is None else largest[self.owners.of[rows]]
+        return away
+
+    @cached_property
+    def all_finite(self) -> bool:
+        """Whether all points are finite."""
+        return bool(self.finite.all())
 
     def survey(self, normals: Array) -> Survey:
         """Return what a walk over the triangles finds, given the normals of the points."""
@@ -184,15 +204,14 @@ class Shape:
         bend, least = np.zeros(n), np.ones(n, dtype=np.float32)
         faces = np.zeros((3, len(self.triangles)), dtype=np.float32)
         full = np.zeros(len(self.triangles), dtype=np.bool_)
-        all_finite = bool(self.finite.all())
         for block in _pool.blocks(len(self.triangles), BLOCK):
             rows: Indices = self.triangles[block]
             numbers: slice | Indices = block
-            if not all_finite:
+            if not self.all_finite:
                 known = self.finite[rows].all(axis=1)
                 rows, numbers = rows[known], np.flatnonzero(known) + block.start
             corners = [np.ascontiguousarray(at) for at in rows.T]
-            a, b, c = (self.away.take(at, axis=1) for at in corners)
+            a, b, c = (self.away(at) for at in corners)
             u, v = b - a, c - a
             across = kernels.cross(u, v)
             unit, size = kernels.unit(across)
@@ -209,9 +228,12 @@ class Shape:
                 with np.errstate(invalid="ignore"):
                     np.minimum.at(least, at, kernels.dot(normal, unit).astype(np.float32))
                 np.add.at(bend, at, kernels.dot(normal, inward))
-        sine = np.sqrt(np.clip(1 - least * least, 0, MOST_LEAN * MOST_LEAN))
-        lean: Array = np.where(np.isfinite(bend), -np.sign(bend) * sine, 0)
-        return Survey(sums, lean.astype(np.float32), faces, full)
+        lean = least
+        for block in _pool.blocks(n, BLOCK):
+            sine = np.sqrt(np.clip(1 - least[block] ** 2, 0, MOST_LEAN * MOST_LEAN))
+            side: Array = -np.sign(bend[block])
+            lean[block] = np.where(np.isfinite(side), side * sine, 0)
+        return Survey(sums, lean, faces, full)
 
     def edge_counts(self, faces: Array, full: Bools) -> Indices:
         """Return of each mesh the number of edges of two faces, and of sharp ones by three limits.
@@ -263,7 +285,7 @@ class Shape:
         seen = view is not None and len(view.position or view.direction or ()) == 3
         for block in _pool.blocks(len(normals), BLOCK):
             own = normals[block].T.astype(np.float64)
-            toward = kernels.unit(self.away[:, block])[0]
+            toward = kernels.unit(self.away(block))[0]
             if seen and view is not None:
                 toward += 3 * kernels.unit(self._toward(view, block))[0]
             score = kernels.dot(own, toward)
@@ -291,8 +313,7 @@ class PartShape(Shape):
         self.triangles = triangles(surface)
         self.finite = np.all(np.isfinite(self.points), axis=1)
         self.piece, self.count = np.zeros(len(self.points), dtype=np.intp), 1
-        away = np.where(self.finite, self.points.T, 0).astype(np.float64)
-        self.away = (away - middle[:, np.newaxis]) / scale
+        self.frame = middle[:, np.newaxis], np.array([scale])
 
 
 def crease_share(counts: Indices) -> Array:
