@@ -36,10 +36,13 @@ STAND_APART = 0.5
 #: They also are if of those above twice the angle, at least MANY_SHARP of all edges, there are more
 #: than of those between by this factor: corners stand apart from coarse arcs.
 CORNERS_APART = 0.7
-#: Most that a normal may lean, as a sine. Where faces around a point differ by more, its surface is
-#: too rough or too coarse to tell bumps from hollows: of the pixels of a noisy isosurface, lit from
-#: the side, 26 % are off by more than a tenth of white without the limit, and 6 % with it.
+#: Most that a normal may lean, as a sine, but on height fields. Where faces around a point differ
+#: by more, its surface is too rough or too coarse to tell bumps from hollows: of the pixels of a
+#: noisy isosurface, lit from the side, 26 % are off by more than a tenth of white without the
+#: limit, and 6 % with it.
 MOST_LEAN = 0.05
+#: Number of normals, and of steps, by which the direction of a height field is searched for.
+SEARCHED, STEPS = 1 << 14, 32
 
 
 class Sums(NamedTuple):
@@ -106,8 +109,8 @@ class Survey(NamedTuple):
     sums : Sums
         Sums over each piece, but for the score, which is 0.
     lean : ndarray of float32, shape (n_points,)
-        How far the normal of each point may lean away from the eye; see
-        :class:`~vizlight.reading.normals.Sided`.
+        Sine of the largest angle between the normal of each point and a face around it, 1 from a
+        right angle on; negative where the surface is concave.
     faces : ndarray of float32, shape (3, n_triangles)
         Unit normals of the triangles.
     full : ndarray of bool, shape (n_triangles,)
@@ -198,7 +201,8 @@ class Shape:
             unit, size = kernels.unit(across)
             sides = [kernels.dot(side, side) for side in (u, v, c - b)]
             longest = np.maximum(np.maximum(sides[0], sides[1]), sides[2])
-            faces[:, numbers], full[numbers] = unit, size > NARROWEST * longest
+            wide = size > NARROWEST * longest
+            faces[:, numbers], full[numbers] = unit, wide
             own = slice(None)
             if self.side is not None:
                 own = self.side[rows].min(axis=1) == 0
@@ -207,10 +211,11 @@ class Shape:
             for at, inward in zip(corners, (u + v, v - 2 * u, u - 2 * v), strict=True):
                 normal = np.ascontiguousarray(normals.take(at, axis=0).T, dtype=np.float64)
                 with np.errstate(invalid="ignore"):
-                    np.minimum.at(least, at, kernels.dot(normal, unit).astype(np.float32))
+                    cosine = np.where(wide, kernels.dot(normal, unit), 1.0)
+                    np.minimum.at(least, at, cosine.astype(np.float32))
                 np.add.at(bend, at, kernels.dot(normal, inward))
-        sine = np.sqrt(np.clip(1 - least * least, 0, MOST_LEAN * MOST_LEAN))
-        lean: Array = np.where(np.isfinite(bend), -np.sign(bend) * sine, 0)
+        sine = np.where(least > 0, np.sqrt(np.clip(1 - least * least, 0, 1)), 1)
+        lean: Array = np.where(np.isfinite(bend), np.copysign(sine, -bend), 0)
         return Survey(sums, lean.astype(np.float32), faces, full)
 
     def edge_counts(self, faces: Array, full: Bools) -> Indices:
@@ -293,6 +298,62 @@ class PartShape(Shape):
         self.piece, self.count = np.zeros(len(self.points), dtype=np.intp), 1
         away = np.where(self.finite, self.points.T, 0).astype(np.float64)
         self.away = (away - middle[:, np.newaxis]) / scale
+
+
+def sides_of(vectors: Array, piece: Indices, border: Bools) -> Indices:
+    """Return which pieces have a border, and which of these are height fields.
+
+    Parameters
+    ----------
+    vectors : ndarray, shape (n_points, 3)
+        Normals, zero or not finite where a point has none.
+    piece : ndarray of int, shape (n_points,)
+        Piece of each point.
+    border : ndarray of bool, shape (count,)
+        Pieces of which either side may be seen.
+
+    Returns
+    -------
+    ndarray of int, shape (count,)
+        0 for pieces without a border, 1 for those with one, and from 2 on a number of its own for
+        each that is a height field: its normals lie within a right angle of an axis, or of a
+        direction that a short search finds.
+    """
+    count = len(border)
+    side: Indices = border.astype(np.intp)
+    if border.any():
+        size = np.where(np.isfinite(vectors).all(axis=1), np.abs(vectors).max(axis=1), 0)
+        rows = np.flatnonzero((size > 0) & border[piece])
+        own, of = vectors[rows].astype(np.float64), piece[rows]
+        field = np.zeros(count, dtype=np.bool_)
+        for along in (np.einsum("ij,ij->i", own, _middles(own, of, count)[of]), *own.T):
+            low, high = np.full(count, np.inf), np.full(count, -np.inf)
+            np.minimum.at(low, of, along)
+            np.maximum.at(high, of, along)
+            field |= (low > 0) | (high < 0)
+        field &= np.bincount(of, minlength=count) > 0
+        side[field] = 2 + np.arange(np.count_nonzero(field))
+    return side
+
+
+def _middles(vectors: Array, piece: Indices, count: int) -> Array:
+    """Return for each piece a direction, within a right angle of all its normals if one is found.
+
+    It begins at their mean; some of the vectors that are furthest from it draw it to them.
+    """
+    total = np.stack([np.bincount(piece, axis, count) for axis in vectors.T], axis=1)
+    middle = kernels.unit_rows(total)
+    some = slice(None, None, max(len(piece) // SEARCHED, 1))
+    own, of = vectors[some], piece[some]
+    for _ in range(STEPS):
+        along = np.einsum("ij,ij->i", own, middle[of])
+        least = np.zeros(count)
+        np.minimum.at(least, of, along)
+        beyond = (along <= least[of]) & (along <= 0)
+        if not beyond.any():
+            break
+        np.add.at(middle, of[beyond], own[beyond])
+    return middle
 
 
 def crease_share(counts: Indices) -> Array:
