@@ -334,8 +334,9 @@ def computed_normals(
     VTK computes them in float32 and orients them consistently. They point outward on a closed
     surface and on a connected piece that is nearly closed. Any other piece has no outside: its
     normals are flipped together if on average they point away from the eye, or toward the
-    centroid of the piece. Points at one place that triangles without area join, as isosurfaces
-    through nodes of a grid have them, have one normal, where their own are within
+    centroid of the piece. Points that slivers join, with a side of at most
+    :data:`~vizlight.reading.joints.NEAR` of the longest, as isosurfaces through nodes of a grid
+    have them, have one normal, where their own are within
     :data:`~vizlight.reading.orientation.SHARP` degrees of it.
 
     Parameters
@@ -370,7 +371,7 @@ def computed_normals(
     shape = Shape(surface, owners)
     vectors = _by_vtk(surface, shape, as_wound=as_wound)
     vectors[~used(surface)] = 0
-    first = None if shape.same is None else joined(surface, shape.same)
+    first = joined(shape.points, shape.triangles)
     if first is not None:
         least = float(np.cos(np.radians(SHARP)))
         vectors, first = common_normals(shape.points, shape.triangles, vectors, first, least)
