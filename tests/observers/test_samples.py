@@ -42,8 +42,3 @@ def test_tangents_are_vectors_unless_they_are_lines(line_field):
         else:
             expected = rows.mean(axis=0) / np.linalg.norm(rows.mean(axis=0))
             np.testing.assert_allclose(own, expected, atol=1e-6)
-
-
-def test_vectors_that_cancel_have_no_direction():
-    _, found = places_of(False, np.array([[1.0, 0, 0], [-1, 0, 0], [0, 0, 0], [0, 0, 0]]))
-    assert not found.valid.all()
