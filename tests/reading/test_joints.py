@@ -9,6 +9,7 @@ from scipy.spatial import cKDTree
 
 import vizlight
 from vizlight.mesh.normals import split_edges
+from vizlight.reading import joints
 from vizlight.reading.normals import computed_normals
 
 
@@ -41,6 +42,44 @@ def test_an_isosurface_through_nodes_has_one_light_at_a_place(dtype, image):
     again, difference = spread(np.asarray(lit.points), np.asarray(lit["luminance"]))
     assert again > 50
     assert difference < 1e-6
+
+
+@pytest.mark.parametrize("image", [True, False])
+@pytest.mark.parametrize("ulps", [1, 4, 100])
+def test_points_that_lie_apart_by_rounding_have_one_light(ulps, image):
+    """Rounding of the field moves the points off the node, each along its own edge."""
+    worst = 0.0
+    for seed in range(6):
+        random = np.random.default_rng(seed)
+        n, level = ((41, 144), (21, 49))[seed % 2]
+        grid = pv.ImageData(dimensions=(n, n, n), origin=3 * (-(n // 2),))
+        values = np.sum(np.asarray(grid.points) ** 2, axis=1).astype("f4")
+        grid["f"] = values + ulps * np.spacing(values) * random.integers(-1, 2, len(values)).astype(
+            "f4"
+        )
+        grid = grid if image else grid.cast_to_unstructured_grid()
+        method = "flying_edges" if image else "contour"
+        surface = grid.contour([level], scalars="f", compute_normals=False, method=method)
+        surface.clear_data()
+        lit = np.asarray(vizlight.illuminate(surface)["luminance"])
+        near = cKDTree(surface.points).query_pairs(1e-3, output_type="ndarray")
+        assert len(near) > 50
+        worst = max(worst, np.abs(lit[near[:, 0]] - lit[near[:, 1]]).max())
+    assert worst < 1e-3
+
+
+def test_points_along_a_row_of_slivers_keep_their_own_normals():
+    """Facets of a fan are as thin as slivers, but the points of the row are not at one place."""
+    angle = np.linspace(0, 0.5, 2001)
+    rim = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
+    points = np.concatenate([rim, np.add(rim, (0, 0, 1.0))])
+    i = np.arange(2000)
+    lower = np.stack([i, i + 1, i + 2001], axis=1)
+    faces = np.concatenate([lower, np.stack([i + 1, i + 2002, i + 2001], axis=1)])
+    fan = pv.PolyData.from_regular_faces(points, faces)
+    assert joints.joined(fan.points, fan) is not None
+    found = computed_normals(fan).vectors[:2001]
+    assert np.einsum("ij,ij->i", np.abs(found), np.abs(rim)).min() > 1 - 1e-6
 
 
 def test_normals_are_those_of_the_clean_surface():

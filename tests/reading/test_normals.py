@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import pyvista as pv
+import scipy.ndimage
 
 import vizlight
 from vizlight import Light, Material, Scene, View
@@ -181,3 +182,78 @@ def test_normals_of_parts_are_those_of_the_whole(monkeypatch):
     assert sizes
     np.testing.assert_array_equal(parts.vectors, whole.vectors)
     np.testing.assert_array_equal(parts.lean, whole.lean)
+
+
+def rough_field(turn=0.0):
+    """Return a rough height field, turned about x by degrees, and normals of its upper side."""
+    random = np.random.default_rng(3)
+    x = np.linspace(0, 10, 60)
+    z = sum(
+        scale * scale * scipy.ndimage.gaussian_filter(random.standard_normal((60, 60)), scale)
+        for scale in (6, 3, 1)
+    )
+    field = pv.StructuredGrid(*np.meshgrid(x, x), 0.7 * z).extract_surface(
+        algorithm="dataset_surface"
+    )
+    field = pv.PolyData(field.points, field.faces).triangulate()
+    up = np.array(field.compute_normals(cell_normals=False)["Normals"])
+    field.points = field.points.astype(np.float64)
+    up *= np.sign(up[:, 2:])
+    return field.rotate_x(turn), pv.PolyData(up).rotate_x(turn).points
+
+
+@pytest.mark.parametrize("turn", [0, 50])
+@pytest.mark.parametrize("below", [False, True])
+@pytest.mark.parametrize("near", [False, True])
+@pytest.mark.parametrize("given", [False, True])
+def test_faces_of_a_height_field_are_lit_on_the_side_from_which_they_are_seen(
+    turn, below, near, given
+):
+    field, up = rough_field(turn)
+    toward = pv.PolyData(np.array([[0.6, 1.0, -0.5 if below else 0.5]])).rotate_x(turn).points[0]
+    eye = np.array(field.center) + 12 * toward
+    view = View(position=eye) if near else View(direction=toward)
+    field["up"] = up
+    sided = normals.sided_normals(field, "up" if given else None, 3, "auto")
+    assert np.all(np.asarray(sided.open) == 2)
+    shown = sided.facing("auto", field.points, view)[:]
+    side = -1 if below else 1
+    corners = field.regular_faces
+    a, b, c = (field.points[row] for row in corners.T)
+    across = np.cross(b - a, c - a)
+    across *= np.sign(np.einsum("ij,ij->i", across, up[corners[:, 0]]))[:, np.newaxis] * side
+    seen = np.einsum("ij,ij->i", across, eye - a if near else np.broadcast_to(toward, a.shape)) > 0
+    agree = np.einsum("ij,ij->i", shown, up) * side > 0
+    assert agree[corners[seen]].all()
+    # What is seen of the other side, below a border, is still lit on that.
+    assert not agree[corners[~seen]].all()
+
+
+def test_a_bowl_is_lit_inside_and_outside_as_it_is_seen():
+    bowl = pv.Sphere(start_phi=110, theta_resolution=60, phi_resolution=60)
+    bowl = pv.PolyData(bowl.points, bowl.faces)
+    view = View(direction=(1, 0, 0.35))
+    found = normals.computed_normals(bowl)
+    shown = found.facing("auto", bowl.points, view)[:]
+    cosine = shown @ np.asarray(view.direction)
+    assert cosine.min() > -0.07
+    outside = np.einsum("ij,ij->i", shown, bowl.points) > 0
+    assert 0.2 < outside.mean() < 0.8
+
+
+def test_each_height_field_of_a_mesh_shows_its_own_side():
+    low, _ = rough_field()
+    high = low.translate((0, 0, 20))
+    both = pv.merge([low, high], merge_points=False)
+    sided = normals.computed_normals(both)
+    assert set(np.unique(sided.open)) == {2, 3}
+    view = View(position=np.add(low.center, (0, 0, 10)))
+    averted = sided.averted_fields(both.points, view)
+    up = sided.vectors[:, 2] > 0
+    below = averted[sided.open] == up
+    np.testing.assert_array_equal(below, np.arange(both.n_points) >= low.n_points)
+
+
+def test_a_sheet_that_folds_back_is_no_height_field():
+    tube = pv.Cylinder(capping=False, resolution=40).triangulate()
+    assert np.all(normals.computed_normals(tube).open == 1)

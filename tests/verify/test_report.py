@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import warnings
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import oracles
 import pytest
 import pyvista as pv
 from lamps import SHINY, shiny
+from scipy.interpolate import RegularGridInterpolator
 
 import vizlight
 from vizlight import (
@@ -294,10 +296,34 @@ def test_a_flat_field_has_the_cosine():
     way = (0.6, 0, 0.8)
     place, up = np.array([4.0, 4, 0]), np.array([0, 0, 1.0])
     t = rays.relief_ratio(x, x, z, place, up, 0.5, way=way)
-    assert t == pytest.approx(0.8, abs=1e-4)
+    assert t == pytest.approx(0.8, abs=1e-14)
     t = rays.relief_ratio(x, x, z, place, up, 0.5, way=None, end=(4 + 6e3, 4, 8e3 - 0.5))
-    assert t == pytest.approx(0.8, abs=1e-4)
-    assert rays.relief_ratio(x, x, z, place, up, 0.5, way=None, end=(9.0, 4, 0)) == 0
+    assert t == pytest.approx(0.8, abs=1e-12)
+    # To a light on the level of the field the ray never leaves the solid.
+    t = rays.relief_ratio(x, x, z, place, up, 0.5, way=None, end=(9.0, 4, 0))
+    assert t == pytest.approx(0.5 / np.hypot(5, 0.5), abs=1e-14)
+
+
+def test_the_scalar_ray_has_the_lengths_of_samples(random):
+    """A rough field, with its walls, against many places of each ray."""
+    x, y = np.sort(random.uniform(0, 8, 9)), np.sort(random.uniform(0, 8, 8))
+    z = random.uniform(0, 2, (8, 9))
+    surface = RegularGridInterpolator((y, x), z)
+    up = np.array([0, 0, 1.0])
+    for _ in range(40):
+        place = np.array([random.uniform(*x[[0, -1]]), random.uniform(*y[[0, -1]]), 1.5])
+        way = np.append(random.standard_normal(2), random.uniform(0.1, 2))
+        way /= np.linalg.norm(way)
+        for wall in (False, True):
+            s = (np.arange(200_000) + 0.5) / 200_000 * (2 / way[2])
+            p = place - 0.7 * up + s[:, np.newaxis] * way
+            beside = np.clip(p[:, 1::-1], (y[0], x[0]), (y[-1], x[-1]))
+            within = p[:, 2] < surface(beside)
+            if wall:
+                within &= np.all(beside == p[:, 1::-1], axis=1)
+            length = np.mean(within) * 2 / way[2]
+            t = rays.relief_ratio(x, y, z, place, up, 0.7, way=way, wall=wall)
+            assert t == pytest.approx(0.7 / max(length, 0.7), abs=1e-3)
 
 
 def test_command_line(tmp_path, monkeypatch, capfd):
@@ -331,9 +357,56 @@ def test_a_shadow_and_bands_say_what_they_are_compared_with():
     scene = Scene(view=View(direction=(1, 1, 1)))
     with vizlight.report() as shadow:
         relief_shadow(terrain(), SUN, depth=0.5)
-    assert "from samples along each ray, which err by as much" in str(shadow)
+    assert "error of t" in str(shadow)
+    assert "each ray against all cells" in str(shadow)
+    assert shadow.runs[0].error < 1e-12
     with vizlight.report() as bands:
         vizlight.isoluminance(pv.Sphere(), scene)
     assert "difference" in str(bands)
     assert "places from their band; stated bound" in str(bands)
+    assert "not measured between points: a band has one light" in str(bands)
     assert "rounding error" not in str(shadow) + str(bands)
+
+
+def test_light_inside_a_bundle_is_not_measured_between_points_and_the_report_says_why():
+    line = pv.Spline(np.random.default_rng(1).random((9, 3)), 60)
+    with vizlight.report() as found:
+        illuminate(line, SCENE, bundle=True)
+    assert "light inside a bundle" in found.runs[0].unmeasured
+
+
+@pytest.mark.parametrize(
+    ("scene", "again"),
+    [
+        (Scene(view=View(direction=(0, 0, 1))), "stored"),
+        (PLAIN, "diffuse"),
+        (SCENE, "diffuse"),
+    ],
+)
+def test_points_on_whose_colours_light_is_put_count_once(scene, again):
+    sphere = pv.Sphere()
+    sphere["height"] = sphere.points[:, 2].copy()
+    lit = illuminate(sphere, scene)
+    with vizlight.report() as alone:
+        vizlight.tint(lit, "height")
+    assert [run.tinted for run in alone.runs] == [True]
+    assert alone.points == sphere.n_points
+    assert again in alone.terms
+    with vizlight.report() as both:
+        vizlight.tint(illuminate(sphere, scene), "height")
+    assert [run.tinted for run in both.runs] == [False, True]
+    assert both.points == sphere.n_points
+    assert "842 points on whose colours light was put" in str(both)
+
+
+def test_points_that_workers_light_are_counted_as_not_measured(tmp_path):
+    pv.Sphere().save(tmp_path / "a.vtp")
+    scene = Scene(view=View(direction=(0, 0, 1)))
+    with ThreadPoolExecutor(1) as pool, vizlight.report() as found:
+        vizlight.pieces.light(tmp_path / "a.vtp", scene, out=tmp_path / "lit.pvtp", map=pool)
+    assert found.runs == []
+    assert found.elsewhere == 842
+    assert "842 points lit by workers, which record nothing" in str(found)
+    with vizlight.report() as found:
+        vizlight.pieces.light(tmp_path / "a.vtp", scene, out=tmp_path / "lit.pvtp")
+    assert (found.points, found.elsewhere) == (842, 0)

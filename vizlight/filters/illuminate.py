@@ -76,7 +76,8 @@ def illuminate(
     facing : {"auto", "eye", "outward", "as given"}
         Side of the surface that is lit. ``"auto"``: each connected piece that is closed faces
         outward, any other faces the eye at every point (with ``normals`` that are given the mesh
-        counts as one piece). ``"eye"``: every point faces the eye,
+        counts as one piece); a height field has one side, that of the eye, wherever a face beside
+        the point is seen from there. ``"eye"``: every point faces the eye,
         whatever piece it belongs to; with ``normals`` from data a surface in parts is then lit
         as the whole. ``"outward"``: each piece faces outward as a whole, an open one away from its
         centroid. ``"as given"``: normals as they are; computed ones follow the order of the corners

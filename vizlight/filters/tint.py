@@ -16,6 +16,7 @@ from vizlight.mesh import blocks, records
 from vizlight.scene import Scene
 from vizlight.shading import display
 from vizlight.shading.results import DEFAULT_NAME, VALID, part_name
+from vizlight.verify import report
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -141,9 +142,11 @@ def tint(
         below_color=below_color,
     )  # fmt: skip
     record = _record(table, scalars, light, component)
+    with report.tinted():
+        lights = _light_of(out, meshes, light)
     made = [
         display.on_colors(map_colors(table, value, components=3), *own)
-        for value, own in zip(values, _light_of(out, meshes, light), strict=True)
+        for value, own in zip(values, lights, strict=True)
     ]
     for mesh, array in zip(meshes, made, strict=True):
         kept = records.read(mesh, light) or {}
@@ -362,10 +365,15 @@ def _light_of(
     stored = [_stored(mesh, light) for mesh in meshes]
     carried = [own for own in stored if own is not None]
     if len(carried) == len(meshes):
+        for values, _ in carried:
+            report.note_stored(values, light)
         return carried
-    sources, scene, again = relight.terms_from_record(lit, light)
+    scene = Scene.from_dict(records.provenance(lit, light)["scene"])
     if scene.depth_cue is not None or _colored(scene):
+        with report.paused():
+            sources, scene, _ = relight.terms_from_record(lit, light)
         return [*light_on_colors(sources, scene)]
+    sources, scene, again = relight.terms_from_record(lit, light)
     least = max(scene.material.ambient, display.LEAST) * scene.ambient_intensity
     found: list[tuple[Array, Bools | None]] = []
     for source, shading in zip(sources, again, strict=True):

@@ -73,7 +73,7 @@ class Caster(Protocol):
     """A mesh that casts shadows on itself.
 
     ``valid`` is the mask of the points that have a t, ``depth`` the depth d, and ``effort`` the
-    number of samples or triangles that ``reference`` visits for one t, 0 if it finds none.
+    number of planes of nodes or triangles that ``reference`` visits for one t, 0 if it finds none.
     """
 
     points: Array
@@ -134,7 +134,7 @@ class _FieldCaster:
         field = self._field
         size = max(field.x[-1], field.y[-1], field.top)
         exact = not found.sampled and self.depth > shadowing.LEAST_DEPTH * size
-        self.effort = rays.SAMPLES if exact else 0
+        self.effort = sum(self._field.heights.shape) if exact else 0
 
     def of(self, light: Light, report: Callable[[int], None]) -> Array:
         turn = np.eye(3) if self._turn is None else self._turn

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     SurfaceT = TypeVar("SurfaceT")
 
 #: Name of the point array in which normals that had to be computed stay with a result: three
-#: components of the normal, its lean, and 1 on an open piece.
+#: components of the normal, its lean, and its number of ``Sided.open``.
 KEPT = "vizlight_normals"
 #: Share of the spacing between points to which they may be rounded without a warning.
 ROUNDED = 0.05
@@ -263,7 +263,7 @@ def to_keep(mesh: pv.DataSet, normals: Sided | None) -> Sided | None:
     """Return normals, without the rows of points where these do not stay with a mesh."""
     if normals is None or _stay(mesh, normals):
         return normals
-    return dataclasses.replace(normals, vectors=_NONE, lean=None, open=False)
+    return dataclasses.replace(normals, vectors=_NONE, lean=None, open=0)
 
 
 def keep(mesh: pv.DataSet, normals: Sided) -> None:
@@ -302,7 +302,7 @@ def kept(mesh: pv.DataSet) -> Sided | None:
     return Sided(
         np.ascontiguousarray(rows[:, :3]),
         rows[:, 3],
-        rows[:, 4] > 0,
+        rows[:, 4].astype(np.intp),
         records.share(record, "sharp"),
         kept=True,
         computed=True,

@@ -167,7 +167,7 @@ def _extended(part: Part, between: Between, corners: Indices) -> Part:
         sides = sides._replace(normals=vectors, facts=facts)
         lean = None if sided.lean is None else facts[:, 0].astype(np.float32)
         sided = dataclasses.replace(
-            sided, vectors=vectors, lean=lean, open=facts[:, 1] > 0.5, kept=False
+            sided, vectors=vectors, lean=lean, open=np.rint(facts[:, 1]).astype(np.intp), kept=False
         )
     made = dataclasses.replace(
         inputs,

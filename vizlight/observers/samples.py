@@ -176,7 +176,10 @@ def _toward_eye(camera: pv.Camera, points: Array) -> Array:
 
 
 def _tangents(part: Part, ids: Indices, places: Places) -> Array | None:
-    """Return interpolated tangents, zero where one has no direction."""
+    """Return tangents interpolated as a picture has them, zero where one has no direction.
+
+    Vectors are interpolated linearly; lines without sign, and planes, are turned alike before.
+    """
     if part.inputs.tangents is None:
         return None
     rows = rows_of(part.inputs.tangents, ids).astype(np.float64)
@@ -184,7 +187,8 @@ def _tangents(part: Part, ids: Indices, places: Places) -> Array | None:
     one = frames.shape[1] == 1
     frames = unit_rows(frames[:, 0])[:, np.newaxis] if one else orthonormalize(frames)[0]
     if places.weights.shape[1] > 1:
-        frames = mean_spaces(frames, places)
+        unsigned = part.inputs.line_field or not one
+        frames = (mean_spaces if unsigned else interpolated)(frames, places)
     return unit_rows(frames[:, 0])[:, np.newaxis] if one else frames
 
 

@@ -23,6 +23,7 @@ from vizlight.pieces.workers import RETRIES, Work, checked
 from vizlight.scene import Scene
 from vizlight.shading.options import LightOptions, unknown_option
 from vizlight.shading.results import unlit
+from vizlight.verify import report
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -210,7 +211,9 @@ def light(
         outputs = [folder / f"{target.name}{job.suffix}" for target in targets]
         _spare_sources(parts, path, outputs)
         calls = [(piece, job, target) for piece, target in zip(parts, targets, strict=True)]
-        done = work.each(task.light, calls, "light")
+        done: list[Done] = []
+        with report.workers(lambda: sum(one.points for one in done)):
+            done += work.each(task.light, calls, "light")
         full = [(piece, one) for piece, one in zip(parts, done, strict=True) if one.file]
         if not full:
             raise nothing_found(parts, job, work)

@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
-    from vizlight._types import Array, Indices
+    from vizlight._types import Array, Bools, Indices
     from vizlight.filters.relight import Source
     from vizlight.plotting.live import Live
     from vizlight.plotting.program import Uniform
-    from vizlight.scene import Light, Scene
+    from vizlight.scene import Light, Scene, View
     from vizlight.shading.inputs import ArraySource, ShadingInputs
     from vizlight.shading.options import ShadingOptions
     from vizlight.shading.plan import Plan
@@ -134,6 +134,8 @@ class Fragments:
         self._plan: Plan | None = None
         #: Height of the fur whose normal has the length 2.
         self.tallest = 0.0
+        #: Height fields that the eye sees from behind.
+        self._averted: Bools | None = None
 
     def attach(self, live: Live) -> None:
         """Give the drawn mesh its tangents and normals, of unit length in float32."""
@@ -153,7 +155,7 @@ class Fragments:
             self.tallest = float(np.max(height, initial=0.0)) or 1.0
             normals = normals * (1 + height[:, np.newaxis] / self.tallest)
         elif live.source.sided is not None:
-            normals = normals * _lean_lengths(live.source, len(normals))[:, np.newaxis]
+            normals = normals * _lean_lengths(live.source, self._averted)[:, np.newaxis]
         if normals is not None:
             live.attach(NORMALS, normals.astype(np.float32))
             data.SetActiveNormals(NORMALS)
@@ -182,6 +184,7 @@ class Fragments:
 
     def paint(self, live: Live, scene: Scene, renderer: vtkRenderer, actor: vtkActor) -> None:
         """Write the shader of a scene if it is another one, and set its uniforms."""
+        self._see(live, scene.view, actor)
         scene = lighting.fit_depth_cue(scene, [live.placed(actor)])
         data = live.scalars is not None
         if data:
@@ -206,6 +209,18 @@ class Fragments:
             strokes.replace(actor, texts)
             self._key, self._plan = key, plan
         _set_uniforms(given, renderer, actor)
+
+    def _see(self, live: Live, view: View | None, actor: vtkActor) -> None:
+        """Find the side of height fields that an eye sees, and attach normals if it is another."""
+        sided = live.source.sided
+        if sided is None or not np.any(np.asarray(sided.open) > 1):
+            return
+        placed = live.placed(actor)
+        rows = np.asarray((sided.vectors if placed.normals is None else placed.normals)[:])
+        averted = dataclasses.replace(sided, vectors=rows).averted_fields(placed.points, view)
+        if self._averted is None or not np.array_equal(averted, self._averted):
+            self._averted = averted
+            self.attach(live)
 
     def explain(self, live: Live, scene: Scene) -> str:
         """Return what is computed in each fragment."""
@@ -254,16 +269,18 @@ def _rows(inputs: ShadingInputs, rows: ArraySource | None) -> Array | None:
     return unit if len(unit) == inputs.count else np.repeat(unit, inputs.repeat, axis=0)
 
 
-def _lean_lengths(source: Source, count: int) -> Array:
+def _lean_lengths(source: Source, averted: Bools | None) -> Array:
     """Return lengths of normals, which carry from 1 to 2 the lean from -1 to 1.
 
     A lean of 1 stands for points that no eye turns.
     """
     sided = source.sided
     assert sided is not None
-    lean = np.zeros(count) if sided.lean is None else np.asarray(sided.lean, dtype=np.float64)
-    turned = np.ones(count, dtype=np.bool_) & (True if source.facing == "eye" else sided.open)
-    return np.where(turned, 1.5 + 0.5 * np.clip(lean, -1.0, 0.98), 2.0)
+    if averted is None:
+        averted = sided.averted_fields(source.inputs.points, None)
+    lean = sided.leaning(source.facing, averted)
+    turned = (sided.facts()[:, 1] > 0) | (source.facing == "eye")
+    return np.where(turned, 1.5 + 0.5 * np.clip(0.0 if lean is None else lean, -1.0, 0.98), 2.0)
 
 
 def _set_uniforms(given: Iterable[Uniform], renderer: vtkRenderer, actor: vtkActor) -> None:

@@ -5,10 +5,12 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
 from vizlight import _check
 from vizlight.reading import polylines
 from vizlight.reading.arrays import is_of_cells, points_of, tangents_of
-from vizlight.reading.normals import Sided, sided_normals
+from vizlight.reading.normals import Sided, Turned, sided_normals
 from vizlight.shading.decide import not_a_line
 from vizlight.shading.inputs import ShadingInputs, Sides
 
@@ -17,6 +19,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Dataset, Indices
     from vizlight.scene import Scene, View
+    from vizlight.shading.inputs import ArraySource
     from vizlight.shading.options import Facing, LightOptions
 
 
@@ -89,18 +92,22 @@ def part_of(
         base_tangents=base,
         two_sided=alike,
         line_field=options.line_field or _has_no_sign(mesh, options),
-        sides=None if sided is None else partial(_sides, sided, scene.view, options),
+        sides=None if sided is None else partial(_sides, sided, points, scene.view, options),
     )
     return Part(inputs, options, sided)
 
 
-def _sides(sided: Sided, view: View | None, options: LightOptions) -> Sides:
+def _sides(sided: Sided, points: ArraySource, view: View | None, options: LightOptions) -> Sides:
     """Return normals before they are turned to the side that is seen, and what turns them."""
+    # Which side of a height field is seen is a matter of all of its points.
+    averted = sided.averted_fields(points, view)
 
     def turned(normals: Array, facts: Array, points: Array) -> Array:
-        own = Sided(normals, lean=facts[:, 0], open=facts[:, 1] > 0.5)
-        found: Array = own.facing(options.facing, points, view)[:]
-        return found
+        if options.facing not in ("auto", "eye") or view is None:
+            return normals
+        own = Sided(normals, lean=facts[:, 0], open=np.rint(facts[:, 1]).astype(np.intp))
+        lean, only_open = own.leaning(options.facing, averted), options.facing == "auto"
+        return Turned(own, points, view, lean, only_open=only_open)[:]
 
     return Sides(sided.vectors, sided.facts(), turned)
 

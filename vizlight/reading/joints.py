@@ -1,7 +1,7 @@
-"""Points at one place that are one point of a smooth sheet: triangles without area join them.
+"""Points at nearly one place that are one point of a smooth sheet: slivers join them.
 
-Isosurfaces through nodes of a grid have such points. Along sharp edges that were split, and in
-separate triangles, nothing joins the points at a place.
+Isosurfaces through nodes of a grid have such points, at one place or apart by rounding. Along sharp
+edges that were split, and in separate triangles, nothing joins the points at a place.
 """
 
 from __future__ import annotations
@@ -22,15 +22,22 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Indices
 
+#: Share of the longest side of a triangle up to which another side joins its ends, and of the
+#: longest of those up to which all points that are joined lie apart.
+NEAR = 1e-3
 
-def joined(surface: vtkPolyData, same: Indices) -> Indices | None:
-    """Return the first of the points that triangles without area join with each at its place.
+
+def joined(points: NDArray[np.generic], surface: vtkPolyData) -> Indices | None:
+    """Return the first of the points that slivers join with each.
+
+    A side joins its ends where it is at most :data:`NEAR` of the longest side of its triangle.
+    Points that are joined in a chain, as across a row of slivers, stay apart where the chain is
+    longer than that.
 
     Parameters
     ----------
+    points : ndarray, shape (n_points, 3)
     surface : vtkPolyData
-    same : ndarray of int, shape (n_points,)
-        First point at the place of each point.
 
     Returns
     -------
@@ -39,20 +46,36 @@ def joined(surface: vtkPolyData, same: Indices) -> Indices | None:
     """
     ids, offsets = connectivity(surface.GetPolys())
     first = offsets[:-1][np.diff(offsets) == 3]
-    if not len(first):
-        return None
-    lower, upper = [], []
+    found: list[tuple[Indices, Indices, Array]] = []
     for block in _pool.blocks(len(first), BLOCK):
-        corners = [ids[first[block] + i] for i in range(3)]
-        for one, other in zip(corners, corners[-1:] + corners[:-1], strict=True):
-            # Most edges of most meshes have a length.
-            near = np.flatnonzero(same[one] == same[other])
-            near = near[one[near] != other[near]]
-            lower.append(np.minimum(one[near], other[near]))
-            upper.append(np.maximum(one[near], other[near]))
-    if not sum(map(len, lower)):
+        rows = np.stack([ids[first[block] + i] for i in range(3)], axis=1)
+        corners = [points.take(corner, axis=0).T.astype(np.float64) for corner in rows.T]
+        with np.errstate(invalid="ignore", over="ignore", under="ignore"):
+            sides = [corners[i] - corners[i - 1] for i in range(3)]
+            squares = [kernels.dot(side, side) for side in sides]
+            longest = np.maximum(np.maximum(squares[0], squares[1]), squares[2])
+            for i, square in enumerate(squares):
+                near = np.flatnonzero(square <= NEAR * NEAR * longest)
+                one, other = rows[near, i], rows[near, i - 1]
+                found.append((np.minimum(one, other), np.maximum(one, other), longest[near]))
+    if not found:
         return None
-    return components(np.concatenate(lower), np.concatenate(upper), len(same))
+    lower, upper, longest = (np.concatenate(each) for each in zip(*found, strict=True))
+    apart = lower != upper
+    lower, upper, longest = lower[apart], upper[apart], longest[apart]
+    if not len(lower):
+        return None
+    first = components(lower, upper, len(points))
+    reach = np.zeros(len(points))
+    np.maximum.at(reach, first[lower], NEAR * np.sqrt(longest))
+    ends = np.unique(np.concatenate([lower, upper]))
+    low, high = np.full((2, len(points), 3), np.inf)
+    places = points[ends].astype(np.float64)
+    np.minimum.at(low, first[ends], places)
+    np.minimum.at(high, first[ends], -places)
+    with np.errstate(invalid="ignore"):
+        together = (-high - low).max(axis=1) <= reach
+    return np.where(together[first], first, np.arange(len(points)))
 
 
 def common_normals(
@@ -74,7 +97,8 @@ def common_normals(
     Returns
     -------
     normals : ndarray, shape (n_points, 3)
-        With the direction of the sum of the unit normals of all triangles at joined points.
+        With the direction of the sum of the unit normals of all triangles at joined points but
+        the slivers between these.
     first : ndarray of int, shape (n_points,)
         First of the points that are joined and got one normal.
     """
@@ -83,7 +107,8 @@ def common_normals(
     a, b, c = (points[corner].T.astype(np.float64) for corner in rows.T)
     with np.errstate(invalid="ignore", over="ignore"):
         face = kernels.unit(kernels.cross(b - a, c - a))[0].T
-    face[~np.isfinite(face).all(axis=1)] = 0
+    own = first[rows]
+    face[~np.isfinite(face).all(axis=1) | np.any(own == np.roll(own, 1, axis=1), axis=1)] = 0
     total = np.zeros((len(first), 3))
     for corner in rows.T:
         # A triangle counts once at each place.

@@ -10,6 +10,7 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
 
 from vizlight import _check
+from vizlight.model import kernels
 from vizlight.reading import edges, grids
 from vizlight.reading.arrays import vectors_of
 from vizlight.reading.cells import (
@@ -26,7 +27,15 @@ from vizlight.reading.cells import (
 )
 from vizlight.reading.hull import dimension, outer_surface, scattered
 from vizlight.reading.joints import common_normals, joined
-from vizlight.reading.orientation import SHARP, PartShape, Shape, Sums, crease_share
+from vizlight.reading.orientation import (
+    MOST_LEAN,
+    SHARP,
+    PartShape,
+    Shape,
+    Sums,
+    crease_share,
+    sides_of,
+)
 from vizlight.reading.topology import Owners, is_closed, topology
 
 if TYPE_CHECKING:
@@ -41,6 +50,10 @@ if TYPE_CHECKING:
     from vizlight.shading.options import Facing
 
 
+#: Least number of points, where there are as many, by which the side of a height field is found.
+SEEN = 1 << 16
+
+
 @dataclass(frozen=True)
 class Sided:
     """Normals of the points of a mesh, and what tells which side of them is seen.
@@ -50,13 +63,12 @@ class Sided:
     vectors : ndarray, shape (n_points, n)
         Normals: outward on closed pieces, in agreement with each other on others.
     lean : ndarray of float32, shape (n_points,), or None
-        Sine by which a normal may lean away from the eye while its own side is seen: faces around
-        a point are seen until the last of them is averted where the surface is convex, and no
-        longer than the first where it is concave (negative), but by
-        :data:`~vizlight.reading.orientation.MOST_LEAN` at most. None: 0 everywhere.
-    open : ndarray of bool, shape (n_points,), or bool
-        Points of pieces with a border, or whose faces have no common side, as in a Klein bottle:
-        either side may be seen.
+        Sine of the largest angle between a normal and a face around its point, negative where the
+        surface is concave; see :meth:`leaning`. None: 0 everywhere.
+    open : ndarray of int, shape (n_points,), or int
+        1 for points of pieces with a border, or whose faces have no common side, as in a Klein
+        bottle: either side may be seen. From 2 on the number of such a piece that is a height
+        field; 0 for others.
     sharp : float or ndarray
         Share of edges that are creases, across which normals were averaged; one for each mesh of
         a batch.
@@ -70,7 +82,7 @@ class Sided:
 
     vectors: Array
     lean: Array | None = None
-    open: Bools | bool = False
+    open: Indices | int = 0
     sharp: float | Array = 0.0
     kept: bool = False
     computed: bool = False
@@ -94,7 +106,7 @@ class Sided:
         )
 
     def facts(self) -> Array:
-        """Return for each point its lean, and 1 on a piece with a border."""
+        """Return for each point its lean, and its number of :attr:`open`."""
         lean = np.zeros(len(self.vectors)) if self.lean is None else self.lean
         border = np.broadcast_to(self.open, len(self.vectors))
         return np.stack([lean, border], axis=1).astype(np.float64)
@@ -105,24 +117,77 @@ class Sided:
             return self.vectors
         if facing == "auto" and not self.any_open:
             return self.vectors
-        return Turned(self, points, view, only_open=facing == "auto")
+        lean = self.leaning(facing, self.averted_fields(points, view))
+        return Turned(self, points, view, lean, only_open=facing == "auto")
+
+    def averted_fields(self, points: ArraySource, view: View | None) -> Bools:
+        """Return by the numbers of :attr:`open` the height fields that show an eye their back.
+
+        It is the side that takes up less of what the eye sees, by the sum of ``N . w / d^2`` over
+        some of the points, with ``w`` the direction toward the eye and ``d`` the distance from it.
+        """
+        most = int(np.max(self.open, initial=1))
+        if most < 2 or view is None or self.lean is None:
+            return np.zeros(most + 1, dtype=np.bool_)
+        count = len(self.vectors)
+        some = slice(0, count, max(count // SEEN, 1))
+        number = np.broadcast_to(self.open, count)[some]
+        if view.parallel:
+            shown = self.vectors[some] @ np.asarray(view.direction, dtype=np.float64)
+        else:
+            away = np.asarray(view.position) - np.asarray(points[some], dtype=np.float64)
+            toward, far = kernels.unit(away.T)
+            with np.errstate(all="ignore"):
+                shown = kernels.dot(self.vectors[some].T, toward) / far / far
+        shown = np.where(np.isfinite(shown), shown, 0.0)
+        found: Bools = np.bincount(number, shown, most + 1) < 0
+        found[:2] = False
+        return found
+
+    def leaning(self, facing: Facing, averted: Bools) -> Array | None:
+        """Return the sine by which a normal may lean away from an eye that sees its own side.
+
+        Faces around a point are seen until the last of them is averted where the surface is convex,
+        and no longer than the first where it is concave, but by
+        :data:`~vizlight.reading.orientation.MOST_LEAN` at most. On a height field under ``"auto"``
+        all that is seen of the side that an eye sees most of is lit on that side, and what is
+        seen of the other side, below a border, on the other. ``averted`` are
+        :meth:`averted_fields`.
+        """
+        if self.lean is None:
+            return None
+        limited = np.clip(self.lean, -MOST_LEAN, MOST_LEAN)
+        field = np.asarray(self.open) > 1
+        if facing != "auto" or not field.any():
+            return limited
+        own = np.abs(self.lean)
+        return np.where(field, np.where(averted[self.open], -own, own), limited)
 
 
 class Turned:
     """Normals turned to the side that an eye sees, made for each slice and not stored."""
 
-    def __init__(self, sided: Sided, points: ArraySource, view: View, *, only_open: bool) -> None:
+    def __init__(
+        self,
+        sided: Sided,
+        points: ArraySource,
+        view: View,
+        lean: Array | None,
+        *,
+        only_open: bool,
+    ) -> None:
         self.shape, self.dtype = sided.vectors.shape, sided.vectors.dtype
         self._sided, self._points, self._view, self._only_open = sided, points, view, only_open
+        self._lean = lean
 
     def __getitem__(self, rows: slice, /) -> Array:
         """Return a slice of the normals."""
         sided = self._sided
-        own, lean, border = sided.vectors[rows], sided.lean, sided.open
+        own, lean, border = sided.vectors[rows], self._lean, sided.open
         lean = None if lean is None else lean[rows]
         averted = _averted(own, self._points[rows], self._view, lean)
         if self._only_open:
-            averted &= border[rows] if isinstance(border, np.ndarray) else border
+            averted &= (border[rows] if isinstance(border, np.ndarray) else border) > 0
         return np.where(averted[:, np.newaxis], -own, own)
 
 
@@ -176,10 +241,22 @@ def sided_normals(
     owners = Owners(starts, origin)
     closed = is_closed(surface, owners)
     inward = closed & _inward(places(surface), np.flatnonzero(used(surface)), own, owners)
-    if starts is None:
-        return Sided(-given if inward[0] else given, open=not closed[0])
-    signs = np.repeat(np.where(inward, -1, 1).astype(given.dtype), np.diff(starts))
-    return Sided(signs[:, np.newaxis] * given, open=np.repeat(~closed, np.diff(starts)))
+    size = [len(given)] if starts is None else np.diff(starts)
+    mesh_of = np.repeat(np.arange(owners.count), size)
+    if inward.any():
+        given = given * np.where(inward, -1, 1).astype(given.dtype)[mesh_of, np.newaxis]
+    side = sides_of(given, mesh_of, ~closed)
+    lean = None
+    if np.any(side > 1):
+        lean = _lean_of_given(Shape(surface, owners), own)
+        lean = lean if origin is None else scattered(lean, origin, len(given))
+        lean = np.where((side > 1)[mesh_of], lean, 0)
+    return Sided(given, lean, open=side[mesh_of])
+
+
+def _lean_of_given(shape: Shape, normals: Array) -> Array:
+    """Return the sine of the largest angle between normals and faces, however these are wound."""
+    return np.minimum(*(np.abs(shape.survey(sign * normals).lean) for sign in (1, -1)))
 
 
 def _inward(points: Array, ids: Indices, normals: Array, owners: Owners) -> Bools:
@@ -206,7 +283,15 @@ def _sided_grid(mesh: Grid, given: Array) -> Sided:
     # Edges that are not on the border of a sheet have two faces.
     found = [edges.edge_numbers(x[:-1], x[1:]) for x in map(edges.place_numbers, grids.rim(mesh))]
     if any(np.bitwise_xor.reduce(np.concatenate([[np.uint64(0)], *found]), keepdims=True)):
-        return Sided(given, open=True)
+        side = int(sides_of(given, None, np.ones(1, dtype=np.bool_))[0])
+        if side < 2:
+            return Sided(given, open=side)
+        lean = np.zeros(len(given), dtype=np.float32)
+        for part in grids.parts(mesh):
+            shape = PartShape(finite_faces(part.surface), part.side, np.zeros(3), 1.0)
+            on = part.side == 0
+            lean[part.origin[on]] = _lean_of_given(shape, given[part.origin])[on]
+        return Sided(given, lean, open=side)
     points, normals = [], []
     for part in grids.parts(mesh):
         where = places(part.surface)
@@ -250,8 +335,9 @@ def computed_normals(
     VTK computes them in float32 and orients them consistently. They point outward on a closed
     surface and on a connected piece that is nearly closed. Any other piece has no outside: its
     normals are flipped together if on average they point away from the eye, or toward the
-    centroid of the piece. Points at one place that triangles without area join, as isosurfaces
-    through nodes of a grid have them, have one normal, where their own are within
+    centroid of the piece. Points that slivers join, with a side of at most
+    :data:`~vizlight.reading.joints.NEAR` of the longest, as isosurfaces through nodes of a grid
+    have them, have one normal, where their own are within
     :data:`~vizlight.reading.orientation.SHARP` degrees of it.
 
     Parameters
@@ -286,12 +372,13 @@ def computed_normals(
     shape = Shape(surface, owners)
     vectors = _by_vtk(surface, shape, as_wound=as_wound)
     vectors[~used(surface)] = 0
-    first = None if shape.same is None else joined(surface, shape.same)
+    first = joined(shape.points, surface)
     if first is not None:
         least = float(np.cos(np.radians(SHARP)))
         vectors, first = common_normals(shape.points, shape.triangles, vectors, first, least)
         shape.triangles = first[shape.triangles]
-    lean, border = None, (shape.open | shape.inside_out)[shape.piece]
+    lean, border = None, shape.open | shape.inside_out
+    side: Indices = border.astype(np.intp)
     sharp: Array = np.zeros(owners.count)
     inside = np.zeros(owners.count, dtype=np.intp)
     if sides or not as_wound:
@@ -300,15 +387,17 @@ def computed_normals(
             shape.orient(vectors, survey, view)
         if sides:
             lean = survey.lean if first is None else survey.lean[first]
+            side = sides_of(vectors, shape.piece, border)
             sharp = crease_share(shape.edge_counts(survey.faces, survey.full))
+    number = side[shape.piece]
     if origin is not None:
         if dimension(mesh) == 3:
             size = [count] if starts is None else np.diff(starts)
             inside = size - owners.counts(np.flatnonzero(origin >= 0))
         vectors = scattered(vectors, origin, count)
-        border = scattered(border.astype(np.float32), origin, count) > 0
+        number = scattered(number.astype(np.float64), origin, count).astype(np.intp)
         lean = None if lean is None else scattered(lean, origin, count)
-    all_of = Sided(vectors, lean, border, sharp, computed=True, inside=inside)
+    all_of = Sided(vectors, lean, number, sharp, computed=True, inside=inside)
     return all_of.part(0, slice(None)) if starts is None else all_of
 
 
@@ -348,10 +437,13 @@ def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> S
     if not as_wound and whole.turned(border)[0]:
         vectors *= -1
         lean *= -1
+    side: Indices = border.astype(np.intp)
+    if sides:
+        side = sides_of(vectors, None, border)
     return Sided(
         vectors,
         lean if sides else None,
-        bool(border[0]),
+        int(side[0]),
         float(crease_share(counts)[0]) if sides else 0.0,
         computed=True,
         inside=count - on_surface,

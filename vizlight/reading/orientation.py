@@ -36,10 +36,13 @@ STAND_APART = 0.5
 #: They also are if of those above twice the angle, at least MANY_SHARP of all edges, there are more
 #: than of those between by this factor: corners stand apart from coarse arcs.
 CORNERS_APART = 0.7
-#: Most that a normal may lean, as a sine. Where faces around a point differ by more, its surface is
-#: too rough or too coarse to tell bumps from hollows: of the pixels of a noisy isosurface, lit from
-#: the side, 26 % are off by more than a tenth of white without the limit, and 6 % with it.
+#: Most that a normal may lean, as a sine, but on height fields. Where faces around a point differ
+#: by more, its surface is too rough or too coarse to tell bumps from hollows: of the pixels of a
+#: noisy isosurface, lit from the side, 26 % are off by more than a tenth of white without the
+#: limit, and 6 % with it.
 MOST_LEAN = 0.05
+#: Number of normals, and of steps, by which the direction of a height field is searched for.
+SEARCHED, STEPS = 1 << 14, 32
 
 
 class Sums(NamedTuple):
@@ -106,8 +109,8 @@ class Survey(NamedTuple):
     sums : Sums
         Sums over each piece, but for the score, which is 0.
     lean : ndarray of float32, shape (n_points,)
-        How far the normal of each point may lean away from the eye; see
-        :class:`~vizlight.reading.normals.Sided`.
+        Sine of the largest angle between the normal of each point and a face around it, 1 from a
+        right angle on; negative where the surface is concave.
     faces : ndarray of float32, shape (3, n_triangles)
         Unit normals of the triangles.
     full : ndarray of bool, shape (n_triangles,)
@@ -217,7 +220,8 @@ class Shape:
             unit, size = kernels.unit(across)
             sides = [kernels.dot(side, side) for side in (u, v, c - b)]
             longest = np.maximum(np.maximum(sides[0], sides[1]), sides[2])
-            faces[:, numbers], full[numbers] = unit, size > NARROWEST * longest
+            wide = size > NARROWEST * longest
+            faces[:, numbers], full[numbers] = unit, wide
             own = slice(None)
             if self.side is not None:
                 own = self.side[rows].min(axis=1) == 0
@@ -226,13 +230,15 @@ class Shape:
             for at, inward in zip(corners, (u + v, v - 2 * u, u - 2 * v), strict=True):
                 normal = np.ascontiguousarray(normals.take(at, axis=0).T, dtype=np.float64)
                 with np.errstate(invalid="ignore"):
-                    np.minimum.at(least, at, kernels.dot(normal, unit).astype(np.float32))
+                    cosine = np.where(wide, kernels.dot(normal, unit), 1.0)
+                    np.minimum.at(least, at, cosine.astype(np.float32))
                 np.add.at(bend, at, kernels.dot(normal, inward))
         lean = least
         for block in _pool.blocks(n, BLOCK):
-            sine = np.sqrt(np.clip(1 - least[block] ** 2, 0, MOST_LEAN * MOST_LEAN))
-            side: Array = -np.sign(bend[block])
-            lean[block] = np.where(np.isfinite(side), side * sine, 0)
+            near = least[block]
+            sine = np.where(near > 0, np.sqrt(np.clip(1 - near * near, 0, 1)), 1)
+            bent = bend[block]
+            lean[block] = np.where(np.isfinite(bent), np.copysign(sine, -bent), 0)
         return Survey(sums, lean, faces, full)
 
     def edge_counts(self, faces: Array, full: Bools) -> Indices:
@@ -314,6 +320,72 @@ class PartShape(Shape):
         self.finite = np.all(np.isfinite(self.points), axis=1)
         self.piece, self.count = np.zeros(len(self.points), dtype=np.intp), 1
         self.frame = middle[:, np.newaxis], np.array([scale])
+
+
+def sides_of(vectors: Array, piece: Indices | None, border: Bools) -> Indices:
+    """Return which pieces have a border, and which of these are height fields.
+
+    Parameters
+    ----------
+    vectors : ndarray, shape (n_points, 3)
+        Normals, zero or not finite where a point has none.
+    piece : ndarray of int, shape (n_points,), or None
+        Piece of each point; None for a single one.
+    border : ndarray of bool, shape (count,)
+        Pieces of which either side may be seen.
+
+    Returns
+    -------
+    ndarray of int, shape (count,)
+        0 for pieces without a border, 1 for those with one, and from 2 on a number of its own for
+        each that is a height field: its normals lie within a right angle of an axis, or of a
+        direction that a short search finds.
+    """
+    side: Indices = border.astype(np.intp)
+    if border.any():
+        low, high = np.full((2, 4, len(border)), np.inf)
+        middle = _middles(vectors, piece, border)
+        for block in _pool.blocks(len(vectors), BLOCK):
+            own, of = _normals_of(vectors, piece, block, border)
+            for i, along in enumerate((np.einsum("ij,ij->i", own, middle[of]), *own.T)):
+                np.minimum.at(low[i], of, along)
+                np.minimum.at(high[i], of, -along)
+        found = ((low > 0) | (high > 0)).any(axis=0) & np.isfinite(low[0])
+        side[found] = 2 + np.arange(np.count_nonzero(found))
+    return side
+
+
+def _normals_of(
+    vectors: Array, piece: Indices | None, rows: slice, border: Bools
+) -> tuple[Array, Indices]:
+    """Return the normals of some points of the pieces with a border, and their pieces."""
+    own = vectors[rows]
+    of = np.zeros(len(own), dtype=np.intp) if piece is None else piece[rows]
+    has = np.isfinite(own).all(axis=1) & own.any(axis=1) & border[of]
+    return own[has].astype(np.float64), of[has]
+
+
+def _middles(vectors: Array, piece: Indices | None, border: Bools) -> Array:
+    """Return for each piece a direction, within a right angle of all its normals if one is found.
+
+    It begins at their mean; some of the vectors that are furthest from it draw it to them.
+    """
+    total = np.zeros((len(border), 3))
+    for block in _pool.blocks(len(vectors), BLOCK):
+        own, of = _normals_of(vectors, piece, block, border)
+        total += np.stack([np.bincount(of, axis, len(border)) for axis in own.T], axis=1)
+    middle = kernels.unit_rows(total)
+    some = slice(None, None, max(len(vectors) // SEARCHED, 1))
+    own, of = _normals_of(vectors, piece, some, border)
+    for _ in range(STEPS):
+        along = np.einsum("ij,ij->i", own, middle[of])
+        least = np.zeros(len(border))
+        np.minimum.at(least, of, along)
+        beyond = (along <= least[of]) & (along <= 0)
+        if not beyond.any():
+            break
+        np.add.at(middle, of[beyond], own[beyond])
+    return middle
 
 
 def crease_share(counts: Indices) -> Array:

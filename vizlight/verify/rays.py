@@ -10,10 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from vizlight._types import Array, VectorLike
-
-#: Number of places on a ray through a height field.
-SAMPLES = 20_000
+    from vizlight._types import Array, Indices, VectorLike
 
 
 def relief_ratio(
@@ -21,7 +18,9 @@ def relief_ratio(
     way: VectorLike | None, end: VectorLike | None = None, base: float = -math.inf,
     wall: bool = False,
 ) -> float:  # fmt: skip
-    """Return t of a point of a height field, by many samples along its ray.
+    """Return t of a point of a height field, its ray cut at every plane of nodes.
+
+    Between two cuts the height of the surface above it is a quadratic, known from three places.
 
     Parameters
     ----------
@@ -43,30 +42,67 @@ def relief_ratio(
     Returns
     -------
     float
-        t, to 1/20,000 of the ray over the depth.
+        t, to rounding where the ray does not graze the surface.
     """
     start = place - depth * normal
-    rise = max(float(np.nanmax(z) - start[2]), 0.0)
-    if end is not None:
-        along = np.asarray(end, dtype=np.float64) - start
-        if along @ normal <= depth:
-            return 0.0
+    toward = np.asarray(way if end is None else end, dtype=np.float64)
+    along = toward - (start if end is not None else 0)
+    # A sine or a cosine of a right angle is not 0 in a computer.
+    along[np.abs(along) < 4 * np.finfo(float).eps * np.abs(along).max()] = 0
+    highest = max(float(np.nanmax(z) - start[2]), 0.0)
+    if end is None or along[2] > highest:
         # There is no solid above the highest node.
-        along = along * min(rise / along[2], 1.0) if along[2] > 0 else along
-    else:
-        toward = np.asarray(way, dtype=np.float64)
-        along = rise / toward[2] * toward
-    places = start + (np.arange(SAMPLES)[:, np.newaxis] + 0.5) / SAMPLES * along
-    across, up = (np.clip(p, a[0], a[-1]) for p, a in ((places[:, 0], x), (places[:, 1], y)))
-    i, j = (np.clip(np.searchsorted(a, p) - 1, 0, len(a) - 2) for a, p in ((x, across), (y, up)))
+        along = along * (highest / along[2])
+    bounds = ((x, start[0], along[0]), (y, start[1], along[1]), ([base], start[2], along[2]))
+    cuts = [(np.asarray(at) - first) / step for at, first, step in bounds if step]
+    known = np.concatenate([[0.0, 1.0], *cuts])
+    ends = np.unique(known[(known >= 0) & (known <= 1)])
+    low, high = ends[:-1], ends[1:]
+    three = start + np.stack([low, (low + high) / 2, high])[..., np.newaxis] * along
+    middle = three[1]
+    f = np.full(low.shape, -np.inf)
+    parts: Array = np.full((3, len(low)), -np.inf)
+    # In a plane of nodes the cell at either side may be the one that has a surface.
+    for back in ((0, 0), (1, 0), (0, 1), (1, 1)):
+        cells = [
+            np.clip(
+                np.searchsorted(nodes, middle[:, axis], "right") - 1 - back[axis], 0, len(nodes) - 2
+            )
+            for axis, nodes in enumerate((x, y))
+        ]
+        above = _above(x, y, z, three, *cells, wall=wall)
+        better = np.isfinite(above).all(axis=0) & ~np.isfinite(f)
+        parts[:, better], f[better] = above[:, better], 0.0
+    share = _positive(*np.where(np.isfinite(f), parts, -1.0))
+    share[~(middle[:, 2] > base)] = 0
+    inside = float(share @ (high - low)) * math.hypot(*along)
+    return float(depth / max(inside, depth))
+
+
+def _above(
+    x: Array, y: Array, z: Array, places: Array, i: Indices, j: Indices, *, wall: bool
+) -> Array:
+    """Return the height of the surface of some cells above places of shape (3, M, 3)."""
+    across, up = places[..., 0], places[..., 1]
+    if not wall:
+        across, up = np.clip(across, x[0], x[-1]), np.clip(up, y[0], y[-1])
     u, v = (across - x[i]) / (x[i + 1] - x[i]), (up - y[j]) / (y[j + 1] - y[j])
     low = (1 - u) * z[j, i] + u * z[j, i + 1]
     high = (1 - u) * z[j + 1, i] + u * z[j + 1, i + 1]
-    within = (places[:, 2] < (1 - v) * low + v * high) & (places[:, 2] > base)
-    if wall:
-        within &= (across == places[:, 0]) & (up == places[:, 1])
-    inside = float(np.mean(within)) * math.hypot(*along)
-    return float(depth / max(inside, depth))
+    within = (np.abs(u[1] - 0.5) <= 0.5) & (np.abs(v[1] - 0.5) <= 0.5)
+    return np.asarray(np.where(within, (1 - v) * low + v * high - places[..., 2], np.nan))
+
+
+def _positive(first: Array, middle: Array, last: Array) -> Array:
+    """Return the share of [0, 1] where the quadratics through three places are positive."""
+    two, one = 2 * (first - 2 * middle + last), 4 * middle - 3 * first - last
+    q = -0.5 * (one + np.copysign(np.sqrt(np.maximum(one * one - 4 * two * first, 0)), one))
+    with np.errstate(all="ignore"):
+        roots = np.clip(np.nan_to_num(np.stack([q / two, first / q]), nan=0.0), 0, 1)
+    roots[:, one * one < 4 * two * first] = 0
+    ends = np.sort(np.concatenate([np.zeros((1, len(one))), roots, np.ones((1, len(one)))]), axis=0)
+    at = (ends[:-1] + ends[1:]) / 2
+    return np.asarray(np.sum(np.diff(ends, axis=0) * (first + at * (one + at * two) > 0), axis=0))
 
 
 def solid_ratio(

@@ -33,10 +33,13 @@ VISIBLE = 1 / 255
 DOUBT = 0.05
 #: Largest number of rays through a solid that are computed again.
 RAYS = 64
-#: Largest number of places or triangles that all these rays are tested against.
+#: Largest number of planes of nodes or triangles that all these rays are tested against.
 TRIALS = 20_000_000
 SHADOW = ("t",)
 SHADOWED = "cast shadows, whose edges run between the points"
+BANDED = (
+    "a band has one light, and nothing is interpolated: the difference above is all of its error"
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,6 +85,9 @@ class Run:
         None if 128 is not enough.
     unmeasured : str
         What of the error between the points is not measured and why, in words; empty if all is.
+    tinted : bool
+        Whether it is the light that :func:`vizlight.tint` puts on colours, of points that a filter
+        lit before.
     """
 
     points: int
@@ -102,6 +108,7 @@ class Run:
     visible: float = math.nan
     finer: int | None = 1
     unmeasured: str = ""
+    tinted: bool = False
 
     @property
     def missed(self) -> float:
@@ -122,12 +129,15 @@ class Report:
     seed: int = 0
     runs: list[Run] = field(default_factory=list)
     seconds: float = 0.0
+    #: Number of points that workers lit, which record nothing here.
+    elsewhere: int = 0
 
     @property
     def points(self) -> int:
-        """Number of points lit in all runs, or of points with shadows if no run lit any."""
-        lit = [run.points for run in self.runs if run.terms != SHADOW]
-        return sum(lit or [run.points for run in self.runs])
+        """Number of points lit in all runs, or else of points with colours or with shadows."""
+        shaded = [run for run in self.runs if run.terms != SHADOW]
+        lit = [run for run in shaded if not run.tinted]
+        return sum(run.points for run in lit or shaded or self.runs)
 
     @property
     def invalid(self) -> int:
@@ -166,9 +176,15 @@ class Report:
         ]
         if self.bright:
             lines.append(f"{self.bright} points are brighter than 1, which a picture shows as 1")
-        for run in self.runs:
+        if self.elsewhere:
             lines.append(
-                f"{run.points} points, {run.precision}: {' + '.join(run.terms)}; "
+                f"{self.elsewhere} points lit by workers, which record nothing: cost and error "
+                "unknown; without map= they are measured"
+            )
+        for run in self.runs:
+            what = "points on whose colours light was put" if run.tinted else "points"
+            lines.append(
+                f"{run.points} {what}, {run.precision}: {' + '.join(run.terms)}; "
                 f"{run.seconds:.3g} s, {run.nanoseconds:.3g} ns per point, {run.bytes} bytes"
             )
             lines += _lines(run)
@@ -191,8 +207,7 @@ def _lines(run: Run) -> list[str]:
         what = f"{run.sample} points" if run.missed else f"all {run.sample} points"
         error, how = "rounding error", f"{what} computed again one by one in float64"
         if run.terms == SHADOW:
-            # The check samples each ray, which the shadow does not.
-            error, how = "difference", f"{what} from samples along each ray, which err by as much"
+            error, how = "error of t", f"{what} computed again, each ray against all cells"
         elif not math.isnan(run.bound):
             error, how = "difference", f"light at {run.sample} places from their band"
         text = f"  {error} {run.error:.2g} at most, {run.rms:.2g} RMS, {how}"
@@ -241,6 +256,7 @@ def _percent(share: float) -> str:
 
 
 _ACTIVE: contextvars.ContextVar[Report | None] = contextvars.ContextVar("report", default=None)
+_TINTED: contextvars.ContextVar[bool] = contextvars.ContextVar("tinted", default=False)
 
 
 @contextlib.contextmanager
@@ -271,7 +287,7 @@ def report(*, sample: int = 4096, seed: int = 0) -> Iterator[Report]:
     Notes
     -----
     The sample's light is computed from the scene itself, not from a plan. t of a cos-theta shadow
-    is computed again on at most 64 rays, at 20,000 places of each ray in a height field, or against
+    is computed again on at most 64 rays, each against all cells of a height field on its way, or
     all triangles of a closed surface; at depth 0 the report gives no error. Bands of
     ``isoluminance`` are compared with the light at their middles. A point of the sample takes about
     40 µs, 60 µs for ``model="cylinder"``, and a ray 3 ms; this time is not part of the reported
@@ -282,8 +298,9 @@ def report(*, sample: int = 4096, seed: int = 0) -> Iterator[Report]:
     as a fragment shader computes it. It is computed by the engine in float64, in some 4 ms for
     4,096 places and 0.1 µs for each cell. It is not measured for fur, for cast shadows, for
     light inside a bundle, and for points without cells, and the report says so where it is not.
-    Filters that other threads call are not recorded. What a reader can read back from the picture
-    is another question: :func:`vizlight.legibility` measures it.
+    Filters that other threads call are not recorded, nor light by the workers of
+    ``pieces.light(..., map=)``, whose points the report counts. What a reader can read back from
+    the picture is another question: :func:`vizlight.legibility` measures it.
 
     Examples
     --------
@@ -351,6 +368,7 @@ def note(given: ShadingInputs, scene: Scene, shading: Shading, options: ShadingO
             ),
             visible=float(np.mean(places.error > VISIBLE)) if len(places.error) else math.nan,
             finer=places.finer,
+            tinted=_TINTED.get(),
             unmeasured=_unmeasured(given, shading, len(places.error)) if active.sample else "",
         )
     )
@@ -374,6 +392,8 @@ def _unmeasured(given: ShadingInputs, shading: Shading, places: int) -> str:
         return SHADOWED
     if given.generated or given.fur_height is not None:
         return "fur, which light passes on a way of its own at each place"
+    if given.transmittance is not None or given.occlusion is not None:
+        return "light inside a bundle, or in the shade of the sky, whose shares the points have"
     if not places:
         return "points without cells between them, or cells without light"
     k = given.layout.k
@@ -410,7 +430,7 @@ def note_ratio(
     reference : callable
         Takes the indices of a point and a light, returns t by a second implementation.
     effort : int
-        Number of places or triangles that ``reference`` tests; 0 if it cannot be called.
+        Number of planes of nodes or triangles that ``reference`` tests; 0 if it cannot be called.
     """
     active = _ACTIVE.get()
     if active is None:
@@ -453,7 +473,8 @@ def note_bands(
     )  # fmt: skip
     off = off[np.isfinite(off)]
     active.seconds -= time.perf_counter() - start
-    active.runs.append(_run(off, terms, values, seconds, size, points, 0, bound))
+    run = _run(off, terms, values, seconds, size, points, 0, bound)
+    active.runs.append(dataclasses.replace(run, unmeasured=BANDED if active.sample else ""))
 
 
 def _run(
@@ -477,6 +498,35 @@ def _run(
 def is_open() -> bool:
     """Return whether a report records the light of this context."""
     return _ACTIVE.get() is not None
+
+
+@contextlib.contextmanager
+def tinted() -> Iterator[None]:
+    """Record light in this context as that of colours, of points that were lit before."""
+    token = _TINTED.set(True)
+    try:
+        yield
+    finally:
+        _TINTED.reset(token)
+
+
+def note_stored(values: Array, name: str) -> None:
+    """Add light on colours that is taken from the arrays of an earlier result."""
+    active = _ACTIVE.get()
+    if active is not None:
+        run = _run(np.empty(0), ("stored",), values, 0.0, 0, len(values), 0, math.nan)
+        said = f"light on colours as the arrays of {name!r} hold it, measured where that was lit"
+        active.runs.append(dataclasses.replace(run, tinted=True, unmeasured=said))
+
+
+@contextlib.contextmanager
+def workers(points: Callable[[], int]) -> Iterator[None]:
+    """Note that workers lit some points, unless they recorded runs in this context."""
+    active = _ACTIVE.get()
+    before = len(active.runs) if active is not None else 0
+    yield
+    if active is not None and len(active.runs) == before:
+        active.elsewhere += points()
 
 
 @contextlib.contextmanager

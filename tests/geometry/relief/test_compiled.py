@@ -28,7 +28,7 @@ def test_squares_are_the_cells(way, border, random):
     ways = np.repeat(way[:, None], 500, axis=1)
     compiled.walk(
         start, ways, np.full(500, marching.FAR), *field.edges, field.corners,
-        compiled.levels(field.bounds), field.base, field.top, found,
+        compiled.levels(field.bounds), field.base, field.top, border == "wall", found,
     )  # fmt: skip
     np.testing.assert_allclose(found, by_cells(field, start, way), atol=1e-11)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -75,3 +76,62 @@ def test_large_squares_change_nothing(random):
     one, many = (marching.march(field, start, way, reach, coarse=c) for c in (False, True))
     np.testing.assert_allclose(one, many, atol=64 * 2.2e-16 * 10)
     assert one.max() > 3
+
+
+def brute(x, y, z, start, way, *, wall):
+    """Return the length inside of one ray, cut at all planes of nodes: a closed solid, no cells.
+
+    Between two planes the height below the surface is a quadratic, known from three places; in a
+    plane of nodes it is that of any cell beside it that has a surface.
+    """
+    cuts = [0.0, 1e3]
+    for nodes, p, w in ((x, start[0], way[0]), (y, start[1], way[1])):
+        cuts += [s for s in (nodes - p) / w if 0 < s < 1e3] if abs(w) > 1e-12 else []
+    cuts, total = np.unique(cuts), 0.0
+    for low, high in pairwise(cuts):
+        three = start + np.array([low, (low + high) / 2, high])[:, np.newaxis] * way
+        if not wall:
+            three[:, :2] = np.clip(three[:, :2], (x[0], y[0]), (x[-1], y[-1]))
+        beside = [
+            [k for k in range(len(n) - 1) if n[k] - 1e-9 <= at <= n[k + 1] + 1e-9]
+            for n, at in ((x, three[1, 0]), (y, three[1, 1]))
+        ]
+        corners = [(i, j, z[j : j + 2, i : i + 2]) for i in beside[0] for j in beside[1]]
+        solid = [each for each in corners if np.isfinite(each[2]).all()]
+        if high - low < 1e-12 or not solid:
+            continue
+        i, j, ((a, b), (c, d)) = solid[0]
+        u, v = (three[:, 0] - x[i]) / (x[i + 1] - x[i]), (three[:, 1] - y[j]) / (y[j + 1] - y[j])
+        f = a * (1 - u) * (1 - v) + b * u * (1 - v) + c * (1 - u) * v + d * u * v - three[:, 2]
+        two, one = 2 * (f[0] - 2 * f[1] + f[2]), -3 * f[0] + 4 * f[1] - f[2]
+        two = two if abs(two) > 1e-10 * abs(one) else 0.0
+        roots = np.roots([two, one, f[0]]) if abs(two) + abs(one) > 1e-12 else np.zeros(0)
+        ends = np.unique([0, *(r.real for r in roots if abs(r.imag) < 1e-9 and 0 < r.real < 1), 1])
+        middle = (ends[:-1] + ends[1:]) / 2
+        inside = f[0] + middle * (one + middle * two) > 1e-10
+        total += (high - low) * np.sum(np.diff(ends)[inside])
+    return total
+
+
+@pytest.mark.parametrize("azimuth", [0, 90, 180, 270])
+@pytest.mark.parametrize("kind", ["extend", "wall", "holes"])
+def test_walls_are_part_of_the_solid(kind, azimuth, random):
+    """Rough fields of integer heights, where rays run in planes of nodes and of walls."""
+    x, y = np.arange(6.0), np.arange(5.0)
+    z = random.integers(0, 4, (5, 6)).astype(float)
+    if kind == "holes":
+        z[[1, 3, 4], [4, 1, 3]] = np.nan
+    places = np.stack(np.meshgrid(x, y, [-0.5, 0.25, 1.75]), axis=-1).reshape(-1, 3)
+    border = "extend" if kind == "extend" else "wall"
+    for elevation in (20, 45, 90):
+        way = sun(elevation, azimuth)
+        found = relief.inside_length(x, y, z, places, direction=way, border=border, method="exact")
+        expected = [brute(x, y, z, place, way, wall=border == "wall") for place in places]
+        np.testing.assert_allclose(found, expected, atol=1e-9)
+    lamps = places + 12 * sun(30, azimuth)
+    for place, at in zip(places[::7], lamps[::7], strict=True):
+        (length,) = relief.inside_length(
+            x, y, z, [place], position=at, border=border, method="exact"
+        )
+        ahead = brute(x, y, z, place, sun(30, azimuth), wall=border == "wall")
+        assert length == pytest.approx(ahead, abs=1e-9)

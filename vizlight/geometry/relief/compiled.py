@@ -108,24 +108,44 @@ def child(edges: Array, cell: int, level: int, place: float) -> int:
     return left + (1 if place >= edges[min((left + 1) << level, len(edges) - 1)] else 0)
 
 
+@_compiled.kernel(inline=True)
+def beside(largest: Array, at: int, before_x: int, before_y: int) -> tuple[int, int]:
+    """Return steps back to a cell that is not empty, of those at both sides of a ray's planes."""
+    if largest[at] > -math.inf or before_x + before_y == 0:
+        return 0, 0
+    if before_x > 0 and largest[at - 1] > -math.inf:
+        return 1, 0
+    if before_y > 0 and largest[at - before_y] > -math.inf:
+        return 0, 1
+    return (1, 1) if before_x > 0 and before_y > 0 else (0, 0)
+
+
 @_compiled.kernel(seconds=1.4)
 def walk(
     start: Array, way: Array, reach: Array, x: Array, y: Array, corners: Array, bounds: Levels,
-    base: float, top: float, out: Array,
+    base: float, top: float, walls: bool, out: Array,
 ) -> None:  # fmt: skip
-    """Write the lengths of rays inside the solid, as :func:`marching.march` returns them."""
+    """Write the lengths of rays inside the solid, as :func:`marching.march` returns them.
+
+    ``walls`` tells that there are cells without a solid.
+    """
     largest, least, offset, columns = bounds
-    highest = len(offset) - 1
     for ray in range(len(out)):
         px, py, pz = start[0, ray], start[1, ray], start[2, ray]
         wx, wy, wz = way[0, ray], way[1, ray], way[2, ray]
         s, end = slab(base, top, pz, wz, reach[ray])
         i, j, level, length = locate(x, px + s * wx), locate(y, py + s * wy), 0, 0.0
+        before_x = 1 if walls and wx == 0 and px == x[i] else 0
+        before_y = columns[0] if walls and wy == 0 and py == y[j] else 0
+        # A ray in a plane of nodes goes from cell to cell.
+        highest = len(offset) - 1 if before_x + before_y == 0 else 0
         while s < end:
             cross_x, cross_y = crossing(x, i, level, px, wx), crossing(y, j, level, py, wy)
             leave = min(max(min(cross_x, cross_y), s), end)
             z, last = pz + s * wz, pz + leave * wz
             at = offset[level] + j * columns[level] + i
+            back_x, back_y = beside(largest, at, before_x, before_y)
+            at -= back_x + back_y * columns[0]
             if max(z, last) <= least[at]:
                 length += leave - s
             elif min(z, last) < largest[at]:
@@ -134,9 +154,10 @@ def walk(
                     i = child(x, i, level, px + s * wx)
                     j = child(y, j, level, py + s * wy)
                     continue
-                u, du = relative(x, i, px + s * wx, wx)
-                v, dv = relative(y, j, py + s * wy, wy)
-                length += in_cell(corners, i, j, (u, v, z), (du, dv, wz), leave - s)
+                u, du = relative(x, i - back_x, px + s * wx, wx)
+                v, dv = relative(y, j - back_y, py + s * wy, wy)
+                own = in_cell(corners, i - back_x, j - back_y, (u, v, z), (du, dv, wz), leave - s)
+                length += own
             if leave >= end:
                 break
             s = leave

@@ -79,10 +79,15 @@ class _Rays:
         self.level = np.zeros(len(s), np.int32)
         place = start[:2] + s * way[:2]
         self.cell = np.stack([field.cell(a, place[a]) for a in (0, 1)]).astype(np.int32)
+        #: Whether rays run in a plane of nodes, and so beside cells of which one may be empty.
+        self.beside = np.zeros((2, len(s)), np.bool_)
+        if field.border == "wall":
+            at = np.stack([self.edges[a][self.cell[a]] for a in (0, 1)])
+            self.beside = (way[:2] == 0) & (start[:2] == at)
 
     def keep(self, going: Bools) -> None:
         """Drop the rays that have reached their end."""
-        for name in ("start", "way", "cell", "s", "end", "level"):
+        for name in ("start", "way", "cell", "s", "end", "level", "beside"):
             setattr(self, name, getattr(self, name)[..., going])
 
     def step(self) -> Array:
@@ -93,13 +98,14 @@ class _Rays:
         leave = np.minimum(np.maximum(np.where(by_x, cross_x, cross_y), s), self.end)
         z0 = self.start[2] + s * self.way[2]
         z1 = self.start[2] + leave * self.way[2]
-        at = self.offset[level] + j * self.columns[level] + i
+        own = self._own_cell()
+        at = self.offset[level] + own[1] * self.columns[level] + own[0]
         above = np.minimum(z0, z1) >= self.largest[at]
         below = np.maximum(z0, z1) <= self.least[at]
         clear = above | below
         inside = np.where(below, leave - s, 0.0)
         leaf = np.flatnonzero(~clear & (level == 0))
-        inside[leaf] = self._in_cell(leaf, leave[leaf])
+        inside[leaf] = self._in_cell(leaf, own[:, leaf], leave[leaf])
 
         descend = ~clear & (level > 0)
         onward = ~descend & (leave < self.end)
@@ -110,13 +116,28 @@ class _Rays:
         if self.top:
             # ... or into the square twice as wide, if both begin at the same place ...
             entry = np.where(by_x, i ^ (x < 0), j ^ (y < 0)) & 1
-            ascend = (onward & (entry == 0) & (level < self.top)).astype(np.int32)
+            low = (level < self.top) & ~self.beside.any(axis=0)
+            ascend = (onward & (entry == 0) & low).astype(np.int32)
             i >>= ascend
             j >>= ascend
             level += ascend
             # ... or down into the quarter that contains the ray.
             self._descend(np.flatnonzero(descend))
         return inside
+
+    def _own_cell(self) -> Indices:
+        """Return the squares of rays; in a plane of nodes the one beside it that is not empty."""
+        found: Indices = self.cell.astype(np.intp)
+        rows = np.flatnonzero(self.beside.any(axis=0))
+        if not len(rows):
+            return found
+        for back in ((0, 0), (1, 0), (0, 1), (1, 1)):
+            i, j = found[:, rows]
+            empty = np.isneginf(self.largest[j * self.columns[0] + i])
+            allowed = np.all(np.array(back, np.bool_) <= self.beside[:, rows].T, axis=1)
+            other = rows[empty & allowed]
+            found[:, other] = self.cell[:, other] - np.array(back)[:, np.newaxis]
+        return found
 
     def _cross(self, axis: int) -> Array:
         """Return the distances at which rays leave their square along an axis."""
@@ -137,13 +158,13 @@ class _Rays:
             self.cell[axis, which] = left + (place >= middle)
         self.level[which] = level
 
-    def _in_cell(self, which: Indices, leave: Array) -> Array:
+    def _in_cell(self, which: Indices, own: Indices, leave: Array) -> Array:
         """Return the length below the bilinear surface of one cell, where f = h - z > 0."""
-        i, j, s = self.cell[0, which], self.cell[1, which], self.s[which]
+        (i, j), s = own, self.s[which]
         at = j * self.stride + i
         z00, z01 = self.corners[at], self.corners[at + 1]
         z10, z11 = self.corners[at + self.stride], self.corners[at + self.stride + 1]
-        (u, du), (v, dv) = (self._share(axis, which, s) for axis in (0, 1))
+        (u, du), (v, dv) = (self._share(axis, own[axis], which, s) for axis in (0, 1))
         # h = z00 + u a + v b + u v c, where u and v are linear in the distance along the ray.
         a, b, c = z01 - z00, z10 - z00, (z11 - z10) - (z01 - z00)
         z = self.start[2, which] + s * self.way[2, which]
@@ -151,12 +172,12 @@ class _Rays:
         f1 = du * (a + v * c) + dv * (b + u * c) - self.way[2, which]
         return _positive(f0, f1, du * dv * c, leave - s)
 
-    def _share(self, axis: int, which: Indices, s: Array) -> tuple[Array, Array]:
+    def _share(self, axis: int, cell: Indices, which: Indices, s: Array) -> tuple[Array, Array]:
         """Return relative positions of rays in their cells and their rates of change.
 
         Both are 0 in an unbounded cell.
         """
-        edges, cell, way = self.edges[axis], self.cell[axis, which], self.way[axis, which]
+        edges, way = self.edges[axis], self.way[axis, which]
         low, width = edges[cell], edges[cell + 1] - edges[cell]
         place = self.start[axis, which] + s * way
         ends = np.isfinite(width)

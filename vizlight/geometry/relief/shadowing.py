@@ -29,6 +29,8 @@ Method = Literal["fast", "exact"]
 BLOCK = 1 << 14
 #: Depths below this share of the field's size use the limit for depth 0, since rounding dominates.
 LEAST_DEPTH = 1e-9
+#: Components of a direction below this share of the largest are taken for 0.
+ROUNDING = 4 * np.finfo(np.float64).eps
 
 
 def inside_length(
@@ -65,7 +67,8 @@ def inside_length(
     border : {"extend", "wall"}
         Shape of the solid beyond the outermost nodes. "extend": the heights of the border continue
         without end, and a hole has the height of the nearest node by index. "wall": the solid ends
-        there in vertical walls, and likewise at each cell that lacks a corner.
+        there in vertical walls, and likewise at each cell that lacks a corner. Walls are part of
+        the solid: a ray that runs in the plane of one is inside below the wall's upper edge.
     method : {"fast", "exact"}
         Method of following the rays. "exact": cells are crossed one by one, or 2^l x 2^l at once
         where all of them are above or below the ray. "fast": the same for a light with a position
@@ -211,7 +214,9 @@ class Ray:
         assert self.position is not None
         way = self.position[:, np.newaxis] - start
         size = kernels.length(way)
-        return way / np.where(size > 0, size, 1), np.minimum(size, marching.FAR)
+        unit = way / np.where(size > 0, size, 1)
+        unit[np.abs(unit) < ROUNDING] = 0
+        return unit, np.minimum(size, marching.FAR)
 
 
 def toward(
@@ -228,6 +233,8 @@ def toward(
         raise ValueError(_check.message(name, "3 components", len(vector)))
     if position is None:
         way = np.array(vector) / max(abs(c) for c in vector)
+        # The sine of 180 degrees is not 0 in a computer; a ray in a plane of nodes stays there.
+        way[np.abs(way) < ROUNDING] = 0
         return Ray(way / np.linalg.norm(way), None)
     place = np.array(vector) - field.origin
     height = float(field.height(place[:1], place[1:2])[0])
@@ -348,7 +355,8 @@ def _lengths(
         else:
             compiled.walk(
                 np.ascontiguousarray(places), np.ascontiguousarray(way), reach, *field.edges,
-                field.corners, bounds, float(field.base), float(field.top), length[rows],
+                field.corners, bounds, float(field.base), float(field.top),
+                field.border == "wall", length[rows],
             )  # fmt: skip
         return int(rows.stop)
 
