@@ -22,7 +22,7 @@ import pyvista as pv
 from vtkmodules import vtkIOXML
 
 from vizlight import _check, _supervise
-from vizlight.mesh import blocks, foreign_files, hull, short_files
+from vizlight.mesh import blocks, foreign_files, georeference, hull, short_files
 from vizlight.reading.cells import check_whole
 from vizlight.reading.edges import place_numbers
 
@@ -282,9 +282,9 @@ def warped(mesh: pv.DataSet, name: str, factor: float, /) -> pv.DataSet:
     Parameters
     ----------
     mesh : pyvista.DataSet
-        Mesh, which is not changed.
+        Mesh, which is not changed. A map in degrees becomes one in metres about its centre.
     name : str
-        Name of the array of heights.
+        Name of the array of heights. Cells at heights that are not finite are left out.
     factor : float
         Length in the unit of the mesh that corresponds to one unit of height.
 
@@ -295,12 +295,23 @@ def warped(mesh: pv.DataSet, name: str, factor: float, /) -> pv.DataSet:
     Raises
     ------
     ValueError
-        If the array does not exist, or the factor is not finite.
+        If the array does not exist or has no finite value, or the factor is not finite.
     """
     _dataset(mesh)
-    _scalars(mesh, "warp", name)
-    moved: pv.DataSet = mesh.warp_by_scalar(name, factor=_check.number("warp_factor", factor))
-    return moved
+    holes = ~np.isfinite(_scalars(mesh, "warp", name))
+    factor = _check.number("exaggeration", factor)
+    mesh = georeference.in_metres(mesh)
+    if holes.all():
+        raise ValueError(_check.message("warp", "an array with finite values", repr(name)))
+    if isinstance(mesh, pv.ImageData | pv.RectilinearGrid):
+        # VTK raises grids to float32, which is coarse far from the origin.
+        points = np.array(mesh.points, dtype=np.float64)
+        points[:, 2] += factor * mesh.point_data[name]
+        moved: pv.DataSet = mesh.cast_to_structured_grid()
+        moved.points = points
+    else:
+        moved = mesh.warp_by_scalar(name, factor=factor)
+    return moved.extract_points(~holes, adjacent_cells=False) if holes.any() else moved
 
 
 def _scalars(mesh: pv.DataSet, argument: str, name: str) -> NDArray[np.generic]:

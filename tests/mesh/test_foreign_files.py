@@ -180,6 +180,7 @@ def test_a_file_at_which_meshio_ends_the_process(tmp_path, capsys):
         ("a.trx", "trx", r".trx files are read by trx-python: .*'vizlight\[tracts\]'"),
         ("a.off", "meshio", r".off files are read by meshio: .*'vizlight\[formats\]'"),
         ("a.mesh", "meshio", r".mesh files are read by meshio: .*'vizlight\[formats\]'"),
+        ("a.tif", "rasterio", r".tif files are read by rasterio: .*'vizlight\[maps\]'"),
         ("a.NC", "xarray", r".nc files are read by xarray: .*'vizlight\[formats\]'"),
     ],
 )

@@ -68,13 +68,13 @@ class Shape(Part):
         Plane NORMAL:OFFSET whose section is taken.
     warp
         Point array, such as heights, by which points are raised.
-    warp_factor
-        Factor of that array's values. Default: 1.
+    exaggeration
+        Factor of heights. Default: one that shows them, which is printed.
     """
 
     slice: Text | None = None
     warp: str | None = None
-    warp_factor: float | None = None
+    exaggeration: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -13,7 +13,7 @@ import vizlight
 from vizlight._words import message
 from vizlight.cli.output import BAD_INPUT, OK, complain, draw, one_line, say
 from vizlight.cli.scenes import TINT, tinted, title_of
-from vizlight.cli.script import Step, source
+from vizlight.cli.script import Step, in_order, source
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -309,8 +309,9 @@ def _light(job: Job, out: Output) -> pv.DataSet:
         warnings.simplefilter("always", UserWarning)
         lit: pv.DataSet = job.lit.run()
     seconds = time.perf_counter() - start
-    if hint := job.hint():
-        say(f"note     {hint}")
+    for note in (*(step.note for step in in_order([job.shown or job.lit])), job.hint()):
+        if note:
+            say(f"note     {note}")
     for warning in caught:
         complain(warning.message)
     record = vizlight.provenance(lit, job.name)

@@ -36,11 +36,12 @@ DIRECTION = "direction"
 ANGLE = 30.0
 
 
-def check_target(target: Part) -> None:
-    """Check the options of a target that need no mesh."""
+def check_target(target: Part, *, raised: bool = False) -> None:
+    """Check the options of a target that need no mesh, whether or not it has heights."""
     together = [("level", target.level, "contour", target.contour)]
     if isinstance(target, Shape):
-        together.append(("warp-factor", target.warp_factor, "warp", target.warp))
+        if not raised:
+            together.append(("exaggeration", target.exaggeration, "warp", target.warp))
         if target.slice is not None and target.contour is not None:
             raise ValueError(message("--slice", "no --contour beside it", "both"))
     for option, value, needs, given in together:
@@ -69,13 +70,29 @@ def data(file: Path, target: Part) -> Step:
     if wanted and any(name in mesh.run().cell_data for name in wanted - {*mesh.run().point_data}):
         mesh = Step("averaged", ".cell_data_to_point_data", mesh)
     if isinstance(target, Shape) and warp is not None:
-        factor = 1.0 if target.warp_factor is None else target.warp_factor
-        mesh = Step("raised", "files.warped", mesh, warp, factor)
+        mesh = warped("raised", mesh, warp, target.exaggeration)
     for text in target.threshold or ():
         mesh = _threshold(mesh, text)
     for text in target.clip or ():
         mesh = _cut("clipped", "clip", mesh, text)
     return mesh
+
+
+def warped(name: str, mesh: Step, heights: str, factor: float | None) -> Step:
+    """Return the step that raises a mesh by heights, by a factor with which they can be seen."""
+    step = Step(name, "files.warped", mesh, heights, 1.0 if factor is None else factor)
+    found = mesh.run().point_data.get(heights)
+    if factor is None and found is not None and found.ndim == 1:
+        from vizlight.mesh import georeference
+
+        factor = georeference.exaggeration(mesh.run(), heights)
+        step.arguments = (mesh, heights, factor)
+        step.note = (
+            f"heights are taken {factor:g} times; --exaggeration 1 takes them as they are"
+            if factor != 1
+            else ""
+        )
+    return step
 
 
 def _threshold(mesh: Step, text: str) -> Step:

@@ -42,7 +42,7 @@ def relief_day(
     name: str = "t",
     depth: float | None = None,
     elevation: str | None = None,
-    factor: float = 1.0,
+    exaggeration: float = 1.0,
     border: Border = "extend",
     method: Method = "fast",
     raster: float | None = None,
@@ -68,7 +68,7 @@ def relief_day(
         Directions toward the sun, in place of latitude, day and hours.
     sun : array_like, shape (H, 2), optional
         Azimuth, clockwise from north, and altitude of the sun in degrees, in place of directions.
-    angular_diameter, samples, name, depth, elevation, factor, border, method, raster
+    angular_diameter, samples, name, depth, elevation, exaggeration, border, method, raster
         As for :func:`vizlight.relief_shadow`.
     thickness, feature_angle, occluders
         As for :func:`vizlight.relief_shadow`.

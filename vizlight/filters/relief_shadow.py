@@ -76,7 +76,7 @@ def relief_shadow(
     name: str = "t",
     depth: float | None = None,
     elevation: str | None = None,
-    factor: float = 1.0,
+    exaggeration: float = 1.0,
     border: Border = "extend",
     method: Method = "fast",
     raster: float | None = None,
@@ -120,7 +120,7 @@ def relief_shadow(
     elevation : str, optional
         Name of a point array of heights. Default: z of a StructuredGrid or of a surface that is
         sampled, else the active scalars. NaN is a hole.
-    factor : float, default: 1.0
+    exaggeration : float, default: 1.0
         Factor of the heights; only for height fields.
     border, method
         As for :func:`vizlight.geometry.relief.inside_length`; only for height fields. Walls reach

@@ -124,16 +124,17 @@ def near_origin(mesh: pv.DataSet) -> Vector:
     return tuple(float(x) if far else 0.0 for x in middle)
 
 
-def moved(mesh: DataSetT, offset: Array, scale: float = 1.0) -> DataSetT:
+def moved(mesh: DataSetT, offset: Array, scale: float | Array = 1.0) -> DataSetT:
     """Return a mesh with each point p at ``scale (p + offset)``, in float64."""
     out = mesh.copy(deep=False)
+    scale = np.broadcast_to(scale, 3)
     if isinstance(out, pv.ImageData):
         out.origin = tuple(scale * (np.array(out.origin) + offset))
         out.spacing = tuple(scale * np.array(out.spacing))
     elif isinstance(out, pv.RectilinearGrid):
         for i, axis in enumerate("xyz"):
             ticks = np.asarray(getattr(out, axis), dtype=np.float64)
-            setattr(out, axis, scale * (ticks + offset[i]))
+            setattr(out, axis, scale[i] * (ticks + offset[i]))
     else:
         points = scale * (np.asarray(mesh.points, dtype=np.float64) + offset)
         points[~np.isfinite(points)] = np.nan

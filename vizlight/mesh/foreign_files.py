@@ -9,7 +9,7 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.vtkIOXML import vtkXMLPPolyDataReader
 
-from vizlight.mesh import polylines
+from vizlight.mesh import georeference, polylines, rasters
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -32,7 +32,7 @@ PACKAGES = {
         ".msh", ".nas", ".node", ".off", ".post", ".su2", ".tec", ".ugrid", ".vol", ".wkt", ".xmf",
     ),
     ("meshio", "formats"),
-)  # fmt: skip
+) | dict.fromkeys(rasters.SUFFIXES, ("rasterio", "maps"))  # fmt: skip
 #: Name under which a package is imported, where that is another.
 MODULES = {"trx-python": "trx.trx_file_memmap"}
 #: Place of the number of columns in the header of an elevation model, and the least that VTK reads.
@@ -65,6 +65,8 @@ def read(path: Path) -> pv.DataSet | None:
         return _tracts_of_trx(path)
     if suffix in (".nc", ".cdf"):
         return _grid(path)
+    if suffix in rasters.SUFFIXES:
+        return rasters.read(path)
     if suffix == ".dem":
         _refuse_narrow(path)
     if suffix == ".msh" and missing(path) == "":
@@ -207,7 +209,19 @@ def _grid(path: Path) -> pv.ImageData | pv.RectilinearGrid:
         for name, field in fields.items():
             if field.dims == dims:
                 grid.point_data[name] = np.flip(field.values, turned).ravel()
+        if all(_is_degrees(file, dim, words) for dim, words in zip(dims[-2:], _EARTH, strict=True)):
+            grid.field_data[georeference.UNIT] = [georeference.DEGREE]
         return grid
+
+
+#: Words with which the units and the names of the axes of latitude and of longitude begin.
+_EARTH = (("degree_n", "degrees_n", "lat"), ("degree_e", "degrees_e", "lon"))
+
+
+def _is_degrees(file: Any, dim: object, words: tuple[str, ...]) -> bool:
+    """Return whether an axis is of latitude or longitude, by its unit or by its name."""
+    units = str(file[dim].attrs.get("units", "")) if dim in file.coords else ""
+    return any(text.lower().startswith(words) for text in (units, str(dim)))
 
 
 def _is_time(file: Any, dim: object) -> bool:
