@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
+import vizlight
 from vizlight import files
 
 
@@ -382,3 +383,16 @@ def test_blocks_are_written_whole_or_not_at_all(tmp_path, monkeypatch):
     assert {file.name for file in tmp_path.iterdir()} == {"a.vtm", "a"}
     with pytest.raises(files.FileError, match=r"a name that ends in \.vtm for MultiBlock"):
         files.write_mesh(both, tmp_path / "a.vtp")
+
+
+def test_a_relief_becomes_a_closed_solid_for_a_printer(tmp_path):
+    relief = vizlight.bas_relief(pv.Sphere(), resolution=40)
+    files.write_mesh(relief, tmp_path / "a.stl")
+    solid = pv.read(tmp_path / "a.stl").clean()
+    assert solid.is_manifold
+    thickness = files.BASE * max(relief.bounds_size)
+    area = relief.bounds_size[0] * relief.bounds_size[1]
+    dome = relief["height"].mean() * area
+    assert solid.volume == pytest.approx(thickness * area + dome, rel=0.05)
+    with pytest.raises(files.FileError, match="expected an image of one layer with an active"):
+        files.write_mesh(pv.ImageData(dimensions=(3, 3, 3)), tmp_path / "b.stl")

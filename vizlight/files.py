@@ -22,7 +22,15 @@ import pyvista as pv
 from vtkmodules import vtkIOXML
 
 from vizlight import _check, _supervise
-from vizlight.mesh import blocks, foreign_files, georeference, hull, short_files
+from vizlight.mesh import (
+    blocks,
+    foreign_files,
+    georeference,
+    height_grids,
+    hull,
+    short_files,
+    steps,
+)
 from vizlight.reading.cells import check_whole
 from vizlight.reading.edges import place_numbers
 
@@ -35,13 +43,15 @@ __all__ = ["FileError", "read", "surface_of", "warped", "write_mesh"]
 
 #: File formats that keep point and field arrays, by type of mesh.
 FORMATS: dict[str, tuple[str, ...]] = {
-    "PolyData": (".vtp", ".vtk", ".vtu"),
+    "PolyData": (".vtp", ".vtk", ".vtu", ".stl"),
     "UnstructuredGrid": (".vtu", ".vtk"),
     "StructuredGrid": (".vts", ".vtk"),
     "RectilinearGrid": (".vtr", ".vtk"),
-    "ImageData": (".vti", ".vtk"),
+    "ImageData": (".vti", ".vtk", ".stl"),
     "MultiBlock": (".vtm",),
 }
+#: Thickness of the base of a solid below a height field, as a share of its longer side.
+BASE = 0.02
 SUFFIXES = tuple(dict.fromkeys(suffix for kind in FORMATS.values() for suffix in kind))
 
 
@@ -63,6 +73,10 @@ _DAMAGE = re.compile(
 )
 
 
+#: What VTK says of an OpenFOAM file that is whole, but in a language that it has only a part of.
+_DIRECTIVE = re.compile(r"Error reading line \d+ of (\S+): Unsupported directive (\w+)")
+
+
 #: Standard error is the process's: one thread at a time redirects it.
 _REDIRECTED = threading.RLock()
 
@@ -71,15 +85,18 @@ class FileError(ValueError):
     """A file cannot be read or written."""
 
 
-def read(path: str | Path, /) -> pv.DataSet:
-    """Read a mesh from a file: any that PyVista reads, tractograms and netCDF grids.
+def read(path: str | Path, /, *, time: float | str | None = None) -> pv.DataSet:
+    """Read a mesh from a file: any that PyVista reads, tractograms, rasters and netCDF grids.
 
     Parameters
     ----------
     path : path
         Path of the file. Tractograms (.trk, .tck, .trx) need the extra ``tracts``; netCDF files
         (.nc, .cdf) and those that PyVista reads by meshio, such as .off, .mesh and .msh, need the
-        extra ``formats``.
+        extra ``formats``; GeoTIFF and other rasters (.tif, .asc, .hgt) the extra ``maps``.
+    time : float or "first" or "last", optional
+        Time of the step that is read from a file of several, or the index of the step, if it is
+        an integer and no time of a step. Default: the last step.
 
     Returns
     -------
@@ -87,14 +104,22 @@ def read(path: str | Path, /) -> pv.DataSet:
         Several blocks become one grid. A tractogram is a mesh of polylines in the space of its
         header (RAS, in mm), with the data per point and, as cell data, those per streamline; a
         group is a cell array of 0 and 1. A netCDF file is the grid of its largest variable, whose
-        last axis is x: an image, or a rectilinear grid where its steps are unequal. Of the
-        time, and of any axis before the last three, the first value is taken.
+        last axis is x: an image, or a rectilinear grid where its steps are unequal. Of any axis
+        before the last three, other than the time, the first value is taken. A raster is an image
+        with a point at the centre of each pixel; what is missing is NaN. The field array ``unit``
+        of a map in degrees is ``degree``. The field array ``TimeValue`` is the time of a step,
+        ``TimeSteps`` are those of all steps.
 
     Raises
     ------
     FileError
         If the file does not exist, cannot be read or is damaged, the package that reads it is not
-        installed, or it has no points.
+        installed, or it has no points or no such step.
+
+    Warns
+    -----
+    UserWarning
+        If a field of an OpenFOAM case is left out, whose directives VTK does not read.
 
     Notes
     -----
@@ -106,7 +131,11 @@ def read(path: str | Path, /) -> pv.DataSet:
     path = _path("file", path)
     if not path.is_file():
         what = "a folder" if path.is_dir() else "no such file"
-        raise FileError(_check.message("file", "a file", f"'{path}' ({what})"))
+        remedy = ""
+        if (path / "constant").is_dir():
+            case = path / f"{path.resolve().name}.foam"
+            remedy = f"an OpenFOAM case is read by an empty file in it: touch '{case}'"
+        raise FileError(_check.message("file", "a file", f"'{path}' ({what})", remedy))
     if not os.access(path, os.R_OK):
         raise FileError(_check.message("file", "a readable file", f"'{path}'"))
     if str(path).encode("utf-8", "replace") != os.fsencode(path):
@@ -127,17 +156,19 @@ def read(path: str | Path, /) -> pv.DataSet:
     ):
         warnings.simplefilter("ignore")
         try:
-            found = foreign_files.read(path)
-            if found is None:
-                found = pv.read(path)
+            found: Any = _found(path, time)
             if lacking := short_files.contradiction(found):
                 raise FileError(lacking)
             mesh = _one_grid(found) if isinstance(found, pv.MultiBlock) else found
+        except steps.NoStepError:
+            raise
         except Exception as error:  # noqa: BLE001 - readers raise exceptions of any type
             kind = "" if isinstance(error, FileError) else f"{type(error).__name__}: "
             reason = f"{kind}{_first_line(error)}"
         except SystemExit:  # meshio ends the process where one of its readers finds a fault
             reason = f"meshio: {_first_line(said.getvalue())}"
+    unread = [match for match in map(_DIRECTIVE.search, errors) if match]
+    errors = [error for error in errors if not _DIRECTIVE.search(error)]
     if not isinstance(mesh, pv.DataSet) or mesh.n_points == 0:
         if errors and reason == "no points":
             reason = f"no points: {errors[0]}"
@@ -145,12 +176,31 @@ def read(path: str | Path, /) -> pv.DataSet:
         raise FileError(_check.message("file", "a mesh that PyVista reads", got, remedy))
     if errors:
         raise _damaged(path, errors[0])
+    _warn_of_unread(path, unread)
     if isinstance(found, pv.MultiBlock) and (names := _left_out(found, mesh)):
         _check.warn(
             f"file: '{path}' has blocks whose cells are of a lower dimension than other blocks', "
             f"which are left out: {names}; light pyvista.read(...) to keep all blocks"
         )
     return mesh
+
+
+def _warn_of_unread(path: Path, unread: list[re.Match[str]]) -> None:
+    """Warn of fields of an OpenFOAM case that VTK could not read."""
+    if unread:
+        fields = ", ".join(f"'{match[1]}' (#{match[2]})" for match in unread)
+        _check.warn(
+            f"file: '{path}' has fields that are left out, for VTK does not read their directives: "
+            f"{fields}; foamDictionary -expand writes them out"
+        )
+
+
+def _found(path: Path, time: object) -> pv.DataObject:
+    """Return what the first reader that knows a file makes of it."""
+    found: pv.DataObject | None = foreign_files.read(path, time)
+    if found is None:
+        found = steps.read(path, time)
+    return pv.read(path) if found is None else found
 
 
 def _path(name: str, value: object) -> Path:
@@ -192,6 +242,8 @@ def _one_grid(found: pv.MultiBlock) -> pv.UnstructuredGrid:
         grid = grid.extract_cells(
             np.isin(grid.celltypes, keep), pass_point_ids=False, pass_cell_ids=False
         )
+    for key in found.field_data:
+        grid.field_data[key] = np.array(found.field_data[key])
     result: pv.UnstructuredGrid = grid
     return result
 
@@ -397,7 +449,8 @@ def write_mesh(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
         Mesh to write.
     path : path
         Path of the file, in an existing folder. Its extension, one of .vtp, .vtu, .vtk, .vts,
-        .vti and .vtr, or .vtm for several blocks, determines the format. An existing file is
+        .vti and .vtr, or .vtm for several blocks, determines the format; .stl has no arrays, and
+        of an image the solid below its active heights. An existing file is
         replaced. The blocks are in a folder beside the .vtm file, which has its name without the
         extension.
 
@@ -426,6 +479,8 @@ def write_mesh(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
                 folder.rmdir()
     if path.suffix.lower() == ".vtu" and isinstance(mesh, pv.PolyData):
         mesh = mesh.cast_to_unstructured_grid()
+    if path.suffix.lower() == ".stl":
+        mesh = _solid(mesh) if isinstance(mesh, pv.ImageData) else mesh.triangulate()
 
     def save(draft: str) -> None:
         _reserve(Path(draft), [mesh])
@@ -435,6 +490,20 @@ def write_mesh(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
         _check_draft(Path(draft), mesh, errors)
 
     return replace_file(path, save)
+
+
+def _solid(field: pv.ImageData) -> pv.PolyData:
+    """Return the closed surface of a height field above a level base."""
+    name = height_grids.heights_name(field)
+    if name is None or min(field.dimensions[:2]) < 2 or field.dimensions[2] != 1:
+        expected = "an image of one layer with an active array of heights, for .stl"
+        raise FileError(_check.message("mesh", expected, _check.describe(field)))
+    top = warped(field, name, 1.0).extract_surface(algorithm="dataset_surface")
+    base = top.bounds.z_min - BASE * max(field.bounds_size[:2])
+    middle = (top.center[0], top.center[1], base)
+    plane = pv.Plane(center=middle, i_size=3 * top.length, j_size=3 * top.length)
+    solid: pv.PolyData = top.extrude_trim((0, 0, -1), plane).clean().triangulate()
+    return solid
 
 
 def _to_save(mesh: pv.DataSet) -> pv.DataSet:
@@ -510,7 +579,9 @@ def _check_draft(draft: Path, mesh: pv.DataSet, errors: list[str]) -> None:
     reason = errors[0] if errors else ""
     if not reason and not draft.is_file():
         reason = "nothing was written"
-    if not reason and draft.suffix != ".vtk":
+    if not reason and draft.suffix == ".stl":
+        reason = short_files.missing_part(draft)
+    elif not reason and draft.suffix != ".vtk":
         reader = READERS[draft.suffix]()
         reader.SetFileName(str(draft))
         with captured_errors() as errors:

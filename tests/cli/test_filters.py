@@ -558,3 +558,30 @@ def test_parts_are_blocks_of_one_file_and_one_page(folder, capfd):
     assert Path("c.html").read_text(encoding="utf-8") == page
     code, _, err = run(capfd, "light", "flow.vti", "-o", "d.vtm")
     assert (code, "a name that ends in .vtp, .vtk, .vtu for PolyData" in err) == (2, True)
+
+
+def test_steps_without_a_flow_name_those_that_have_one(folder, capfd):
+    import foam
+
+    def fields(time, middles):
+        return {"U": time * np.tile([1.0, 0.5, 0.2], (len(middles), 1))}
+
+    foam.write(folder / "case", [0, 0.5, 2], fields)
+    arguments = ("streamlines", "case/case.foam", "--vectors", "U", "--seeds", "5")
+    code, out, _ = run(capfd, *arguments, "-o", "a.vtp")
+    assert (code, "note     time 2, the last of 3 steps; --time takes" in out) == (0, True)
+    code, _, err = run(capfd, *arguments, "--time", "0", "-o", "a.vtp")
+    assert (code, "'U' is not zero everywhere, got 0; pass --time with one of 0.5, 2" in err) == (
+        2,
+        True,
+    )
+    (folder / "out").mkdir()
+    code, out, _ = run(capfd, *arguments, "--times", "1:", "-o", "out", *SMALL)
+    assert (code, "note" in out) == (0, False)
+    assert sorted(path.name for path in Path("out").glob("*.vtp")) == [
+        "case-streamlines-0000.vtp",
+        "case-streamlines-0001.vtp",
+    ]
+    for asked in ("3:", "x", "all --time 1"):
+        code, _, err = run(capfd, *arguments, "--times", *asked.split(), "-o", "out")
+        assert (code, "--times: expected all, or indices of steps" in err) == (2, True)

@@ -62,3 +62,11 @@ def test_progress_is_shown_on_standard_error(capfd):
     assert "depth" in said.err
     assert "100%" in said.err
     assert said.out == ""
+
+
+def test_a_raised_grid_has_a_relief():
+    grid = pv.ImageData(dimensions=(21, 21, 1), spacing=(0.1, 0.1, 1))
+    grid["h"] = np.sin(grid.points[:, 0])
+    raised = grid.warp_by_scalar("h")
+    known = bas_relief(raised.extract_surface(algorithm="geometry"), resolution=30)
+    np.testing.assert_array_equal(bas_relief(raised, resolution=30)["height"], known["height"])

@@ -340,9 +340,10 @@ def test_errors_name_the_arrays_that_could_be_traced():
         streamlines(grid, SCENE, vectors="wnid")
     with pytest.raises(ValueError, match="vectors: .*the cell array 'wind'; call"):
         streamlines(grid, SCENE, vectors="wind")
-    grid.point_data["U"], grid.point_data["r"] = np.ones((27, 3)), np.ones(27)
+    for name in ("U", "W"):
+        grid.point_data[name] = np.ones((27, 3))
     grid.point_data.active_vectors_name = None
-    with pytest.raises(ValueError, match="got None; pass vectors='U'$"):
+    with pytest.raises(ValueError, match="got None; pass vectors='U' or vectors='W'$"):
         streamlines(grid, SCENE)
     with pytest.raises(TypeError, match="got MultiBlock; join its blocks by mesh.combine()"):
         streamlines(pv.MultiBlock([grid]), SCENE)

@@ -42,6 +42,10 @@ class Part:
 
     Parameters
     ----------
+    time
+        Time of the step that is taken, or its index; first or last, the default.
+    times
+        Steps that are lit one by one: all, or indices FIRST:END or FIRST:END:STEP.
     clip
         Plane NORMAL:OFFSET beyond which is cut away: 0,0,1:5 or z:5.
     threshold
@@ -52,6 +56,8 @@ class Part:
         Value of the isosurface. Default: the middle of the range.
     """
 
+    time: Text | None = None
+    times: str | None = None
     clip: Texts | None = None
     threshold: Texts | None = None
     contour: str | None = None

@@ -61,8 +61,9 @@ def streamlines(
         given["vectors"] = tuple(given["vectors"].split(","))
     asked = StreamlineOptions(**given)
 
-    def job(path: Path) -> Job:
-        mesh = scenes.data(path, part)
+    def job(path: Path, time: float | str | None) -> Job:
+        mesh = scenes.data(path, part, time)
+        scenes.check_flow(path, mesh.run(), asked.vectors)
         scenes.check_answers(common.lights.question, mesh, color, asked.vectors)
         on = {} if part.contour is None else {"surface": scenes.surface(mesh, part)}
         camera = look.camera(on.get("surface", mesh) if asked.confined else mesh)
@@ -71,7 +72,7 @@ def streamlines(
         made.tint(lit, mesh, color)
         return made
 
-    return carry_out(files, job, common.out, "streamlines")
+    return carry_out(files, job, common.out, "streamlines", part)
 
 
 # Heights are exaggerated, and lit, as they are shown.
@@ -103,8 +104,8 @@ def relief(
     given = {"lit": lit or common.lights.question is not None} | options.keywords(how)
     asked = ReliefOptions(**given)
 
-    def job(path: Path) -> Job:
-        mesh = scenes.data(path, shape)
+    def job(path: Path, time: float | str | None) -> Job:
+        mesh = scenes.data(path, shape, time)
         found = mesh.run()
         if shape.contour is not None or shape.slice is not None or not _is_field(found):
             mesh = scenes.surface(mesh, shape)
@@ -137,7 +138,7 @@ def relief(
             )
         return made
 
-    return carry_out(files, job, common.out, "relief")
+    return carry_out(files, job, common.out, "relief", shape)
 
 
 def _level_light(lights: Sequence[Light]) -> float:
@@ -174,13 +175,13 @@ def fur(
     given = {"feature_angle": "auto"} | options.keywords(how)
     asked = FurOptions(**given)
 
-    def job(path: Path) -> Job:
-        mesh = scenes.surface(scenes.data(path, shape), shape)
+    def job(path: Path, time: float | str | None) -> Job:
+        mesh = scenes.surface(scenes.data(path, shape, time), shape)
         camera = look.camera(_tips(mesh, asked))
         lit = _step("furry", "fur", mesh, look.scene(camera), given, common.out)
         return Job(lit, asked.name, look, camera, parts=("fibres", "skin"))
 
-    return carry_out(files, job, common.out, "fur")
+    return carry_out(files, job, common.out, "fur", shape)
 
 
 # The tolerance is for solids, which no file holds.
@@ -208,14 +209,14 @@ def contours(
     given = {"feature_angle": "auto"} | options.keywords(how)
     asked = ContourOptions(**given)
 
-    def job(path: Path) -> Job:
-        mesh = scenes.surface(scenes.data(path, shape), shape)
+    def job(path: Path, time: float | str | None) -> Job:
+        mesh = scenes.surface(scenes.data(path, shape, time), shape)
         camera = look.camera(mesh)
         lit = _step("found", "isoluminance", mesh, look.scene(camera), given, common.out)
         bands = Step("", "[]", lit, "bands")
         return Job(lit, asked.name, look, camera, shown=bands, parts=("bands", "contours"))
 
-    return carry_out(files, job, common.out, "contours")
+    return carry_out(files, job, common.out, "contours", shape)
 
 
 @options.takes("project", "Projection", renamed=RENAMED)
@@ -242,8 +243,8 @@ def project(
     given = options.keywords(how, RENAMED)
     asked = ProjectOptions(**given)
 
-    def job(path: Path) -> Job:
-        mesh = scenes.data(path, Part())
+    def job(path: Path, time: float | str | None) -> Job:
+        mesh = scenes.data(path, Part(), time)
         found = mesh.run()
         rows = found.point_data.get(asked.positions or "")
         n = 3 if asked.light == "after" or rows is None or rows.ndim == 1 else rows.shape[1]
@@ -251,7 +252,7 @@ def project(
         lit = _step("projected", "project", mesh, None, given | {"scene": scene}, common.out)
         return Job(lit, asked.name, look, look.camera(lit), kind="", suffix=".vtk")
 
-    return carry_out(files, job, common.out, "projected")
+    return carry_out(files, job, common.out, "projected", Part())
 
 
 def _step(

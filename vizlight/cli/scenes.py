@@ -12,10 +12,13 @@ from vizlight._words import message, one_of
 from vizlight.cli import arguments
 from vizlight.cli.arguments import Shape
 from vizlight.cli.script import Step
+from vizlight.mesh import steps
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from typing import TypeAlias
+
+    import pyvista as pv
 
     from vizlight._types import Vector
     from vizlight.cli.arguments import Color, Common, Lights, Part
@@ -62,9 +65,36 @@ def check_color(color: Color) -> None:
         raise ValueError(message("--cmap", expected, repr(color.cmap))) from error
 
 
-def data(file: Path, target: Part) -> Step:
+def times(file: Path, target: Part) -> list[float | str | None]:
+    """Return the times of the steps of a file that are lit one by one.
+
+    Raises
+    ------
+    ValueError
+        If the file has none of them.
+    """
+    if target.times is None:
+        text = target.time
+        number = arguments.numbers(text or "", (1,))
+        return [*number] if number else [text]
+    expected = "all, or indices of steps FIRST:END or FIRST:END:STEP, beside no --time"
+    there = steps.of(vizlight.read(file))
+    try:
+        ends = [int(end) if end else None for end in target.times.split(":")]
+        asked = slice(None) if target.times == "all" else slice(*ends)
+        found = there[asked] if target.time is None else []
+    except (TypeError, ValueError):
+        found = []
+    if not found:
+        got = f"{target.times!r} for {len(there)} steps"
+        raise ValueError(message("--times", expected, got))
+    return [*found]
+
+
+def data(file: Path, target: Part, time: float | str | None = None) -> Step:
     """Return the step that reads a file, after those that raise and cut what is in it."""
-    mesh = Step("data", "vizlight.read", file)
+    mesh = Step("data", "vizlight.read", file, **_given({"time": time}))
+    mesh.note = "" if time is not None else steps.note(mesh.run())
     warp = target.warp if isinstance(target, Shape) else None
     wanted = {target.contour, warp} - {None}
     if wanted and any(name in mesh.run().cell_data for name in wanted - {*mesh.run().point_data}):
@@ -93,6 +123,30 @@ def warped(name: str, mesh: Step, heights: str, factor: float | None) -> Step:
             else ""
         )
     return step
+
+
+def check_flow(file: Path, mesh: pv.DataSet, vectors: str | tuple[str, str] | None) -> None:
+    """Check that a step has vectors that are not zero everywhere, if another step has them.
+
+    Raises
+    ------
+    ValueError
+        If only others have, which the message lists.
+    """
+    names = [vectors] if isinstance(vectors, str) else vectors or ()
+    times = steps.of(mesh)
+    if all(_moves(mesh, name) for name in names) or len(times) < 2:
+        return
+    others = {time: vizlight.read(file, time=time) for time in times}
+    having = [time for time, one in others.items() if all(_moves(one, name) for name in names)]
+    if having:
+        expected = f"a step in which {' and '.join(map(repr, names))} is not zero everywhere"
+        remedy = f"pass --time with one of {steps.listed(having)}"
+        raise ValueError(message("--time", expected, f"{mesh.field_data[steps.TIME][0]:g}", remedy))
+
+
+def _moves(mesh: pv.DataSet, name: str) -> bool:
+    return any(name in data and data[name].any() for data in (mesh.point_data, mesh.cell_data))
 
 
 def _threshold(mesh: Step, text: str) -> Step:

@@ -9,14 +9,14 @@ import pyvista as pv
 
 from vizlight import _check, _progress
 from vizlight.geometry.relief.depth_map import depth_map
-from vizlight.mesh import closed_meshes
+from vizlight.mesh import closed_meshes, hull
 
 if TYPE_CHECKING:
     from vizlight._types import Array, VectorLike
 
 
 def bas_relief(
-    mesh: pv.PolyData,
+    mesh: pv.DataSet,
     /,
     *,
     direction: VectorLike = (0.0, 0.0, 1.0),
@@ -31,8 +31,9 @@ def bas_relief(
 
     Parameters
     ----------
-    mesh : pyvista.PolyData
-        Surface, closed or open; not changed.
+    mesh : pyvista.DataSet
+        Surface, closed or open, or a mesh whose outer surface is taken, such as a raised grid; not
+        changed.
     direction : vector of 3 components, default: (0, 0, 1)
         Direction toward the eye, which is at infinity.
     up : vector of 3 components, optional
@@ -53,7 +54,8 @@ def bas_relief(
     -------
     pyvista.ImageData
         Height field for :func:`vizlight.relief_shadow`, centred, with x to the right and y up.
-        Heights are 0 on the plate.
+        Heights are 0 on the plate. ``vizlight.files.write_mesh(relief, "relief.stl")`` writes the
+        solid below it, for a printer.
 
     Raises
     ------
@@ -65,6 +67,8 @@ def bas_relief(
     The depth is sampled at the nodes by :func:`vizlight.geometry.relief.depth_map.depth_map`,
     without OpenGL. Source: cos-theta, figure 1, lights a bas-relief of a statue.
     """
+    if isinstance(mesh, pv.DataSet) and not isinstance(mesh, pv.PolyData):
+        mesh = hull.outer_surface(mesh)[0]
     vertices, triangles = closed_meshes.triangles_of(mesh, "mesh")
     frame = _eye_frame(direction, up)
     resolution = _check.integer("resolution", resolution, low=2)

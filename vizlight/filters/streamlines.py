@@ -27,12 +27,14 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Array
+    from vizlight._types import Array, Indices
     from vizlight.scene import Scene
     from vizlight.shading.options import Bundle, Exponent, Facing, FeatureAngle, Model, Precision
 
 #: Name of the point array of the directions that were integrated, and by which the lines are lit.
 TANGENTS = "Tangents"
+#: Share of the speed of the fastest points below which a point is at rest, for seeds.
+RESTING = 0.01
 #: Its name where the traced mesh has an array of that name.
 OWN_TANGENTS = "vizlight tangents"
 
@@ -156,9 +158,9 @@ def streamlines(
         Default: whether the mesh itself is a surface and no other is given.
     seeds : int or array_like, shape (M, 3), or mesh, default: 200
         Points at which lines start. A number is the number of lines, from points of the mesh drawn
-        without repetition, or, for confined lines and line fields, from random places, uniform in
-        area or volume. At a given point of a cross field two lines start. Has no effect as a number
-        with ``spacing``.
+        without repetition, of those that move where most are at rest, or, for confined lines and
+        line fields, from random places, uniform in area or volume. At a given point of a cross
+        field two lines start. Has no effect as a number with ``spacing``.
     seed : int, default: 0
         Seed of the random numbers.
     spacing : float, optional
@@ -423,9 +425,10 @@ def _in_space(
     if places is not None:
         return tracers.in_space(mesh, places, how, report)
     points = np.asarray(mesh.points, dtype=np.float64)
+    there = _flowing(np.asarray(mesh.point_data[TRACED]))
     count = min(count, len(points))
     random = np.random.default_rng(how.seed)
-    chosen = np.sort(random.choice(len(points), count, replace=False))
+    chosen = np.sort(random.choice(there, min(count, len(there)), replace=False))
     rest = random.permutation(np.setdiff1d(np.arange(len(points)), chosen))
     moving = np.any(np.asarray(mesh.point_data[TRACED])[rest] != 0, axis=1)
     rest, lines = rest[moving], tracers.in_space(mesh, points[chosen], how, report)
@@ -436,6 +439,13 @@ def _in_space(
         lines = lines.append_polydata(more) if lines.n_lines else more
     _warn_of_fewer(lines, count)
     return lines
+
+
+def _flowing(vectors: Array) -> Indices:
+    """Return the points where the flow is: all, or those that move where most are at rest."""
+    speed = np.linalg.norm(vectors, axis=1)
+    fast = speed > RESTING * np.percentile(speed[speed > 0], 95) if speed.any() else speed > 0
+    return np.flatnonzero(fast if 0 < fast.sum() < len(fast) / 2 else fast | True)
 
 
 def _warn_of_fewer(lines: pv.PolyData, wanted: int | None) -> None:
@@ -450,6 +460,9 @@ def _vectors_name(mesh: pv.DataSet, vectors: Vectors | None) -> tuple[Vectors, b
     """Return the names of what is traced, and whether it is tensors or a cross field."""
     if vectors is None:
         vectors = mesh.point_data.active_vectors_name
+        there = [key for key in mesh.point_data if np.shape(mesh.point_data[key])[1:] == (3,)]
+        if vectors is None and len(there) == 1:
+            vectors = there[0]
         if vectors is None:
             raise _no_vectors(mesh, None)
     pair = isinstance(vectors, tuple)

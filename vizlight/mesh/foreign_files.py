@@ -9,7 +9,7 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.vtkIOXML import vtkXMLPPolyDataReader
 
-from vizlight.mesh import georeference, polylines, rasters
+from vizlight.mesh import georeference, polylines, rasters, steps
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -56,7 +56,7 @@ def missing(path: Path) -> str:
     return ""
 
 
-def read(path: Path) -> pv.DataSet | None:
+def read(path: Path, time: object = None) -> pv.DataSet | None:
     """Return the mesh of a file that PyVista cannot read; None where it is left to PyVista."""
     suffix = path.suffix.lower()
     if suffix in (".trk", ".tck"):
@@ -64,7 +64,7 @@ def read(path: Path) -> pv.DataSet | None:
     if suffix == ".trx":
         return _tracts_of_trx(path)
     if suffix in (".nc", ".cdf"):
-        return _grid(path)
+        return _grid(path, time)
     if suffix in rasters.SUFFIXES:
         return rasters.read(path)
     if suffix == ".dem":
@@ -172,22 +172,29 @@ def _attach(data: pv.DataSetAttributes, name: object, array: NDArray[np.generic]
     data[str(name)] = np.array(rows[:, 0] if rows.shape[1] == 1 else rows, dtype=native)
 
 
-def _grid(path: Path) -> pv.ImageData | pv.RectilinearGrid:
+def _grid(path: Path, time: object) -> pv.ImageData | pv.RectilinearGrid:
     """Return the variables of a netCDF file on the axes of its largest variable.
 
-    An axis is x, y or z: the last of a variable is x. Of the time, and of any axis before the last
-    three, the first value is taken. Points are at the coordinates, or at the indices of
+    An axis is x, y or z: the last of a variable is x. Of any axis before the last three, other than
+    the time, the first value is taken. Points are at the coordinates, or at the indices of
     an axis without coordinates.
     """
     import xarray
 
     with xarray.open_dataset(path, decode_times=False) as file:
         fields: dict[str, Any] = {}
+        clocks = [dim for dim in file.sizes if _is_time(file, dim)]
+        clock = max(clocks, key=lambda dim: int(file.sizes[dim]), default=None)
+        step, ticking = 0, [0.0]
+        if clock is not None and file.sizes[clock] > 1:
+            ticking = [float(tick) for tick in file[clock].values]
+            step = steps.chosen(ticking, time)
         for name, variable in file.data_vars.items():
             if variable.dtype.kind in "biuf" and variable.ndim >= 2 and variable.size:
                 times = [dim for dim in variable.dims if _is_time(file, dim)]
                 rest = [dim for dim in variable.dims if dim not in times]
                 first = dict.fromkeys((*times, *rest[:-3]), 0)
+                first |= {clock: step} if clock in times else {}
                 fields[str(name)] = variable.isel(first).squeeze(drop=True)
         fields = {name: field for name, field in fields.items() if field.ndim in (2, 3)}
         if not fields:
@@ -199,10 +206,10 @@ def _grid(path: Path) -> pv.ImageData | pv.RectilinearGrid:
                 file[dim].values if dim in file.coords else np.arange(file.sizes[dim])
             )
             ticks = ticks.astype(np.float64)
-            steps = np.diff(ticks)
-            if not (np.all(steps > 0) or np.all(steps < 0)):
+            widths = np.diff(ticks)
+            if not (np.all(widths > 0) or np.all(widths < 0)):
                 raise ValueError(f"the axis {dim!r} does not rise or fall throughout")
-            backward.append(bool(steps[0] < 0))
+            backward.append(bool(widths[0] < 0))
             axes.append(np.sort(ticks))
         grid = _of_axes([*reversed(axes)])
         turned = tuple(i for i, back in enumerate(backward) if back)
@@ -211,7 +218,7 @@ def _grid(path: Path) -> pv.ImageData | pv.RectilinearGrid:
                 grid.point_data[name] = np.flip(field.values, turned).ravel()
         if all(_is_degrees(file, dim, words) for dim, words in zip(dims[-2:], _EARTH, strict=True)):
             grid.field_data[georeference.UNIT] = [georeference.DEGREE]
-        return grid
+        return steps.marked(grid, ticking, step) if len(ticking) > 1 else grid
 
 
 #: Words with which the units and the names of the axes of latitude and of longitude begin.
