@@ -24,10 +24,12 @@ from vtkmodules import vtkIOXML
 from vizlight import _check, _supervise
 from vizlight.mesh import (
     blocks,
+    brains,
     foreign_files,
     georeference,
     height_grids,
     hull,
+    point_arrays,
     short_files,
     steps,
 )
@@ -35,7 +37,7 @@ from vizlight.reading.cells import check_whole
 from vizlight.reading.edges import place_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from numpy.typing import NDArray
 
@@ -85,7 +87,13 @@ class FileError(ValueError):
     """A file cannot be read or written."""
 
 
-def read(path: str | Path, /, *, time: float | str | None = None) -> pv.DataSet:
+def read(
+    path: str | Path,
+    /,
+    *,
+    time: float | str | None = None,
+    overlay: str | Path | Sequence[str | Path] = (),
+) -> pv.DataSet:
     """Read a mesh from a file: any that PyVista reads, tractograms, rasters and netCDF grids.
 
     Parameters
@@ -97,6 +105,9 @@ def read(path: str | Path, /, *, time: float | str | None = None) -> pv.DataSet:
     time : float or "first" or "last", optional
         Time of the step that is read from a file of several, or the index of the step, if it is
         an integer and no time of a step. Default: the last step.
+    overlay : path or sequence of paths, optional
+        Files with values for the points, which become point arrays of their names: GIFTI (.gii),
+        FreeSurfer's (lh.curv, .annot, .mgh) and .mz3 for a surface of a brain.
 
     Returns
     -------
@@ -151,15 +162,17 @@ def read(path: str | Path, /, *, time: float | str | None = None) -> pv.DataSet:
     with (
         reading,
         captured_errors() as errors,
-        warnings.catch_warnings(),
+        warnings.catch_warnings(record=True) as told,
         contextlib.redirect_stdout(said),
     ):
-        warnings.simplefilter("ignore")
+        warnings.simplefilter("always")
         try:
             found: Any = _found(path, time)
             if lacking := short_files.contradiction(found):
                 raise FileError(lacking)
-            mesh = _one_grid(found) if isinstance(found, pv.MultiBlock) else found
+            whole = blocks.one_grid(found) if isinstance(found, pv.MultiBlock) else found
+            _lay_over(whole, [overlay] if isinstance(overlay, str | Path) else overlay)
+            mesh = whole
         except steps.NoStepError:
             raise
         except Exception as error:  # noqa: BLE001 - readers raise exceptions of any type
@@ -177,12 +190,21 @@ def read(path: str | Path, /, *, time: float | str | None = None) -> pv.DataSet:
     if errors:
         raise _damaged(path, errors[0])
     _warn_of_unread(path, unread)
+    for text in dict.fromkeys(str(one.message) for one in told if one.category is UserWarning):
+        _check.warn(text)
     if isinstance(found, pv.MultiBlock) and (names := _left_out(found, mesh)):
         _check.warn(
             f"file: '{path}' has blocks whose cells are of a lower dimension than other blocks', "
             f"which are left out: {names}; light pyvista.read(...) to keep all blocks"
         )
     return mesh
+
+
+def _lay_over(mesh: pv.DataSet, paths: Sequence[str | Path]) -> None:
+    """Attach the arrays of files with values for the points of a surface."""
+    for path in paths:
+        for name, rows in brains.overlay(_path("overlay", path), mesh.n_points).items():
+            mesh.point_data[name] = rows
 
 
 def _warn_of_unread(path: Path, unread: list[re.Match[str]]) -> None:
@@ -232,22 +254,6 @@ def _first_line(error: Exception | str) -> str:
     return next((line.strip() for line in str(error).splitlines() if line.strip()), "no reason")
 
 
-def _one_grid(found: pv.MultiBlock) -> pv.UnstructuredGrid:
-    """Return the cells of the highest dimension of all blocks, without side sets of a volume."""
-    grid: Any = blocks.joined(found)
-    dimension = {kind: grid.GetCell(index).GetCellDimension() for kind, index in _samples(grid)}
-    highest = max(dimension.values(), default=0)
-    keep = [kind for kind, d in dimension.items() if d == highest]
-    if len(keep) < len(dimension):
-        grid = grid.extract_cells(
-            np.isin(grid.celltypes, keep), pass_point_ids=False, pass_cell_ids=False
-        )
-    for key in found.field_data:
-        grid.field_data[key] = np.array(found.field_data[key])
-    result: pv.UnstructuredGrid = grid
-    return result
-
-
 def _left_out(found: pv.MultiBlock, grid: pv.DataSet) -> str:
     """Return the names of blocks that are not in a grid and are no side sets of it."""
     kept = grid.distinct_cell_types
@@ -258,12 +264,6 @@ def _left_out(found: pv.MultiBlock, grid: pv.DataSet) -> str:
         for block, path in lower
         if not np.isin(place_numbers(np.asarray(block.points)), there).all()
     )
-
-
-def _samples(grid: pv.UnstructuredGrid) -> Iterator[tuple[int, int]]:
-    """Yield each cell type with the index of one cell of that type."""
-    kinds, first = np.unique(grid.celltypes, return_index=True)
-    yield from zip(kinds.tolist(), first.tolist(), strict=True)
 
 
 @contextlib.contextmanager
@@ -287,16 +287,16 @@ def captured_errors() -> Iterator[list[str]]:
 
 
 def surface_of(
-    mesh: pv.DataSet, /, contour: str | None = None, level: float | None = None
+    mesh: pv.DataSet | pv.MultiBlock, /, contour: str | None = None, level: float | None = None
 ) -> pv.PolyData:
     """Return an isosurface of a mesh, or its outer surface if no contour is given.
 
     Parameters
     ----------
-    mesh : pyvista.DataSet
+    mesh : pyvista.DataSet or pyvista.MultiBlock
         Mesh, which is not changed.
     contour : str, optional
-        Name of a point array of one component.
+        Name of an array of one component; one of cells is averaged to the points.
     level : float, optional
         Value of the array on the isosurface. Default: the middle of its range.
 
@@ -309,11 +309,14 @@ def surface_of(
     ValueError
         If the array does not exist, or the isosurface is empty.
     """
+    if isinstance(mesh, pv.MultiBlock):
+        mesh = blocks.one_grid(mesh)
     _dataset(mesh)
     if contour is None:
         if isinstance(mesh, pv.PolyData):
             return mesh
         return hull.outer_surface(mesh)[0]
+    mesh = point_arrays.averaged(mesh, contour)
     values = _scalars(mesh, "contour", contour)
     finite = values[np.isfinite(values)]
     if not finite.size:
@@ -350,6 +353,7 @@ def warped(mesh: pv.DataSet, name: str, factor: float, /) -> pv.DataSet:
         If the array does not exist or has no finite value, or the factor is not finite.
     """
     _dataset(mesh)
+    mesh = point_arrays.averaged(mesh, name)
     holes = ~np.isfinite(_scalars(mesh, "warp", name))
     factor = _check.number("exaggeration", factor)
     mesh = georeference.in_metres(mesh)
@@ -375,12 +379,9 @@ def _scalars(mesh: pv.DataSet, argument: str, name: str) -> NDArray[np.generic]:
     got = repr(name)
     if name in data:
         got = f"{name!r} with {data[name].shape[1]} components"
-    elif name in mesh.cell_data:
-        got = f"the cell array {name!r}"
-    known = [key for key in data if data[key].ndim == 1]
-    remedy = "average it to the points" if name in mesh.cell_data else ""
-    expected = f"a point array of one component, {_check.one_of(known)}"
-    raise ValueError(_check.message(argument, expected, got, remedy))
+    known = [key for key in (*data, *mesh.cell_data) if mesh[key].ndim == 1]
+    expected = f"an array of one component, {_check.one_of(known)}"
+    raise ValueError(_check.message(argument, expected, got))
 
 
 def check_output(path: str | Path, /, formats: tuple[str, ...], *, name: str = "output") -> Path:

@@ -247,7 +247,7 @@ def test_points_that_cannot_be_lit_are_told_and_no_error(volume, capfd):
             ["light", "flow.vti", "--no-surface", "-o", "x.vti", "--normals", "C"],
             "got the cell array 'C'",
         ),
-        (["light", "flow.vti", "--contour", "V"], "contour: expected a point array of one"),
+        (["light", "flow.vti", "--contour", "V"], "contour: expected an array of one"),
         (
             ["light", "flow.vti", "--contour", "r", "--level", "99"],
             "level: expected a value between",

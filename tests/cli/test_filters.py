@@ -372,7 +372,7 @@ def test_report_stands_in_the_script_too(folder, capfd):
         ),
         ("relief torus.vtp --depth -1", "depth: expected"),
         ("relief terrain.vti --elevation none", "expected"),
-        ("relief terrain.vti -o a.vtp", "ends in .vti, .vtk for ImageData"),
+        ("relief terrain.vti -o a.vtp", "ends in .vti, .vtk, .stl for ImageData"),
         ("fur flow.vti --contour r --density 0.1 --absorption 0.2", "absorption, density: exp"),
         ("fur flow.vti --contour r --density 2", "density: expected a number from 0 to 1"),
         ("fur flow.vti --contour r --density 0.1 --toward up --bend 1", "toward: expected"),

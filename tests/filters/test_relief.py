@@ -191,7 +191,7 @@ def test_a_surface_is_sampled_on_request():
             relief_shadow(bent, sun=(70, 15), raster=raster)
     with pytest.raises(ValueError, match="raster: expected a raster of at most"):
         relief_shadow(bent, sun=(70, 15), raster=1e-5)
-    with pytest.raises(TypeError, match="mesh: expected a height field"):
+    with pytest.raises(ValueError, match="mesh: expected a surface with faces"):
         relief_shadow(pv.UnstructuredGrid(), sun=(70, 15), raster=0)
 
 
@@ -415,7 +415,7 @@ BALL = pv.Sphere(theta_resolution=8, phi_resolution=8)
         (BALL, {"thickness": 0}, ValueError, "thickness: expected more than 0"),
         (BALL, {"occluders": [pv.Plane()]}, ValueError, r"occluders\[0\]: expected a closed"),
         (pv.Line(), {}, ValueError, "mesh: expected a surface with faces"),
-        (pv.UnstructuredGrid(), {}, TypeError, "mesh: expected a height field"),
+        (pv.UnstructuredGrid(), {}, ValueError, "mesh: expected a surface with faces"),
         (None, {}, TypeError, "mesh: expected a height field"),
     ],
 )

@@ -21,6 +21,7 @@ Positions = Annotated[
     list[str],
     Parameter(allow_leading_hyphen=True, negative=()),
 ]
+Overlays = Annotated[list[Path], Parameter(negative=())]
 Outputs = Annotated[list[Path], Parameter(name=["--output", "-o"], negative=())]
 
 #: How the options of a group stand in a command's signature.
@@ -46,6 +47,8 @@ class Part:
         Time of the step that is taken, or its index; first or last, the default.
     times
         Steps that are lit one by one: all, or indices FIRST:END or FIRST:END:STEP.
+    overlay
+        File with values for the points of a surface of a brain.
     clip
         Plane NORMAL:OFFSET beyond which is cut away: 0,0,1:5 or z:5.
     threshold
@@ -58,6 +61,7 @@ class Part:
 
     time: Text | None = None
     times: str | None = None
+    overlay: Overlays | None = None
     clip: Texts | None = None
     threshold: Texts | None = None
     contour: str | None = None

@@ -65,6 +65,9 @@ def streamlines(
         mesh = scenes.data(path, part, time)
         scenes.check_flow(path, mesh.run(), asked.vectors)
         scenes.check_answers(common.lights.question, mesh, color, asked.vectors)
+        if color.scalars in mesh.run().cell_data and color.scalars not in mesh.run().point_data:
+            # Lines have the arrays of points alone.
+            mesh = Step("averaged", ".cell_data_to_point_data", mesh)
         on = {} if part.contour is None else {"surface": scenes.surface(mesh, part)}
         camera = look.camera(on.get("surface", mesh) if asked.confined else mesh)
         lit = _step("lit", "streamlines", mesh, look.scene(camera), given | on, common.out)

@@ -139,6 +139,7 @@ def _refuse(target: Target, color: Color, out: Output) -> None:
     unknown = {
         "--time": target.time,
         "--times": target.times,
+        "--overlay": target.overlay,
         "--clip": target.clip,
         "--threshold": target.threshold,
         "--slice": target.slice,

@@ -12,7 +12,6 @@ from vizlight._words import message, one_of
 from vizlight.cli import arguments
 from vizlight.cli.arguments import Shape
 from vizlight.cli.script import Step
-from vizlight.mesh import steps
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -73,6 +72,8 @@ def times(file: Path, target: Part) -> list[float | str | None]:
     ValueError
         If the file has none of them.
     """
+    from vizlight.mesh import steps
+
     if target.times is None:
         text = target.time
         number = arguments.numbers(text or "", (1,))
@@ -93,12 +94,11 @@ def times(file: Path, target: Part) -> list[float | str | None]:
 
 def data(file: Path, target: Part, time: float | str | None = None) -> Step:
     """Return the step that reads a file, after those that raise and cut what is in it."""
-    mesh = Step("data", "vizlight.read", file, **_given({"time": time}))
+    from vizlight.mesh import steps
+
+    mesh = Step("data", "vizlight.read", file, **_given({"time": time, "overlay": target.overlay}))
     mesh.note = "" if time is not None else steps.note(mesh.run())
     warp = target.warp if isinstance(target, Shape) else None
-    wanted = {target.contour, warp} - {None}
-    if wanted and any(name in mesh.run().cell_data for name in wanted - {*mesh.run().point_data}):
-        mesh = Step("averaged", ".cell_data_to_point_data", mesh)
     if isinstance(target, Shape) and warp is not None:
         mesh = warped("raised", mesh, warp, target.exaggeration)
     for text in target.threshold or ():
@@ -110,12 +110,12 @@ def data(file: Path, target: Part, time: float | str | None = None) -> Step:
 
 def warped(name: str, mesh: Step, heights: str, factor: float | None) -> Step:
     """Return the step that raises a mesh by heights, by a factor with which they can be seen."""
-    step = Step(name, "files.warped", mesh, heights, 1.0 if factor is None else factor)
-    found = mesh.run().point_data.get(heights)
-    if factor is None and found is not None and found.ndim == 1:
-        from vizlight.mesh import georeference
+    from vizlight.mesh import georeference, point_arrays
 
-        factor = georeference.exaggeration(mesh.run(), heights)
+    step = Step(name, "files.warped", mesh, heights, 1.0 if factor is None else factor)
+    found = point_arrays.averaged(mesh.run(), heights)
+    if factor is None and heights in found.point_data and found.point_data[heights].ndim == 1:
+        factor = georeference.exaggeration(found, heights)
         step.arguments = (mesh, heights, factor)
         step.note = (
             f"heights are taken {factor:g} times; --exaggeration 1 takes them as they are"
@@ -133,6 +133,8 @@ def check_flow(file: Path, mesh: pv.DataSet, vectors: str | tuple[str, str] | No
     ValueError
         If only others have, which the message lists.
     """
+    from vizlight.mesh import steps
+
     names = [vectors] if isinstance(vectors, str) else vectors or ()
     times = steps.of(mesh)
     if all(_moves(mesh, name) for name in names) or len(times) < 2:
@@ -196,12 +198,8 @@ def tinted(lit: Step, name: str, data: Step, color: Color) -> Step | None:
     found = data.run()
     there = [*found.point_data, *found.cell_data]
     if color.scalars in there:
-        # Data of cells are put at their points: the light is there.
-        values: object = color.scalars
-        if color.scalars not in found.point_data:
-            values = Step("values", "[]", Step("", ".cell_data_to_point_data", lit), color.scalars)
         named = _given({"cmap": color.cmap})
-        return Step("shown", "vizlight.tint", lit, values, **named, light=name, name=TINT)
+        return Step("shown", "vizlight.tint", lit, color.scalars, **named, light=name, name=TINT)
     if color.scalars != DIRECTION:
         expected = f"an array, {one_of(there)}, or {DIRECTION!r} for lines"
         raise ValueError(message("--scalars", expected, repr(color.scalars)))

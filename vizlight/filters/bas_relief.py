@@ -9,14 +9,14 @@ import pyvista as pv
 
 from vizlight import _check, _progress
 from vizlight.geometry.relief.depth_map import depth_map
-from vizlight.mesh import closed_meshes, hull
+from vizlight.mesh import closed_meshes
 
 if TYPE_CHECKING:
     from vizlight._types import Array, VectorLike
 
 
 def bas_relief(
-    mesh: pv.DataSet,
+    mesh: pv.DataSet | pv.MultiBlock,
     /,
     *,
     direction: VectorLike = (0.0, 0.0, 1.0),
@@ -31,7 +31,7 @@ def bas_relief(
 
     Parameters
     ----------
-    mesh : pyvista.DataSet
+    mesh : pyvista.DataSet or pyvista.MultiBlock
         Surface, closed or open, or a mesh whose outer surface is taken, such as a raised grid; not
         changed.
     direction : vector of 3 components, default: (0, 0, 1)
@@ -67,8 +67,6 @@ def bas_relief(
     The depth is sampled at the nodes by :func:`vizlight.geometry.relief.depth_map.depth_map`,
     without OpenGL. Source: cos-theta, figure 1, lights a bas-relief of a statue.
     """
-    if isinstance(mesh, pv.DataSet) and not isinstance(mesh, pv.PolyData):
-        mesh = hull.outer_surface(mesh)[0]
     vertices, triangles = closed_meshes.triangles_of(mesh, "mesh")
     frame = _eye_frame(direction, up)
     resolution = _check.integer("resolution", resolution, low=2)

@@ -101,7 +101,7 @@ def _pair(names: Sequence[object], *, line_field: bool) -> tuple[str, str]:
 
 @named
 def streamlines(
-    mesh: pv.DataSet,
+    mesh: pv.DataSet | pv.MultiBlock,
     /,
     scene: Scene | None = None,
     *,
@@ -135,16 +135,18 @@ def streamlines(
 
     Parameters
     ----------
-    mesh : pyvista.DataSet
-        Mesh that carries the vectors; not changed.
+    mesh : pyvista.DataSet or pyvista.MultiBlock
+        Mesh that carries the vectors; not changed. Of a MultiBlock, such as an OpenFOAM case, the
+        cells of the highest dimension are taken, without patches.
     scene : Scene, optional
         Lights, material and view, by default ``Scene()``.
     vectors : str or tuple of 2 str, optional
-        Name of a point array of 3, 6 or 9 components, or two names. 6 components are a symmetric
-        tensor (XX, YY, ZZ, XY, YZ, XZ, as in VTK) and 9 a matrix, whose first eigenvector is traced
-        as a line field. Two names, of arrays of 3 components and with ``line_field=True``, are a
-        cross field, such as both principal directions: lines of either direction are traced. On the
-        command line they are ``u,v``. Default: the active vectors.
+        Name of an array of 3, 6 or 9 components, or two names; one of cells is averaged to the
+        points. 6 components are a symmetric tensor (XX, YY, ZZ, XY, YZ, XZ, as in VTK) and 9 a
+        matrix, whose first eigenvector is traced as a line field. Two names, of arrays of 3
+        components and with ``line_field=True``, are a cross field, such as both principal
+        directions: lines of either direction are traced. On the command line they are ``u,v``.
+        Default: the active vectors, or the only point array of 3 components.
     line_field : bool, default: False
         Whether the vectors are directions without sign, such as principal directions. Each vector
         is then aligned with the one before it on the line. Tensors are always line fields. Of a
@@ -244,7 +246,7 @@ def streamlines(
 
 
 def light_lines(
-    mesh: pv.DataSet,
+    mesh: pv.DataSet | pv.MultiBlock,
     scene: Scene | None,
     options: StreamlineOptions,
     *,
@@ -256,7 +258,11 @@ def light_lines(
 
     Errors name the mesh by ``argument``.
     """
+    if isinstance(mesh, pv.MultiBlock):
+        mesh = blocks.one_grid(mesh)
     _check_mesh(mesh, argument)
+    names = options.vectors if isinstance(options.vectors, tuple) else (options.vectors,)
+    mesh = point_arrays.averaged(mesh, *names)
     scene = as_scene(scene)
     made = _resolved(mesh, options)
     with _progress.progress("trace", 100, show=progress_bar) as report:
@@ -275,8 +281,7 @@ def light_lines(
 def _check_mesh(mesh: object, argument: str) -> None:
     """Refuse what lines cannot be traced in."""
     if not isinstance(mesh, pv.DataSet):
-        remedy = "join its blocks by mesh.combine()" if isinstance(mesh, pv.MultiBlock) else ""
-        raise TypeError(_check.message(argument, "a PyVista dataset", type(mesh).__name__, remedy))
+        raise TypeError(_check.message(argument, "a PyVista dataset", type(mesh).__name__))
     if isinstance(mesh, pv.PointSet):
         remedy = "interpolate its vectors onto a grid, between points there are none"
         raise TypeError(_check.message(argument, "a dataset with cells", "PointSet", remedy))
@@ -467,7 +472,7 @@ def _vectors_name(mesh: pv.DataSet, vectors: Vectors | None) -> tuple[Vectors, b
             raise _no_vectors(mesh, None)
     pair = isinstance(vectors, tuple)
     for name in _names(vectors):
-        if name not in mesh.point_data and name not in mesh.cell_data:
+        if name not in mesh.point_data:
             raise _no_vectors(mesh, name)
         array = array_of(mesh, "vectors", name)
         if array.shape[1] in (6, 9) and not pair:
@@ -482,21 +487,17 @@ def _names(vectors: Vectors) -> tuple[str, ...]:
 
 def _no_vectors(mesh: pv.DataSet, got: str | None) -> ValueError:
     """Return an error that names the arrays which could be traced."""
-    point, cell = (
-        [repr(key) for key in data if np.shape(data[key])[1:] == (3,)]
+    point = [
+        repr(key)
         for data in (mesh.point_data, mesh.cell_data)
-    )
+        for key in data
+        if np.shape(data[key])[1:] == (3,)
+    ]
     remedy = ""
     if point:
-        remedy = " or ".join(f"vectors={key}" for key in point)
-        remedy = f"pass {remedy}"
-    elif cell:
-        remedy = (
-            f"the cells have {', '.join(cell)}: call mesh.cell_data_to_point_data() and pass "
-            f"vectors={cell[0]}"
-        )
+        remedy = f"pass {' or '.join(f'vectors={key}' for key in point)}"
     there = ", ".join(point) or "none"
-    expected = f"the name of a point array of 3 components ({there})"
+    expected = f"the name of an array of 3 components ({there})"
     return ValueError(
         _check.message("vectors", expected, None if got is None else repr(got), remedy)
     )

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import importlib
+import tempfile
+import zipfile
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista as pv
 from vtkmodules.vtkIOXML import vtkXMLPPolyDataReader
 
-from vizlight.mesh import georeference, polylines, rasters, steps
+from vizlight import _check
+from vizlight.mesh import brains, georeference, polylines, rasters, steps
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
-    from pathlib import Path
 
     from numpy.typing import NDArray
 
@@ -24,6 +27,7 @@ PACKAGES = {
     ".trk": ("nibabel", "tracts"),
     ".tck": ("nibabel", "tracts"),
     ".trx": ("trx-python", "tracts"),
+    ".gii": ("nibabel", "tracts"),
     ".nc": ("xarray", "formats"),
     ".cdf": ("xarray", "formats"),
 } | dict.fromkeys(
@@ -61,6 +65,10 @@ def read(path: Path, time: object = None) -> pv.DataSet | None:
     suffix = path.suffix.lower()
     if suffix in (".trk", ".tck"):
         return _tracts(path)
+    if path.name.lower().endswith((".tt", ".tt.gz")):
+        return _polylines(*brains.tracks_of_tt(path), {}, {})
+    if path.name.lower().endswith(brains.SURFACES) or brains.is_freesurfer(path):
+        return brains.read(path)
     if suffix == ".trx":
         return _tracts_of_trx(path)
     if suffix in (".nc", ".cdf"):
@@ -122,7 +130,33 @@ def _tracts(path: Path) -> pv.PolyData:
 def _tracts_of_trx(path: Path) -> pv.PolyData:
     from trx import trx_file_memmap
 
-    tracts: Any = trx_file_memmap.load(str(path))
+    try:
+        return _of_trx(trx_file_memmap.load(str(path)))
+    except Exception as error:
+        with tempfile.TemporaryDirectory() as folder:
+            bare, left = Path(folder) / "bare.trx", []
+            with zipfile.ZipFile(path) as whole, zipfile.ZipFile(bare, "w") as part:
+                for name in whole.namelist():
+                    if name.partition("/")[0] in _SIDE:
+                        left.append(name)
+                    else:
+                        part.writestr(name, whole.read(name))
+            if not left:
+                raise
+            lines = _of_trx(trx_file_memmap.load(str(bare)))
+        _check.warn(
+            f"file: '{path}' has data beside its lines that cannot be read ({error}), which are "
+            f"left out: {', '.join(left)}"
+        )
+        return lines
+
+
+#: Folders of a .trx file with data beside its lines.
+_SIDE = ("dps", "dpv", "dpg", "groups")
+
+
+def _of_trx(tracts: Any) -> pv.PolyData:
+    """Return the lines of a .trx file, and close it."""
     try:
         lines = tracts.streamlines
         of_lines = dict(tracts.data_per_streamline)
@@ -156,17 +190,24 @@ def _polylines(
     # Half precision, which TRX files have, is none of VTK's types.
     kind = np.result_type(points.dtype, np.float32)
     mesh = polylines.polydata(np.asarray(points[rows], dtype=kind), ends)
-    for name, array in of_points.items():
-        _attach(mesh.point_data, name, np.asarray(array)[rows])
-    for name, array in of_lines.items():
-        _attach(mesh.cell_data, name, np.asarray(array)[lengths > 0])
+    odd = []
+    for data, arrays, kept, count in (
+        (mesh.point_data, of_points, rows, len(points)),
+        (mesh.cell_data, of_lines, np.flatnonzero(lengths > 0), len(lengths)),
+    ):
+        for name, given in arrays.items():
+            array = np.asarray(given)
+            if len(array) == count and array.dtype.kind in "biuf":
+                _attach(data, name, array[kept])
+            else:
+                odd.append(f"{name!r} ({len(array)} rows of {array.dtype} for {count})")
+    if odd:
+        _check.warn(f"file: data beside the lines are left out: {', '.join(odd)}")
     return mesh
 
 
 def _attach(data: pv.DataSetAttributes, name: object, array: NDArray[np.generic]) -> None:
     """Attach numbers as rows; rows of one component become flat."""
-    if array.dtype.kind not in "biuf":
-        return
     native = np.float32 if array.dtype == np.float16 else array.dtype.newbyteorder("=")
     rows = array.reshape(len(array), -1)
     data[str(name)] = np.array(rows[:, 0] if rows.shape[1] == 1 else rows, dtype=native)
