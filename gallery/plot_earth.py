@@ -24,7 +24,7 @@ metre = 60 / 111_195
 panels = []
 for depth in (0.1, 2.0):
     lit = vizlight.relief_shadow(
-        earth, scene, depth=depth, elevation="elevation", factor=metre, lit=True
+        earth, scene, depth=depth, elevation="elevation", exaggeration=metre, lit=True
     )
     height = np.array(lit["elevation"], dtype=float)
     land = np.clip(height / 5000, 0, 1)[:, np.newaxis]

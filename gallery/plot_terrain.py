@@ -29,7 +29,7 @@ def shadowed(degrees):
     e = np.radians(degrees)
     toward = np.array([-np.cos(e) * 0.8, np.cos(e) * 0.6, np.sin(e)])
     scene = Scene(lights=Light(direction=toward), material=Material(specular=0))
-    lit = vizlight.relief_shadow(terrain, scene, depth=60, elevation="elevation", factor=2)
+    lit = vizlight.relief_shadow(terrain, scene, depth=60, elevation="elevation", exaggeration=2)
     for name, share in (("shadow", lit["t"]), ("hillshade", np.maximum(normal @ toward, 0))):
         # Level ground has the same brightness under each sun.
         light = 0.1 + 0.45 * np.asarray(share) / np.sin(e)

@@ -156,7 +156,7 @@ ONLY = {name: ("mesh", "surface", "lit", "scene") for name in CALLS if name.star
 ALIASES = {
     ("files.read", "path"): {"file"},
     ("files.write_mesh", "path"): {"output"},
-    ("files.warped", "factor"): {"warp_factor"},
+    ("files.warped", "factor"): {"exaggeration"},
     ("pictures.movie.save", "path"): {"output"},
     ("pictures.movie.turn", "path"): {"output"},
     # Errors of a piece begin with its name.
@@ -173,8 +173,8 @@ ALIASES = {
     ("plotting.paraview.save", "path"): {"output"},
     ("files.write_mesh", "mesh"): {"output"},
     ("files.warped", "name"): {"warp"},
-    ("filters.relief_day.relief_day", "factor"): {"z"},
-    ("filters.relief_shadow.relief_shadow", "factor"): {"z"},
+    ("filters.relief_day.relief_day", "exaggeration"): {"z"},
+    ("filters.relief_shadow.relief_shadow", "exaggeration"): {"z"},
     ("geometry.nspace.projection.rotation", "turns"): {"rotation", "plane", "angle"},
 }
 #: Places of results that are documented to be NaN or infinite, as regular expressions, and words of

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
+import vizlight
 from vizlight import files
 
 
@@ -111,17 +112,16 @@ def test_warp():
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (lambda g: files.surface_of(g, "s"), r"contour: .*one of \['r'\], got 's'"),
+        (lambda g: files.surface_of(g, "s"), r"contour: .*one of \['r', 'C'\], got 's'"),
         (
-            lambda g: files.surface_of(pv.Cube(), "s"),
+            lambda g: files.surface_of(pv.Sphere(), "s"),
             "contour: expected .* of one component, but the mesh has none, got 's'",
         ),
         (lambda g: files.surface_of(g, "V"), "contour: .*got 'V' with 3 components"),
-        (lambda g: files.surface_of(g, "C"), "contour: .*got the cell array 'C'"),
         (lambda g: files.surface_of(g, "r", 99.0), "level: expected a value between 0.8.* and 6.0"),
         (lambda g: files.surface_of(g, "r", np.nan), "level: expected a finite number"),
-        (lambda g: files.warped(g, "V", 1.0), "warp: expected a point array of one component"),
-        (lambda g: files.warped(g, "r", np.inf), "warp_factor: expected a finite number"),
+        (lambda g: files.warped(g, "V", 1.0), "warp: expected an array of one component"),
+        (lambda g: files.warped(g, "r", np.inf), "exaggeration: expected a finite number"),
     ],
 )
 def test_bad_arrays(call, words):
@@ -131,7 +131,7 @@ def test_bad_arrays(call, words):
         call(grid)
 
 
-@pytest.mark.parametrize("suffix", files.FORMATS["PolyData"])
+@pytest.mark.parametrize("suffix", [".vtp", ".vtk", ".vtu"])
 def test_surfaces_are_written_with_their_arrays(suffix, tmp_path):
     sphere = pv.Sphere()
     sphere["x"] = np.arange(sphere.n_points, dtype=float)
@@ -142,7 +142,8 @@ def test_surfaces_are_written_with_their_arrays(suffix, tmp_path):
 
 def test_wrong_endings_and_folders(tmp_path):
     with pytest.raises(
-        files.FileError, match=r"output: expected a name that ends in \.vti, \.vtk for ImageData"
+        files.FileError,
+        match=r"output: expected a name that ends in \.vti, \.vtk, \.stl for ImageData",
     ):
         files.write_mesh(volume(), tmp_path / "a.vtp")
     with pytest.raises(files.FileError, match=r"output: expected a name that ends in \.png, got"):
@@ -329,8 +330,7 @@ SIZED = {
 
 @pytest.mark.parametrize("name", SIZED)
 def test_no_cut_of_a_file_that_states_its_size_is_read(name, tmp_path):
-    if name == "a.nc":
-        pytest.importorskip("xarray")
+    pytest.importorskip({"a.nc": "xarray", "a.tif": "rasterio"}.get(name, "vtk"))
     path = tmp_path / name
     SIZED[name](path)
     whole = path.read_bytes()
@@ -383,3 +383,16 @@ def test_blocks_are_written_whole_or_not_at_all(tmp_path, monkeypatch):
     assert {file.name for file in tmp_path.iterdir()} == {"a.vtm", "a"}
     with pytest.raises(files.FileError, match=r"a name that ends in \.vtm for MultiBlock"):
         files.write_mesh(both, tmp_path / "a.vtp")
+
+
+def test_a_relief_becomes_a_closed_solid_for_a_printer(tmp_path):
+    relief = vizlight.bas_relief(pv.Sphere(), resolution=40)
+    files.write_mesh(relief, tmp_path / "a.stl")
+    solid = pv.read(tmp_path / "a.stl").clean()
+    assert solid.is_manifold
+    thickness = files.BASE * max(relief.bounds_size)
+    area = relief.bounds_size[0] * relief.bounds_size[1]
+    dome = relief["height"].mean() * area
+    assert solid.volume == pytest.approx(thickness * area + dome, rel=0.05)
+    with pytest.raises(files.FileError, match="expected an image of one layer with an active"):
+        files.write_mesh(pv.ImageData(dimensions=(3, 3, 3)), tmp_path / "b.stl")

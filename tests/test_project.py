@@ -51,8 +51,8 @@ REASONS = {
 }
 #: Extras whose packages the files of a folder may import, besides the dependencies.
 ALLOWED = {
-    "vizlight": ["fast", "formats", "movie", "rays", "scale", "solids", "tracts", "test"],
-    "tests": ["test", "docs", "tracts", "formats", "scale"],
+    "vizlight": ["fast", "formats", "maps", "movie", "rays", "scale", "solids", "tracts", "test"],
+    "tests": ["test", "docs", "tracts", "formats", "maps", "scale"],
     "gallery": ["docs", "scale"],
 }
 

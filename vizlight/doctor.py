@@ -23,6 +23,7 @@ OPTIONAL = (
     ("tractograms in .trx files", "trx-python", "tracts"),
     ("meshes in .off, .mesh, .msh and other files", "meshio", "formats"),
     ("grids in netCDF files", "xarray", "formats"),
+    ("heights in GeoTIFF and other rasters", "rasterio", "maps"),
     ("data in pieces on several machines", "distributed", "scale"),
     ("all tests", "pytest", "test"),
     ("tests of pictures", "pytest-pyvista", "test"),

@@ -22,12 +22,22 @@ import pyvista as pv
 from vtkmodules import vtkIOXML
 
 from vizlight import _check, _supervise
-from vizlight.mesh import blocks, foreign_files, hull, short_files
+from vizlight.mesh import (
+    blocks,
+    brains,
+    foreign_files,
+    georeference,
+    height_grids,
+    hull,
+    point_arrays,
+    short_files,
+    steps,
+)
 from vizlight.reading.cells import check_whole
 from vizlight.reading.edges import place_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from numpy.typing import NDArray
 
@@ -35,13 +45,15 @@ __all__ = ["FileError", "read", "surface_of", "warped", "write_mesh"]
 
 #: File formats that keep point and field arrays, by type of mesh.
 FORMATS: dict[str, tuple[str, ...]] = {
-    "PolyData": (".vtp", ".vtk", ".vtu"),
+    "PolyData": (".vtp", ".vtk", ".vtu", ".stl"),
     "UnstructuredGrid": (".vtu", ".vtk"),
     "StructuredGrid": (".vts", ".vtk"),
     "RectilinearGrid": (".vtr", ".vtk"),
-    "ImageData": (".vti", ".vtk"),
+    "ImageData": (".vti", ".vtk", ".stl"),
     "MultiBlock": (".vtm",),
 }
+#: Thickness of the base of a solid below a height field, as a share of its longer side.
+BASE = 0.02
 SUFFIXES = tuple(dict.fromkeys(suffix for kind in FORMATS.values() for suffix in kind))
 
 
@@ -63,6 +75,10 @@ _DAMAGE = re.compile(
 )
 
 
+#: What VTK says of an OpenFOAM file that is whole, but in a language that it has only a part of.
+_DIRECTIVE = re.compile(r"Error reading line \d+ of (\S+): Unsupported directive (\w+)")
+
+
 #: Standard error is the process's: one thread at a time redirects it.
 _REDIRECTED = threading.RLock()
 
@@ -71,15 +87,27 @@ class FileError(ValueError):
     """A file cannot be read or written."""
 
 
-def read(path: str | Path, /) -> pv.DataSet:
-    """Read a mesh from a file: any that PyVista reads, tractograms and netCDF grids.
+def read(
+    path: str | Path,
+    /,
+    *,
+    time: float | str | None = None,
+    overlay: str | Path | Sequence[str | Path] = (),
+) -> pv.DataSet:
+    """Read a mesh from a file: any that PyVista reads, tractograms, rasters and netCDF grids.
 
     Parameters
     ----------
     path : path
         Path of the file. Tractograms (.trk, .tck, .trx) need the extra ``tracts``; netCDF files
         (.nc, .cdf) and those that PyVista reads by meshio, such as .off, .mesh and .msh, need the
-        extra ``formats``.
+        extra ``formats``; GeoTIFF and other rasters (.tif, .asc, .hgt) the extra ``maps``.
+    time : float or "first" or "last", optional
+        Time of the step that is read from a file of several, or the index of the step, if it is
+        an integer and no time of a step. Default: the last step.
+    overlay : path or sequence of paths, optional
+        Files with values for the points, which become point arrays of their names: GIFTI (.gii),
+        FreeSurfer's (lh.curv, .annot, .mgh) and .mz3 for a surface of a brain.
 
     Returns
     -------
@@ -87,14 +115,22 @@ def read(path: str | Path, /) -> pv.DataSet:
         Several blocks become one grid. A tractogram is a mesh of polylines in the space of its
         header (RAS, in mm), with the data per point and, as cell data, those per streamline; a
         group is a cell array of 0 and 1. A netCDF file is the grid of its largest variable, whose
-        last axis is x: an image, or a rectilinear grid where its steps are unequal. Of the
-        time, and of any axis before the last three, the first value is taken.
+        last axis is x: an image, or a rectilinear grid where its steps are unequal. Of any axis
+        before the last three, other than the time, the first value is taken. A raster is an image
+        with a point at the centre of each pixel; what is missing is NaN. The field array ``unit``
+        of a map in degrees is ``degree``. The field array ``TimeValue`` is the time of a step,
+        ``TimeSteps`` are those of all steps.
 
     Raises
     ------
     FileError
         If the file does not exist, cannot be read or is damaged, the package that reads it is not
-        installed, or it has no points.
+        installed, or it has no points or no such step.
+
+    Warns
+    -----
+    UserWarning
+        If a field of an OpenFOAM case is left out, whose directives VTK does not read.
 
     Notes
     -----
@@ -106,7 +142,11 @@ def read(path: str | Path, /) -> pv.DataSet:
     path = _path("file", path)
     if not path.is_file():
         what = "a folder" if path.is_dir() else "no such file"
-        raise FileError(_check.message("file", "a file", f"'{path}' ({what})"))
+        remedy = ""
+        if (path / "constant").is_dir():
+            case = path / f"{path.resolve().name}.foam"
+            remedy = f"an OpenFOAM case is read by an empty file in it: touch '{case}'"
+        raise FileError(_check.message("file", "a file", f"'{path}' ({what})", remedy))
     if not os.access(path, os.R_OK):
         raise FileError(_check.message("file", "a readable file", f"'{path}'"))
     if str(path).encode("utf-8", "replace") != os.fsencode(path):
@@ -122,22 +162,26 @@ def read(path: str | Path, /) -> pv.DataSet:
     with (
         reading,
         captured_errors() as errors,
-        warnings.catch_warnings(),
+        warnings.catch_warnings(record=True) as told,
         contextlib.redirect_stdout(said),
     ):
-        warnings.simplefilter("ignore")
+        warnings.simplefilter("always")
         try:
-            found = foreign_files.read(path)
-            if found is None:
-                found = pv.read(path)
+            found: Any = _found(path, time)
             if lacking := short_files.contradiction(found):
                 raise FileError(lacking)
-            mesh = _one_grid(found) if isinstance(found, pv.MultiBlock) else found
+            whole = blocks.one_grid(found) if isinstance(found, pv.MultiBlock) else found
+            _lay_over(whole, [overlay] if isinstance(overlay, str | Path) else overlay)
+            mesh = whole
+        except steps.NoStepError:
+            raise
         except Exception as error:  # noqa: BLE001 - readers raise exceptions of any type
             kind = "" if isinstance(error, FileError) else f"{type(error).__name__}: "
             reason = f"{kind}{_first_line(error)}"
         except SystemExit:  # meshio ends the process where one of its readers finds a fault
             reason = f"meshio: {_first_line(said.getvalue())}"
+    unread = [match for match in map(_DIRECTIVE.search, errors) if match]
+    errors = [error for error in errors if not _DIRECTIVE.search(error)]
     if not isinstance(mesh, pv.DataSet) or mesh.n_points == 0:
         if errors and reason == "no points":
             reason = f"no points: {errors[0]}"
@@ -145,12 +189,40 @@ def read(path: str | Path, /) -> pv.DataSet:
         raise FileError(_check.message("file", "a mesh that PyVista reads", got, remedy))
     if errors:
         raise _damaged(path, errors[0])
+    _warn_of_unread(path, unread)
+    for text in dict.fromkeys(str(one.message) for one in told if one.category is UserWarning):
+        _check.warn(text)
     if isinstance(found, pv.MultiBlock) and (names := _left_out(found, mesh)):
         _check.warn(
             f"file: '{path}' has blocks whose cells are of a lower dimension than other blocks', "
             f"which are left out: {names}; light pyvista.read(...) to keep all blocks"
         )
     return mesh
+
+
+def _lay_over(mesh: pv.DataSet, paths: Sequence[str | Path]) -> None:
+    """Attach the arrays of files with values for the points of a surface."""
+    for path in paths:
+        for name, rows in brains.overlay(_path("overlay", path), mesh.n_points).items():
+            mesh.point_data[name] = rows
+
+
+def _warn_of_unread(path: Path, unread: list[re.Match[str]]) -> None:
+    """Warn of fields of an OpenFOAM case that VTK could not read."""
+    if unread:
+        fields = ", ".join(f"'{match[1]}' (#{match[2]})" for match in unread)
+        _check.warn(
+            f"file: '{path}' has fields that are left out, for VTK does not read their directives: "
+            f"{fields}; foamDictionary -expand writes them out"
+        )
+
+
+def _found(path: Path, time: object) -> pv.DataObject:
+    """Return what the first reader that knows a file makes of it."""
+    found: pv.DataObject | None = foreign_files.read(path, time)
+    if found is None:
+        found = steps.read(path, time)
+    return pv.read(path) if found is None else found
 
 
 def _path(name: str, value: object) -> Path:
@@ -182,20 +254,6 @@ def _first_line(error: Exception | str) -> str:
     return next((line.strip() for line in str(error).splitlines() if line.strip()), "no reason")
 
 
-def _one_grid(found: pv.MultiBlock) -> pv.UnstructuredGrid:
-    """Return the cells of the highest dimension of all blocks, without side sets of a volume."""
-    grid: Any = blocks.joined(found)
-    dimension = {kind: grid.GetCell(index).GetCellDimension() for kind, index in _samples(grid)}
-    highest = max(dimension.values(), default=0)
-    keep = [kind for kind, d in dimension.items() if d == highest]
-    if len(keep) < len(dimension):
-        grid = grid.extract_cells(
-            np.isin(grid.celltypes, keep), pass_point_ids=False, pass_cell_ids=False
-        )
-    result: pv.UnstructuredGrid = grid
-    return result
-
-
 def _left_out(found: pv.MultiBlock, grid: pv.DataSet) -> str:
     """Return the names of blocks that are not in a grid and are no side sets of it."""
     kept = grid.distinct_cell_types
@@ -206,12 +264,6 @@ def _left_out(found: pv.MultiBlock, grid: pv.DataSet) -> str:
         for block, path in lower
         if not np.isin(place_numbers(np.asarray(block.points)), there).all()
     )
-
-
-def _samples(grid: pv.UnstructuredGrid) -> Iterator[tuple[int, int]]:
-    """Yield each cell type with the index of one cell of that type."""
-    kinds, first = np.unique(grid.celltypes, return_index=True)
-    yield from zip(kinds.tolist(), first.tolist(), strict=True)
 
 
 @contextlib.contextmanager
@@ -235,16 +287,16 @@ def captured_errors() -> Iterator[list[str]]:
 
 
 def surface_of(
-    mesh: pv.DataSet, /, contour: str | None = None, level: float | None = None
+    mesh: pv.DataSet | pv.MultiBlock, /, contour: str | None = None, level: float | None = None
 ) -> pv.PolyData:
     """Return an isosurface of a mesh, or its outer surface if no contour is given.
 
     Parameters
     ----------
-    mesh : pyvista.DataSet
+    mesh : pyvista.DataSet or pyvista.MultiBlock
         Mesh, which is not changed.
     contour : str, optional
-        Name of a point array of one component.
+        Name of an array of one component; one of cells is averaged to the points.
     level : float, optional
         Value of the array on the isosurface. Default: the middle of its range.
 
@@ -257,11 +309,14 @@ def surface_of(
     ValueError
         If the array does not exist, or the isosurface is empty.
     """
+    if isinstance(mesh, pv.MultiBlock):
+        mesh = blocks.one_grid(mesh)
     _dataset(mesh)
     if contour is None:
         if isinstance(mesh, pv.PolyData):
             return mesh
         return hull.outer_surface(mesh)[0]
+    mesh = point_arrays.averaged(mesh, contour)
     values = _scalars(mesh, "contour", contour)
     finite = values[np.isfinite(values)]
     if not finite.size:
@@ -282,9 +337,9 @@ def warped(mesh: pv.DataSet, name: str, factor: float, /) -> pv.DataSet:
     Parameters
     ----------
     mesh : pyvista.DataSet
-        Mesh, which is not changed.
+        Mesh, which is not changed. A map in degrees becomes one in metres about its centre.
     name : str
-        Name of the array of heights.
+        Name of the array of heights. Cells at heights that are not finite are left out.
     factor : float
         Length in the unit of the mesh that corresponds to one unit of height.
 
@@ -295,12 +350,24 @@ def warped(mesh: pv.DataSet, name: str, factor: float, /) -> pv.DataSet:
     Raises
     ------
     ValueError
-        If the array does not exist, or the factor is not finite.
+        If the array does not exist or has no finite value, or the factor is not finite.
     """
     _dataset(mesh)
-    _scalars(mesh, "warp", name)
-    moved: pv.DataSet = mesh.warp_by_scalar(name, factor=_check.number("warp_factor", factor))
-    return moved
+    mesh = point_arrays.averaged(mesh, name)
+    holes = ~np.isfinite(_scalars(mesh, "warp", name))
+    factor = _check.number("exaggeration", factor)
+    mesh = georeference.in_metres(mesh)
+    if holes.all():
+        raise ValueError(_check.message("warp", "an array with finite values", repr(name)))
+    if isinstance(mesh, pv.ImageData | pv.RectilinearGrid):
+        # VTK raises grids to float32, which is coarse far from the origin.
+        points = np.array(mesh.points, dtype=np.float64)
+        points[:, 2] += factor * mesh.point_data[name]
+        moved: pv.DataSet = mesh.cast_to_structured_grid()
+        moved.points = points
+    else:
+        moved = mesh.warp_by_scalar(name, factor=factor)
+    return moved.extract_points(~holes, adjacent_cells=False) if holes.any() else moved
 
 
 def _scalars(mesh: pv.DataSet, argument: str, name: str) -> NDArray[np.generic]:
@@ -312,12 +379,9 @@ def _scalars(mesh: pv.DataSet, argument: str, name: str) -> NDArray[np.generic]:
     got = repr(name)
     if name in data:
         got = f"{name!r} with {data[name].shape[1]} components"
-    elif name in mesh.cell_data:
-        got = f"the cell array {name!r}"
-    known = [key for key in data if data[key].ndim == 1]
-    remedy = "average it to the points" if name in mesh.cell_data else ""
-    expected = f"a point array of one component, {_check.one_of(known)}"
-    raise ValueError(_check.message(argument, expected, got, remedy))
+    known = [key for key in (*data, *mesh.cell_data) if mesh[key].ndim == 1]
+    expected = f"an array of one component, {_check.one_of(known)}"
+    raise ValueError(_check.message(argument, expected, got))
 
 
 def check_output(path: str | Path, /, formats: tuple[str, ...], *, name: str = "output") -> Path:
@@ -386,7 +450,8 @@ def write_mesh(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
         Mesh to write.
     path : path
         Path of the file, in an existing folder. Its extension, one of .vtp, .vtu, .vtk, .vts,
-        .vti and .vtr, or .vtm for several blocks, determines the format. An existing file is
+        .vti and .vtr, or .vtm for several blocks, determines the format; .stl has no arrays, and
+        of an image the solid below its active heights. An existing file is
         replaced. The blocks are in a folder beside the .vtm file, which has its name without the
         extension.
 
@@ -415,6 +480,8 @@ def write_mesh(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
                 folder.rmdir()
     if path.suffix.lower() == ".vtu" and isinstance(mesh, pv.PolyData):
         mesh = mesh.cast_to_unstructured_grid()
+    if path.suffix.lower() == ".stl":
+        mesh = _solid(mesh) if isinstance(mesh, pv.ImageData) else mesh.triangulate()
 
     def save(draft: str) -> None:
         _reserve(Path(draft), [mesh])
@@ -424,6 +491,20 @@ def write_mesh(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
         _check_draft(Path(draft), mesh, errors)
 
     return replace_file(path, save)
+
+
+def _solid(field: pv.ImageData) -> pv.PolyData:
+    """Return the closed surface of a height field above a level base."""
+    name = height_grids.heights_name(field)
+    if name is None or min(field.dimensions[:2]) < 2 or field.dimensions[2] != 1:
+        expected = "an image of one layer with an active array of heights, for .stl"
+        raise FileError(_check.message("mesh", expected, _check.describe(field)))
+    top = warped(field, name, 1.0).extract_surface(algorithm="dataset_surface")
+    base = top.bounds.z_min - BASE * max(field.bounds_size[:2])
+    middle = (top.center[0], top.center[1], base)
+    plane = pv.Plane(center=middle, i_size=3 * top.length, j_size=3 * top.length)
+    solid: pv.PolyData = top.extrude_trim((0, 0, -1), plane).clean().triangulate()
+    return solid
 
 
 def _to_save(mesh: pv.DataSet) -> pv.DataSet:
@@ -499,7 +580,9 @@ def _check_draft(draft: Path, mesh: pv.DataSet, errors: list[str]) -> None:
     reason = errors[0] if errors else ""
     if not reason and not draft.is_file():
         reason = "nothing was written"
-    if not reason and draft.suffix != ".vtk":
+    if not reason and draft.suffix == ".stl":
+        reason = short_files.missing_part(draft)
+    elif not reason and draft.suffix != ".vtk":
         reader = READERS[draft.suffix]()
         reader.SetFileName(str(draft))
         with captured_errors() as errors:

@@ -187,7 +187,7 @@ def test_terrain_is_warped(tmp_path, monkeypatch, capfd):
     grid["elevation"] = np.sin(grid.points[:, 0])
     grid.save("t.vti")
     code, _, err = run(
-        capfd, "light", "t.vti", "--warp", "elevation", "--warp-factor", "2", "-o", "t.vtp"
+        capfd, "light", "t.vti", "--warp", "elevation", "--exaggeration", "2", "-o", "t.vtp"
     )
     assert (code, err) == (0, "")
     assert pv.read("t.vtp").bounds.z_max > 1.5
@@ -203,7 +203,8 @@ def test_what_may_have_been_meant_is_told(volume, tmp_path, capfd):
         ((volume,), "hull of a volume is lit; --contour r"),
         (("flat.vti",), "mesh is flat; --warp height"),
         ((volume, "--no-surface"), ""),
-        (("flat.vti", "--warp", "height"), ""),
+        (("flat.vti", "--warp", "height"), "heights are taken 0.1 times"),
+        (("flat.vti", "--warp", "height", "--exaggeration", "1"), ""),
         (("bare.vti",), ""),
     ):
         code, out, _ = run(capfd, "light", *options, "-o", "a.vtk")
@@ -227,7 +228,7 @@ def test_points_that_cannot_be_lit_are_told_and_no_error(volume, capfd):
         (["light", "."], "file: expected a file, got '.' (a folder)"),
         (["light", "flow.vti", "-o", "flow.vti", "--no-surface"], "another file than the input"),
         (["light", "flow.vti", "--level", "3"], "--level: expected --contour with it"),
-        (["light", "flow.vti", "--warp-factor", "3"], "--warp-factor: expected --warp with it"),
+        (["light", "flow.vti", "--exaggeration", "3"], "--exaggeration: expected --warp with it"),
         (["light", "flow.vti", "--background", "nocolor"], "background: expected a colour's name"),
         (["light", "flow.vti", "--line-width", "-1"], "--line-width: expected a number from 0.1"),
         (
@@ -246,7 +247,7 @@ def test_points_that_cannot_be_lit_are_told_and_no_error(volume, capfd):
             ["light", "flow.vti", "--no-surface", "-o", "x.vti", "--normals", "C"],
             "got the cell array 'C'",
         ),
-        (["light", "flow.vti", "--contour", "V"], "contour: expected a point array of one"),
+        (["light", "flow.vti", "--contour", "V"], "contour: expected an array of one"),
         (
             ["light", "flow.vti", "--contour", "r", "--level", "99"],
             "level: expected a value between",

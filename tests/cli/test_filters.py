@@ -76,7 +76,7 @@ COMMANDS = {
     "--precision float64 --components --background black --line-width 2 --up 0,1,0 --view 1,0,1",
     "section": "light flow.vti --slice 0,1,1:8 --tangents V",
     "points of a volume": "light flow.vti --no-surface --tangents V",
-    "raised": "light terrain.vti --warp height --warp-factor 2 --facing as-given",
+    "raised": "light terrain.vti --warp height --exaggeration 2 --facing as-given",
     "scene of a file": "light flow.vti --contour r --scene scene.json --specular 0.1",
     "view of a scene": "light flow.vti --contour r --scene view.json",
     "saved camera": "light flow.vti --contour r --view camera.json --zoom 2 --parallel",
@@ -90,7 +90,7 @@ COMMANDS = {
     "a cross field": "streamlines flow.vti --vectors V,W --line-field --seeds 9",
     "lines without sign": "streamlines flow.vti --vectors V --line-field --seeds 9",
     "relief": "relief terrain.vti --light 315,20 --depth 0.5 --border wall",
-    "relief, lit": "relief terrain.vti --lit --color white --factor 2 --elevation height",
+    "relief, lit": "relief terrain.vti --color white --exaggeration 2 --elevation height",
     "relief of a surface": "relief flow.vti --contour r --level 3 --depth 0.5",
     "fur": "fur flow.vti --contour r --level 4 --density 0.3 --length 0.4 --fibres 200 "
     "--toward 0,0,-1 --bend 0.5",
@@ -317,13 +317,33 @@ def test_level_ground_under_a_low_sun_is_not_black(altitude, gray, folder, capfd
     flat = pv.ImageData(dimensions=(9, 9, 1))
     flat["height"] = np.zeros(flat.n_points)
     flat.save("flat.vti")
-    asked = ("--light", f"315,{altitude}", "-o", "a.png", "-o", "a.vti", *SMALL)
+    asked = ("--no-lit", "--light", f"315,{altitude}", "-o", "a.png", "-o", "a.vti", *SMALL)
     code, out, _ = run(capfd, "relief", "flat.vti", *asked)
     assert code == 0
     assert ("white in the picture is t = 0.52" in out) == (altitude == 10)
     np.testing.assert_allclose(pv.read("a.vti")["t"], np.sin(np.radians(altitude)), atol=1e-6)
     picture = np.array(Image.open("a.png").convert("L"))
     assert abs(int(picture[30, 45]) - 255 * gray) <= 1
+
+
+def test_a_map_in_degrees_is_lit_as_it_is_shown(folder, capfd):
+    """The light is that of the heights in the picture, which the map as it is has not."""
+    grid = pv.ImageData(dimensions=(30, 20, 1), spacing=(1 / 60, 1 / 60, 1), origin=(11, 60, 0))
+    x, y, _ = grid.points.T
+    grid["height"] = 200 * np.sin(15 * x) * np.cos(20 * y)
+    grid.field_data["unit"] = ["degree"]
+    grid.save("map.vti")
+    code, out, _ = run(capfd, "relief", "map.vti", "-o", "lit.vti")
+    assert (code, "heights are taken 5 times" in out) == (0, True)
+    made = pv.read("lit.vti")
+    shown = vizlight.files.warped(grid, "height", 5.0)
+    known = vizlight.provenance(made, "t")
+    scene = vizlight.Scene.from_dict(known["scene"])
+    raised = vizlight.relief_shadow(shown, scene, lit=True, depth=known["depth"])
+    np.testing.assert_allclose(made["luminance"], raised["luminance"], atol=2e-6)
+    assert np.ptp(made["luminance"]) > 0.15
+    run(capfd, "relief", "map.vti", "-o", "true.vti", "--exaggeration", "1")
+    assert not np.allclose(pv.read("true.vti")["t"], made["t"], atol=0.01)
 
 
 def test_report_stands_in_the_script_too(folder, capfd):
@@ -346,10 +366,13 @@ def test_report_stands_in_the_script_too(folder, capfd):
         ("streamlines flow.vti --seeds x", "--seeds"),
         ("streamlines flow.vti --vectors V --confined", "surface: expected a surface"),
         ("streamlines flow.vti --vectors V -o a.vti", "ends in .vtp, .vtk, .vtu for PolyData"),
-        ("relief flow.vti --contour r --factor 3", "factor: expected none on a surface"),
+        (
+            "relief flow.vti --contour r --exaggeration 3",
+            "--exaggeration: expected --warp",
+        ),
         ("relief torus.vtp --depth -1", "depth: expected"),
         ("relief terrain.vti --elevation none", "expected"),
-        ("relief terrain.vti -o a.vtp", "ends in .vti, .vtk for ImageData"),
+        ("relief terrain.vti -o a.vtp", "ends in .vti, .vtk, .stl for ImageData"),
         ("fur flow.vti --contour r --density 0.1 --absorption 0.2", "absorption, density: exp"),
         ("fur flow.vti --contour r --density 2", "density: expected a number from 0 to 1"),
         ("fur flow.vti --contour r --density 0.1 --toward up --bend 1", "toward: expected"),
@@ -535,3 +558,30 @@ def test_parts_are_blocks_of_one_file_and_one_page(folder, capfd):
     assert Path("c.html").read_text(encoding="utf-8") == page
     code, _, err = run(capfd, "light", "flow.vti", "-o", "d.vtm")
     assert (code, "a name that ends in .vtp, .vtk, .vtu for PolyData" in err) == (2, True)
+
+
+def test_steps_without_a_flow_name_those_that_have_one(folder, capfd):
+    import foam
+
+    def fields(time, middles):
+        return {"U": time * np.tile([1.0, 0.5, 0.2], (len(middles), 1))}
+
+    foam.write(folder / "case", [0, 0.5, 2], fields)
+    arguments = ("streamlines", "case/case.foam", "--vectors", "U", "--seeds", "5")
+    code, out, _ = run(capfd, *arguments, "-o", "a.vtp")
+    assert (code, "note     time 2, the last of 3 steps; --time takes" in out) == (0, True)
+    code, _, err = run(capfd, *arguments, "--time", "0", "-o", "a.vtp")
+    assert (code, "'U' is not zero everywhere, got 0; pass --time with one of 0.5, 2" in err) == (
+        2,
+        True,
+    )
+    (folder / "out").mkdir()
+    code, out, _ = run(capfd, *arguments, "--times", "1:", "-o", "out", *SMALL)
+    assert (code, "note" in out) == (0, False)
+    assert sorted(path.name for path in Path("out").glob("*.vtp")) == [
+        "case-streamlines-0000.vtp",
+        "case-streamlines-0001.vtp",
+    ]
+    for asked in ("3:", "x", "all --time 1"):
+        code, _, err = run(capfd, *arguments, "--times", *asked.split(), "-o", "out")
+        assert (code, "--times: expected all, or indices of steps" in err) == (2, True)

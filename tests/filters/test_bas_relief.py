@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import pyvista as pv
-from fields import level
 
 import vizlight
 from vizlight import Light, Scene, bas_relief, relief_shadow
@@ -43,8 +42,8 @@ def test_bas_relief_is_upright():
 
 
 def test_bad_bas_relief():
-    with pytest.raises(TypeError, match=r"mesh: expected a pyvista\.PolyData surface"):
-        bas_relief(level())
+    with pytest.raises(TypeError, match="mesh: expected a PyVista surface, got int"):
+        bas_relief(3)
     with pytest.raises(ValueError, match="resolution: expected an integer of at least 2"):
         bas_relief(BALL, resolution=1)
     with pytest.raises(ValueError, match="up: expected a direction across the view"):
@@ -62,3 +61,11 @@ def test_progress_is_shown_on_standard_error(capfd):
     assert "depth" in said.err
     assert "100%" in said.err
     assert said.out == ""
+
+
+def test_a_raised_grid_has_a_relief():
+    grid = pv.ImageData(dimensions=(21, 21, 1), spacing=(0.1, 0.1, 1))
+    grid["h"] = np.sin(grid.points[:, 0])
+    raised = grid.warp_by_scalar("h")
+    known = bas_relief(raised.extract_surface(algorithm="geometry"), resolution=30)
+    np.testing.assert_array_equal(bas_relief(raised, resolution=30)["height"], known["height"])

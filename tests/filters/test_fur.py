@@ -371,8 +371,8 @@ def test_bad_input(options, error, words):
 
 
 def test_bad_surfaces_and_scenes():
-    with pytest.raises(TypeError, match=r"surface: expected a pyvista\.PolyData surface"):
-        fur(pv.ImageData(dimensions=(2, 2, 2)), SCENE, density=0.02)
+    with pytest.raises(TypeError, match="surface: expected a PyVista surface, got list"):
+        fur([], SCENE, density=0.02)
     with pytest.raises(ValueError, match="surface: expected a surface with faces"):
         fur(pv.Line(), SCENE, density=0.02)
     flat = Scene(lights=Light(direction=(1, 0)), view=View(position=(0, 0)), material=SHINY)

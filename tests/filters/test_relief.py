@@ -121,13 +121,13 @@ def test_factor_and_default_depth():
     tall = grid.copy()
     tall["height"] = 3 * Z.ravel()
     np.testing.assert_allclose(
-        relief_shadow(grid, SCENE, factor=3.0)["t"], relief_shadow(tall, SCENE)["t"]
+        relief_shadow(grid, SCENE, exaggeration=3.0)["t"], relief_shadow(tall, SCENE)["t"]
     )
     step = (np.abs(np.diff(Z, axis=0)).mean() + np.abs(np.diff(Z, axis=1)).mean()) / 2
     for factor, depth in ((1.0, 0.25 / 8), (0.2, 0.1 * step)):
-        out = relief_shadow(grid, SCENE, factor=factor)
+        out = relief_shadow(grid, SCENE, exaggeration=factor)
         assert vizlight.provenance(out, "t")["depth"] == pytest.approx(depth, rel=1e-12)
-        given = relief_shadow(grid, SCENE, factor=factor, depth=depth)
+        given = relief_shadow(grid, SCENE, exaggeration=factor, depth=depth)
         np.testing.assert_allclose(out["t"], given["t"], atol=1e-12)
 
 
@@ -191,7 +191,7 @@ def test_a_surface_is_sampled_on_request():
             relief_shadow(bent, sun=(70, 15), raster=raster)
     with pytest.raises(ValueError, match="raster: expected a raster of at most"):
         relief_shadow(bent, sun=(70, 15), raster=1e-5)
-    with pytest.raises(TypeError, match="mesh: expected a height field"):
+    with pytest.raises(ValueError, match="mesh: expected a surface with faces"):
         relief_shadow(pv.UnstructuredGrid(), sun=(70, 15), raster=0)
 
 
@@ -256,8 +256,8 @@ def shapes():
     bent = pv.StructuredGrid(u + 0.1 * v * v + 0.2 * u * u, v + 0.1 * np.sin(2 * u), z)
     return {
         "hills": (flat, {}),
-        "exaggerated": (flat, {"factor": 10.0}),
-        "flattened": (flat, {"factor": 0.4}),
+        "exaggerated": (flat, {"exaggeration": 10.0}),
+        "flattened": (flat, {"exaggeration": 0.4}),
         "coarse": (coarse, {}),
         "wide": (wide, {}),
         "curvilinear": (bent, {"raster": 0}),
@@ -409,13 +409,13 @@ BALL = pv.Sphere(theta_resolution=8, phi_resolution=8)
         (level(), {"name": ""}, ValueError, "name: expected a name for the point array"),
         (BALL, {"depth": -1}, ValueError, "depth: expected a finite number of at least 0"),
         (BALL, {"elevation": "z"}, ValueError, "elevation: expected none on a surface"),
-        (BALL, {"factor": 2}, ValueError, "factor: expected none on a surface, got 2"),
+        (BALL, {"exaggeration": 2}, ValueError, "exaggeration: expected none on a surface, got 2"),
         (BALL, {"border": "wall"}, ValueError, "border: expected none on a surface, got 'wall'"),
         (BALL, {"method": "exact"}, ValueError, "method: expected none on a surface, got 'exact'"),
         (BALL, {"thickness": 0}, ValueError, "thickness: expected more than 0"),
         (BALL, {"occluders": [pv.Plane()]}, ValueError, r"occluders\[0\]: expected a closed"),
         (pv.Line(), {}, ValueError, "mesh: expected a surface with faces"),
-        (pv.UnstructuredGrid(), {}, TypeError, "mesh: expected a height field"),
+        (pv.UnstructuredGrid(), {}, ValueError, "mesh: expected a surface with faces"),
         (None, {}, TypeError, "mesh: expected a height field"),
     ],
 )

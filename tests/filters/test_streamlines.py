@@ -132,8 +132,8 @@ def test_options_reach_the_light():
 @pytest.mark.parametrize(
     ("make", "options", "error", "words"),
     [
-        (vortex, {"vectors": "U"}, ValueError, "vectors: expected the name of a point array"),
-        (pv.ImageData, {}, ValueError, "vectors: expected the name of a point array"),
+        (vortex, {"vectors": "U"}, ValueError, "vectors: expected the name of an array"),
+        (pv.ImageData, {}, ValueError, "vectors: expected the name of an array"),
         (
             vortex,
             {"vectors": "V", "confined": True},
@@ -145,12 +145,6 @@ def test_options_reach_the_light():
             {"vectors": "V", "conditioned": True},
             ValueError,
             "surface: .* conditioned lines",
-        ),
-        (
-            vortex,
-            {"vectors": "V", "surface": vortex()},
-            TypeError,
-            "surface: expected a pyvista.PolyData surface, got ImageData",
         ),
         (
             vortex,
@@ -334,18 +328,13 @@ def test_no_line_at_all():
 def test_errors_name_the_arrays_that_could_be_traced():
     grid = pv.ImageData(dimensions=(3, 3, 3))
     grid.cell_data["wind"] = np.ones((8, 3))
-    with pytest.raises(
-        ValueError, match=r"\(none\), got 'wnid'; the cells have 'wind': call .*data"
-    ):
+    with pytest.raises(ValueError, match=r"\('wind'\), got 'wnid'; pass vectors='wind'"):
         streamlines(grid, SCENE, vectors="wnid")
-    with pytest.raises(ValueError, match="vectors: .*the cell array 'wind'; call"):
-        streamlines(grid, SCENE, vectors="wind")
-    grid.point_data["U"], grid.point_data["r"] = np.ones((27, 3)), np.ones(27)
+    for name in ("U", "W"):
+        grid.point_data[name] = np.ones((27, 3))
     grid.point_data.active_vectors_name = None
-    with pytest.raises(ValueError, match="got None; pass vectors='U'$"):
+    with pytest.raises(ValueError, match="got None; pass vectors='U' or vectors='W' or"):
         streamlines(grid, SCENE)
-    with pytest.raises(TypeError, match="got MultiBlock; join its blocks by mesh.combine()"):
-        streamlines(pv.MultiBlock([grid]), SCENE)
 
 
 def test_what_points_out_of_a_surface_does_not_count():

@@ -272,9 +272,6 @@ def test_bad_input():
     words["word"] = np.array(["a"] * words.n_points)
     with pytest.raises(TypeError, match="scalars: expected real numbers"):
         tint(words, "word")
-    lit.cell_data["face"] = np.arange(lit.n_cells)
-    with pytest.raises(ValueError, match="cell_data_to_point_data"):
-        tint(lit, "face")
     given = vizlight.illuminate(mesh, SCENE, tangents=np.array(mesh.points))
     with pytest.raises(ValueError, match="attach the array and name it by tangents="):
         tint(given, "height")

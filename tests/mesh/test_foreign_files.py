@@ -180,6 +180,7 @@ def test_a_file_at_which_meshio_ends_the_process(tmp_path, capsys):
         ("a.trx", "trx", r".trx files are read by trx-python: .*'vizlight\[tracts\]'"),
         ("a.off", "meshio", r".off files are read by meshio: .*'vizlight\[formats\]'"),
         ("a.mesh", "meshio", r".mesh files are read by meshio: .*'vizlight\[formats\]'"),
+        ("a.tif", "rasterio", r".tif files are read by rasterio: .*'vizlight\[maps\]'"),
         ("a.NC", "xarray", r".nc files are read by xarray: .*'vizlight\[formats\]'"),
     ],
 )
@@ -193,7 +194,7 @@ def test_a_package_that_is_missing_is_named(name, module, words, tmp_path, monke
         vizlight.read(path)
 
 
-def grid_file(path, lon, **variables):
+def grid_file(path, lon, time=None, **variables):
     xarray = pytest.importorskip("xarray")
     lat = np.array([40.0, 30.0, 10.0]) if len(variables) > 1 else np.array([30.0, 20.0, 10.0])
     axes = {"lat": lat, "lon": np.asarray(lon, dtype=float), "time": [5.0, 6.0]}
@@ -201,7 +202,7 @@ def grid_file(path, lon, **variables):
         {key: (("time", "lat", "lon")[3 - np.ndim(v) :], v) for key, v in variables.items()},
         coords=axes,
     ).to_netcdf(path, engine="scipy")
-    return vizlight.read(path)
+    return vizlight.read(path, time=time)
 
 
 def test_a_grid_of_degrees(tmp_path):
@@ -216,7 +217,7 @@ def test_a_grid_of_degrees(tmp_path):
 def test_unequal_axes_missing_values_and_the_first_time(tmp_path):
     winds = np.arange(24.0).reshape(2, 3, 4)
     winds[0, 1, 2] = np.nan
-    grid = grid_file(tmp_path / "a.nc", [1, 2, 4, 8], wind=winds, other=np.ones((3, 4)))
+    grid = grid_file(tmp_path / "a.nc", [1, 2, 4, 8], "first", wind=winds, other=np.ones((3, 4)))
     assert isinstance(grid, pv.RectilinearGrid)
     assert grid.dimensions == (4, 3, 1)
     assert np.isnan(grid["wind"]).sum() == 1

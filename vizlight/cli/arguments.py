@@ -21,6 +21,7 @@ Positions = Annotated[
     list[str],
     Parameter(allow_leading_hyphen=True, negative=()),
 ]
+Overlays = Annotated[list[Path], Parameter(negative=())]
 Outputs = Annotated[list[Path], Parameter(name=["--output", "-o"], negative=())]
 
 #: How the options of a group stand in a command's signature.
@@ -42,6 +43,12 @@ class Part:
 
     Parameters
     ----------
+    time
+        Time of the step that is taken, or its index; first or last, the default.
+    times
+        Steps that are lit one by one: all, or indices FIRST:END or FIRST:END:STEP.
+    overlay
+        File with values for the points of a surface of a brain.
     clip
         Plane NORMAL:OFFSET beyond which is cut away: 0,0,1:5 or z:5.
     threshold
@@ -52,6 +59,9 @@ class Part:
         Value of the isosurface. Default: the middle of the range.
     """
 
+    time: Text | None = None
+    times: str | None = None
+    overlay: Overlays | None = None
     clip: Texts | None = None
     threshold: Texts | None = None
     contour: str | None = None
@@ -68,13 +78,13 @@ class Shape(Part):
         Plane NORMAL:OFFSET whose section is taken.
     warp
         Point array, such as heights, by which points are raised.
-    warp_factor
-        Factor of that array's values. Default: 1.
+    exaggeration
+        Factor of heights. Default: one that shows them, which is printed.
     """
 
     slice: Text | None = None
     warp: str | None = None
-    warp_factor: float | None = None
+    exaggeration: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,8 +5,10 @@ from __future__ import annotations
 from pathlib import Path  # noqa: TC003 - cyclopts reads the annotations
 from typing import TYPE_CHECKING, Annotated
 
+from cyclopts import Parameter
+
 from vizlight.cli import options, scenes
-from vizlight.cli.arguments import COMMON, LIT, OUTPUT, Color, Common, Part, Shape
+from vizlight.cli.arguments import COMMON, GROUPS, LIT, OUTPUT, Color, Common, Part, Shape
 from vizlight.cli.job import Job, carry_out
 from vizlight.cli.output import say
 from vizlight.cli.script import Step
@@ -59,9 +61,13 @@ def streamlines(
         given["vectors"] = tuple(given["vectors"].split(","))
     asked = StreamlineOptions(**given)
 
-    def job(path: Path) -> Job:
-        mesh = scenes.data(path, part)
+    def job(path: Path, time: float | str | None) -> Job:
+        mesh = scenes.data(path, part, time)
+        scenes.check_flow(path, mesh.run(), asked.vectors)
         scenes.check_answers(common.lights.question, mesh, color, asked.vectors)
+        if color.scalars in mesh.run().cell_data and color.scalars not in mesh.run().point_data:
+            # Lines have the arrays of points alone.
+            mesh = Step("averaged", ".cell_data_to_point_data", mesh)
         on = {} if part.contour is None else {"surface": scenes.surface(mesh, part)}
         camera = look.camera(on.get("surface", mesh) if asked.confined else mesh)
         lit = _step("lit", "streamlines", mesh, look.scene(camera), given | on, common.out)
@@ -69,16 +75,18 @@ def streamlines(
         made.tint(lit, mesh, color)
         return made
 
-    return carry_out(files, job, common.out, "streamlines")
+    return carry_out(files, job, common.out, "streamlines", part)
 
 
-@options.takes("relief_shadow", "Relief")
+# Heights are exaggerated, and lit, as they are shown.
+@options.takes("relief_shadow", "Relief", without=("exaggeration", "lit"))
 def relief(
     files: list[Path],
     /,
     *,
     shape: Annotated[Shape, LIT] = Shape(),  # noqa: B008
     how: object = None,
+    lit: Annotated[bool, Parameter(group=GROUPS["Output"])] = True,
     common: Annotated[Common, COMMON] = Common(),  # noqa: B008
 ) -> int:
     """Cast shadows on a height field or a closed surface: the cos-theta shadow t.
@@ -87,33 +95,42 @@ def relief(
     ----------
     files
         Height field, or closed surface; of several each is lit by itself.
+    lit
+        Show the light with its shadow; otherwise the shadow t alone.
     """
     from vizlight.filters.relief_shadow import ReliefOptions
 
-    scenes.check_target(shape)
+    scenes.check_target(shape, raised=True)
     # The shadow is cast by one light.
     look = scenes.Look(common, fill=False)
-    given = options.keywords(how)
     # A shadow alone answers no question.
-    given |= {"lit": True} if common.lights.question is not None else {}
+    given = {"lit": lit or common.lights.question is not None} | options.keywords(how)
     asked = ReliefOptions(**given)
 
-    def job(path: Path) -> Job:
-        mesh = scenes.data(path, shape)
+    def job(path: Path, time: float | str | None) -> Job:
+        mesh = scenes.data(path, shape, time)
         found = mesh.run()
         if shape.contour is not None or shape.slice is not None or not _is_field(found):
             mesh = scenes.surface(mesh, shape)
             found = None
+            scenes.check_target(shape)
         on: dict[str, object] = {}
         if found is None and asked.raster is None:
             on["feature_angle"] = "auto"
         heights = None if found is None else _heights(found, asked)
-        raised = mesh if heights is None else Step("raised", "files.warped", mesh, *heights)
+        raised = mesh
+        if heights is not None:
+            raised = scenes.warped("raised", mesh, heights, shape.exaggeration)
+            if (factor := raised.arguments[2]) != 1:
+                on["exaggeration"] = factor
         camera = look.camera(raised, is_map=found is not None)
         scene = look.scene(camera)
-        lit = _step("shaded", "relief_shadow", mesh, scene, on | given, common.out)
-        shown = None if heights is None else Step("shown", "files.warped", lit, *heights)
-        made = Job(lit, asked.name, look, camera, shown=shown, scalars=asked.name, before=mesh)
+        shaded = _step("shaded", "relief_shadow", mesh, scene, on | given, common.out)
+        shown = None
+        if heights is not None:
+            shown = Step("shown", raised.path, shaded, *raised.arguments[1:])
+            shown.note = raised.note
+        made = Job(shaded, asked.name, look, camera, shown=shown, scalars=asked.name, before=mesh)
         made.suffix = ".vtp" if found is None else _suffix(found)
         if asked.lit:
             made.scalars = "rgb" if look.colored else "luminance"
@@ -124,7 +141,7 @@ def relief(
             )
         return made
 
-    return carry_out(files, job, common.out, "relief")
+    return carry_out(files, job, common.out, "relief", shape)
 
 
 def _level_light(lights: Sequence[Light]) -> float:
@@ -161,13 +178,13 @@ def fur(
     given = {"feature_angle": "auto"} | options.keywords(how)
     asked = FurOptions(**given)
 
-    def job(path: Path) -> Job:
-        mesh = scenes.surface(scenes.data(path, shape), shape)
+    def job(path: Path, time: float | str | None) -> Job:
+        mesh = scenes.surface(scenes.data(path, shape, time), shape)
         camera = look.camera(_tips(mesh, asked))
         lit = _step("furry", "fur", mesh, look.scene(camera), given, common.out)
         return Job(lit, asked.name, look, camera, parts=("fibres", "skin"))
 
-    return carry_out(files, job, common.out, "fur")
+    return carry_out(files, job, common.out, "fur", shape)
 
 
 # The tolerance is for solids, which no file holds.
@@ -195,14 +212,14 @@ def contours(
     given = {"feature_angle": "auto"} | options.keywords(how)
     asked = ContourOptions(**given)
 
-    def job(path: Path) -> Job:
-        mesh = scenes.surface(scenes.data(path, shape), shape)
+    def job(path: Path, time: float | str | None) -> Job:
+        mesh = scenes.surface(scenes.data(path, shape, time), shape)
         camera = look.camera(mesh)
         lit = _step("found", "isoluminance", mesh, look.scene(camera), given, common.out)
         bands = Step("", "[]", lit, "bands")
         return Job(lit, asked.name, look, camera, shown=bands, parts=("bands", "contours"))
 
-    return carry_out(files, job, common.out, "contours")
+    return carry_out(files, job, common.out, "contours", shape)
 
 
 @options.takes("project", "Projection", renamed=RENAMED)
@@ -229,8 +246,8 @@ def project(
     given = options.keywords(how, RENAMED)
     asked = ProjectOptions(**given)
 
-    def job(path: Path) -> Job:
-        mesh = scenes.data(path, Part())
+    def job(path: Path, time: float | str | None) -> Job:
+        mesh = scenes.data(path, Part(), time)
         found = mesh.run()
         rows = found.point_data.get(asked.positions or "")
         n = 3 if asked.light == "after" or rows is None or rows.ndim == 1 else rows.shape[1]
@@ -238,7 +255,7 @@ def project(
         lit = _step("projected", "project", mesh, None, given | {"scene": scene}, common.out)
         return Job(lit, asked.name, look, look.camera(lit), kind="", suffix=".vtk")
 
-    return carry_out(files, job, common.out, "projected")
+    return carry_out(files, job, common.out, "projected", Part())
 
 
 def _step(
@@ -268,12 +285,13 @@ def _tips(mesh: Step, asked: FurOptions) -> Step:
     return Step("tips", ".warp_by_vector", normals, "Normals", factor=length)
 
 
-def _heights(field: pv.DataSet, asked: ReliefOptions) -> tuple[str, float] | None:
-    """Return the heights that raise a flat grid in a picture, and their factor."""
-    name = asked.elevation or field.point_data.active_scalars_name
-    if name is None or name not in field.point_data or field.bounds.z_min != field.bounds.z_max:
-        return None
-    return name, asked.factor
+def _heights(field: pv.DataSet, asked: ReliefOptions) -> str | None:
+    """Return the name of the heights that raise a flat grid in a picture."""
+    from vizlight.mesh.height_grids import heights_name
+
+    name = asked.elevation or heights_name(field)
+    flat = field.bounds.z_min == field.bounds.z_max
+    return name if flat and name is not None and name in field.point_data else None
 
 
 def _is_field(mesh: pv.DataSet) -> bool:

@@ -137,6 +137,9 @@ def _runs(pieces: Pieces) -> dict[str, Step]:
 def _refuse(target: Target, color: Color, out: Output) -> None:
     """Refuse options that need the mesh as a whole."""
     unknown = {
+        "--time": target.time,
+        "--times": target.times,
+        "--overlay": target.overlay,
         "--clip": target.clip,
         "--threshold": target.threshold,
         "--slice": target.slice,

@@ -3,24 +3,24 @@
 from __future__ import annotations
 
 import contextlib
-import time
 import warnings
 from dataclasses import dataclass, field
 from pathlib import Path
+from time import perf_counter
 from typing import TYPE_CHECKING
 
 import vizlight
 from vizlight._words import message
 from vizlight.cli.output import BAD_INPUT, OK, complain, draw, one_line, say
-from vizlight.cli.scenes import TINT, tinted, title_of
-from vizlight.cli.script import Step, source
+from vizlight.cli.scenes import TINT, times, tinted, title_of
+from vizlight.cli.script import Step, in_order, source
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     import pyvista as pv
 
-    from vizlight.cli.arguments import Color, Output
+    from vizlight.cli.arguments import Color, Output, Part
     from vizlight.cli.scenes import Look
 
 
@@ -110,12 +110,19 @@ class Job:
         ]
 
 
-def carry_out(files_: Sequence[Path], build: Callable[[Path], Job], out: Output, stem: str) -> int:
+def carry_out(
+    files_: Sequence[Path],
+    build: Callable[[Path, float | str | None], Job],
+    out: Output,
+    stem: str,
+    part: Part,
+) -> int:
     """Do the job of each file, or print the script that does; return the exit code.
 
-    With several files an error is reported, and the other files are still done.
+    With several files an error is reported, and the other files are still done. A file whose steps
+    are taken one by one counts as several.
     """
-    _check_output(out, several=len(files_) > 1)
+    _check_output(out, several=len(files_) > 1 or part.times is not None)
     stems = [path.stem for path in files_]
     for twice in (name for name in stems if stems.count(name) > 1):
         expected = "files of different names, after which the outputs are named"
@@ -123,13 +130,14 @@ def carry_out(files_: Sequence[Path], build: Callable[[Path], Job], out: Output,
     jobs, codes = [], [OK]
     for path in files_:
         try:
-            job = build(path)
-            _set_outputs(job, path, out, stem)
-            _check_paths(job, files_)
-            if out.script:
-                jobs.append(job)
-            else:
-                codes.append(_run(job, out))
+            for i, time in enumerate(times(path, part)):
+                job = build(path, time)
+                _set_outputs(job, path, out, stem if part.times is None else f"{stem}-{i:04d}")
+                _check_paths(job, files_)
+                if out.script:
+                    jobs.append(job)
+                else:
+                    codes.append(_run(job, out))
         except (TypeError, ValueError, OSError) as error:
             if len(files_) == 1:
                 raise
@@ -151,7 +159,7 @@ def _check_output(out: Output, *, several: bool) -> None:
         if path.is_dir():
             continue
         if several:
-            expected = "a folder that exists, for several files"
+            expected = "a folder that exists, for several files or steps"
             raise files.FileError(message("output", expected, f"'{path}'"))
         files.check_output(path, (".png", GLTF, HTML, *files.SUFFIXES))
     if out.paraview and several:
@@ -303,14 +311,16 @@ def _light(job: Job, out: Output) -> pv.DataSet:
     for value in job.lit.parts():
         if isinstance(value, Step):
             value.run()
-    start = time.perf_counter()
+    start = perf_counter()
     asked = vizlight.report() if out.report else contextlib.nullcontext()
     with warnings.catch_warnings(record=True) as caught, asked as cost:
         warnings.simplefilter("always", UserWarning)
         lit: pv.DataSet = job.lit.run()
-    seconds = time.perf_counter() - start
-    if hint := job.hint():
-        say(f"note     {hint}")
+    seconds = perf_counter() - start
+    notes = [step.note for step in in_order([job.shown or job.lit])]
+    for note in dict.fromkeys([*notes, job.hint()]):
+        if note:
+            say(f"note     {note}")
     for warning in caught:
         complain(warning.message)
     record = vizlight.provenance(lit, job.name)

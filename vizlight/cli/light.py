@@ -76,7 +76,7 @@ def light(
             raise ValueError(_words.message("--legibility", "one mesh, lit as a whole", got))
         return in_pieces.light(files, target, given, common, color, pieces, look)
     build = builder(target, how, common, color, explain=explain, legibility=legibility)
-    return carry_out(files, build, common.out, "lit")
+    return carry_out(files, build, common.out, "lit", target)
 
 
 def builder(
@@ -87,7 +87,7 @@ def builder(
     *,
     explain: bool = False,
     legibility: bool = False,
-) -> Callable[[Path], Job]:
+) -> Callable[[Path, float | str | None], Job]:
     """Return the function that makes the job of a file, after a check of what needs no mesh."""
     from vizlight.shading.options import LightOptions
 
@@ -103,8 +103,8 @@ def builder(
         given = {"conditioned": True} | given
     asked = LightOptions(**given)
 
-    def job(path: Path) -> Job:
-        mesh = data = scenes.data(path, target)
+    def job(path: Path, time: float | str | None) -> Job:
+        mesh = data = scenes.data(path, target, time)
         if taken:
             mesh = scenes.surface(data, target)
         scenes.check_answers(common.lights.question, mesh, color, given.get("tangents"))

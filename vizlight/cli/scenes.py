@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from typing import TypeAlias
 
+    import pyvista as pv
+
     from vizlight._types import Vector
     from vizlight.cli.arguments import Color, Common, Lights, Part
     from vizlight.scene import Scene, View
@@ -36,11 +38,12 @@ DIRECTION = "direction"
 ANGLE = 30.0
 
 
-def check_target(target: Part) -> None:
-    """Check the options of a target that need no mesh."""
+def check_target(target: Part, *, raised: bool = False) -> None:
+    """Check the options of a target that need no mesh, whether or not it has heights."""
     together = [("level", target.level, "contour", target.contour)]
     if isinstance(target, Shape):
-        together.append(("warp-factor", target.warp_factor, "warp", target.warp))
+        if not raised:
+            together.append(("exaggeration", target.exaggeration, "warp", target.warp))
         if target.slice is not None and target.contour is not None:
             raise ValueError(message("--slice", "no --contour beside it", "both"))
     for option, value, needs, given in together:
@@ -61,21 +64,91 @@ def check_color(color: Color) -> None:
         raise ValueError(message("--cmap", expected, repr(color.cmap))) from error
 
 
-def data(file: Path, target: Part) -> Step:
+def times(file: Path, target: Part) -> list[float | str | None]:
+    """Return the times of the steps of a file that are lit one by one.
+
+    Raises
+    ------
+    ValueError
+        If the file has none of them.
+    """
+    from vizlight.mesh import steps
+
+    if target.times is None:
+        text = target.time
+        number = arguments.numbers(text or "", (1,))
+        return [*number] if number else [text]
+    expected = "all, or indices of steps FIRST:END or FIRST:END:STEP, beside no --time"
+    there = steps.of(vizlight.read(file))
+    try:
+        ends = [int(end) if end else None for end in target.times.split(":")]
+        asked = slice(None) if target.times == "all" else slice(*ends)
+        found = there[asked] if target.time is None else []
+    except (TypeError, ValueError):
+        found = []
+    if not found:
+        got = f"{target.times!r} for {len(there)} steps"
+        raise ValueError(message("--times", expected, got))
+    return [*found]
+
+
+def data(file: Path, target: Part, time: float | str | None = None) -> Step:
     """Return the step that reads a file, after those that raise and cut what is in it."""
-    mesh = Step("data", "vizlight.read", file)
+    from vizlight.mesh import steps
+
+    mesh = Step("data", "vizlight.read", file, **_given({"time": time, "overlay": target.overlay}))
+    mesh.note = "" if time is not None else steps.note(mesh.run())
     warp = target.warp if isinstance(target, Shape) else None
-    wanted = {target.contour, warp} - {None}
-    if wanted and any(name in mesh.run().cell_data for name in wanted - {*mesh.run().point_data}):
-        mesh = Step("averaged", ".cell_data_to_point_data", mesh)
     if isinstance(target, Shape) and warp is not None:
-        factor = 1.0 if target.warp_factor is None else target.warp_factor
-        mesh = Step("raised", "files.warped", mesh, warp, factor)
+        mesh = warped("raised", mesh, warp, target.exaggeration)
     for text in target.threshold or ():
         mesh = _threshold(mesh, text)
     for text in target.clip or ():
         mesh = _cut("clipped", "clip", mesh, text)
     return mesh
+
+
+def warped(name: str, mesh: Step, heights: str, factor: float | None) -> Step:
+    """Return the step that raises a mesh by heights, by a factor with which they can be seen."""
+    from vizlight.mesh import georeference, point_arrays
+
+    step = Step(name, "files.warped", mesh, heights, 1.0 if factor is None else factor)
+    found = point_arrays.averaged(mesh.run(), heights)
+    if factor is None and heights in found.point_data and found.point_data[heights].ndim == 1:
+        factor = georeference.exaggeration(found, heights)
+        step.arguments = (mesh, heights, factor)
+        step.note = (
+            f"heights are taken {factor:g} times; --exaggeration 1 takes them as they are"
+            if factor != 1
+            else ""
+        )
+    return step
+
+
+def check_flow(file: Path, mesh: pv.DataSet, vectors: str | tuple[str, str] | None) -> None:
+    """Check that a step has vectors that are not zero everywhere, if another step has them.
+
+    Raises
+    ------
+    ValueError
+        If only others have, which the message lists.
+    """
+    from vizlight.mesh import steps
+
+    names = [vectors] if isinstance(vectors, str) else vectors or ()
+    times = steps.of(mesh)
+    if all(_moves(mesh, name) for name in names) or len(times) < 2:
+        return
+    others = {time: vizlight.read(file, time=time) for time in times}
+    having = [time for time, one in others.items() if all(_moves(one, name) for name in names)]
+    if having:
+        expected = f"a step in which {' and '.join(map(repr, names))} is not zero everywhere"
+        remedy = f"pass --time with one of {steps.listed(having)}"
+        raise ValueError(message("--time", expected, f"{mesh.field_data[steps.TIME][0]:g}", remedy))
+
+
+def _moves(mesh: pv.DataSet, name: str) -> bool:
+    return any(name in data and data[name].any() for data in (mesh.point_data, mesh.cell_data))
 
 
 def _threshold(mesh: Step, text: str) -> Step:
@@ -125,12 +198,8 @@ def tinted(lit: Step, name: str, data: Step, color: Color) -> Step | None:
     found = data.run()
     there = [*found.point_data, *found.cell_data]
     if color.scalars in there:
-        # Data of cells are put at their points: the light is there.
-        values: object = color.scalars
-        if color.scalars not in found.point_data:
-            values = Step("values", "[]", Step("", ".cell_data_to_point_data", lit), color.scalars)
         named = _given({"cmap": color.cmap})
-        return Step("shown", "vizlight.tint", lit, values, **named, light=name, name=TINT)
+        return Step("shown", "vizlight.tint", lit, color.scalars, **named, light=name, name=TINT)
     if color.scalars != DIRECTION:
         expected = f"an array, {one_of(there)}, or {DIRECTION!r} for lines"
         raise ValueError(message("--scalars", expected, repr(color.scalars)))

@@ -46,6 +46,8 @@ class Step:
         self.items: dict[str, object] = {}
         #: Option and value of a user, with which the result must have points.
         self.asked = ("", "")
+        #: What a reader should know of what was decided by itself.
+        self.note = ""
 
     def run(self) -> Any:
         """Return the result; the call is made once."""
@@ -103,7 +105,7 @@ def source(jobs: Sequence[Sequence[Step]], *, reported: Sequence[Step] = ()) -> 
     lines: list[str] = []
     heads: set[str] = set()
     for job in jobs:
-        for step in _in_order(job):
+        for step in in_order(job):
             heads.add(step.path.partition(".")[0])
             if step.name or any(step is last for last in job):
                 lines += _statement(step, reported=any(step is one for one in reported))
@@ -113,7 +115,7 @@ def source(jobs: Sequence[Sequence[Step]], *, reported: Sequence[Step] = ()) -> 
     return "\n\n".join("\n".join(group) for group in (*groups, lines) if group)
 
 
-def _in_order(steps: Sequence[Step]) -> list[Step]:
+def in_order(steps: Sequence[Step]) -> list[Step]:
     """Return the steps and all that they need, each once and after what it needs."""
     found: list[Step] = []
 

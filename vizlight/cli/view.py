@@ -98,7 +98,7 @@ def view(
             progress=window.progress,
         )
         common = Common(lights=lights, finish=finish, eye=eye, out=out)
-        code = carry_out([file], builder(target, how, common, color), out, "view")
+        code = carry_out([file], builder(target, how, common, color), out, "view", target)
         if folder is not None:
             page.chmod(0o600)
     finally:

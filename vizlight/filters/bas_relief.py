@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def bas_relief(
-    mesh: pv.PolyData,
+    mesh: pv.DataSet | pv.MultiBlock,
     /,
     *,
     direction: VectorLike = (0.0, 0.0, 1.0),
@@ -31,8 +31,9 @@ def bas_relief(
 
     Parameters
     ----------
-    mesh : pyvista.PolyData
-        Surface, closed or open; not changed.
+    mesh : pyvista.DataSet or pyvista.MultiBlock
+        Surface, closed or open, or a mesh whose outer surface is taken, such as a raised grid; not
+        changed.
     direction : vector of 3 components, default: (0, 0, 1)
         Direction toward the eye, which is at infinity.
     up : vector of 3 components, optional
@@ -53,7 +54,8 @@ def bas_relief(
     -------
     pyvista.ImageData
         Height field for :func:`vizlight.relief_shadow`, centred, with x to the right and y up.
-        Heights are 0 on the plate.
+        Heights are 0 on the plate. ``vizlight.files.write_mesh(relief, "relief.stl")`` writes the
+        solid below it, for a printer.
 
     Raises
     ------

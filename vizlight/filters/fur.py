@@ -253,7 +253,10 @@ def _grow(
         expected, remedy = "the name of a point array beside feature_angle=", "attach the array"
         got = _check.describe(options.length)
         raise TypeError(_check.message("length", expected, got, remedy))
-    surface = split_where_computed(blocks.surface(surface, "surface"), options.feature_angle)
+    surface = point_arrays.averaged(
+        blocks.surface(surface, "surface"), options.length, options.toward
+    )
+    surface = split_where_computed(surface, options.feature_angle)
     skin = surfaces.with_normals(surface, onlooker(scene), options.feature_angle)
     name = options.name
     lighting.refuse_overwriting(

@@ -14,7 +14,8 @@ from vizlight.filters.illuminate import light_mesh
 from vizlight.filters.streamlines import OWN_TANGENTS, TANGENTS
 from vizlight.mesh import point_arrays
 from vizlight.mesh.particles import Carrier, Rows
-from vizlight.mesh.series import TIME, Series
+from vizlight.mesh.series import Series
+from vizlight.mesh.steps import TIME
 from vizlight.scene.scene import as_scene
 from vizlight.shading.options import LightOptions, named
 
@@ -29,6 +30,9 @@ if TYPE_CHECKING:
 
 #: Kinds of lines in a flow that changes with time.
 Kind = Literal["pathlines", "streaklines"]
+#: Largest number of points of a streak, and of steps between two times of a streak. Both bound the
+#: work, which grows with the product: particles in a vortex never leave.
+MOST, MOST_STEPS = 64, 100
 #: Name of the point array of times.
 TIMES = "Time"
 
@@ -150,7 +154,8 @@ def pathlines(
     are linear in time between two steps: the error is of order 2 in the time between steps. Plane
     grids and volumes are meant: on a curved surface particles leave it at once. A line ends less
     than a step before the boundary. Where a flow pulls a streak apart, particles that left one
-    after the other are joined by a chord; a smaller ``step`` releases more.
+    after the other are joined by a chord. A streak has at most 64 points at a time, and is carried
+    in at most 100 steps between two times, with a warning if these are longer than ``step``.
 
     VTK's vtkParticlePathFilter and vtkStreaklineFilter (9.7) are of order 1 in the time between
     steps: they use the vectors of its end.
@@ -225,7 +230,7 @@ def _lines(
         light = dataclasses.replace(light, tangents=TANGENTS if name != TANGENTS else OWN_TANGENTS)
     carrier, times = Carrier(steps.mesh(0)), steps.times
     rows = Rows(np.empty((0, *seeds.shape)), np.empty((0, *seeds.shape)), np.empty(0))
-    before = steps.vectors(0, name)
+    before, coarse = steps.vectors(0, name), 0.0
     for i in range(1, len(times)):
         after = steps.vectors(i, name)
         carrier.between(before, after)
@@ -234,13 +239,16 @@ def _lines(
             rows = rows.joined(seeds, carrier.at(seeds, 0.0), start)
         here = rows.places.reshape(-1, 3) if streaks else rows.places[-1]
         count = carrier.count(here, duration, options.step)
+        if streaks and count > MOST_STEPS:
+            crossed = options.step * count / MOST_STEPS
+            coarse, count = max(coarse, crossed), MOST_STEPS
         for j in range(count):
             moved = carrier.moved(here, j / count, 1 / count, duration / count)
             share = (j + 1) / count
             time = float(times[i]) if j + 1 == count else start + share * duration
             if streaks:
                 # What has left the mesh stays as a gap in the streak.
-                rows = Rows(moved.reshape(-1, *seeds.shape), rows.vectors, rows.times)
+                rows = Rows(moved.reshape(-1, *seeds.shape), rows.vectors, rows.times).thinned(MOST)
                 rows = rows.joined(seeds, np.full(seeds.shape, np.nan), time)
                 here = rows.places.reshape(-1, 3)
             else:
@@ -261,3 +269,8 @@ def _lines(
         lines.field_data[TIME] = [float(times[i])]
         report(i)
         yield lines, light
+    if coarse:
+        _check.warn(
+            f"the flow crosses up to {MOST_STEPS * coarse:.0f} cells between two times: streaklines"
+            f" are carried in steps of up to {coarse:.1f} cells; write more times of the flow"
+        )

@@ -13,6 +13,7 @@ from vizlight.shading.options import FINEST, LightOptions, named
 from vizlight.shading.results import plain
 
 if TYPE_CHECKING:
+    import pyvista as pv
     from numpy.typing import ArrayLike
 
     from vizlight.mesh.blocks import MeshT
@@ -147,7 +148,7 @@ def refine(
     asked = RefineOptions.of(locals())
     light = dataclasses.replace(asked, refine=asked.error)
     lit = light_mesh(
-        mesh,
+        blocks.like(mesh, (_faces(block) for block, _ in blocks.check(mesh))),
         scene,
         light,
         threads=threads,
@@ -158,3 +159,8 @@ def refine(
     for block in blocks.all_blocks(lit):
         records.amend(block, asked.name, "refine", recorded)
     return lit
+
+
+def _faces(mesh: pv.DataSet) -> pv.DataSet:
+    """Return a mesh of faces or lines, for a volume its outer surface."""
+    return blocks.surface(mesh, "mesh") if mesh.GetMaxSpatialDimension() == 3 else mesh

@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pyvista as pv
 
 from vizlight import _check
 from vizlight.filters.relief_shadow import ReliefOptions, relief_shadow
 from vizlight.geometry.relief import sun as sky
-from vizlight.mesh import point_arrays, records
+from vizlight.mesh import blocks, point_arrays, records
 from vizlight.scene import Light, Material, Scene
 from vizlight.shading.options import named
 from vizlight.shading.results import VALID, plain
@@ -17,7 +18,6 @@ from vizlight.shading.results import VALID, plain
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    import pyvista as pv
     from numpy.typing import ArrayLike, NDArray
 
     from vizlight._types import Array
@@ -42,7 +42,7 @@ def relief_day(
     name: str = "t",
     depth: float | None = None,
     elevation: str | None = None,
-    factor: float = 1.0,
+    exaggeration: float = 1.0,
     border: Border = "extend",
     method: Method = "fast",
     raster: float | None = None,
@@ -68,7 +68,7 @@ def relief_day(
         Directions toward the sun, in place of latitude, day and hours.
     sun : array_like, shape (H, 2), optional
         Azimuth, clockwise from north, and altitude of the sun in degrees, in place of directions.
-    angular_diameter, samples, name, depth, elevation, factor, border, method, raster
+    angular_diameter, samples, name, depth, elevation, exaggeration, border, method, raster
         As for :func:`vizlight.relief_shadow`.
     thickness, feature_angle, occluders
         As for :func:`vizlight.relief_shadow`.
@@ -87,7 +87,11 @@ def relief_day(
     TypeError, ValueError
         As :func:`relief_shadow` and :func:`vizlight.geometry.relief.sun.directions`.
     """
-    asked = ReliefOptions.of(locals())
+    options = locals()
+    if isinstance(mesh, pv.MultiBlock):
+        del options["mesh"]
+        return blocks.each(mesh, lambda one: relief_day(one, **options))
+    asked = ReliefOptions.of(options)
     if sun is not None:
         if latitude is not None or day is not None or hours is not None:
             expected = "sun alone, or latitude, day and hours"

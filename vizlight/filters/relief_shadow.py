@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pyvista as pv
 
 from vizlight import _check, _progress
 from vizlight.filters.illuminate import separate_copy
 from vizlight.filters.lighting import attach, refuse_overwriting
 from vizlight.geometry.relief import sun as sky
-from vizlight.mesh import point_arrays, records
+from vizlight.mesh import blocks, point_arrays, records
 from vizlight.mesh.casters import CasterOptions, caster
+from vizlight.mesh.height_grids import Grid
 from vizlight.mesh.normals import split_where_computed
 from vizlight.reading.cells import check_whole
 from vizlight.scene import Light, Scene
@@ -26,7 +28,6 @@ from vizlight.verify.report import note_ratio
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    import pyvista as pv
     from numpy.typing import NDArray
 
     from vizlight._types import Array
@@ -76,7 +77,7 @@ def relief_shadow(
     name: str = "t",
     depth: float | None = None,
     elevation: str | None = None,
-    factor: float = 1.0,
+    exaggeration: float = 1.0,
     border: Border = "extend",
     method: Method = "fast",
     raster: float | None = None,
@@ -91,9 +92,11 @@ def relief_shadow(
 
     Parameters
     ----------
-    mesh : pyvista.ImageData, RectilinearGrid, StructuredGrid or PolyData
+    mesh : pyvista.DataSet or pyvista.MultiBlock
         A height field of one layer, its rows and columns straight and square to each other, or
-        any surface with ``raster``; or a closed surface. Not changed, unless ``inplace``.
+        any surface with ``raster``; or a closed surface, such as the outer one of a volume, which
+        is taken. Of a MultiBlock each block by itself. Not changed, unless ``inplace``. Lengths of
+        a map in degrees are in metres from its centre.
     scene : Scene
         Scene whose lights cast the shadows, at infinity or near, in the unit of the mesh, by
         default ``Scene()``.
@@ -120,7 +123,7 @@ def relief_shadow(
     elevation : str, optional
         Name of a point array of heights. Default: z of a StructuredGrid or of a surface that is
         sampled, else the active scalars. NaN is a hole.
-    factor : float, default: 1.0
+    exaggeration : float, default: 1.0
         Factor of the heights; only for height fields.
     border, method
         As for :func:`vizlight.geometry.relief.inside_length`; only for height fields. Walls reach
@@ -175,6 +178,12 @@ def relief_shadow(
     """
     asked = ReliefOptions.of(locals())
     inplace = _check.boolean("inplace", inplace)
+    if isinstance(mesh, pv.MultiBlock):
+        given: dict[str, Any] = asked.changed()
+        given |= {"sun": sun, "threads": threads, "progress_bar": progress_bar}
+        return blocks.each(mesh, lambda one: relief_shadow(one, scene, inplace=inplace, **given))
+    if isinstance(mesh, pv.DataSet) and not isinstance(mesh, pv.PolyData | Grid):
+        mesh = blocks.surface(mesh, "mesh")
     check_whole(mesh, "mesh")
     if sun is not None:
         lit_by = Light(direction=sun_direction(sun))

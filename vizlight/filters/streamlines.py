@@ -27,12 +27,14 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Array
+    from vizlight._types import Array, Indices
     from vizlight.scene import Scene
     from vizlight.shading.options import Bundle, Exponent, Facing, FeatureAngle, Model, Precision
 
 #: Name of the point array of the directions that were integrated, and by which the lines are lit.
 TANGENTS = "Tangents"
+#: Share of the speed of the fastest points below which a point is at rest, for seeds.
+RESTING = 0.01
 #: Its name where the traced mesh has an array of that name.
 OWN_TANGENTS = "vizlight tangents"
 
@@ -99,7 +101,7 @@ def _pair(names: Sequence[object], *, line_field: bool) -> tuple[str, str]:
 
 @named
 def streamlines(
-    mesh: pv.DataSet,
+    mesh: pv.DataSet | pv.MultiBlock,
     /,
     scene: Scene | None = None,
     *,
@@ -133,16 +135,18 @@ def streamlines(
 
     Parameters
     ----------
-    mesh : pyvista.DataSet
-        Mesh that carries the vectors; not changed.
+    mesh : pyvista.DataSet or pyvista.MultiBlock
+        Mesh that carries the vectors; not changed. Of a MultiBlock, such as an OpenFOAM case, the
+        cells of the highest dimension are taken, without patches.
     scene : Scene, optional
         Lights, material and view, by default ``Scene()``.
     vectors : str or tuple of 2 str, optional
-        Name of a point array of 3, 6 or 9 components, or two names. 6 components are a symmetric
-        tensor (XX, YY, ZZ, XY, YZ, XZ, as in VTK) and 9 a matrix, whose first eigenvector is traced
-        as a line field. Two names, of arrays of 3 components and with ``line_field=True``, are a
-        cross field, such as both principal directions: lines of either direction are traced. On the
-        command line they are ``u,v``. Default: the active vectors.
+        Name of an array of 3, 6 or 9 components, or two names; one of cells is averaged to the
+        points. 6 components are a symmetric tensor (XX, YY, ZZ, XY, YZ, XZ, as in VTK) and 9 a
+        matrix, whose first eigenvector is traced as a line field. Two names, of arrays of 3
+        components and with ``line_field=True``, are a cross field, such as both principal
+        directions: lines of either direction are traced. On the command line they are ``u,v``.
+        Default: the active vectors, or the only point array of 3 components.
     line_field : bool, default: False
         Whether the vectors are directions without sign, such as principal directions. Each vector
         is then aligned with the one before it on the line. Tensors are always line fields. Of a
@@ -156,9 +160,9 @@ def streamlines(
         Default: whether the mesh itself is a surface and no other is given.
     seeds : int or array_like, shape (M, 3), or mesh, default: 200
         Points at which lines start. A number is the number of lines, from points of the mesh drawn
-        without repetition, or, for confined lines and line fields, from random places, uniform in
-        area or volume. At a given point of a cross field two lines start. Has no effect as a number
-        with ``spacing``.
+        without repetition, of those that move where most are at rest, or, for confined lines and
+        line fields, from random places, uniform in area or volume. At a given point of a cross
+        field two lines start. Has no effect as a number with ``spacing``.
     seed : int, default: 0
         Seed of the random numbers.
     spacing : float, optional
@@ -242,7 +246,7 @@ def streamlines(
 
 
 def light_lines(
-    mesh: pv.DataSet,
+    mesh: pv.DataSet | pv.MultiBlock,
     scene: Scene | None,
     options: StreamlineOptions,
     *,
@@ -254,7 +258,11 @@ def light_lines(
 
     Errors name the mesh by ``argument``.
     """
+    if isinstance(mesh, pv.MultiBlock):
+        mesh = blocks.one_grid(mesh)
     _check_mesh(mesh, argument)
+    names = options.vectors if isinstance(options.vectors, tuple) else (options.vectors,)
+    mesh = point_arrays.averaged(mesh, *names)
     scene = as_scene(scene)
     made = _resolved(mesh, options)
     with _progress.progress("trace", 100, show=progress_bar) as report:
@@ -273,8 +281,7 @@ def light_lines(
 def _check_mesh(mesh: object, argument: str) -> None:
     """Refuse what lines cannot be traced in."""
     if not isinstance(mesh, pv.DataSet):
-        remedy = "join its blocks by mesh.combine()" if isinstance(mesh, pv.MultiBlock) else ""
-        raise TypeError(_check.message(argument, "a PyVista dataset", type(mesh).__name__, remedy))
+        raise TypeError(_check.message(argument, "a PyVista dataset", type(mesh).__name__))
     if isinstance(mesh, pv.PointSet):
         remedy = "interpolate its vectors onto a grid, between points there are none"
         raise TypeError(_check.message(argument, "a dataset with cells", "PointSet", remedy))
@@ -423,9 +430,10 @@ def _in_space(
     if places is not None:
         return tracers.in_space(mesh, places, how, report)
     points = np.asarray(mesh.points, dtype=np.float64)
+    there = _flowing(np.asarray(mesh.point_data[TRACED]))
     count = min(count, len(points))
     random = np.random.default_rng(how.seed)
-    chosen = np.sort(random.choice(len(points), count, replace=False))
+    chosen = np.sort(random.choice(there, min(count, len(there)), replace=False))
     rest = random.permutation(np.setdiff1d(np.arange(len(points)), chosen))
     moving = np.any(np.asarray(mesh.point_data[TRACED])[rest] != 0, axis=1)
     rest, lines = rest[moving], tracers.in_space(mesh, points[chosen], how, report)
@@ -436,6 +444,13 @@ def _in_space(
         lines = lines.append_polydata(more) if lines.n_lines else more
     _warn_of_fewer(lines, count)
     return lines
+
+
+def _flowing(vectors: Array) -> Indices:
+    """Return the points where the flow is: all, or those that move where most are at rest."""
+    speed = np.linalg.norm(vectors, axis=1)
+    fast = speed > RESTING * np.percentile(speed[speed > 0], 95) if speed.any() else speed > 0
+    return np.flatnonzero(fast if 0 < fast.sum() < len(fast) / 2 else fast | True)
 
 
 def _warn_of_fewer(lines: pv.PolyData, wanted: int | None) -> None:
@@ -450,11 +465,14 @@ def _vectors_name(mesh: pv.DataSet, vectors: Vectors | None) -> tuple[Vectors, b
     """Return the names of what is traced, and whether it is tensors or a cross field."""
     if vectors is None:
         vectors = mesh.point_data.active_vectors_name
+        there = [key for key in mesh.point_data if np.shape(mesh.point_data[key])[1:] == (3,)]
+        if vectors is None and len(there) == 1:
+            vectors = there[0]
         if vectors is None:
             raise _no_vectors(mesh, None)
     pair = isinstance(vectors, tuple)
     for name in _names(vectors):
-        if name not in mesh.point_data and name not in mesh.cell_data:
+        if name not in mesh.point_data:
             raise _no_vectors(mesh, name)
         array = array_of(mesh, "vectors", name)
         if array.shape[1] in (6, 9) and not pair:
@@ -469,21 +487,17 @@ def _names(vectors: Vectors) -> tuple[str, ...]:
 
 def _no_vectors(mesh: pv.DataSet, got: str | None) -> ValueError:
     """Return an error that names the arrays which could be traced."""
-    point, cell = (
-        [repr(key) for key in data if np.shape(data[key])[1:] == (3,)]
+    point = [
+        repr(key)
         for data in (mesh.point_data, mesh.cell_data)
-    )
+        for key in data
+        if np.shape(data[key])[1:] == (3,)
+    ]
     remedy = ""
     if point:
-        remedy = " or ".join(f"vectors={key}" for key in point)
-        remedy = f"pass {remedy}"
-    elif cell:
-        remedy = (
-            f"the cells have {', '.join(cell)}: call mesh.cell_data_to_point_data() and pass "
-            f"vectors={cell[0]}"
-        )
+        remedy = f"pass {' or '.join(f'vectors={key}' for key in point)}"
     there = ", ".join(point) or "none"
-    expected = f"the name of a point array of 3 components ({there})"
+    expected = f"the name of an array of 3 components ({there})"
     return ValueError(
         _check.message("vectors", expected, None if got is None else repr(got), remedy)
     )

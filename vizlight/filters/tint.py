@@ -12,7 +12,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight._version import __version__
 from vizlight.filters import lighting, relight
-from vizlight.mesh import blocks, records
+from vizlight.mesh import blocks, point_arrays, records
 from vizlight.scene import Scene
 from vizlight.shading import display
 from vizlight.shading.results import DEFAULT_NAME, VALID, part_name
@@ -178,12 +178,11 @@ def values_of(
             raise ValueError(_check.message("scalars", expected, None))
     if isinstance(scalars, str):
         _check.text("scalars", scalars, expected="the name of a point array")
+        mesh = point_arrays.averaged(mesh, scalars)
         if scalars not in mesh.point_data:
-            cell = scalars in mesh.cell_data
-            there = f"a point array, {_check.one_of(list(mesh.point_data))}"
-            got = f"the cell array {scalars!r}" if cell else repr(scalars)
-            remedy = "call mesh.cell_data_to_point_data()" if cell else ""
-            raise ValueError(_check.message("scalars", there, got, remedy))
+            known = _check.one_of([*mesh.point_data, *mesh.cell_data])
+            expected = f"a point array or a cell array, {known}"
+            raise ValueError(_check.message("scalars", expected, repr(scalars)))
         array: NDArray[np.generic] = np.asarray(mesh.point_data[scalars])
     else:
         array = _check.reals("scalars", scalars)

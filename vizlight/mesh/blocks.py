@@ -9,10 +9,11 @@ import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkMultiBlockDataSet
 
 from vizlight import _check
+from vizlight.mesh import hull
 from vizlight.reading.cells import check_whole, has_faces
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from vizlight._types import Array, Indices, Vector
 
@@ -34,16 +35,45 @@ def check(mesh: object) -> list[tuple[pv.DataSet, str]]:
 
 
 def surface(mesh: object, name: str) -> pv.PolyData:
-    """Return a mesh if it is a PolyData mesh with faces; else raise TypeError or ValueError."""
-    remedy = "take the mesh's extract_surface() or a contour"
-    if not isinstance(mesh, pv.PolyData):
-        got = type(mesh).__name__
-        raise TypeError(_check.message(name, "a pyvista.PolyData surface", got, remedy))
-    if not has_faces(mesh):
-        got = "a PolyData mesh without faces"
-        raise ValueError(_check.message(name, "a surface with faces", got, remedy))
+    """Return a mesh with faces: the mesh itself, or the outer surface of another or of its blocks.
+
+    Raises
+    ------
+    TypeError
+        If it is no mesh.
+    ValueError
+        If it has no faces.
+    """
+    if isinstance(mesh, pv.MultiBlock):
+        mesh = one_grid(mesh)
+    if not isinstance(mesh, pv.DataSet):
+        remedy = "read files by vizlight.read, wrap VTK objects by pyvista.wrap"
+        raise TypeError(_check.message(name, "a PyVista surface", type(mesh).__name__, remedy))
     check_whole(mesh, name)
-    return mesh
+    found = mesh if isinstance(mesh, pv.PolyData) else hull.outer_surface(mesh)[0]
+    if not has_faces(found):
+        got = f"a {type(mesh).__name__} mesh without faces"
+        raise ValueError(_check.message(name, "a surface with faces", got))
+    return found
+
+
+def each(mesh: pv.MultiBlock, make: Callable[[pv.DataSet], pv.DataSet]) -> pv.MultiBlock:
+    """Return a MultiBlock of what is made of each dataset of another."""
+    return like(mesh, (make(block) for block in all_blocks(mesh)))
+
+
+def one_grid(mesh: pv.MultiBlock) -> pv.UnstructuredGrid:
+    """Return the cells of the highest dimension of all blocks, without side sets of a volume."""
+    grid = joined(mesh)
+    kinds, first = np.unique(grid.celltypes, return_index=True)
+    dimensions = np.array([grid.GetCell(int(i)).GetCellDimension() for i in first])
+    if len(set(dimensions)) > 1:
+        keep = kinds[dimensions == dimensions.max()]
+        cells = np.flatnonzero(np.isin(grid.celltypes, keep))
+        grid = grid.extract_cells(cells, pass_point_ids=False, pass_cell_ids=False)
+    for key in mesh.field_data:
+        grid.field_data[key] = np.array(mesh.field_data[key])
+    return grid
 
 
 def all_blocks(mesh: object) -> Iterator[pv.DataSet]:
@@ -124,16 +154,17 @@ def near_origin(mesh: pv.DataSet) -> Vector:
     return tuple(float(x) if far else 0.0 for x in middle)
 
 
-def moved(mesh: DataSetT, offset: Array, scale: float = 1.0) -> DataSetT:
+def moved(mesh: DataSetT, offset: Array, scale: float | Array = 1.0) -> DataSetT:
     """Return a mesh with each point p at ``scale (p + offset)``, in float64."""
     out = mesh.copy(deep=False)
+    scale = np.broadcast_to(scale, 3)
     if isinstance(out, pv.ImageData):
         out.origin = tuple(scale * (np.array(out.origin) + offset))
         out.spacing = tuple(scale * np.array(out.spacing))
     elif isinstance(out, pv.RectilinearGrid):
         for i, axis in enumerate("xyz"):
             ticks = np.asarray(getattr(out, axis), dtype=np.float64)
-            setattr(out, axis, scale * (ticks + offset[i]))
+            setattr(out, axis, scale[i] * (ticks + offset[i]))
     else:
         points = scale * (np.asarray(mesh.points, dtype=np.float64) + offset)
         points[~np.isfinite(points)] = np.nan

@@ -13,7 +13,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.geometry.relief import height_field, shadowing
-from vizlight.mesh import closed_meshes, normals
+from vizlight.mesh import closed_meshes, georeference, normals
 from vizlight.mesh.height_grids import Grid, heights_of
 from vizlight.model import kernels
 from vizlight.shading.options import Options, check_sides
@@ -34,7 +34,7 @@ DEPTH = 0.01
 #: squares do not overflow.
 FAR = 1e100
 #: Options that only height fields have.
-FIELD_ALONE = ("elevation", "factor", "border", "method", "raster")
+FIELD_ALONE = ("elevation", "exaggeration", "border", "method", "raster")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,7 +46,7 @@ class CasterOptions(Options):
 
     depth: float | None = None
     elevation: str | None = None
-    factor: float = 1.0
+    exaggeration: float = 1.0
     border: Border = "extend"
     method: Method = "fast"
     raster: float | None = None
@@ -119,7 +119,8 @@ class _FieldCaster:
     def __init__(
         self, grid: Grid | pv.PolyData, options: CasterOptions, threads: int | None
     ) -> None:
-        found = heights_of(grid, options.elevation, options.factor, options.raster)
+        grid = georeference.in_metres(grid)
+        found = heights_of(grid, options.elevation, options.exaggeration, options.raster)
         self._field = height_field.make(found.x, found.y, found.z, base=None, border=options.border)
         self._normal = height_field.normals(self._field)
         self._holes = np.isnan(found.z)

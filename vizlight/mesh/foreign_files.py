@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import importlib
+import tempfile
+import zipfile
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista as pv
 from vtkmodules.vtkIOXML import vtkXMLPPolyDataReader
 
-from vizlight.mesh import polylines
+from vizlight import _check
+from vizlight.mesh import brains, georeference, polylines, rasters, steps
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
-    from pathlib import Path
 
     from numpy.typing import NDArray
 
@@ -24,6 +27,7 @@ PACKAGES = {
     ".trk": ("nibabel", "tracts"),
     ".tck": ("nibabel", "tracts"),
     ".trx": ("trx-python", "tracts"),
+    ".gii": ("nibabel", "tracts"),
     ".nc": ("xarray", "formats"),
     ".cdf": ("xarray", "formats"),
 } | dict.fromkeys(
@@ -32,7 +36,7 @@ PACKAGES = {
         ".msh", ".nas", ".node", ".off", ".post", ".su2", ".tec", ".ugrid", ".vol", ".wkt", ".xmf",
     ),
     ("meshio", "formats"),
-)  # fmt: skip
+) | dict.fromkeys(rasters.SUFFIXES, ("rasterio", "maps"))  # fmt: skip
 #: Name under which a package is imported, where that is another.
 MODULES = {"trx-python": "trx.trx_file_memmap"}
 #: Place of the number of columns in the header of an elevation model, and the least that VTK reads.
@@ -56,15 +60,21 @@ def missing(path: Path) -> str:
     return ""
 
 
-def read(path: Path) -> pv.DataSet | None:
+def read(path: Path, time: object = None) -> pv.DataSet | None:
     """Return the mesh of a file that PyVista cannot read; None where it is left to PyVista."""
     suffix = path.suffix.lower()
     if suffix in (".trk", ".tck"):
         return _tracts(path)
+    if path.name.lower().endswith((".tt", ".tt.gz")):
+        return _polylines(*brains.tracks_of_tt(path), {}, {})
+    if path.name.lower().endswith(brains.SURFACES) or brains.is_freesurfer(path):
+        return brains.read(path)
     if suffix == ".trx":
         return _tracts_of_trx(path)
     if suffix in (".nc", ".cdf"):
-        return _grid(path)
+        return _grid(path, time)
+    if suffix in rasters.SUFFIXES:
+        return rasters.read(path)
     if suffix == ".dem":
         _refuse_narrow(path)
     if suffix == ".msh" and missing(path) == "":
@@ -120,7 +130,33 @@ def _tracts(path: Path) -> pv.PolyData:
 def _tracts_of_trx(path: Path) -> pv.PolyData:
     from trx import trx_file_memmap
 
-    tracts: Any = trx_file_memmap.load(str(path))
+    try:
+        return _of_trx(trx_file_memmap.load(str(path)))
+    except Exception as error:
+        with tempfile.TemporaryDirectory() as folder:
+            bare, left = Path(folder) / "bare.trx", []
+            with zipfile.ZipFile(path) as whole, zipfile.ZipFile(bare, "w") as part:
+                for name in whole.namelist():
+                    if name.partition("/")[0] in _SIDE:
+                        left.append(name)
+                    else:
+                        part.writestr(name, whole.read(name))
+            if not left:
+                raise
+            lines = _of_trx(trx_file_memmap.load(str(bare)))
+        _check.warn(
+            f"file: '{path}' has data beside its lines that cannot be read ({error}), which are "
+            f"left out: {', '.join(left)}"
+        )
+        return lines
+
+
+#: Folders of a .trx file with data beside its lines.
+_SIDE = ("dps", "dpv", "dpg", "groups")
+
+
+def _of_trx(tracts: Any) -> pv.PolyData:
+    """Return the lines of a .trx file, and close it."""
     try:
         lines = tracts.streamlines
         of_lines = dict(tracts.data_per_streamline)
@@ -154,38 +190,52 @@ def _polylines(
     # Half precision, which TRX files have, is none of VTK's types.
     kind = np.result_type(points.dtype, np.float32)
     mesh = polylines.polydata(np.asarray(points[rows], dtype=kind), ends)
-    for name, array in of_points.items():
-        _attach(mesh.point_data, name, np.asarray(array)[rows])
-    for name, array in of_lines.items():
-        _attach(mesh.cell_data, name, np.asarray(array)[lengths > 0])
+    odd = []
+    for data, arrays, kept, count in (
+        (mesh.point_data, of_points, rows, len(points)),
+        (mesh.cell_data, of_lines, np.flatnonzero(lengths > 0), len(lengths)),
+    ):
+        for name, given in arrays.items():
+            array = np.asarray(given)
+            if len(array) == count and array.dtype.kind in "biuf":
+                _attach(data, name, array[kept])
+            else:
+                odd.append(f"{name!r} ({len(array)} rows of {array.dtype} for {count})")
+    if odd:
+        _check.warn(f"file: data beside the lines are left out: {', '.join(odd)}")
     return mesh
 
 
 def _attach(data: pv.DataSetAttributes, name: object, array: NDArray[np.generic]) -> None:
     """Attach numbers as rows; rows of one component become flat."""
-    if array.dtype.kind not in "biuf":
-        return
     native = np.float32 if array.dtype == np.float16 else array.dtype.newbyteorder("=")
     rows = array.reshape(len(array), -1)
     data[str(name)] = np.array(rows[:, 0] if rows.shape[1] == 1 else rows, dtype=native)
 
 
-def _grid(path: Path) -> pv.ImageData | pv.RectilinearGrid:
+def _grid(path: Path, time: object) -> pv.ImageData | pv.RectilinearGrid:
     """Return the variables of a netCDF file on the axes of its largest variable.
 
-    An axis is x, y or z: the last of a variable is x. Of the time, and of any axis before the last
-    three, the first value is taken. Points are at the coordinates, or at the indices of
+    An axis is x, y or z: the last of a variable is x. Of any axis before the last three, other than
+    the time, the first value is taken. Points are at the coordinates, or at the indices of
     an axis without coordinates.
     """
     import xarray
 
     with xarray.open_dataset(path, decode_times=False) as file:
         fields: dict[str, Any] = {}
+        clocks = [dim for dim in file.sizes if _is_time(file, dim)]
+        clock = max(clocks, key=lambda dim: int(file.sizes[dim]), default=None)
+        step, ticking = 0, [0.0]
+        if clock is not None and file.sizes[clock] > 1:
+            ticking = [float(tick) for tick in file[clock].values]
+            step = steps.chosen(ticking, time)
         for name, variable in file.data_vars.items():
             if variable.dtype.kind in "biuf" and variable.ndim >= 2 and variable.size:
                 times = [dim for dim in variable.dims if _is_time(file, dim)]
                 rest = [dim for dim in variable.dims if dim not in times]
                 first = dict.fromkeys((*times, *rest[:-3]), 0)
+                first |= {clock: step} if clock in times else {}
                 fields[str(name)] = variable.isel(first).squeeze(drop=True)
         fields = {name: field for name, field in fields.items() if field.ndim in (2, 3)}
         if not fields:
@@ -197,17 +247,29 @@ def _grid(path: Path) -> pv.ImageData | pv.RectilinearGrid:
                 file[dim].values if dim in file.coords else np.arange(file.sizes[dim])
             )
             ticks = ticks.astype(np.float64)
-            steps = np.diff(ticks)
-            if not (np.all(steps > 0) or np.all(steps < 0)):
+            widths = np.diff(ticks)
+            if not (np.all(widths > 0) or np.all(widths < 0)):
                 raise ValueError(f"the axis {dim!r} does not rise or fall throughout")
-            backward.append(bool(steps[0] < 0))
+            backward.append(bool(widths[0] < 0))
             axes.append(np.sort(ticks))
         grid = _of_axes([*reversed(axes)])
         turned = tuple(i for i, back in enumerate(backward) if back)
         for name, field in fields.items():
             if field.dims == dims:
                 grid.point_data[name] = np.flip(field.values, turned).ravel()
-        return grid
+        if all(_is_degrees(file, dim, words) for dim, words in zip(dims[-2:], _EARTH, strict=True)):
+            grid.field_data[georeference.UNIT] = [georeference.DEGREE]
+        return steps.marked(grid, ticking, step) if len(ticking) > 1 else grid
+
+
+#: Words with which the units and the names of the axes of latitude and of longitude begin.
+_EARTH = (("degree_n", "degrees_n", "lat"), ("degree_e", "degrees_e", "lon"))
+
+
+def _is_degrees(file: Any, dim: object, words: tuple[str, ...]) -> bool:
+    """Return whether an axis is of latitude or longitude, by its unit or by its name."""
+    units = str(file[dim].attrs.get("units", "")) if dim in file.coords else ""
+    return any(text.lower().startswith(words) for text in (units, str(dim)))
 
 
 def _is_time(file: Any, dim: object) -> bool:

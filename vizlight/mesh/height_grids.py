@@ -12,7 +12,7 @@ import scipy
 from vizlight import _check
 from vizlight.geometry.relief import height_field
 from vizlight.geometry.relief.depth_map import depth_map
-from vizlight.mesh import blocks
+from vizlight.mesh import blocks, point_arrays
 from vizlight.reading.arrays import GridPoints, points_of
 
 if TYPE_CHECKING:
@@ -114,16 +114,13 @@ def heights_of(
         If the grid has more than one layer, is tilted, has no such elevation, or its x and y do not
         form straight rows and columns at right angles.
     """
-    factor = _check.number("factor", factor)
+    factor = _check.number("exaggeration", factor)
     if raster is not None:
         return _sampled(grid, elevation, factor, _check.number("raster", raster, low=0.0))
     if isinstance(grid, pv.PolyData):
         raise ValueError(_check.message("raster", "the spacing of the nodes", None))
     nodes, rounding = _nodes(grid)
-    if elevation is None and isinstance(grid, pv.StructuredGrid):
-        z = nodes[..., 2]
-    else:
-        z = _elevation(grid, elevation).reshape(nodes.shape[:2])
+    z = _elevation(grid, elevation, nodes[..., 2])
     place = np.arange(z.size).reshape(z.shape)
     turn = _turn(nodes, rounding)
     if turn is not None:
@@ -145,10 +142,7 @@ def _sampled(
 ) -> Raster:
     """Return the height field of a surface, sampled from above on an even grid."""
     points: Array = np.asarray(points_of(mesh, None)[:], dtype=np.float64)
-    if elevation is None and isinstance(mesh, pv.StructuredGrid | pv.PolyData):
-        z = points[:, 2]
-    else:
-        z = _elevation(mesh, elevation)
+    z = _elevation(mesh, elevation, points[:, 2])
     points = np.column_stack([points[:, :2], factor * np.asarray(z, dtype=np.float64)])
     skin = blocks.surface(mesh if isinstance(mesh, pv.PolyData) else _skin(mesh), "mesh")
     faces = skin if skin.is_all_triangles else skin.triangulate()
@@ -240,14 +234,22 @@ def _turn(nodes: Array, rounding: float) -> Array | None:
     return np.asarray(np.array([[x, y, 0], [-y, x, 0], [0, 0, size]]) / size)
 
 
-def _elevation(grid: Grid | pv.PolyData, name: str | None) -> Array:
-    """Return the heights in a point array: the array of that name, the active or the only one."""
-    if name is None:
-        name = grid.point_data.active_scalars_name
+def heights_name(grid: pv.DataSet) -> str | None:
+    """Return the name of the point array of heights: the active one, or the only one."""
     there = [key for key in grid.point_data if np.ndim(grid.point_data[key]) == 1]
-    if name is None and len(there) == 1:
-        name = there[0]
+    return grid.point_data.active_scalars_name or (there[0] if len(there) == 1 else None)
+
+
+def _elevation(grid: Grid | pv.PolyData, name: str | None, z: Array) -> Array:
+    """Return the heights in a point array, or the z of points that may have heights as their z."""
+    if name is None:
+        name = heights_name(grid)
+        curved = isinstance(grid, pv.StructuredGrid | pv.PolyData)
+        if curved and (name is None or np.nanmin(z) < np.nanmax(z)):
+            return z
+    grid = point_arrays.averaged(grid, name)
+    there = [key for key in grid.point_data if np.ndim(grid.point_data[key]) == 1]
     if name not in there:
         expected = f"a point array of one component, {_check.one_of(there)}"
         raise ValueError(_check.message("elevation", expected, repr(name)))
-    return _check.floats("elevation", np.asarray(grid.point_data[name]))
+    return _check.floats("elevation", np.asarray(grid.point_data[name])).reshape(z.shape)

@@ -47,6 +47,15 @@ class Rows(NamedTuple):
         kept = self.times >= time
         return Rows(self.places[kept], self.vectors[kept], self.times[kept])
 
+    def thinned(self, most: int) -> Rows:
+        """Return the rows from the oldest that is there on, without one that is close to others."""
+        there = np.any(np.isfinite(self.places), axis=(1, 2))
+        kept = np.arange(np.argmax(there) if there.any() else len(there), len(there))
+        if len(kept) > most:
+            times = self.times[kept]
+            kept = np.delete(kept, 1 + np.argmin(times[2:] - times[:-2]))
+        return Rows(self.places[kept], self.vectors[kept], self.times[kept])
+
     def lines(self, vectors: str, time: str) -> pv.PolyData:
         """Return one line for each seed, more where one is interrupted."""
         places = np.swapaxes(self.places, 0, 1)

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight.reading.arrays import is_of_cells
 from vizlight.reading.cells import as_vtk, cell_data, point_data
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+DataSetT = TypeVar("DataSetT", bound=pv.DataSet)
 #: Number of values below which an array is sooner copied than shared.
 _SMALL = 1 << 12
 
@@ -25,6 +27,34 @@ def refuse_unnamed(name: str, value: object) -> None:
         raise TypeError(_check.message(name, "the name of a point array", got, remedy))
     if value is not None:
         _check.text(name, value, expected="the name of a point array")
+
+
+def averaged(mesh: DataSetT, *names: object) -> DataSetT:
+    """Return a mesh with cell arrays averaged to its points, where no point array has the name.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh, which is not changed.
+    *names : object
+        Names of arrays; what is no name is ignored.
+
+    Returns
+    -------
+    pyvista.DataSet
+        The mesh itself, or a copy that shares its arrays and has the means too.
+    """
+    wanted = {name for name in names if isinstance(name, str) and is_of_cells(mesh, name)}
+    if not wanted:
+        return mesh
+    only, out = mesh.copy(deep=False), mesh.copy(deep=False)
+    only.clear_data()
+    for name in wanted:
+        only.cell_data[name] = mesh.cell_data[name]
+    mean = only.cell_data_to_point_data()
+    for name in wanted:
+        out.point_data[name] = mean.point_data[name]
+    return out
 
 
 def attach_rows(mesh: pv.DataSet, name: str, array: NDArray[np.generic]) -> None:

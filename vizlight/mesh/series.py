@@ -10,13 +10,11 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.mesh import blocks
+from vizlight.mesh import blocks, steps
+from vizlight.mesh.steps import TIME
 from vizlight.reading.arrays import vectors_of
 
 __all__ = ["Series"]
-
-#: Field array in which PyVista and VTK keep the time of a mesh.
-TIME = "TimeValue"
 
 
 class Series:
@@ -41,15 +39,18 @@ class Series:
         if isinstance(source, str | Path):
             path = _check.path("series", source)
             try:
-                source = pv.get_reader(path)  # type: ignore[no-untyped-call]
-            except (OSError, ValueError) as error:
+                source = steps.reader_of(path)
+            except OSError as error:
                 expected, got = "the path of a file that PyVista reads", f"'{path}' ({error})"
                 raise ValueError(_check.message("series", expected, got)) from error
-        if hasattr(source, "time_values") and hasattr(source, "set_active_time_value"):
+            if source is None:
+                expected, got = "the path of a file that PyVista reads", f"'{path}'"
+                raise ValueError(_check.message("series", expected, got))
+        if hasattr(source, "read"):
             if times is not None:
                 remedy = "leave times= out"
                 raise ValueError(_check.message("times", "the times of the reader", "both", remedy))
-            self._reader, times = source, source.time_values
+            self._reader, times = source, steps.times_of(source)
         elif isinstance(source, Sequence):
             self._meshes = source
             times = _own_times(source) if times is None else times
@@ -80,8 +81,7 @@ class Series:
         if self._meshes is not None:
             mesh = self._meshes[step]
         else:
-            self._reader.set_active_time_value(self.times[step])
-            mesh = self._reader.read()
+            mesh = steps.at(self._reader, float(self.times[step]))
         if isinstance(mesh, pv.MultiBlock):
             mesh = mesh[0] if len(mesh) == 1 else blocks.joined(mesh)
         name = self.name(step)

@@ -14,7 +14,6 @@ from vtkmodules.vtkCommonDataModel import vtkGenericCell
 from vizlight.mesh import blocks
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
     from pathlib import Path
 
     from vtkmodules.vtkCommonDataModel import vtkCellArray
@@ -70,7 +69,7 @@ _NO_NUMBERS = ("nan", "inf", "infinity")
 def missing_part(path: Path, /) -> str:
     """Return what a file lacks of the size or the end that it states.
 
-    These are the XML files of VTK, netCDF 3, TIFF, DEM, PLY, STL, SU2 and legacy VTK. A cut is not
+    These are the XML files of VTK, netCDF 3, DEM, PLY, STL, SU2 and legacy VTK. A cut is not
     seen where it leaves out whole arrays of a legacy file, and in binary PLY files with faces of
     more than three corners.
 
@@ -87,8 +86,6 @@ def missing_part(path: Path, /) -> str:
     suffix = path.suffix.lower()
     if suffix in (".nc", ".cdf"):
         return _netcdf(path)
-    if suffix in (".tif", ".tiff"):
-        return _tiff(path)
     if suffix not in (".dem", ".ply", ".stl", ".su2", ".vtk", *_XML):
         return ""
     with path.open("rb") as file:
@@ -130,25 +127,6 @@ def _netcdf(path: Path) -> str:
     except Exception as error:  # noqa: BLE001 - of any type, by the place of the cut
         return f"a variable is not whole: {error}"
     return ""
-
-
-def _tiff(path: Path) -> str:
-    """Compare the size with the ends of the strips or tiles of a TIFF file."""
-    from PIL import Image
-
-    try:
-        with Image.open(path) as image:
-            tags: Mapping[int, tuple[int, ...]] = image.tag_v2  # type: ignore[attr-defined]
-            pairs = ((tags.get(at, ()), tags.get(at + size, ())) for at, size in _PARTS)
-            ends = [a + n for offsets, sizes in pairs for a, n in zip(offsets, sizes, strict=True)]
-    except Exception as error:  # noqa: BLE001 - of any type, by the place of the cut
-        return f"its tags cannot be read: {error}"
-    least, size = max(ends, default=0), path.stat().st_size
-    return f"{size} of {least} bytes are there" if size < least else ""
-
-
-#: Tags of the offsets of strips and of tiles, and what their sizes' tags are more.
-_PARTS = ((273, 6), (324, 1))
 
 
 #: Number of points of a cell, by VTK's number of its type; other types have any number.

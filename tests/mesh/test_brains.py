@@ -1,0 +1,114 @@
+"""Surfaces of brains, values over them, and tracts: kept, or told what is missing."""
+
+from __future__ import annotations
+
+import gzip
+import struct
+import zipfile
+
+import numpy as np
+import pytest
+import pyvista as pv
+import scipy
+
+import vizlight
+from vizlight import files
+
+nibabel = pytest.importorskip("nibabel")
+
+BALL = pv.Sphere(theta_resolution=12, phi_resolution=10)
+DEPTH = np.asarray(BALL.points[:, 2] ** 2, dtype=np.float32)
+
+
+def gifti(path, *, surface):
+    parts = [(DEPTH, "NIFTI_INTENT_SHAPE")]
+    if surface:
+        points, faces = (np.asarray(BALL.points, np.float32), BALL.regular_faces.astype(np.int32))
+        parts = [(points, "NIFTI_INTENT_POINTSET"), (faces, "NIFTI_INTENT_TRIANGLE")]
+    arrays = [nibabel.gifti.GiftiDataArray(rows, intent=code) for rows, code in parts]
+    nibabel.save(nibabel.gifti.GiftiImage(darrays=arrays), path)
+
+
+def freesurfer(path, *, surface):
+    if surface:
+        nibabel.freesurfer.write_geometry(path, BALL.points, BALL.regular_faces)
+    else:
+        nibabel.freesurfer.write_morph_data(path, DEPTH)
+
+
+def mz3(path, *, surface):
+    faces = np.asarray(BALL.regular_faces, "<i4")
+    points = np.asarray(BALL.points, "<f4")
+    kind, count = (3, len(faces)) if surface else (8, 0)
+    head = b"MZ" + struct.pack("<HIII", kind, count, len(points), 4) + b"skip"
+    body = faces.tobytes() + points.tobytes() if surface else DEPTH.tobytes()
+    path.write_bytes(gzip.compress(head + body))
+
+
+FORMATS = {
+    "a.surf.gii": (gifti, "a.shape.gii"),
+    "lh.pial": (freesurfer, "lh.curv"),
+    "a.mz3": (mz3, "b.mz3"),
+}
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_a_surface_has_the_values_over_it(name, tmp_path):
+    write, other = FORMATS[name]
+    write(tmp_path / name, surface=True)
+    write(tmp_path / other, surface=False)
+    mesh = vizlight.read(tmp_path / name, overlay=tmp_path / other)
+    np.testing.assert_allclose(mesh.points, BALL.points, atol=1e-6)
+    np.testing.assert_array_equal(mesh.regular_faces, BALL.regular_faces)
+    (key,) = mesh.point_data.keys()
+    np.testing.assert_allclose(mesh[key], DEPTH)
+    with pytest.raises(files.FileError, match="values over a surface, without one: read the surf"):
+        vizlight.read(tmp_path / other)
+
+
+def test_values_for_another_surface_are_an_error(tmp_path):
+    mz3(tmp_path / "a.mz3", surface=False)
+    pv.Cube().save(tmp_path / "b.ply")
+    with pytest.raises(files.FileError, match=rf"{len(DEPTH)} values for a surface of \d+ points"):
+        vizlight.read(tmp_path / "b.ply", overlay=[tmp_path / "a.mz3"])
+
+
+def test_a_cut_file_is_refused(tmp_path):
+    mz3(tmp_path / "a.mz3", surface=True)
+    data = gzip.decompress((tmp_path / "a.mz3").read_bytes())
+    for cut in (data[:-4], data[:40], data[:10], b"q" * 50):
+        (tmp_path / "a.mz3").write_bytes(cut)
+        with pytest.raises(files.FileError, match="file: expected a mesh"):
+            vizlight.read(tmp_path / "a.mz3")
+
+
+def test_tracts_of_dsi_studio(tmp_path):
+    lines = [np.cumsum(np.full((n, 3), (3, -2, 1)), axis=0) + 64 * n for n in (2, 5)]
+    blob = b""
+    for line in lines:
+        steps = np.diff(line, axis=0).astype("i1")
+        blob += struct.pack("<I3i", line.size, *line[0]) + steps.tobytes()
+    parts = {"track": np.frombuffer(blob, np.uint8), "trans_to_mni": np.diag([-2.0, 2, 2, 1])}
+    scipy.io.savemat(tmp_path / "a.mat", parts, format="4", oned_as="row")
+    (tmp_path / "a.tt.gz").write_bytes(gzip.compress((tmp_path / "a.mat").read_bytes()))
+    mesh = vizlight.read(tmp_path / "a.tt.gz")
+    assert [mesh.get_cell(i).n_points for i in range(mesh.n_cells)] == [2, 5]
+    np.testing.assert_allclose(mesh.points, np.concatenate(lines) / 32 * (-2, 2, 2))
+
+
+@pytest.mark.filterwarnings("ignore:.*unclosed|Implicitly cleaning up:ResourceWarning")
+def test_odd_data_beside_the_lines_are_named_and_the_rest_is_kept(tmp_path):
+    trx = pytest.importorskip("trx.trx_file_memmap")
+    made = trx.TrxFile.from_tractogram(
+        nibabel.streamlines.Tractogram(
+            [np.zeros((2, 3), np.float32), np.ones((3, 3), np.float32)], affine_to_rasmm=np.eye(4)
+        ),
+        reference=nibabel.Nifti1Image(np.zeros((20, 20, 20), np.uint8), np.eye(4)),
+    )
+    trx.save(made, str(tmp_path / "a.trx"))
+    made.close()
+    with zipfile.ZipFile(tmp_path / "a.trx", "a") as file:
+        file.writestr("dpv/odd.float32", np.zeros(3, np.float32).tobytes())
+    with pytest.warns(UserWarning, match="left out: .*odd"):
+        mesh = vizlight.read(tmp_path / "a.trx")
+    assert mesh.n_lines == 2

@@ -1,0 +1,76 @@
+"""Maps in degrees as they are on the ground, and how much heights are exaggerated."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight.mesh import georeference
+
+
+def chart(latitude=60.0, kind=pv.ImageData):
+    """Return a map of half a degree with heights in metres."""
+    grid = pv.ImageData(
+        dimensions=(61, 61, 1), spacing=(1 / 120, 1 / 120, 1), origin=(11, latitude - 0.25, 0)
+    )
+    x, y, _ = grid.points.T
+    grid["height"] = 1000 * np.sin(40 * (x - 11)) + 500 * np.cos(50 * y)
+    grid.field_data["unit"] = ["degree"]
+    if kind is pv.RectilinearGrid:
+        return grid.cast_to_rectilinear_grid()
+    return grid if kind is pv.ImageData else grid.cast_to_structured_grid()
+
+
+def haversine(a, b):
+    """Return the length of the great circle between two places in degrees."""
+    (x, y), (u, v) = np.radians(a), np.radians(b)
+    h = np.sin((v - y) / 2) ** 2 + np.cos(y) * np.cos(v) * np.sin((u - x) / 2) ** 2
+    return 2 * 6_371_008.8 * np.arcsin(np.sqrt(h))
+
+
+@pytest.mark.parametrize("kind", [pv.ImageData, pv.RectilinearGrid, pv.StructuredGrid])
+def test_lengths_are_those_on_the_sphere(kind):
+    grid = chart(kind=kind)
+    moved = georeference.in_metres(grid)
+    assert type(moved) is kind
+    np.testing.assert_allclose(moved.center, 0, atol=1e-6)
+    for end in (60, 3660):
+        length = np.linalg.norm(moved.points[end] - moved.points[0])
+        assert length == pytest.approx(
+            haversine(grid.points[0, :2], grid.points[end, :2]), rel=0.01
+        )
+    assert georeference.in_metres(moved) is moved
+
+
+def test_light_of_a_map_in_degrees_is_that_of_the_map_in_metres():
+    grid = chart()
+    scene = vizlight.Scene(lights=vizlight.Light(direction=(-1, 1, 0.6)))
+    t = vizlight.relief_shadow(grid, scene)["t"]
+    known = vizlight.relief_shadow(georeference.in_metres(grid), scene)["t"]
+    np.testing.assert_array_equal(t, known)
+    assert 0.3 < t.mean() < 0.9
+    plain = grid.copy()
+    plain.field_data.clear()
+    assert abs(vizlight.relief_shadow(plain, scene)["t"] - t).mean() > 0.1
+
+
+def test_a_raised_map_is_in_metres_without_its_holes():
+    grid = chart()
+    grid["height"][:7] = np.nan
+    raised = vizlight.files.warped(grid, "height", 2.0)
+    assert raised.points.dtype == np.float64
+    assert np.isfinite(raised.points).all()
+    assert raised.bounds_size[1] == pytest.approx(0.5 * 111_195, rel=1e-3)
+    assert raised.bounds_size[2] == pytest.approx(2 * np.ptp(grid["height"][7:]))
+
+
+@pytest.mark.parametrize(
+    ("scale", "expected"), [(1.0, 1.0), (0.1, 5.0), (1e-4, 5e3), (100.0, 0.05), (0.0, 1.0)]
+)
+def test_heights_are_exaggerated_until_they_can_be_seen(scale, expected):
+    grid = chart()
+    grid["height"] *= scale
+    grid["height"][5] *= 1e3  # one wrong height has no say
+    assert georeference.exaggeration(grid, "height") == expected

@@ -1,0 +1,100 @@
+"""Files of several times: which step is read, and what is said of it."""
+
+from __future__ import annotations
+
+import foam
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight import files
+from vizlight.mesh import steps
+
+
+def swirl(time, middles):
+    """Return a flow that is at rest at time 0, and its speed."""
+    x, y, _ = (middles - 0.5).T
+    flow = time * np.stack([-y, x, 0.1 + 0 * x], axis=1)
+    return {"U": flow, "p": np.linalg.norm(flow, axis=1)}
+
+
+@pytest.fixture
+def case(tmp_path):
+    return foam.write(tmp_path / "case", [0, 0.5, 2], swirl)
+
+
+def pvd(folder):
+    """Write a series of three files with its index."""
+    rows = []
+    for i, time in enumerate((0, 0.5, 2)):
+        mesh = pv.ImageData(dimensions=(3, 3, 3))
+        mesh["p"] = np.full(27, float(time))
+        mesh.save(folder / f"a{i}.vti")
+        rows.append(f'<DataSet timestep="{time}" part="0" file="a{i}.vti"/>')
+    path = folder / "a.pvd"
+    path.write_text(
+        '<VTKFile type="Collection" version="0.1"><Collection>'
+        f"{''.join(rows)}</Collection></VTKFile>"
+    )
+    return path
+
+
+def netcdf(folder):
+    xarray = pytest.importorskip("xarray")
+    values = np.multiply.outer([0, 0.5, 2], np.ones((3, 4)))
+    path = folder / "a.nc"
+    axes = {"time": [0, 0.5, 2], "lat": [1.0, 2, 3], "lon": [1.0, 2, 3, 4]}
+    xarray.Dataset({"p": (("time", "lat", "lon"), values)}, coords=axes).to_netcdf(
+        path, engine="scipy"
+    )
+    return path
+
+
+@pytest.mark.parametrize("make", [pvd, netcdf])
+@pytest.mark.parametrize(
+    ("asked", "time"),
+    [(None, 2), ("last", 2), ("first", 0), (0.5, 0.5), ("0.5", 0.5), (1, 0.5), (-3, 0), (2, 2)],
+)
+def test_a_step_is_read_by_its_time_or_its_index(make, asked, time, tmp_path):
+    mesh = vizlight.read(make(tmp_path), time=asked)
+    assert mesh.field_data["TimeValue"][0] == time
+    assert steps.of(mesh) == [0, 0.5, 2]
+    assert mesh["p"].max() == time
+
+
+def test_a_time_that_is_not_there_is_an_error_with_those_that_are(tmp_path):
+    path = pvd(tmp_path)
+    for asked in (0.7, 3, -4, "soon", np.nan):
+        with pytest.raises(ValueError, match="time: expected a time of a step, 0, 0.5, 2, "):
+            vizlight.read(path, time=asked)
+
+
+def test_the_last_step_of_a_case_has_its_fields_at_the_points(case):
+    mesh = vizlight.read(case)
+    assert steps.of(mesh) == [0, 0.5, 2]
+    assert mesh.point_data["U"].shape == (125, 3)
+    assert np.abs(mesh.point_data["U"]).max() > 0.5
+    assert vizlight.streamlines(mesh, seeds=5).n_lines  # of its only vectors
+
+
+def test_a_case_in_parts_of_processors_is_read(case):
+    folder = case.parent
+    (folder / "processor0").mkdir()
+    for part in ("constant", "0", "0.5", "2"):
+        (folder / part).rename(folder / "processor0" / part)
+    (folder / "constant").mkdir()
+    assert vizlight.read(case).n_points == 125
+
+
+def test_a_directive_that_vtk_does_not_read_is_no_damage(tmp_path):
+    case = foam.write(tmp_path / "case", [1], swirl, before='speed #calc "2*3";\n')
+    with pytest.warns(UserWarning, match=r"fields that are left out.*U' \(#calc\).*-expand"):
+        mesh = vizlight.read(case)
+    assert mesh.n_points == 125
+    assert "U" not in mesh.point_data
+
+
+def test_a_folder_of_a_case_is_told_what_to_type(case):
+    with pytest.raises(files.FileError, match=r"a folder\); .*touch '.*case/case.foam'"):
+        vizlight.read(case.parent)

@@ -1,0 +1,179 @@
+"""Surfaces of brains and arrays over them: GIFTI and FreeSurfer by nibabel; .mz3, .tt."""
+
+from __future__ import annotations
+
+import gzip
+import io
+import re
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyvista as pv
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+__all__ = ["SURFACES", "is_freesurfer", "overlay", "read", "tracks_of_tt"]
+
+#: Ends of names of surfaces. FreeSurfer's are known by their first bytes.
+SURFACES = (".gii", ".gii.gz", ".mz3")
+#: First bytes of a surface of triangles and of quadrangles, and of numbers for its points.
+_FREESURFER, _CURV = (b"\xff\xff\xfe", b"\xff\xff\xfd", b"\xff\xff\xff"), b"\xff\xff\xff"
+#: Codes of GIFTI for points and for triangles.
+_POINTS, _TRIANGLES = 1008, 1009
+#: What a .mz3 file holds, bit by bit: type and numbers for each face or point.
+_MZ3 = {"faces": ("<i4", 3), "points": ("<f4", 3), "rgb": ("u1", 4), "values": ("<f4", 1)}
+_MAGIC = b"MZ"
+#: Length of a step of a .tt file: coordinates are multiples of this share of a voxel.
+_TT = 32
+
+
+def is_freesurfer(path: Path) -> bool:
+    """Return whether a file begins as FreeSurfer's surfaces and arrays do."""
+    with path.open("rb") as file:
+        return file.read(3) in _FREESURFER
+
+
+def read(path: Path) -> pv.PolyData:
+    """Return the surface of a file, with the arrays of its points.
+
+    Raises
+    ------
+    ValueError
+        If it has arrays alone.
+    """
+    import nibabel
+
+    name = path.name.lower()
+    arrays: dict[str, NDArray[Any]] = {}
+    if name.endswith(".mz3"):
+        arrays = _mz3(path)
+        points, faces = arrays.pop("points", None), arrays.pop("faces", None)
+    elif name.endswith((".gii", ".gii.gz")):
+        points, faces, arrays = _gifti(path)
+    elif path.read_bytes()[:3] == _CURV:
+        points = faces = None
+    else:
+        points, faces = nibabel.freesurfer.read_geometry(path)
+    if points is None or faces is None:
+        raise ValueError(
+            "values over a surface, without one: read the surface, with this file as its overlay"
+        )
+    kind = points.dtype if points.dtype == np.float32 else np.float64
+    mesh: pv.PolyData = pv.PolyData.from_regular_faces(points.astype(kind), faces)
+    for key, rows in arrays.items():
+        mesh.point_data[key] = rows
+    return mesh
+
+
+def overlay(path: Path, count: int) -> dict[str, NDArray[Any]]:
+    """Return the arrays of a file for ``count`` points, by the name of the file.
+
+    Raises
+    ------
+    ValueError
+        If the arrays have another length, with both numbers.
+    """
+    import nibabel
+
+    name = re.sub(r"\.gz$", "", path.name)
+    own = name.removesuffix(".gii")
+    if name.endswith(".mz3"):
+        found = {key: rows for key, rows in _mz3(path).items() if key in ("values", "rgb")}
+    elif name.endswith(".gii"):
+        found = _gifti(path)[2]
+    elif name.endswith(".annot"):
+        found = {"values": nibabel.freesurfer.read_annot(path)[0]}
+    elif name.endswith((".mgh", ".mgz")):
+        volume: Any = nibabel.load(path)
+        found = {"values": np.asarray(volume.dataobj).reshape(-1)}
+    else:
+        found = {"values": nibabel.freesurfer.read_morph_data(path)}
+    other = {len(rows) for rows in found.values()} - {count}
+    if other or not found:
+        got = f"{min(other)} values" if other else "no values"
+        raise ValueError(f"{got} for a surface of {count} points")
+    if len(found) == 1:
+        return {own: next(iter(found.values()))}
+    return {f"{own}_{key}": rows for key, rows in found.items()}
+
+
+def _gifti(path: Path) -> tuple[Any, Any, dict[str, NDArray[Any]]]:
+    """Return points, triangles and other arrays of a GIFTI file."""
+    import nibabel
+
+    image: Any = nibabel.load(path)
+    parts: dict[int, Any] = {}
+    arrays: dict[str, NDArray[Any]] = {}
+    for i, part in enumerate(image.darrays):
+        if part.intent in (_POINTS, _TRIANGLES):
+            parts[part.intent] = np.asarray(part.data)
+        else:
+            kind = nibabel.nifti1.intent_codes.label[part.intent]
+            name = part.meta.get("Name") or kind.removeprefix("NIFTI_INTENT_").lower()
+            arrays[name if name not in arrays else f"{name}_{i}"] = np.asarray(part.data)
+    points = parts.get(_POINTS)
+    if points is not None:
+        arrays = {key: rows for key, rows in arrays.items() if len(rows) == len(points)}
+    return points, parts.get(_TRIANGLES), arrays
+
+
+def _mz3(path: Path) -> dict[str, NDArray[Any]]:
+    """Return the parts of a .mz3 file. No package for Python reads it.
+
+    Raises
+    ------
+    ValueError
+        If it is no such file, or shorter than it states.
+    """
+    data = path.read_bytes()
+    if not data.startswith(_MAGIC):
+        try:
+            data = gzip.decompress(data)
+        except (OSError, EOFError) as error:
+            raise ValueError(f"no .mz3 file: {error}") from error
+    if not data.startswith(_MAGIC):
+        raise ValueError("no .mz3 file")
+    parts = int.from_bytes(data[2:4], "little")
+    faces, points, skip = (int(number) for number in np.frombuffer(data, "<u4", 3, 4))
+    at, found = 16 + skip, {}
+    for bit, (name, (kind, width)) in enumerate(_MZ3.items()):
+        if parts >> bit & 1:
+            rows = faces if name == "faces" else points
+            array = np.frombuffer(data, kind, rows * width, at)
+            at += array.nbytes
+            found[name] = array.reshape(rows, width) if width > 1 else array
+    if "rgb" in found:
+        found["rgb"] = found["rgb"][:, :3]
+    return found
+
+
+def tracks_of_tt(path: Path) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
+    """Return the points of tracts of DSI Studio, where each begins, and their numbers of points.
+
+    The file is one of MATLAB 4; a tract is its number of coordinates, its first point in 32nds of
+    a voxel, and steps of a byte for each further coordinate. Points are in mm, by ``trans_to_mni``
+    where it is there.
+    """
+    from scipy.io import loadmat
+
+    data = path.read_bytes()
+    parts = loadmat(io.BytesIO(gzip.decompress(data) if path.suffix.lower() == ".gz" else data))
+    blob = np.ascontiguousarray(parts["track"]).tobytes()
+    lines, at = [], 0
+    while at < len(blob):
+        size = int.from_bytes(blob[at : at + 4], "little") - 3
+        first = np.frombuffer(blob, "<i4", 3, at + 4)
+        steps = np.frombuffer(blob, "i1", size, at + 16).reshape(-1, 3).astype(np.int64)
+        lines.append(np.cumsum(np.concatenate([first[np.newaxis], steps]), axis=0))
+        at += 16 + size
+    counts = np.array([len(line) for line in lines], dtype=np.intp)
+    places = np.concatenate(lines) / _TT if lines else np.empty((0, 3))
+    if "trans_to_mni" in parts:
+        turn = np.reshape(parts["trans_to_mni"], (4, 4))
+        points = places @ turn[:3, :3].T + turn[:3, 3]
+    else:
+        points = places * np.ravel(parts["voxel_size"])
+    return points, np.cumsum(counts) - counts, counts

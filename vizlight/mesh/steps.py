@@ -1,0 +1,175 @@
+"""Files of several time steps: which there are, and the mesh of one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyvista as pv
+from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
+from vtkmodules.vtkIOParallel import vtkPOpenFOAMReader
+
+from vizlight import _check
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+__all__ = [
+    "STEPS",
+    "TIME",
+    "NoStepError",
+    "at",
+    "chosen",
+    "note",
+    "of",
+    "read",
+    "reader_of",
+    "times_of",
+]
+
+#: Field array in which PyVista and VTK keep the time of a mesh.
+TIME = "TimeValue"
+#: Field array with the times of all steps of the file of a mesh.
+STEPS = "TimeSteps"
+#: Largest number of times that a message lists.
+LISTED = 8
+#: Largest deviation of a time from that of a step, as a share of the largest time.
+SAME = 1e-6
+
+
+class NoStepError(ValueError):
+    """A file has no step of the time that was asked for."""
+
+
+def chosen(times: Sequence[float], time: object) -> int:
+    """Return the index of a step.
+
+    Parameters
+    ----------
+    times : sequence of float
+        Times of the steps.
+    time : float, int, str, optional
+        A time of a step, ``"last"``, ``"first"`` or, if it is an integer and no time of a step,
+        the index of a step, from the end if negative. Default: the last.
+
+    Raises
+    ------
+    NoStepError
+        If there is no such step.
+    """
+    count = len(times)
+    if time is None or time == "last":
+        return count - 1
+    if time == "first":
+        return 0
+    try:
+        number = float(time)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        number = np.nan
+    off = np.abs(np.asarray(times, dtype=float) - number)
+    if count and np.nanmin(off, initial=np.inf) <= SAME * np.max(np.abs(times)):
+        return int(np.nanargmin(off))
+    if number == np.floor(number) and -count <= number < count:
+        return int(number) % count
+    expected = f"a time of a step, {listed(times)}, an index from 0 to {count - 1}, or last"
+    got = f"{number:g}" if np.isfinite(number) else repr(time)
+    raise NoStepError(_check.message("time", expected, got))
+
+
+def listed(times: Sequence[float]) -> str:
+    """Return the times of steps in words."""
+    words = [f"{time:g}" for time in times]
+    if len(words) > LISTED:
+        words = [*words[: LISTED - 1], "...", words[-1]]
+    return ", ".join(words)
+
+
+def marked(mesh: Any, times: Sequence[float], index: int) -> Any:
+    """Attach the time of a step, and those of all steps of the file."""
+    mesh.field_data[TIME] = [float(times[index])]
+    mesh.field_data[STEPS] = [float(time) for time in times]
+    return mesh
+
+
+def of(mesh: pv.DataSet) -> list[float]:
+    """Return the times of all steps of the file of a mesh, none where it had no steps."""
+    return [float(time) for time in mesh.field_data[STEPS]] if STEPS in mesh.field_data else []
+
+
+def note(mesh: pv.DataSet) -> str:
+    """Return what a reader should know of the last step, which was taken by itself."""
+    times = of(mesh)
+    if len(times) < 2:
+        return ""
+    last = f"time {times[-1]:g}, the last of {len(times)} steps"
+    return f"{last}; --time takes another, --times all of them one by one"
+
+
+def reader_of(path: Path) -> Any:
+    """Return PyVista's reader of a file, None where meshio or another package reads it."""
+    case = path.parent
+    whole = (case / "constant" / "polyMesh").is_dir()
+    if path.suffix.lower() == ".foam" and not whole and (case / "processor0").is_dir():
+        return _Decomposed(path)
+    try:
+        reader: Any = pv.get_reader(path)  # type: ignore[no-untyped-call]
+    except ValueError:
+        return None
+    return reader
+
+
+class _Decomposed:
+    """Reader of an OpenFOAM case whose mesh and times are by processors.
+
+    PyVista's reader looks for the whole first, and reports that it is missing.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.reader = vtkPOpenFOAMReader()
+        self.reader.SetFileName(str(path))
+        self.reader.SetCaseType(vtkPOpenFOAMReader.DECOMPOSED_CASE)
+
+    def read(self) -> Any:
+        """Return the blocks of the step that was asked for."""
+        self.reader.Update()
+        return pv.wrap(self.reader.GetOutputDataObject(0))
+
+
+def times_of(reader: Any) -> list[float]:
+    """Return the times of the steps of a reader, none where its file has no time."""
+    if hasattr(reader, "time_values"):
+        return [float(time) for time in reader.time_values]
+    inner: Any = getattr(reader, "reader", None)
+    if not hasattr(inner, "GetOutputInformation"):
+        return []
+    inner.UpdateInformation()
+    times = inner.GetOutputInformation(0).Get(vtkStreamingDemandDrivenPipeline.TIME_STEPS())
+    return [float(time) for time in times or ()]
+
+
+def at(reader: Any, time: float) -> Any:
+    """Return the mesh of a reader at a time."""
+    if hasattr(reader, "set_active_time_value"):
+        reader.set_active_time_value(time)
+    else:
+        reader.reader.UpdateTimeStep(time)
+    return reader.read()
+
+
+def read(path: Path, time: object) -> pv.DataObject | None:
+    """Return the mesh of a step of a file, None where the file has no steps or no reader.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+    time : float, int or str, optional
+        As for :func:`chosen`.
+    """
+    reader = reader_of(path)
+    times = times_of(reader)
+    if reader is None or not times:
+        return None
+    index = chosen(times, time)
+    found: pv.DataObject = marked(at(reader, times[index]), times, index)
+    return found
