@@ -106,8 +106,7 @@ def _sides(sided: Sided, points: ArraySource, view: View | None, options: LightO
         if options.facing not in ("auto", "eye") or view is None:
             return normals
         own = Sided(normals, lean=facts[:, 0], open=np.rint(facts[:, 1]).astype(np.intp))
-        lean, only_open = own.leaning(options.facing, averted), options.facing == "auto"
-        return Turned(own, points, view, lean, only_open=only_open)[:]
+        return Turned(own, points, view, options.facing, averted)[:]
 
     return Sides(sided.vectors, sided.facts(), turned)
 

@@ -117,8 +117,7 @@ class Sided:
             return self.vectors
         if facing == "auto" and not self.any_open:
             return self.vectors
-        lean = self.leaning(facing, self.averted_fields(points, view))
-        return Turned(self, points, view, lean, only_open=facing == "auto")
+        return Turned(self, points, view, facing, self.averted_fields(points, view))
 
     def averted_fields(self, points: ArraySource, view: View | None) -> Bools:
         """Return by the numbers of :attr:`open` the height fields that show an eye their back.
@@ -144,8 +143,8 @@ class Sided:
         found[:2] = False
         return found
 
-    def leaning(self, facing: Facing, averted: Bools) -> Array | None:
-        """Return the sine by which a normal may lean away from an eye that sees its own side.
+    def leaning(self, facing: Facing, averted: Bools, rows: slice = slice(None)) -> Array | None:
+        """Return the sine by which normals may lean away from an eye that sees their own side.
 
         Faces around a point are seen until the last of them is averted where the surface is convex,
         and no longer than the first where it is concave, but by
@@ -156,37 +155,33 @@ class Sided:
         """
         if self.lean is None:
             return None
-        limited = np.clip(self.lean, -MOST_LEAN, MOST_LEAN)
-        field = np.asarray(self.open) > 1
+        lean, number = self.lean[rows], np.asarray(self.open)
+        limited = np.clip(lean, -MOST_LEAN, MOST_LEAN)
+        number = number[rows] if number.ndim else number
+        field = number > 1
         if facing != "auto" or not field.any():
             return limited
-        own = np.abs(self.lean)
-        return np.where(field, np.where(averted[self.open], -own, own), limited)
+        own = np.abs(lean)
+        return np.where(field, np.where(averted[number], -own, own), limited)
 
 
 class Turned:
     """Normals turned to the side that an eye sees, made for each slice and not stored."""
 
     def __init__(
-        self,
-        sided: Sided,
-        points: ArraySource,
-        view: View,
-        lean: Array | None,
-        *,
-        only_open: bool,
+        self, sided: Sided, points: ArraySource, view: View, facing: Facing, fields: Bools
     ) -> None:
         self.shape, self.dtype = sided.vectors.shape, sided.vectors.dtype
-        self._sided, self._points, self._view, self._only_open = sided, points, view, only_open
-        self._lean = lean
+        self._sided, self._points, self._view = sided, points, view
+        self._facing, self._fields = facing, fields
 
     def __getitem__(self, rows: slice, /) -> Array:
         """Return a slice of the normals."""
-        sided = self._sided
-        own, lean, border = sided.vectors[rows], self._lean, sided.open
-        lean = None if lean is None else lean[rows]
+        sided, own = self._sided, self._sided.vectors[rows]
+        lean = sided.leaning(self._facing, self._fields, rows)
         averted = _averted(own, self._points[rows], self._view, lean)
-        if self._only_open:
+        if self._facing == "auto":
+            border = sided.open
             averted &= (border[rows] if isinstance(border, np.ndarray) else border) > 0
         return np.where(averted[:, np.newaxis], -own, own)
 
