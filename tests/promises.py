@@ -24,7 +24,7 @@ from scipy.spatial import cKDTree
 import vizlight
 from vizlight import Bundle, Light, Material, Scene, View
 from vizlight.geometry import relief
-from vizlight.geometry.lines import curves
+from vizlight.geometry.lines import curves, fur
 from vizlight.model import (
     brightness,
     cylinder,
@@ -314,7 +314,7 @@ def highlight_errors(random, times):
 
 def half_vectors(random, times):
     """Fisher and Woo's identities by vectors."""
-    from_half, found = Worst(), Worst()
+    from_half, found, zero, of_angles = (Worst() for _ in range(4))
     for kind in KINDS:
         eps = float(np.finfo(kind).eps)
         for _ in range(60 * times):
@@ -331,6 +331,21 @@ def half_vectors(random, times):
             from_half.add(
                 got, 2 * mpmath.mpf(float(x)) ** 2 - 1 + 2 * mpmath.mpf(float(t)) ** 2, 4 * eps
             )
+            zero.add(half_vector.identity(wi, wo, n), 0, 16 * eps)
+            # N from its angles to H and to the pole of the plane of light and eye.
+            to_pole = kind(random.uniform(0, np.pi))
+            to_half = kind(random.uniform(abs(np.pi / 2 - float(to_pole)), np.pi / 2))
+            aside = kind(random.uniform(0, np.pi / 2))
+            a, b, c = (mpmath.mpf(float(v)) for v in (to_half, aside, to_pole))
+            rest = 1 - mpmath.cos(a) ** 2 - mpmath.cos(c) ** 2
+            up = [mpmath.sqrt(max(rest, mpmath.mpf(0))), mpmath.cos(c), mpmath.cos(a)]
+            light, eye = ([e * mpmath.sin(b), mpmath.mpf(0), mpmath.cos(b)] for e in (1, -1))
+            if rest > 0:
+                true = 2 * dot(up, light) * dot(up, eye) - dot(light, eye)
+                got = half_vector.reflection_cosine(to_half, beta=aside, theta=to_pole)
+                of_angles.add(got, true, 8 * eps)
+    yield zero.of("half_vector.identity", "16 eps")
+    yield of_angles.of("half_vector.reflection_cosine", "8 eps")
     yield found.of("half_vector.reflection", "16 eps / |wi + wo|")
     yield from_half.of("half_vector.reflection_from_half", "4 eps")
 
@@ -677,9 +692,45 @@ def in_pieces(random, times):
     yield worst.of("light in pieces", "1e-6")
 
 
+def axes(random, times):
+    """The frame of an eye, and the factor of highlights at large exponents."""
+    worst, level, eps = Worst(), Worst(), float(np.finfo(float).eps)
+    for _ in range(60 * times):
+        n = int(random.integers(3, 7))
+        made = [mp(row) for row in View(direction=random.standard_normal(n)).axes()]
+        for a in range(3):
+            for b in range(3):
+                worst.add(float(dot(made[a], made[b]) - (a == b)), 0, 4 * eps)
+        angle = float(random.uniform(0.2, 2.6))
+        cosine = mpmath.cos(mpmath.mpf(angle) / 2)
+        factor = float(highlights.simple_factor(angle))
+        level.add(factor, 4 * cosine, 4 * eps * 4 * cosine)
+    yield worst.of("View.axes", "4 eps")
+    yield level.of("highlights.simple_factor", "4 cos beta, to rounding")
+
+
+def fibres(random, times):
+    """Places on a flat surface of uneven triangles, counted on patches of equal area."""
+    x = np.sort(np.append(random.uniform(0, 1, 30), [0, 1]))
+    n = len(x)
+    across, up = np.meshgrid(x, np.sort(np.append(random.uniform(0, 1, 30), [0, 1])))
+    points = np.column_stack([across.ravel(), up.ravel(), np.zeros(n * n)])
+    i = np.arange(n * (n - 1)).reshape(-1, n)[:, :-1].ravel()
+    faces = np.stack([i, i + 1, i + n + 1, i, i + n + 1, i + n], axis=1).reshape(-1, 3)
+    counts = []
+    for seed in range(10 * times):
+        own = random.permutation(faces)
+        face, weights = fur.seeds(points, own, 4096, seed=seed)
+        place = np.einsum("ij,ijk->ik", weights, points[own[face]])
+        counts.append(np.histogram2d(place[:, 0], place[:, 1], bins=8, range=[[0, 1], [0, 1]])[0])
+    share = float(np.var(counts) / np.mean(counts))
+    stated = "0.25, variance of counts over their mean"
+    yield Promise("places of fur", len(counts) * 64, share, share / 0.25, stated)
+
+
 GROUPS = (
     reflections, cylinders, brightnesses, highlight_errors, half_vectors, falloffs, reliefs,
-    tangents, gaps, bands, refined, bundles, solids, in_pieces,
+    tangents, axes, fibres, gaps, bands, refined, bundles, solids, in_pieces,
 )  # fmt: skip
 
 
