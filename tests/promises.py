@@ -743,19 +743,13 @@ def rows(times: int, groups=GROUPS):
 
 def main(times: int = 4) -> None:
     """Compute all promises and write the table of the page."""
+    made = [["thing", "cases", "worst error", "of the bound", "stated bound"]]
+    for promise in rows(times):
+        error, worst = f"{promise.error:.2g}", f"{promise.worst:.2f}"
+        made.append([promise.thing, str(promise.cases), error, worst, promise.stated])
+        print(*made[-1], sep=" | ", flush=True)  # noqa: T201
     with PAGE.open("w", newline="") as file:
-        table = csv.writer(file, lineterminator="\n")
-        table.writerow(["thing", "cases", "worst error", "of the bound", "stated bound"])
-        for promise in rows(times):
-            row = [
-                promise.thing,
-                promise.cases,
-                f"{promise.error:.2g}",
-                f"{promise.worst:.2f}",
-                promise.stated,
-            ]
-            print(*row, sep=" | ", flush=True)  # noqa: T201
-            table.writerow(row)
+        csv.writer(file, lineterminator="\n").writerows(made)
 
 
 if __name__ == "__main__":
