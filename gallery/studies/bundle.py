@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Indices
 
-KINDS = ("isotropic", "aligned", "layered")
+KINDS = ("isotropic", "aligned", "layered", "along the light", "lattice")
 #: Number of sides of a tube; its radius is such that its mean width is that of a cylinder.
 SIDES = 8
 LENGTH, TUBES, DIAMETER = 0.5, 4000, 0.006
@@ -62,6 +62,22 @@ def tubes(kind: str, points: int, *, seed: int = 3) -> _Tubes:
     middles = _unit(random.normal(size=(TUBES, 3))) * random.uniform(size=(TUBES, 1)) ** (1 / 3)
     if kind == "aligned":
         tangents = _unit([1, 0, 0] + 0.1 * tangents)
+    elif kind == "along the light":
+        tangents = _unit(TOWARD + 0.1 * tangents)
+    elif kind == "lattice":
+        # A hexagonal lattice of parallel lines, five diameters apart.
+        step, side = 5 * DIAMETER, int(TUBES**0.5)
+        row, column = np.divmod(np.arange(TUBES), side)
+        tangents = np.tile([1.0, 0, 0], (TUBES, 1))
+        middles = np.stack(
+            [
+                random.uniform(-0.2, 0.2, TUBES),
+                step * (column + row % 2 / 2),
+                step * row * 0.75**0.5,
+            ],
+            axis=1,
+        )
+        middles -= middles.mean(axis=0)
     elif kind == "layered":
         layer = random.integers(6, size=TUBES)
         middles = random.uniform(-0.8, 0.8, (TUBES, 3))

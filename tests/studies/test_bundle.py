@@ -18,10 +18,11 @@ def test_rays_among_tubes_and_the_medium_agree(kind):
     assert [row.way for row in (far, inside, sides)] == [
         f"{kind}, far light", f"{kind}, light inside", f"{kind}, all sides"
     ]  # fmt: skip
-    assert far.error < 0.015
+    along = kind == "along the light"
+    assert far.error < (0.05 if along else 0.015)
     assert inside.error < 0.03
     assert sides.error < 0.015
-    assert 0.1 < far.more["mean share"] < 0.6
+    assert 0.1 < far.more["mean share"] < (0.9 if along else 0.6)
 
 
 def test_tubes_are_as_wide_as_lines():

@@ -135,7 +135,7 @@ class Fragments:
         #: Height of the fur whose normal has the length 2.
         self.tallest = 0.0
         #: Height fields that the eye sees from behind.
-        self._averted: Bools | None = None
+        self._averted: Bools = np.zeros(0, dtype=np.bool_)
 
     def attach(self, live: Live) -> None:
         """Give the drawn mesh its tangents and normals, of unit length in float32."""
@@ -154,7 +154,9 @@ class Fragments:
             height = np.asarray(inputs.fur_height[:], dtype=np.float64)
             self.tallest = float(np.max(height, initial=0.0)) or 1.0
             normals = normals * (1 + height[:, np.newaxis] / self.tallest)
-        elif live.source.sided is not None:
+        elif (sided := live.source.sided) is not None:
+            if len(self._averted) <= np.max(sided.open, initial=1):
+                self._averted = sided.averted_fields(inputs.points, None)
             normals = normals * _lean_lengths(live.source, self._averted)[:, np.newaxis]
         if normals is not None:
             live.attach(NORMALS, normals.astype(np.float32))
@@ -184,7 +186,7 @@ class Fragments:
 
     def paint(self, live: Live, scene: Scene, renderer: vtkRenderer, actor: vtkActor) -> None:
         """Write the shader of a scene if it is another one, and set its uniforms."""
-        self._see(live, scene.view, actor)
+        self.see(live, live.placed(actor), scene.view)
         scene = lighting.fit_depth_cue(scene, [live.placed(actor)])
         data = live.scalars is not None
         if data:
@@ -210,15 +212,14 @@ class Fragments:
             self._key, self._plan = key, plan
         _set_uniforms(given, renderer, actor)
 
-    def _see(self, live: Live, view: View | None, actor: vtkActor) -> None:
-        """Find the side of height fields that an eye sees, and attach normals if it is another."""
+    def see(self, live: Live, placed: ShadingInputs, view: View | None) -> None:
+        """Attach normals that tell which side of height fields an eye sees, if it is another."""
         sided = live.source.sided
-        if sided is None or not np.any(np.asarray(sided.open) > 1):
+        if sided is None or placed.normals is None:
             return
-        placed = live.placed(actor)
-        rows = np.asarray((sided.vectors if placed.normals is None else placed.normals)[:])
-        averted = dataclasses.replace(sided, vectors=rows).averted_fields(placed.points, view)
-        if self._averted is None or not np.array_equal(averted, self._averted):
+        vectors = np.asarray(placed.normals[:])
+        averted = dataclasses.replace(sided, vectors=vectors).averted_fields(placed.points, view)
+        if not np.array_equal(averted, self._averted):
             self._averted = averted
             self.attach(live)
 
@@ -269,15 +270,13 @@ def _rows(inputs: ShadingInputs, rows: ArraySource | None) -> Array | None:
     return unit if len(unit) == inputs.count else np.repeat(unit, inputs.repeat, axis=0)
 
 
-def _lean_lengths(source: Source, averted: Bools | None) -> Array:
+def _lean_lengths(source: Source, averted: Bools) -> Array:
     """Return lengths of normals, which carry from 1 to 2 the lean from -1 to 1.
 
     A lean of 1 stands for points that no eye turns.
     """
     sided = source.sided
     assert sided is not None
-    if averted is None:
-        averted = sided.averted_fields(source.inputs.points, None)
     lean = sided.leaning(source.facing, averted)
     turned = (sided.facts()[:, 1] > 0) | (source.facing == "eye")
     return np.where(turned, 1.5 + 0.5 * np.clip(0.0 if lean is None else lean, -1.0, 0.98), 2.0)

@@ -274,6 +274,7 @@ def save(
     plan = _plan(used, source.inputs.layout, source.options, data=scalars is not None)
     live, painter = Live(source, used, follow=True, by_surface=True), Fragments()
     painter.attach(live)
+    painter.see(live, source.inputs, used.view)
     written = program.write(plan, turned=source.sided is not None, data=scalars is not None)
     made = _made(used, plan, written, TANGENTS, NORMALS, scalars, tallest=painter.tallest)
     data = files.write_mesh(live.drawn, beside(path))

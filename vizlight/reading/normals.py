@@ -124,14 +124,17 @@ class Sided:
 
         It is the side that takes up less of what the eye sees, by the sum of ``N . w / d^2`` over
         some of the points, with ``w`` the direction toward the eye and ``d`` the distance from it.
+        Without a view they are seen from above.
         """
         most = int(np.max(self.open, initial=1))
-        if most < 2 or view is None or self.lean is None:
+        if most < 2 or self.lean is None:
             return np.zeros(most + 1, dtype=np.bool_)
         count = len(self.vectors)
         some = slice(0, count, max(count // SEEN, 1))
         number = np.broadcast_to(self.open, count)[some]
-        if view.parallel:
+        if view is None:
+            shown = self.vectors[some, 2]
+        elif view.parallel:
             shown = self.vectors[some] @ np.asarray(view.direction, dtype=np.float64)
         else:
             away = np.asarray(view.position) - np.asarray(points[some], dtype=np.float64)
