@@ -52,6 +52,8 @@ FORMATS: dict[str, tuple[str, ...]] = {
     "ImageData": (".vti", ".vtk", ".stl"),
     "MultiBlock": (".vtm",),
 }
+#: Ends of names of files in which y is up.
+Y_UP = (".glb", ".gltf", ".vrml", ".wrl")
 #: Thickness of the base of a solid below a height field, as a share of its longer side.
 BASE = 0.02
 SUFFIXES = tuple(dict.fromkeys(suffix for kind in FORMATS.values() for suffix in kind))
@@ -118,8 +120,9 @@ def read(
         last axis is x: an image, or a rectilinear grid where its steps are unequal. Of any axis
         before the last three, other than the time, the first value is taken. A raster is an image
         with a point at the centre of each pixel; what is missing is NaN. The field array ``unit``
-        of a map in degrees is ``degree``. The field array ``TimeValue`` is the time of a step,
-        ``TimeSteps`` are those of all steps.
+        of a map in degrees is ``degree``. glTF and VRML, whose standards say that y is up, are
+        turned so that z is; others are as they stand. The field array ``TimeValue`` is the time of
+        a step, ``TimeSteps`` are those of all steps.
 
     Raises
     ------
@@ -140,6 +143,7 @@ def read(
     Threads read one after the other.
     """
     path = _path("file", path)
+    overlays = [_path("overlay", one) for one in _listed(overlay)]
     if not path.is_file():
         what = "a folder" if path.is_dir() else "no such file"
         remedy = ""
@@ -171,8 +175,9 @@ def read(
             if lacking := short_files.contradiction(found):
                 raise FileError(lacking)
             whole = blocks.one_grid(found) if isinstance(found, pv.MultiBlock) else found
-            _lay_over(whole, [overlay] if isinstance(overlay, str | Path) else overlay)
-            mesh = whole
+            _lay_over(whole, overlays)
+            # Their standards say that y is up; here z is.
+            mesh = whole.rotate_x(90) if path.suffix.lower() in Y_UP else whole
         except steps.NoStepError:
             raise
         except Exception as error:  # noqa: BLE001 - readers raise exceptions of any type
@@ -200,10 +205,15 @@ def read(
     return mesh
 
 
-def _lay_over(mesh: pv.DataSet, paths: Sequence[str | Path]) -> None:
+def _listed(overlay: object) -> list[object]:
+    """Return one path or several as a list."""
+    return [*overlay] if isinstance(overlay, list | tuple) else [overlay]
+
+
+def _lay_over(mesh: pv.DataSet, paths: Sequence[Path]) -> None:
     """Attach the arrays of files with values for the points of a surface."""
     for path in paths:
-        for name, rows in brains.overlay(_path("overlay", path), mesh.n_points).items():
+        for name, rows in brains.overlay(path, mesh.n_points).items():
             mesh.point_data[name] = rows
 
 
