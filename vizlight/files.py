@@ -32,6 +32,7 @@ from vizlight.mesh import (
     point_arrays,
     short_files,
     steps,
+    welding,
 )
 from vizlight.reading.cells import check_whole
 from vizlight.reading.edges import place_numbers
@@ -52,6 +53,8 @@ FORMATS: dict[str, tuple[str, ...]] = {
     "ImageData": (".vti", ".vtk", ".stl"),
     "MultiBlock": (".vtm",),
 }
+#: Ends of names of files that have points for each face, or for each colour.
+SOUPS = (".obj", ".off", ".ply", ".stl", ".wrl")
 #: Ends of names of files in which y is up.
 Y_UP = (".glb", ".gltf", ".vrml", ".wrl")
 #: Thickness of the base of a solid below a height field, as a share of its longer side.
@@ -121,7 +124,8 @@ def read(
         before the last three, other than the time, the first value is taken. A raster is an image
         with a point at the centre of each pixel; what is missing is NaN. The field array ``unit``
         of a map in degrees is ``degree``. glTF and VRML, whose standards say that y is up, are
-        turned so that z is; others are as they stand. The field array ``TimeValue`` is the time of
+        turned so that z is; others are as they stand. Points of a .stl, .ply, .obj or .off file at
+        one place with equal arrays are one. The field array ``TimeValue`` is the time of
         a step, ``TimeSteps`` are those of all steps.
 
     Raises
@@ -174,10 +178,7 @@ def read(
             found: Any = _found(path, time)
             if lacking := short_files.contradiction(found):
                 raise FileError(lacking)
-            whole = blocks.one_grid(found) if isinstance(found, pv.MultiBlock) else found
-            _lay_over(whole, overlays)
-            # Their standards say that y is up; here z is.
-            mesh = whole.rotate_x(90) if path.suffix.lower() in Y_UP else whole
+            mesh = _whole(found, path.suffix.lower(), overlays)
         except steps.NoStepError:
             raise
         except Exception as error:  # noqa: BLE001 - readers raise exceptions of any type
@@ -210,11 +211,16 @@ def _listed(overlay: object) -> list[object]:
     return [*overlay] if isinstance(overlay, list | tuple) else [overlay]
 
 
-def _lay_over(mesh: pv.DataSet, paths: Sequence[Path]) -> None:
-    """Attach the arrays of files with values for the points of a surface."""
-    for path in paths:
+def _whole(found: Any, suffix: str, overlays: Sequence[Path]) -> Any:
+    """Return one upright mesh of what a file of a suffix holds, with the values over it."""
+    mesh = blocks.one_grid(found) if isinstance(found, pv.MultiBlock) else found
+    if suffix in SOUPS and mesh.GetMaxSpatialDimension() == 2 and not overlays:
+        mesh = welding.welded(blocks.surface(mesh, "file"))
+    for path in overlays:
         for name, rows in brains.overlay(path, mesh.n_points).items():
             mesh.point_data[name] = rows
+    # Their standards say that y is up; here z is.
+    return mesh.rotate_x(90) if suffix in Y_UP else mesh
 
 
 def _warn_of_unread(path: Path, unread: list[re.Match[str]]) -> None:
