@@ -396,3 +396,13 @@ def test_a_relief_becomes_a_closed_solid_for_a_printer(tmp_path):
     assert solid.volume == pytest.approx(thickness * area + dome, rel=0.05)
     with pytest.raises(files.FileError, match="expected an image of one layer with an active"):
         files.write_mesh(pv.ImageData(dimensions=(3, 3, 3)), tmp_path / "b.stl")
+
+
+def test_files_whose_standard_has_y_up_stand_upright(tmp_path):
+    tall = pv.Cylinder(direction=(0, 1, 0), height=5, radius=0.5)
+    plotter = pv.Plotter(off_screen=True)
+    plotter.add_mesh(tall)
+    plotter.export_vrml(tmp_path / "a.wrl")
+    tall.save(tmp_path / "a.ply")
+    assert np.argmax(files.read(tmp_path / "a.ply").bounds_size) == 1
+    assert np.argmax(files.read(tmp_path / "a.wrl").bounds_size) == 2

@@ -32,6 +32,7 @@ from vizlight.mesh import (
     point_arrays,
     short_files,
     steps,
+    welding,
 )
 from vizlight.reading.cells import check_whole
 from vizlight.reading.edges import place_numbers
@@ -52,6 +53,10 @@ FORMATS: dict[str, tuple[str, ...]] = {
     "ImageData": (".vti", ".vtk", ".stl"),
     "MultiBlock": (".vtm",),
 }
+#: Ends of names of files that have points for each face, or for each colour.
+SOUPS = (".obj", ".off", ".ply", ".stl", ".wrl")
+#: Ends of names of files in which y is up.
+Y_UP = (".glb", ".gltf", ".vrml", ".wrl")
 #: Thickness of the base of a solid below a height field, as a share of its longer side.
 BASE = 0.02
 SUFFIXES = tuple(dict.fromkeys(suffix for kind in FORMATS.values() for suffix in kind))
@@ -118,8 +123,10 @@ def read(
         last axis is x: an image, or a rectilinear grid where its steps are unequal. Of any axis
         before the last three, other than the time, the first value is taken. A raster is an image
         with a point at the centre of each pixel; what is missing is NaN. The field array ``unit``
-        of a map in degrees is ``degree``. The field array ``TimeValue`` is the time of a step,
-        ``TimeSteps`` are those of all steps.
+        of a map in degrees is ``degree``. glTF and VRML, whose standards say that y is up, are
+        turned so that z is; others are as they stand. Points of a .stl, .ply, .obj or .off file at
+        one place with equal arrays are one. The field array ``TimeValue`` is the time of
+        a step, ``TimeSteps`` are those of all steps.
 
     Raises
     ------
@@ -140,6 +147,7 @@ def read(
     Threads read one after the other.
     """
     path = _path("file", path)
+    overlays = [_path("overlay", one) for one in _listed(overlay)]
     if not path.is_file():
         what = "a folder" if path.is_dir() else "no such file"
         remedy = ""
@@ -170,9 +178,7 @@ def read(
             found: Any = _found(path, time)
             if lacking := short_files.contradiction(found):
                 raise FileError(lacking)
-            whole = blocks.one_grid(found) if isinstance(found, pv.MultiBlock) else found
-            _lay_over(whole, [overlay] if isinstance(overlay, str | Path) else overlay)
-            mesh = whole
+            mesh = _whole(found, path.suffix.lower(), overlays)
         except steps.NoStepError:
             raise
         except Exception as error:  # noqa: BLE001 - readers raise exceptions of any type
@@ -200,11 +206,21 @@ def read(
     return mesh
 
 
-def _lay_over(mesh: pv.DataSet, paths: Sequence[str | Path]) -> None:
-    """Attach the arrays of files with values for the points of a surface."""
-    for path in paths:
-        for name, rows in brains.overlay(_path("overlay", path), mesh.n_points).items():
+def _listed(overlay: object) -> list[object]:
+    """Return one path or several as a list."""
+    return [*overlay] if isinstance(overlay, list | tuple) else [overlay]
+
+
+def _whole(found: Any, suffix: str, overlays: Sequence[Path]) -> Any:
+    """Return one upright mesh of what a file of a suffix holds, with the values over it."""
+    mesh = blocks.one_grid(found) if isinstance(found, pv.MultiBlock) else found
+    if suffix in SOUPS and mesh.GetMaxSpatialDimension() == 2 and not overlays:
+        mesh = welding.welded(blocks.surface(mesh, "file"))
+    for path in overlays:
+        for name, rows in brains.overlay(path, mesh.n_points).items():
             mesh.point_data[name] = rows
+    # Their standards say that y is up; here z is.
+    return mesh.rotate_x(90) if suffix in Y_UP else mesh
 
 
 def _warn_of_unread(path: Path, unread: list[re.Match[str]]) -> None:

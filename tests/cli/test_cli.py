@@ -203,6 +203,7 @@ def test_what_may_have_been_meant_is_told(volume, tmp_path, capfd):
         ((volume,), "hull of a volume is lit; --contour r"),
         (("flat.vti",), "mesh is flat; --warp height"),
         ((volume, "--no-surface"), ""),
+        ((volume, "--contour", "r", "--scalars", "r"), "r is the same all over its isosurface"),
         (("flat.vti", "--warp", "height"), "heights are taken 0.1 times"),
         (("flat.vti", "--warp", "height", "--exaggeration", "1"), ""),
         (("bare.vti",), ""),

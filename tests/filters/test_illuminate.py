@@ -486,3 +486,13 @@ def test_nodes_of_curved_volumes_have_the_light_of_their_place(cell, random):
 def test_what_cannot_be_lit_is_named(mesh, options, error, words):
     with pytest.raises(error, match=words):
         illuminate(mesh, SCENE, **options)
+
+
+@pytest.mark.parametrize("kind", [pv.PolyData, pv.PointSet])
+def test_a_scan_is_lit_by_planes_through_its_neighbours(kind):
+    ball = pv.Sphere(theta_resolution=40, phi_resolution=40)
+    scene = Scene(view=View(direction=(1, 1, 1)))
+    known = illuminate(ball, scene)["luminance"]
+    found = illuminate(kind(ball.points), scene)["luminance"]
+    front = ball.points @ (1, 1, 1) > 0.2  # what is not averted
+    assert np.abs(known - found)[front].max() < 0.05

@@ -91,3 +91,5 @@ def test_order_2_in_the_size_of_cells():
 def test_not_a_shape():
     with pytest.raises(TypeError, match="shape: expected a vizlight.geometry.manifolds.Manifold"):
         vizlight.manifold(pv.Sphere())
+    with pytest.raises(TypeError, match=r"got a function; sample it by manifolds\.parametric\("):
+        vizlight.manifold(lambda u, v: (u, v, u * v, 0))

@@ -121,6 +121,10 @@ def builder(
         made.tint(lit, data, color)
         if not (target.contour or target.warp or target.slice):
             made.hint = lambda: _hint(data.run(), surface=target.surface)
+        elif color.scalars is not None and color.scalars == target.contour:
+            made.hint = lambda: (
+                f"{color.scalars} is the same all over its isosurface; name another --scalars"
+            )
         if explain:
             made.explain = lambda mesh: _explain(mesh, asked)
         if legibility:

@@ -92,6 +92,10 @@ def manifold(
     ((256, 4), (256, 8))
     """
     asked = ProjectOptions.of(locals()).changed()
+    if callable(shape):
+        expected, got = "a vizlight.geometry.manifolds.Manifold", "a function"
+        remedy = "sample it by manifolds.parametric(function, domain, n)"
+        raise TypeError(_check.message("shape", expected, got, remedy))
     _check.instance("shape", shape, Manifold, home="geometry.manifolds")
     count, n = shape.points.shape
     # The projection sets the points.

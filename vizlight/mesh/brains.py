@@ -31,13 +31,22 @@ _TT = 32
 
 
 def is_freesurfer(path: Path) -> bool:
-    """Return whether a file begins as FreeSurfer's surfaces and arrays do."""
+    """Return whether a file begins as FreeSurfer's surfaces and arrays do.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+    """
     with path.open("rb") as file:
         return file.read(3) in _FREESURFER
 
 
 def read(path: Path) -> pv.PolyData:
     """Return the surface of a file, with the arrays of its points.
+
+    Parameters
+    ----------
+    path : pathlib.Path
 
     Raises
     ------
@@ -69,7 +78,13 @@ def read(path: Path) -> pv.PolyData:
 
 
 def overlay(path: Path, count: int) -> dict[str, NDArray[Any]]:
-    """Return the arrays of a file for ``count`` points, by the name of the file.
+    """Return the arrays of a file for the points of a surface, by the name of the file.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+    count : int
+        Number of points of the surface.
 
     Raises
     ------
@@ -156,11 +171,16 @@ def tracks_of_tt(path: Path) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
     The file is one of MATLAB 4; a tract is its number of coordinates, its first point in 32nds of
     a voxel, and steps of a byte for each further coordinate. Points are in mm, by ``trans_to_mni``
     where it is there.
+
+    Parameters
+    ----------
+    path : pathlib.Path
     """
     from scipy.io import loadmat
 
     data = path.read_bytes()
-    parts = loadmat(io.BytesIO(gzip.decompress(data) if path.suffix.lower() == ".gz" else data))
+    whole: Any = io.BytesIO(gzip.decompress(data) if path.suffix.lower() == ".gz" else data)
+    parts = loadmat(whole)
     blob = np.ascontiguousarray(parts["track"]).tobytes()
     lines, at = [], 0
     while at < len(blob):

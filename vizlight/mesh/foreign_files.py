@@ -32,8 +32,9 @@ PACKAGES = {
     ".cdf": ("xarray", "formats"),
 } | dict.fromkeys(
     (
-        ".avs", ".bdf", ".ele", ".f3grid", ".fem", ".h5m", ".mdpa", ".med", ".mesh", ".meshb",
-        ".msh", ".nas", ".node", ".off", ".post", ".su2", ".tec", ".ugrid", ".vol", ".wkt", ".xmf",
+        ".avs", ".bdf", ".ele", ".f3grid", ".fem", ".h5m", ".inp", ".mdpa", ".med", ".mesh",
+        ".meshb", ".msh", ".nas", ".node", ".off", ".post", ".su2", ".tec", ".ugrid", ".vol",
+        ".wkt", ".xmf",
     ),
     ("meshio", "formats"),
 ) | dict.fromkeys(rasters.SUFFIXES, ("rasterio", "maps"))  # fmt: skip
@@ -78,7 +79,10 @@ def read(path: Path, time: object = None) -> pv.DataSet | None:
     if suffix == ".dem":
         _refuse_narrow(path)
     if suffix == ".msh" and missing(path) == "":
-        return _of_gmsh(path)
+        return _by_meshio(path)
+    if suffix == ".inp" and _begins(path, b"*"):
+        # PyVista takes it for the format of AVS.
+        return _by_meshio(path, "abaqus")
     if suffix == ".pvtp":
         reader = vtkXMLPPolyDataReader()
         reader.SetFileName(str(path))
@@ -87,11 +91,16 @@ def read(path: Path, time: object = None) -> pv.DataSet | None:
     return None
 
 
-def _of_gmsh(path: Path) -> pv.DataSet:
-    """Return a mesh of gmsh. Names of parts are left out: their numbers are cell data."""
+def _begins(path: Path, start: bytes) -> bool:
+    with path.open("rb") as file:
+        return file.read(len(start)) == start
+
+
+def _by_meshio(path: Path, kind: str | None = None) -> pv.DataSet:
+    """Return a mesh of gmsh or Abaqus. Names of parts are left out: their numbers are cell data."""
     import meshio
 
-    found = meshio.read(path)
+    found = meshio.read(path, file_format=kind)
     # Those that gmsh writes are not of the form that PyVista takes.
     found.cell_sets = {}
     return pv.from_meshio(found)

@@ -78,7 +78,12 @@ def chosen(times: Sequence[float], time: object) -> int:
 
 
 def listed(times: Sequence[float]) -> str:
-    """Return the times of steps in words."""
+    """Return the times of steps in words.
+
+    Parameters
+    ----------
+    times : sequence of float
+    """
     words = [f"{time:g}" for time in times]
     if len(words) > LISTED:
         words = [*words[: LISTED - 1], "...", words[-1]]
@@ -86,19 +91,38 @@ def listed(times: Sequence[float]) -> str:
 
 
 def marked(mesh: Any, times: Sequence[float], index: int) -> Any:
-    """Attach the time of a step, and those of all steps of the file."""
+    """Attach the time of a step, and those of all steps of the file.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataObject
+    times : sequence of float
+    index : int
+    """
     mesh.field_data[TIME] = [float(times[index])]
     mesh.field_data[STEPS] = [float(time) for time in times]
     return mesh
 
 
 def of(mesh: pv.DataSet) -> list[float]:
-    """Return the times of all steps of the file of a mesh, none where it had no steps."""
+    """Return the times of all steps of the file of a mesh, none where it had no steps.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh of a step.
+    """
     return [float(time) for time in mesh.field_data[STEPS]] if STEPS in mesh.field_data else []
 
 
 def note(mesh: pv.DataSet) -> str:
-    """Return what a reader should know of the last step, which was taken by itself."""
+    """Return what a reader should know of the last step, which was taken by itself.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh of a step.
+    """
     times = of(mesh)
     if len(times) < 2:
         return ""
@@ -107,7 +131,12 @@ def note(mesh: pv.DataSet) -> str:
 
 
 def reader_of(path: Path) -> Any:
-    """Return PyVista's reader of a file, None where meshio or another package reads it."""
+    """Return PyVista's reader of a file, None where meshio or another package reads it.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+    """
     case = path.parent
     whole = (case / "constant" / "polyMesh").is_dir()
     if path.suffix.lower() == ".foam" and not whole and (case / "processor0").is_dir():
@@ -137,7 +166,13 @@ class _Decomposed:
 
 
 def times_of(reader: Any) -> list[float]:
-    """Return the times of the steps of a reader, none where its file has no time."""
+    """Return the times of the steps of a reader, none where its file has no time.
+
+    Parameters
+    ----------
+    reader : object
+        Reader of PyVista.
+    """
     if hasattr(reader, "time_values"):
         return [float(time) for time in reader.time_values]
     inner: Any = getattr(reader, "reader", None)
@@ -149,7 +184,15 @@ def times_of(reader: Any) -> list[float]:
 
 
 def at(reader: Any, time: float) -> Any:
-    """Return the mesh of a reader at a time."""
+    """Return the mesh of a reader at a time.
+
+    Parameters
+    ----------
+    reader : object
+        Reader of PyVista.
+    time : float
+        Time of a step.
+    """
     if hasattr(reader, "set_active_time_value"):
         reader.set_active_time_value(time)
     else:

@@ -6,8 +6,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
+from vtkmodules.vtkFiltersPoints import vtkPCANormalEstimation
 
 from vizlight import _check
 from vizlight.model import kernels
@@ -16,6 +18,7 @@ from vizlight.reading.arrays import vectors_of
 from vizlight.reading.cells import (
     around,
     as_numpy,
+    as_vtk,
     connectivity,
     faces_only,
     finite_faces,
@@ -52,6 +55,8 @@ if TYPE_CHECKING:
 
 #: Least number of points, where there are as many, by which the side of a height field is found.
 SEEN = 1 << 16
+#: Number of neighbours through which the plane of a point of a scan is laid.
+NEIGHBOURS = 12
 
 
 @dataclass(frozen=True)
@@ -362,6 +367,8 @@ def computed_normals(
     if grids.in_parts(mesh):
         return _of_grid(mesh, view, as_wound=as_wound, sides=sides)
     surface, origin = _skin(mesh)
+    if surface is None and starts is None and _is_cloud(mesh):
+        return _of_cloud(mesh, view)
     if surface is None:
         expected, got = "a surface, whose normals are lit", f"a {type(mesh).__name__} without faces"
         remedy = "name its tangent vectors by tangents= or its normals by normals="
@@ -397,6 +404,29 @@ def computed_normals(
         lean = None if lean is None else scattered(lean, origin, count)
     all_of = Sided(vectors, lean, number, sharp, computed=True, inside=inside)
     return all_of.part(0, slice(None)) if starts is None else all_of
+
+
+def _is_cloud(mesh: Dataset) -> bool:
+    """Return whether a mesh is a scan: points in space that no cells join."""
+    bare = isinstance(mesh, vtkPolyData) and mesh.GetNumberOfVerts() == mesh.GetNumberOfCells()
+    return mesh.GetNumberOfPoints() >= NEIGHBOURS and (bare or not mesh.GetNumberOfCells())
+
+
+def _of_cloud(mesh: Dataset, view: View | None) -> Sided:
+    """Return normals of planes through neighbouring points, which face the eye."""
+    bare, estimate = vtkPolyData(), vtkPCANormalEstimation()
+    where = vtkPoints()
+    where.SetData(as_vtk(places(mesh)))
+    bare.SetPoints(where)
+    estimate.SetInputData(bare)
+    estimate.SetSampleSize(NEIGHBOURS)
+    estimate.SetNormalOrientationToGraphTraversal()
+    estimate.Update()
+    found = np.array(as_numpy(estimate.GetOutput().GetPointData().GetNormals()))
+    found[~np.isfinite(found).all(axis=1)] = 0
+    if view is not None:
+        found = np.where(_averted(found, places(mesh), view, None)[:, np.newaxis], -found, found)
+    return Sided(found, open=True, computed=True)
 
 
 def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> Sided:

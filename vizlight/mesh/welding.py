@@ -1,0 +1,49 @@
+"""Points of a surface that files store once for each face, as one point."""
+
+from __future__ import annotations
+
+import numpy as np
+import pyvista as pv
+
+from vizlight.mesh import creases, point_arrays
+from vizlight.reading.cells import connectivity
+
+__all__ = ["welded"]
+
+
+def welded(mesh: pv.PolyData) -> pv.PolyData:
+    """Return a surface whose points at the same place are one, where all their arrays are equal.
+
+    Normals that are computed are then those of the surface, not of each face; points that differ
+    in a colour or a texture coordinate stay apart.
+
+    Parameters
+    ----------
+    mesh : pyvista.PolyData
+        Surface of polygons alone; anything else is returned as it is.
+    """
+    if mesh.n_cells != mesh.GetNumberOfPolys() or not mesh.n_points:
+        return mesh
+    parts = [np.asarray(mesh.points) + 0, *map(np.asarray, mesh.point_data.values())]
+    if any(part.dtype.kind not in "biuf" for part in parts):
+        return mesh
+    rows = [np.ascontiguousarray(part.reshape(len(part), -1)).view(np.uint8) for part in parts]
+    table = np.ascontiguousarray(np.hstack([row.reshape(mesh.n_points, -1) for row in rows]))
+    _, first, same = np.unique(
+        table.view(f"V{table.shape[1]}"), return_index=True, return_inverse=True
+    )
+    if len(first) == mesh.n_points:
+        return mesh
+    # In the order of the file.
+    place = np.argsort(np.argsort(first))
+    kept = np.sort(first)
+    ids, ends = connectivity(mesh.GetPolys())
+    out = pv.PolyData()
+    out.points = np.asarray(mesh.points)[kept]
+    out.SetPolys(creases.cell_array(place[same.reshape(-1)][ids], ends))
+    for key, array in mesh.point_data.items():
+        point_arrays.attach_rows(out, key, np.asarray(array)[kept])
+    out.GetCellData().ShallowCopy(mesh.GetCellData())
+    out.GetFieldData().ShallowCopy(mesh.GetFieldData())
+    point_arrays.carry_active(mesh, out)
+    return out
