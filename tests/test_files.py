@@ -360,6 +360,61 @@ def test_threads_that_read_leave_the_streams_as_they_were(tmp_path):
     assert os.fstat(2) == place
 
 
+def test_what_vtk_says_is_told_apart_by_thread(tmp_path, capfd):
+    from vtkmodules.vtkCommonCore import vtkOutputWindow
+
+    bad = tmp_path / "bad.vtp"
+    bad.write_text("no mesh")
+    window = vtkOutputWindow.GetInstance()
+
+    def say():
+        vtkOutputWindow.GetInstance().DisplayErrorText("said elsewhere\n")
+
+    with files.captured_errors() as errors, ThreadPoolExecutor(1) as pool:
+        with files.captured_errors() as inner:
+            vtkOutputWindow.GetInstance().DisplayErrorText("said within\n")
+        pool.submit(say).result()
+        with pytest.raises(files.FileError, match="Error parsing XML"):
+            pool.submit(files.read, bad).result()
+        vtkOutputWindow.GetInstance().DisplayWarningText("said here\n")
+    assert (errors, inner) == (["said here"], ["said within"])
+    assert capfd.readouterr().err == "said elsewhere\n"
+    assert vtkOutputWindow.GetInstance() is window
+
+
+@pytest.mark.parametrize("suffix", ["mdpa", "mesh", "su2", "meshb"])
+def test_no_cut_of_a_text_with_counts_is_read(suffix, tmp_path):
+    meshio = pytest.importorskip("meshio")
+    points = np.random.default_rng(1).random((12, 3))
+    path = tmp_path / f"a.{suffix}"
+    cells = np.arange(12).reshape(3, 4)
+    meshio.Mesh(points, [("tetra", cells)]).write(path)
+    whole = path.read_bytes()
+    assert files.read(path).n_cells == 3
+    # That the last number of a text is cut is not to be seen.
+    last = whole.rindex(b"11") - 10 if suffix == "su2" else len(whole.rstrip()) - 8
+    for end in np.random.default_rng(2).integers(8, last, 30):
+        path.write_bytes(whole[:end])
+        with pytest.raises(files.FileError, match="file: expected a "):
+            files.read(path)
+
+
+@pytest.mark.parametrize("cells", ["quads", "both"])
+def test_no_cut_of_a_binary_ply_file_of_polygons_is_read(cells, tmp_path):
+    path = tmp_path / "a.ply"
+    mesh = pv.Plane(i_resolution=4, j_resolution=4)
+    mesh = mesh if cells == "quads" else mesh.merge(mesh.translate((3, 0, 0)).triangulate())
+    mesh = mesh if isinstance(mesh, pv.PolyData) else mesh.extract_surface()
+    mesh.clear_data()
+    mesh.save(path)
+    whole = path.read_bytes()
+    assert files.read(path).n_cells == mesh.n_cells
+    for end in range(1, len(whole), 7):
+        path.write_bytes(whole[:end])
+        with pytest.raises(files.FileError, match="file: expected a "):
+            files.read(path)
+
+
 def test_blocks_are_written_whole_or_not_at_all(tmp_path, monkeypatch):
     ball = pv.Sphere()
     ball["label"] = np.array(["text"] * ball.n_points)

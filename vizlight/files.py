@@ -5,21 +5,21 @@ from __future__ import annotations
 import contextlib
 import errno
 import functools
-import io
 import os
 import re
 import shutil
 import sys
-import tempfile
 import threading
 import uuid
-import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista as pv
 from vtkmodules import vtkIOXML
+from vtkmodules.util.misc import calldata_type
+from vtkmodules.util.vtkConstants import VTK_STRING
+from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
 
 from vizlight import _check, _supervise
 from vizlight.mesh import blocks, foreign_files, hull, short_files
@@ -55,16 +55,8 @@ READERS = {
 }
 
 
-#: What VTK says of an error, and of a warning that tells of damage.
-_DAMAGE = re.compile(
-    r"(?:ERR\|.*\(0x[0-9a-f]+\): |WARN\| (?:.*\(0x[0-9a-f]+\): )?(?=.*(?i:error|cannot|premature|"
-    r"unexpected|truncat|corrupt|end of file|not enough|invalid|mismatch|no [xyz] coordinates)))"
-    r"([^\x1b\n]+)"
-)
-
-
-#: Standard error is the process's: one thread at a time redirects it.
-_REDIRECTED = threading.RLock()
+#: Where VTK says that an error or a warning arose, which stands before what it says.
+_ORIGIN = re.compile(r"\A[\w ]+: In .*, line \d+\s+(?:\S+ \(\w+\): )?")
 
 
 class FileError(ValueError):
@@ -72,7 +64,9 @@ class FileError(ValueError):
 
 
 def read(path: str | Path, /) -> pv.DataSet:
-    """Read a mesh from a file: any that PyVista reads, tractograms and netCDF grids.
+    """Read a mesh from a file, in this process: a file that is damaged on purpose may end it.
+
+    These are files that PyVista reads, tractograms and netCDF grids.
 
     Parameters
     ----------
@@ -98,10 +92,10 @@ def read(path: str | Path, /) -> pv.DataSet:
 
     Notes
     -----
-    Readers are libraries in C and C++: a file from others that is damaged on purpose may end the
-    process. The command line reads in a process of its own. A file is refused where its reader says
-    that it is damaged, and where it is shorter than its format states; a .obj file states nothing.
-    Threads read one after the other.
+    Readers are libraries in C and C++; the command line reads in a process of its own. A file is
+    refused where its reader gives an error or a warning, and where it is shorter than its format
+    states; a .obj file states nothing. Threads may read at the same time: what VTK says is told
+    apart by thread, and no stream is redirected. Libraries other than VTK may print.
     """
     path = _path("file", path)
     if not path.is_file():
@@ -112,35 +106,26 @@ def read(path: str | Path, /) -> pv.DataSet:
     if str(path).encode("utf-8", "replace") != os.fsencode(path):
         expected, remedy = "a name in the characters of the locale", "set PYTHONUTF8=1"
         raise FileError(_check.message("file", expected, ascii(str(path)), remedy))
-    reason = "no points"
-    mesh: pv.DataSet | None = None
+    reason, mesh = "no points", None
     if short := short_files.missing_part(path):
         raise _damaged(path, short)
     limit = _supervise.read_limit(path.stat().st_size)
     reading = _supervise.stage("read", path, seconds=limit)
-    said = io.StringIO()
-    with (
-        reading,
-        captured_errors() as errors,
-        warnings.catch_warnings(),
-        contextlib.redirect_stdout(said),
-    ):
-        warnings.simplefilter("ignore")
+    with reading, captured_errors() as errors:
         try:
-            found = foreign_files.read(path)
+            found: Any = foreign_files.read(path)
             if found is None:
-                found = pv.read(path)
-            if lacking := short_files.contradiction(found):
+                found = _by_vtk(path)
+            if lacking := short_files.contradiction(found, path):
                 raise FileError(lacking)
             mesh = _one_grid(found) if isinstance(found, pv.MultiBlock) else found
         except Exception as error:  # noqa: BLE001 - readers raise exceptions of any type
             kind = "" if isinstance(error, FileError) else f"{type(error).__name__}: "
             reason = f"{kind}{_first_line(error)}"
-        except SystemExit:  # meshio ends the process where one of its readers finds a fault
-            reason = f"meshio: {_first_line(said.getvalue())}"
+        except SystemExit as error:  # so ends meshio where it finds a fault
+            reason = f"its reader ended with {error.code}"
     if not isinstance(mesh, pv.DataSet) or mesh.n_points == 0:
-        if errors and reason == "no points":
-            reason = f"no points: {errors[0]}"
+        reason = f"no points: {errors[0]}" if errors else reason
         got, remedy = f"'{path}' ({reason})", foreign_files.missing(path)
         raise FileError(_check.message("file", "a mesh that PyVista reads", got, remedy))
     if errors:
@@ -174,12 +159,22 @@ def _dataset(mesh: object) -> None:
 
 
 def _damaged(path: Path, reason: str) -> FileError:
-    got = f"'{path}' ({reason})"
-    return FileError(_check.message("file", "a file that is not damaged", got))
+    got, remedy = f"'{path}' ({reason})", foreign_files.missing(path)
+    return FileError(_check.message("file", "a file that is not damaged", got, remedy))
 
 
 def _first_line(error: Exception | str) -> str:
     return next((line.strip() for line in str(error).splitlines() if line.strip()), "no reason")
+
+
+def _by_vtk(path: Path) -> pv.DataObject:
+    """Return what PyVista's reader finds in a file; ``pyvista.read`` would log what VTK says."""
+    try:
+        reader: Any = pv.get_reader(path)  # type: ignore[no-untyped-call]
+    except ValueError:
+        return pv.read(path)
+    found: pv.DataObject = reader.read()
+    return found
 
 
 def _one_grid(found: pv.MultiBlock) -> pv.UnstructuredGrid:
@@ -214,24 +209,70 @@ def _samples(grid: pv.UnstructuredGrid) -> Iterator[tuple[int, int]]:
     yield from zip(kinds.tolist(), first.tolist(), strict=True)
 
 
+class _Messages:
+    """What VTK says while files are read and written, by the thread in which it says so.
+
+    VTK has one window for the messages of a process. It is replaced while any thread listens;
+    messages of other threads go on to the window that was there. No stream is redirected.
+    """
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._heard: dict[int, list[list[str]]] = {}
+        self._replaced: tuple[vtkOutputWindow, vtkLogger.Verbosity] | None = None
+
+    def enter(self, errors: list[str]) -> None:
+        """Append to a list what VTK says in this thread."""
+        with self._lock:
+            if self._replaced is None:
+                self._replaced = (
+                    vtkOutputWindow.GetInstance(),
+                    vtkLogger.GetCurrentVerbosityCutoff(),
+                )
+                window = vtkStringOutputWindow()
+                heard: Any = self._note
+                for event in ("ErrorEvent", "WarningEvent"):
+                    window.AddObserver(event, heard)  # type: ignore[arg-type]
+                vtkOutputWindow.SetInstance(window)
+                vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+            self._heard.setdefault(threading.get_ident(), []).append(errors)
+
+    def leave(self) -> None:
+        """Append to the list of before, if there is one."""
+        with self._lock:
+            own = self._heard[threading.get_ident()]
+            own.pop()
+            if not own:
+                del self._heard[threading.get_ident()]
+            if not self._heard and self._replaced is not None:
+                window, verbosity = self._replaced
+                self._replaced = None
+                vtkOutputWindow.SetInstance(window)
+                vtkLogger.SetStderrVerbosity(verbosity)
+
+    @calldata_type(VTK_STRING)  # type: ignore[no-untyped-call, untyped-decorator]
+    def _note(self, _window: object, event: str, text: str | None) -> None:
+        text = text or "words that are no text"
+        own, replaced = self._heard.get(threading.get_ident()), self._replaced
+        if own:
+            own[-1].append(_first_line(_ORIGIN.sub("", text)))
+        elif replaced is not None:
+            sys.stderr.write(text)
+            replaced[0].InvokeEvent(event, text)
+
+
+_MESSAGES = _Messages()
+
+
 @contextlib.contextmanager
 def captured_errors() -> Iterator[list[str]]:
-    """Capture the standard error of C and C++ readers; the list holds VTK's errors afterwards."""
+    """Collect the errors and warnings of VTK that arise in this thread, each as one line."""
     errors: list[str] = []
-    with _REDIRECTED:
-        sys.stderr.flush()
-        with tempfile.TemporaryFile() as sink:
-            kept = os.dup(2)
-            os.dup2(sink.fileno(), 2)
-            try:
-                yield errors
-            finally:
-                sys.stderr.flush()
-                os.dup2(kept, 2)
-                os.close(kept)
-                sink.seek(0)
-                text = sink.read().decode(errors="replace")
-                errors += _DAMAGE.findall(text)
+    _MESSAGES.enter(errors)
+    try:
+        yield errors
+    finally:
+        _MESSAGES.leave()
 
 
 def surface_of(

@@ -67,8 +67,8 @@ def read(path: Path) -> pv.DataSet | None:
         return _grid(path)
     if suffix == ".dem":
         _refuse_narrow(path)
-    if suffix == ".msh" and missing(path) == "":
-        return _of_gmsh(path)
+    if PACKAGES.get(suffix, ("",))[0] == "meshio" and missing(path) == "":
+        return _of_meshio(path)
     if suffix == ".pvtp":
         reader = vtkXMLPPolyDataReader()
         reader.SetFileName(str(path))
@@ -77,12 +77,22 @@ def read(path: Path) -> pv.DataSet | None:
     return None
 
 
-def _of_gmsh(path: Path) -> pv.DataSet:
-    """Return a mesh of gmsh. Names of parts are left out: their numbers are cell data."""
+def _of_meshio(path: Path) -> pv.DataSet:
+    """Return a mesh by the first reader of meshio that takes a file.
+
+    ``meshio.read`` prints what its readers say, and ends the process. Names of parts are left out:
+    those of gmsh are not of the form that PyVista takes, and their numbers are cell data.
+    """
     import meshio
 
-    found = meshio.read(path)
-    # Those that gmsh writes are not of the form that PyVista takes.
+    for kind in (kinds := meshio.extension_to_filetypes[path.suffix.lower()]):
+        try:
+            found = getattr(meshio, kind).read(path)
+        except meshio.ReadError:
+            if kind == kinds[-1]:
+                raise
+        else:
+            break
     found.cell_sets = {}
     return pv.from_meshio(found)
 
