@@ -187,6 +187,19 @@ def test_names_that_xml_cannot_hold_are_refused(name, tmp_path):
         (tmp_path / "a.vtk").unlink()
 
 
+@pytest.mark.parametrize("name", ["T_{wall}", r"$\\alpha_{x}$", "{}"])
+@pytest.mark.parametrize("data", ["point_data", "cell_data", "field_data"])
+def test_names_at_which_the_writer_of_legacy_files_ends_are_refused(name, data, tmp_path):
+    mesh = pv.ImageData(dimensions=(2, 2, 2))
+    sizes = {"point_data": 8, "cell_data": 1, "field_data": 3}
+    getattr(mesh, data)[name] = np.arange(float(sizes[data]))
+    with pytest.raises(files.FileError, match="array names without braces .*such as .vtp"):
+        files.write_mesh(mesh, tmp_path / "a.vtk")
+    assert not [*tmp_path.iterdir()]
+    again = files.read(files.write_mesh(mesh, tmp_path / "a.vti"))
+    np.testing.assert_array_equal(getattr(again, data)[name], getattr(mesh, data)[name])
+
+
 def test_the_mode_of_a_file_that_is_replaced_is_kept(tmp_path):
     path = files.write_mesh(pv.Sphere(), tmp_path / "a.vtp")
     path.chmod(0o640)

@@ -442,9 +442,8 @@ def write_mesh(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
         If the format does not support the type of mesh, or the file cannot be written.
     """
     path = check_format(mesh, path)
-    if path.suffix.lower() != ".vtk":
-        for block in blocks.all_blocks(mesh):
-            _check_names(block)
+    for block in blocks.all_blocks(mesh):
+        _check_names(block, legacy=path.suffix.lower() == ".vtk")
     if isinstance(mesh, pv.MultiBlock):
         folder = path.with_suffix("")
         make_folder("output", folder)
@@ -501,13 +500,22 @@ def _ended(path: Path) -> bool:
         return file.read().rstrip().endswith(b"</VTKFile>")
 
 
-def _check_names(mesh: pv.DataSet) -> None:
-    """Check that XML can hold the names of the arrays; VTK's writers do not escape them."""
+def _check_names(mesh: pv.DataSet, *, legacy: bool) -> None:
+    """Check that a file can hold the names of the arrays.
+
+    VTK's writers of XML do not escape them, and that of legacy files ends the process at braces.
+    """
+    wrong, signs = '[<&"\x00-\x1f]', "<, &, quotation marks and control characters"
+    other = "a .vtk file"
+    if legacy:
+        wrong, signs, other = "[{}]", "braces in a legacy file", "a file of XML, such as .vtp"
     for data in (mesh.point_data, mesh.cell_data, mesh.field_data):
         for name in data:
-            if re.search(r"[<&\"\x00-\x1f]", name):
-                expected = "array names without <, &, quotation marks and control characters"
-                remedy = "rename the array, or write a .vtk file"
+            if re.search(wrong, name):
+                expected, remedy = (
+                    f"array names without {signs}",
+                    f"rename the array, or write {other}",
+                )
                 raise FileError(_check.message("output", expected, repr(name), remedy))
 
 

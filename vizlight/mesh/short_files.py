@@ -194,14 +194,12 @@ def _counted(file: BinaryIO) -> str:
     """Compare the lines after the last count of a text with it."""
     text = file.read()
     counts = [*_COUNT.finditer(text)]
-    if {found[1].upper() for found in counts} == {b"NPOIN"}:
-        return "it has no cells"
     for found in counts[-1:]:
         stated = int(found[2])
         there = sum(bool(line.strip()) for line in text[found.end() :].split(b"\n"))
         if there < stated:
             return f"{there} of {stated} lines of {found[1].decode()!r} are there"
-    return ""
+    return "it has no cells" if {found[1] for found in counts} == {b"NPOIN"} else ""
 
 
 def _paired(file: BinaryIO) -> str:
