@@ -428,6 +428,31 @@ def test_no_cut_of_a_binary_ply_file_of_polygons_is_read(cells, tmp_path):
             files.read(path)
 
 
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names")
+def test_pipes_are_refused_at_once(tmp_path):
+    pipe = tmp_path / "a.vtp"
+    os.mkfifo(pipe)
+    with pytest.raises(files.FileError, match=r"file: expected a file, got '.*' \(a pipe\)"):
+        files.read(pipe)
+    with pytest.raises(files.FileError, match="output: expected a file, got the device or pipe"):
+        files.write_mesh(pv.Cube(), pipe)
+    assert pipe.is_fifo()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no locks of folders")
+def test_what_a_killed_writer_left_is_swept_by_the_next(tmp_path):
+    left = [tmp_path / f"{files.DRAFTS}{name}" for name in ("old", "new", "busy")]
+    for folder in left:
+        folder.mkdir()
+        (folder / "a.vtp").write_text("part")
+    for folder in (left[0], left[2]):
+        os.utime(folder, (0, 0))
+    with files._locked(left[2]):
+        files.write_mesh(pv.Cube(), tmp_path / "b.vtp")
+    names = {"b.vtp", left[1].name, left[2].name}
+    assert {path.name for path in tmp_path.iterdir()} == names
+
+
 def test_blocks_are_written_whole_or_not_at_all(tmp_path, monkeypatch):
     ball = pv.Sphere()
     ball["label"] = np.array(["text"] * ball.n_points)

@@ -134,6 +134,8 @@ def run(main: Callable[[], int]) -> int:
     """
     global _channel  # noqa: PLW0603 - a process has one parent
     if not sys.platform.startswith("linux") or len([*Path("/proc/self/task").iterdir()]) > 1:
+        if signal.getsignal(signal.SIGINT) == signal.SIG_DFL:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
         return main()
     _open_standard_streams()
     reader, writer = os.pipe()

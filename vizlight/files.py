@@ -10,6 +10,7 @@ import re
 import shutil
 import sys
 import threading
+import time
 import uuid
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -59,6 +60,10 @@ READERS = {
 _ORIGIN = re.compile(r"\A[\w ]+: In .*, line \d+\s+(?:\S+ \(\w+\): )?")
 
 
+#: Begin of the names of temporary folders, and seconds after which one without a lock is swept.
+DRAFTS, ABANDONED = ".vizlight-file-", 60.0
+
+
 class FileError(ValueError):
     """A file cannot be read or written."""
 
@@ -99,7 +104,7 @@ def read(path: str | Path, /) -> pv.DataSet:
     """
     path = _path("file", path)
     if not path.is_file():
-        what = "a folder" if path.is_dir() else "no such file"
+        what = "no such file" if not path.exists() else "a folder" if path.is_dir() else "a pipe"
         raise FileError(_check.message("file", "a file", f"'{path}' ({what})"))
     if not os.access(path, os.R_OK):
         raise FileError(_check.message("file", "a readable file", f"'{path}'"))
@@ -389,8 +394,7 @@ def check_output(path: str | Path, /, formats: tuple[str, ...], *, name: str = "
         )
     if not path.parent.is_dir():
         raise FileError(_check.message(name, "a folder that exists", f"'{path.parent}'"))
-    if path.is_dir():
-        raise FileError(_check.message(name, "a file", f"the folder '{path}'"))
+    _refuse_others(name, path)
     if not os.access(path.parent, os.W_OK):
         got = f"'{path.parent}', which is read-only"
         raise FileError(_check.message(name, "a writable folder", got))
@@ -560,6 +564,47 @@ def _check_draft(draft: Path, mesh: pv.DataSet, errors: list[str]) -> None:
         raise FileError(_check.message("output", "a file that can be written", reason))
 
 
+def _refuse_others(name: str, path: Path) -> None:
+    """Raise FileError where a path is no regular file, such as a folder or a pipe, but exists."""
+    if path.exists() and not path.is_file():
+        what = "folder" if path.is_dir() else "device or pipe"
+        raise FileError(_check.message(name, "a file", f"the {what} '{path}'"))
+
+
+def _sweep(place: Path) -> None:
+    """Remove the temporary folders of writers that were killed: those still at work lock theirs."""
+    try:
+        import fcntl
+    except ImportError:  # on Windows
+        return
+    for folder in place.glob(f"{DRAFTS}*"):
+        with contextlib.suppress(OSError):  # it is locked, another's, or gone
+            opened = os.open(folder, os.O_RDONLY)
+            try:
+                fcntl.flock(opened, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                if time.time() - os.fstat(opened).st_mtime > ABANDONED:
+                    shutil.rmtree(folder)
+            finally:
+                os.close(opened)
+
+
+@contextlib.contextmanager
+def _locked(folder: Path) -> Iterator[None]:
+    """Hold the lock of a temporary folder."""
+    try:
+        import fcntl
+    except ImportError:  # on Windows
+        yield
+        return
+    opened = os.open(folder, os.O_RDONLY)
+    try:
+        with contextlib.suppress(OSError):  # the file system has no locks
+            fcntl.flock(opened, fcntl.LOCK_SH)
+        yield
+    finally:
+        os.close(opened)
+
+
 def make_folder(name: str, path: Path, /) -> None:
     """Make a folder and those above it; ``name`` is the argument in the error message."""
     try:
@@ -594,18 +639,21 @@ def replace_file(
         If the file cannot be written.
     """
     path = _path("output", path)
+    _refuse_others("output", path)
     target = path.resolve()  # a symbolic link stays, and what it points to is replaced
+    _sweep(target.parent)
     # A parent knows of the folder before it is there and until it is gone.
-    folder = target.parent / f".vizlight-{uuid.uuid4().hex[:12]}"
+    folder = target.parent / f"{DRAFTS}{uuid.uuid4().hex[:12]}"
     try:
         with _supervise.stage(doing, path, temporary=str(folder)):
             folder.mkdir(mode=0o700)
             try:
-                draft = folder / f"{path.stem}{path.suffix.lower()}"
-                write(str(draft))
-                if target.exists():
-                    draft.chmod(target.stat().st_mode)
-                draft.replace(target)
+                with _locked(folder):
+                    draft = folder / f"{path.stem}{path.suffix.lower()}"
+                    write(str(draft))
+                    if target.exists():
+                        draft.chmod(target.stat().st_mode)
+                    draft.replace(target)
             finally:
                 shutil.rmtree(folder)
     except OSError as error:
