@@ -412,6 +412,27 @@ def test_no_cut_of_a_text_with_counts_is_read(suffix, tmp_path):
             files.read(path)
 
 
+@pytest.mark.parametrize("version", [42, 51])
+def test_no_number_of_a_legacy_text_is_made_up(version, tmp_path):
+    from vtkmodules.vtkIOLegacy import vtkPolyDataWriter
+
+    path, mesh = tmp_path / "a.vtk", pv.Sphere(theta_resolution=8, phi_resolution=7)
+    writer = vtkPolyDataWriter()
+    writer.SetFileName(str(path))
+    writer.SetFileVersion(version)
+    writer.SetFileTypeToASCII()
+    writer.SetInputData(mesh)
+    writer.Write()
+    whole = path.read_bytes()
+    assert files.read(path).n_cells == mesh.n_cells
+    # The last number may be cut in two.
+    words = whole.rstrip().rsplit(maxsplit=130)
+    for left in range(1, 126):
+        path.write_bytes(b" ".join(words[:-left]))
+        with pytest.raises(files.FileError, match="file: expected a "):
+            files.read(path)
+
+
 @pytest.mark.parametrize("cells", ["quads", "both"])
 def test_no_cut_of_a_binary_ply_file_of_polygons_is_read(cells, tmp_path):
     path = tmp_path / "a.ply"
