@@ -188,6 +188,19 @@ def test_names_that_xml_cannot_hold_are_refused(name, tmp_path):
         (tmp_path / "a.vtk").unlink()
 
 
+@pytest.mark.parametrize("name", ["T_{wall}", r"$\\alpha_{x}$", "{}"])
+@pytest.mark.parametrize("data", ["point_data", "cell_data", "field_data"])
+def test_names_at_which_the_writer_of_legacy_files_ends_are_refused(name, data, tmp_path):
+    mesh = pv.ImageData(dimensions=(2, 2, 2))
+    sizes = {"point_data": 8, "cell_data": 1, "field_data": 3}
+    getattr(mesh, data)[name] = np.arange(float(sizes[data]))
+    with pytest.raises(files.FileError, match="array names without braces .*such as .vtp"):
+        files.write_mesh(mesh, tmp_path / "a.vtk")
+    assert not [*tmp_path.iterdir()]
+    again = files.read(files.write_mesh(mesh, tmp_path / "a.vti"))
+    np.testing.assert_array_equal(getattr(again, data)[name], getattr(mesh, data)[name])
+
+
 def test_the_mode_of_a_file_that_is_replaced_is_kept(tmp_path):
     path = files.write_mesh(pv.Sphere(), tmp_path / "a.vtp")
     path.chmod(0o640)
@@ -358,6 +371,107 @@ def test_threads_that_read_leave_the_streams_as_they_were(tmp_path):
     assert sys.stdout is out
     assert sys.stderr is err
     assert os.fstat(2) == place
+
+
+def test_what_vtk_says_is_told_apart_by_thread(tmp_path, capfd):
+    from vtkmodules.vtkCommonCore import vtkOutputWindow
+
+    bad = tmp_path / "bad.vtp"
+    bad.write_text("no mesh")
+    window = vtkOutputWindow.GetInstance()
+
+    def say():
+        vtkOutputWindow.GetInstance().DisplayErrorText("said elsewhere\n")
+
+    with files.captured_errors() as errors, ThreadPoolExecutor(1) as pool:
+        with files.captured_errors() as inner:
+            vtkOutputWindow.GetInstance().DisplayErrorText("said within\n")
+        pool.submit(say).result()
+        with pytest.raises(files.FileError, match="Error parsing XML"):
+            pool.submit(files.read, bad).result()
+        vtkOutputWindow.GetInstance().DisplayWarningText("said here\n")
+    assert (errors, inner) == (["said here"], ["said within"])
+    assert capfd.readouterr().err == "said elsewhere\n"
+    assert vtkOutputWindow.GetInstance() is window
+
+
+@pytest.mark.parametrize("suffix", ["mdpa", "mesh", "su2", "meshb"])
+def test_no_cut_of_a_text_with_counts_is_read(suffix, tmp_path):
+    meshio = pytest.importorskip("meshio")
+    points = np.random.default_rng(1).random((12, 3))
+    path = tmp_path / f"a.{suffix}"
+    cells = np.arange(12).reshape(3, 4)
+    meshio.Mesh(points, [("tetra", cells)]).write(path)
+    whole = path.read_bytes()
+    assert files.read(path).n_cells == 3
+    # That the last number of a text is cut is not to be seen.
+    last = whole.rindex(b"11") - 10 if suffix == "su2" else len(whole.rstrip()) - 8
+    for end in np.random.default_rng(2).integers(8, last, 30):
+        path.write_bytes(whole[:end])
+        with pytest.raises(files.FileError, match="file: expected a "):
+            files.read(path)
+
+
+@pytest.mark.parametrize("version", [42, 51])
+def test_no_number_of_a_legacy_text_is_made_up(version, tmp_path):
+    from vtkmodules.vtkIOLegacy import vtkPolyDataWriter
+
+    path, mesh = tmp_path / "a.vtk", pv.Sphere(theta_resolution=8, phi_resolution=7)
+    writer = vtkPolyDataWriter()
+    writer.SetFileName(str(path))
+    writer.SetFileVersion(version)
+    writer.SetFileTypeToASCII()
+    writer.SetInputData(mesh)
+    writer.Write()
+    whole = path.read_bytes()
+    assert files.read(path).n_cells == mesh.n_cells
+    # The last number may be cut in two.
+    words = whole.rstrip().rsplit(maxsplit=130)
+    for left in range(1, 126):
+        path.write_bytes(b" ".join(words[:-left]))
+        with pytest.raises(files.FileError, match="file: expected a "):
+            files.read(path)
+
+
+@pytest.mark.parametrize("cells", ["quads", "both"])
+def test_no_cut_of_a_binary_ply_file_of_polygons_is_read(cells, tmp_path):
+    path = tmp_path / "a.ply"
+    mesh = pv.Plane(i_resolution=4, j_resolution=4)
+    mesh = mesh if cells == "quads" else mesh.merge(mesh.translate((3, 0, 0)).triangulate())
+    mesh = mesh if isinstance(mesh, pv.PolyData) else mesh.extract_surface()
+    mesh.clear_data()
+    mesh.save(path)
+    whole = path.read_bytes()
+    assert files.read(path).n_cells == mesh.n_cells
+    for end in range(1, len(whole), 7):
+        path.write_bytes(whole[:end])
+        with pytest.raises(files.FileError, match="file: expected a "):
+            files.read(path)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names")
+def test_pipes_are_refused_at_once(tmp_path):
+    pipe = tmp_path / "a.vtp"
+    os.mkfifo(pipe)
+    with pytest.raises(files.FileError, match=r"file: expected a file, got '.*' \(a pipe\)"):
+        files.read(pipe)
+    with pytest.raises(files.FileError, match="output: expected a file, got the device or pipe"):
+        files.write_mesh(pv.Cube(), pipe)
+    assert pipe.is_fifo()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no locks of folders")
+def test_what_a_killed_writer_left_is_swept_by_the_next(tmp_path):
+    left = [tmp_path / f"{files.DRAFTS}{name}" for name in ("old", "new", "busy")]
+    for folder in left:
+        folder.mkdir()
+        (folder / "a.vtp").write_text("part")
+    for folder in (left[0], left[2]):
+        os.utime(folder, (0, 0))
+    with files._locked(left[2]):
+        files.write_mesh(pv.Cube(), tmp_path / "b.vtp")
+    names = {"b.vtp", left[1].name, left[2].name}
+    assert {path.name for path in tmp_path.iterdir()} == names
 
 
 def test_blocks_are_written_whole_or_not_at_all(tmp_path, monkeypatch):

@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
+import signal
 import sys
-
-from vizlight import _supervise
 
 __all__ = ["main"]
 
 
 def main() -> int:
     """Run the command line and return its exit code."""
+    # Until the command line is loaded Ctrl-C ends the process without a traceback.
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+    from vizlight import _supervise
+
     return _supervise.run(_command_line)
 
 
 def _command_line() -> int:
-    from vizlight import cli
-
+    try:
+        from vizlight import cli
+    except KeyboardInterrupt:
+        sys.stderr.write("vizlight: interrupted\n")
+        return 2
     return cli.main()
 
 

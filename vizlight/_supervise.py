@@ -134,6 +134,8 @@ def run(main: Callable[[], int]) -> int:
     """
     global _channel  # noqa: PLW0603 - a process has one parent
     if not sys.platform.startswith("linux") or len([*Path("/proc/self/task").iterdir()]) > 1:
+        if signal.getsignal(signal.SIGINT) == signal.SIG_DFL:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
         return main()
     _open_standard_streams()
     reader, writer = os.pipe()
@@ -149,6 +151,7 @@ def run(main: Callable[[], int]) -> int:
     signal.pthread_sigmask(signal.SIG_UNBLOCK, _PASSED_ON)
     os.close(reader)
     _channel = writer
+    _mute_libraries()
     end_with(parent)
     _limit_memory()
     return main()
@@ -158,6 +161,14 @@ def _interrupt_once(number: int, frame: FrameType | None) -> None:
     """Raise KeyboardInterrupt; the next Ctrl-C must not end the process while it reports this."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.default_int_handler(number, frame)
+
+
+def _mute_libraries() -> None:
+    """Leave standard error to Python; what libraries in C print beside their errors is lost."""
+    sys.stderr = os.fdopen(os.dup(2), "w", buffering=1)
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 2)
+    os.close(nowhere)
 
 
 def _open_standard_streams() -> None:

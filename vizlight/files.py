@@ -5,21 +5,22 @@ from __future__ import annotations
 import contextlib
 import errno
 import functools
-import io
 import os
 import re
 import shutil
 import sys
-import tempfile
 import threading
+import time
 import uuid
-import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista as pv
 from vtkmodules import vtkIOXML
+from vtkmodules.util.misc import calldata_type
+from vtkmodules.util.vtkConstants import VTK_STRING
+from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
 
 from vizlight import _check, _supervise
 from vizlight.mesh import (
@@ -72,20 +73,14 @@ READERS = {
 }
 
 
-#: What VTK says of an error, and of a warning that tells of damage.
-_DAMAGE = re.compile(
-    r"(?:ERR\|.*\(0x[0-9a-f]+\): |WARN\| (?:.*\(0x[0-9a-f]+\): )?(?=.*(?i:error|cannot|premature|"
-    r"unexpected|truncat|corrupt|end of file|not enough|invalid|mismatch|no [xyz] coordinates)))"
-    r"([^\x1b\n]+)"
-)
+#: Where VTK says that an error or a warning arose, which stands before what it says.
+_ORIGIN = re.compile(r"\A[\w ]+: In .*, line \d+\s+(?:\S+ \(\w+\): )?")
 
 
 #: What VTK says of an OpenFOAM file that is whole, but in a language that it has only a part of.
 _DIRECTIVE = re.compile(r"Error reading line \d+ of (\S+): Unsupported directive (\w+)")
-
-
-#: Standard error is the process's: one thread at a time redirects it.
-_REDIRECTED = threading.RLock()
+#: Begin of the names of temporary folders, and seconds after which one without a lock is swept.
+DRAFTS, ABANDONED = ".vizlight-file-", 60.0
 
 
 class FileError(ValueError):
@@ -99,7 +94,9 @@ def read(
     time: float | str | None = None,
     overlay: str | Path | Sequence[str | Path] = (),
 ) -> pv.DataSet:
-    """Read a mesh from a file: any that PyVista reads, tractograms, rasters and netCDF grids.
+    """Read a mesh from a file, in this process: a file that is damaged on purpose may end it.
+
+    These are files that PyVista reads, tractograms, rasters and netCDF grids.
 
     Parameters
     ----------
@@ -141,15 +138,15 @@ def read(
 
     Notes
     -----
-    Readers are libraries in C and C++: a file from others that is damaged on purpose may end the
-    process. The command line reads in a process of its own. A file is refused where its reader says
-    that it is damaged, and where it is shorter than its format states; a .obj file states nothing.
-    Threads read one after the other.
+    Readers are libraries in C and C++; the command line reads in a process of its own. A file is
+    refused where its reader gives an error or a warning, and where it is shorter than its format
+    states; a .obj file states nothing. Threads may read at the same time: what VTK says is told
+    apart by thread, and no stream is redirected. Libraries other than VTK may print.
     """
     path = _path("file", path)
     overlays = [_path("overlay", one) for one in _listed(overlay)]
     if not path.is_file():
-        what = "a folder" if path.is_dir() else "no such file"
+        what = "no such file" if not path.exists() else "a folder" if path.is_dir() else "a pipe"
         remedy = ""
         if (path / "constant").is_dir():
             case = path / f"{path.resolve().name}.foam"
@@ -160,23 +157,15 @@ def read(
     if str(path).encode("utf-8", "replace") != os.fsencode(path):
         expected, remedy = "a name in the characters of the locale", "set PYTHONUTF8=1"
         raise FileError(_check.message("file", expected, ascii(str(path)), remedy))
-    reason = "no points"
-    mesh: pv.DataSet | None = None
+    reason, mesh = "no points", None
     if short := short_files.missing_part(path):
         raise _damaged(path, short)
     limit = _supervise.read_limit(path.stat().st_size)
     reading = _supervise.stage("read", path, seconds=limit)
-    said = io.StringIO()
-    with (
-        reading,
-        captured_errors() as errors,
-        warnings.catch_warnings(record=True) as told,
-        contextlib.redirect_stdout(said),
-    ):
-        warnings.simplefilter("always")
+    with reading, captured_errors() as errors:
         try:
             found: Any = _found(path, time)
-            if lacking := short_files.contradiction(found):
+            if lacking := short_files.contradiction(found, path):
                 raise FileError(lacking)
             mesh = _whole(found, path.suffix.lower(), overlays)
         except steps.NoStepError:
@@ -184,20 +173,17 @@ def read(
         except Exception as error:  # noqa: BLE001 - readers raise exceptions of any type
             kind = "" if isinstance(error, FileError) else f"{type(error).__name__}: "
             reason = f"{kind}{_first_line(error)}"
-        except SystemExit:  # meshio ends the process where one of its readers finds a fault
-            reason = f"meshio: {_first_line(said.getvalue())}"
+        except SystemExit as error:  # so ends meshio where it finds a fault
+            reason = f"its reader ended with {error.code}"
     unread = [match for match in map(_DIRECTIVE.search, errors) if match]
     errors = [error for error in errors if not _DIRECTIVE.search(error)]
     if not isinstance(mesh, pv.DataSet) or mesh.n_points == 0:
-        if errors and reason == "no points":
-            reason = f"no points: {errors[0]}"
+        reason = f"no points: {errors[0]}" if errors else reason
         got, remedy = f"'{path}' ({reason})", foreign_files.missing(path)
         raise FileError(_check.message("file", "a mesh that PyVista reads", got, remedy))
     if errors:
         raise _damaged(path, errors[0])
     _warn_of_unread(path, unread)
-    for text in dict.fromkeys(str(one.message) for one in told if one.category is UserWarning):
-        _check.warn(text)
     if isinstance(found, pv.MultiBlock) and (names := _left_out(found, mesh)):
         _check.warn(
             f"file: '{path}' has blocks whose cells are of a lower dimension than other blocks', "
@@ -238,7 +224,7 @@ def _found(path: Path, time: object) -> pv.DataObject:
     found: pv.DataObject | None = foreign_files.read(path, time)
     if found is None:
         found = steps.read(path, time)
-    return pv.read(path) if found is None else found
+    return _by_vtk(path) if found is None else found
 
 
 def _path(name: str, value: object) -> Path:
@@ -262,12 +248,22 @@ def _dataset(mesh: object) -> None:
 
 
 def _damaged(path: Path, reason: str) -> FileError:
-    got = f"'{path}' ({reason})"
-    return FileError(_check.message("file", "a file that is not damaged", got))
+    got, remedy = f"'{path}' ({reason})", foreign_files.missing(path)
+    return FileError(_check.message("file", "a file that is not damaged", got, remedy))
 
 
 def _first_line(error: Exception | str) -> str:
     return next((line.strip() for line in str(error).splitlines() if line.strip()), "no reason")
+
+
+def _by_vtk(path: Path) -> pv.DataObject:
+    """Return what PyVista's reader finds in a file; ``pyvista.read`` would log what VTK says."""
+    try:
+        reader: Any = pv.get_reader(path)  # type: ignore[no-untyped-call]
+    except ValueError:
+        return pv.read(path)
+    found: pv.DataObject = reader.read()
+    return found
 
 
 def _left_out(found: pv.MultiBlock, grid: pv.DataSet) -> str:
@@ -282,24 +278,70 @@ def _left_out(found: pv.MultiBlock, grid: pv.DataSet) -> str:
     )
 
 
+class _Messages:
+    """What VTK says while files are read and written, by the thread in which it says so.
+
+    VTK has one window for the messages of a process. It is replaced while any thread listens;
+    messages of other threads go on to the window that was there. No stream is redirected.
+    """
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._heard: dict[int, list[list[str]]] = {}
+        self._replaced: tuple[vtkOutputWindow, vtkLogger.Verbosity] | None = None
+
+    def enter(self, errors: list[str]) -> None:
+        """Append to a list what VTK says in this thread."""
+        with self._lock:
+            if self._replaced is None:
+                self._replaced = (
+                    vtkOutputWindow.GetInstance(),
+                    vtkLogger.GetCurrentVerbosityCutoff(),
+                )
+                window = vtkStringOutputWindow()
+                heard: Any = self._note
+                for event in ("ErrorEvent", "WarningEvent"):
+                    window.AddObserver(event, heard)  # type: ignore[arg-type]
+                vtkOutputWindow.SetInstance(window)
+                vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+            self._heard.setdefault(threading.get_ident(), []).append(errors)
+
+    def leave(self) -> None:
+        """Append to the list of before, if there is one."""
+        with self._lock:
+            own = self._heard[threading.get_ident()]
+            own.pop()
+            if not own:
+                del self._heard[threading.get_ident()]
+            if not self._heard and self._replaced is not None:
+                window, verbosity = self._replaced
+                self._replaced = None
+                vtkOutputWindow.SetInstance(window)
+                vtkLogger.SetStderrVerbosity(verbosity)
+
+    @calldata_type(VTK_STRING)  # type: ignore[no-untyped-call, untyped-decorator]
+    def _note(self, _window: object, event: str, text: str | None) -> None:
+        text = text or "words that are no text"
+        own, replaced = self._heard.get(threading.get_ident()), self._replaced
+        if own:
+            own[-1].append(_first_line(_ORIGIN.sub("", text)))
+        elif replaced is not None:
+            sys.stderr.write(text)
+            replaced[0].InvokeEvent(event, text)
+
+
+_MESSAGES = _Messages()
+
+
 @contextlib.contextmanager
 def captured_errors() -> Iterator[list[str]]:
-    """Capture the standard error of C and C++ readers; the list holds VTK's errors afterwards."""
+    """Collect the errors and warnings of VTK that arise in this thread, each as one line."""
     errors: list[str] = []
-    with _REDIRECTED:
-        sys.stderr.flush()
-        with tempfile.TemporaryFile() as sink:
-            kept = os.dup(2)
-            os.dup2(sink.fileno(), 2)
-            try:
-                yield errors
-            finally:
-                sys.stderr.flush()
-                os.dup2(kept, 2)
-                os.close(kept)
-                sink.seek(0)
-                text = sink.read().decode(errors="replace")
-                errors += _DAMAGE.findall(text)
+    _MESSAGES.enter(errors)
+    try:
+        yield errors
+    finally:
+        _MESSAGES.leave()
 
 
 def surface_of(
@@ -428,8 +470,7 @@ def check_output(path: str | Path, /, formats: tuple[str, ...], *, name: str = "
         )
     if not path.parent.is_dir():
         raise FileError(_check.message(name, "a folder that exists", f"'{path.parent}'"))
-    if path.is_dir():
-        raise FileError(_check.message(name, "a file", f"the folder '{path}'"))
+    _refuse_others(name, path)
     if not os.access(path.parent, os.W_OK):
         got = f"'{path.parent}', which is read-only"
         raise FileError(_check.message(name, "a writable folder", got))
@@ -482,9 +523,8 @@ def write_mesh(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
         If the format does not support the type of mesh, or the file cannot be written.
     """
     path = check_format(mesh, path)
-    if path.suffix.lower() != ".vtk":
-        for block in blocks.all_blocks(mesh):
-            _check_names(block)
+    for block in blocks.all_blocks(mesh):
+        _check_names(block, legacy=path.suffix.lower() == ".vtk")
     if isinstance(mesh, pv.MultiBlock):
         folder = path.with_suffix("")
         make_folder("output", folder)
@@ -557,13 +597,22 @@ def _ended(path: Path) -> bool:
         return file.read().rstrip().endswith(b"</VTKFile>")
 
 
-def _check_names(mesh: pv.DataSet) -> None:
-    """Check that XML can hold the names of the arrays; VTK's writers do not escape them."""
+def _check_names(mesh: pv.DataSet, *, legacy: bool) -> None:
+    """Check that a file can hold the names of the arrays.
+
+    VTK's writers of XML do not escape them, and that of legacy files ends the process at braces.
+    """
+    wrong, signs = '[<&"\x00-\x1f]', "<, &, quotation marks and control characters"
+    other = "a .vtk file"
+    if legacy:
+        wrong, signs, other = "[{}]", "braces in a legacy file", "a file of XML, such as .vtp"
     for data in (mesh.point_data, mesh.cell_data, mesh.field_data):
         for name in data:
-            if re.search(r"[<&\"\x00-\x1f]", name):
-                expected = "array names without <, &, quotation marks and control characters"
-                remedy = "rename the array, or write a .vtk file"
+            if re.search(wrong, name):
+                expected, remedy = (
+                    f"array names without {signs}",
+                    f"rename the array, or write {other}",
+                )
                 raise FileError(_check.message("output", expected, repr(name), remedy))
 
 
@@ -610,6 +659,47 @@ def _check_draft(draft: Path, mesh: pv.DataSet, errors: list[str]) -> None:
         raise FileError(_check.message("output", "a file that can be written", reason))
 
 
+def _refuse_others(name: str, path: Path) -> None:
+    """Raise FileError where a path is no regular file, such as a folder or a pipe, but exists."""
+    if path.exists() and not path.is_file():
+        what = "folder" if path.is_dir() else "device or pipe"
+        raise FileError(_check.message(name, "a file", f"the {what} '{path}'"))
+
+
+def _sweep(place: Path) -> None:
+    """Remove the temporary folders of writers that were killed: those still at work lock theirs."""
+    try:
+        import fcntl
+    except ImportError:  # on Windows
+        return
+    for folder in place.glob(f"{DRAFTS}*"):
+        with contextlib.suppress(OSError):  # it is locked, another's, or gone
+            opened = os.open(folder, os.O_RDONLY)
+            try:
+                fcntl.flock(opened, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                if time.time() - os.fstat(opened).st_mtime > ABANDONED:
+                    shutil.rmtree(folder)
+            finally:
+                os.close(opened)
+
+
+@contextlib.contextmanager
+def _locked(folder: Path) -> Iterator[None]:
+    """Hold the lock of a temporary folder."""
+    try:
+        import fcntl
+    except ImportError:  # on Windows
+        yield
+        return
+    opened = os.open(folder, os.O_RDONLY)
+    try:
+        with contextlib.suppress(OSError):  # the file system has no locks
+            fcntl.flock(opened, fcntl.LOCK_SH)
+        yield
+    finally:
+        os.close(opened)
+
+
 def make_folder(name: str, path: Path, /) -> None:
     """Make a folder and those above it; ``name`` is the argument in the error message."""
     try:
@@ -644,18 +734,21 @@ def replace_file(
         If the file cannot be written.
     """
     path = _path("output", path)
+    _refuse_others("output", path)
     target = path.resolve()  # a symbolic link stays, and what it points to is replaced
+    _sweep(target.parent)
     # A parent knows of the folder before it is there and until it is gone.
-    folder = target.parent / f".vizlight-{uuid.uuid4().hex[:12]}"
+    folder = target.parent / f"{DRAFTS}{uuid.uuid4().hex[:12]}"
     try:
         with _supervise.stage(doing, path, temporary=str(folder)):
             folder.mkdir(mode=0o700)
             try:
-                draft = folder / f"{path.stem}{path.suffix.lower()}"
-                write(str(draft))
-                if target.exists():
-                    draft.chmod(target.stat().st_mode)
-                draft.replace(target)
+                with _locked(folder):
+                    draft = folder / f"{path.stem}{path.suffix.lower()}"
+                    write(str(draft))
+                    if target.exists():
+                        draft.chmod(target.stat().st_mode)
+                    draft.replace(target)
             finally:
                 shutil.rmtree(folder)
     except OSError as error:

@@ -164,11 +164,11 @@ def test_a_mesh_of_gmsh(tmp_path):
     assert mesh.cell_data.keys() == ["gmsh:geometrical"]
 
 
-def test_a_file_at_which_meshio_ends_the_process(tmp_path, capsys):
+def test_a_file_that_a_reader_of_meshio_refuses(tmp_path, capsys):
     pytest.importorskip("meshio")
     path = tmp_path / "a.off"
     path.write_text("OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n")
-    with pytest.raises(files.FileError, match=r"a\.off' \(meshio: Can only read triangular faces"):
+    with pytest.raises(files.FileError, match=r"a\.off.*ReadError: Can only read triangular"):
         vizlight.read(path)
     assert capsys.readouterr().out == ""
 

@@ -673,3 +673,11 @@ def test_the_share_of_the_places_within_the_error_is_the_one_stated(name, monkey
 
 def test_a_share_of_places_that_is_missed_is_the_one_stated():
     assert (1 - 8e-4) ** refining.CHECKS < 0.05
+
+
+def test_a_line_of_one_point_stays_one():
+    mesh = pv.PolyData(np.zeros((1, 3), np.float32))
+    mesh.lines = [1, 0]
+    with pytest.warns(UserWarning, match="1 of 1 points could not be lit"):
+        found = vizlight.refine(mesh, vizlight.Scene())
+    assert (found.n_points, found.lines.tolist()) == (1, [1, 0])

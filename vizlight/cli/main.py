@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import logging
 import shlex
 import sys
 import warnings
@@ -43,6 +44,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         Words after ``vizlight``. Default: the process's own.
     """
     words = sys.argv[1:] if arguments is None else list(arguments)
+    logging.disable()  # PyVista logs what VTK says, which the message of an error says too
     try:
         with warnings.catch_warnings():
             warnings.showwarning = _complain
@@ -59,6 +61,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _fail("not enough memory")
     except KeyboardInterrupt:
         return _fail("interrupted")
+    finally:
+        logging.disable(logging.NOTSET)
     return result if isinstance(result, int) else OK
 
 

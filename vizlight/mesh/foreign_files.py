@@ -16,7 +16,7 @@ from vizlight import _check
 from vizlight.mesh import brains, georeference, polylines, rasters, steps
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -78,11 +78,11 @@ def read(path: Path, time: object = None) -> pv.DataSet | None:
         return rasters.read(path)
     if suffix == ".dem":
         _refuse_narrow(path)
-    if suffix == ".msh" and missing(path) == "":
-        return _by_meshio(path)
     if suffix == ".inp" and _begins(path, b"*"):
         # PyVista takes it for the format of AVS.
-        return _by_meshio(path, "abaqus")
+        return _of_meshio(path, ("abaqus",))
+    if PACKAGES.get(suffix, ("",))[0] == "meshio" and missing(path) == "":
+        return _of_meshio(path)
     if suffix == ".pvtp":
         reader = vtkXMLPPolyDataReader()
         reader.SetFileName(str(path))
@@ -96,12 +96,23 @@ def _begins(path: Path, start: bytes) -> bool:
         return file.read(len(start)) == start
 
 
-def _by_meshio(path: Path, kind: str | None = None) -> pv.DataSet:
-    """Return a mesh of gmsh or Abaqus. Names of parts are left out: their numbers are cell data."""
+def _of_meshio(path: Path, kinds: Sequence[str] = ()) -> pv.DataSet:
+    """Return a mesh by the first reader of meshio that takes a file.
+
+    ``meshio.read`` prints what its readers say, and ends the process. Names of parts are left out:
+    those of gmsh are not of the form that PyVista takes, and their numbers are cell data.
+    """
     import meshio
 
-    found = meshio.read(path, file_format=kind)
-    # Those that gmsh writes are not of the form that PyVista takes.
+    kinds = kinds or meshio.extension_to_filetypes[path.suffix.lower()]
+    for kind in kinds:
+        try:
+            found = getattr(meshio, kind).read(path)
+        except meshio.ReadError:
+            if kind == kinds[-1]:
+                raise
+        else:
+            break
     found.cell_sets = {}
     return pv.from_meshio(found)
 

@@ -293,6 +293,10 @@ def rebuilt(
 
 def _split_lines(lines: vtkCellArray, parts: Cells, shares: scipy.sparse.csr_array) -> pv.CellArray:
     """Return polylines with the new points of their segments."""
+    if not len(parts.corners):  # lines of one point
+        own = pv.CellArray()
+        own.DeepCopy(lines)
+        return own
     ids, offsets = connectivity(lines)
     # The segments of a line stand one after the other; its last point follows.
     along = shares[parts.corners[:, 0], parts.parents[parts.parent, 1]]

@@ -65,8 +65,6 @@ class Lit:
     sharp : float
         Share of edges that are creases, across which light was averaged, as the mean over the
         pieces by their cells; ``feature_angle=30`` splits the points there.
-    seconds : dict of str to float
-        Processor seconds of all pieces by stage: "read", "contour", "light" and "write".
     """
 
     path: Path
@@ -78,7 +76,6 @@ class Lit:
     scene: Scene = field(repr=False)
     level: float | None
     empty: int
-    seconds: dict[str, float] = field(repr=False)
     sharp: float = 0.0
 
 
@@ -331,6 +328,5 @@ def _result(path: Path, folder: Path, done: Sequence[Done], job: Job) -> Lit:
         scene=job.scene,
         level=job.level,
         empty=len(done) - len(full),
-        seconds={name: sum(one.seconds[name] for one in done) for name in done[0].seconds},
         sharp=sharp,
     )

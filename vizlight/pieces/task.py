@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
-import time
 import warnings
 from dataclasses import dataclass, field
 from functools import partial
@@ -94,7 +92,6 @@ class Done:
     invalid: int = 0
     sharp: float | None = None
     notes: list[str] = field(default_factory=list)
-    seconds: dict[str, float] = field(default_factory=dict)
 
 
 def survey(piece: Piece, contour: str | None) -> Survey:
@@ -166,20 +163,16 @@ def light(piece: Piece, job: Job, target: Path) -> Done:
     PieceError
         If the piece cannot be read, lit or written.
     """
-    laps: dict[str, float] = {"": time.process_time()}
     mesh = read(piece, job.ghost)
-    laps["read"] = time.process_time()
     try:
         with warnings.catch_warnings(record=True) as caught, _compiled.setting(job.compiled):
             warnings.simplefilter("always", UserWarning)
             if job.contour is not None:
                 mesh = isosurface(mesh, job)
-            laps["contour"] = time.process_time()
             lit, sharp = _lit(mesh, piece, job)
         del mesh
         done = _described(lit, job)
         done.sharp = sharp
-        laps["light"] = time.process_time()
         said = [str(one.message) for one in caught if issubclass(one.category, UserWarning)]
         # Points that could not be lit are counted without ghost cells, creases over all pieces.
         known = ("could not be lit", *(["edges are sharper"] if sharp is not None else []))
@@ -191,10 +184,8 @@ def light(piece: Piece, job: Job, target: Path) -> Done:
                 raise ValueError(_check.message("out", expected, f"*{INDEX[job.suffix]}"))
             path = files.write_mesh(lit, target.with_suffix(suffix))
             done.file = path.name
-        laps["write"] = time.process_time()
     except (OSError, ValueError, TypeError) as error:
         raise PieceError(f"piece {piece.name}: {error}") from error
-    done.seconds = {name: laps[name] - laps[before] for before, name in itertools.pairwise(laps)}
     return done
 
 

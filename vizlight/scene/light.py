@@ -230,7 +230,8 @@ def as_lights(lights: object) -> tuple[Light, ...]:
     TypeError
         If the argument is neither a light nor a sequence of lights.
     """
-    if isinstance(lights, str) or not isinstance(lights, Light | Iterable):
+    several = isinstance(lights, Iterable) and getattr(lights, "ndim", 1) > 0
+    if isinstance(lights, str) or not (several or isinstance(lights, Light)):
         raise TypeError(
             _check.message(
                 "lights",
@@ -238,7 +239,7 @@ def as_lights(lights: object) -> tuple[Light, ...]:
                 _check.describe(lights),
             )
         )
-    several = (lights,) if isinstance(lights, Light) else tuple(lights)
-    for light in several:
+    found: tuple[Light, ...] = (lights,) if isinstance(lights, Light) else tuple(lights)  # type: ignore[arg-type]
+    for light in found:
         _check.instance("lights", light, Light, remedy="Light(direction=(1, 1, 1)) makes one")
-    return several
+    return found

@@ -132,7 +132,8 @@ def all_lights(lights: Lights, view: AnyView) -> tuple[Light, ...]:
         return default_lights(as_view(view))
     if _is_vtk(lights):
         return _fixed(lights, view)
-    if isinstance(lights, Light | str) or not isinstance(lights, Iterable):
+    flat = getattr(lights, "ndim", 1) == 0
+    if flat or isinstance(lights, Light | str) or not isinstance(lights, Iterable):
         return as_lights(lights)
     found: list[Light] = []
     for light in lights:
