@@ -11,7 +11,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.filters import relight
-from vizlight.filters.tint import values_of
+from vizlight.filters.tint import are_colors, values_of
 from vizlight.mesh import hull, point_arrays
 from vizlight.scene import Light, Material, Scene, View
 from vizlight.scene.light import default_lights
@@ -90,7 +90,7 @@ class Live:
         self.scalars: str | None = None
         self.given: str | None = None
         self._component: int | None = None
-        self._of_cells = False
+        self._of_cells = self._averaged = False
         self._changed = source.mesh.GetMTime()
         self._state: tuple[object, ...] = ()
         self._placed: tuple[tuple[float, ...], ShadingInputs] | None = None
@@ -125,23 +125,42 @@ class Live:
     def color_by(self, scalars: str, component: int | None, *, at_points: bool) -> None:
         """Take the colours from an array of the mesh.
 
+        Colours of cells are averaged where the light is at the points, with a warning.
+
         Raises
         ------
         TypeError, ValueError
-            If there is no such array, or it is a cell array and the light is at the points.
+            If there is no such array.
         """
         self.given, self._component = scalars, component
         self.scalars = scalars
         mesh = self.source.mesh
         self._of_cells = scalars in mesh.cell_data and scalars not in mesh.point_data
-        if at_points or not self._of_cells:
-            self._color(scalars, values_of(mesh, scalars, component))
+        self._averaged = self._of_cells and at_points
+        if self._averaged:
+            _check.warn(f"the colours of {scalars!r} are averaged from cells to points")
+        self._color(self._values())
 
-    def _color(self, given: str, values: NDArray[np.generic]) -> None:
+    def _values(self) -> NDArray[np.generic] | None:
+        """Return the values that are coloured; None for an array of the mesh as it is."""
+        if self.given is None or (self._of_cells and not self._averaged):
+            return None
+        mesh = self.source.mesh
+        if self._averaged:
+            mesh = _at_points(mesh, self.given)
+        values = values_of(mesh, self.given, self._component)
+        return values if self._averaged or mesh.point_data[self.given].ndim > 1 else None
+
+    def _color(self, values: NDArray[np.generic] | None) -> None:
         """Attach the values that are coloured, unless they are an array of the mesh."""
-        if np.ndim(self.source.mesh.point_data[given]) > 1:
+        if values is not None:
             self.scalars = VALUES
             self.attach(VALUES, values)
+
+    def has_colors(self) -> bool:
+        """Return whether the array that is drawn holds colours, not values."""
+        data = self.drawn.point_data if self.scalars in self.drawn.point_data else self.drawn.cell_data
+        return self._component is None and are_colors(np.asarray(data[self.scalars or ""]))
 
     def start(self, renderer: vtkRenderer, actor: vtkActor) -> None:
         """Light the mesh for the first time.
@@ -171,7 +190,8 @@ class Live:
 
     def lacks_values(self) -> bool:
         """Return whether any of the values that are coloured is NaN."""
-        data = self.source.mesh.cell_data if self._of_cells else self.drawn.point_data
+        at_cells = self._of_cells and not self._averaged
+        data = self.source.mesh.cell_data if at_cells else self.drawn.point_data
         values = np.asarray(data[self.scalars or ""])
         return bool(values.dtype.kind == "f" and np.isnan(values).any())
 
@@ -228,7 +248,7 @@ class Live:
             return
         self._changed = mesh.GetMTime()
         # What cannot be lit or coloured any more stays as it is drawn.
-        source, given, values = self.source, self.given, None
+        source, values = self.source, self._values()
         if named is not None:
             scene = self.scene_of(renderer, actor)
             if self.scene is None:
@@ -236,12 +256,9 @@ class Live:
                 fixed = [light.seen_from(scene.view) for light in scene.lights]
                 scene = scene.replace(lights=fixed)
             source = relight.read(mesh, "", scene, named)
-        if given is not None and not self._of_cells:
-            values = values_of(mesh, given, self._component)
         self.source, self._placed = source, None
         self._redraw()
-        if given is not None and values is not None:
-            self._color(given, values)
+        self._color(values)
         if self.painter is not None:
             self.painter.attach(self)
 
@@ -289,6 +306,18 @@ def scene_of(renderer: vtkRenderer, actor: vtkActor, model: str) -> Scene:
     prop = actor.GetProperty()
     material = Material.from_property(prop, lights=lights, view=view, model=kind)
     return Scene(lights=lights, material=material, view=view)
+
+
+def _at_points(mesh: pv.DataSet, name: str) -> pv.DataSet:
+    """Return points with the means of a cell array over the cells that meet there."""
+    bare = mesh.copy(deep=False)
+    bare.clear_data()
+    values = np.asarray(mesh.cell_data[name])
+    bare.cell_data[name] = values.astype(np.float64)
+    points = bare.cell_data_to_point_data()
+    if values.dtype == np.uint8:
+        points.point_data[name] = np.rint(points.point_data[name]).astype(np.uint8)
+    return points
 
 
 def items(collection: vtkCollection) -> Iterator[Any]:

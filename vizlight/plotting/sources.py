@@ -20,18 +20,22 @@ from vizlight.shading.options import LightOptions
 if TYPE_CHECKING:
     from vizlight.filters.relight import Source
     from vizlight.scene import Scene
+    from vizlight.shading.options import FeatureAngle
 
 
 def sources_of(
-    mesh: pv.DataSet | pv.MultiBlock, scene: Scene | None, options: dict[str, Any]
+    mesh: pv.DataSet | pv.MultiBlock,
+    scene: Scene | None,
+    options: dict[str, Any],
+    angle: FeatureAngle = "auto",
 ) -> tuple[list[Source], Scene | None]:
     """Return what is lit: by the record of the mesh, or by options.
 
-    Without a record surfaces are split at their creases, unless ``feature_angle`` is None.
+    Without a record surfaces are split at edges of an angle, unless ``feature_angle`` is given.
     """
     if not options and relight.is_lit(mesh):
         return relight.from_record(mesh, scene)
-    asked = LightOptions(**({"feature_angle": "auto"} | options))
+    asked = LightOptions(**({"feature_angle": angle} | options))
     mesh = blocks.like(mesh, (_split(block, asked) for block in blocks.all_blocks(mesh)))
     asked = dataclasses.replace(asked, feature_angle=None)
     spaces = {
@@ -51,7 +55,13 @@ def _split(mesh: pv.DataSet, asked: LightOptions) -> pv.DataSet:
     """Return a surface whose points are split at sharp edges, the mesh itself if there are none."""
     if not (mesh.n_points and mesh.n_cells and isinstance(asked.tangents, str | None)):
         return mesh
-    if asked.positions is not None or not (uses_normals(mesh, asked) and are_computed(mesh, asked)):
+    if asked.positions is not None or not uses_normals(mesh, asked):
+        return mesh
+    if asked.feature_angle == 0 and asked.normals is None:
+        # Flat faces have normals of their own, whatever those of the points are.
+        mesh = mesh.copy(deep=False)
+        mesh.point_data.active_normals_name = None
+    if not are_computed(mesh, asked):
         return mesh
     surface = mesh
     if isinstance(mesh, pv.UnstructuredGrid):
