@@ -5,18 +5,19 @@ from __future__ import annotations
 import weakref
 from typing import TYPE_CHECKING, Any, get_args
 
+import numpy as np
 import pyvista as pv
 
 from vizlight import _check
 from vizlight.filters import relight
 from vizlight.filters.key import key, question_of
-from vizlight.filters.tint import RGB, default_map, default_nan_color
+from vizlight.filters.tint import RGB, are_colors, default_map, default_nan_color
 from vizlight.mesh import blocks, records
+from vizlight.plotting import keywords
 from vizlight.plotting.corner import PLACES, CornerKey, ink_on
 from vizlight.plotting.fragments import Fragments, unfit
 from vizlight.plotting.html import write_page
-from vizlight.plotting import keywords
-from vizlight.plotting.live import LightAt, Live, colorless, items
+from vizlight.plotting.live import LightAt, Live, colorless, has_pass, is_copy, items
 from vizlight.plotting.notebook import guard, guard_exports
 from vizlight.plotting.page import Shown
 from vizlight.plotting.points import Points
@@ -30,11 +31,10 @@ from vizlight.shading.results import DEFAULT_NAME, unlit
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from numpy.typing import ArrayLike
     from vtkmodules.vtkCommonCore import vtkObject
     from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
-
-    from numpy.typing import ArrayLike
 
     from vizlight._types import ColorLike
     from vizlight.filters.key import Question
@@ -43,6 +43,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Component", "add_recorded"]
 
+#: Passes of VTK that need its own light or normals, and what they draw.
+UNLIT_PASSES = {"vtkShadowMapPass": "the shadows", "vtkSSAOPass": "the ambient occlusions (SSAO)"}
 #: Coefficients ka, kd and ks of an actor that PyVista was not told others for.
 UNTOUCHED = (0.0, 1.0, 0.0)
 
@@ -61,6 +63,8 @@ class Component:
         self._plotter = weakref.ref(plotter)
         self._holders: weakref.WeakValueDictionary[str, _Holder] = weakref.WeakValueDictionary()
         self._observed: list[tuple[vtkRenderer, int]] = []
+        #: What was said to be lost.
+        self._lost: set[str] = set()
 
     def add_mesh(
         self,
@@ -107,9 +111,9 @@ class Component:
             later changes of the mesh; and keywords of ``pyvista.Plotter.add_mesh``, such
             as ``clim``, ``name``, ``opacity``, ``line_width``, ``pickable``, and ``cmap``, which is
             ``vizlight.maps.even`` unless the theme's was changed. ``smooth_shading=False`` splits
-            the points at every edge, so that faces are flat, and ``split_sharp_edges`` at those of
-            the theme's angle. PyVista draws the mesh with its own light if ``lighting=False``,
-            ``pbr=True`` or ``style="points_gaussian"``, and points without normals or tangents. With
+            the points at every edge, so that faces are flat, ``split_sharp_edges`` at those of the
+            theme's angle. PyVista draws the mesh with its own light if ``lighting=False``,
+            ``pbr=True`` or ``style="points_gaussian"``, and points that have no vectors. With
             ``render_lines_as_tubes=True`` lines wider than a pixel have, where light is in
             fragments, the light of the cylinder that they stand for across their width: its mean is
             the light of ``model="cylinder"``.
@@ -159,10 +163,12 @@ class Component:
         if why is not None:
             if why:
                 _check.warn(f"the mesh has PyVista's light in place of vizlight's: {why}")
-            unlit: pv.Actor = plotter.add_mesh(mesh, scalars=scalars, **drawing)
+            given: Any = scalars
+            unlit: pv.Actor = plotter.add_mesh(mesh, scalars=given, **drawing)
             return unlit
         if scalars is None and scene is None and not (own or relight.is_lit(mesh)):
-            scalars = None if drawing.get("color") else keywords.active_scalars(mesh)
+            others = any(drawing.get(name) for name in ("color", "multi_colors", "texture"))
+            scalars = None if others else keywords.active_scalars(mesh)
         mesh, chosen = keywords.colored(mesh, scalars, drawing)
         angle = keywords.shading_of(drawing)
         several, named = isinstance(mesh, pv.MultiBlock), list(blocks.named_blocks(mesh))
@@ -181,11 +187,10 @@ class Component:
             keywords_of = drawing | next(colors)
             if several and drawing.get("name") is not None:
                 keywords_of["name"] = f"{drawing['name']}-{number}"
-            here = chosen
-            if several and chosen not in block.point_data and chosen not in block.cell_data:
-                here = None
+            lacks = several and chosen not in (*block.point_data, *block.cell_data)
+            here = None if lacks else chosen
             if is_cloud:
-                actors.append(plotter.add_mesh(block, scalars=here, **keywords_of))
+                actors.append(_add_cloud(plotter, block, here, keywords_of))
                 continue
             source = next(lit)
             if not block.n_points:
@@ -499,11 +504,20 @@ class Component:
                 self._observed.append((renderer, renderer.AddObserver("StartEvent", update)))
 
     def _update(self, renderer: vtkRenderer) -> None:
-        """Light what a renderer is about to draw."""
+        """Light what a renderer is about to draw, and say once what does not show."""
+        lost = set()
         for actor in items(renderer.GetActors()):
             live = self._live_of(actor)
             if live is not None:
                 live.update(renderer, actor)
+            elif is_copy(actor):
+                lost.add("a copy of an actor has light that does not follow; add its mesh instead")
+        if self.has_live_light and renderer.GetPass() is not None:
+            passes = [name for kind, name in UNLIT_PASSES.items() if has_pass(renderer, kind)]
+            lost |= {f"{name} of PyVista do not show on meshes with live light" for name in passes}
+        for text in sorted(lost - self._lost):
+            _check.warn(text)
+        self._lost |= lost
 
     def _stop(self) -> None:
         """Remove the observers of the renderers."""
@@ -542,6 +556,21 @@ class _Holder:
 
 def _address(thing: vtkObject) -> str:
     return str(thing.GetAddressAsString(""))
+
+
+def _add_cloud(
+    plotter: pv.BasePlotter, mesh: pv.DataSet, scalars: str | None, drawing: dict[str, Any]
+) -> pv.Actor:
+    """Add points that have nothing for light to fall on, in the colours that a lit mesh has."""
+    if scalars is None:
+        drawing = {"color": True} | drawing
+    else:
+        own = {"cmap": default_map(drawing.get("cmap"))}
+        own["nan_color"] = default_nan_color(drawing.get("nan_color"))
+        values = mesh.point_data if scalars in mesh.point_data else mesh.cell_data
+        drawing = drawing | ({"rgb": True} if are_colors(np.asarray(values[scalars])) else own)
+    actor: pv.Actor = plotter.add_mesh(mesh, scalars=scalars, **drawing)
+    return actor
 
 
 def _stroke(source: Source, drawing: dict[str, Any]) -> Stroke:

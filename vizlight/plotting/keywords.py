@@ -95,16 +95,18 @@ def block_colors(drawing: dict[str, Any]) -> Iterator[dict[str, Any]]:
     """Take ``multi_colors`` from keywords, and yield those of each block after another."""
     if not drawing.pop("multi_colors", False):
         return itertools.repeat({})
-    return ({"color": row["color"]} for row in itertools.cycle(get_cycler("default")))
+    return ({"color": row["color"]} for row in itertools.cycle(get_cycler("default")))  # type: ignore[no-untyped-call]
 
 
 def active_scalars(mesh: pv.DataSet | pv.MultiBlock) -> str | None:
     """Return the active scalars that all blocks share, unless a filter of light made them."""
     names = set()
     for block in blocks.all_blocks(mesh):
-        kind, name = block.active_scalars_info
-        if name is None or not block.n_points:
+        if not block.n_points:
             continue
+        kind, name = block.active_scalars_info
+        if name is None:
+            return None
         data = block.point_data if kind == pv.FieldAssociation.POINT else block.cell_data
         if name in records.all_made(block) or np.asarray(data[name]).dtype.kind not in "iubf":
             return None
@@ -113,7 +115,7 @@ def active_scalars(mesh: pv.DataSet | pv.MultiBlock) -> str | None:
 
 
 def colored(
-    mesh: pv.DataSet | pv.MultiBlock, scalars: object, drawing: dict[str, Any]
+    mesh: pv.DataSet | pv.MultiBlock, scalars: str | ArrayLike | None, drawing: dict[str, Any]
 ) -> tuple[pv.DataSet | pv.MultiBlock, str | None]:
     """Return a mesh whose colours are an array by name, and the name.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import warnings
-from typing import TYPE_CHECKING, Any, Literal, Protocol
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
 
 import numpy as np
 import pyvista as pv
@@ -24,9 +24,10 @@ if TYPE_CHECKING:
     from vtkmodules.vtkCommonCore import vtkCollection
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
-    from vizlight._types import Array, Indices, Vector
+    from vizlight._types import Array, Bools, Indices, Vector
     from vizlight.shading.inputs import ShadingInputs
 
+Number = TypeVar("Number", bound=np.generic)
 #: Place where the light is computed.
 LightAt = Literal["auto", "points", "fragments"]
 #: Names of the arrays that the drawn copy of a mesh has beside the mesh's own.
@@ -114,13 +115,18 @@ class Live:
             mesh, self._shown = hull.outer_surface(mesh)
         self.drawn.shallow_copy(mesh)
 
+    def picked(self, rows: NDArray[Number]) -> NDArray[Number]:
+        """Return the rows of the points that are drawn, from one for each point of the mesh."""
+        if self._shown is None:
+            return rows
+        # A control point of a curved cell, which has no index, is not lit.
+        missing, rows = self._shown < 0, rows[self._shown]
+        rows[missing] = 0
+        return rows
+
     def attach(self, name: str, rows: NDArray[np.generic]) -> None:
         """Attach one row for each point of the mesh to what is drawn."""
-        if self._shown is not None:
-            # A control point of a curved cell, which has no index, is not lit.
-            missing, rows = self._shown < 0, rows[self._shown]
-            rows[missing] = 0
-        point_arrays.attach_rows(self.drawn, name, rows)
+        point_arrays.attach_rows(self.drawn, name, self.picked(rows))
 
     def color_by(self, scalars: str, component: int | None, *, at_points: bool) -> None:
         """Take the colours from an array of the mesh.
@@ -159,8 +165,9 @@ class Live:
 
     def has_colors(self) -> bool:
         """Return whether the array that is drawn holds colours, not values."""
-        data = self.drawn.point_data if self.scalars in self.drawn.point_data else self.drawn.cell_data
-        return self._component is None and are_colors(np.asarray(data[self.scalars or ""]))
+        name, points = self.scalars or "", self.drawn.point_data
+        values = points[name] if name in points else self.drawn.cell_data[name]
+        return self._component is None and are_colors(np.asarray(values))
 
     def start(self, renderer: vtkRenderer, actor: vtkActor) -> None:
         """Light the mesh for the first time.
@@ -180,12 +187,15 @@ class Live:
 
     def invalid(self) -> int:
         """Return the number of points whose vectors have no direction."""
-        good = np.ones(self.source.inputs.rows, dtype=np.bool_)
+        # Points inside a volume, which are not drawn, have no normal.
+        seen = None if self._shown is None else self._shown[self._shown >= 0]
+        good: Bools = np.ones(1, dtype=np.bool_)
         for rows in (self.source.inputs.tangents, self.source.inputs.normals):
-            if rows is not None and rows.shape[0] == len(good):
-                vectors = np.asarray(rows[:]).reshape(len(good), -1)
-                good &= np.any(vectors, axis=1) & np.all(np.isfinite(vectors), axis=1)
-        unlit = int(np.count_nonzero(~good)) - self.source.inside
+            if rows is not None and rows.shape[0] == self.source.inputs.rows:
+                vectors = np.asarray(rows[:] if seen is None else rows[:][seen])
+                vectors = vectors.reshape(len(vectors), -1)
+                good = good & np.any(vectors, axis=1) & np.all(np.isfinite(vectors), axis=1)
+        unlit = int(np.count_nonzero(~good)) - (self.source.inside if seen is None else 0)
         return max(unlit, 0) * self.source.inputs.repeat
 
     def lacks_values(self) -> bool:
@@ -314,7 +324,7 @@ def _at_points(mesh: pv.DataSet, name: str) -> pv.DataSet:
     bare.clear_data()
     values = np.asarray(mesh.cell_data[name])
     bare.cell_data[name] = values.astype(np.float64)
-    points = bare.cell_data_to_point_data()
+    points: pv.DataSet = bare.cell_data_to_point_data()
     if values.dtype == np.uint8:
         points.point_data[name] = np.rint(points.point_data[name]).astype(np.uint8)
     return points
@@ -324,6 +334,31 @@ def items(collection: vtkCollection) -> Iterator[Any]:
     """Yield what a collection of VTK holds."""
     for i in range(collection.GetNumberOfItems()):
         yield collection.GetItemAsObject(i)
+
+
+def is_copy(actor: vtkActor) -> bool:
+    """Return whether an actor draws what was made for a live light."""
+    mapper: Any = actor.GetMapper()
+    data = None if mapper is None else mapper.GetInputAsDataSet()
+    own = (NORMALS, TANGENTS, COLORS)
+    return data is not None and any(data.GetPointData().HasArray(name) for name in own)
+
+
+def has_pass(renderer: vtkRenderer, kind: str) -> bool:
+    """Return whether a renderer draws by a pass of a class of VTK, at any depth."""
+    waiting: list[Any] = [renderer.GetPass()]
+    while waiting:
+        step = waiting.pop()
+        if step is None:
+            continue
+        if step.IsA(kind):
+            return True
+        if step.IsA("vtkSequencePass"):
+            waiting += items(step.GetPasses())
+        for name in ("GetDelegatePass", "GetSequence"):
+            if hasattr(step, name):
+                waiting.append(getattr(step, name)())
+    return False
 
 
 def lifted(scene: Scene, n: int) -> Scene:
