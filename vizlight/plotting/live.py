@@ -339,9 +339,10 @@ def items(collection: vtkCollection) -> Iterator[Any]:
 def is_copy(actor: vtkActor) -> bool:
     """Return whether an actor draws what was made for a live light."""
     mapper: Any = actor.GetMapper()
-    data = None if mapper is None else mapper.GetInputAsDataSet()
+    data = None if mapper is None else mapper.GetInputDataObject(0, 0)
     own = (NORMALS, TANGENTS, COLORS)
-    return data is not None and any(data.GetPointData().HasArray(name) for name in own)
+    known = hasattr(data, "GetPointData")
+    return known and any(data.GetPointData().HasArray(name) for name in own)
 
 
 def has_pass(renderer: vtkRenderer, kind: str) -> bool:
