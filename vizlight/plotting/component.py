@@ -328,26 +328,44 @@ class Component:
             If the light of a mesh does not follow the eye, or what is drawn beside the meshes is
             left out.
         """
-        plotter = self._open_plotter()
-        shown: list[Shown] = []
+        plotter, shown = self._open_plotter(), self.shown()
+        if not plotter.camera_set:
+            plotter.renderer.view_isometric(render=False)
+        return write_page(path, shown, plotter, title=title, panel=panel, key=key)
+
+    def shown(self) -> list[Shown]:
+        """Return the visible meshes with live light, for a page.
+
+        Returns
+        -------
+        list of Shown
+
+        Raises
+        ------
+        ValueError
+            If there is none.
+
+        Warns
+        -----
+        UserWarning
+            If there are actors without live light, which a page leaves out.
+        """
+        found: list[Shown] = []
         others = 0
-        for actor in items(plotter.renderer.GetActors()):
+        for actor in items(self._open_plotter().renderer.GetActors()):
             live = self._live_of(actor)
             if not actor.GetVisibility():
                 continue
             if live is None or live.painter is None:
                 others += 1
             else:
-                shown.append(Shown(live.name or f"mesh {len(shown) + 1}", live, actor))
-        if not shown:
+                found.append(Shown(live.name or f"mesh {len(found) + 1}", live, actor))
+        if not found:
             remedy = "add a mesh by plotter.vizlight.add_mesh"
             raise ValueError(_check.message("plotter", "a mesh with live light", "none", remedy))
-        if not plotter.camera_set:
-            plotter.renderer.view_isometric(render=False)
-        written = write_page(path, shown, plotter, title=title, panel=panel, key=key)
         if others:
             _check.warn(f"{others} actors without light of vizlight are not in the page")
-        return written
+        return found
 
     def explain(self, actor: vtkActor, /) -> str:
         """Return where the light of an actor is computed and why, and what of it.

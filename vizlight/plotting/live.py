@@ -341,8 +341,8 @@ def is_copy(actor: vtkActor) -> bool:
     mapper: Any = actor.GetMapper()
     data = None if mapper is None else mapper.GetInputDataObject(0, 0)
     own = (NORMALS, TANGENTS, COLORS)
-    known = hasattr(data, "GetPointData")
-    return known and any(data.GetPointData().HasArray(name) for name in own)
+    rows = data.GetPointData() if hasattr(data, "GetPointData") else None
+    return rows is not None and any(rows.HasArray(name) for name in own)
 
 
 def has_pass(renderer: vtkRenderer, kind: str) -> bool:
