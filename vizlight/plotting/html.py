@@ -168,8 +168,8 @@ def live_html(
             owners += [number if len(steps) > 1 else None] * count
         every = [block for step in steps.values() for block in all_blocks(step)]
         plotter.background_color = chosen or backdrop(every)
-        first = next(iter(steps.values()))
-        placed = _camera(first, scene) if camera is None else camera.copy()  # type: ignore[no-untyped-call]
+        whole = pv.MultiBlock([*steps.values()]) if len(steps) > 1 else next(iter(steps.values()))
+        placed = _camera(whole, scene) if camera is None else camera.copy()  # type: ignore[no-untyped-call]
         if placed is None:
             plotter.renderer.view_isometric(render=False)
         else:

@@ -339,10 +339,11 @@ def items(collection: vtkCollection) -> Iterator[Any]:
 def is_copy(actor: vtkActor) -> bool:
     """Return whether an actor draws what was made for a live light."""
     mapper: Any = actor.GetMapper()
-    data = None if mapper is None else mapper.GetInputDataObject(0, 0)
+    data: Any = None if mapper is None else mapper.GetInputDataObject(0, 0)
     own = (NORMALS, TANGENTS, COLORS)
-    rows = data.GetPointData() if hasattr(data, "GetPointData") else None
-    return rows is not None and any(rows.HasArray(name) for name in own)
+    if not hasattr(data, "GetPointData"):
+        return False
+    return any(data.GetPointData().HasArray(name) for name in own)
 
 
 def has_pass(renderer: vtkRenderer, kind: str) -> bool:

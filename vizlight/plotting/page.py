@@ -254,7 +254,7 @@ class Page:
             if text not in self._texts:
                 self._texts.append(text)
             found[key] = self._texts.index(text)
-        plan = exact_plan(scene, live.source)
+        plan = exact_plan(scene.replace(depth_cue=None), live.source)
         return found, constants, plan
 
     def _remember(self, live: Live) -> None:
@@ -384,7 +384,7 @@ def _words(renderer: vtkRenderer) -> list[list[str]]:
     corners = ("bottom left", "bottom right", "top left", "top right")
     return [
         [corner, actor.GetText(i)]
-        for actor in items(renderer.GetActors2D())
+        for actor in items(renderer.GetViewProps())
         if actor.IsA("vtkCornerAnnotation")
         for i, corner in enumerate(corners)
         if actor.GetText(i)

@@ -42,7 +42,8 @@ function pythonOf(app) {
   const words = ['ambient', 'diffuse', 'specular', 'shininess'].map((name) => `${name}=${short(material[name], 6)}`);
   if (!isWhite(app.leader.given.color)) words.push(`color=${row(app.leader.given.color, 6)}`);
   const ends = cue && ['front', 'back'].filter((name) => cue[name] !== null).map((name) => `${name}=${short(cue[name], 9)}, `).join('');
-  const file = recipe.file ? `vizlight.read(${quoted(recipe.file)})` : '...  # the mesh of the page';
+  const shaped = (recipe.command || []).some((w) => /^--(clip|threshold|contour|level|slice|warp)/.test(w));
+  const file = recipe.file && !shaped && !frames ? `vizlight.read(${quoted(recipe.file)})` : '...  # the mesh of the page';
   const level = frames && short(frames.values[state.frame], 9);
   const lines = ['import pyvista as pv', 'import vizlight', `from vizlight import ${cue ? 'DepthCue, ' : ''}Light, Material, Scene`, '', `mesh = ${file}`];
   if (frames) lines.push(`# ${frames.label.replace(/\s+/g, ' ')}: ${level}`);
@@ -66,6 +67,8 @@ function pythonOf(app) {
   return `${lines.join('\n')}\n`;
 }
 
+const ANGLE = 30; // the angle of view of the command, in degrees
+
 // A word of a shell, as it is or in quotes that nothing ends.
 const word = (text) => (/^[\w./:,+=-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`);
 
@@ -83,11 +86,12 @@ function commandOf(app) {
     ...(cue ? { depth_cue: { front: cue.front, back: cue.back, front_scale: cue.scales[0], back_scale: cue.scales[1] } } : {}),
   };
   const { cut } = app;
+  const half = Math.tan((ANGLE * Math.PI) / 360);
   const words = [
     'vizlight', 'light', recipe.file.startsWith('-') ? `./${recipe.file}` : recipe.file, ...recipe.command,
     '--scene', `${stem}.scene.json`, '--view', `${stem}.view.json`,
-    ...(camera.parallel ? ['--parallel'] : ['--view-angle', short(camera.angle, 9)]),
-    ...(cut ? ['--cut', `${AXES[cut.axis]}${cut.sign < 0 ? '<' : '>'}${short(cut.place + app.page.origin[cut.axis], 9)}`] : []),
+    ...(camera.parallel ? ['--parallel', '--zoom', short(norm(minus(camera.position, camera.focal)) * half / camera.scale, 9)] : ['--zoom', short(ANGLE / camera.angle, 9)]),
+    ...(cut ? [`--clip=${cut.sign < 0 ? '' : '-'}${AXES[cut.axis]}:${short(-cut.sign * (cut.place + app.page.origin[cut.axis]), 9)}`] : []),
     ...(app.page.arrays[state.color] ? ['--scalars', state.color, '--cmap', state.cmap] : []),
     '--background', app.background, '--size', `${canvas.clientWidth}x${canvas.clientHeight}`, '-o', `${stem}.png`,
   ];
