@@ -99,7 +99,11 @@ def hostile(text, path):
 
 
 @needs_browser
-@pytest.mark.parametrize("number", range(len(PAYLOADS)))
+@pytest.mark.parametrize(
+    "number",
+    # A page takes two seconds: the others are those of slow tests.
+    [pytest.param(i, marks=[] if i % 6 == 0 else pytest.mark.slow) for i in range(len(PAYLOADS))],
+)
 def test_no_text_is_read_as_anything_else(number, browser, tmp_path):
     text = PAYLOADS[number]
     path, words = hostile(text, tmp_path / "page.html")

@@ -309,12 +309,13 @@ def _bare(text: str) -> str:
 
 
 def _picture(plotter: pv.BasePlotter) -> str:
-    """Return an element with the picture of a plotter, empty where nothing draws."""
+    """Return an element with the picture of a plotter, empty where nothing draws yet."""
     try:
         backends.choose_backend()
-    except backends.BackendError:
+        seen = plotter.screenshot(None, return_img=True)
+    except (backends.BackendError, AttributeError):
+        # A plotter with a window on a screen has no picture before it is shown.
         return ""
-    seen = plotter.screenshot(None, return_img=True)
     file = io.BytesIO()
     Image.fromarray(np.asarray(seen)[..., :3]).convert("RGB").save(file, "JPEG", quality=70)
     data = base64.b64encode(file.getvalue()).decode()

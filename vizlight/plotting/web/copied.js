@@ -1,7 +1,10 @@
 // The picture as a program in Python and as a command of a shell.
 
-// A string of JSON is one of Python, except for what ends a line elsewhere.
-const quoted = (text) => JSON.stringify(text).replace(/[\u007f-\uffff]/g, (c) => `\\u${c.charCodeAt(0).toString(16).padStart(4, '0')}`);
+// A string of JSON is one of Python, but for characters of more than 16 bits.
+const quoted = (text) => JSON.stringify(text).replace(/[^ -~]/gu, (c) => {
+  const code = c.codePointAt(0).toString(16);
+  return code.length > 4 ? `\\U${code.padStart(8, '0')}` : `\\u${code.padStart(4, '0')}`;
+});
 const row = (xs, digits = 9) => `(${xs.map((x) => short(x, digits)).join(', ')})`;
 const isWhite = (rgb) => rgb.every((c) => c === 1);
 
@@ -93,9 +96,9 @@ function commandOf(app) {
     ...(camera.parallel ? ['--parallel', '--zoom', short(norm(minus(camera.position, camera.focal)) * half / camera.scale, 9)] : ['--zoom', short(ANGLE / camera.angle, 9)]),
     ...(cut ? [`--clip=${cut.sign < 0 ? '' : '-'}${AXES[cut.axis]}:${short(-cut.sign * (cut.place + app.page.origin[cut.axis]), 9)}`] : []),
     ...(app.page.arrays[state.color] ? ['--scalars', state.color, '--cmap', state.cmap] : []),
-    '--background', app.background, '--size', `${canvas.clientWidth}x${canvas.clientHeight}`, '-o', `${stem}.png`,
+    '--no-key', '--background', app.background, '--size', `${canvas.clientWidth}x${canvas.clientHeight}`, '-o', `${stem}.png`,
   ];
-  const file = (name, value) => `cat > ${word(name)} <<'END'\n${JSON.stringify(value).replace(/[\u007f-\uffff]/g, (c) => `\\u${c.charCodeAt(0).toString(16).padStart(4, '0')}`)}\nEND\n`;
+  const file = (name, value) => `cat > ${word(name)} <<'END'\n${JSON.stringify(value)}\nEND\n`;
   const view = [camera.position, camera.focal, camera.up];
   return `${file(`./${stem}.scene.json`, scene)}${file(`./${stem}.view.json`, view)}${words.map(word).join(' ')}\n`;
 }
