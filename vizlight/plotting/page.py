@@ -155,6 +155,9 @@ class Page:
             if len(cells):
                 made[key] = _packed(cells, "u4")
         scene = live.scene_of(self.renderer, actor)
+        if live.scalars is not None:
+            # The actor's own colour is PyVista's, which no one sees.
+            made["color"] = list(scene.material.color or WHITE)
         if isinstance(live.painter, Fragments):
             made |= self._followed(live, live.painter, scene, actor, matrix)
         else:

@@ -201,7 +201,6 @@ class App {
     const started = performance.now();
     const view = viewOf(state.camera);
     canvas.parentElement.dataset.tone = dot(shares(this.background), [0.3, 0.6, 0.1]) < 0.5 ? 'dark' : 'light';
-    if (!this.moving || !this.slow) this.drawBalls(view);
     gl.viewport(0, 0, canvas.width, canvas.height);
     gl.clearColor(...shares(this.background), 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
@@ -218,6 +217,9 @@ class App {
     gl.depthMask(true);
     gl.disable(gl.BLEND);
     this.ontriad?.(view);
+    // The picture comes first; the balls follow it.
+    if (!this.drawn) setTimeout(() => this.drawBalls(viewOf(this.state.camera)));
+    else if (!this.moving || !this.slow) this.drawBalls(view);
     if (!this.moving) return;
     // The time of a frame is known when a pixel of it is read.
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));

@@ -405,6 +405,7 @@ async function start() {
     app.draw();
     window.vizlight = app;
     document.body.dataset.ready = String(Math.round(performance.now()));
+    dispatchEvent(new Event('vizlight-ready'));
   } catch (error) {
     // The picture that Python drew stays in place of the scene.
     document.getElementById('panel').remove();
