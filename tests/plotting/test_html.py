@@ -596,6 +596,23 @@ def test_page_without_webgl_shows_the_picture_and_says_so(chromium, tmp_path):
 
 
 @needs_browser
+def test_a_background_that_nobody_chose_is_dark_on_dark_pages_but_not_on_paper(browser, tmp_path):
+    scene = Scene(lights=FAR)
+    for options, corners in (({}, [22, 255, 255]), ({"background": "white"}, [255, 255, 255])):
+        path = vizlight.live_html(pv.Sphere(), scene, tmp_path / "a.html", **options)
+        page, _ = opened(browser, path)
+        seen = []
+        for media in (
+            {"color_scheme": "dark"}, {"color_scheme": "light"},
+            {"color_scheme": "dark", "media": "print"},
+        ):  # fmt: skip
+            page.emulate_media(**media)
+            seen.append(int(shot(page)[3, 3, 0]))
+        page.close()
+        assert seen == corners
+
+
+@needs_browser
 def test_two_files_serve_a_strict_policy(browser, tmp_path):
     path = plain_page(tmp_path, files=2)
     assert (tmp_path / "viewer.js").read_text("utf-8") == html.viewer()

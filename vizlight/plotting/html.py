@@ -180,7 +180,7 @@ def live_html(
         label = (frames, values) if len(steps) > 1 else None
         return write_page(
             path, shown, plotter, title=title, panel=panel, key=key, frames=label, files=files,
-            source=source,
+            source=source, auto=chosen is None and plotter.background_color == "white",
         )  # fmt: skip
     finally:
         plotter.close()
@@ -238,6 +238,7 @@ def page_text(
     key: bool = True,
     frames: tuple[str, Sequence[float]] | None = None,
     source: Sequence[str] = (),
+    auto: bool = False,
     script: str = "",
 ) -> str:
     """Return the text of a page of meshes with live light.
@@ -257,6 +258,8 @@ def page_text(
         What the numbers of the frames are, and the numbers.
     source : sequence of str
         File, and options of the command that lights it alike.
+    auto : bool
+        Whether nobody chose the background, which is dark then on dark pages.
     script : str
         File of the script; empty for one within the page.
 
@@ -275,9 +278,9 @@ def page_text(
         file, *words = [str(word) for word in source]
         page.recipe |= {"file": file, "command": words}
     content = page.content() | {
-        "name": title or shown[0].name or stem, "stem": stem, "panel": panel, "frame": 0,
+        "name": title or stem, "stem": stem, "panel": panel, "frame": 0,
         "frames": None if frames is None else {"label": frames[0], "values": list(frames[1])},
-        "key": _key_words(shown[0].live) if key else None,
+        "key": _key_words(shown[0].live) if key else None, "auto": auto,
     }  # fmt: skip
     text = string.Template(_web("page.html")).substitute(
         title=html.escape(title or "vizlight"),

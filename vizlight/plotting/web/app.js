@@ -15,7 +15,7 @@ class App {
     Object.assign(this, { page, past: [], future: [], lamp: 0, set: 0, watchers: [], ratio: 1, programs: new Map() });
     this.first = {
       sets: page.lights, materials: page.meshes.map((mesh) => mesh.material), look: '', color: '', cmap: page.cmap, clim: null,
-      frame: page.frame, cut: { axis: -1, at: 0.5, far: false }, free: false, fade: page.fade, camera: page.camera, hidden: [], background: page.background,
+      frame: page.frame, cut: { axis: -1, at: 0.5, far: false }, free: false, fade: page.fade, camera: page.camera, hidden: [], background: '',
     };
     this.state = copyOf(this.first);
     this.saved = JSON.stringify(this.state);
@@ -110,7 +110,12 @@ class App {
   }
 
   // ---- picture
-  get background() { return this.state.background; }
+  // A background that nobody chose is dark on dark pages, but not on paper.
+  get background() {
+    const { auto, background } = this.page;
+    const dark = auto && matchMedia('screen and (prefers-color-scheme: dark)').matches;
+    return this.state.background || (dark ? '#16181d' : background);
+  }
 
   shown(mesh) {
     return (mesh.given.frame === undefined || mesh.given.frame === this.state.frame) && !this.state.hidden.includes(mesh.name);

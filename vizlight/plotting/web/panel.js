@@ -400,6 +400,7 @@ async function start() {
     build(app);
     steer(app);
     new ResizeObserver(() => app.draw()).observe(app.canvas);
+    matchMedia('screen and (prefers-color-scheme: dark)').addEventListener('change', () => app.draw());
     addEventListener('beforeprint', () => app.draw());
     document.getElementById('picture')?.remove();
     app.draw();
