@@ -269,9 +269,9 @@ def test_views_of_a_scene_turn_together(chromium):
         for frame in frames:
             frame.wait_for_function("() => window.vizlight")
         assert [f.inner_text("h1") for f in frames] == [f"{a} degrees" for a in (0, 30, 60, 90)]
-        place = "JSON.stringify(window.vizlight.camera.getPosition())"
+        place = "JSON.stringify(window.vizlight.state.camera.position)"
         before = frames[0].evaluate(place)
-        frames[1].focus("#view")
+        frames[1].focus("#canvas")
         page.keyboard.press("ArrowLeft")
         after = frames[1].evaluate(place)
         assert after != before

@@ -146,3 +146,14 @@ def test_public_names_are_declared_and_described(name):
             assert inspect.getdoc(value), public
         if inspect.isfunction(value) and inspect.signature(value).parameters:
             assert "Parameters\n---" in inspect.getdoc(value), public
+
+
+def test_windows_of_qt_find_the_component():
+    """Their class looks attributes up by itself, so that it never asks PyVista for components."""
+    lines = [
+        "sys.modules['pyvistaqt'] = type(sys)('pyvistaqt')",
+        "import pyvista, vizlight",
+        "assert 'vizlight' in vars(pyvista.BasePlotter)",
+    ]
+    for order in (lines, [lines[1], lines[0], "vizlight.Scene", lines[2]]):
+        subprocess.run([sys.executable, "-c", "\n".join(["import sys", *order])], check=True)

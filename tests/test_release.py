@@ -68,7 +68,10 @@ def test_a_build_of_the_source_distribution_has_the_same_bytes(built, tmp_path):
 def test_the_wheel_holds_what_runs(wheel):
     names = set(wheel.namelist())
     data = {f"vizlight/datasets/{p.name}" for p in (ROOT / "datasets").glob("*.vt?")}
-    web = {f"vizlight/plotting/web/{name}" for name in ("viewer.min.js", "page.html")}
+    web = {
+        f"vizlight/plotting/web/{name}"
+        for name in ("gl.js", "app.js", "copied.js", "panel.js", "page.css", "page.html")
+    }
     assert data | web | {"vizlight/py.typed"} <= names
     code = {p.relative_to(ROOT).as_posix() for p in (ROOT / "vizlight").rglob("*.py")}
     assert {name for name in names if name.endswith(".py")} == code

@@ -7,6 +7,7 @@ The public names are loaded on first use, so ``import vizlight`` is fast and
 from __future__ import annotations
 
 import importlib
+import sys
 from typing import TYPE_CHECKING
 
 from vizlight._version import __version__ as __version__
@@ -141,6 +142,7 @@ if not TYPE_CHECKING:  # a name that is not there is an error to a type checker
 
     def __getattr__(name: str) -> object:
         """Load a public name on first use."""
+        _join_qt()
         if name in _HOMES:
             value = getattr(importlib.import_module(f"vizlight.{_HOMES[name]}"), name)
             globals()[name] = value
@@ -150,5 +152,14 @@ if not TYPE_CHECKING:  # a name that is not there is an error to a type checker
         raise AttributeError(f"module 'vizlight' has no attribute {name!r}")
 
 
+def _join_qt() -> None:
+    """Let windows of pyvistaqt find ``plotter.vizlight``: their look-up hides that of PyVista."""
+    if "pyvistaqt" in sys.modules:
+        importlib.import_module("vizlight.plotting.component")
+
+
 def __dir__() -> list[str]:
     return sorted([*__all__, *_MODULES, "__version__"])
+
+
+_join_qt()

@@ -51,7 +51,7 @@ class _Method(Generic[Options, Result]):
 
 
 def _plot() -> Callable[..., object]:
-    from vizlight.plotting.component import plot
+    from vizlight.plotting.show import plot
 
     return plot
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import stat
@@ -61,6 +62,20 @@ def test_the_page_is_kept_and_no_browser_is_opened(shell, capfd, tmp_path):
     assert (code, err, shell) == (0, "", [])
     assert "page     kept.html" in out
     assert sorted(path.name for path in tmp_path.iterdir()) == ["ball.vtp", "kept.html"]
+
+
+def test_the_page_copies_the_command(shell, capfd):
+    """The words of the command stand in the page, and light the file alike."""
+    options = ["--tangents", "V", "--conditioned", "--clip", "z:0.3", "--exponent", "2"]
+    code, _, err = run(capfd, "ball.vtp", *options, "-o", "kept.html", "--no-browser")
+    assert (code, err) == (0, "")
+    recipe = json.loads(re.search(r'"recipe": (\{.*?\}), "name"', Path("kept.html").read_text())[1])
+    assert recipe["file"] == "ball.vtp"
+    words = recipe["command"]
+    assert sorted(words) == ["--clip=z:0.3", "--conditioned", "--exponent=2", "--tangents=V"]
+    for given, path in ((options, "a.vtp"), (words, "b.vtp")):
+        assert cli.main(["light", "ball.vtp", *given, "-o", path]) == 0
+    np.testing.assert_array_equal(pv.read("a.vtp")["luminance"], pv.read("b.vtp")["luminance"])
 
 
 def test_without_a_browser_the_path_is_told(shell, capfd, monkeypatch):

@@ -84,6 +84,16 @@ def test_the_camera_stays(torus, tmp_path):
 
 
 @pytest.mark.opengl
+def test_a_turn_keeps_the_colour_of_the_material(torus, tmp_path):
+    scene = SCENE.replace(material=Material(ambient=0.3, color="red"))
+    (file,) = movie.turn(
+        torus, tmp_path / "t.png", scene=scene, distance=3.0, frames=1, picture=SMALL
+    )
+    seen = np.asarray(Image.open(file)).astype(int)
+    assert (seen[..., 0] - seen[..., 1]).max() > 60
+
+
+@pytest.mark.opengl
 def test_rotation_comes_before_the_turn(torus, tmp_path):
     camera = render.camera_on((-3, 3, -3, 3, -1, 1))
     first = projection.rotation(4, [("yz", 0.4), ("xw", 0.3)])

@@ -478,11 +478,8 @@ def test_bad_arguments(plotter):
     for options, text in (
         ({"light": "pixels"}, "light: expected 'auto', 'points' or 'fragments'"),
         ({"scalars": "hight"}, "scalars: expected a point array"),
-        ({"lighting": True}, "lighting: expected no such keyword"),
-        ({"pbr": True}, "pbr: expected no such keyword"),
         ({"ambient": 0.2}, "ambient: expected the material of the scene, or no scene"),
         ({"tangents": "height"}, "tangents: expected vectors"),
-        ({"style": "points_gaussian"}, "style: expected"),
     ):
         with pytest.raises((TypeError, ValueError), match=text):
             add(mesh, scene=SCENE, **options)
@@ -497,11 +494,6 @@ def test_bad_arguments(plotter):
     with pytest.raises(TypeError, match="mesh: expected a PyVista mesh"):
         add("ball.vtp")
     assert not plotter.actors
-    cells = pv.Sphere()
-    cells.cell_data["zone"] = np.arange(cells.n_cells)
-    with pytest.raises(ValueError, match="cell_data_to_point_data"):
-        add(cells, scene=SCENE, scalars="zone", light="points")
-    add(cells, scene=SCENE, scalars="zone")
     changed = vizlight.illuminate(mesh, SCENE.replace(view=View(direction=(1, 1, 1))))
     changed["Normals"][:] = np.array(changed["Normals"])[:, ::-1]
     with pytest.raises(ValueError, match="other light at"):
@@ -514,20 +506,6 @@ def test_closed_plotter_is_refused():
     plotter.close()
     with pytest.raises(RuntimeError, match="plotter: expected an open plotter, got a closed one"):
         own.add_mesh(ball(), scene=SCENE)
-
-
-def test_short_form_saves_a_picture(tmp_path):
-    path = tmp_path / "ball.png"
-    ball().vizlight.plot(
-        scene=SCENE, scalars="height", off_screen=True, screenshot=path, window_size=(90, 80),
-        background="black",
-    )  # fmt: skip
-    with pytest.raises(ValueError, match="scalars: expected"):
-        ball().vizlight.plot(scalars="none", off_screen=True)
-    image = pv.read(path)
-    assert image.dimensions[:2] == (90, 80)
-    assert COLORS not in ball().point_data
-    assert image.point_data.active_scalars.max() > 60
 
 
 def test_light_at_points_is_drawn_as_it_is_whatever_the_material(plotter):

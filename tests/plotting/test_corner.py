@@ -72,7 +72,7 @@ def test_the_default_light_has_the_key_of_what_it_shows(valued):
     ball["speed"] = np.linspace(2, 5, ball.n_points)
     ball["speed"][7] = np.nan
     plotter = pv.Plotter(off_screen=True, window_size=SIZE)
-    given = {"scalars": "speed", "cmap": "viridis"} if valued else {}
+    given = {"scalars": "speed", "cmap": "viridis"} if valued else {"color": "white"}
     plotter.vizlight.add_mesh(ball, show_scalar_bar=False, **given)
     made = plotter.vizlight.add_key()
     plotter.close()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import io
 import json
 import shutil
 import subprocess
@@ -150,11 +151,10 @@ def live_plotter(**options):
     return plotter
 
 
-@pytest.mark.parametrize("name", ["client", "html"])
-def test_browser_is_not_left_to_draw_live_light(name):
-    shown = notebook.Guarded(name, lambda plotter, **options: options)
+def test_browser_is_not_left_to_draw_live_light():
+    shown = notebook.Guarded("client", lambda plotter, **options: options)
     plotter = live_plotter()
-    with pytest.raises(ValueError, match="jupyter_backend: expected server rendering.*'server'"):
+    with pytest.raises(ValueError, match="jupyter_backend: expected 'html', or server rendering"):
         shown(plotter)
     plotter.clear_actors()
     assert shown(plotter, screenshot=None) == {"screenshot": None}
@@ -170,13 +170,49 @@ def test_default_backend_draws_live_light_on_the_server():
     plotter.close()
 
 
-@pytest.mark.skipif("trame_pyvista" in MISSING, reason="needs trame_pyvista")
-@pytest.mark.parametrize("backend", ["client", "html"])
-def test_show_refuses_client_rendering_with_the_remedy(backend):
-    plotter = live_plotter(notebook=True)
-    with pytest.raises(ValueError, match="pass jupyter_backend='server'"):
-        plotter.show(jupyter_backend=backend)
+@pytest.mark.parametrize("registered", [True, False])
+def test_the_page_is_a_frame_of_the_notebook(registered, monkeypatch):
+    from pyvista.jupyter import _custom_backends
+
+    if not registered:
+        monkeypatch.delitem(_custom_backends, "html", raising=False)
+    mesh = pv.Sphere()
+    frame = mesh.vizlight.plot(
+        scene=SCENE, off_screen=True, notebook=True, jupyter_backend="html", return_viewer=True
+    )
+    text = frame._repr_html_()
+    assert text.startswith('<iframe srcdoc="&lt;!doctype html&gt;')
+    assert "allow-same-origin" not in text
+    assert frame.text.count("<script>") == 1
+
+
+@pytest.mark.skipif("playwright" in MISSING or not CHROMIUM, reason="needs a browser")
+def test_an_exported_notebook_stays_interactive(tmp_path):
+    from playwright.sync_api import sync_playwright
+
+    plotter = live_plotter()
+    shown = notebook.Guarded("html", lambda plotter, **options: options)(plotter)
     plotter.close()
+    path = tmp_path / "notebook.html"
+    path.write_text(f"<html><body>{shown._repr_html_()}{shown._repr_html_()}</body></html>")
+    args = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader"]
+    with sync_playwright() as play:
+        browser = play.chromium.launch(
+            executable_path=CHROMIUM, args=[*args, "--enable-unsafe-swiftshader"]
+        )
+        page = browser.new_page(viewport={"width": 800, "height": 900})
+        page.goto(path.as_uri())
+        for frame in page.frames[1:]:
+            frame.wait_for_selector("body[data-ready]")
+        seen = [np.array(Image.open(io.BytesIO(page.screenshot())).convert("RGB")).astype(int)]
+        page.mouse.move(300, 200)
+        page.mouse.down()
+        page.mouse.move(450, 260, steps=5)
+        page.mouse.up()
+        page.wait_for_timeout(400)
+        seen.append(np.array(Image.open(io.BytesIO(page.screenshot())).convert("RGB")).astype(int))
+        assert np.abs(seen[1] - seen[0])[:420].max() > 30
+        browser.close()
 
 
 EXPORTS = ["export_html", "export_vtksz", "export_gltf", "export_obj", "export_vrml"]

@@ -72,6 +72,8 @@ class Job:
         Function that prints how the result was made.
     read
         Step that measures what a reader can read back from the picture.
+    source
+        File and options of a command that lights it alike, which a page copies.
     """
 
     lit: Step
@@ -90,6 +92,7 @@ class Job:
     hint: Callable[[], str] = lambda: ""
     explain: Callable[[pv.DataSet], None] | None = None
     read: Step | None = None
+    source: Sequence[str] = ()
     meshes: list[tuple[Step, Path]] = field(default_factory=list)
     pictures: list[Path] = field(default_factory=list)
 
@@ -255,6 +258,7 @@ def _written(job: Job, mesh: Step, path: Path, out: Output) -> Step:
         chosen["cmap"] = color.cmap
     if suffix == HTML:
         chosen |= {"camera": job.camera}
+        chosen |= {"source": list(job.source)} if job.source else {}
         chosen |= {} if job.look.lights.key else {"key": False}
         chosen |= {} if out.background is None else {"background": out.background}
         chosen |= {} if out.line_width == 1 else {"line_width": out.line_width}

@@ -118,6 +118,7 @@ def builder(
         lit = Step("lit", "vizlight.illuminate", source, scene, **given, **place, **progress)
         made = Job(lit, asked.name, look, camera, suffix=".vtp" if taken or asked.refine else "")
         made.before = None if asked.refine else mesh
+        made.source = [str(path), *options.words(target, how)]
         made.tint(lit, data, color)
         if not (target.contour or target.warp or target.slice):
             made.hint = lambda: _hint(data.run(), surface=target.surface)

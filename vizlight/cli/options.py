@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import re
-from dataclasses import field, make_dataclass
+from dataclasses import field, fields, make_dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Union
 
 from cyclopts import Group, Parameter
@@ -90,6 +90,23 @@ READ: Mapping[str, tuple[Callable[[str, str], object], str]] = {
 READ_LISTS: Mapping[str, tuple[Callable[[str, list[str]], object], str]] = {
     "rotation": (_rotations, "Turn PLANE:ANGLE in radians, such as xw:0.5."),
 }
+
+
+def words(*parts: Any) -> list[str]:
+    """Return the words of a command that give options of dataclasses the values that they have."""
+    found = []
+    for part in parts:
+        for one in fields(part) if part is not None else ():
+            value, flag = getattr(part, one.name), one.name.replace("_", "-")
+            if value == one.default or value is None:
+                continue
+            if isinstance(value, bool):
+                found.append(f"--{flag}" if value else f"--no-{flag}")
+                continue
+            # A value that begins with a minus is one word with its option.
+            rows = value if isinstance(value, list | tuple) else [value]
+            found += [f"--{flag}={row}" for row in rows]
+    return found
 
 
 def arguments_of(

@@ -18,6 +18,7 @@ from vizlight import _check
 from vizlight._progress import progress
 from vizlight.files import check_output, replace_file
 from vizlight.filters.project import ProjectOptions, project
+from vizlight.filters.tint import RGB
 from vizlight.mesh.blocks import all_blocks
 from vizlight.pictures import render
 from vizlight.pictures.cameras import Mesh, common_bounds
@@ -226,7 +227,7 @@ def turn(
     fps = _check.number("fps", fps, low=0.01, high=100.0)
     drawing = _drawing(picture)
     if scene is not None:
-        drawing.setdefault("scalars", asked.name)
+        drawing.setdefault("scalars", RGB if scene.colored else asked.name)
     else:
         _draw_active(mesh, drawing)
     writer = _writer(path, fps, drawing["size"])

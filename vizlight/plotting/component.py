@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-import dataclasses
-import difflib
-import inspect
 import weakref
 from typing import TYPE_CHECKING, Any, get_args
 
+import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.files import check_output
 from vizlight.filters import relight
 from vizlight.filters.key import key, question_of
-from vizlight.filters.tint import RGB, default_map, default_nan_color
+from vizlight.filters.tint import RGB, are_colors, default_map, default_nan_color
 from vizlight.mesh import blocks, records
+from vizlight.plotting import keywords
 from vizlight.plotting.corner import PLACES, CornerKey, ink_on
 from vizlight.plotting.fragments import Fragments, unfit
 from vizlight.plotting.html import write_page
-from vizlight.plotting.live import LightAt, Live, colorless, items
+from vizlight.plotting.live import LightAt, Live, colorless, has_pass, is_copy, items
 from vizlight.plotting.notebook import guard, guard_exports
 from vizlight.plotting.page import Shown
 from vizlight.plotting.points import Points
@@ -28,12 +26,12 @@ from vizlight.plotting.sources import sources_of, tinted
 from vizlight.reading.polylines import has_lines_only
 from vizlight.scene import Material, Scene
 from vizlight.shading.display import NO_DATA_NAME, titled
-from vizlight.shading.options import LightOptions, unknown_option
 from vizlight.shading.results import DEFAULT_NAME, unlit
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from numpy.typing import ArrayLike
     from vtkmodules.vtkCommonCore import vtkObject
     from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
@@ -43,28 +41,10 @@ if TYPE_CHECKING:
     from vizlight.filters.relight import Source
     from vizlight.plotting.corner import Corner
 
-__all__ = ["Component", "add_recorded", "plot"]
+__all__ = ["Component", "add_recorded"]
 
-#: Options of light that a live light takes; an actor has a name of its own.
-LIGHT = {field.name for field in dataclasses.fields(LightOptions)} - {"name", "components"}
-#: Keywords of PyVista that stand for another light or another surface than the one that is lit.
-REFUSED = {
-    "lighting": "the light is vizlight's",
-    "smooth_shading": "normals belong to the points; pass normals= for others",
-    "split_sharp_edges": "call mesh.compute_normals(split_vertices=True) first",
-    "pbr": "leave it out, or add the mesh by plotter.add_mesh",
-    "metallic": "leave it out, or add the mesh by plotter.add_mesh",
-    "roughness": "leave it out, or add the mesh by plotter.add_mesh",
-    "texture": "sample the texture to a point array and pass scalars=",
-    "rgb": "pass the data and a colour map: scalars= and cmap=",
-    "rgba": "pass the data and a colour map: scalars= and cmap=",
-    "backface_params": "leave it out; facing='eye' lights the side that is seen",
-    "copy_mesh": "pass mesh.copy()",
-}
-#: Endings of the names of pictures that VTK writes.
-PICTURES = (".png", ".jpeg", ".jpg", ".bmp", ".tif", ".tiff")
-#: Coefficients that a scene has and PyVista takes as keywords.
-MATERIAL = {"ambient", "diffuse", "specular", "specular_power"}
+#: Passes of VTK that need its own light or normals, and what they draw.
+UNLIT_PASSES = {"vtkShadowMapPass": "the shadows", "vtkSSAOPass": "the ambient occlusions (SSAO)"}
 #: Coefficients ka, kd and ks of an actor that PyVista was not told others for.
 UNTOUCHED = (0.0, 1.0, 0.0)
 
@@ -83,6 +63,8 @@ class Component:
         self._plotter = weakref.ref(plotter)
         self._holders: weakref.WeakValueDictionary[str, _Holder] = weakref.WeakValueDictionary()
         self._observed: list[tuple[vtkRenderer, int]] = []
+        #: What was said to be lost.
+        self._lost: set[str] = set()
 
     def add_mesh(
         self,
@@ -91,7 +73,7 @@ class Component:
         *,
         scene: Scene | None = None,
         light: LightAt = "auto",
-        scalars: str | None = None,
+        scalars: str | ArrayLike | None = None,
         line_diameter: float | None = None,
         **options: Any,
     ) -> pv.Actor | list[pv.Actor]:
@@ -112,10 +94,13 @@ class Component:
             attaches; or in each fragment, from interpolated tangents and normals, which is right
             between the points of a coarse mesh too. "auto": in fragments where the plan allows.
             ``"fragments"`` warns where it does not.
-        scalars : str, optional
-            Name of the array that gives the colours. Light keeps them readable, as in
-            :func:`vizlight.tint`: there is no highlight, and values that are missing are grey.
-            Default: none, or the array of :func:`vizlight.tint` for a mesh that it returned.
+        scalars : str or array_like, optional
+            Array that gives the colours, by its name or with one row per point or cell. Light keeps
+            them readable, as in :func:`vizlight.tint`: there is no highlight, and values that are
+            missing are grey. With ``rgb=True`` the array holds colours. Blocks without the array
+            have no colours of data. Default: the array of :func:`vizlight.tint` for a mesh that it
+            returned; as in PyVista, the active scalars, where no ``color``, no ``tangents`` and no
+            ``scene`` say that the light itself is looked at; otherwise none.
         line_diameter : float, optional
             Diameter of lines in the unit of the mesh, at least a pixel, in place of PyVista's
             ``line_width`` in pixels: nearer lines are wider.
@@ -125,7 +110,10 @@ class Component:
             edges are creases a copy is drawn whose points are split there, which does not follow
             later changes of the mesh; and keywords of ``pyvista.Plotter.add_mesh``, such
             as ``clim``, ``name``, ``opacity``, ``line_width``, ``pickable``, and ``cmap``, which is
-            ``vizlight.maps.even`` unless the theme's was changed. With
+            ``vizlight.maps.even`` unless the theme's was changed. ``smooth_shading=False`` splits
+            the points at every edge, so that faces are flat, ``split_sharp_edges`` at those of the
+            theme's angle. PyVista draws the mesh with its own light if ``lighting=False``,
+            ``pbr=True`` or ``style="points_gaussian"``, and points that have no vectors. With
             ``render_lines_as_tubes=True`` lines wider than a pixel have, where light is in
             fragments, the light of the cylinder that they stand for across their width: its mean is
             the light of ``model="cylinder"``.
@@ -166,32 +154,53 @@ class Component:
         blocks.check(mesh)
         _check.instance("scene", scene, Scene, optional=True)
         _check.choice("light", light, get_args(LightAt))
-        if scalars is not None:
-            _check.text("scalars", scalars, expected="the name of an array")
-        own = {key: value for key, value in options.items() if key in LIGHT}
-        drawing = {key: value for key, value in options.items() if key not in LIGHT}
-        _check_drawing(drawing, scene)
+        own, drawing = keywords.sorted_out("plotter.vizlight.add_mesh", options, scene)
         if line_diameter is not None:
             line_diameter = _check.positive("line_diameter", line_diameter)
-        sources, used = sources_of(mesh, scene, own)
-        names = [path.lstrip("/") for _, path in blocks.named_blocks(mesh)]
+        if _check.boolean("copy_mesh", drawing.pop("copy_mesh", False)):
+            mesh = mesh.copy(deep=False)
+        why = keywords.left_to_pyvista(drawing)
+        if why is not None:
+            if why:
+                _check.warn(f"the mesh has PyVista's light in place of vizlight's: {why}")
+            given: Any = scalars
+            unlit: pv.Actor = plotter.add_mesh(mesh, scalars=given, **drawing)
+            return unlit
+        if scalars is None and scene is None and not (own or relight.is_lit(mesh)):
+            others = any(drawing.get(name) for name in ("color", "multi_colors", "texture"))
+            scalars = None if others else keywords.active_scalars(mesh)
+        mesh, chosen = keywords.colored(mesh, scalars, drawing)
+        angle = keywords.shading_of(drawing)
+        several, named = isinstance(mesh, pv.MultiBlock), list(blocks.named_blocks(mesh))
+        clouds = [keywords.is_cloud(block, own) for block, _ in named]
+        if any(clouds):
+            mesh = pv.MultiBlock()
+            for (block, path), is_cloud in zip(named, clouds, strict=True):
+                if not is_cloud:
+                    mesh.append(block, path.lstrip("/"))
+        sources, used = sources_of(mesh, scene, own, angle)
         if getattr(plotter, "notebook", False):
             guard()
-        several = isinstance(mesh, pv.MultiBlock)
+        lit, colors = iter(sources), keywords.block_colors(drawing)
         actors = []
-        for number, source in enumerate(sources):
-            if not source.mesh.n_points:
+        for number, ((block, path), is_cloud) in enumerate(zip(named, clouds, strict=True)):
+            keywords_of = drawing | next(colors)
+            if several and drawing.get("name") is not None:
+                keywords_of["name"] = f"{drawing['name']}-{number}"
+            lacks = several and chosen not in (*block.point_data, *block.cell_data)
+            here = None if lacks else chosen
+            if is_cloud:
+                actors.append(_add_cloud(plotter, block, here, keywords_of))
                 continue
-            chosen, colors = (scalars, {}) if scalars is not None else tinted(source.mesh)
-            keywords = colors | drawing
-            if several and keywords.get("name") is not None:
-                keywords["name"] = f"{keywords['name']}-{number}"
-            keywords["line_diameter"] = line_diameter
-            name = names[number] or str(keywords.get("name") or "")
-            actor = self._add(plotter, source, used, light, chosen, keywords, follow=True)
+            source = next(lit)
+            if not block.n_points:
+                continue
+            shown, tints = (here, {}) if here is not None else tinted(source.mesh)
+            keywords_of = tints | keywords_of | {"line_diameter": line_diameter}
+            actor = self._add(plotter, source, used, light, shown, keywords_of, follow=True)
             live = self._live_of(actor)
             assert live is not None
-            live.name = name
+            live.name = path.lstrip("/") or str(drawing.get("name") or "")
             actors.append(actor)
         if not several and not actors:
             raise ValueError(_check.message("mesh", "a mesh with points", "none"))
@@ -319,26 +328,44 @@ class Component:
             If the light of a mesh does not follow the eye, or what is drawn beside the meshes is
             left out.
         """
-        plotter = self._open_plotter()
-        shown: list[Shown] = []
+        plotter, shown = self._open_plotter(), self.shown()
+        if not plotter.camera_set:
+            plotter.renderer.view_isometric(render=False)
+        return write_page(path, shown, plotter, title=title, panel=panel, key=key)
+
+    def shown(self) -> list[Shown]:
+        """Return the visible meshes with live light, for a page.
+
+        Returns
+        -------
+        list of Shown
+
+        Raises
+        ------
+        ValueError
+            If there is none.
+
+        Warns
+        -----
+        UserWarning
+            If there are actors without live light, which a page leaves out.
+        """
+        found: list[Shown] = []
         others = 0
-        for actor in items(plotter.renderer.GetActors()):
+        for actor in items(self._open_plotter().renderer.GetActors()):
             live = self._live_of(actor)
             if not actor.GetVisibility():
                 continue
             if live is None or live.painter is None:
                 others += 1
             else:
-                shown.append(Shown(live.name or f"mesh {len(shown) + 1}", live, actor))
-        if not shown:
+                found.append(Shown(live.name or f"mesh {len(found) + 1}", live, actor))
+        if not found:
             remedy = "add a mesh by plotter.vizlight.add_mesh"
             raise ValueError(_check.message("plotter", "a mesh with live light", "none", remedy))
-        if not plotter.camera_set:
-            plotter.renderer.view_isometric(render=False)
-        written = write_page(path, shown, plotter, title=title, panel=panel, key=key)
         if others:
             _check.warn(f"{others} actors without light of vizlight are not in the page")
-        return written
+        return found
 
     def explain(self, actor: vtkActor, /) -> str:
         """Return where the light of an actor is computed and why, and what of it.
@@ -427,10 +454,13 @@ class Component:
         if scalars is not None:
             live.color_by(scalars, drawing.pop("component", None), at_points=bool(reason))
             drawing["scalars"] = live.scalars
-            drawing["cmap"] = default_map(drawing.get("cmap"))
-            drawing["nan_color"] = default_nan_color(drawing.get("nan_color"))
-            bar = {"title": scalars, **(drawing.get("scalar_bar_args") or {})}
-            drawing["scalar_bar_args"] = bar
+            if live.has_colors():
+                drawing["rgb"] = True
+            else:
+                drawing["cmap"] = default_map(drawing.get("cmap"))
+                drawing["nan_color"] = default_nan_color(drawing.get("nan_color"))
+                bar = {"title": scalars, **(drawing.get("scalar_bar_args") or {})}
+                drawing["scalar_bar_args"] = bar
         painter: Points | Fragments = (
             Points(reason, stroke.diameter) if reason else Fragments(stroke)
         )
@@ -442,7 +472,7 @@ class Component:
         actor: pv.Actor = plotter.add_mesh(
             live.drawn, smooth_shading=False, split_sharp_edges=False, render=False, **drawing
         )
-        if scene is None and not drawing.keys() & MATERIAL:
+        if scene is None and not drawing.keys() & keywords.MATERIAL:
             own, default = actor.prop, Material()
             if (own.ambient, own.diffuse, own.specular) == UNTOUCHED:
                 own.ambient, own.diffuse = default.ambient, default.diffuse
@@ -492,11 +522,20 @@ class Component:
                 self._observed.append((renderer, renderer.AddObserver("StartEvent", update)))
 
     def _update(self, renderer: vtkRenderer) -> None:
-        """Light what a renderer is about to draw."""
+        """Light what a renderer is about to draw, and say once what does not show."""
+        lost = set()
         for actor in items(renderer.GetActors()):
             live = self._live_of(actor)
             if live is not None:
                 live.update(renderer, actor)
+            elif is_copy(actor):
+                lost.add("a copy of an actor has light that does not follow; add its mesh instead")
+        if self.has_live_light and renderer.GetPass() is not None:
+            passes = [name for kind, name in UNLIT_PASSES.items() if has_pass(renderer, kind)]
+            lost |= {f"{name} of PyVista do not show on meshes with live light" for name in passes}
+        for text in sorted(lost - self._lost):
+            _check.warn(text)
+        self._lost |= lost
 
     def _stop(self) -> None:
         """Remove the observers of the renderers."""
@@ -537,29 +576,19 @@ def _address(thing: vtkObject) -> str:
     return str(thing.GetAddressAsString(""))
 
 
-def _check_drawing(drawing: dict[str, Any], scene: Scene | None) -> None:
-    """Refuse keywords of PyVista that contradict the light, and slips of the light's options."""
-    drawn = inspect.signature(pv.Plotter.add_mesh).parameters
-    for name, value in drawing.items():
-        if name not in drawn and difflib.get_close_matches(name, LIGHT, n=1):
-            raise TypeError(unknown_option("plotter.vizlight.add_mesh", name, [*LIGHT]))
-        if name in REFUSED and value is not None and value is not False:
-            expected = "no such keyword for a mesh with light of its own"
-            got = _check.describe(value)
-            raise ValueError(_check.message(name, expected, got, REFUSED[name]))
-        if name in MATERIAL and scene is not None and value is not None:
-            remedy = "pass Scene(material=Material(...))"
-            expected = "the material of the scene, or no scene"
-            raise ValueError(_check.message(name, expected, f"both ({value})", remedy))
-    if drawing.get("style") == "points_gaussian":
-        remedy = "pass style='points'"
-        raise ValueError(
-            _check.message(
-                "style", "'surface', 'wireframe' or 'points'", "'points_gaussian'", remedy
-            )
-        )
-    for name in [name for name in drawing if name in REFUSED]:
-        del drawing[name]
+def _add_cloud(
+    plotter: pv.BasePlotter, mesh: pv.DataSet, scalars: str | None, drawing: dict[str, Any]
+) -> pv.Actor:
+    """Add points that have nothing for light to fall on, in the colours that a lit mesh has."""
+    if scalars is None:
+        drawing = {"color": True} | drawing
+    else:
+        own = {"cmap": default_map(drawing.get("cmap"))}
+        own["nan_color"] = default_nan_color(drawing.get("nan_color"))
+        values = mesh.point_data if scalars in mesh.point_data else mesh.cell_data
+        drawing = drawing | ({"rgb": True} if are_colors(np.asarray(values[scalars])) else own)
+    actor: pv.Actor = plotter.add_mesh(mesh, scalars=scalars, **drawing)
+    return actor
 
 
 def _stroke(source: Source, drawing: dict[str, Any]) -> Stroke:
@@ -624,88 +653,3 @@ def add_recorded(
     used = scene if name == RGB else colorless(scene)
     own: Component = plotter.vizlight
     return own._add(plotter, source, used, "auto", scalars, colors | drawing, follow=False)
-
-
-def plot(
-    mesh: pv.DataSet | pv.MultiBlock,
-    /,
-    *,
-    scene: Scene | None = None,
-    light: LightAt = "auto",
-    scalars: str | None = None,
-    off_screen: bool | None = None,
-    notebook: bool | None = None,
-    window_size: tuple[int, int] | None = None,
-    background: ColorLike | None = None,
-    camera: pv.Camera | None = None,
-    screenshot: str | Path | None = None,
-    jupyter_backend: str | None = None,
-    **options: Any,
-) -> object:
-    """Show a mesh whose light follows the camera.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet or pyvista.MultiBlock
-        Mesh that is lit and drawn; not changed.
-    scene, light, scalars
-        As for ``plotter.vizlight.add_mesh``.
-    off_screen, notebook : bool, optional
-        Whether nothing appears on a screen, and whether a notebook shows the picture. Default: as
-        PyVista decides.
-    window_size : (int, int), optional
-        Width and height in pixels.
-    background : colour, optional
-        Background colour. Default: the colour of PyVista's theme.
-    camera : pyvista.Camera, optional
-        First camera. Default: one that shows the whole mesh.
-    screenshot : path, optional
-        Path of a picture of the last view.
-    jupyter_backend : str, optional
-        Backend of a notebook; ``"client"`` and ``"html"`` are refused.
-    **options
-        As for ``plotter.vizlight.add_mesh``: options of :func:`vizlight.illuminate` and keywords
-        of ``pyvista.Plotter.add_mesh``.
-
-    Returns
-    -------
-    object
-        Widget of a notebook; None elsewhere.
-
-    Raises
-    ------
-    TypeError, ValueError
-        As for ``plotter.vizlight.add_mesh``.
-    """
-    for name, flag in (("off_screen", off_screen), ("notebook", notebook)):
-        if flag is not None:
-            _check.boolean(name, flag)
-    if window_size is not None:
-        sides = _check.vector("window_size", window_size)
-        if len(sides) != 2 or not all(1 <= side <= 1 << 14 for side in sides):
-            expected = "(width, height), each from 1 to 16384 pixels"
-            raise ValueError(_check.message("window_size", expected, sides))
-        window_size = (int(sides[0]), int(sides[1]))
-    if camera is not None and not hasattr(camera, "GetPosition"):
-        raise TypeError(_check.message("camera", "a pyvista.Camera", _check.describe(camera)))
-    if screenshot is not None:
-        screenshot = check_output(screenshot, PICTURES)
-    if jupyter_backend is not None:
-        _check.text("jupyter_backend", jupyter_backend)
-    plotter: Any = pv.Plotter(
-        off_screen=off_screen,
-        notebook=notebook,
-        window_size=None if window_size is None else list(window_size),
-    )
-    try:
-        if background is not None:
-            plotter.background_color = _check.color("background", background)
-        plotter.vizlight.add_mesh(mesh, scene=scene, light=light, scalars=scalars, **options)
-        if camera is not None:
-            plotter.camera = camera.copy()  # type: ignore[no-untyped-call]
-    except BaseException:
-        plotter.close()
-        raise
-    # Outside a notebook PyVista warns that it ignores the backend.
-    backend = jupyter_backend if plotter.notebook else None
-    return plotter.show(screenshot=screenshot or False, jupyter_backend=backend)

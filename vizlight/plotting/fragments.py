@@ -9,7 +9,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight.filters import lighting
-from vizlight.mesh import hull
+from vizlight.mesh import hull, point_arrays
 from vizlight.model import kernels
 from vizlight.plotting import dialects, glsl, program, strokes
 from vizlight.plotting.live import NORMALS, TANGENTS
@@ -140,26 +140,29 @@ class Fragments:
     def attach(self, live: Live) -> None:
         """Give the drawn mesh its tangents and normals, of unit length in float32."""
         inputs, data = live.source.inputs, live.drawn.GetPointData()
-        tangents, normals = (_rows(inputs, rows) for rows in (inputs.tangents, inputs.normals))
+        tangents, normals = (
+            _rows(inputs, rows, live) for rows in (inputs.tangents, inputs.normals)
+        )
         if tangents is not None:
-            live.attach(TANGENTS, tangents.astype(np.float32))
+            point_arrays.attach_rows(live.drawn, TANGENTS, tangents.astype(np.float32))
             data.SetActiveTangents(TANGENTS)
         if normals is None:
             # VTK lights lines, and so draws with a shader for them, only if they have normals.
             normals = tangents
             if self._stroke != Stroke():
-                normals = polylines.line_tangents(live.source.mesh)
+                normals = live.picked(polylines.line_tangents(live.source.mesh))
         elif inputs.fur_height is not None:
             # The length of a normal, which light does not need, carries the height of the fur.
-            height = np.asarray(inputs.fur_height[:], dtype=np.float64)
+            height = live.picked(np.asarray(inputs.fur_height[:], dtype=np.float64))
             self.tallest = float(np.max(height, initial=0.0)) or 1.0
             normals = normals * (1 + height[:, np.newaxis] / self.tallest)
         elif (sided := live.source.sided) is not None:
             if len(self._averted) <= np.max(sided.open, initial=1):
                 self._averted = sided.averted_fields(inputs.points, None)
-            normals = normals * _lean_lengths(live.source, self._averted)[:, np.newaxis]
+            lean = live.picked(_lean_lengths(live.source, self._averted))
+            normals = normals * lean[:, np.newaxis]
         if normals is not None:
-            live.attach(NORMALS, normals.astype(np.float32))
+            point_arrays.attach_rows(live.drawn, NORMALS, normals.astype(np.float32))
             data.SetActiveNormals(NORMALS)
 
     def drawing(self, live: Live, drawing: dict[str, Any]) -> dict[str, Any]:
@@ -168,7 +171,8 @@ class Fragments:
         if live.scalars is None:
             own = None if live.scene is None else (live.scene.material.color or WHITE)
             given = drawing.get("color")
-            drawing["color"] = (True if own is None else own) if given is None else given
+            usual = WHITE if drawing.get("texture") is not None else True
+            drawing["color"] = (usual if own is None else own) if given is None else given
         return drawing
 
     def start(self, live: Live, actor: vtkActor) -> None:
@@ -261,13 +265,18 @@ def _structure(scene: Scene, lights: Sequence[Light], source: Source) -> tuple[o
     )  # fmt: skip
 
 
-def _rows(inputs: ShadingInputs, rows: ArraySource | None) -> Array | None:
-    """Return unit vectors, one per point, also where several points share one."""
+def _rows(
+    inputs: ShadingInputs, rows: ArraySource | None, live: Live | None = None
+) -> Array | None:
+    """Return unit vectors, one per point, or with ``live`` per point that is drawn."""
     if rows is None:
         return None
-    unit = kernels.unit_rows(np.asarray(rows[0 : rows.shape[0]]).reshape(-1, 3))
+    vectors = np.asarray(rows[0 : rows.shape[0]]).reshape(-1, 3)
+    if len(vectors) != inputs.count:
+        vectors = np.repeat(vectors, inputs.repeat, axis=0)
+    unit = kernels.unit_rows(vectors if live is None else live.picked(vectors))
     unit[~np.all(np.isfinite(unit), axis=1)] = 0
-    return unit if len(unit) == inputs.count else np.repeat(unit, inputs.repeat, axis=0)
+    return unit
 
 
 def _lean_lengths(source: Source, averted: Bools) -> Array:

@@ -3,23 +3,32 @@
 from __future__ import annotations
 
 import base64
+import functools
 import html
 import io
 import json
 import string
+from collections.abc import Mapping
 from importlib import resources
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
+import numpy as np
 import pyvista as pv
 from PIL import Image
 
-from vizlight import _check, files
-from vizlight.filters.key import TEXTS, key_picture, preset_of
+from vizlight import _check
+from vizlight.files import check_output, replace_file
+from vizlight.filters import relight
+from vizlight.filters.key import TEXTS, preset_of
+from vizlight.mesh import records
 from vizlight.mesh.blocks import all_blocks
 from vizlight.mesh.polylines import backdrop
+from vizlight.pictures import backends
+from vizlight.pictures.cameras import camera_on
 from vizlight.plotting.page import Page
-from vizlight.scene import Scene, View
+from vizlight.scene import Scene
+from vizlight.shading.results import DEFAULT_NAME
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -32,10 +41,12 @@ __all__ = ["live_html"]
 
 #: File name extensions of a page.
 SUFFIXES = (".html", ".htm")
+#: Parts of the script, in their order, and the name of its file beside a page.
+SCRIPTS, SCRIPT = ("gl.js", "app.js", "copied.js", "panel.js"), "viewer.js"
 
 
 def live_html(
-    mesh: pv.DataSet | pv.MultiBlock,
+    mesh: pv.DataSet | pv.MultiBlock | Mapping[float, pv.DataSet | pv.MultiBlock],
     /,
     scene: Scene | None,
     path: str | Path,
@@ -47,18 +58,24 @@ def live_html(
     background: ColorLike | None = None,
     panel: bool = True,
     key: bool = True,
+    frames: str = "frame",
+    files: Literal[1, 2] = 1,
+    source: Sequence[str] = (),
     **options: Any,
 ) -> Path:
     """Write one HTML file that shows a mesh, whose light follows the eye of the reader.
 
     The file opens from disk and makes no network request. The light of each fragment is computed
-    in the browser, by the same text as in a plotter; sliders change lights and material. The page
-    turns by mouse, touch and arrow keys.
+    in the browser, by the same text as in a plotter. A panel drags lamps over a lit ball, takes
+    light by question, moves material, colours and a cut, goes back, and copies the picture as
+    Python or as a command. The page turns by mouse, touch and arrow keys.
 
     Parameters
     ----------
-    mesh : pyvista.DataSet or pyvista.MultiBlock
-        Mesh, which is not changed. Each block has a name in the page and can be switched off.
+    mesh : pyvista.DataSet, pyvista.MultiBlock or mapping
+        Mesh, which is not changed. Each block has a name in the page and can be switched off. A
+        mapping has a mesh for each number, such as the levels of an isosurface or the steps of a
+        time: a slider shows one of them.
     scene : Scene or None
         Lights, material and depth cue; the reader's eye takes the place of its view. None for the
         record of a lit mesh, otherwise PyVista's lights.
@@ -74,13 +91,22 @@ def live_html(
     scalars : str, optional
         Name of the array that gives the colours, as for ``plotter.vizlight.add_mesh``.
     camera : pyvista.Camera, optional
-        First camera. Default: one that shows the whole mesh.
+        First camera. Default: the view of the scene or of the mesh's record, otherwise one that
+        shows the whole mesh.
     background : colour, optional
         Background colour. Default: black for lines alone, otherwise white.
     panel : bool, default: True
-        Whether the panel of the sliders is open at first.
+        Whether the panel is open at first.
     key : bool, default: True
         Whether the key is shown where the light comes from a preset; scalar bars are shown always.
+    frames : str, default: "frame"
+        What the numbers of a mapping are, such as ``"time in s"``.
+    files : {1, 2}
+        2 writes the script to ``viewer.js`` beside the page, for servers whose policy is
+        ``script-src 'self'``.
+    source : sequence of str, optional
+        File that the mesh was read from and options of ``vizlight light`` that light it as here,
+        for the texts that the page copies.
     **options
         As for ``plotter.vizlight.add_mesh``: options of :func:`vizlight.illuminate`, such as
         ``tangents=`` and ``conditioned=``, and keywords of ``pyvista.Plotter.add_mesh``, such as
@@ -109,29 +135,70 @@ def live_html(
 
     Notes
     -----
-    The page is 0.43 MB and, before compression, 40 bytes for each point with position, normal,
+    The page is 80 kB and, before compression, 40 bytes for each point with position, normal,
     tangent and colour: positions in 24 bits from the centre of the scene, whose rounding is 6e-8 of
-    their largest coordinate, directions in 16 bits, whose rounding is 3e-5. Differences from point
-    to point are compressed, to about a third. Colours are mapped at the points. In Chromium the
-    picture is within a mean of 1 of 255 of the light of the engine, 99 % of it within 4.
+    their largest coordinate, directions in 16 bits, whose rounding is 3e-5, and up to six arrays in
+    16 bits of their range. Differences from point to point are compressed, to about a third. In
+    Chromium the picture is within a mean of 1 of 255 of the light of the engine, 99 % of it within
+    4. Where something draws, the page has a picture for browsers without WebGL 2.
     """
-    path = files.check_output(path, SUFFIXES)
+    path = check_output(path, SUFFIXES)
+    given: object = camera
+    if given is not None and not isinstance(given, pv.Camera):
+        raise TypeError(_check.message("camera", "a pyvista.Camera", _check.describe(given)))
+    _check.integer("files", files, low=1, high=2)
+    _check.text("frames", frames)
+    steps: dict[float, pv.DataSet | pv.MultiBlock] = {}
+    if isinstance(mesh, Mapping):
+        steps |= mesh
+    else:
+        steps[0.0] = mesh
+    if not steps:
+        raise ValueError(_check.message("mesh", "one mesh or more", "an empty mapping"))
+    values = [_check.number("mesh", value) for value in steps]
     plotter: Any = pv.Plotter(off_screen=True, notebook=False)
     try:
         chosen = _check.color("background", background)
-        plotter.vizlight.add_mesh(
-            mesh, scene=scene, light=light, scalars=scalars, render=False, **options
-        )
-        plotter.background_color = chosen or backdrop(all_blocks(mesh))
-        given: object = camera
-        if given is not None and not isinstance(given, pv.Camera):
-            got = _check.describe(given)
-            raise TypeError(_check.message("camera", "a pyvista.Camera", got))
-        if camera is not None:
-            plotter.camera = camera.copy()  # type: ignore[no-untyped-call]
-        return plotter.vizlight.export_html(path, title=title, panel=panel, key=key)  # type: ignore[no-any-return]
+        owners: list[int | None] = []
+        for number, step in enumerate(steps.values()):
+            made = plotter.vizlight.add_mesh(
+                step, scene=scene, light=light, scalars=scalars, render=False, **options
+            )
+            count = len(made) if isinstance(made, list) else 1
+            owners += [number if len(steps) > 1 else None] * count
+        every = [block for step in steps.values() for block in all_blocks(step)]
+        plotter.background_color = chosen or backdrop(every)
+        whole = pv.MultiBlock([*steps.values()]) if len(steps) > 1 else next(iter(steps.values()))
+        placed = _camera(whole, scene) if camera is None else camera.copy()  # type: ignore[no-untyped-call]
+        if placed is None:
+            plotter.renderer.view_isometric(render=False)
+        else:
+            plotter.camera = placed
+        shown = plotter.vizlight.shown()
+        if len(owners) == len(shown):
+            shown = [one._replace(frame=frame) for one, frame in zip(shown, owners, strict=True)]
+        label = (frames, values) if len(steps) > 1 else None
+        return write_page(
+            path, shown, plotter, title=title, panel=panel, key=key, frames=label, files=files,
+            source=source, auto=chosen is None and plotter.background_color == "white",
+        )  # fmt: skip
     finally:
         plotter.close()
+
+
+def _camera(mesh: pv.DataSet | pv.MultiBlock, scene: Scene | None) -> pv.Camera | None:
+    """Return a camera where the view of a scene, or of the mesh's record, is."""
+    if scene is None and relight.is_lit(mesh):
+        scene = Scene.from_dict(records.provenance(mesh, DEFAULT_NAME)["scene"])
+    view = None if scene is None else scene.view
+    if view is None or scene is None or scene.n not in (None, 3):
+        return None
+    if view.position is None and view.direction is not None:
+        return camera_on(mesh, view.direction, up=view.up, parallel=view.parallel)
+    middle = np.mean(np.reshape(mesh.bounds, (3, 2)), axis=1)
+    camera = camera_on(mesh, np.asarray(view.position) - middle, up=view.up)
+    camera.position, camera.focal_point = view.position, middle.tolist()
+    return camera
 
 
 def write_page(
@@ -139,24 +206,10 @@ def write_page(
     shown: Sequence[Shown],
     plotter: pv.BasePlotter,
     *,
-    title: str = "",
-    panel: bool = True,
-    key: bool = True,
+    files: Literal[1, 2] = 1,
+    **content: Any,
 ) -> Path:
-    """Write the page of meshes with live light.
-
-    Parameters
-    ----------
-    path : path
-    shown : sequence of Shown
-    plotter : pyvista.Plotter
-        Plotter with the camera and the lights.
-    title : str
-        Title of the page.
-    panel : bool
-        Whether the panel is open at first.
-    key : bool
-        Whether the key of a preset's light is shown.
+    """Write the page of meshes with live light; see :func:`page_text`.
 
     Returns
     -------
@@ -167,50 +220,117 @@ def write_page(
     FileError
         If the file cannot be written.
     """
-    path = files.check_output(path, SUFFIXES)
+    path = check_output(path, SUFFIXES)
+    beside = path.with_name(SCRIPT)
+    text = page_text(shown, plotter, stem=path.stem, script=SCRIPT if files == 2 else "", **content)
+    if files == 2:
+        replace_file(beside, lambda draft: Path(draft).write_text(viewer(), "utf-8"))
+    return replace_file(path, lambda draft: Path(draft).write_text(text, "utf-8"))
+
+
+def page_text(
+    shown: Sequence[Shown],
+    plotter: pv.BasePlotter,
+    *,
+    stem: str = "scene",
+    title: str = "",
+    panel: bool = True,
+    key: bool = True,
+    frames: tuple[str, Sequence[float]] | None = None,
+    source: Sequence[str] = (),
+    auto: bool = False,
+    script: str = "",
+) -> str:
+    """Return the text of a page of meshes with live light.
+
+    Parameters
+    ----------
+    shown : sequence of Shown
+    plotter : pyvista.Plotter
+        Plotter with the camera and the lights.
+    stem : str
+        Name of the pictures that a reader saves.
+    title : str
+        Title of the page.
+    panel, key : bool
+        Whether the panel is open at first, and whether the key of a preset's light is shown.
+    frames : (str, sequence of float), optional
+        What the numbers of the frames are, and the numbers.
+    source : sequence of str
+        File, and options of the command that lights it alike.
+    auto : bool
+        Whether nobody chose the background, which is dark then on dark pages.
+    script : str
+        File of the script; empty for one within the page.
+
+    Returns
+    -------
+    str
+    """
     _check.text("title", title)
     panel, key = _check.boolean("panel", panel), _check.boolean("key", key)
-    renderer = plotter.renderer
-    page = Page(renderer)
+    page = Page(plotter.renderer)
     for one in shown:
         page.add(one)
+    page.add_values(shown)
     page.add_bars(plotter, shown)
-    dark = sum(page.background) < 1.5
-    channels = [round(255 * c) for c in page.background]
+    if source:
+        file, *words = [str(word) for word in source]
+        page.recipe |= {"file": file, "command": words}
+    content = page.content() | {
+        "name": title or stem, "stem": stem, "panel": panel, "frame": 0,
+        "frames": None if frames is None else {"label": frames[0], "values": list(frames[1])},
+        "key": _key_words(shown[0].live) if key else None, "auto": auto,
+    }  # fmt: skip
     text = string.Template(_web("page.html")).substitute(
         title=html.escape(title or "vizlight"),
         heading=html.escape(title),
         label=html.escape(title or "Scene", quote=True),
-        scheme="dark" if dark else "light",
-        background=f"rgb({', '.join(map(str, channels))})",
-        open=" open" if panel else "",
+        policy="'self'" if script else "'unsafe-inline'",
+        picture=_picture(plotter),
         # A tag within the text would end the script.
-        key=_key(shown[0].live, plotter) if key else "",
-        scene=json.dumps(page.content(), allow_nan=False).replace("<", "\\u003c"),
-        viewer=_web("viewer.min.js").replace("</script", "<\\/script"),
+        scene=json.dumps(content, allow_nan=False).replace("<", "\\u003c"),
+        script=f'<script src="{script}"></script>' if script else f"<script>{viewer()}</script>",
     )
-    written = files.replace_file(path, lambda draft: Path(draft).write_text(text, "utf-8"))
     for notice in page.notices:
         _check.warn(notice)
-    return written
+    return text
 
 
-def _key(live: Live, plotter: pv.BasePlotter) -> str:
-    """Return the figure of a key where the light comes from a preset, with its words."""
-    if live.scene is None or live.scalars is not None:
+@functools.cache
+def viewer() -> str:
+    """Return the script of all pages, without comments and indentation."""
+    parts = [f"const STYLE = {json.dumps(_bare(_web('page.css')))};", *map(_web, SCRIPTS)]
+    text = _bare("\n".join(parts)).replace("</script", "<\\/script")
+    return f"'use strict';\n(() => {{\n{text}\n}})();\n"
+
+
+def _bare(text: str) -> str:
+    """Return a text without comments of whole lines and without indentation."""
+    lines = (line.strip() for line in text.splitlines())
+    return "\n".join(line for line in lines if line and not line.startswith("// "))
+
+
+def _picture(plotter: pv.BasePlotter) -> str:
+    """Return an element with the picture of a plotter, empty where nothing draws yet."""
+    try:
+        backends.choose_backend()
+        seen = plotter.screenshot(None, return_img=True)
+    except (backends.BackendError, AttributeError):
+        # A plotter with a window on a screen has no picture before it is shown.
         return ""
-    question = preset_of(live.scene)
-    if question in (None, "value"):
-        return ""
-    scene = live.scene.replace(view=View.from_camera(plotter.camera))
-    seen = key_picture(scene, question=question, exponent=live.source.options.exponent)
     file = io.BytesIO()
-    Image.fromarray(seen).save(file, "PNG")
+    Image.fromarray(np.asarray(seen)[..., :3]).convert("RGB").save(file, "JPEG", quality=70)
     data = base64.b64encode(file.getvalue()).decode()
-    words = "".join(f"<span>{html.escape(word)}</span>" for word in TEXTS[question])
-    alt = html.escape(f"Key: {' to '.join(TEXTS[question])}", quote=True)
-    image = f'<img src="data:image/png;base64,{data}" alt="{alt}" width="{seen.shape[1] // 2}">'
-    return f'<figure class="key">{image}<figcaption class="numbers">{words}</figcaption></figure>'
+    return f'<img id="picture" alt="The scene" src="data:image/jpeg;base64,{data}">'
+
+
+def _key_words(live: Live) -> list[str] | None:
+    """Return the words of the key where the light comes from a preset."""
+    if live.scene is None or live.scalars is not None:
+        return None
+    question = preset_of(live.scene)
+    return None if question in (None, "value") else list(TEXTS[question])
 
 
 def _web(name: str) -> str:

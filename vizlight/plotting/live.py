@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 import warnings
-from typing import TYPE_CHECKING, Any, Literal, Protocol
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
 from vizlight.filters import relight
-from vizlight.filters.tint import values_of
+from vizlight.filters.tint import are_colors, values_of
 from vizlight.mesh import hull, point_arrays
 from vizlight.scene import Light, Material, Scene, View
 from vizlight.scene.light import default_lights
@@ -24,9 +24,10 @@ if TYPE_CHECKING:
     from vtkmodules.vtkCommonCore import vtkCollection
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
-    from vizlight._types import Array, Indices, Vector
+    from vizlight._types import Array, Bools, Indices, Vector
     from vizlight.shading.inputs import ShadingInputs
 
+Number = TypeVar("Number", bound=np.generic)
 #: Place where the light is computed.
 LightAt = Literal["auto", "points", "fragments"]
 #: Names of the arrays that the drawn copy of a mesh has beside the mesh's own.
@@ -90,7 +91,7 @@ class Live:
         self.scalars: str | None = None
         self.given: str | None = None
         self._component: int | None = None
-        self._of_cells = False
+        self._of_cells = self._averaged = False
         self._changed = source.mesh.GetMTime()
         self._state: tuple[object, ...] = ()
         self._placed: tuple[tuple[float, ...], ShadingInputs] | None = None
@@ -114,34 +115,59 @@ class Live:
             mesh, self._shown = hull.outer_surface(mesh)
         self.drawn.shallow_copy(mesh)
 
+    def picked(self, rows: NDArray[Number]) -> NDArray[Number]:
+        """Return the rows of the points that are drawn, from one for each point of the mesh."""
+        if self._shown is None:
+            return rows
+        # A control point of a curved cell, which has no index, is not lit.
+        missing, rows = self._shown < 0, rows[self._shown]
+        rows[missing] = 0
+        return rows
+
     def attach(self, name: str, rows: NDArray[np.generic]) -> None:
         """Attach one row for each point of the mesh to what is drawn."""
-        if self._shown is not None:
-            # A control point of a curved cell, which has no index, is not lit.
-            missing, rows = self._shown < 0, rows[self._shown]
-            rows[missing] = 0
-        point_arrays.attach_rows(self.drawn, name, rows)
+        point_arrays.attach_rows(self.drawn, name, self.picked(rows))
 
     def color_by(self, scalars: str, component: int | None, *, at_points: bool) -> None:
         """Take the colours from an array of the mesh.
 
+        Colours of cells are averaged where the light is at the points, with a warning.
+
         Raises
         ------
         TypeError, ValueError
-            If there is no such array, or it is a cell array and the light is at the points.
+            If there is no such array.
         """
         self.given, self._component = scalars, component
         self.scalars = scalars
         mesh = self.source.mesh
         self._of_cells = scalars in mesh.cell_data and scalars not in mesh.point_data
-        if at_points or not self._of_cells:
-            self._color(scalars, values_of(mesh, scalars, component))
+        self._averaged = self._of_cells and at_points
+        if self._averaged:
+            _check.warn(f"the colours of {scalars!r} are averaged from cells to points")
+        self._color(self._values())
 
-    def _color(self, given: str, values: NDArray[np.generic]) -> None:
+    def _values(self) -> NDArray[np.generic] | None:
+        """Return the values that are coloured; None for an array of the mesh as it is."""
+        if self.given is None or (self._of_cells and not self._averaged):
+            return None
+        mesh = self.source.mesh
+        if self._averaged:
+            mesh = _at_points(mesh, self.given)
+        values = values_of(mesh, self.given, self._component)
+        return values if self._averaged or mesh.point_data[self.given].ndim > 1 else None
+
+    def _color(self, values: NDArray[np.generic] | None) -> None:
         """Attach the values that are coloured, unless they are an array of the mesh."""
-        if np.ndim(self.source.mesh.point_data[given]) > 1:
+        if values is not None:
             self.scalars = VALUES
             self.attach(VALUES, values)
+
+    def has_colors(self) -> bool:
+        """Return whether the array that is drawn holds colours, not values."""
+        name, points = self.scalars or "", self.drawn.point_data
+        values = points[name] if name in points else self.drawn.cell_data[name]
+        return self._component is None and are_colors(np.asarray(values))
 
     def start(self, renderer: vtkRenderer, actor: vtkActor) -> None:
         """Light the mesh for the first time.
@@ -161,17 +187,21 @@ class Live:
 
     def invalid(self) -> int:
         """Return the number of points whose vectors have no direction."""
-        good = np.ones(self.source.inputs.rows, dtype=np.bool_)
+        # Points inside a volume, which are not drawn, have no normal.
+        seen = None if self._shown is None else self._shown[self._shown >= 0]
+        good: Bools = np.ones(1, dtype=np.bool_)
         for rows in (self.source.inputs.tangents, self.source.inputs.normals):
-            if rows is not None and rows.shape[0] == len(good):
-                vectors = np.asarray(rows[:]).reshape(len(good), -1)
-                good &= np.any(vectors, axis=1) & np.all(np.isfinite(vectors), axis=1)
-        unlit = int(np.count_nonzero(~good)) - self.source.inside
+            if rows is not None and rows.shape[0] == self.source.inputs.rows:
+                vectors = np.asarray(rows[:] if seen is None else rows[:][seen])
+                vectors = vectors.reshape(len(vectors), -1)
+                good = good & np.any(vectors, axis=1) & np.all(np.isfinite(vectors), axis=1)
+        unlit = int(np.count_nonzero(~good)) - (self.source.inside if seen is None else 0)
         return max(unlit, 0) * self.source.inputs.repeat
 
     def lacks_values(self) -> bool:
         """Return whether any of the values that are coloured is NaN."""
-        data = self.source.mesh.cell_data if self._of_cells else self.drawn.point_data
+        at_cells = self._of_cells and not self._averaged
+        data = self.source.mesh.cell_data if at_cells else self.drawn.point_data
         values = np.asarray(data[self.scalars or ""])
         return bool(values.dtype.kind == "f" and np.isnan(values).any())
 
@@ -228,7 +258,7 @@ class Live:
             return
         self._changed = mesh.GetMTime()
         # What cannot be lit or coloured any more stays as it is drawn.
-        source, given, values = self.source, self.given, None
+        source, values = self.source, self._values()
         if named is not None:
             scene = self.scene_of(renderer, actor)
             if self.scene is None:
@@ -236,12 +266,9 @@ class Live:
                 fixed = [light.seen_from(scene.view) for light in scene.lights]
                 scene = scene.replace(lights=fixed)
             source = relight.read(mesh, "", scene, named)
-        if given is not None and not self._of_cells:
-            values = values_of(mesh, given, self._component)
         self.source, self._placed = source, None
         self._redraw()
-        if given is not None and values is not None:
-            self._color(given, values)
+        self._color(values)
         if self.painter is not None:
             self.painter.attach(self)
 
@@ -291,10 +318,49 @@ def scene_of(renderer: vtkRenderer, actor: vtkActor, model: str) -> Scene:
     return Scene(lights=lights, material=material, view=view)
 
 
+def _at_points(mesh: pv.DataSet, name: str) -> pv.DataSet:
+    """Return points with the means of a cell array over the cells that meet there."""
+    bare = mesh.copy(deep=False)
+    bare.clear_data()
+    values = np.asarray(mesh.cell_data[name])
+    bare.cell_data[name] = values.astype(np.float64)
+    points: pv.DataSet = bare.cell_data_to_point_data()
+    if values.dtype == np.uint8:
+        points.point_data[name] = np.rint(points.point_data[name]).astype(np.uint8)
+    return points
+
+
 def items(collection: vtkCollection) -> Iterator[Any]:
     """Yield what a collection of VTK holds."""
     for i in range(collection.GetNumberOfItems()):
         yield collection.GetItemAsObject(i)
+
+
+def is_copy(actor: vtkActor) -> bool:
+    """Return whether an actor draws what was made for a live light."""
+    mapper: Any = actor.GetMapper()
+    data: Any = None if mapper is None else mapper.GetInputDataObject(0, 0)
+    own = (NORMALS, TANGENTS, COLORS)
+    if not hasattr(data, "GetPointData"):
+        return False
+    return any(data.GetPointData().HasArray(name) for name in own)
+
+
+def has_pass(renderer: vtkRenderer, kind: str) -> bool:
+    """Return whether a renderer draws by a pass of a class of VTK, at any depth."""
+    waiting: list[Any] = [renderer.GetPass()]
+    while waiting:
+        step = waiting.pop()
+        if step is None:
+            continue
+        if step.IsA(kind):
+            return True
+        if step.IsA("vtkSequencePass"):
+            waiting += items(step.GetPasses())
+        for name in ("GetDelegatePass", "GetSequence"):
+            if hasattr(step, name):
+                waiting.append(getattr(step, name)())
+    return False
 
 
 def lifted(scene: Scene, n: int) -> Scene:

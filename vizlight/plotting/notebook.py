@@ -1,7 +1,8 @@
-"""Notebooks and exported scenes: live light needs the renderer that Python has."""
+"""Notebooks and exported scenes: live light is drawn by Python, or by a page of its own."""
 
 from __future__ import annotations
 
+import html
 import importlib.util
 import sys
 import weakref
@@ -25,8 +26,37 @@ TRAME = "trame"
 EXPORTS = ("export_html", "export_vtksz", "export_gltf", "export_obj", "export_vrml")
 
 
+#: Least height of a page in a notebook, in pixels.
+LOWEST = 420
+#: What a page in a frame may do: run, save pictures and copy texts; nothing of the notebook.
+SANDBOX = "allow-scripts allow-downloads allow-modals"
+
+
+class Frame:
+    """A page within a notebook, which stays interactive where the notebook is exported.
+
+    Parameters
+    ----------
+    text : str
+        Text of the page.
+    height : int
+        Height in pixels.
+    """
+
+    def __init__(self, text: str, height: int) -> None:
+        self.text, self.height = text, height
+
+    def _repr_html_(self) -> str:
+        """Return the frame as a notebook displays it."""
+        style = f"width: 100%; height: {self.height}px; border: 0"
+        return (
+            f'<iframe srcdoc="{html.escape(self.text, quote=True)}" sandbox="{SANDBOX}" '
+            f'allow="clipboard-write; fullscreen" style="{style}" title="Lit scene"></iframe>'
+        )
+
+
 class Guarded:
-    """A backend of PyVista that draws plotters with live light on the server or refuses them."""
+    """A backend of PyVista that draws plotters with live light on the server or as a page."""
 
     def __init__(self, name: str, handler: Handler) -> None:
         self.name, self.handler = name, handler
@@ -41,16 +71,26 @@ class Guarded:
         """
         if is_live(plotter):
             mode = options.get("mode") or self.name
-            if mode in ("client", "html"):
-                expected = "server rendering for light that follows the camera"
-                remedy = (
-                    "pass jupyter_backend='server', or draw the result of vizlight.illuminate or "
-                    "vizlight.tint by plotter.add_mesh(lighting=False)"
-                )
+            if mode == "html":
+                return _frame(plotter)
+            if mode == "client":
+                expected = "'html', or server rendering for light that follows the camera"
+                remedy = "pass jupyter_backend='html' or 'server'"
                 raise ValueError(_check.message("jupyter_backend", expected, repr(mode), remedy))
             # The backend "trame" has a button that would leave the drawing to the browser.
             options["mode"] = "server"
         return self.handler(plotter, **options)
+
+
+def _frame(plotter: pv.BasePlotter) -> Frame:
+    """Return the page of a plotter with live light, as high as its window."""
+    from vizlight.plotting.html import page_text
+
+    shown = plotter.vizlight.shown()
+    if not plotter.camera_set:
+        plotter.renderer.view_isometric(render=False)
+    height = max(int(plotter.window_size[1]), LOWEST)
+    return Frame(page_text(shown, plotter, panel=False), height)
 
 
 def is_live(plotter: pv.BasePlotter) -> bool:
@@ -60,7 +100,12 @@ def is_live(plotter: pv.BasePlotter) -> bool:
 
 def guard() -> None:
     """Let the backends of PyVista that draw in the browser know of live light."""
-    for registered in pv.jupyter.registered_jupyter_backends():
+    known = pv.jupyter.registered_jupyter_backends()
+    if all(registered.name != "html" for registered in known):
+        # Without trame, which live light does not need, other plotters are pictures as before.
+        static = pv.jupyter.notebook.show_static_image
+        pv.jupyter.register_jupyter_backend("html", Guarded("html", static), override=True)
+    for registered in known:
         if registered.name in DRAWN_BY_THE_BROWSER and not isinstance(registered.handler, Guarded):
             guarded = Guarded(registered.name, registered.handler)
             pv.jupyter.register_jupyter_backend(registered.name, guarded, override=True)

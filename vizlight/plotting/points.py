@@ -126,8 +126,9 @@ def _colors(live: Live, actor: vtkActor) -> NDArray[np.uint8]:
     """Return the colours of the data, as the mapper has them."""
     values = np.asarray(live.drawn.point_data[live.scalars or ""])
     if values.ndim == 2:
-        # PyVista keeps colours of its own for an opacity of each point.
-        return values.astype(np.uint8)
+        # Colours as they were given, or PyVista's own for an opacity of each point.
+        colors = values.astype(np.uint8)
+        return colors if colors.shape[1] == 4 else np.insert(colors, 3, 255, axis=1)
     table: pv.LookupTable = actor.GetMapper().GetLookupTable()
     return map_colors(table, values)
 

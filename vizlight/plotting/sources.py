@@ -12,26 +12,33 @@ from vizlight import _check
 from vizlight.filters import relight
 from vizlight.filters.tint import RGB, unlit_colors
 from vizlight.mesh import blocks, hull, records
-from vizlight.mesh.normals import are_computed, split_where_computed
+from vizlight.mesh.normals import split_where_computed
+from vizlight.model import kernels
 from vizlight.plotting.live import headlight_scene, lifted
 from vizlight.reading.inputs import uses_normals
+from vizlight.reading.normals import computed_normals
+from vizlight.reading.orientation import MANY_SHARP, SHARP
 from vizlight.shading.options import LightOptions
 
 if TYPE_CHECKING:
     from vizlight.filters.relight import Source
     from vizlight.scene import Scene
+    from vizlight.shading.options import FeatureAngle
 
 
 def sources_of(
-    mesh: pv.DataSet | pv.MultiBlock, scene: Scene | None, options: dict[str, Any]
+    mesh: pv.DataSet | pv.MultiBlock,
+    scene: Scene | None,
+    options: dict[str, Any],
+    angle: FeatureAngle = "auto",
 ) -> tuple[list[Source], Scene | None]:
     """Return what is lit: by the record of the mesh, or by options.
 
-    Without a record surfaces are split at their creases, unless ``feature_angle`` is None.
+    Without a record surfaces are split at edges of an angle, unless ``feature_angle`` is given.
     """
     if not options and relight.is_lit(mesh):
         return relight.from_record(mesh, scene)
-    asked = LightOptions(**({"feature_angle": "auto"} | options))
+    asked = LightOptions(**({"feature_angle": angle} | options))
     mesh = blocks.like(mesh, (_split(block, asked) for block in blocks.all_blocks(mesh)))
     asked = dataclasses.replace(asked, feature_angle=None)
     spaces = {
@@ -51,15 +58,31 @@ def _split(mesh: pv.DataSet, asked: LightOptions) -> pv.DataSet:
     """Return a surface whose points are split at sharp edges, the mesh itself if there are none."""
     if not (mesh.n_points and mesh.n_cells and isinstance(asked.tangents, str | None)):
         return mesh
-    if asked.positions is not None or not (uses_normals(mesh, asked) and are_computed(mesh, asked)):
+    if asked.positions is not None or asked.normals is not None or not uses_normals(mesh, asked):
         return mesh
-    surface = mesh
-    if isinstance(mesh, pv.UnstructuredGrid):
-        surface = hull.outer_surface(mesh)[0]
+    bare, given = mesh, mesh.point_data.active_normals_name
+    if given is not None:
+        bare = mesh.copy(deep=False)
+        bare.point_data.active_normals_name = None
+    surface = bare
+    if isinstance(bare, pv.UnstructuredGrid):
+        surface = hull.outer_surface(bare)[0]
     if not isinstance(surface, pv.PolyData):
         return mesh
     split = split_where_computed(surface, asked.feature_angle)
-    return mesh if split is surface else split
+    if split is surface:
+        return mesh
+    averaged = given is None or asked.feature_angle != "auto" or _fit_no_face(split, given)
+    return split if averaged else mesh
+
+
+def _fit_no_face(split: pv.PolyData, given: str) -> bool:
+    """Return whether normals from before a split are those of neither side of many edges."""
+    own, new = kernels.unit_rows(split.point_data[given]), computed_normals(split).vectors
+    cosine, known = np.abs(np.einsum("ij,ij->i", own, new)), np.any(new, axis=1)
+    apart = known & (cosine < np.cos(np.radians(SHARP / 2)))
+    # Faces without area are those of points that were rounded, whose edges are no creases.
+    return bool(np.mean(apart) > MANY_SHARP >= np.mean(~known))
 
 
 def tinted(mesh: pv.DataSet, *, warn: bool = True) -> tuple[str | None, dict[str, Any]]:

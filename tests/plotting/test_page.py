@@ -1,0 +1,180 @@
+"""No name or text of a page is read as HTML, script or command, and what is copied draws it."""
+
+from __future__ import annotations
+
+import ast
+import base64
+import importlib.util
+import io
+import json
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import pyvista as pv
+from PIL import Image
+
+import vizlight
+from vizlight import Light, Material, Scene, View
+
+pytestmark = pytest.mark.opengl
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+BASH = shutil.which("bash")
+SOFTWARE = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader"]
+SOFTWARE += ["--enable-unsafe-swiftshader"]
+MISSING = [name for name in ("playwright",) if importlib.util.find_spec(name) is None]
+MISSING += [name for name, path in (("chromium", CHROMIUM), ("bash", BASH)) if path is None]
+needs_browser = pytest.mark.skipif(bool(MISSING), reason=f"needs {', '.join(MISSING)}")
+#: Texts that would run as HTML, as script, as Python or in a shell where one is not escaped.
+PAYLOADS = (
+    "</script><script>window.hit=1</script>",
+    "<img src=x onerror=window.hit=1>",
+    "\"><svg onload=window.hit=1>",
+    "'><iframe srcdoc='<script>top.hit=1</script>'>",
+    "javascript:window.hit=1",
+    "<!--<script>window.hit=1//-->",
+    "]]><script>window.hit=1</script>",
+    "</title><script>window.hit=1</script>",
+    "</style><script>window.hit=1</script>",
+    "&lt;script&gt;window.hit=1&lt;/script&gt;",
+    "${window.hit=1}",
+    "`${window.hit=1}`",
+    "{{constructor.constructor('window.hit=1')()}}",
+    "'; touch hit; '",
+    "$(touch hit)`touch hit`",
+    "a\nEND\ntouch hit\n",
+    "; touch hit #",
+    "| touch hit",
+    "> hit",
+    "*?[a-z]{a,b}~",
+    "!! \\\\ $HOME %PATH%",
+    '"""); open("hit", "w")  # \\',
+    "'''); open('hit', 'w')  # \\'",
+    "\\\"); open('hit', 'w')  #",
+    "-o hit",
+    "--output=hit",
+    "__proto__",
+    "constructor",
+    "$scene $script $& $` $'",
+    "\u202e\u2028\u2029<\u00e9\u6f22\U0001f642",
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def browser():
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as play:
+        made = play.chromium.launch(executable_path=CHROMIUM, args=SOFTWARE)
+        yield made
+        made.close()
+
+
+def opened(browser, path):
+    page = browser.new_page(viewport={"width": 900, "height": 600})
+    seen = []
+    page.on("request", lambda request: seen.append(request.url))
+    page.on("console", lambda message: seen.append(message.text))
+    page.on("pageerror", lambda error: seen.append(str(error)))
+    page.on("dialog", lambda dialog: seen.append(dialog.message))
+    page.goto(path.as_uri())
+    page.wait_for_selector("body[data-ready]")
+    return page, seen
+
+
+def hostile(text, path):
+    """Write a page with a text in every place that takes one."""
+    mesh = pv.Sphere(theta_resolution=6, phi_resolution=6)
+    mesh[text] = np.asarray(mesh.points)[:, 2]
+    mesh[f"field {text}"] = np.tile((1.0, 0.2, 0.1), (mesh.n_points, 1))
+    blocks = pv.MultiBlock({text: mesh, f"2 {text}": mesh.translate((1, 0, 0))})
+    words = ["--tangents", f"field {text}", "--threshold", f"{text}:0:1"]
+    return vizlight.live_html(
+        {0.0: blocks, 1.0: blocks}, Scene(lights=Light(direction=(1, 0, 1))), path, title=text,
+        tangents=f"field {text}", scalars=text, frames=text, source=[text, *words],
+    ), words  # fmt: skip
+
+
+@needs_browser
+@pytest.mark.parametrize(
+    "number",
+    # A page takes two seconds: the others are those of slow tests.
+    [pytest.param(i, marks=[] if i % 6 == 0 else pytest.mark.slow) for i in range(len(PAYLOADS))],
+)
+def test_no_text_is_read_as_anything_else(number, browser, tmp_path):
+    text = PAYLOADS[number]
+    path, words = hostile(text, tmp_path / "page.html")
+    page, seen = opened(browser, path)
+    title = page.evaluate("document.querySelector('h1').textContent")
+    assert title == text
+    copied = page.evaluate("vizlight.texts()")
+    page.evaluate("() => vizlight.look('shape')")
+    page.evaluate("(name) => vizlight.change({ color: name, look: '' })", text)
+    again = page.evaluate("vizlight.texts()")
+    page.get_by_role("button", name="Copy as Python").click()
+    page.wait_for_timeout(30)
+    strange = "main img, main script, aside img, aside script, iframe, object, h1 *, dialog pre *"
+    assert page.evaluate(f"document.querySelectorAll({json.dumps(strange)}).length") == 0
+    assert page.evaluate("window.hit") is None
+    assert seen == [path.as_uri()]
+    page.close()
+    for python in (copied["python"], again["python"]):
+        strings = {node.value for node in ast.walk(ast.parse(python)) if _is_string(node)}
+        assert text in strings
+        assert f"field {text}" in strings
+    for command in (copied["command"], again["command"]):
+        run = subprocess.run(
+            [BASH, "-c", f"vizlight() {{ printf '%s\\0' \"$@\"; }}\n{command}"],
+            cwd=tmp_path, capture_output=True, check=True,
+        )  # fmt: skip
+        first, file, *rest = run.stdout.decode().split("\0")
+        assert (first, file) == ("light", f"./{text}" if text.startswith("-") else text)
+        assert rest[: len(words)] == words
+        assert {p.name for p in tmp_path.iterdir()} == {
+            "page.html", "page.scene.json", "page.view.json",
+        }  # fmt: skip
+    assert rest[rest.index("--scalars") + 1] == text
+
+
+def _is_string(node):
+    return isinstance(node, ast.Constant) and isinstance(node.value, str)
+
+
+@needs_browser
+@pytest.mark.parametrize("state", ["first", "lamp", "cut", "parallel", "colours"])
+def test_the_copied_command_draws_the_picture(state, browser, tmp_path):
+    """The command, run by a shell as it was copied, draws what the page shows."""
+    mesh = pv.ParametricTorus(u_res=90, v_res=60)
+    mesh.clear_data()
+    mesh["height"] = np.asarray(mesh.points)[:, 2]
+    mesh.save(tmp_path / "ring.vtp")
+    scene = Scene(
+        lights=Light(direction=(1, 0.9, 0.5), color=(1, 0.8, 0.6)), view=View(direction=(1, 1, 1)),
+        material=Material(ambient=0.2, diffuse=0.6, specular=0.2),
+    )  # fmt: skip
+    path = vizlight.live_html(
+        pv.read(tmp_path / "ring.vtp"), scene, tmp_path / "a.html", background="black",
+        source=["ring.vtp"],
+    )  # fmt: skip
+    page, _ = opened(browser, path)
+    act = {
+        "lamp": "app.put(app.lamps[0], [0.6, 0, 0.8]); app.change({ fade: 0.5 })",
+        "cut": "app.change({ cut: { axis: 0, at: 0.4, far: true } })",
+        "parallel": "app.state.camera.parallel = true; app.orbit(0.3, 0.2); app.change({})",
+        "colours": "app.change({ color: 'height', cmap: 'plasma' })",
+    }.get(state, "app.draw()")
+    page.evaluate(f"() => {{ const app = vizlight; {act}; app.moving = false; app.draw(); }}")
+    data = page.evaluate("vizlight.canvas.toDataURL().split(',')[1]")
+    command = page.evaluate("vizlight.texts().command")
+    page.close()
+    shell = f'vizlight() {{ {sys.executable} -m vizlight "$@"; }}\n{command}'
+    subprocess.run([BASH, "-c", shell], cwd=tmp_path, capture_output=True, check=True)
+    seen = np.array(Image.open(io.BytesIO(base64.b64decode(data))).convert("RGB"))
+    drawn = np.array(Image.open(tmp_path / "a.png").convert("RGB"), dtype=np.int16)
+    error = np.abs(seen - drawn)
+    assert drawn.std() > 10
+    assert error.mean() <= 1.5
+    assert np.quantile(error.max(axis=-1), 0.97) <= 6

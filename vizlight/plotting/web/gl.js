@@ -1,0 +1,386 @@
+// WebGL 2 draws triangles, strokes and points whose light is a text that Python wrote.
+
+const KINDS = { i2: Int16Array, i4: Int32Array, u1: Uint8Array, u2: Uint16Array, u4: Uint32Array };
+const NO_NUMBER = -(2 ** 31); // stands for a coordinate that is not finite
+const NO_VALUE = 65535; // stands for a value that is not finite
+const GREY = 128;
+
+// ---- vectors; matrices are lists of columns
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const plus = (a, b, s = 1) => [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]];
+const minus = (a, b) => plus(a, b, -1);
+const scaled = (a, s) => [a[0] * s, a[1] * s, a[2] * s];
+const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+const norm = (a) => Math.hypot(a[0], a[1], a[2]);
+const unit = (a) => scaled(a, 1 / (norm(a) || 1));
+const rotate = (m, v) => [0, 1, 2].map((r) => m[r] * v[0] + m[r + 4] * v[1] + m[r + 8] * v[2]);
+const rotateBack = (m, v) => [0, 4, 8].map((c) => m[c] * v[0] + m[c + 1] * v[1] + m[c + 2] * v[2]);
+const place = (m, v) => plus(rotate(m, v), m.slice(12, 15));
+const placeBack = (m, v) => rotateBack(m, minus(v, m.slice(12, 15)));
+function spun(v, axis, angle) {
+  const [c, s] = [Math.cos(angle), Math.sin(angle)];
+  return plus(plus(scaled(v, c), cross(axis, v), s), axis, dot(axis, v) * (1 - c));
+}
+function product(a, b) {
+  const m = new Array(16).fill(0);
+  for (let c = 0; c < 4; c += 1) for (let r = 0; r < 4; r += 1) for (let k = 0; k < 4; k += 1) m[4 * c + r] += a[4 * k + r] * b[4 * c + k];
+  return m;
+}
+
+function viewOf({ position, focal, up }) {
+  const z = unit(minus(position, focal));
+  const x = unit(cross(up, z));
+  const y = cross(z, x);
+  return [x[0], y[0], z[0], 0, x[1], y[1], z[1], 0, x[2], y[2], z[2], 0, -dot(x, position), -dot(y, position), -dot(z, position), 1];
+}
+
+// In an upright window the angle and the scale are those from side to side.
+function lens({ angle, parallel, scale }, aspect, near, far) {
+  const narrow = Math.min(aspect, 1);
+  const depth = far - near;
+  if (parallel) {
+    const half = scale / narrow;
+    return [1 / (half * aspect), 0, 0, 0, 0, 1 / half, 0, 0, 0, 0, -2 / depth, 0, 0, 0, -(far + near) / depth, 1];
+  }
+  const f = narrow / Math.tan((angle * Math.PI) / 360);
+  return [f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, -(far + near) / depth, -1, 0, 0, (-2 * far * near) / depth, 0];
+}
+
+// ---- numbers, as Python packs them
+// Several bytes come as differences from row to row (order 1) or differences of those (order 2), the
+// sign in the last bit, bytes of equal rank together.
+function rowsOf(bytes, width, columns, order) {
+  const count = bytes.length / width;
+  const rows = count / columns;
+  const found = new (width === 4 ? Uint32Array : Uint16Array)(count);
+  for (let c = 0; c < columns; c += 1) {
+    let [step, value] = [0, 0];
+    for (let r = 0; r < rows; r += 1) {
+      let folded = 0;
+      for (let b = 0; b < width; b += 1) folded |= bytes[b * count + c * rows + r] << (8 * b);
+      const change = (folded >>> 1) ^ -(folded & 1);
+      step = order === 2 ? step + change : change;
+      value = (value + step) | 0;
+      found[r * columns + c] = value;
+    }
+  }
+  return found.buffer;
+}
+
+async function inflated(data) {
+  const packed = Uint8Array.from(atob(data), (c) => c.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate'));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+async function unpack({ data, kind, columns, order }) {
+  const bytes = await inflated(data);
+  return columns ? new KINDS[kind](rowsOf(bytes, KINDS[kind].BYTES_PER_ELEMENT, columns, order)) : bytes;
+}
+
+async function unpackPlaces(packed) {
+  const whole = await unpack(packed);
+  const found = new Float32Array(whole.length);
+  for (let i = 0; i < whole.length; i += 1) found[i] = whole[i] === NO_NUMBER ? NaN : whole[i] * packed.scale;
+  return found;
+}
+
+// ---- cells [n, i, j, ..., n, i, ...] as corners of triangles, ends of strokes or points
+const SHAPES = {
+  fan: (c, put) => { for (let i = 2; i < c.length; i += 1) put(c[0], c[i - 1], c[i]); },
+  strip: (c, put) => { for (let i = 2; i < c.length; i += 1) put(c[i - 2], c[i - 1 + (i % 2)], c[i - (i % 2)]); },
+  path: (c, put) => c.forEach((x) => put(x)),
+  ring: (c, put) => { c.forEach((x) => put(x)); put(c[0]); },
+};
+function cornersOf(cells, shape) {
+  const [ids, owners] = [[], []];
+  let cell = 0;
+  const put = (...some) => some.forEach((i) => { ids.push(i); owners.push(cell); });
+  for (let at = 0; at < cells.length; at += cells[at] + 1, cell += 1) shape(cells.subarray(at + 1, at + 1 + cells[at]), put);
+  return { ids: Uint32Array.from(ids), owners: Uint32Array.from(owners) };
+}
+function gathered(rows, ids, width) {
+  if (!ids) return rows;
+  const found = new rows.constructor(ids.length * width);
+  for (let k = 0; k < ids.length; k += 1) for (let c = 0; c < width; c += 1) found[k * width + c] = rows[ids[k] * width + c];
+  return found;
+}
+
+// ---- programs; places of the text that Python writes have the marks of VTK
+const VERTEX = `#version 300 es
+#define attribute in
+#define varying out
+precision highp float;
+attribute vec3 ownPlace; attribute vec4 ownColor;
+#define vertexMC vec4(ownPlace, 1.0)
+uniform vec2 ownSize; uniform float ownWide;
+varying vec4 ownShade;
+//VTK::Camera::Dec
+//VTK::Normal::Dec
+void main() {
+//VTK::Normal::Impl
+  ownShade = ownColor;
+  gl_Position = MCPCMatrix * vertexMC;
+  gl_PointSize = ownWide;
+//STROKE
+}`;
+const STROKE = `
+  vec4 a = MCPCMatrix * vec4(ownPlaceA, 1.0); vec4 b = MCPCMatrix * vec4(ownPlaceB, 1.0);
+  vec2 way = (b.xy / b.w - a.xy / a.w) * ownSize;
+  vec2 side = dot(way, way) > 1e-12 ? vec2(-way.y, way.x) * inversesqrt(dot(way, way)) : vec2(0.0, 1.0);
+  gl_Position.xy += (float(gl_VertexID % 2) * 2.0 - 1.0) * side * ownWide / ownSize * gl_Position.w;
+  if (ownGap > 0.5) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);`;
+const FRAGMENT = `#version 300 es
+#define varying in
+precision highp float;
+varying vec4 ownShade;
+uniform vec4 ownCut; uniform float ownOpacity;
+out vec4 ownOut;
+//VTK::Normal::Dec
+//VTK::Light::Dec
+void main() {
+  if (dot(ownCut, vec4(vizPVSOutput, 1.0)) < 0.0) discard;
+  vec3 ambientColor = ownShade.rgb; vec3 diffuseColor = ownShade.rgb; float opacity = ownOpacity * ownShade.a;
+//VTK::Light::Impl
+}`;
+// Colours that have their light already.
+const UNLIT = [
+  ['Vertex', '//VTK::Camera::Dec', 'uniform mat4 MCPCMatrix; uniform mat4 MCVCMatrix; varying vec3 vizPVSOutput;'],
+  ['Vertex', '//VTK::Normal::Impl', 'vizPVSOutput = (MCVCMatrix * vertexMC).xyz;'],
+  ['Fragment', '//VTK::Normal::Dec', 'varying vec3 vizPVSOutput;'],
+  ['Fragment', '//VTK::Light::Impl', 'ownOut = vec4(diffuseColor, opacity);'],
+];
+const SLOTS = { ownPlace: 0, ownColor: 2, vizNormalMC: 4, vizTangentMC: 6, ownGap: 8 };
+
+class Program {
+  constructor(gl, text, strokes) {
+    const source = { Vertex: VERTEX, Fragment: FRAGMENT };
+    text.forEach(([stage, mark, put]) => { source[stage] = source[stage].replace(mark, () => put); });
+    // Both ends of a stroke are at hand in each of its corners; directions are whole numbers.
+    let more = '';
+    source.Vertex = source.Vertex.replace(/attribute (vec\d) (\w+);/g, (_, kind, name) => {
+      const size = name.startsWith('viz') ? ` * ${name}Size` : '';
+      const one = size ? `uniform float ${name}Size; ` : '';
+      const end = strokes ? `(gl_VertexID > 1 ? ${name}B : ${name}A)` : `${name}A`;
+      return `${one}in ${kind} ${name}A; ${strokes ? `in ${kind} ${name}B;` : ''}\n#define ${name} (${end}${size})\n`;
+    });
+    if (strokes) more = 'in float ownGapA;\n#define ownGap ownGapA\nvoid main() {';
+    source.Vertex = source.Vertex.replace('//STROKE', strokes ? STROKE : '');
+    if (more) source.Vertex = source.Vertex.replace('void main() {', more);
+    this.gl = gl;
+    this.program = gl.createProgram();
+    ['Vertex', 'Fragment'].forEach((stage) => {
+      const shader = gl.createShader(gl[`${stage.toUpperCase()}_SHADER`]);
+      gl.shaderSource(shader, source[stage].replaceAll('gl_FragData[0]', 'ownOut'));
+      gl.compileShader(shader);
+      if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
+      gl.attachShader(this.program, shader);
+    });
+    Object.entries(SLOTS).forEach(([name, at]) => ['A', 'B'].forEach((end, i) => gl.bindAttribLocation(this.program, at + i, name + end)));
+    gl.linkProgram(this.program);
+    if (!gl.getProgramParameter(this.program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(this.program));
+    this.uniforms = new Map();
+  }
+
+  use(numbers) {
+    const { gl, uniforms } = this;
+    gl.useProgram(this.program);
+    Object.entries(numbers).forEach(([name, value]) => {
+      if (!uniforms.has(name)) uniforms.set(name, gl.getUniformLocation(this.program, name));
+      const at = uniforms.get(name);
+      if (!at) return;
+      if (value.length === 16) gl.uniformMatrix4fv(at, false, value);
+      else if (value.length === 9) gl.uniformMatrix3fv(at, false, value);
+      else gl[`uniform${value.length}fv`](at, value);
+    });
+  }
+}
+
+// What one call draws. `from` is the point (or, of colours, the cell) of each corner, null where the
+// corners are the points themselves.
+class Batch {
+  constructor(gl, kind, count, order) {
+    Object.assign(this, { gl, kind, count, order, state: gl.createVertexArray(), buffers: {} });
+    if (order) {
+      gl.bindVertexArray(this.state);
+      gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
+      gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, order, gl.DYNAMIC_DRAW);
+      gl.bindVertexArray(null);
+    }
+  }
+
+  put(name, values, width) {
+    const { gl, buffers } = this;
+    const at = SLOTS[name];
+    const whole = !(values instanceof Float32Array);
+    const type = { Float32Array: gl.FLOAT, Int16Array: gl.SHORT, Uint8Array: gl.UNSIGNED_BYTE }[values.constructor.name];
+    const stride = width * values.BYTES_PER_ELEMENT;
+    buffers[name] ??= gl.createBuffer();
+    gl.bindVertexArray(this.state);
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffers[name]);
+    gl.bufferData(gl.ARRAY_BUFFER, values, gl.STATIC_DRAW);
+    (this.kind === 'strokes' && name !== 'ownGap' ? [0, 1] : [0]).forEach((end) => {
+      gl.enableVertexAttribArray(at + end);
+      gl.vertexAttribPointer(at + end, width, type, whole && name === 'ownColor', stride, end * stride);
+      gl.vertexAttribDivisor(at + end, this.kind === 'strokes' ? 1 : 0);
+    });
+    gl.bindVertexArray(null);
+  }
+
+  // One colour for all.
+  plain(color) {
+    const { gl } = this;
+    gl.bindVertexArray(this.state);
+    [2, 3].forEach((at) => gl.disableVertexAttribArray(at));
+    gl.bindVertexArray(null);
+    this.color = color;
+  }
+
+  // Farthest triangles first, so that what is translucent blends.
+  sort(view, places) {
+    const { gl, order } = this;
+    const count = order.length / 3;
+    const depths = new Float32Array(count);
+    for (let k = 0; k < order.length; k += 1) {
+      const i = 3 * order[k];
+      depths[(k / 3) | 0] += view[2] * places[i] + view[6] * places[i + 1] + view[10] * places[i + 2];
+    }
+    const ranks = Uint32Array.from(depths, (_, t) => t).sort((a, b) => depths[a] - depths[b]);
+    const sorted = new Uint32Array(order.length);
+    ranks.forEach((from, to) => sorted.set(order.subarray(3 * from, 3 * from + 3), 3 * to));
+    gl.bindVertexArray(this.state);
+    gl.bufferSubData(gl.ELEMENT_ARRAY_BUFFER, 0, sorted);
+  }
+
+  draw() {
+    const { gl } = this;
+    gl.bindVertexArray(this.state);
+    if (this.color) [2, 3].forEach((at) => gl.vertexAttrib4f(at, ...this.color));
+    if (this.kind === 'strokes') gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.count - 1);
+    else if (this.order) gl.drawElements(gl.TRIANGLES, this.count, gl.UNSIGNED_INT, 0);
+    else gl.drawArrays(this.kind === 'points' ? gl.POINTS : gl.TRIANGLES, 0, this.count);
+  }
+}
+
+const MOST_SORTED = 3e5;
+
+class Mesh {
+  static async read(gl, given, texts) {
+    const mesh = Object.assign(new Mesh(), { gl, given, texts, name: given.name, programs: new Map(), batches: [], edges: [], values: Object.create(null) });
+    const keys = ['normals', 'tangents', 'colors', 'verts', 'lines', 'polys', 'strips'].filter((k) => given[k]);
+    const found = Object.fromEntries(await Promise.all(keys.map(async (k) => [k, await unpack(given[k])])));
+    mesh.places = await unpackPlaces(given.points);
+    await Promise.all(Object.entries(given.values || {}).map(async ([name, packed]) => { mesh.values[name] = await unpack(packed); }));
+    const style = given.representation;
+    const dots = style === 0;
+    [['lines', 'path', 'path'], ['polys', 'fan', 'ring'], ['strips', 'strip', 'path'], ['verts', 'path', 'path']].forEach(([key, full, thin]) => {
+      if (!found[key]) return;
+      const points = dots || key === 'verts';
+      const strokes = !points && (key === 'lines' || style === 1);
+      mesh.add(cornersOf(found[key], SHAPES[points || strokes ? (points ? 'path' : thin) : full]), points ? 'points' : strokes ? 'strokes' : 'surface', found);
+      if (given.edgeColor && key !== 'lines' && key !== 'verts' && !strokes) mesh.add(cornersOf(found[key], SHAPES[thin]), 'strokes', {}, true);
+    });
+    if (!mesh.batches.length) {
+      const every = Uint32Array.from({ length: mesh.places.length / 3 }, (_, i) => i);
+      mesh.add({ ids: every, owners: every }, 'points', found);
+    }
+    mesh.own = found.colors;
+    mesh.paint(mesh.own);
+    return mesh;
+  }
+
+  add({ ids, owners }, kind, found, edge) {
+    const apart = kind === 'surface' && !this.given.ofCells;
+    const batch = new Batch(this.gl, kind, ids.length, apart ? ids : null);
+    const from = apart || ids.every((x, i) => x === i) ? null : ids;
+    batch.put('ownPlace', gathered(this.places, from, 3), 3);
+    if (found.normals) batch.put('vizNormalMC', gathered(found.normals, from, 3), 3);
+    if (found.tangents) batch.put('vizTangentMC', gathered(found.tangents, from, 3), 3);
+    if (kind === 'strokes') batch.put('ownGap', Uint8Array.from(owners, (cell, i) => Number(cell !== owners[i + 1])), 1);
+    batch.from = this.given.ofCells ? owners : from;
+    if (edge) {
+      batch.plain([...this.given.edgeColor, 1]);
+      this.edges.push(batch);
+    } else this.batches.push(batch);
+  }
+
+  // Colours of the points or cells; none for the colour of the material.
+  paint(colors, data = Boolean(this.given.colored)) {
+    this.data = Boolean(colors) && data;
+    this.batches.forEach((batch) => {
+      if (colors) {
+        batch.color = null;
+        batch.put('ownColor', gathered(colors, batch.from, 4), 4);
+      } else batch.plain([...this.given.color, 1]);
+    });
+  }
+
+  // Colours of an array, by a table of 256 colours from low to high.
+  colorBy(name, range, [low, high], table) {
+    const codes = this.values[name];
+    const colors = new Uint8Array(codes.length * 4).fill(255);
+    const step = (range[1] - range[0]) / (NO_VALUE - 1);
+    for (let i = 0; i < codes.length; i += 1) {
+      const t = Math.floor((256 * (range[0] + codes[i] * step - low)) / (high - low || 1));
+      const k = 3 * Math.max(0, Math.min(255, t));
+      for (let c = 0; c < 3; c += 1) colors[4 * i + c] = codes[i] === NO_VALUE ? GREY : table[k + c];
+    }
+    this.paint(colors, true);
+  }
+
+  program(key, strokes) {
+    const name = `${key}${strokes}`;
+    const text = key === '' ? UNLIT : this.texts[this.given.texts[key]];
+    if (!text) throw new Error(`no light for ${key}`);
+    if (!this.programs.has(name)) this.programs.set(name, new Program(this.gl, text, strokes));
+    return this.programs.get(name);
+  }
+
+  draw(numbers, key, view, sorted, ratio) {
+    const { given } = this;
+    const sizes = { vizNormalMCSize: [given.normals?.scale || 1], vizTangentMCSize: [given.tangents?.scale || 1] };
+    const { gl } = this;
+    (this.edges.length ? gl.enable : gl.disable).call(gl, gl.POLYGON_OFFSET_FILL);
+    gl.polygonOffset(1, 1);
+    const all = { ...numbers, ...given.numbers, ...sizes, ownOpacity: [given.opacity] };
+    this.batches.forEach((batch) => {
+      const wide = (batch.kind === 'points' ? given.pointSize : given.lineWidth) * ratio;
+      this.program(given.live ? `${this.data ? 'data ' : ''}${key}` : '', batch.kind === 'strokes').use({ ...all, ownWide: [wide] });
+      if (sorted && batch.order && batch.count < 3 * MOST_SORTED) batch.sort(view, this.places);
+      batch.draw();
+    });
+    if (!this.edges.length) return;
+    this.program('', true).use({ ...all, ownWide: [ratio] });
+    this.edges.forEach((batch) => batch.draw());
+  }
+}
+
+// Half a ball seen along z, wound with lines about y; or one whose points stand for directions of
+// lines, whose surface then faces the eye as far as it can.
+function ballOf(gl, ofDirections) {
+  const [rows, columns] = [24, 64];
+  const [places, ids] = [[0, 0, 1], []];
+  for (let r = 1; r <= rows; r += 1) {
+    for (let c = 0; c < columns; c += 1) {
+      const [away, round] = [(r / rows) * (Math.PI / 2), (c / columns) * 2 * Math.PI];
+      places.push(Math.sin(away) * Math.cos(round), Math.sin(away) * Math.sin(round), Math.cos(away));
+      const [here, next] = [1 + (r - 1) * columns + c, 1 + (r - 1) * columns + ((c + 1) % columns)];
+      if (r === 1) ids.push(0, here, next);
+      else ids.push(here - columns, here, next, here - columns, next, next - columns);
+    }
+  }
+  const batch = new Batch(gl, 'surface', ids.length, Uint32Array.from(ids));
+  const facing = (v) => (Math.abs(v[2]) > 0.9999 ? [0, 1, 0] : unit(minus([0, 0, 1], scaled(v, v[2]))));
+  const [normals, tangents] = [[], []];
+  for (let i = 0; i < places.length; i += 3) {
+    const v = places.slice(i, i + 3);
+    // A normal of the length 2 is not turned to the eye.
+    normals.push(...scaled(ofDirections ? facing(v) : v, 2));
+    tangents.push(...(ofDirections ? v : unit(cross([0, 1, 0], v))));
+  }
+  batch.put('ownPlace', Float32Array.from(places), 3);
+  batch.put('vizNormalMC', Float32Array.from(normals), 3);
+  batch.put('vizTangentMC', Float32Array.from(tangents), 3);
+  batch.plain([1, 1, 1, 1]);
+  return batch;
+}
