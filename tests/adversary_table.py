@@ -26,7 +26,7 @@ PAGES = Path(__file__).parent.parent / "gallery" / "pages" / "api.rst"
 BESIDE = (
     "vizlight.accessor", "vizlight.data", "vizlight.geometry.solids",
     "vizlight.geometry.solids.primitives", "vizlight.geometry.solids.polyhedra",
-    "vizlight.plotting.component", "vizlight.scene",
+    "vizlight.plotting.component", "vizlight.plotting.show", "vizlight.scene",
 )  # fmt: skip
 #: Public classes that only vizlight makes, and methods that only it calls.
 RETURNED = {
