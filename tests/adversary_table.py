@@ -26,7 +26,7 @@ PAGES = Path(__file__).parent.parent / "gallery" / "pages" / "api.rst"
 BESIDE = (
     "vizlight.accessor", "vizlight.data", "vizlight.geometry.solids",
     "vizlight.geometry.solids.primitives", "vizlight.geometry.solids.polyhedra",
-    "vizlight.plotting.component", "vizlight.scene",
+    "vizlight.plotting.component", "vizlight.plotting.show", "vizlight.scene",
 )  # fmt: skip
 #: Public classes that only vizlight makes, and methods that only it calls.
 RETURNED = {
@@ -35,7 +35,7 @@ RETURNED = {
     "observers.record.Legibility": "returned by legibility",
     "model.cylinder.Gradient": "returned by the gradients",
     "model.highlights.MaximumError": "returned by max_pixel_error",
-    "pictures.backends.Probe": "returned by probe",
+    "plotting.backends.Probe": "returned by probe",
     "pieces.run.Lit": "returned by light",
     "pictures.testing.Difference": "returned by difference",
     "plotting.component.Component": "made by PyVista for each plotter",
@@ -167,7 +167,7 @@ ALIASES = {
     ("pictures.testing.assert_same_picture", "expected"): {"output", "file"},
     ("pictures.render.pictures", "sequence"): {"panels", "scalars"},
     ("plotting.component.Component.export_html", "path"): {"output"},
-    ("plotting.component.plot", "screenshot"): {"output"},
+    ("plotting.show.plot", "screenshot"): {"output"},
     ("plotting.gltf.save_gltf", "path"): {"output"},
     ("plotting.html.live_html", "path"): {"output"},
     ("plotting.paraview.save", "path"): {"output"},

@@ -17,7 +17,7 @@ from vizlight import _check
 EACH = 6
 #: Beginnings of the names of callables that draw or start a process.
 DRAWING = (
-    "pictures.backends",
+    "plotting.backends",
     "pictures.movie",
     "pictures.render",
     "plotting",

@@ -14,7 +14,7 @@ from vizlight.filters.illuminate import illuminate
 from vizlight.filters.streamlines import streamlines
 from vizlight.observers.legibility import legibility
 from vizlight.pictures import render
-from vizlight.pictures.backends import choose_backend, window_class
+from vizlight.plotting.backends import choose_backend, window_class
 from vizlight.scene import Scene, View, presets
 from vizlight.shading import engine
 from vizlight.verify import reference
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from vizlight.observers.record import Direction
-    from vizlight.pictures.backends import Backend
+    from vizlight.plotting.backends import Backend
 
 EYE = (0.42, 1.0, 0.2)
 #: Distance between lines, and length of arrows, as shares of the globe's radius.

@@ -13,7 +13,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight import Scene, cli, render
-from vizlight.pictures import backends
+from vizlight.plotting import backends
 
 
 @pytest.fixture

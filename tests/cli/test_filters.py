@@ -555,7 +555,9 @@ def test_parts_are_blocks_of_one_file_and_one_page(folder, capfd):
     code, out, _ = run(capfd, *given, "-o", "c.vtm", "-o", "c.html", "--script")
     exec(compile(out, "script", "exec"), {})
     same_arrays(pv.read("c.vtm")["skin"], blocks["skin"])
-    assert Path("c.html").read_text(encoding="utf-8") == page
+    # Pages name the pictures that a reader saves after themselves.
+    again = Path("c.html").read_text(encoding="utf-8")
+    assert again.replace('": "c"', '": "a"') == page
     code, _, err = run(capfd, "light", "flow.vti", "-o", "d.vtm")
     assert (code, "a name that ends in .vtp, .vtk, .vtu for PolyData" in err) == (2, True)
 

@@ -12,8 +12,8 @@ import pyvista as pv
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View
 from vizlight.observers import places
-from vizlight.pictures.backends import BackendError
 from vizlight.pictures.cameras import camera_on
+from vizlight.plotting.backends import BackendError
 
 pytestmark = pytest.mark.opengl
 

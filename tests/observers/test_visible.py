@@ -8,8 +8,8 @@ import pyvista as pv
 
 from vizlight.observers import visible
 from vizlight.observers.visible import Drawn, rays, weights
-from vizlight.pictures.backends import choose_backend
 from vizlight.pictures.cameras import camera_on
+from vizlight.plotting.backends import choose_backend
 
 pytestmark = pytest.mark.opengl
 

@@ -15,8 +15,8 @@ from lamps import SHINY, shiny
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View
 from vizlight.geometry import manifolds
-from vizlight.pictures.backends import probe
 from vizlight.plotting import component
+from vizlight.plotting.backends import probe
 
 pytestmark = pytest.mark.opengl
 

@@ -300,7 +300,7 @@ def _run(job: Job, out: Output) -> int:
 
 def _window(out: Output) -> contextlib.AbstractContextManager[None]:
     """Return a context for windows that need no display; a page is written without them too."""
-    from vizlight.pictures import backends
+    from vizlight.plotting import backends
 
     try:
         return backends.window_class(backends.choose_backend(out.backend))

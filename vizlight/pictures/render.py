@@ -15,7 +15,9 @@ from vizlight.filters.tint import RGB, unlit_colors
 from vizlight.mesh import records
 from vizlight.mesh.blocks import all_blocks, check
 from vizlight.mesh.polylines import backdrop
-from vizlight.pictures.backends import (
+from vizlight.pictures.cameras import Mesh, camera_on, common_bounds, over_shoulder
+from vizlight.plotting import strokes
+from vizlight.plotting.backends import (
     Backend,
     BackendError,
     Probe,
@@ -23,8 +25,6 @@ from vizlight.pictures.backends import (
     probe,
     window_class,
 )
-from vizlight.pictures.cameras import Mesh, camera_on, common_bounds, over_shoulder
-from vizlight.plotting import strokes
 from vizlight.plotting.corner import CornerKey, ink_on
 from vizlight.plotting.program import Stroke
 from vizlight.reading import polylines

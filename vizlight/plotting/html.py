@@ -24,8 +24,7 @@ from vizlight.filters.key import TEXTS, preset_of
 from vizlight.mesh import records
 from vizlight.mesh.blocks import all_blocks
 from vizlight.mesh.polylines import backdrop
-from vizlight.pictures import backends
-from vizlight.pictures.cameras import camera_on
+from vizlight.plotting import backends
 from vizlight.plotting.page import Page
 from vizlight.scene import Scene
 from vizlight.shading.results import DEFAULT_NAME
@@ -168,12 +167,10 @@ def live_html(
             owners += [number if len(steps) > 1 else None] * count
         every = [block for step in steps.values() for block in all_blocks(step)]
         plotter.background_color = chosen or backdrop(every)
-        whole = pv.MultiBlock([*steps.values()]) if len(steps) > 1 else next(iter(steps.values()))
-        placed = _camera(whole, scene) if camera is None else camera.copy()  # type: ignore[no-untyped-call]
-        if placed is None:
-            plotter.renderer.view_isometric(render=False)
+        if camera is None:
+            _look(plotter, next(iter(steps.values())), scene)
         else:
-            plotter.camera = placed
+            plotter.camera = camera.copy()  # type: ignore[no-untyped-call]
         shown = plotter.vizlight.shown()
         if len(owners) == len(shown):
             shown = [one._replace(frame=frame) for one, frame in zip(shown, owners, strict=True)]
@@ -186,19 +183,21 @@ def live_html(
         plotter.close()
 
 
-def _camera(mesh: pv.DataSet | pv.MultiBlock, scene: Scene | None) -> pv.Camera | None:
-    """Return a camera where the view of a scene, or of the mesh's record, is."""
+def _look(plotter: Any, mesh: pv.DataSet | pv.MultiBlock, scene: Scene | None) -> None:
+    """See all that is drawn from where the view of a scene, or of the mesh's record, is."""
     if scene is None and relight.is_lit(mesh):
         scene = Scene.from_dict(records.provenance(mesh, DEFAULT_NAME)["scene"])
-    view = None if scene is None else scene.view
-    if view is None or scene is None or scene.n not in (None, 3):
-        return None
-    if view.position is None and view.direction is not None:
-        return camera_on(mesh, view.direction, up=view.up, parallel=view.parallel)
-    middle = np.mean(np.reshape(mesh.bounds, (3, 2)), axis=1)
-    camera = camera_on(mesh, np.asarray(view.position) - middle, up=view.up)
-    camera.position, camera.focal_point = view.position, middle.tolist()
-    return camera
+    view = None if scene is None or scene.n not in (None, 3) else scene.view
+    if view is None:
+        plotter.view_isometric(render=False)
+        return
+    middle = np.reshape(plotter.bounds, (3, 2)).mean(axis=1)
+    toward = view.direction or np.subtract(view.position or middle, middle).tolist()
+    up = view.up or ((0.0, 1.0, 0.0) if not np.any(toward[:2]) else (0.0, 0.0, 1.0))
+    plotter.camera.parallel_projection = view.parallel
+    plotter.view_vector(toward, up, render=False)
+    if view.position is not None:
+        plotter.camera.position, plotter.camera.focal_point = view.position, middle.tolist()
 
 
 def write_page(

@@ -236,8 +236,9 @@ class Page:
         # Sliders raise what is 0 now, so the texts have all terms.
         whole = dataclasses.replace(scene.material, diffuse=1.0, specular=1.0)
         cue = _ended(scene.depth_cue) or DepthCue(front=0.0, back=1.0)
-        sources = {"": live.source}
-        if live.source.options.conditioned and live.source.inputs.normals is not None:
+        sources, inputs = {"": live.source}, live.source.inputs
+        furry = inputs.fur_height is not None
+        if live.source.options.conditioned and inputs.normals is not None and not furry:
             sources["free "] = _unconditioned(live.source)
         constants: dict[str, list[float]] = {}
         found: dict[str, int] = {}
