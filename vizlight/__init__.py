@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from vizlight.filters.relief_day import relief_day
     from vizlight.filters.relief_shadow import relief_shadow
     from vizlight.filters.satin import satin
+    from vizlight.filters.sky import sky
     from vizlight.filters.solids import to_polydata
     from vizlight.filters.streamlines import streamlines
     from vizlight.filters.tint import tint
@@ -84,6 +85,7 @@ _HOMES = {
     "relief_shadow": "vizlight.filters.relief_shadow",
     "report": "vizlight.verify.report",
     "satin": "vizlight.filters.satin",
+    "sky": "vizlight.filters.sky",
     "save_gltf": "vizlight.plotting.gltf",
     "streamlines": "vizlight.filters.streamlines",
     "tint": "vizlight.filters.tint",
@@ -143,6 +145,7 @@ __all__ = [
     "report",
     "satin",
     "save_gltf",
+    "sky",
     "streamlines",
     "tint",
     "to_polydata",

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import dataclasses
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from vizlight import _check
 from vizlight.reading import polylines
-from vizlight.reading.arrays import is_of_cells, points_of, tangents_of
+from vizlight.reading.arrays import is_of_cells, named, points_of, tangents_of
 from vizlight.reading.normals import Sided, sided_normals
 from vizlight.shading.decide import not_a_line
 from vizlight.shading.inputs import ShadingInputs, Sides
@@ -91,7 +92,29 @@ def part_of(
         line_field=options.line_field or _has_no_sign(mesh, options),
         sides=None if sided is None else partial(_sides, sided, scene.view, options),
     )
-    return Part(inputs, options, sided)
+    return Part(occluded(inputs, mesh, options.occlusion, path), options, sided)
+
+
+def occluded(
+    inputs: ShadingInputs, mesh: Dataset, name: str | None, path: str = ""
+) -> ShadingInputs:
+    """Return inputs with the point array of a mesh that is the share of the ambient light.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If there is no such array of one component.
+    """
+    if name is None:
+        return inputs
+    array = named(mesh.GetPointData(), name)
+    if array is None or array.ndim != 1:
+        where = f"block {path}: " if path else ""
+        got = repr(name) if array is None else f"{name!r} with {array.shape[1]} components"
+        remedy = "vizlight.sky(mesh) makes the array 'sky'"
+        expected = "the name of a point array of 1 component"
+        raise ValueError(where + _check.message("occlusion", expected, got, remedy))
+    return dataclasses.replace(inputs, occlusion=_check.floats("occlusion", array))
 
 
 def _sides(sided: Sided, view: View | None, options: LightOptions) -> Sides:
