@@ -5,8 +5,20 @@ from __future__ import annotations
 from pathlib import Path  # noqa: TC003 - cyclopts reads the annotations
 from typing import TYPE_CHECKING, Annotated
 
+from cyclopts import Parameter
+
 from vizlight.cli import options, scenes
-from vizlight.cli.arguments import COMMON, LIT, OUTPUT, Color, Common, Part, Shape
+from vizlight.cli.arguments import (
+    COMMON,
+    GROUPS,
+    LIT,
+    OUTPUT,
+    Color,
+    Common,
+    Flag,
+    Part,
+    Shape,
+)
 from vizlight.cli.job import Job, carry_out
 from vizlight.cli.output import say
 from vizlight.cli.script import Step
@@ -18,11 +30,12 @@ if TYPE_CHECKING:
 
     from vizlight.cli.arguments import Output
     from vizlight.filters.fur import FurOptions
-    from vizlight.filters.relief_shadow import ReliefOptions
     from vizlight.scene import Light
 
 #: Option of ``project`` that the lights have the name of.
 RENAMED = {"light": "when"}
+#: Option of ``sky`` that the camera has the name of.
+SKY_UP = {"up": "sky_up"}
 
 
 @options.takes(
@@ -80,6 +93,7 @@ def relief(
     shape: Annotated[Shape, LIT] = Shape(),  # noqa: B008
     how: object = None,
     common: Annotated[Common, COMMON] = Common(),  # noqa: B008
+    sky: Annotated[Flag, Parameter(group=GROUPS["Light"])] = False,
 ) -> int:
     """Cast shadows on a height field or a closed surface: the cos-theta shadow t.
 
@@ -87,6 +101,8 @@ def relief(
     ----------
     files
         Height field, or closed surface; of several each is lit by itself.
+    sky
+        Light it, with an ambient term that is the light of the sky: --lit --occlusion sky.
     """
     from vizlight.filters.relief_shadow import ReliefOptions
 
@@ -94,6 +110,7 @@ def relief(
     # The shadow is cast by one light.
     look = scenes.Look(common, fill=False)
     given = options.keywords(how)
+    given |= {"lit": True, "occlusion": "sky"} if sky else {}
     # A shadow alone answers no question.
     given |= {"lit": True} if common.lights.question is not None else {}
     asked = ReliefOptions(**given)
@@ -107,7 +124,9 @@ def relief(
         on: dict[str, object] = {}
         if found is None and asked.raster is None:
             on["feature_angle"] = "auto"
-        heights = None if found is None else _heights(found, asked)
+        heights = None
+        if found is not None:
+            heights = _heights(found, asked.elevation, asked.factor)
         raised = mesh if heights is None else Step("raised", "files.warped", mesh, *heights)
         camera = look.camera(raised, is_map=found is not None)
         scene = look.scene(camera)
@@ -125,6 +144,47 @@ def relief(
         return made
 
     return carry_out(files, job, common.out, "relief")
+
+
+@options.takes("sky", "Sky", renamed=SKY_UP)
+def sky(
+    files: list[Path],
+    /,
+    *,
+    shape: Annotated[Shape, LIT] = Shape(),  # noqa: B008
+    how: object = None,
+    common: Annotated[Common, COMMON] = Common(),  # noqa: B008
+) -> int:
+    """Find the share of a uniform sky that each point sees.
+
+    Parameters
+    ----------
+    files
+        Height field, surface or lines; of several each is taken by itself.
+    """
+    from vizlight.filters.sky import SkyOptions
+
+    scenes.check_target(shape)
+    look = scenes.Look(common)
+    given = options.keywords(how, SKY_UP)
+    asked = SkyOptions(**given)
+
+    def job(path: Path) -> Job:
+        mesh = scenes.data(path, shape)
+        found = mesh.run()
+        field = shape.contour is None and shape.slice is None and _is_field(found)
+        if shape.contour is not None or shape.slice is not None:
+            mesh = scenes.surface(mesh, shape)
+        heights = _heights(found, None, 1.0) if field else None
+        raised = mesh if heights is None else Step("raised", "files.warped", mesh, *heights)
+        camera = look.camera(raised, is_map=field)
+        made = _step("open", "sky", mesh, None, given, common.out)
+        shown = None if heights is None else Step("shown", "files.warped", made, *heights)
+        before = Job(made, asked.name, look, camera, shown=shown, scalars=asked.name, before=mesh)
+        before.suffix = _suffix(found) if field else ""
+        return before
+
+    return carry_out(files, job, common.out, "sky")
 
 
 def _level_light(lights: Sequence[Light]) -> float:
@@ -268,12 +328,12 @@ def _tips(mesh: Step, asked: FurOptions) -> Step:
     return Step("tips", ".warp_by_vector", normals, "Normals", factor=length)
 
 
-def _heights(field: pv.DataSet, asked: ReliefOptions) -> tuple[str, float] | None:
+def _heights(field: pv.DataSet, elevation: str | None, factor: float) -> tuple[str, float] | None:
     """Return the heights that raise a flat grid in a picture, and their factor."""
-    name = asked.elevation or field.point_data.active_scalars_name
+    name = elevation or field.point_data.active_scalars_name
     if name is None or name not in field.point_data or field.bounds.z_min != field.bounds.z_max:
         return None
-    return name, asked.factor
+    return name, factor
 
 
 def _is_field(mesh: pv.DataSet) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import shlex
 from pathlib import Path  # noqa: TC003 - cyclopts reads the annotations
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
@@ -52,6 +52,7 @@ def light(
     pieces: Annotated[Pieces, PIECES] = Pieces(),  # noqa: B008
     explain: Annotated[Flag, Parameter(group=GROUPS["Output"])] = False,
     legibility: Annotated[Flag, Parameter(group=GROUPS["Output"])] = False,
+    sky: Annotated[Flag, Parameter(group=GROUPS["Light"])] = False,
 ) -> int:
     """Light a mesh from any file that PyVista reads, and write the lit mesh and a picture.
 
@@ -65,8 +66,10 @@ def light(
         Print what is computed and what is skipped.
     legibility
         Print what an ideal reader reads back from the picture.
+    sky
+        Ambient light as from a sky: --occlusion sky.
     """
-    given = options.keywords(how)
+    given = options.keywords(how) | ({"occlusion": "sky"} if sky else {})
     if in_pieces.are_asked(common.out, pieces):
         scenes.check_target(target)
         scenes.check_color(color)
@@ -75,13 +78,13 @@ def light(
             got = "pieces"
             raise ValueError(_words.message("--legibility", "one mesh, lit as a whole", got))
         return in_pieces.light(files, target, given, common, color, pieces, look)
-    build = builder(target, how, common, color, explain=explain, legibility=legibility)
+    build = builder(target, given, common, color, explain=explain, legibility=legibility)
     return carry_out(files, build, common.out, "lit")
 
 
 def builder(
     target: Target,
-    how: object,
+    given: dict[str, Any],
     common: Common,
     color: Color,
     *,
@@ -94,7 +97,6 @@ def builder(
     scenes.check_target(target)
     scenes.check_color(color)
     look = scenes.Look(common)
-    given = options.keywords(how)
     taken = target.surface or target.contour is not None or target.slice is not None
     if taken:
         # In a picture a crease is seen as one.
@@ -168,5 +170,5 @@ def _explain(lit: pv.DataSet, asked: LightOptions) -> None:
     record = vizlight.provenance(lit, asked.name)
     scene = vizlight.Scene.from_dict(record["scene"])
     inputs = inputs_of(next(all_blocks(lit)), "", scene, asked)
-    layout = inputs.layout._replace(dimmed=bool(asked.bundle), occluded=bool(asked.bundle))
+    layout = inputs.layout._replace(dimmed=bool(asked.bundle))
     say(decide(scene, layout, asked, record["precision"]).explain())

@@ -98,7 +98,7 @@ def view(
             progress=window.progress,
         )
         common = Common(lights=lights, finish=finish, eye=eye, out=out)
-        code = carry_out([file], builder(target, how, common, color), out, "view")
+        code = carry_out([file], builder(target, options.keywords(how), common, color), out, "view")
         if folder is not None:
             page.chmod(0o600)
     finally:

@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 #: Name of the array, which stands for a sky that is computed where a mesh has none.
 SKY = "sky"
 OPENNESS = "_openness"
-#: Error of a sky that is computed for light alone.
-FOR_LIGHT = 0.02
+#: Errors of a sky that is computed for light alone; that of lines, twice the least of voxels.
+FOR_LIGHT, FOR_LINES = 0.02, 2 * VOXELS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,12 +78,14 @@ def sky(
         one another's sky; a height field sees itself alone. Not changed, unless ``inplace``.
     error : float, default: 0.01
         Error that 95 of 100 points shall keep to, from 0.0001 to 0.5. From 0.1 on a mesh of lines
-        is taken for a medium of voxels, which is faster for many lines.
+        is taken for a medium of voxels, which is faster for many lines, where rays from some points
+        confirm it; for more than 500 thousand voxels of lines nothing does, and the error is None.
     up : sequence of 3 float, optional
         Direction of the half space that is the sky. Default: the z axis for a grid of one layer,
         else the sky is all round.
     diameter : float, optional
-        Diameter of lines, in the unit of the mesh. Default: as for :class:`vizlight.Bundle`.
+        Diameter of lines, in the unit of the mesh. Default: that of a bundle, see
+        :class:`vizlight.Bundle`.
     openness : bool, default: False
         Whether the array ``<name>_openness`` is added: the mean angle between the zenith and the
         horizon of a height field, in radians.
@@ -148,32 +150,45 @@ def sky(
 
 
 def with_sky(
-    meshes: Sequence[pv.DataSet], occlusion: str | None, threads: int | None = None
+    meshes: Sequence[pv.DataSet],
+    occlusion: str | None,
+    threads: int | None = None,
+    *,
+    elevation: str | None = None,
+    factor: float = 1.0,
+    up: Sequence[float] | None = None,
 ) -> list[pv.DataSet]:
     """Return meshes with the array of their share of the ambient light.
 
     Where its name is "sky" and some mesh has none, it is computed for all, as :func:`sky` does with
-    an error of 0.02, lines as voxels; those meshes are shallow copies.
+    an error of 0.02, lines as voxels; those meshes are shallow copies. ``elevation`` and ``factor``
+    are those of :func:`vizlight.relief_shadow`.
     """
     if occlusion != SKY or all(SKY in mesh.point_data for mesh in meshes):
         return list(meshes)
     lines = all(has_lines_only(mesh) for mesh in meshes)
-    asked = SkyOptions(error=VOXELS if lines else FOR_LIGHT)
-    found = _found(meshes, asked, threads, show=False)
+    asked = SkyOptions(error=FOR_LINES if lines else FOR_LIGHT, up=up)
+    found = _found(meshes, asked, threads, show=False, elevation=elevation, factor=factor)
     lit = [mesh.copy(deep=False) for mesh in meshes]
     _attach(lit, found, asked)
     return lit
 
 
 def _found(
-    meshes: Sequence[pv.DataSet], asked: SkyOptions, threads: int | None, *, show: bool
+    meshes: Sequence[pv.DataSet],
+    asked: SkyOptions,
+    threads: int | None,
+    *,
+    show: bool,
+    elevation: str | None = None,
+    factor: float = 1.0,
 ) -> list[Sky]:
     total = sum(mesh.n_points for mesh in meshes)
     with _progress.progress("sky", total, show=show) as report:
         return skies(
             meshes, error=asked.error, up=None if asked.up is None else tuple(asked.up),
             diameter=asked.diameter, openness=asked.openness, threads=threads,
-            report=lambda now: report(min(now, total)),
+            report=lambda now: report(min(now, total)), elevation=elevation, factor=factor,
         )  # fmt: skip
 
 

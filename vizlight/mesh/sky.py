@@ -25,8 +25,9 @@ if TYPE_CHECKING:
     from vizlight.mesh.sky_rays import Places
     from vizlight.shading.results import Record
 
-#: Error from which lines are taken for a medium of voxels: what its points keep to.
-VOXELS = 0.1
+#: Error from which lines are taken for a medium of voxels, number of points at which rays measure
+#: it, and number of pieces beyond which it is not measured, as rays need tubes around all lines.
+VOXELS, SAMPLES, MANY = 0.1, 256, 500_000
 #: Directions of light from all sides in a medium.
 SIDES = 64
 #: Bit of VTK's ghost array that marks a cell which is hidden, not one of another piece.
@@ -76,6 +77,8 @@ def skies(
     openness: bool = False,
     threads: int | None = None,
     report: Callable[[int], None] = lambda _: None,
+    elevation: str | None = None,
+    factor: float = 1.0,
 ) -> list[Sky]:
     """Return the sky of meshes: fields see themselves alone, all others hide one another's sky.
 
@@ -93,6 +96,8 @@ def skies(
     threads : int, optional
     report : callable
         Function of the number of points, or of azimuths of a field, that are done.
+    elevation, factor
+        As for :func:`vizlight.relief_shadow`; only for fields.
 
     Raises
     ------
@@ -102,7 +107,7 @@ def skies(
     found: dict[int, Sky] = {}
     shapes: dict[int, pv.DataSet] = {}
     for number, mesh in enumerate(meshes):
-        field = _field(mesh)
+        field = _field(mesh, elevation, factor)
         if field is None:
             shapes[number] = mesh
             continue
@@ -128,14 +133,14 @@ def is_grid(mesh: pv.DataSet) -> bool:
     return isinstance(mesh, Grid) and sum(size > 1 for size in mesh.dimensions) == 2
 
 
-def _field(mesh: pv.DataSet) -> Heights | None:
+def _field(mesh: pv.DataSet, elevation: str | None, factor: float) -> Heights | None:
     """Return the height field of a grid of one layer; None where it is none."""
     if not (is_grid(mesh) and isinstance(mesh, Grid) and mesh.dimensions[2] == 1):
         return None
     if not isinstance(mesh, pv.StructuredGrid):
-        return heights_of(mesh, None, 1.0)
+        return heights_of(mesh, elevation, factor)
     try:
-        return heights_of(mesh, None, 1.0)
+        return heights_of(mesh, elevation, factor)
     except ValueError:
         # Its rows and columns bend: a surface like any other, below the sky of a field.
         return None
@@ -199,16 +204,19 @@ def _by_rays(
     if lines and (diameter is None or error >= VOXELS):
         medium, thick = bundles.medium_of(bundles.joined(lines), Bundle(diameter=diameter))
     thick = thick if diameter is None else diameter
-    if medium is not None and error >= VOXELS and len(lines) == len(meshes) and up is None:
+    among = medium is not None and error >= VOXELS and len(lines) == len(meshes) and up is None
+    if among and medium is not None and medium.middles.shape[1] > MANY:
         return [_in_medium(mesh, medium, thick, threads) for mesh in meshes]
     shapes = [_shape(mesh, thick) for mesh in meshes]
-    counts = np.cumsum([0, *(len(shape.points) for shape in shapes)])
-    hidden = sky_rays.Occluders(
-        np.concatenate([shape.points for shape in shapes]),
-        np.concatenate(
-            [shape.triangles + at for shape, at in zip(shapes, counts[:-1], strict=True)]
-        ),
-    )
+    hidden = _occluders(shapes)
+    if among and medium is not None:
+        found = [_in_medium(mesh, medium, thick, threads) for mesh in meshes]
+        worst = [_missed(sky, shape, hidden) for sky, shape in zip(found, shapes, strict=True)]
+        if max(worst) <= error:
+            return [
+                sky._replace(record=sky.record | {"error": own})
+                for sky, own in zip(found, worst, strict=True)
+            ]
     total = sum(len(shape.ids) for shape in shapes)
     if hidden.tracer.name != "rays by Embree" and total > SLOW:
         remedy = "pip install 'vizlight[rays]'"
@@ -235,14 +243,58 @@ def _by_rays(
     return made
 
 
+def _occluders(shapes: Sequence[_Shape]) -> sky_rays.Occluders:
+    """Return the triangles of all shapes."""
+    counts = np.cumsum([0, *(len(shape.points) for shape in shapes)])
+    faces = [shape.triangles + at for shape, at in zip(shapes, counts[:-1], strict=True)]
+    points = np.concatenate([shape.points for shape in shapes])
+    return sky_rays.Occluders(points, np.concatenate(faces))
+
+
+def _missed(sky: Sky, shape: _Shape, hidden: sky_rays.Occluders) -> float:
+    """Return the error that 95 of 100 points keep to, as rays from some of them find it."""
+    some = np.random.default_rng(0).permutation(np.flatnonzero(sky.valid))[:SAMPLES]
+    if not len(some):
+        return 0.0
+    points, ways, radius = shape.places
+    seen = hidden.seen(sky_rays.Places(points[some], ways[some], radius), error=VOXELS / 4)
+    return float(np.quantile(np.abs(sky.share[some] - seen.share), 0.95))
+
+
+def in_medium(
+    mesh: pv.DataSet,
+    lines: tuple[media.Medium, float],
+    normals: Array | None = None,
+    threads: int | None = None,
+) -> Array:
+    """Return the share of light from all sides at points of a surface, or of lines, among lines.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh of lines, or a surface with ``normals``.
+    lines : Medium, float
+        Lines, and their diameter.
+    normals : ndarray, shape (N, 3), optional
+    threads : int, optional
+    """
+    medium, thick = lines
+    points = np.asarray(mesh.points)
+    if normals is not None:
+        targets = medium.targets(points, normals)
+    else:
+        lengths = polylines.of_points(mesh, media.line_lengths)
+        targets = medium.targets(points, polylines.line_tangents(mesh), lengths)
+    return medium.sky(targets, thick, SIDES, threads=threads)
+
+
 def _in_medium(mesh: pv.DataSet, medium: media.Medium, thick: float, threads: int | None) -> Sky:
     """Return the sky of lines inside a medium of lines, by voxels."""
     points, tangents = np.asarray(mesh.points), polylines.line_tangents(mesh)
-    targets = medium.targets(points, tangents, polylines.of_points(mesh, media.line_lengths))
-    share = medium.sky(targets, thick, SIDES, threads=threads)
+    share = in_medium(mesh, (medium, thick), threads=threads)
     valid: Bools = np.any(tangents, axis=1) & np.isfinite(points).all(axis=1)
     record: Record = {
-        "method": "voxels", "error": VOXELS, "directions": SIDES, "rays": 0, "diameter": thick,
+        "method": "voxels", "error": None, "directions": SIDES, "rays": 0, "diameter": thick,
         "voxel": medium.voxel,
     }  # fmt: skip
     return Sky(_filled(share, valid, points.astype(np.float64)), valid, None, record)

@@ -176,7 +176,8 @@ def fragment(plan: Plan, *, turned: bool = False, data: bool = False) -> tuple[s
     -------
     declarations, body : str
         The body sets ``vizColor`` from ``vizT``, ``vizN``, ``vizP`` and ``vizHeight`` in view
-        coordinates, the renderer's ``ambientColor`` and ``diffuseColor``, and uniforms.
+        coordinates, ``vizShare``, the renderer's ``ambientColor`` and ``diffuseColor``, and
+        uniforms.
     """
     w = _Writer()
     w.add("vec3 vizToEye = vizEye.xyz - vizEye.w * vizP;")
@@ -193,10 +194,13 @@ def fragment(plan: Plan, *, turned: bool = False, data: bool = False) -> tuple[s
         w.add("{")
         _light(w, plan, i)
         w.add("}")
+    share = "vizShare * " if plan.occluded else ""
     if data:
-        w.add("vec3 vizColor = max(vizAmbientGain, vizLeastGain) + vizDiffuseGain * vizDiffuse;")
+        w.add(f"vec3 vizColor = {share}max(vizAmbientGain, vizLeastGain);")
+        w.add("vizColor += vizDiffuseGain * vizDiffuse;")
     else:
-        w.add("vec3 vizColor = vizAmbientGain * ambientColor + vizSpecularGain * vizSpecular;")
+        w.add(f"vec3 vizColor = {share}vizAmbientGain * ambientColor;")
+        w.add("vizColor += vizSpecularGain * vizSpecular;")
         w.add("vizColor += vizDiffuseGain * diffuseColor * vizDiffuse;")
     _cue(w, plan)
     _shown(w, data=data)

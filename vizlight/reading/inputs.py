@@ -105,8 +105,14 @@ def occluded(
     TypeError, ValueError
         If there is no such array of one component.
     """
+    share = share_of(mesh, name, path)
+    return inputs if share is None else dataclasses.replace(inputs, occlusion=share)
+
+
+def share_of(mesh: Dataset, name: str | None, path: str = "") -> Array | None:
+    """Return the point array that is the share of the ambient light; see :func:`occluded`."""
     if name is None:
-        return inputs
+        return None
     array = named(mesh.GetPointData(), name)
     if array is None or array.ndim != 1:
         where = f"block {path}: " if path else ""
@@ -114,7 +120,7 @@ def occluded(
         remedy = "vizlight.sky(mesh) makes the array 'sky'"
         expected = "the name of a point array of 1 component"
         raise ValueError(where + _check.message("occlusion", expected, got, remedy))
-    return dataclasses.replace(inputs, occlusion=_check.floats("occlusion", array))
+    return _check.floats("occlusion", array)
 
 
 def _sides(sided: Sided, view: View | None, options: LightOptions) -> Sides:

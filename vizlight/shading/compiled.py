@@ -41,6 +41,9 @@ MOST_FADING = 1e9
 #: Seconds that compiled code saves per point: of the whole, and for each light.
 SAVED, SAVED_PER_LIGHT = 10e-9, 15e-9
 
+#: Arrays that have a row for each point.
+ROWS = ("points", "tangents", "normals", "base_tangents", "fur_height", "shadow", "occlusion")
+
 #: What a plan says of its code once compiled code has run, and before.
 IN_WORDS = "compiled for these terms and types (numba), unusual points by NumPy"
 WHERE_IT_PAYS = "where the number of points pays for its start-up (see vizlight doctor)"
@@ -57,8 +60,8 @@ def why_not(plan: Plan) -> str:
         return f"{plan.k} tangents per point, more than {MOST_TANGENTS}"
     if not (plan.diffuse or plan.specular or plan.scene.depth_cue):
         return "the ambient term alone needs none"
-    if plan.dimmed or plan.occluded:
-        return "shares of light, as inside a bundle, are multiplied in by NumPy"
+    if plan.dimmed:
+        return "shares of lights, as inside a bundle, are multiplied in by NumPy"
     least = cylinder_kernels.TABLE_FROM
     if plan.model == "cylinder" and plan.specular and plan.scene.material.shininess < least:
         return f"a cylinder's highlight of a shininess below {least:g} is no table"
@@ -106,6 +109,7 @@ class Compiled(NamedTuple):
             _flat(part.base_tangents, form.base_tangents),
             _flat(shadow, form.work),
             _flat(part.fur_height if form.fur else None, form.work),
+            _flat(part.occlusion if form.occluded else None, form.work),
         ]
         try:
             self._run(given, [light, terms[0], terms[1], color], count)
@@ -265,6 +269,7 @@ def _form(plan: Plan, inputs: ShadingInputs) -> tuple[Form, list[int]]:
         conditioned=plan.conditioned,
         shadowed=plan.shadowed,
         fur=plan.fur > 0 and seen != "",
+        occluded=plan.occluded,
         diffuse=("plain" if plan.exponent == 1 else "power") if plan.diffuse else "",
         based=("plain" if plan.base_exponent == 1 else "power") if plan.base else "",
         specular=plan.specular,
@@ -423,6 +428,7 @@ def _parts(rows: slice, inputs: ShadingInputs) -> Iterator[tuple[slice, ShadingI
                 base_tangents=base,
                 fur_height=None if inputs.fur_height is None else inputs.fur_height[at],
                 shadow=None if inputs.shadow is None else inputs.shadow[at],
+                occlusion=None if inputs.occlusion is None else inputs.occlusion[at],
                 repeat=1,
             ),
         )
@@ -434,11 +440,7 @@ def _light_again(
     """Light some points of a block by NumPy."""
     few = dataclasses.replace(
         part,
-        **{
-            name: source[:][odd]
-            for name in ("points", "tangents", "normals", "base_tangents", "fur_height", "shadow")
-            if (source := getattr(part, name)) is not None
-        },
+        **{name: source[:][odd] for name in ROWS if (source := getattr(part, name)) is not None},
     )
     own = Output(plan, len(odd))
     shade_block(plan, slice(0, len(odd)), few, own)

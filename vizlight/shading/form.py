@@ -39,6 +39,7 @@ class Form(NamedTuple):
     conditioned: bool
     shadowed: bool
     fur: bool
+    occluded: bool
     diffuse: str
     based: str
     specular: bool

@@ -26,8 +26,8 @@ class Text(NamedTuple):
 
 #: Parameters of a kernel.
 ARRAYS = (
-    "points", "tangents", "normals", "base_tangents", "shadow", "height", "numbers", "wide",
-    "table", "luminance", "diffuse", "specular", "rgb",
+    "points", "tangents", "normals", "base_tangents", "shadow", "height", "occlusion", "numbers",
+    "wide", "table", "luminance", "diffuse", "specular", "rgb",
 )  # fmt: skip
 
 
@@ -260,10 +260,14 @@ class _Body:
         form, w = self.form, self.w
         zero = w.constant(0.0)
         fade = self.fade() if form.cue else ""
+        share = ""
+        if form.occluded:
+            share = w.name("occlusion[i]")
+            w.lines.append(f"{w.indent}odd = odd | (not {share} >= {zero})")
         w.check()
         d, s = "d" if form.diffuse else zero, "s" if form.specular else zero
         kd, ks = w.number("kd"), w.number("ks")
-        light = w.call("luminance", w.number("ambient"), kd, d, ks, s)
+        light = w.call("luminance", self.ambient("ambient", share), kd, d, ks, s)
         if fade:
             light = w.call("depth_cue", light, fade, w.number("cue"))
         put = [f"luminance[i] = LOST if odd else {light}"]
@@ -274,7 +278,7 @@ class _Body:
                 tint = str(c) if form.tinted else ""
                 color = w.call(
                     "luminance",
-                    w.number(f"ambient{c}"),
+                    self.ambient(f"ambient{c}", share),
                     w.number(f"kd{c}"),
                     f"d{tint}" if form.diffuse else zero,
                     w.number(f"ks{c}"),
@@ -284,6 +288,11 @@ class _Body:
                     color = w.call("depth_cue", color, fade, w.number(f"cue{c}"))
                 put.append(f"rgb[3 * i + {c}] = {color}")
         w.lines += [f"{w.indent}{line}" for line in put]
+
+    def ambient(self, name: str, share: str) -> str:
+        """Return an ambient term times the share of it that reaches a point."""
+        ambient = self.w.number(name)
+        return self.w.name(f"{ambient} * {share}") if share else ambient
 
     def fade(self) -> str:
         """Return the scale of the depth cue, in float64 until it is known."""

@@ -39,7 +39,8 @@ STALLED = 0.7
 #: Scan lines that one thread follows, seconds per node and azimuth that compiled code saves.
 LINES, SAVED = 128, 500e-9
 #: Steps of NumPy's horizons: to the end of the near cells by halves, from there by a factor.
-GROWTH = 1.15
+#: They end at a distance of this many diagonals.
+GROWTH, BEYOND = 1.15, 8
 #: Stands for the slope of a horizon without terrain.
 NONE = -1e300
 #: Largest error that may be asked for, and the least that is tried for.
@@ -224,7 +225,8 @@ class _Search:
         """Return what nodes see toward an azimuth, from heights at growing distances."""
         z, heights = self.z[np.ix_(rows, columns)], self.z
         cell = min(self.x[-1] / (len(self.x) - 1), self.y[-1] / (len(self.y) - 1))
-        reach = math.hypot(self.x[-1], self.y[-1])
+        # Beyond the border heights go on, so that even an endless wall is met aslant.
+        reach = BEYOND * math.hypot(self.x[-1], self.y[-1])
         t = np.zeros(z.shape)
         step = distance = least * cell
         while distance < reach:
