@@ -204,8 +204,8 @@ def _attach(meshes: Sequence[pv.DataSet], found: Sequence[Sky], asked: SkyOption
         if made.openness is not None:
             arrays[asked.name + OPENNESS] = made.openness
         record: Record = {
-            "vizlight": __version__, "filter": "sky", **made.record, "points": len(made.valid),
-            "invalid": missing, "options": plain(asked),
+            "vizlight": __version__, "filter": "sky", "precision": "float32", **made.record,
+            "points": len(made.valid), "invalid": missing, "options": plain(asked),
         }  # fmt: skip
         active = point_data(mesh).GetScalars()
         records.attach(mesh, asked.name, arrays, record)

@@ -14,6 +14,7 @@ from vizlight import _check
 from vizlight.files import check_output
 from vizlight.filters import relight
 from vizlight.filters.key import key, question_of
+from vizlight.filters.sky import SKY
 from vizlight.filters.tint import RGB, default_map, default_nan_color
 from vizlight.mesh import blocks, records
 from vizlight.plotting.corner import PLACES, CornerKey, ink_on
@@ -640,6 +641,7 @@ def plot(
     camera: pv.Camera | None = None,
     screenshot: str | Path | None = None,
     jupyter_backend: str | None = None,
+    sky: bool = False,
     **options: Any,
 ) -> object:
     """Show a mesh whose light follows the camera.
@@ -663,6 +665,8 @@ def plot(
         Path of a picture of the last view.
     jupyter_backend : str, optional
         Backend of a notebook; ``"client"`` and ``"html"`` are refused.
+    sky : bool, default: False
+        Whether the ambient light is that of a sky: ``occlusion="sky"``.
     **options
         As for ``plotter.vizlight.add_mesh``: options of :func:`vizlight.illuminate` and keywords
         of ``pyvista.Plotter.add_mesh``.
@@ -677,6 +681,8 @@ def plot(
     TypeError, ValueError
         As for ``plotter.vizlight.add_mesh``.
     """
+    if _check.boolean("sky", sky):
+        options = {"occlusion": SKY} | options
     for name, flag in (("off_screen", off_screen), ("notebook", notebook)):
         if flag is not None:
             _check.boolean(name, flag)
