@@ -118,9 +118,9 @@ def sky(
     Notes
     -----
     ``V = 1/pi * integral of max(n . w, 0) dw`` over the directions w in which nothing stands; n is
-    the normal on the side that the mesh's own normals have, else away from the centre of an open
-    piece. A point of a line has the mean over the circumference of its tube. An endless slope of
-    angle b sees (1 + cos b) / 2; light from other points is not part of V.
+    the normal on the side that the mesh's own normals have, else of an open piece toward ``up`` or
+    away from its centre. A point of a line has the mean over the circumference of its tube. An
+    endless slope of angle b sees (1 + cos b) / 2; light from other points is not part of V.
 
     Fields: horizons of scan lines, exact for near cells; holes hide nothing, and heights beyond the
     border are those of the border. The error is measured at random nodes against every cell in the

@@ -15,6 +15,7 @@ from vizlight.mesh import bundles, normals, sky_rays
 from vizlight.mesh.height_grids import Grid, heights_of
 from vizlight.reading import hull, polylines
 from vizlight.reading.cells import GHOSTS, faces_only, has_faces, triangles
+from vizlight.scene import View
 from vizlight.shading.options import Bundle
 
 if TYPE_CHECKING:
@@ -207,7 +208,8 @@ def _by_rays(
     among = medium is not None and error >= VOXELS and len(lines) == len(meshes) and up is None
     if among and medium is not None and medium.middles.shape[1] > MANY:
         return [_in_medium(mesh, medium, thick, threads) for mesh in meshes]
-    shapes = [_shape(mesh, thick) for mesh in meshes]
+    above = [ABOVE if up is None and is_grid(mesh) else up for mesh in meshes]
+    shapes = [_shape(mesh, thick, axis) for mesh, axis in zip(meshes, above, strict=True)]
     hidden = _occluders(shapes)
     if among and medium is not None:
         found = [_in_medium(mesh, medium, thick, threads) for mesh in meshes]
@@ -222,8 +224,7 @@ def _by_rays(
         remedy = "pip install 'vizlight[rays]'"
         _check.warn(f"the sky takes 20 times as long without embreex (try: {remedy})")
     made, done = [], 0
-    for mesh, shape in zip(meshes, shapes, strict=True):
-        axis = ABOVE if up is None and is_grid(mesh) else up
+    for mesh, shape, axis in zip(meshes, shapes, above, strict=True):
         seen = hidden.seen(
             shape.places, error=error, up=None if axis is None else np.array(axis, np.float64),
             report=lambda now, done=done: report(done + now),  # type: ignore[misc]
@@ -300,8 +301,11 @@ def _in_medium(mesh: pv.DataSet, medium: media.Medium, thick: float, threads: in
     return Sky(_filled(share, valid, points.astype(np.float64)), valid, None, record)
 
 
-def _shape(mesh: pv.DataSet, thick: float) -> _Shape:
-    """Return what a mesh hides, and its points that look at the sky."""
+def _shape(mesh: pv.DataSet, thick: float, up: tuple[float, ...] | None) -> _Shape:
+    """Return what a mesh hides, and its points that look at the sky.
+
+    Open pieces without normals of their own face a sky that is above.
+    """
     if polylines.has_lines_only(mesh):
         points, ids, offsets = polylines.cells_of(mesh)
         vertices, faces = sky_rays.tubes(points, ids, offsets, thick / 2)
@@ -315,7 +319,8 @@ def _shape(mesh: pv.DataSet, thick: float) -> _Shape:
         raise ValueError(_check.message("mesh", "a mesh with faces or lines", got, remedy))
     points = np.asarray(pv.wrap(surface).points, np.float64)
     faces = np.asarray(triangles(faces_only(surface)), np.intp)
-    ways = np.asarray(normals.normals_of(mesh, None, 3, None), np.float64)
+    view = None if up is None else View(direction=up)
+    ways = np.asarray(normals.normals_of(mesh, None, 3, view), np.float64)
     there = ids >= 0
     own = ids[there]
     return _Shape(points, faces, sky_rays.Places(points[there], ways[own]), own)
