@@ -435,8 +435,7 @@ def test_lines_are_lit_as_a_bundle(tmp_path, monkeypatch, capfd):
         "--no-surface",
         "--bundle",
         "--explain",
-        "--occlusion",
-        "sky",
+        "--sky",
     )
     assert code == 0
     assert "transmittance: a share of each light" in out

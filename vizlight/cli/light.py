@@ -39,8 +39,8 @@ if TYPE_CHECKING:
     from vizlight.shading.options import LightOptions
 
 
-# Places in n-space need lights and an eye in n-space, which scripts have.
-@options.takes("illuminate", "Shading", without=("positions",))
+# Places in n-space need lights and an eye in n-space, which scripts have; --sky is an occlusion.
+@options.takes("illuminate", "Shading", without=("positions", "occlusion"))
 def light(
     files: list[Path],
     /,
@@ -67,7 +67,7 @@ def light(
     legibility
         Print what an ideal reader reads back from the picture.
     sky
-        Ambient light as from a sky: --occlusion sky.
+        Take the ambient light from an even sky.
     """
     given = options.keywords(how) | ({"occlusion": "sky"} if sky else {})
     if in_pieces.are_asked(common.out, pieces):

@@ -15,6 +15,7 @@ import numpy as np
 from vtkmodules.vtkCommonCore import mutable
 from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 
+from vizlight import _check
 from vizlight.geometry.lines.bundle import segment_starts
 from vizlight.geometry.lines.curves import polyline_tangents
 from vizlight.mesh import blocks, embree_rays
@@ -142,7 +143,7 @@ class Occluders:
 
     def __init__(self, points: Array, triangles: Indices) -> None:
         used = points[triangles]
-        used = used[np.isfinite(used).all(axis=(1, 2))]
+        used = used[(np.abs(used) <= _check.FARTHEST).all(axis=(1, 2))]
         low = used.min(axis=(0, 1), initial=np.inf) if len(used) else np.zeros(3)
         high = used.max(axis=(0, 1), initial=-np.inf) if len(used) else np.zeros(3)
         self.middle = low / 2 + high / 2
@@ -187,7 +188,8 @@ class Occluders:
             ways = ways / np.abs(ways).max(axis=1, initial=0, keepdims=True)
             ways /= np.linalg.norm(ways, axis=1, keepdims=True)
         points = (np.asarray(places.points, np.float64) - self.middle) / self.size
-        valid: Bools = np.isfinite(ways).all(axis=1) & np.isfinite(points).all(axis=1)
+        near = (np.abs(points) <= _check.FARTHEST).all(axis=1)
+        valid: Bools = np.isfinite(ways).all(axis=1) & near
         share = np.zeros(len(points), np.float32)
         if not valid.any():
             return Seen(share, valid, 0.0, 0)
