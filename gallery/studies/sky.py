@@ -1,6 +1,6 @@
 """The light of the sky: error against time, for fields and for surfaces, beside other packages.
 
-Fields are fractal ground of a root mean square slope; the truth at random nodes follows 1,024
+Fields are fractal ground of a root mean square slope; the truth at random nodes follows 512
 azimuths through every cell. Surfaces are a bumpy ball; the truth at its points has 16 times the
 rays of the finest row. Packages beside vizlight are measured where they are installed, each against
 its own definition: RVT's sky-view factor weighs the sky by solid angle, without the cosine, and so
@@ -26,12 +26,12 @@ from vizlight.mesh import sky as meshes
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-    from vizlight._types import Array
+    from vizlight._types import Array, Indices
 
 #: Nodes along a side of a field, and its slopes; errors that are asked for.
 SIDE, SLOPES, ASKED = 512, (0.3, 1.0), (0.02, 0.01, 0.005, 0.002)
 #: Places and azimuths of the truth of a field, rays of the truth of a surface.
-PLACES, AZIMUTHS, RAYS = 200, 1024, 1 << 14
+PLACES, AZIMUTHS, RAYS = 100, 512, 1 << 14
 #: Directions and radii of RVT, rays of libigl and of trimesh.
 RVT, IGL, TRIMESH = ((16, 10), (16, 50), (32, 100)), (64, 256, 1024), (64, 256)
 
@@ -52,18 +52,19 @@ def bumpy(points: int) -> pv.PolyData:
     x, y, z = np.asarray(ball.points, np.float64).T
     high = 1 + 0.25 * np.sin(7 * x) * np.sin(6 * y + 1) * np.sin(8 * z + 2)
     ball.points = np.asarray(ball.points) * high[:, np.newaxis]
-    return ball.compute_normals(split_vertices=False, cell_normals=False)
+    made: pv.PolyData = ball.compute_normals(split_vertices=False, cell_normals=False)
+    return made
 
 
 @cache
-def horizons(side: int, slope: float) -> tuple[Array, Array, Array, Array]:
+def horizons(side: int, slope: float) -> tuple[Indices, Array, Array, Array]:
     """Return nodes, the two slopes of the ground there, and the slopes of their horizons.
 
     Heights are those of the bilinear surface at dense distances, beyond the border those there.
     """
     z = ground(side, slope)
     at = np.random.default_rng(9).integers(0, side, (PLACES, 2))
-    across, along = np.gradient(z)
+    across, along = np.gradient(z, axis=0), np.gradient(z, axis=1)
     turn = 2 * np.pi * (np.arange(AZIMUTHS) + 0.5) / AZIMUTHS
     t = np.zeros((PLACES, AZIMUTHS))
     distances = np.concatenate([np.arange(1, 200) / 25, np.arange(8, 4 * side, 0.1)])
@@ -84,9 +85,10 @@ def horizons(side: int, slope: float) -> tuple[Array, Array, Array, Array]:
     return at, slopes, t, turn
 
 
-def field_truth(side: int, slope: float) -> tuple[Array, Array]:
+def field_truth(side: int, slope: float) -> tuple[Indices, Array]:
     """Return nodes and the share of the sky that they see."""
-    at, (p, q), t, turn = (x.T if k == 1 else x for k, x in enumerate(horizons(side, slope)))
+    at, slopes, t, turn = horizons(side, slope)
+    p, q = slopes.T
     rise = p[:, np.newaxis] * np.cos(turn) + q[:, np.newaxis] * np.sin(turn)
     t = np.maximum(t, rise)
     square = 1 / (1 + t * t)
@@ -94,7 +96,7 @@ def field_truth(side: int, slope: float) -> tuple[Array, Array]:
     return at, part.mean(axis=1) / np.sqrt(1 + p * p + q * q)
 
 
-def of_field(side: int, slope: float, error: float) -> Row:
+def of_field(side: int, slope: float, error: float) -> list[Row]:
     """Return the row of an error asked for on a field."""
     z, x = ground(side, slope), np.arange(float(side))
     at, true = field_truth(side, slope)
@@ -102,10 +104,11 @@ def of_field(side: int, slope: float, error: float) -> Row:
     made = fields.sky(x, x, z, error=error, threads=1)
     cost = time.process_time() - start
     missed = np.abs(made.share[tuple(at.T)] - true)
-    return _row(
+    row = _row(
         f"field, slope {slope:g}", error, missed, cost / z.size, made.error,
         made.azimuths, f"{1e9 * cost / z.size / made.azimuths:.0f} ns per azimuth",
     )  # fmt: skip
+    return [row]
 
 
 def of_rvt(side: int, slope: float, directions: int, radius: int) -> list[Row]:
@@ -134,7 +137,7 @@ def surface_truth(points: int) -> tuple[pv.PolyData, Array]:
     return ball, np.asarray(vizlight.sky(ball, error=0.0015)["sky"], np.float64)
 
 
-def of_surface(points: int, error: float) -> Row:
+def of_surface(points: int, error: float) -> list[Row]:
     """Return the row of an error asked for on a surface."""
     ball, true = surface_truth(points)
     start = time.process_time()
@@ -143,10 +146,11 @@ def of_surface(points: int, error: float) -> Row:
     missed = np.abs(made.share - true)
     rays = float(str(made.record["directions"]))
     plain = np.mean(true * (1 - true)) / np.mean(missed**2)
-    return _row(
+    row = _row(
         "surface", error, missed, cost / len(true), float(str(made.record["error"])), rays,
         f"{plain / rays:.1f} times fewer rays than at random",
     )  # fmt: skip
+    return [row]
 
 
 def of_libigl(points: int, rays: int) -> list[Row]:
@@ -199,8 +203,9 @@ def _row(
     return Row(way, asked, float(np.quantile(missed, 0.95)), 1e9 * seconds, more)
 
 
-def steps(quick: bool) -> Iterable[Callable[[], Sequence[Row]]]:
-    """Yield one function for each row."""
+def steps(quick: bool) -> Sequence[Callable[[], Iterable[Row]]]:
+    """Return one function for each row."""
+    made: list[Callable[[], Iterable[Row]]] = []
     side, points = (192, 2500) if quick else (SIDE, 16000)
     if not _compiled.active():
         side = 64
@@ -208,15 +213,16 @@ def steps(quick: bool) -> Iterable[Callable[[], Sequence[Row]]]:
     fields.sky(np.arange(64.0), np.arange(64.0), ground(64, 1.0), error=0.001)
     for slope in SLOPES:
         for error in ASKED:
-            yield lambda slope=slope, error=error: [of_field(side, slope, error)]
+            made.append(partial(of_field, side, slope, error))
         for directions, radius in RVT[: 1 if quick else None]:
-            yield partial(of_rvt, side, slope, directions, radius)
+            made.append(partial(of_rvt, side, slope, directions, radius))
     for error in (0.04, 0.02, 0.01):
-        yield lambda error=error: [of_surface(points, error)]
+        made.append(partial(of_surface, points, error))
     for rays in IGL[: 1 if quick else None]:
-        yield partial(of_libigl, points, rays)
+        made.append(partial(of_libigl, points, rays))
     for rays in TRIMESH[: 1 if quick else None]:
-        yield partial(of_trimesh, points, rays)
+        made.append(partial(of_trimesh, points, rays))
+    return made
 
 
 def verdict(rows: Sequence[Row]) -> str:

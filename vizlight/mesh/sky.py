@@ -180,7 +180,7 @@ def _filled(share: Array, valid: Bools, points: Array) -> Array:
     if valid.all():
         return share
     share = np.where(valid, share, 1.0).astype(np.float32)
-    lost = ~valid & np.isfinite(points).all(axis=1)
+    lost = ~valid & (np.abs(points) <= _check.FARTHEST).all(axis=1)
     if valid.any() and lost.any():
         _, nearest = scipy.spatial.cKDTree(points[valid]).query(points[lost])
         share[lost] = share[valid][nearest]

@@ -46,8 +46,6 @@ NONE = -1e300
 #: Largest error that may be asked for, and the least that is tried for.
 LARGEST, LEAST = 0.5, 1e-4
 
-Quad = tuple[int, int, int, int]
-
 
 class Sky(NamedTuple):
     """The sky of a height field.
