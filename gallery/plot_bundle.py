@@ -21,7 +21,9 @@ scene = Scene(
     view=View.from_camera(camera),
     material=Material(ambient=0.55, diffuse=1.0, specular=0.3, shininess=25),
 )
-lit = vizlight.illuminate(tract, scene, bundle=Bundle(depth=1.2), model="cylinder", components=True)
+lit = vizlight.illuminate(
+    tract, scene, bundle=Bundle(depth=1.2), occlusion="sky", model="cylinder", components=True
+)
 
 # The usual colours of directions, red, green and blue, in hues that go together.
 share = np.asarray(vizlight.direction_colors(tract), dtype=float) ** 2

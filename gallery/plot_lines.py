@@ -33,7 +33,7 @@ scene = Scene(
 )
 lit = vizlight.streamlines(
     flow, scene, vectors="V", seeds=np.concatenate([circle(60, 2.75, 3.4), circle(90, 2.2, 9.5)]),
-    max_length=90, model="cylinder", bundle=Bundle(depth=1.2), components=True,
+    max_length=90, model="cylinder", bundle=Bundle(depth=1.2), occlusion="sky", components=True,
 )  # fmt: skip
 
 heat = np.clip((lit["Temp"] - 300) / 600, 0, 1)

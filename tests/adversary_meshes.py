@@ -104,6 +104,7 @@ FILTERS = {
     "satin": lambda: {
         "surface": ball(), "scene": SCENE, "tangents": "V", "seeds": 5, "max_steps": 20,
     },
+    "sky": lambda: {"mesh": ball(), "error": 0.1},
     "streamlines": lambda: {
         "mesh": flow(), "scene": SCENE, "vectors": "V", "seeds": 5, "max_steps": 20,
     },

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from vizlight.filters.relief_day import relief_day as relief_day
     from vizlight.filters.relief_shadow import relief_shadow as relief_shadow
     from vizlight.filters.satin import satin as satin
+    from vizlight.filters.sky import sky as sky
     from vizlight.filters.solids import to_polydata as to_polydata
     from vizlight.filters.streamlines import streamlines as streamlines
     from vizlight.filters.tint import tint as tint
@@ -101,6 +102,7 @@ _NAMES = {
     "filters.relief_day": "relief_day",
     "filters.relief_shadow": "relief_shadow",
     "filters.satin": "satin",
+    "filters.sky": "sky",
     "filters.solids": "to_polydata",
     "filters.streamlines": "streamlines",
     "filters.tint": "tint unlit_colors",

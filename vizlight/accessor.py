@@ -82,5 +82,6 @@ class Accessor:
     relief_shadow = _Method(lambda: vizlight.relief_shadow)
     save_gltf = _Method(lambda: vizlight.save_gltf)
     satin = _Method(lambda: vizlight.satin)
+    sky = _Method(lambda: vizlight.sky)
     streamlines = _Method(lambda: vizlight.streamlines)
     tint = _Method(lambda: vizlight.tint)

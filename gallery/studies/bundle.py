@@ -177,10 +177,12 @@ def measure(kind: str, points: int, grid: int, count: int) -> list[Row]:
     lines = geometry.medium(flat, ids, offsets, voxel=voxel)
     targets = lines.targets(made.places, made.tangents[made.own], np.full(points, LENGTH))
     lights = [(TOWARD, False), (LAMP, True)]
-    left, sides = lines.dimmed(targets, DIAMETER, lights[: 0 if count else 2], count, threads=1)
-    cost = 1e9 * (time.process_time() - start) / points
-    if sides is not None:
+    if count:
+        sides = lines.sky(targets, DIAMETER, count, threads=1)
+        cost = 1e9 * (time.process_time() - start) / points
         return [_row(f"{kind}, all sides", count, sides - true.around, true.around, cost)]
+    left = lines.dimmed(targets, DIAMETER, lights, threads=1)
+    cost = 1e9 * (time.process_time() - start) / points
     return [
         _row(f"{kind}, {name}", grid, left[:, i] - known, known, cost / 2)
         for i, (name, known) in enumerate((("far light", true.far), ("light inside", true.near)))

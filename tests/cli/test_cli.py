@@ -429,11 +429,19 @@ def test_lines_are_lit_as_a_bundle(tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(tmp_path)
     pv.Sphere(theta_resolution=12, phi_resolution=12).extract_all_edges().save("edges.vtp")
     code, out, _ = run(
-        capfd, "light", "edges.vtp", "-o", "lit.vtp", "--no-surface", "--bundle", "--explain"
+        capfd,
+        "light",
+        "edges.vtp",
+        "-o",
+        "lit.vtp",
+        "--no-surface",
+        "--bundle",
+        "--explain",
+        "--sky",
     )
     assert code == 0
     assert "transmittance: a share of each light" in out
-    assert {"transmittance", "occlusion"} <= set(pv.read("lit.vtp").point_data)
+    assert {"transmittance", "sky"} <= set(pv.read("lit.vtp").point_data)
     pv.Sphere().save("ball.vtp")
     code, _, error = run(capfd, "light", "ball.vtp", "-o", "no.vtp", "--bundle")
     assert code == 2

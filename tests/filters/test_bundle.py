@@ -13,7 +13,6 @@ import vizlight
 from vizlight import _compiled
 from vizlight.filters import relight
 from vizlight.geometry.lines import bundle as geometry
-from vizlight.mesh import bundles
 from vizlight.plotting import fragments
 from vizlight.shading import engine
 from vizlight.shading.options import LightOptions
@@ -24,7 +23,7 @@ OFF = vizlight.Light(direction=(1, 0, 0), intensity=0.0)
 SCENE = vizlight.Scene(
     lights=[FAR, OFF, NEAR], view=vizlight.View(direction=(0, -1, 0.3)), material=SHINY
 )
-QUICK = vizlight.Bundle(grid=24, directions=8)
+QUICK = vizlight.Bundle(grid=24)
 
 
 def lines(count=300, points=12, seed=1):
@@ -44,8 +43,8 @@ def lines(count=300, points=12, seed=1):
 def test_the_shares_multiply_each_light_and_the_ambient_term():
     """Against lighting by one light at a time, without a bundle."""
     mesh = lines()
-    lit = vizlight.illuminate(mesh, SCENE, bundle=QUICK, components=True)
-    share, open_ = np.asarray(lit["transmittance"]), np.asarray(lit["occlusion"])
+    lit = vizlight.illuminate(mesh, SCENE, bundle=QUICK, occlusion="sky", components=True)
+    share, open_ = np.asarray(lit["transmittance"]), np.asarray(lit["sky"])
     assert share.shape == (mesh.n_points, 2)
     assert share.min() >= 0
     assert share.max() <= 1
@@ -64,18 +63,18 @@ def test_the_shares_multiply_each_light_and_the_ambient_term():
 
 def test_points_deep_inside_are_darker_and_the_outermost_are_not():
     mesh = lines(2000)
-    lit = vizlight.illuminate(mesh, SCENE.replace(lights=[FAR]), bundle=QUICK)
+    lit = vizlight.illuminate(mesh, SCENE.replace(lights=[FAR]), bundle=QUICK, occlusion="sky")
     height, share = np.asarray(mesh.points)[:, 2], np.asarray(lit["transmittance"])
     assert share[height > 0.8].mean() > 0.9
     assert share[height < -0.5].mean() < 0.3
     radius = np.abs(mesh.points).max(axis=1)
-    assert lit["occlusion"][radius < 0.2].mean() < 0.6 * lit["occlusion"][radius > 0.8].mean()
+    assert lit["sky"][radius < 0.2].mean() < 0.6 * lit["sky"][radius > 0.8].mean()
 
 
 def test_the_reference_of_a_report_takes_the_shares_too():
     red = shiny(color=(1.0, 0.3, 0.2))
     with vizlight.report(sample=60) as report:
-        vizlight.illuminate(lines(100), SCENE.replace(material=red), bundle=QUICK)
+        vizlight.illuminate(lines(100), SCENE.replace(material=red), bundle=QUICK, occlusion="sky")
     assert report.error < 2e-6
     assert report.runs[0].sample == 60
 
@@ -84,27 +83,26 @@ def test_what_has_not_changed_is_not_computed_again(monkeypatch):
     asked = []
     dimmed = geometry.Medium.dimmed
 
-    def counted(self, targets, diameter, lights, count, **options):
-        asked.append((len(lights), count))
-        return dimmed(self, targets, diameter, lights, count, **options)
+    def counted(self, targets, diameter, lights, **options):
+        asked.append(len(lights))
+        return dimmed(self, targets, diameter, lights, **options)
 
     monkeypatch.setattr(geometry.Medium, "dimmed", counted)
     lit = vizlight.illuminate(lines(), SCENE, bundle=QUICK)
     turned = vizlight.illuminate(
         lit, SCENE.replace(view=vizlight.View(direction=(1, 0, 0))), bundle=QUICK
     )
-    assert asked == [(2, 8)]
-    for name in ("transmittance", "occlusion"):
-        assert np.array_equal(turned[name], lit[name])
+    assert asked == [2]
+    assert np.array_equal(turned["transmittance"], lit["transmittance"])
     assert not np.array_equal(turned["luminance"], lit["luminance"])
     head = SCENE.replace(lights=[NEAR, vizlight.Light.headlight()])
     other = vizlight.illuminate(turned, head, bundle=QUICK)
-    assert asked[1:] == [(1, 0)]
+    assert asked[1:] == [1]
     assert np.array_equal(other["transmittance"][:, 0], lit["transmittance"][:, 1])
     other.points[0, 0] += 0.1
     vizlight.illuminate(other, head, bundle=QUICK)
     vizlight.illuminate(lit, SCENE, bundle=dataclasses.replace(QUICK, depth=1.0))
-    assert asked[2:] == [(2, 8), (2, 8)]
+    assert asked[2:] == [2, 2]
     bare = vizlight.illuminate(lit, SCENE)
     assert "transmittance" not in bare.point_data
 
@@ -112,17 +110,18 @@ def test_what_has_not_changed_is_not_computed_again(monkeypatch):
 def test_the_same_with_any_number_of_threads_and_without_compiled_code(monkeypatch):
     mesh = lines(200)
     one, two = (
-        vizlight.illuminate(mesh, SCENE, bundle=QUICK, threads=threads) for threads in (1, 2)
+        vizlight.illuminate(mesh, SCENE, bundle=QUICK, occlusion="sky", threads=threads)
+        for threads in (1, 2)
     )
     assert np.array_equal(one["transmittance"], two["transmittance"])
-    assert np.array_equal(one["occlusion"], two["occlusion"])
+    assert np.array_equal(one["sky"], two["sky"])
     monkeypatch.setenv("VIZLIGHT_FAST", "0")
-    plain = vizlight.illuminate(mesh, SCENE, bundle=QUICK)
+    plain = vizlight.illuminate(mesh, SCENE, bundle=QUICK, occlusion="sky")
     if _compiled._missing():
         pytest.skip("numba is not installed")
     monkeypatch.setenv("VIZLIGHT_FAST", "1")
-    fast = vizlight.illuminate(mesh, SCENE, bundle=QUICK)
-    for name in ("transmittance", "occlusion", "luminance"):
+    fast = vizlight.illuminate(mesh, SCENE, bundle=QUICK, occlusion="sky")
+    for name in ("transmittance", "sky", "luminance"):
         np.testing.assert_allclose(fast[name], plain[name], atol=2e-5)
 
 
@@ -133,11 +132,12 @@ def test_neither_the_unit_nor_the_place_matters(kind, scale, far):
     moved = mesh.copy()
     moved.points = (np.asarray(mesh.points, np.float64) * scale + far).astype(kind)
     scene = SCENE.replace(lights=[FAR])
-    found = vizlight.illuminate(mesh, scene, bundle=QUICK)
-    other = vizlight.illuminate(moved, scene, bundle=QUICK)
+    found, other = (
+        vizlight.illuminate(each, scene, bundle=QUICK, occlusion="sky") for each in (mesh, moved)
+    )
     off = 2e-2 if far and kind is np.float32 else 2e-3
     np.testing.assert_allclose(other["transmittance"], found["transmittance"], atol=off)
-    assert abs(other["occlusion"] - found["occlusion"]).mean() < off
+    assert abs(other["sky"] - found["sky"]).mean() < off
 
 
 def test_the_default_diameter_has_the_depth_asked_for_or_a_share_of_the_size():
@@ -151,13 +151,13 @@ def test_the_default_diameter_has_the_depth_asked_for_or_a_share_of_the_size():
     few = vizlight.illuminate(lines(20), SCENE, bundle=QUICK)
     record = vizlight.provenance(few)["bundle"]
     assert record["diameter"] == pytest.approx(lines(20).length / 500, rel=1e-6)
-    assert few["occlusion"].min() > 0.7
+    assert vizlight.sky(lines(20), error=0.2)["sky"].min() > 0.7
 
 
 def test_a_record_repeats_the_light():
     mesh = lines(100)
     lit = vizlight.illuminate(mesh, SCENE, bundle=QUICK, name="light")
-    assert {"light_transmittance", "light_occlusion"} <= set(lit.point_data)
+    assert "light_transmittance" in lit.point_data
     record = vizlight.provenance(lit, "light")
     scene = vizlight.Scene.from_dict(record["scene"])
     again = vizlight.illuminate(mesh, scene, **record["options"])
@@ -173,7 +173,6 @@ def test_a_surface_is_dimmed_by_the_lines_above_it():
     away = np.abs(plate.points[:, :2]).max(axis=1)
     assert lit["transmittance"][away < 0.3].max() < 0.3
     assert (lit["transmittance"][away > 1.3] == 1).all()
-    assert lit["occlusion"][away < 0.3].mean() < lit["occlusion"][away > 2.5].mean()
     both = vizlight.illuminate(pv.MultiBlock({"l": mesh, "p": plate}), scene, bundle=QUICK)
     np.testing.assert_allclose(both["p"]["transmittance"], lit["transmittance"], atol=1e-6)
     alone = vizlight.illuminate(mesh, scene, bundle=QUICK)
@@ -182,8 +181,6 @@ def test_a_surface_is_dimmed_by_the_lines_above_it():
     below.points[:, 2] = 1.2
     clear = vizlight.illuminate(below, scene, bundle=dataclasses.replace(QUICK, lines=mesh))
     assert clear["transmittance"].min() > 1 - 1e-6
-    # Light from all sides comes from above alone.
-    assert clear["occlusion"].min() > 1 - 1e-6
 
 
 def test_streamlines_and_segments_of_a_grid():
@@ -202,11 +199,8 @@ def test_streamlines_and_segments_of_a_grid():
     np.testing.assert_allclose(cut["transmittance"], same["transmittance"], atol=1e-5)
 
 
-def test_without_directions_the_ambient_term_stays():
-    lit = vizlight.illuminate(
-        lines(50), SCENE, bundle=vizlight.Bundle(grid=8, directions=0), components=True
-    )
-    assert "occlusion" not in lit.point_data
+def test_a_bundle_alone_leaves_the_ambient_term_as_it_is():
+    lit = vizlight.illuminate(lines(50), SCENE, bundle=vizlight.Bundle(grid=8), components=True)
     assert np.ptp(lit["ambient"]) == 0
 
 
@@ -248,9 +242,7 @@ def test_a_plan_says_that_light_is_dimmed():
 def test_bad_input():
     for keywords, words in (
         ({"diameter": 0.0}, "diameter"), ({"diameter": np.nan}, "diameter"),
-        ({"directions": 7}, "directions: expected an even number"),
-        ({"directions": -2}, "directions"), ({"grid": 2}, "grid"), ({"grid": 4096}, "grid"),
-        ({"depth": 0}, "depth"),
+        ({"grid": 2}, "grid"), ({"grid": 4096}, "grid"), ({"depth": 0}, "depth"),
     ):  # fmt: skip
         with pytest.raises(ValueError, match=words):
             vizlight.Bundle(**keywords)
@@ -263,10 +255,9 @@ def test_bad_input():
         vizlight.illuminate(pv.Sphere(), SCENE, bundle=vizlight.Bundle(lines=3))
     with pytest.raises(ValueError, match=r"Bundle\(lines=\): expected a mesh of lines"):
         vizlight.illuminate(mesh, SCENE, bundle=vizlight.Bundle(lines=pv.Sphere()))
-    mesh["occlusion"] = np.zeros(mesh.n_points)
-    with pytest.raises(ValueError, match="'occlusion'"):
+    mesh["transmittance"] = np.zeros(mesh.n_points)
+    with pytest.raises(ValueError, match="'transmittance'"):
         vizlight.illuminate(mesh, SCENE, bundle=True)
-    assert bundles.OCCLUSION in mesh.point_data
     with pytest.raises(ValueError, match="transmittance: expected shape"):
         engine.shade(mesh.points, mesh.points, SCENE, transmittance=np.ones(mesh.n_points))
 

@@ -556,7 +556,7 @@ def test_shares_of_light_inside_a_bundle_are_kept_when_the_eye_moves(plotter, mo
     monkeypatch.setattr(bundle.Medium, "dimmed", counted)
     points = np.random.default_rng(1).normal(size=(60, 3))
     lines = pv.MultipleLines(points).compute_arc_length()
-    few = vizlight.Bundle(grid=16, directions=4)
+    few = vizlight.Bundle(grid=16)
     plotter.vizlight.add_mesh(lines, scene=SCENE, bundle=few)
     picture(plotter)
     first = np.array(plotter.camera.position)
@@ -592,7 +592,7 @@ def test_a_bundle_dims_the_lights_of_the_plotter_where_they_are_now(drawn, light
     given[1].positional, given[1].position, given[1].cone_angle = True, (5, 3, 4), 90
     points = np.random.default_rng(1).normal(size=(60, 3))
     lines = pv.MultipleLines(points).compute_arc_length()
-    few = vizlight.Bundle(grid=16, directions=4)
+    few = vizlight.Bundle(grid=16)
     actor = plotter.vizlight.add_mesh(lines, model=model, bundle=few, **DRAWN[drawn])
 
     def check():
@@ -618,7 +618,7 @@ def test_a_bundle_dims_the_lights_of_the_plotter_where_they_are_now(drawn, light
 def test_a_bundle_dims_the_lights_of_another_scene(plotter):
     points = np.random.default_rng(1).normal(size=(60, 3))
     lines = pv.MultipleLines(points)
-    few = vizlight.Bundle(grid=16, directions=4)
+    few = vizlight.Bundle(grid=16)
     actor = plotter.vizlight.add_mesh(lines, scene=SCENE, bundle=few)
     two = SCENE.replace(lights=[Light(direction=(1, 0, 1)), Light(direction=(0, 1, 1))])
     plotter.vizlight.set_scene(actor, two)

@@ -17,6 +17,7 @@ from vizlight.filters.project import ProjectOptions
 from vizlight.filters.refine import RefineOptions
 from vizlight.filters.relief_shadow import ReliefOptions
 from vizlight.filters.satin import SatinOptions
+from vizlight.filters.sky import SkyOptions
 from vizlight.filters.streamlines import StreamlineOptions
 from vizlight.pictures import movie
 from vizlight.plotting import paraview
@@ -37,10 +38,11 @@ FUNCTIONS = [
     (vizlight.fur, FurOptions, set()),
     (vizlight.isoluminance, ContourOptions, set()),
     (vizlight.relief_shadow, ReliefOptions, set()),
-    (vizlight.relief_day, ReliefOptions, {"lit", "components"}),
+    (vizlight.relief_day, ReliefOptions, {"lit", "components", "occlusion"}),
     (vizlight.refine, RefineOptions, {"refine"}),
     (paraview.shader, LightOptions, set(paraview.WITHOUT)),
     (vizlight.vtk.Illuminate, LightOptions, {"feature_angle", "line_field", "refine", "bundle"}),
+    (vizlight.sky, SkyOptions, set()),
 ]
 IDS = [function.__qualname__ for function, _, _ in FUNCTIONS]
 

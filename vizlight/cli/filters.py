@@ -8,7 +8,17 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from vizlight.cli import options, scenes
-from vizlight.cli.arguments import COMMON, GROUPS, LIT, OUTPUT, Color, Common, Part, Shape
+from vizlight.cli.arguments import (
+    COMMON,
+    GROUPS,
+    LIT,
+    OUTPUT,
+    Color,
+    Common,
+    Flag,
+    Part,
+    Shape,
+)
 from vizlight.cli.job import Job, carry_out
 from vizlight.cli.output import say
 from vizlight.cli.script import Step
@@ -20,11 +30,12 @@ if TYPE_CHECKING:
 
     from vizlight.cli.arguments import Output
     from vizlight.filters.fur import FurOptions
-    from vizlight.filters.relief_shadow import ReliefOptions
     from vizlight.scene import Light
 
 #: Option of ``project`` that the lights have the name of.
 RENAMED = {"light": "when"}
+#: Option of ``sky`` that the camera has the name of.
+SKY_UP = {"up": "sky_up"}
 
 
 @options.takes(
@@ -88,6 +99,7 @@ def relief(
     how: object = None,
     lit: Annotated[bool, Parameter(group=GROUPS["Output"])] = True,
     common: Annotated[Common, COMMON] = Common(),  # noqa: B008
+    sky: Annotated[Flag, Parameter(group=GROUPS["Light"])] = False,
 ) -> int:
     """Cast shadows on a height field or a closed surface: the cos-theta shadow t.
 
@@ -97,6 +109,8 @@ def relief(
         Height field, or closed surface; of several each is lit by itself.
     lit
         Show the light with its shadow; otherwise the shadow t alone.
+    sky
+        Take the ambient light from an even sky.
     """
     from vizlight.filters.relief_shadow import ReliefOptions
 
@@ -105,6 +119,7 @@ def relief(
     look = scenes.Look(common, fill=False)
     # A shadow alone answers no question.
     given = {"lit": lit or common.lights.question is not None} | options.keywords(how)
+    given |= {"lit": True, "occlusion": "sky"} if sky else {}
     asked = ReliefOptions(**given)
 
     def job(path: Path, time: float | str | None) -> Job:
@@ -117,7 +132,7 @@ def relief(
         on: dict[str, object] = {}
         if found is None and asked.raster is None:
             on["feature_angle"] = "auto"
-        heights = None if found is None else _heights(found, asked)
+        heights = None if found is None else _heights(found, asked.elevation)
         raised = mesh
         if heights is not None:
             raised = scenes.warped("raised", mesh, heights, shape.exaggeration)
@@ -142,6 +157,50 @@ def relief(
         return made
 
     return carry_out(files, job, common.out, "relief", shape)
+
+
+@options.takes("sky", "Sky", renamed=SKY_UP)
+def sky(
+    files: list[Path],
+    /,
+    *,
+    shape: Annotated[Shape, LIT] = Shape(),  # noqa: B008
+    how: object = None,
+    common: Annotated[Common, COMMON] = Common(),  # noqa: B008
+) -> int:
+    """Find the share of a uniform sky that each point sees.
+
+    Parameters
+    ----------
+    files
+        Height field, surface or lines; of several each is taken by itself.
+    """
+    from vizlight.filters.sky import SkyOptions
+
+    scenes.check_target(shape)
+    look = scenes.Look(common)
+    given = options.keywords(how, SKY_UP)
+    asked = SkyOptions(**given)
+
+    def job(path: Path, time: float | str | None) -> Job:
+        mesh = scenes.data(path, shape, time)
+        found = mesh.run()
+        field = shape.contour is None and shape.slice is None and _is_field(found)
+        if shape.contour is not None or shape.slice is not None:
+            mesh = scenes.surface(mesh, shape)
+        heights = _heights(found, None) if field else None
+        # The sky is that of the heights as they are.
+        raised = mesh if heights is None else scenes.warped("raised", mesh, heights, 1.0)
+        camera = look.camera(raised, is_map=field)
+        made = _step("open", "sky", mesh, None, given, common.out)
+        shown = None
+        if heights is not None:
+            shown = Step("shown", raised.path, made, *raised.arguments[1:])
+        job = Job(made, asked.name, look, camera, shown=shown, scalars=asked.name, before=mesh)
+        job.suffix = _suffix(found) if field else ""
+        return job
+
+    return carry_out(files, job, common.out, "sky", shape)
 
 
 def _level_light(lights: Sequence[Light]) -> float:
@@ -285,11 +344,11 @@ def _tips(mesh: Step, asked: FurOptions) -> Step:
     return Step("tips", ".warp_by_vector", normals, "Normals", factor=length)
 
 
-def _heights(field: pv.DataSet, asked: ReliefOptions) -> str | None:
+def _heights(field: pv.DataSet, elevation: str | None) -> str | None:
     """Return the name of the heights that raise a flat grid in a picture."""
     from vizlight.mesh.height_grids import heights_name
 
-    name = asked.elevation or heights_name(field)
+    name = elevation or heights_name(field)
     flat = field.bounds.z_min == field.bounds.z_max
     return name if flat and name is not None and name in field.point_data else None
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import shlex
 from pathlib import Path  # noqa: TC003 - cyclopts reads the annotations
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
@@ -39,8 +39,8 @@ if TYPE_CHECKING:
     from vizlight.shading.options import LightOptions
 
 
-# Places in n-space need lights and an eye in n-space, which scripts have.
-@options.takes("illuminate", "Shading", without=("positions",))
+# Places in n-space need lights and an eye in n-space, which scripts have; --sky is an occlusion.
+@options.takes("illuminate", "Shading", without=("positions", "occlusion"))
 def light(
     files: list[Path],
     /,
@@ -52,6 +52,7 @@ def light(
     pieces: Annotated[Pieces, PIECES] = Pieces(),  # noqa: B008
     explain: Annotated[Flag, Parameter(group=GROUPS["Output"])] = False,
     legibility: Annotated[Flag, Parameter(group=GROUPS["Output"])] = False,
+    sky: Annotated[Flag, Parameter(group=GROUPS["Light"])] = False,
 ) -> int:
     """Light a mesh from any file that PyVista reads, and write the lit mesh and a picture.
 
@@ -65,8 +66,10 @@ def light(
         Print what is computed and what is skipped.
     legibility
         Print what an ideal reader reads back from the picture.
+    sky
+        Take the ambient light from an even sky.
     """
-    given = options.keywords(how)
+    given = keywords(how, sky=sky)
     if in_pieces.are_asked(common.out, pieces):
         scenes.check_target(target)
         scenes.check_color(color)
@@ -75,8 +78,13 @@ def light(
             got = "pieces"
             raise ValueError(_words.message("--legibility", "one mesh, lit as a whole", got))
         return in_pieces.light(files, target, given, common, color, pieces, look)
-    build = builder(target, how, common, color, explain=explain, legibility=legibility)
+    build = builder(target, how, common, color, sky=sky, explain=explain, legibility=legibility)
     return carry_out(files, build, common.out, "lit", target)
+
+
+def keywords(how: object, *, sky: bool) -> dict[str, Any]:
+    """Return the options of light, with the ambient light of a sky where it is asked for."""
+    return options.keywords(how) | ({"occlusion": "sky"} if sky else {})
 
 
 def builder(
@@ -85,6 +93,7 @@ def builder(
     common: Common,
     color: Color,
     *,
+    sky: bool = False,
     explain: bool = False,
     legibility: bool = False,
 ) -> Callable[[Path, float | str | None], Job]:
@@ -94,7 +103,7 @@ def builder(
     scenes.check_target(target)
     scenes.check_color(color)
     look = scenes.Look(common)
-    given = options.keywords(how)
+    given = keywords(how, sky=sky)
     taken = target.surface or target.contour is not None or target.slice is not None
     if taken:
         # In a picture a crease is seen as one.
@@ -118,7 +127,7 @@ def builder(
         lit = Step("lit", "vizlight.illuminate", source, scene, **given, **place, **progress)
         made = Job(lit, asked.name, look, camera, suffix=".vtp" if taken or asked.refine else "")
         made.before = None if asked.refine else mesh
-        made.source = [str(path), *options.words(target, how)]
+        made.source = [str(path), *options.words(target, how), *(["--sky"] if sky else [])]
         made.tint(lit, data, color)
         if not (target.contour or target.warp or target.slice):
             made.hint = lambda: _hint(data.run(), surface=target.surface)
@@ -173,5 +182,5 @@ def _explain(lit: pv.DataSet, asked: LightOptions) -> None:
     record = vizlight.provenance(lit, asked.name)
     scene = vizlight.Scene.from_dict(record["scene"])
     inputs = inputs_of(next(all_blocks(lit)), "", scene, asked)
-    layout = inputs.layout._replace(dimmed=bool(asked.bundle), occluded=bool(asked.bundle))
+    layout = inputs.layout._replace(dimmed=bool(asked.bundle))
     say(decide(scene, layout, asked, record["precision"]).explain())

@@ -156,6 +156,11 @@ LIGHTING = {
         "Cast shadows on a height field or a closed surface.",
         "terrain.dem --depth 60 --light 315,20",
     ),
+    "sky": (
+        "filters",
+        "Find the share of a uniform sky that each point sees.",
+        "terrain.dem --error 0.01 -o sky.png",
+    ),
     "fur": (
         "filters",
         "Cover a surface with fibres, and light them and the skin.",

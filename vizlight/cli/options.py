@@ -85,6 +85,10 @@ READ: Mapping[str, tuple[Callable[[str, str], object], str]] = {
     "exponent": (_exponent, "Exponent of the diffuse term: compensated, or a number: 1, 2."),
     "facing": (_facing, "Side that is lit: auto, eye, outward or as-given."),
     "toward": (_name_or_vector, "Direction x,y,z to which fibres bend, or name of an array."),
+    "up": (
+        _name_or_vector,
+        "Direction x,y,z of the sky's half space. Default: all round.",
+    ),
     "hyperplane": (_hyperplane, "Hyperplane NORMAL:OFFSET that cuts the mesh: 0,0,0,1:0.2."),
 }
 READ_LISTS: Mapping[str, tuple[Callable[[str, list[str]], object], str]] = {

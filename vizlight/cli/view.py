@@ -98,7 +98,8 @@ def view(
             progress=window.progress,
         )
         common = Common(lights=lights, finish=finish, eye=eye, out=out)
-        code = carry_out([file], builder(target, how, common, color), out, "view", target)
+        build = builder(target, how, common, color)
+        code = carry_out([file], build, out, "view", target)
         if folder is not None:
             page.chmod(0o600)
     finally:

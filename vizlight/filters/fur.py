@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import threading
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -14,6 +15,7 @@ from vizlight.filters import lighting
 from vizlight.geometry.lines import fur as geometry
 from vizlight.mesh import blocks, bundles, point_arrays, surfaces
 from vizlight.mesh.normals import onlooker, split_where_computed
+from vizlight.mesh.sky import in_medium
 from vizlight.mesh.strands import Grown, Strands
 from vizlight.model import kernels
 from vizlight.reading.arrays import vectors_of
@@ -297,7 +299,13 @@ def _grow(
             [lines, surface], [fibres, below], scene, options.bundle, name, threads,
             show=progress_bar,
         )  # fmt: skip
-        fibres, below = lighting.dimmed([fibres, below], dimmings)
+        medium = bundles.medium_of(bundles.joined([lines]), options.bundle)
+        sides = np.asarray(skin.point_data[surfaces.NORMALS])
+        shares = in_medium(lines, medium, None, threads), in_medium(skin, medium, sides, threads)
+        fibres, below = (
+            dataclasses.replace(given, occlusion=share)
+            for given, share in zip(lighting.dimmed([fibres, below], dimmings), shares, strict=True)
+        )
     parts = [(fibres, options.shading), (below, options.shading.for_surface())]
     results, scene = lighting.light(parts, scene, threads=threads, progress_bar=progress_bar)
     if far:

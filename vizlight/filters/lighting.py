@@ -18,13 +18,12 @@ if TYPE_CHECKING:
 
     import pyvista as pv
 
+    from vizlight._types import Array
     from vizlight.mesh.bundles import Dimming
     from vizlight.scene import Scene
     from vizlight.shading.inputs import ShadingInputs
     from vizlight.shading.options import Bundle, ShadingOptions
     from vizlight.shading.results import Record
-
-BUNDLE_PARTS = (bundles.TRANSMITTANCE, bundles.OCCLUSION)
 
 
 def light(
@@ -93,7 +92,7 @@ def refuse_overwriting(
     """Refuse a name under which the light would replace an array of the user."""
     _check.array_name("name", name)
     parts = [part for part in PARTS if (colored if part == "rgb" else components)]
-    parts += BUNDLE_PARTS if bundle else ()
+    parts += [bundles.TRANSMITTANCE] if bundle else []
     made = [part_name(name, part) for part in parts]
     records.refuse_overwriting(named, name, [name, name + VALID, *made])
 
@@ -109,10 +108,10 @@ def dimmings(
     show: bool,
 ) -> list[Dimming]:
     """Return the shares of light that reach meshes inside a bundle of lines."""
-    names = [part_name(name, part) for part in BUNDLE_PARTS]
+    names = (name, part_name(name, bundles.TRANSMITTANCE))
     with _progress.progress("bundle", 100, show=show) as report:
         return bundles.dim(
-            meshes, inputs, scene, bundle, (name, names[0], names[1]),
+            meshes, inputs, scene, bundle, names,
             threads=threads, progress=lambda done, total: report(100 * done // total),
         )  # fmt: skip
 
@@ -120,7 +119,7 @@ def dimmings(
 def dimmed(inputs: Sequence[ShadingInputs], shares: Sequence[Dimming]) -> list[ShadingInputs]:
     """Return inputs with the shares of light that reach them."""
     return [
-        dataclasses.replace(given, transmittance=own.transmittance, occlusion=own.occlusion)
+        dataclasses.replace(given, transmittance=own.transmittance)
         for given, own in zip(inputs, shares, strict=True)
     ]
 
@@ -148,7 +147,10 @@ def finish(
         if plan not in shared:
             all_of = of_light(shading, filter_name, scene, options)
             shared[plan] = json.dumps({k: v for k, v in all_of.items() if k not in record})
-        attach(mesh, shading, name, record, dimmings[i] if dimmings else None, shared[plan])
+        share: str | None = getattr(options, "occlusion", None)
+        known = None if share is None else np.asarray(mesh.point_data[share])
+        dimming = dimmings[i] if dimmings else None
+        attach(mesh, shading, name, record, dimming, shared[plan], occlusion=known)
         invalid += shading.invalid
     if invalid > 0:
         total = sum(shading.luminance.size for shading in results) - inside
@@ -162,15 +164,13 @@ def attach(
     record: Record,
     dimming: Dimming | None = None,
     common: str = "",
+    *,
+    occlusion: Array | None = None,
 ) -> None:
     """Attach the light to a mesh, in place of what it has under the name; see `records.write`."""
-    occlusion = None if dimming is None else dimming.occlusion
     arrays = arrays_of(shading, name, occlusion=occlusion)
     if dimming is not None:
-        arrays |= {
-            part_name(name, part): array
-            for part, array in zip(BUNDLE_PARTS, dimming[:2], strict=True)
-            if array is not None and array.size
-        }
+        if dimming.transmittance.size:
+            arrays[part_name(name, bundles.TRANSMITTANCE)] = dimming.transmittance
         record = record | {"bundle": dimming.record}
     records.attach(mesh, name, arrays, record, common)

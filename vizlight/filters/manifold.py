@@ -47,6 +47,7 @@ def manifold(
     line_field: bool = False,
     refine: float = 0.0,
     bundle: bool | Bundle = False,
+    occlusion: str | None = None,
     name: str = "luminance",
     exponent: Exponent = "compensated",
     model: Model = "phong",
@@ -65,9 +66,9 @@ def manifold(
         As for :func:`project`.
     rotation, hyperplane, distance, positions, frame, vectors, cut, light
         As for :func:`vizlight.project`.
-    tangents, normals, facing, feature_angle, conditioned, line_field, refine, bundle, name
+    tangents, normals, facing, feature_angle, conditioned, line_field, refine, bundle, occlusion
         As for :func:`vizlight.illuminate`.
-    exponent, model, components, precision
+    name, exponent, model, components, precision
         As for :func:`vizlight.illuminate`.
 
     Returns

@@ -91,6 +91,7 @@ def pathlines(
     line_field: bool = False,
     refine: float = 0.0,
     bundle: bool | Bundle = False,
+    occlusion: str | None = None,
     name: str = "luminance",
     exponent: Exponent = "compensated",
     model: Model = "phong",
@@ -128,7 +129,7 @@ def pathlines(
         Largest step of the integration, in cell lengths; lines have a point at each.
     tangents, positions, normals, facing, feature_angle, conditioned, line_field, refine, bundle
         As for :func:`vizlight.illuminate`.
-    name, exponent, model, components, precision
+    occlusion, name, exponent, model, components, precision
         As for :func:`vizlight.illuminate`.
     threads, progress_bar
         As for :func:`vizlight.illuminate`.

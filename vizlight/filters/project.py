@@ -97,6 +97,7 @@ def project(
     line_field: bool = False,
     refine: float = 0.0,
     bundle: bool | Bundle = False,
+    occlusion: str | None = None,
     name: str = "luminance",
     exponent: Exponent = "compensated",
     model: Model = "phong",
@@ -141,9 +142,9 @@ def project(
     light : {"before", "after"}
         Light in n-space, with lights and eye of n components, before the projection; or in
         3-space, by the projected points and frame, after it.
-    tangents, normals, facing, feature_angle, conditioned, line_field, refine, bundle, name
+    tangents, normals, facing, feature_angle, conditioned, line_field, refine, bundle, occlusion
         As for :func:`vizlight.illuminate`.
-    exponent, model, components, precision
+    name, exponent, model, components, precision
         As for :func:`vizlight.illuminate`.
     threads : int, optional
         Number of threads of the light. Default: the processors that this process may use.

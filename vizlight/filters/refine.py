@@ -56,6 +56,7 @@ def refine(
     conditioned: bool | str | None = False,
     line_field: bool = False,
     bundle: bool | Bundle = False,
+    occlusion: str | None = None,
     name: str = "luminance",
     exponent: Exponent = "compensated",
     model: Model = "phong",
@@ -84,9 +85,9 @@ def refine(
         1e-5 or more.
     max_points : int, optional
         Largest number of points of each mesh. Default: one million, or twice those that it has.
-    tangents, positions, normals, facing, feature_angle, conditioned, line_field, bundle, name
+    tangents, positions, normals, facing, feature_angle, conditioned, line_field, bundle, occlusion
         As for :func:`vizlight.illuminate`.
-    exponent, model, components, precision
+    name, exponent, model, components, precision
         As for :func:`vizlight.illuminate`.
     threads, progress_bar
         As for :func:`vizlight.illuminate`.

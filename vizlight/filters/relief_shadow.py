@@ -12,12 +12,15 @@ import pyvista as pv
 from vizlight import _check, _progress
 from vizlight.filters.illuminate import separate_copy
 from vizlight.filters.lighting import attach, refuse_overwriting
+from vizlight.filters.sky import with_sky
 from vizlight.geometry.relief import sun as sky
 from vizlight.mesh import blocks, point_arrays, records
 from vizlight.mesh.casters import CasterOptions, caster
 from vizlight.mesh.height_grids import Grid
 from vizlight.mesh.normals import split_where_computed
+from vizlight.mesh.sky import ABOVE
 from vizlight.reading.cells import check_whole
+from vizlight.reading.inputs import share_of
 from vizlight.scene import Light, Scene
 from vizlight.scene.scene import as_scene
 from vizlight.shading import engine
@@ -49,11 +52,17 @@ class ReliefOptions(CasterOptions):
     samples: int = 16
     lit: bool = False
     components: bool = False
+    occlusion: str | None = None
     name: str = "t"
 
     def __post_init__(self) -> None:
         super().__post_init__()
         _check.flags(self)
+        if self.occlusion is not None:
+            _check.text("occlusion", self.occlusion, expected="the name of a point array")
+            if not self.lit:
+                got = repr(self.occlusion)
+                raise ValueError(_check.message("occlusion", "lit=True beside it", got))
         _check.set_fields(
             self,
             angular_diameter=_check.number(
@@ -74,6 +83,7 @@ def relief_shadow(
     samples: int = 16,
     lit: bool = False,
     components: bool = False,
+    occlusion: str | None = None,
     name: str = "t",
     depth: float | None = None,
     elevation: str | None = None,
@@ -113,6 +123,9 @@ def relief_shadow(
     components : bool, default: False
         Whether ``t_0``, ``t_1``, ..., one for each light, are added, and with ``lit`` the terms of
         the engine.
+    occlusion : str, optional
+        Name of a point array that multiplies the ambient term of the light, as for
+        :func:`vizlight.illuminate`: ``lit=True, occlusion="sky"`` is the light of sun and sky.
     name : str, default: "t"
         Name of the result.
     depth : float, optional
@@ -190,6 +203,10 @@ def relief_shadow(
         scene = as_scene(scene).replace(lights=[lit_by])
     scene, lights = _lights(scene)
     own = mesh if asked.raster is not None else split_where_computed(mesh, asked.feature_angle)
+    (sunlit,) = with_sky(
+        [own], asked.occlusion, threads, elevation=asked.elevation, factor=asked.exaggeration,
+        up=None if asked.raster is None else ABOVE,
+    )  # fmt: skip
     shadow = caster(own, scene, asked, threads)
     name = asked.name
     each = [f"{name}_{i}" for i in range(len(lights) if asked.components else 0)]
@@ -211,7 +228,7 @@ def relief_shadow(
         fixed = scene.replace(lights=lights)
         shading = engine.shade(
             shadow.points, None, fixed, normals=shadow.normals, shadow=t, threads=threads,
-            components=asked.components,
+            components=asked.components, occlusion=share_of(sunlit, asked.occlusion),
         )  # fmt: skip
 
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
@@ -220,7 +237,7 @@ def relief_shadow(
         mesh.ShallowCopy(own)
     if shading is not None:
         light = of_light(shading, "relief_shadow", scene, asked)
-        attach(out, shading, DEFAULT_NAME, light)
+        attach(out, shading, DEFAULT_NAME, light, occlusion=share_of(sunlit, asked.occlusion))
     arrays: dict[str, NDArray[np.generic]] = {one: t[:, i].copy() for i, one in enumerate(each)}
     arrays[name] = t @ (weight / weight.sum())
     missing = int(np.count_nonzero(~shadow.valid))

@@ -11,6 +11,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.filters import lighting
+from vizlight.filters.sky import with_sky
 from vizlight.mesh import blocks, bundles, records
 from vizlight.mesh.inputs import part_of
 from vizlight.mesh.nspace import PROJECTED
@@ -74,11 +75,25 @@ def from_options(
     mesh: pv.DataSet | pv.MultiBlock, scene: Scene, options: LightOptions
 ) -> list[Source]:
     """Return what :func:`vizlight.illuminate` lights on a mesh, one source for each block."""
-    return [read(block, path, scene, options) for block, path in blocks.named_blocks(mesh)]
+    chosen = [*blocks.named_blocks(mesh)]
+    meshes = with_sky([block for block, _ in chosen], options.occlusion)
+    return [
+        read(block, path, scene, options, own)
+        for own, (block, path) in zip(meshes, chosen, strict=True)
+    ]
 
 
-def read(mesh: pv.DataSet, path: str, scene: Scene, options: LightOptions) -> Source:
-    """Return what is lit on one mesh by options of :func:`vizlight.illuminate`."""
+def read(
+    mesh: pv.DataSet,
+    path: str,
+    scene: Scene,
+    options: LightOptions,
+    own: pv.DataSet | None = None,
+) -> Source:
+    """Return what is lit on one mesh by options of :func:`vizlight.illuminate`.
+
+    ``own`` is the mesh with its sky, which several blocks hide from one another.
+    """
     if options.feature_angle is not None:
         expected = "None for light that follows"
         remedy = (
@@ -87,13 +102,13 @@ def read(mesh: pv.DataSet, path: str, scene: Scene, options: LightOptions) -> So
         )
         got = repr(options.feature_angle)
         raise ValueError(_check.message("feature_angle", expected, got, remedy))
-    part = part_of(mesh, path, scene, options)
+    own = with_sky([mesh], options.occlusion)[0] if own is None else own
+    part = part_of(own, path, scene, options)
     inputs, sided = part.inputs, part.sided
     shares: bundles.Live | None = None
     if isinstance(options.bundle, Bundle):
         _refuse_following(scene, bundled=True)
-        names = [part_name(options.name, part) for part in lighting.BUNDLE_PARTS]
-        given = (options.name, names[0], names[1])
+        given = (options.name, part_name(options.name, bundles.TRANSMITTANCE))
         shares = bundles.Live(mesh, inputs, options.bundle, given)
         inputs = shares.dimmed(inputs, scene)
     inside = 0 if sided is None else int(sided.inside)

@@ -52,6 +52,7 @@ def satin(
     feature_angle: FeatureAngle = None,
     refine: float = 0.0,
     bundle: bool | Bundle = False,
+    occlusion: str | None = None,
     name: str = "luminance",
     exponent: Exponent = "compensated",
     model: Model = "phong",
@@ -75,9 +76,9 @@ def satin(
         Points at which curves start; a number stands for places on the surface, uniform in area.
     line_field, seed, spacing, step, max_length, max_steps
         As for :func:`vizlight.streamlines`.
-    tangents, positions, normals, facing, feature_angle, refine, bundle, name, exponent, model
+    tangents, positions, normals, facing, feature_angle, refine, bundle, occlusion, name, exponent
         As for :func:`vizlight.illuminate`.
-    components, precision
+    model, components, precision
         As for :func:`vizlight.illuminate`.
     threads, progress_bar
         As for :func:`vizlight.illuminate`.

@@ -123,6 +123,7 @@ def streamlines(
     feature_angle: FeatureAngle = None,
     refine: float = 0.0,
     bundle: bool | Bundle = False,
+    occlusion: str | None = None,
     name: str = "luminance",
     exponent: Exponent = "compensated",
     model: Model = "phong",
@@ -179,9 +180,9 @@ def streamlines(
     conditioned : bool or str, optional
         Whether the lines inherit the self-shadow of the surface, see
         :func:`vizlight.illuminate`. Default: whether there is a surface.
-    tangents, positions, normals, facing, feature_angle, refine, bundle, name, exponent, model
+    tangents, positions, normals, facing, feature_angle, refine, bundle, occlusion, name, exponent
         As for :func:`vizlight.illuminate`.
-    components, precision
+    model, components, precision
         As for :func:`vizlight.illuminate`.
     threads, progress_bar
         As for :func:`vizlight.illuminate`.

@@ -164,7 +164,9 @@ def _batches(meshes: Sequence[pv.DataSet], options: LightOptions) -> list[Batch]
 def _names(options: LightOptions) -> list[str] | None:
     """Return the names of the arrays that light depends on, None if one of them has no name."""
     conditioned = options.conditioned if isinstance(options.conditioned, str) else None
-    given = [options.tangents, options.positions, options.normals, conditioned]
+    given = [
+        options.tangents, options.positions, options.normals, conditioned, options.occlusion
+    ]  # fmt: skip
     given = [name for name in given if name is not None]
     names = [name for name in given if isinstance(name, str)]
     return names if len(names) == len(given) else None

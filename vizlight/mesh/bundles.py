@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 THICKEST = 1 / 500
 #: Numbers of points and of directions that the default diameter is estimated from.
 SAMPLE, SIDES = 20_000, 16
-TRANSMITTANCE, OCCLUSION = "transmittance", "occlusion"
+TRANSMITTANCE = "transmittance"
 
 
 class Dimming(NamedTuple):
@@ -40,18 +40,15 @@ class Dimming(NamedTuple):
     ----------
     transmittance : ndarray of float32, shape (N, L)
         Share of each light of intensity above 0.
-    occlusion : ndarray of float32, shape (N,), or None
-        Share of the ambient light; None where it is left as it is.
     record : dict
         Diameter, side of a voxel, and digests of what the shares were computed from.
     """
 
     transmittance: Array
-    occlusion: Array | None
     record: Record
 
 
-class _Lines(NamedTuple):
+class Lines(NamedTuple):
     """Polylines of one or several meshes."""
 
     points: Array
@@ -64,7 +61,7 @@ def dim(
     inputs: Sequence[ShadingInputs],
     scene: Scene,
     bundle: Bundle,
-    names: tuple[str, str, str],
+    names: tuple[str, str],
     /,
     *,
     threads: int | None = None,
@@ -83,8 +80,8 @@ def dim(
     bundle : Bundle
         How the lines dim the light.
     names : tuple of str
-        Names of the luminance, the transmittance and the occlusion. Shares that a mesh has under
-        them are used again where nothing that they depend on has changed.
+        Names of the luminance and the transmittance. Shares that a mesh has under that name are
+        used again where nothing that they depend on has changed.
     threads : int, optional
         Number of threads.
     progress : callable, optional
@@ -104,8 +101,7 @@ def dim(
     lights = _lights(scene)
     made = []
     for number, (mesh, given) in enumerate(zip(meshes, inputs, strict=True)):
-        done = number * (len(lights) + bundle.directions // 2)
-        total = len(meshes) * (len(lights) + bundle.directions // 2)
+        done, total = number * len(lights), len(meshes) * len(lights)
 
         def report(count: int, done: int = done, total: int = total) -> None:
             if progress is not None:
@@ -127,11 +123,11 @@ def _work_of(
             got = f"points of {given.points.shape[1]} components"
             raise ValueError(_check.message("bundle", "points in 3-space", got))
     own = bundle.lines is None
-    lines = _joined(meshes) if own else _lines_of(bundle.lines)
+    lines = joined(meshes) if own else _lines_of(bundle.lines)
     if not len(lines.ids):
         remedy = "pass Bundle(lines=...) to dim another mesh by lines"
         raise ValueError(_check.message("bundle", "a mesh with lines", "none", remedy))
-    asked = [bundle.diameter, bundle.depth, bundle.directions, bundle.grid]
+    asked = [bundle.diameter, bundle.depth, bundle.grid]
     source = _digest(lines.points, lines.ids, lines.offsets, np.array(repr([asked, own])))
     return _Work(lines, source, bundle, threads)
 
@@ -157,7 +153,7 @@ class Live:
     """
 
     def __init__(
-        self, mesh: pv.DataSet, inputs: ShadingInputs, bundle: Bundle, names: tuple[str, str, str]
+        self, mesh: pv.DataSet, inputs: ShadingInputs, bundle: Bundle, names: tuple[str, str]
     ) -> None:
         self._target = _Target(_work_of([mesh], [inputs], bundle, None), mesh, inputs, names)
 
@@ -170,53 +166,52 @@ class Live:
         made = self._target.dim(_lights(scene))
         if known is made and inputs.transmittance is made.transmittance:
             return inputs
-        return dataclasses.replace(
-            inputs, transmittance=made.transmittance, occlusion=made.occlusion
-        )
+        return dataclasses.replace(inputs, transmittance=made.transmittance)
 
 
 class _Work:
     """Lines and what is computed of them once they are needed."""
 
-    def __init__(self, lines: _Lines, source: str, bundle: Bundle, threads: int | None) -> None:
+    def __init__(self, lines: Lines, source: str, bundle: Bundle, threads: int | None) -> None:
         self.lines, self.source, self.bundle, self.threads = lines, source, bundle, threads
         self._made: tuple[Medium, float] | None = None
 
     def medium(self) -> tuple[Medium, float]:
         """Return the medium of the lines and their diameter."""
         if self._made is None:
-            self._made = self._make()
+            self._made = medium_of(self.lines, self.bundle)
         return self._made
 
-    def _make(self) -> tuple[Medium, float]:
-        lines, bundle = self.lines, self.bundle
-        ends = lines.points[lines.ids].astype(np.float64)
-        ends = ends[np.isfinite(ends).all(axis=1)]
-        box = np.ptp(ends, axis=0) if len(ends) else np.zeros(3)
-        longest, diagonal = float(box.max()), float(np.linalg.norm(box))
-        voxel = longest / bundle.grid or 1.0
-        diameter, coarse = bundle.diameter, None
-        if diameter is None:
-            diameter = diagonal * THICKEST or 1.0
-            coarse = geometry.medium(*lines, voxel=voxel)
-            ids = lines.ids[:: max(1, len(lines.ids) // SAMPLE)]
-            lengths = geometry.line_lengths(*lines)[ids]
-            tangents = _tangents(*lines)[ids]
-            places = coarse.targets(lines.points[ids], tangents, lengths)
-            depth = coarse.crowded(places, SIDES)
-            if depth * diameter > bundle.depth * voxel:
-                diameter = bundle.depth * voxel / depth
-        if coarse is not None and voxel >= geometry.LEAST_VOXEL * diameter:
-            return coarse, diameter
-        voxel = max(voxel, geometry.LEAST_VOXEL * diameter)
-        return geometry.medium(*lines, voxel=voxel), diameter
+
+def medium_of(lines: Lines, bundle: Bundle) -> tuple[Medium, float]:
+    """Return the medium of lines and their diameter."""
+    ends = lines.points[lines.ids].astype(np.float64)
+    ends = ends[np.isfinite(ends).all(axis=1)]
+    box = np.ptp(ends, axis=0) if len(ends) else np.zeros(3)
+    longest, diagonal = float(box.max()), float(np.linalg.norm(box))
+    voxel = longest / bundle.grid or 1.0
+    diameter, coarse = bundle.diameter, None
+    if diameter is None:
+        diameter = diagonal * THICKEST or 1.0
+        coarse = geometry.medium(*lines, voxel=voxel)
+        ids = lines.ids[:: max(1, len(lines.ids) // SAMPLE)]
+        lengths = geometry.line_lengths(*lines)[ids]
+        tangents = _tangents(*lines)[ids]
+        places = coarse.targets(lines.points[ids], tangents, lengths)
+        depth = coarse.crowded(places, SIDES)
+        if depth * diameter > bundle.depth * voxel:
+            diameter = bundle.depth * voxel / depth
+    if coarse is not None and voxel >= geometry.LEAST_VOXEL * diameter:
+        return coarse, diameter
+    voxel = max(voxel, geometry.LEAST_VOXEL * diameter)
+    return geometry.medium(*lines, voxel=voxel), diameter
 
 
 class _Target:
     """A mesh that lines dim, and the shares that are known of it."""
 
     def __init__(
-        self, work: _Work, mesh: pv.DataSet, given: ShadingInputs, names: tuple[str, str, str]
+        self, work: _Work, mesh: pv.DataSet, given: ShadingInputs, names: tuple[str, str]
     ) -> None:
         self._work = work
         points = np.asarray(given.points[:])
@@ -252,40 +247,31 @@ class _Target:
         """Return the shares of some lights, known ones where they still hold."""
         keys, known = [_key(light) for light in lights], self.known
         columns: dict[str, Array] = {}
-        sides: Array | None = None
         facts: Record = {}
         if known is not None:
-            if self._keys == keys and not self._lacks(known.occlusion):
+            if self._keys == keys:
                 return known
             columns = dict(zip(self._keys, known.transmittance.T, strict=True))
-            sides = known.occlusion
             facts = {name: known.record.get(name) for name in ("diameter", "voxel")}
         missing = [i for i, key in enumerate(keys) if key not in columns]
-        count = self._work.bundle.directions if sides is None else 0
-        if missing or count:
+        if missing:
             medium, diameter = self._work.medium()
-            found, new = medium.dimmed(
+            found = medium.dimmed(
                 medium.targets(self._points, self._rows, self._lengths),
                 diameter,
                 [_place(lights[i]) for i in missing],
-                count,
                 threads=self._work.threads,
                 progress=progress,
             )
             columns |= {keys[i]: found[:, j] for j, i in enumerate(missing)}
-            sides = new if count else sides
             facts = {"diameter": diameter, "voxel": medium.voxel}
         transmittance = np.empty((len(self._points), len(keys)), np.float32)
         for i, key in enumerate(keys):
             transmittance[:, i] = columns[key]
         record: Record = {**facts, "source": self._digest, "lights": keys}
-        made = Dimming(transmittance, sides, record)
+        made = Dimming(transmittance, record)
         self.known, self._keys = made, keys
         return made
-
-    def _lacks(self, occlusion: Array | None) -> bool:
-        """Return whether light from all sides is asked for and not known."""
-        return occlusion is None and self._work.bundle.directions > 0
 
 
 def _tangents(points: Array, ids: Indices, offsets: Indices) -> Array:
@@ -316,7 +302,7 @@ def _key(light: Light) -> str:
 
 
 def _kept(
-    mesh: pv.DataSet, names: tuple[str, str, str], digest: str
+    mesh: pv.DataSet, names: tuple[str, str], digest: str
 ) -> tuple[list[str], Dimming] | None:
     """Return the keys of lights and the shares of a mesh that still hold."""
     whole = records.read(mesh, names[0])
@@ -324,16 +310,13 @@ def _kept(
     if not isinstance(record, dict) or record.get("source") != digest:
         return None
     keys, made = record.get("lights"), records.made(mesh, names[0])
-    if not isinstance(keys, list) or not {names[1]} <= made & set(mesh.point_data):
+    if not isinstance(keys, list) or names[1] not in made & set(mesh.point_data):
         return None
     shares = np.asarray(mesh.point_data[names[1]]).reshape(mesh.n_points, -1)
     if shares.shape[1] != len(keys):
         return None
-    sides = None
-    if names[2] in made and names[2] in mesh.point_data:
-        sides = np.asarray(mesh.point_data[names[2]])
     facts: Record = {name: record.get(name) for name in ("diameter", "voxel")}
-    return keys, Dimming(shares, sides, {**facts, "source": digest, "lights": keys})
+    return keys, Dimming(shares, {**facts, "source": digest, "lights": keys})
 
 
 def _digest(*arrays: NDArray[np.generic]) -> str:
@@ -345,29 +328,29 @@ def _digest(*arrays: NDArray[np.generic]) -> str:
     return digest.hexdigest()
 
 
-def _lines_of(given: object) -> _Lines:
+def _lines_of(given: object) -> Lines:
     """Return the lines of a mesh or of the blocks of several."""
     if not isinstance(given, pv.DataSet | pv.MultiBlock):
         expected = "a PyVista mesh of lines"
         raise TypeError(_check.message("Bundle(lines=)", expected, type(given).__name__))
-    lines = _joined(list(blocks.all_blocks(given)))
+    lines = joined(list(blocks.all_blocks(given)))
     if not len(lines.ids):
         expected, got = "a mesh of lines", type(given).__name__
         raise ValueError(_check.message("Bundle(lines=)", expected, got))
     return lines
 
 
-def _joined(meshes: Sequence[pv.DataSet]) -> _Lines:
+def joined(meshes: Sequence[pv.DataSet]) -> Lines:
     """Return the lines of the meshes that have nothing but lines."""
     found = [polylines.cells_of(mesh) for mesh in meshes if polylines.has_lines_only(mesh)]
     if not found:
         none = np.empty(0, np.intp)
-        return _Lines(np.empty((0, 3)), none, np.zeros(1, np.intp))
+        return Lines(np.empty((0, 3)), none, np.zeros(1, np.intp))
     points, ids, offsets = zip(*found, strict=True)
     kind = np.result_type(*points)
     starts = np.cumsum([0, *(len(rows) for rows in points)])
     ends = np.cumsum([0, *(len(own) for own in ids)])
-    return _Lines(
+    return Lines(
         np.concatenate(points).astype(kind, copy=False),
         np.concatenate([own + start for own, start in zip(ids, starts, strict=False)]),
         np.concatenate(

@@ -152,6 +152,7 @@ def turn(
     line_field: bool = False,
     refine: float = 0.0,
     bundle: bool | Bundle = False,
+    occlusion: str | None = None,
     name: str = "luminance",
     exponent: Exponent = "compensated",
     model: Model = "phong",
@@ -194,9 +195,9 @@ def turn(
         Show progress on standard error.
     rotation, hyperplane, distance, positions, frame, vectors, cut, light
         As for :func:`vizlight.project`.
-    tangents, normals, facing, feature_angle, conditioned, line_field, refine, bundle, name
+    tangents, normals, facing, feature_angle, conditioned, line_field, refine, bundle, occlusion
         As for :func:`vizlight.illuminate`.
-    exponent, model, components, precision
+    name, exponent, model, components, precision
         As for :func:`vizlight.illuminate`.
 
     Returns

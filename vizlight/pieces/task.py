@@ -169,6 +169,10 @@ def light(piece: Piece, job: Job, target: Path) -> Done:
             warnings.simplefilter("always", UserWarning)
             if job.contour is not None:
                 mesh = isosurface(mesh, job)
+            share = job.options.get("occlusion")
+            if share is not None and mesh.n_points and share not in mesh.point_data:
+                expected, remedy = "a point array that every piece has", "take the whole's sky"
+                raise ValueError(_check.message("occlusion", expected, repr(share), remedy))
             lit, sharp = _lit(mesh, piece, job)
         del mesh
         done = _described(lit, job)

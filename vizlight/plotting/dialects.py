@@ -74,13 +74,14 @@ class Dialect:
             "normal": f"normalMatrix * {self.normal}",
             "tangent": f"{self.turned} * {self.tangent}",
             "length": f"length({self.normal})",
+            "size": f"length({self.tangent})",
             "along": f"{self.clip} * vec4({self.normal}, 0.0)",
         }
         read = "".join(v.value for v in varyings)
         attributes = ""
         if any(word in read for word in ("{normal}", "{length}", "{along}")):
             attributes += f"{self.attribute} vec3 {self.normal};\n"
-        if "{tangent}" in read:
+        if "{tangent}" in read or "{size}" in read:
             attributes += f"{self.attribute} vec3 {self.tangent};\n"
         out = "".join(f"{self.output} {kind} {name};\n" for kind, name in names)
         matrices = f"uniform mat4 {self.clip};\nuniform mat4 MCVCMatrix;\n"

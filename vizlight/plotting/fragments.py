@@ -83,7 +83,7 @@ def unfit_layout(
         return "the highlight of a cylinder is an integral that GLSL has no function for"
     if layout.shadowed:
         return "t of the cos-theta shadow is known at the points"
-    if layout.dimmed or layout.occluded:
+    if layout.dimmed:
         return "the shares of light inside a bundle are known at the points"
     if layout.base:
         return "base tangents span a plane, which is not interpolated"
@@ -143,8 +143,15 @@ class Fragments:
         tangents, normals = (
             _rows(inputs, rows, live) for rows in (inputs.tangents, inputs.normals)
         )
-        if tangents is not None:
-            point_arrays.attach_rows(live.drawn, TANGENTS, tangents.astype(np.float32))
+        carried = tangents
+        if inputs.occlusion is not None:
+            # The length of a tangent, which a surface does not have, carries the ambient share.
+            share = live.picked(np.asarray(inputs.occlusion[:], dtype=np.float64))
+            share = 1 + np.where(share >= 0, share, 1.0)
+            along = np.array([[1.0, 0.0, 0.0]]) if tangents is None else tangents
+            carried = share[:, np.newaxis] * along
+        if carried is not None:
+            point_arrays.attach_rows(live.drawn, TANGENTS, carried.astype(np.float32))
             data.SetActiveTangents(TANGENTS)
         if normals is None:
             # VTK lights lines, and so draws with a shader for them, only if they have normals.
@@ -244,7 +251,8 @@ def without_highlight(scene: Scene) -> Scene:
 def _drawn_as(source: Source, stroke: Stroke) -> tuple[Layout, ShadingOptions]:
     """Return the layout and the options of a source, or of the cylinders of its lines."""
     if stroke.round:
-        return Layout(normals=True), source.options.for_surface()
+        occluded = source.inputs.occlusion is not None
+        return Layout(normals=True, occluded=occluded), source.options.for_surface()
     return source.inputs.layout, source.options
 
 

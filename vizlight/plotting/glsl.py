@@ -27,6 +27,7 @@ _INPUTS = {
     "normals": ("vizN", "vec3"),
     "tangents": ("vizT", "vec3"),
     "fur_height": ("vizHeight", "float"),
+    "occlusion": ("vizShare", "float"),
 }
 _CALLS = {"absolute": "abs", "maximum": "max", "minimum": "min", "arctan2": "atan"}
 #: Largest power for which the rounding of 1 - deficit to float32 does not show.
@@ -81,7 +82,8 @@ def fragment(plan: Plan, *, turned: bool = False, data: bool = False) -> tuple[s
     -------
     declarations, body : str
         The body sets ``vizColor`` from ``vizT``, ``vizN``, ``vizP`` and ``vizHeight`` in view
-        coordinates, the renderer's ``ambientColor`` and ``diffuseColor``, and uniforms.
+        coordinates, ``vizShare``, the renderer's ``ambientColor`` and ``diffuseColor``, and
+        uniforms.
     """
     w = Shader(plan, data=data)
     light(w, w.plan)

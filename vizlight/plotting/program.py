@@ -49,8 +49,8 @@ class Varying(NamedTuple):
     """Vector that is interpolated between vertices, and its value at a vertex.
 
     ``value`` holds ``{position}``, ``{normal}`` or ``{tangent}``, in view coordinates,
-    ``{length}``, the length of the normal as it was given, or ``{along}``, the normal as a
-    direction in clip coordinates.
+    ``{length}`` or ``{size}``, the length of the normal or of the tangent as it was given, or
+    ``{along}``, the normal as a direction in clip coordinates.
     """
 
     name: str
@@ -167,6 +167,9 @@ def write(
         names.append(ALONG)
     if plan.fur or turned:
         names.append(Varying("vizH", "float", "{length} - 1.0"))
+    if plan.occluded:
+        names.append(Varying("vizS", "float", "{size} - 1.0"))
+        read += f"  float vizShare = {suffixed('vizS')};\n"
     if stroke.round or not plan.surface:
         names.append(Varying("vizT", "vec3", "{tangent}"))
         read += _unit("vizT")

@@ -10,6 +10,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.files import check_output
+from vizlight.filters.sky import SKY
 from vizlight.plotting import keywords
 
 if TYPE_CHECKING:
@@ -44,6 +45,7 @@ def plot(
     window_size: tuple[int, int] | None = None,
     screenshot: str | Path | bool | None = None,
     jupyter_backend: str | None = None,
+    sky: bool = False,
     **options: Any,
 ) -> object:
     """Show a mesh whose light follows the camera.
@@ -62,6 +64,8 @@ def plot(
         Path of a picture of the last view, or whether it is returned.
     jupyter_backend : str, optional
         Backend of a notebook; ``"html"`` shows the page of :func:`vizlight.live_html` in a frame.
+    sky : bool, default: False
+        Whether the ambient light is that of a sky: ``occlusion="sky"``.
     **options
         Keywords of ``pyvista.plot``, such as ``cpos``, ``zoom``, ``background``, ``off_screen`` and
         ``text``, and of ``plotter.vizlight.add_mesh``: options of :func:`vizlight.illuminate` and
@@ -83,6 +87,8 @@ def plot(
     UserWarning
         If ``volume=True``: PyVista draws volumes with its own light.
     """
+    if _check.boolean("sky", sky):
+        options = {"occlusion": SKY} | options
     named = {*inspect.signature(pv.plot).parameters} - {"var_item", "kwargs"} | _MORE
     given = {name: options.pop(name) for name in [*options] if name in named}
     keywords.sorted_out("mesh.vizlight.plot", options, scene, more=named)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from vizlight import _check
 from vizlight.reading import polylines
-from vizlight.reading.arrays import is_of_cells, points_of, tangents_of
+from vizlight.reading.arrays import is_of_cells, named, points_of, tangents_of
 from vizlight.reading.normals import Sided, Turned, sided_normals
 from vizlight.shading.decide import not_a_line
 from vizlight.shading.inputs import ShadingInputs, Sides
@@ -94,7 +95,35 @@ def part_of(
         line_field=options.line_field or _has_no_sign(mesh, options),
         sides=None if sided is None else partial(_sides, sided, points, scene.view, options),
     )
-    return Part(inputs, options, sided)
+    return Part(occluded(inputs, mesh, options.occlusion, path), options, sided)
+
+
+def occluded(
+    inputs: ShadingInputs, mesh: Dataset, name: str | None, path: str = ""
+) -> ShadingInputs:
+    """Return inputs with the point array of a mesh that is the share of the ambient light.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If there is no such array of one component.
+    """
+    share = share_of(mesh, name, path)
+    return inputs if share is None else dataclasses.replace(inputs, occlusion=share)
+
+
+def share_of(mesh: Dataset, name: str | None, path: str = "") -> Array | None:
+    """Return the point array that is the share of the ambient light; see :func:`occluded`."""
+    if name is None:
+        return None
+    array = named(mesh.GetPointData(), name)
+    if array is None or array.ndim != 1:
+        where = f"block {path}: " if path else ""
+        got = repr(name) if array is None else f"{name!r} with {array.shape[1]} components"
+        remedy = "vizlight.sky(mesh) makes the array 'sky'"
+        expected = "the name of a point array of 1 component"
+        raise ValueError(where + _check.message("occlusion", expected, got, remedy))
+    return _check.floats("occlusion", array)
 
 
 def _sides(sided: Sided, points: ArraySource, view: View | None, options: LightOptions) -> Sides:

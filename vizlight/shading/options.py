@@ -52,9 +52,6 @@ class Bundle:
     depth : float, default: 2.0
         Optical depth, as a mean over all directions, that the default diameter aims at: 2 leaves
         about 1/7 of the light.
-    directions : int, default: 64
-        Number of directions, even, of the light from all sides; 0 leaves the ambient term as it
-        is.
     grid : int, default: 128
         Number of voxels along the longest side of the bounding box of the lines, from 4 to 1024.
         Memory grows with its third power. A voxel is at least two diameters wide.
@@ -96,13 +93,12 @@ class Bundle:
     Examples
     --------
     >>> import vizlight
-    >>> vizlight.Bundle(depth=1.0).directions
-    64
+    >>> vizlight.Bundle(depth=1.0).grid
+    128
     """
 
     diameter: float | None = None
     depth: float = 2.0
-    directions: int = 64
     grid: int = 128
     lines: object = None
 
@@ -110,9 +106,6 @@ class Bundle:
         if self.diameter is not None:
             least = float(np.finfo(np.float64).tiny)
             _check.set_fields(self, diameter=_check.number("diameter", self.diameter, low=least))
-        directions = _check.integer("directions", self.directions, low=0)
-        if directions % 2:
-            raise ValueError(_check.message("directions", "an even number", directions))
         grid = _check.integer("grid", self.grid, low=4)
         if grid > FINEST_GRID:
             raise ValueError(_check.message("grid", f"at most {FINEST_GRID}", grid))
@@ -120,7 +113,7 @@ class Bundle:
         if self.lines is not None and not hasattr(self.lines, "GetDataObjectType"):
             expected = "a PyVista mesh of lines, or None"
             raise TypeError(_check.message("Bundle(lines=)", expected, _check.describe(self.lines)))
-        _check.set_fields(self, depth=depth, directions=directions, grid=grid)
+        _check.set_fields(self, depth=depth, grid=grid)
 
 
 class Options:
@@ -187,11 +180,14 @@ class LightOptions(ShadingOptions):
     line_field: bool = False
     refine: float = 0.0
     bundle: bool | Bundle = False
+    occlusion: str | None = None
     name: str = "luminance"
 
     def __post_init__(self) -> None:
         super().__post_init__()
         _check.set_fields(self, bundle=checked_bundle(self.bundle))
+        if self.occlusion is not None:
+            _check.text("occlusion", self.occlusion, expected="the name of a point array")
         _check.set_fields(self, refine=_check.number("refine", self.refine, low=0.0))
         if 0 < self.refine < FINEST:
             expected, remedy = f"0 or {FINEST:g} at least", "a picture shows 1/255"

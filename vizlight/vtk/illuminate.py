@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 __all__ = ["Illuminate"]
 
 #: Options that are names of arrays: a pipeline has no others.
-_NAMES = ("tangents", "normals", "positions")
+_NAMES = ("tangents", "normals", "positions", "occlusion")
 #: Options that matter between points, give a mesh new ones, or need PyVista.
 _WITHOUT = ("feature_angle", "line_field", "refine", "bundle")
 _NO_GHOSTS = (
@@ -118,6 +118,7 @@ class Illuminate(VTKPythonAlgorithmBase):
     normals = _Option()
     facing = _Option()
     conditioned = _Option()
+    occlusion = _Option()
     model = _Option()
     exponent = _Option()
     components = _Option()
@@ -134,6 +135,7 @@ class Illuminate(VTKPythonAlgorithmBase):
         normals: str | ArrayLike | None = None,
         facing: Facing = "auto",
         conditioned: bool | str | None = False,
+        occlusion: str | None = None,
         name: str = "luminance",
         exponent: Exponent = "compensated",
         model: Model = "phong",

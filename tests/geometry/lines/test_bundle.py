@@ -155,7 +155,7 @@ def test_the_mean_light_among_real_tubes(kind):
     )
     lines = pieces(middles, tangents, length, 4 * diameter)
     targets = lines.targets(places, tangents[own], np.full(tries, length))
-    left = lines.dimmed(targets, diameter, [(toward, False)], 0)[0][:, 0]
+    left = lines.dimmed(targets, diameter, [(toward, False)])[:, 0]
     difference = left - free
     assert abs(difference.mean()) < 3 * difference.std() / np.sqrt(tries)
     assert difference.std() / np.sqrt(tries) < 0.012
@@ -193,7 +193,7 @@ def shares(middles, tangents, light, near, length, diameter, random, tries):
     ]
     lines = pieces(middles, tangents, length, 2 * diameter)
     targets = lines.targets(places, tangents[own], np.full(tries, length))
-    left = lines.dimmed(targets, diameter, [(light, near)], 0)[0][:, 0]
+    left = lines.dimmed(targets, diameter, [(light, near)])[:, 0]
     return np.mean(free), left.mean()
 
 
@@ -281,12 +281,14 @@ def test_lines_that_are_odd():
     assert found.middles.shape == (3, 5)
     assert np.isfinite(found.middles).all()
     targets = found.targets(points)
-    left, sides = found.dimmed(targets, 0.1, [((0, 0, 1), False), ((0, 0, 1), True)], 4)
+    left = found.dimmed(targets, 0.1, [((0, 0, 1), False), ((0, 0, 1), True)])
+    sides = found.sky(targets, 0.1, 4)
     assert left[2].tolist() == [1, 1]
     assert sides[2] == 1
     assert ((left > 0) & (left <= 1)).all()
     empty = bundle.medium(points[:0], np.zeros(0, int), np.zeros(1, int), voxel=0.25)
     assert empty.middles.shape == (3, 0)
-    left, sides = empty.dimmed(targets, 0.1, [((0, 0, 1), False), ((0, 0, 1), True)], 4)
+    left = empty.dimmed(targets, 0.1, [((0, 0, 1), False), ((0, 0, 1), True)])
+    sides = empty.sky(targets, 0.1, 4)
     assert (left == 1).all()
     assert (sides == 1).all()

@@ -209,12 +209,11 @@ class Medium:
         targets: Targets,
         diameter: float,
         lights: Sequence[tuple[VectorLike, bool]],
-        count: int,
         *,
         threads: int | None = None,
         progress: Callable[[int], None] | None = None,
-    ) -> tuple[Array, Array | None]:
-        """Return the share of each light, and of light from all sides, that is left at points.
+    ) -> Array:
+        """Return the share of each light that is left at points.
 
         Parameters
         ----------
@@ -224,61 +223,72 @@ class Medium:
             Diameter of the lines in the unit of the lines.
         lights : sequence of (vector of 3 components, bool)
             Direction toward each light, or its position and True.
-        count : int
-            Number of directions for light from all sides, 0 for none.
         threads : int, optional
-            Number of threads that share the directions.
+            Number of threads that share the lights.
         progress : callable, optional
             Function that is called with the number of grids that are done.
 
         Returns
         -------
-        transmittance : ndarray of float32, shape (N, L)
+        ndarray of float32, shape (N, L)
             Shares in [0, 1].
-        occlusion : ndarray of float32, shape (N,), or None
-            Mean over all directions, each weighted by :meth:`Targets.facing`; None without
-            directions.
         """
         thick, order = diameter / self.voxel, _by_blocks(targets.places)
         targets = targets.ordered(order)
-        ways = directions(count) if count else np.empty((0, 3))
-        found: dict[int, tuple[Array, Array]] = {}
-        rooms = voxels.Rooms()
+        left = np.empty((targets.places.shape[1], len(lights)), np.float32)
 
         def work(part: slice) -> int:
-            number = int(part.start)
-            if number < len(lights):
-                found[number] = self._light(targets, thick, *lights[number])
-            else:
-                found[number] = self._pair(targets, thick, ways[number - len(lights)], rooms)
-            return number
+            left[order, part.start] = self._light(targets, thick, *lights[part.start])
+            return int(part.start)
 
-        transmittance = np.empty((targets.places.shape[1], len(lights)), np.float32)
-        total = np.zeros((2, targets.places.shape[1]))
-        parts = _pool.blocks(len(lights) + len(ways), 1)
-        for number in _pool.run(work, parts, threads):
-            # In the order of the parts, so that sums do not depend on the threads.
-            left, weight = found.pop(number)
-            if number < len(lights):
-                transmittance[order, number] = left
-            else:
-                total += left, weight
+        for number in _pool.run(work, _pool.blocks(len(lights), 1), threads):
             if progress is not None:
                 progress(number + 1)
-        transmittance[order[~targets.known]] = 1
-        if not count:
-            return transmittance, None
+        left[order[~targets.known]] = 1
+        return left
+
+    def sky(
+        self, targets: Targets, diameter: float, count: int, *, threads: int | None = None
+    ) -> Array:
+        """Return the share of light from all sides that is left at points.
+
+        Parameters
+        ----------
+        targets : Targets
+        diameter : float
+            Diameter of the lines in the unit of the lines.
+        count : int
+            Number of directions, each weighted by :meth:`Targets.facing`.
+        threads : int, optional
+            Number of threads that share the directions.
+
+        Returns
+        -------
+        ndarray of float32, shape (N,)
+            Shares in [0, 1].
+        """
+        thick, order = diameter / self.voxel, _by_blocks(targets.places)
+        targets = targets.ordered(order)
+        ways, rooms = directions(count), voxels.Rooms()
+        found: dict[int, tuple[Array, Array]] = {}
+
+        def work(part: slice) -> int:
+            found[part.start] = self._pair(targets, thick, ways[part.start], rooms)
+            return int(part.start)
+
+        total = np.zeros((2, targets.places.shape[1]))
+        for number in _pool.run(work, _pool.blocks(len(ways), 1), threads):
+            # In the order of the parts, so that sums do not depend on the threads.
+            total += found.pop(number)
         with np.errstate(invalid="ignore"):
             sides = (total[0] / total[1]).astype(np.float32)
         sides[~targets.known | (total[1] == 0)] = 1
-        occlusion = np.empty_like(sides)
-        occlusion[order] = sides
-        return transmittance, occlusion
+        share: Array = np.empty_like(sides)
+        share[order] = sides
+        return share
 
-    def _light(
-        self, targets: Targets, thick: float, place: VectorLike, near: bool
-    ) -> tuple[Array, Array]:
-        """Return the share of a light that is left, twice."""
+    def _light(self, targets: Targets, thick: float, place: VectorLike, near: bool) -> Array:
+        """Return the share of a light that is left."""
         if not near:
             toward = _frame(place)[2].astype(np.float32)
             depth, _ = self.depths(targets.places, toward)
@@ -293,7 +303,7 @@ class Medium:
                 thick / width
             )
             left = np.exp(np.minimum(-thick * (depth - own), 0))
-        return left, left
+        return left
 
     def _pair(
         self, targets: Targets, thick: float, toward: Array, rooms: voxels.Rooms

@@ -43,8 +43,6 @@ class Field:
         Heights at the nodes; NaN in holes, unless the field extends over them.
     edges : tuple of ndarray, shapes (nx + 2,), (ny + 2,)
         Boundaries of the cells, from -inf to inf.
-    corners : ndarray, shape (ny + 2, nx + 2)
-        Heights at the corners of the cells.
     base : float
         Height of the lower side of the solid, -inf without one.
     top : float
@@ -58,10 +56,14 @@ class Field:
     y: Array
     heights: Array
     edges: tuple[Array, Array]
-    corners: Array
     base: float
     top: float
     border: Border
+
+    @cached_property
+    def corners(self) -> Array:
+        """Heights at the corners of the cells, shape (ny + 2, nx + 2)."""
+        return np.pad(self.heights, 1, mode="edge")
 
     @cached_property
     def bounds(self) -> list[tuple[Array, Array]]:
@@ -140,14 +142,12 @@ def make(x: ArrayLike, y: ArrayLike, z: ArrayLike, *, base: float | None, border
             expected = f"a height not above the lowest one, {low:g}"
             raise ValueError(_check.message("base", expected, base))
     wide = wide if border == "wall" else filled(wide)
-    corners = np.pad(wide, 1, mode="edge")
     return Field(
         origin=np.array([axes[0][0], axes[1][0], low]),
         x=axes[0] - axes[0][0],
         y=axes[1] - axes[1][0],
         heights=wide,
         edges=(_edges(axes[0]), _edges(axes[1])),
-        corners=corners,
         base=-np.inf if base is None else base - low,
         top=top,
         border=border,

@@ -1,0 +1,277 @@
+"""The sky as a filter: kinds of meshes, records, marks, and what the ambient light makes of it."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight import _compiled
+from vizlight.filters import relight
+from vizlight.mesh import embree_rays, sky
+from vizlight.plotting import fragments
+from vizlight.shading import compiled, engine
+from vizlight.shading.options import LightOptions
+
+pytest.importorskip("embreex")
+SCENE = vizlight.Scene(
+    lights=vizlight.Light(direction=(1, 1, 1)),
+    view=vizlight.View(direction=(0, 0, 1)),
+    material=vizlight.Material(ambient=0.5, diffuse=0.4, specular=0.3),
+)
+
+
+def valley(count=21):
+    """Return a flat grid with the heights of a valley along y."""
+    grid = pv.ImageData(dimensions=(count, count, 1), origin=(-10, -10, 0))
+    grid["height"] = np.abs(grid.points[:, 0])
+    return grid
+
+
+def balls(apart=1.2):
+    """Return two balls that hide a part of each other's sky."""
+    return [pv.Sphere(center=(x, 0, 0), theta_resolution=16) for x in (0.0, apart)]
+
+
+def test_kinds_of_height_fields_agree():
+    flat = valley()
+    found = vizlight.sky(flat, error=0.02)
+    assert found.active_scalars_name == "height"
+    assert "sky" not in flat.point_data
+    record = vizlight.provenance(found, "sky")
+    assert record["method"].startswith("horizons")
+    assert record["error"] <= 0.02
+    assert record["rays"] == record["directions"] * flat.n_points
+    warped = flat.warp_by_scalar("height")
+    assert isinstance(warped, pv.StructuredGrid)
+    rectilinear = flat.cast_to_rectilinear_grid()
+    for other in (warped, rectilinear, flat.cast_to_structured_grid().warp_by_scalar("height")):
+        np.testing.assert_allclose(vizlight.sky(other, error=0.02)["sky"], found["sky"], atol=1e-6)
+    # The same as a surface below the half space above, whose border is open.
+    surface = warped.extract_surface(algorithm="dataset_surface")
+    rays = vizlight.sky(surface, error=0.02, up=(0, 0, 1))
+    inner = (np.abs(surface.points[:, :2]) < 5).all(axis=1)
+    same = found["sky"][surface["vtkOriginalPointIds"]]
+    assert np.abs(rays["sky"] - same)[inner].mean() < 0.05
+
+
+def test_a_curvilinear_grid_is_below_the_sky_of_a_field():
+    angle, radius = np.meshgrid(np.linspace(0, 1.5, 20), np.linspace(1, 2, 15))
+    x, y = radius * np.cos(angle), radius * np.sin(angle)
+    bent = pv.StructuredGrid(x, y, 0 * x)
+    found = vizlight.sky(bent)
+    assert vizlight.provenance(found, "sky")["method"].startswith("rays")
+    assert (found["sky"] == 1).all()
+
+
+def test_blocks_hide_one_another_and_a_field_sees_itself():
+    near, far = (vizlight.sky(pv.MultiBlock(balls(x)), error=0.02) for x in (1.05, 50.0))
+    assert near[0]["sky"].min() < 0.3
+    assert far[0]["sky"].min() > 0.98
+    mixed = vizlight.sky(pv.MultiBlock([valley(), *balls()]), error=0.05)
+    alone = vizlight.sky(valley(), error=0.05)
+    assert np.array_equal(mixed[0]["sky"], alone["sky"])
+
+
+def test_ghost_cells_hide_the_sky_and_hidden_ones_do_not():
+    both = pv.merge(balls(1.05), merge_points=False)
+    first = both.n_cells // 2
+    whole = vizlight.sky(both, error=0.02)["sky"]
+    ghosts = np.zeros(both.n_cells, np.uint8)
+    for mark, hides in ((1, True), (32, False)):
+        piece = both.copy()
+        ghosts[first:] = mark
+        piece.cell_data["vtkGhostType"] = ghosts
+        with warnings.catch_warnings():
+            # Points of hidden cells alone have no sky.
+            warnings.filterwarnings("ignore", message=".* points have no sky")
+            found = vizlight.sky(piece, error=0.02)["sky"]
+        side = np.abs(both.points[:, 0]) < 0.6
+        least = found[side].min()
+        assert (least < 0.3) == hides
+        if hides:
+            np.testing.assert_allclose(found, whole, atol=0.05)
+
+
+def test_volumes_and_lines():
+    box = pv.ImageData(dimensions=(6, 6, 6)).cast_to_unstructured_grid()
+    with pytest.warns(UserWarning, match="64 of 216 points have no sky"):
+        found = vizlight.sky(box)
+    assert found["sky"].min() > 0.98
+    assert np.count_nonzero(~found["sky_valid"]) == 64
+    turn = np.linspace(0, 40, 800)
+    spiral = pv.lines_from_points(np.stack([np.cos(turn), np.sin(turn), 0.02 * turn], axis=1))
+    thin, thick = (vizlight.sky(spiral, error=0.05, diameter=d)["sky"].mean() for d in (1e-3, 0.1))
+    assert thin > 0.9
+    assert thick < 0.75
+    record = vizlight.provenance(vizlight.sky(spiral, error=0.2), "sky")
+    assert record["method"] == "voxels"
+    assert record["error"] <= 0.2
+
+
+def test_points_without_a_sky_are_marked_and_have_that_of_the_nearest():
+    overlapping = pv.merge(balls(0.4), merge_points=False)
+    with pytest.warns(UserWarning, match="have no sky"):
+        found = vizlight.sky(overlapping, error=0.05)
+    centres = np.array([[0, 0, 0], [0.4, 0, 0]])
+    inside = np.zeros(overlapping.n_points, np.bool_)
+    for centre, own in zip(centres, np.split(np.arange(overlapping.n_points), 2), strict=True):
+        inside[np.setdiff1d(np.arange(len(inside)), own)] |= (
+            np.linalg.norm(overlapping.points - centre, axis=1) < 0.48
+        )[np.setdiff1d(np.arange(len(inside)), own)]
+    assert not found["sky_valid"][inside].any()
+    assert found["sky"].min() > 0.5
+    hole = valley()
+    hole["height"][30:33] = np.nan
+    with pytest.warns(UserWarning, match="3 of 441 points have no sky"):
+        found = vizlight.sky(hole, error=0.05)
+    assert np.isfinite(found["sky"]).all()
+    assert np.flatnonzero(~found["sky_valid"]).tolist() == [30, 31, 32]
+
+
+def test_openness_and_names():
+    found = vizlight.sky(valley(), openness=True, name="view", error=0.02)
+    assert {"view", "view_openness"} <= set(found.point_data)
+    middle = found["view_openness"].reshape(21, 21)[10, 10]
+    assert np.pi / 4 < middle < np.pi / 2
+    again = vizlight.sky(found, name="view", error=0.02, inplace=True)
+    assert again is found
+    assert "view_openness" not in found.point_data
+    taken = valley()
+    taken["sky"] = np.zeros(taken.n_points)
+    with pytest.raises(ValueError, match="name: expected one under which"):
+        vizlight.sky(taken)
+
+
+@pytest.mark.parametrize("fast", ["0", "1"])
+@pytest.mark.parametrize("color", [None, (1.0, 0.5, 0.2)])
+def test_it_multiplies_the_ambient_term_alone(fast, color, monkeypatch):
+    monkeypatch.setenv("VIZLIGHT_FAST", fast if not _compiled._missing() else "0")
+    both = pv.merge(balls(1.05), merge_points=False)
+    scene = SCENE.replace(material=vizlight.Material(ambient=0.5, diffuse=0.4, color=color))
+    plain = vizlight.illuminate(both, scene, components=True)
+    with vizlight.report(sample=40) as report:
+        lit = vizlight.illuminate(both, scene, components=True, occlusion="sky")
+    assert report.error < 2e-6
+    np.testing.assert_allclose(lit["ambient"], lit["sky"] * plain["ambient"], atol=1e-6)
+    np.testing.assert_allclose(lit["diffuse"], plain["diffuse"], atol=1e-6)
+    darker = plain["luminance"] - (1 - lit["sky"]) * plain["ambient"]
+    np.testing.assert_allclose(lit["luminance"], darker, atol=1e-6)
+    again = vizlight.illuminate(lit, scene, occlusion="sky")
+    assert np.array_equal(again["luminance"], lit["luminance"])
+    assert vizlight.provenance(lit)["options"]["occlusion"] == "sky"
+
+
+def test_an_array_of_any_name_and_marked_points():
+    ball = pv.Sphere()
+    ball["shade"] = np.full(ball.n_points, 0.25)
+    ball["shade"][3] = np.nan
+    with pytest.warns(UserWarning, match="1 of .* could not be lit"):
+        lit = vizlight.illuminate(ball, SCENE, occlusion="shade", components=True)
+    assert not lit["luminance_valid"][3]
+    assert lit["ambient"][5] == pytest.approx(0.125)
+    for name, words in (("none", "'none'"), ("Normals", "3 components")):
+        with pytest.raises(ValueError, match=f"occlusion: expected .*{words}"):
+            vizlight.illuminate(ball, SCENE, occlusion=name)
+    with pytest.raises(TypeError, match="occlusion: expected the name"):
+        vizlight.illuminate(ball, SCENE, occlusion=3)
+
+
+def test_refined_and_many_small_meshes():
+    lit = vizlight.illuminate(pv.Sphere(), SCENE, occlusion="sky", refine=0.02)
+    assert lit["sky"].shape == (lit.n_points,)
+    many = pv.MultiBlock(balls(1.05))
+    found = vizlight.illuminate(many, SCENE, occlusion="sky")
+    assert all(block["sky"].min() < 0.3 for block in found)
+    assert "sky" not in many[0].point_data
+
+
+def test_live_light_has_the_sky_of_the_mesh():
+    both = pv.merge(balls(1.05), merge_points=False)
+    (source,) = relight.from_options(both, SCENE, LightOptions(occlusion="sky"))
+    assert source.mesh is both
+    assert "sky" not in both.point_data
+    assert fragments.unfit(source.inputs, source.options, both) == ""
+    lit = vizlight.illuminate(both, SCENE, occlusion="sky")
+    shading = engine.run(source.inputs, SCENE, source.options)
+    assert compiled.why_not(shading.plan) == ""
+    np.testing.assert_allclose(shading.luminance, lit["luminance"], atol=1e-6)
+    (again,), scene = relight.from_record(lit)
+    assert np.array_equal(again.inputs.occlusion, lit["sky"])
+    assert scene == SCENE
+
+
+def test_sun_and_sky_of_a_map_in_one_call():
+    flat = valley()
+    sun = vizlight.Scene(lights=vizlight.Light(direction=(-1, 0, 0.5)), material=SCENE.material)
+    bare = vizlight.relief_shadow(flat, sun, lit=True)
+    lit = vizlight.relief_shadow(flat, sun, lit=True, occlusion="sky", factor=2.0)
+    steeper = flat.copy()
+    steeper["height"] *= 2
+    share = vizlight.sky(steeper, error=0.02)["sky"]
+    plain = vizlight.relief_shadow(flat, sun, lit=True, factor=2.0)
+    dimmed = plain["luminance"] - 0.5 * (1 - share)
+    np.testing.assert_allclose(lit["luminance"], dimmed, atol=1e-6)
+    assert bare["luminance"].max() > lit["luminance"].max()
+    with pytest.raises(ValueError, match="occlusion: expected lit=True"):
+        vizlight.relief_shadow(flat, sun, occlusion="sky")
+
+
+@pytest.mark.parametrize(
+    ("make", "options", "words"),
+    [
+        (lambda: pv.PolyData(np.zeros((3, 3))), {}, "mesh: expected a mesh with faces or lines"),
+        (pv.PolyData, {}, "mesh: expected a mesh with faces or lines"),
+        (pv.Sphere, {"error": 0}, "error"),
+        (pv.Sphere, {"error": 1}, "error"),
+        (pv.Sphere, {"up": (0, 0, 0)}, "up: expected a direction"),
+        (pv.Sphere, {"up": (0, 1)}, "up: expected 3 components"),
+        (pv.Sphere, {"diameter": 1.0}, "diameter: expected a mesh of lines"),
+        (pv.Line, {"diameter": 0.0}, "diameter"),
+        (pv.Sphere, {"openness": True}, "openness: expected a height field"),
+        (valley, {"up": (1, 0, 0)}, "up: expected"),
+    ],
+)
+def test_bad_input(make, options, words):
+    with pytest.raises((TypeError, ValueError), match=words):
+        vizlight.sky(make(), **options)
+
+
+def test_constant_heights_missing_heights_and_faces_of_no_size():
+    flat = valley()
+    flat["height"][:] = 3.0
+    assert (vizlight.sky(flat)["sky"] == 1).all()
+    flat["height"][:] = np.nan
+    with pytest.raises(ValueError, match="NaN everywhere"):
+        vizlight.sky(flat)
+    none = pv.PolyData.from_regular_faces(np.zeros((3, 3)), [[0, 1, 2]])
+    with pytest.warns(UserWarning, match="3 of 3 points have no sky"):
+        assert (vizlight.sky(none)["sky"] == 1).all()
+
+
+def test_without_embree_it_works_and_says_that_it_is_slow(monkeypatch):
+    both = pv.merge(balls(1.05), merge_points=False)
+    fast = vizlight.sky(both, error=0.05)["sky"]
+    monkeypatch.setattr(embree_rays, "tree", lambda _: None)
+    monkeypatch.setattr(sky, "SLOW", 10)
+    with pytest.warns(UserWarning, match="20 times as long without embreex"):
+        slow = vizlight.sky(both, error=0.05)["sky"]
+    np.testing.assert_allclose(slow, fast, atol=0.05)
+
+
+def test_a_piece_needs_the_sky_of_the_whole(tmp_path):
+    for i, ball in enumerate(balls()):
+        ball.save(tmp_path / f"part{i}.vtp")
+    with pytest.raises(vizlight.pieces.PieceError, match="occlusion: expected a point array"):
+        vizlight.pieces.light(
+            f"{tmp_path}/part*.vtp", SCENE, out=tmp_path / "lit.pvtp", occlusion="sky"
+        )
+    made = vizlight.sky(pv.MultiBlock(balls()), error=0.05)
+    for i, ball in enumerate(made):
+        ball.save(tmp_path / f"part{i}.vtp")
+    vizlight.pieces.light(
+        f"{tmp_path}/part*.vtp", SCENE, out=tmp_path / "lit.pvtp", occlusion="sky"
+    )

@@ -1,0 +1,222 @@
+"""The sky of height fields: closed forms, every crossing as the truth, odd fields, both codes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from vizlight import _compiled
+from vizlight.geometry.relief import sky as module
+from vizlight.geometry.relief.sky import sky
+
+FAST = pytest.mark.parametrize("fast", ["0", "1"])
+
+
+@pytest.fixture(autouse=True)
+def code(request, monkeypatch):
+    """Run by NumPy or by compiled code, as the test asks."""
+    fast = getattr(request.node, "callspec", None)
+    fast = fast.params.get("fast", "1") if fast else "1"
+    monkeypatch.setenv("VIZLIGHT_FAST", fast if not _compiled._missing() else "0")
+
+
+def rough(count, slope, seed=1):
+    """Return fractal ground with a root mean square slope, spacing 1."""
+    random = np.random.default_rng(seed)
+    wave = np.fft.fftfreq(count)[:, None] ** 2 + np.fft.rfftfreq(count) ** 2
+    wave[0, 0] = 1
+    z = np.fft.irfft2(np.fft.rfft2(random.normal(size=(count, count))) / wave**0.9, s=2 * (count,))
+    return z * slope / np.sqrt(np.mean(np.diff(z, axis=0) ** 2))
+
+
+def height(x, y, z, px, py):
+    """Return the bilinear height at places, those beyond the border at the border."""
+    px, py = np.clip(px, x[0], x[-1]), np.clip(py, y[0], y[-1])
+    i = np.clip(np.searchsorted(x, px, "right") - 1, 0, len(x) - 2)
+    j = np.clip(np.searchsorted(y, py, "right") - 1, 0, len(y) - 2)
+    u, v = (px - x[i]) / (x[i + 1] - x[i]), (py - y[j]) / (y[j + 1] - y[j])
+    low = z[j, i] + u * (z[j, i + 1] - z[j, i])
+    return low + v * (z[j + 1, i] + u * (z[j + 1, i + 1] - z[j + 1, i]) - low)
+
+
+def truth(x, y, z, j, i, count=512):
+    """Return the sky of a node from heights at dense distances, for many azimuths."""
+    q, p = np.gradient(z, y, x)
+    p, q = p[j, i], q[j, i]
+    turn = 2 * np.pi * (np.arange(count) + 0.5) / count
+    reach = np.hypot(np.ptp(x), np.ptp(y))
+    step = np.diff(x).min()
+    s = np.concatenate([np.arange(1, 200) * step / 25, np.arange(8 * step, reach, step / 4)])
+    places = height(x, y, z, x[i] + s * np.cos(turn)[:, None], y[j] + s * np.sin(turn)[:, None])
+    slope = ((places - z[j, i]) / s).max(axis=1)
+    rise = p * np.cos(turn) + q * np.sin(turn)
+    t = np.maximum(np.maximum(slope, 0), rise)
+    part = 1 / (1 + t * t) - rise * (np.arctan2(1, t) - t / (1 + t * t))
+    return np.mean(part) / np.sqrt(1 + p * p + q * q)
+
+
+@FAST
+@pytest.mark.parametrize("angle", [0.0, 0.3, 0.8, 1.3])
+@pytest.mark.parametrize("turn", [0.0, 0.5, 2.0])
+def test_an_endless_slope(angle, turn, fast):
+    x, y = np.linspace(0, 400, 41), np.linspace(0, 300, 21)
+    z = np.tan(angle) * (x * np.cos(turn) + y[:, None] * np.sin(turn))
+    found = sky(x, y, z, error=0.01)
+    assert found.error <= 0.01
+    wanted = (1 + np.cos(angle)) / 2
+    # Beyond the border heights are those of the border, which a steep slope's side sees.
+    assert found.share[10, 20] == pytest.approx(wanted, abs=0.01 if angle < 1 else 0.02)
+
+
+@FAST
+def test_a_step(fast):
+    """At the foot of an endless wall half of the sky is left; above it all."""
+    x = np.sort(np.concatenate([np.linspace(-500, 500, 41), [-1e-3, 1e-3]]))
+    z = np.where(x > 0, 1e5, 0.0) * np.ones((41, 1))
+    y = np.linspace(-500, 500, 41)
+    found = sky(x, y, z, error=0.02)
+    left = np.flatnonzero(x < 0)[:-3]
+    assert np.abs(found.share[20, left] - 0.5).max() < 0.04
+    assert found.share[20, 30] == pytest.approx(1.0, abs=0.02)
+
+
+@pytest.mark.parametrize("width", [1e-6, 1.0, 5000.0])
+def test_a_trench(width):
+    """Between walls of height h, w apart, the middle sees sin(atan(w / 2h))."""
+    x = np.array([-400, -200, -100, -60, -50.01, -50, -20, -1, 0, 1, 20, 50, 50.01, 60, 100.0, 400])
+    z = np.where(np.abs(x) > 50.005, 50.0, 0.0) * np.ones((61, 1))
+    y = np.linspace(-3000, 3000, 61)
+    found = sky(width * x, width * y, width * z, error=0.005)
+    assert found.share[30, 8] == pytest.approx(np.sqrt(0.5), abs=0.008)
+
+
+def test_a_bowl():
+    """Each point of a half ball's inside sees the rim the same: half of the sky."""
+    x = np.linspace(-1.5, 1.5, 301)
+    square = np.minimum(x * x + x[:, None] ** 2, 1)
+    found = sky(x, x, -np.sqrt(1 - square), error=0.005)
+    inner = x * x + x[:, None] ** 2 < 0.6
+    assert np.abs(found.share[inner] - 0.5).max() < 0.02
+    assert np.abs(found.share[inner] - 0.5).mean() < 0.005
+
+
+@pytest.mark.parametrize("slope", [0.2, 1.0])
+@pytest.mark.parametrize("error", [0.02, 0.0015])
+def test_the_error_holds_on_rough_ground(slope, error):
+    z = rough(96, slope, seed=int(10 * slope))
+    x = np.arange(96.0)
+    found = sky(x, x, z, error=error)
+    at = np.random.default_rng(3).integers(0, 96, (40, 2))
+    inside = (at > 0).all(axis=1) & (at < 95).all(axis=1)
+    missed = [abs(found.share[j, i] - truth(x, x, z, j, i)) for j, i in at[inside]]
+    # The quantile of 40 nodes is not that of all.
+    assert found.error <= error
+    assert np.quantile(missed, 0.9) <= error
+    assert np.mean(missed) < error / 2
+
+
+@pytest.mark.slow
+def test_by_numpy_the_error_holds_too(monkeypatch):
+    monkeypatch.setenv("VIZLIGHT_FAST", "0")
+    z, x = rough(64, 0.5), np.arange(64.0)
+    found = sky(x, x, z, error=0.01)
+    assert found.near == 0
+    missed = [
+        abs(found.share[j, i] - truth(x, x, z, j, i)) for j, i in ((9, 20), (30, 31), (50, 7))
+    ]
+    assert max(missed) < 0.02
+
+
+def test_unequal_spacing_and_the_number_of_threads():
+    random = np.random.default_rng(2)
+    x, y = (np.cumsum(random.uniform(0.3, 3, n)) for n in (70, 90))
+    z = 3 * np.sin(x / 5) * np.cos(y[:, None] / 7) + 0.5 * np.sin(x / 1.7 + y[:, None])
+    one, two = (sky(x, y, z, error=0.01, threads=threads) for threads in (1, 2))
+    assert np.array_equal(one.share, two.share)
+    at = random.integers(1, 69, (10, 2))
+    missed = [abs(one.share[j, i] - truth(x, y, z, j, i)) for j, i in at]
+    assert np.quantile(missed, 0.8) <= one.error
+
+
+@FAST
+def test_a_mirrored_field_has_the_mirrored_sky(fast):
+    z, x = rough(40, 0.6), np.arange(40.0)
+    found = sky(x, x, z, error=0.01).share
+    for turned, back in (
+        (z[::-1], np.s_[::-1]), (z[:, ::-1], np.s_[:, ::-1]), (z.T, None)
+    ):  # fmt: skip
+        other = sky(x, x, turned, error=0.01).share
+        other = other.T if back is None else other[back]
+        assert np.abs(other - found).mean() < 0.01
+
+
+@FAST
+def test_holes_hide_nothing_and_have_no_sky(fast):
+    x = np.arange(30.0)
+    z = np.zeros((30, 30))
+    z[10:20, 18:] = 50.0
+    walled = sky(x, x, z, error=0.02).share[15, 12]
+    z[10:20, 18:] = np.nan
+    found = sky(x, x, z, error=0.02)
+    assert np.isnan(found.share[15, 25])
+    assert found.share[15, 12] == pytest.approx(1.0, abs=1e-6)
+    assert walled < 0.8
+    z[:] = np.nan
+    z[3, 3] = 1.0
+    assert sky(x, x, z).share[3, 3] == 1.0
+
+
+@FAST
+def test_openness(fast):
+    """Level ground is a right angle open; a valley is less by the slope in each azimuth."""
+    x = np.linspace(-100, 100, 201)
+    level = sky(x, x, np.zeros((201, 201)), openness=True)
+    assert np.abs(level.share - np.pi / 2).max() < 1e-6
+    found = sky(x, x, np.abs(x) * np.ones((201, 1)), openness=True, error=0.01)
+    turn = np.linspace(0, 2 * np.pi, 1001)[:-1]
+    wanted = np.mean(np.pi / 2 - np.arctan(np.abs(np.cos(turn))))
+    assert found.share[100, 100] == pytest.approx(wanted, abs=0.01)
+
+
+def test_bisection_on_a_long_hull():
+    """A dome behind a hole: the hull of its arc is not shortened by points before it."""
+    x = np.arange(400.0)
+    arc = np.sqrt(np.maximum(150.0**2 - (x - 250) ** 2, 0))
+    z = np.tile(arc, (30, 1))
+    z[:, 5:110] = np.nan
+    found = sky(x, np.arange(30.0) * 50, z, error=0.02)
+    # Toward a cylinder across y the tangent is at asin(r / d).
+    j, wanted = 15, (1 + np.cos(np.arcsin(150 / 250))) / 2
+    assert found.share[j, 0] == pytest.approx(wanted, abs=0.03)
+
+
+def test_constant_and_tilted_by_units():
+    x = np.arange(20.0)
+    z = rough(20, 0.5)
+    found = sky(x, x, z).share
+    for unit in (1e-20, 1e20):
+        assert np.abs(sky(unit * x, unit * x, unit * z).share - found).max() < 1e-5
+    assert (sky(x, x, np.full((20, 20), 7.0)).share == 1).all()
+
+
+@pytest.mark.parametrize("error", [0, 1, -1, np.nan, "x"])
+def test_bad_errors(error):
+    with pytest.raises((TypeError, ValueError), match="error: expected a number"):
+        sky([0, 1], [0, 1], np.zeros((2, 2)), error=error)
+
+
+def test_bad_fields():
+    x = np.arange(3.0)
+    with pytest.raises(ValueError, match="z: expected heights, got NaN everywhere"):
+        sky(x, x, np.full((3, 3), np.nan))
+    with pytest.raises(ValueError, match="two nodes or more"):
+        sky([0.0], x, np.zeros((3, 1)))
+
+
+def test_the_effort_grows_with_what_is_asked():
+    z, x = rough(64, 1.0), np.arange(64.0)
+    coarse, fine = sky(x, x, z, error=0.03), sky(x, x, z, error=0.0005)
+    assert coarse.azimuths == module.FEWEST
+    assert fine.azimuths > 4 * coarse.azimuths
+    assert fine.near > coarse.near
+    assert fine.error < coarse.error

@@ -1,0 +1,34 @@
+"""The study's numbers are those of a short run: errors, not times."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from studies import Row, sky
+
+
+def test_rows_of_a_field_and_of_a_surface():
+    (field,) = sky.of_field(48, 0.3, 0.02)
+    assert 0 < field.error <= 0.02
+    assert field.more["stated"] <= 0.02
+    pytest.importorskip("embreex")
+    (ball,) = sky.of_surface(400, 0.04)
+    assert 0 < ball.error <= 0.04
+    assert ball.cost > 0
+
+
+def test_the_truth_of_a_slope():
+    at, slopes, t, turn = sky.horizons(48, 0.3)
+    assert at.shape == (sky.PLACES, 2)
+    assert t.shape == (sky.PLACES, len(turn))
+    assert np.isfinite(slopes).all()
+    _, share = sky.field_truth(48, 0.3)
+    assert ((share > 0.3) & (share <= 1)).all()
+
+
+def test_the_verdict_counts_what_holds():
+    rows = [Row("surface", 0.01, 0.009, 1e5), Row("field, slope 1", 0.01, 0.02, 2000.0)]
+    said = sky.verdict([*rows, Row("RVT, slope 1", "16 directions", 0.1, 300.0)])
+    assert "in 1 of 2 rows" in said
+    assert "2.0 microseconds per node of a field and 100 per point" in said

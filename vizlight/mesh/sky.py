@@ -1,0 +1,347 @@
+"""The sky of meshes: height fields by horizons, all that has faces or lines by rays."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import pyvista as pv
+import scipy
+
+from vizlight import _check, _compiled
+from vizlight.geometry.lines import bundle as media
+from vizlight.geometry.relief import sky as fields
+from vizlight.mesh import bundles, normals, sky_rays
+from vizlight.mesh.height_grids import Grid, heights_of
+from vizlight.reading import hull, polylines
+from vizlight.reading.cells import GHOSTS, faces_only, has_faces, triangles
+from vizlight.scene import View
+from vizlight.shading.options import Bundle
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from vizlight._types import Array, Bools, Indices
+    from vizlight.mesh.height_grids import Heights
+    from vizlight.mesh.sky_rays import Places
+    from vizlight.shading.results import Record
+
+#: Error from which lines are taken for a medium of voxels, number of points at which rays measure
+#: it, and number of pieces beyond which it is not measured, as rays need tubes around all lines.
+VOXELS, SAMPLES, MANY = 0.1, 256, 500_000
+#: Directions of light from all sides in a medium.
+SIDES = 64
+#: Bit of VTK's ghost array that marks a cell which is hidden, not one of another piece.
+HIDDEN = 32
+#: Up of a height field.
+ABOVE = (0.0, 0.0, 1.0)
+#: Number of points from which the slow ways are told of.
+SLOW = 5000
+
+
+class Sky(NamedTuple):
+    """The sky of a mesh.
+
+    Attributes
+    ----------
+    share : ndarray of float32, shape (N,)
+        Share of the sky that each point sees; a point without a sky has that of the nearest point.
+    valid : ndarray of bool, shape (N,)
+        Whether a point has a sky.
+    openness : ndarray of float32, shape (N,), or None
+        Openness in radians.
+    record : dict
+        Way in which it was found, its error, and its effort.
+    """
+
+    share: Array
+    valid: Bools
+    openness: Array | None
+    record: Record
+
+
+class _Shape(NamedTuple):
+    """Triangles of a mesh, and the points that look at the sky with their indices in the mesh."""
+
+    points: Array
+    triangles: Indices
+    places: Places
+    ids: Indices
+
+
+def skies(
+    meshes: Sequence[pv.DataSet],
+    *,
+    error: float,
+    up: tuple[float, ...] | None = None,
+    diameter: float | None = None,
+    openness: bool = False,
+    threads: int | None = None,
+    report: Callable[[int], None] = lambda _: None,
+    elevation: str | None = None,
+    factor: float = 1.0,
+) -> list[Sky]:
+    """Return the sky of meshes: fields see themselves alone, all others hide one another's sky.
+
+    Parameters
+    ----------
+    meshes : sequence of pyvista.DataSet
+    error : float
+        Error that 95 of 100 points of each mesh shall keep to.
+    up : tuple of float, optional
+        Direction of the half space that is the sky of meshes that are no fields.
+    diameter : float, optional
+        Diameter of lines.
+    openness : bool
+        Whether fields have their openness, too.
+    threads : int, optional
+    report : callable
+        Function of the number of points, or of azimuths of a field, that are done.
+    elevation, factor
+        As for :func:`vizlight.relief_shadow`; only for fields.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a mesh has neither faces nor lines, or an argument does not fit it.
+    """
+    found: dict[int, Sky] = {}
+    shapes: dict[int, pv.DataSet] = {}
+    for number, mesh in enumerate(meshes):
+        field = _field(mesh, elevation, factor)
+        if field is None:
+            shapes[number] = mesh
+            continue
+        if up is not None and not _is_above(up):
+            remedy = "leave it out, or pass the surface of the grid"
+            raise ValueError(_check.message("up", "(0, 0, 1) for a height field", up, remedy))
+        found[number] = _of_field(field, error, openness=openness, threads=threads, report=report)
+    if shapes and openness:
+        remedy = "leave it out"
+        raise ValueError(_check.message("openness", "a height field", "another mesh", remedy))
+    if shapes:
+        made = _by_rays([*shapes.values()], error, up, diameter, threads, report)
+        found |= dict(zip(shapes, made, strict=True))
+    return [found[number] for number in range(len(meshes))]
+
+
+def _is_above(up: Sequence[float]) -> bool:
+    return up[2] > 0 and up[0] == up[1] == 0
+
+
+def is_grid(mesh: pv.DataSet) -> bool:
+    """Return whether a mesh is a grid of one layer, which is taken for ground below a sky."""
+    return isinstance(mesh, Grid) and sum(size > 1 for size in mesh.dimensions) == 2
+
+
+def _field(mesh: pv.DataSet, elevation: str | None, factor: float) -> Heights | None:
+    """Return the height field of a grid of one layer; None where it is none."""
+    if not (is_grid(mesh) and isinstance(mesh, Grid) and mesh.dimensions[2] == 1):
+        return None
+    if not isinstance(mesh, pv.StructuredGrid):
+        return heights_of(mesh, elevation, factor)
+    try:
+        return heights_of(mesh, elevation, factor)
+    except ValueError:
+        # Its rows and columns bend: a surface like any other, below the sky of a field.
+        return None
+
+
+def _of_field(
+    field: Heights,
+    error: float,
+    *,
+    openness: bool,
+    threads: int | None,
+    report: Callable[[int], None],
+) -> Sky:
+    """Return the sky of a height field."""
+    made = fields.sky(field.x, field.y, field.z, error=error, threads=threads, progress=report)
+    opened = None
+    if openness:
+        other = fields.sky(
+            field.x, field.y, field.z, error=error, openness=True, threads=threads, progress=report
+        )
+        opened = np.nan_to_num(field.to_points(other.share))
+    share = field.to_points(made.share)
+    valid: Bools = np.isfinite(share)
+    record: Record = {
+        "method": "horizons" if made.near else "horizons by NumPy",
+        "error": made.error, "directions": made.azimuths, "rays": made.azimuths * share.size,
+    }  # fmt: skip
+    if not made.near and share.size > SLOW:
+        _check.warn(f"the sky takes ten times as long by NumPy: {_compiled.why_not()}")
+    points = field.points()
+    return Sky(_filled(share, valid, points), valid, opened, record)
+
+
+def _filled(share: Array, valid: Bools, points: Array) -> Array:
+    """Return shares in which points without a sky have that of the nearest point with one."""
+    if valid.all():
+        return share
+    share = np.where(valid, share, 1.0).astype(np.float32)
+    lost = ~valid & (np.abs(points) <= _check.FARTHEST).all(axis=1)
+    if valid.any() and lost.any():
+        _, nearest = scipy.spatial.cKDTree(points[valid]).query(points[lost])
+        share[lost] = share[valid][nearest]
+    return share
+
+
+def _by_rays(
+    meshes: Sequence[pv.DataSet],
+    error: float,
+    up: tuple[float, ...] | None,
+    diameter: float | None,
+    threads: int | None,
+    report: Callable[[int], None],
+) -> list[Sky]:
+    """Return the skies of meshes that hide one another's sky."""
+    lines = [mesh for mesh in meshes if polylines.has_lines_only(mesh)]
+    if diameter is not None and not lines:
+        got = "a mesh without lines"
+        raise ValueError(_check.message("diameter", "a mesh of lines", got, "leave it out"))
+    medium: media.Medium | None = None
+    thick = 0.0
+    if lines and (diameter is None or error >= VOXELS):
+        medium, thick = bundles.medium_of(bundles.joined(lines), Bundle(diameter=diameter))
+    thick = thick if diameter is None else diameter
+    among = medium is not None and error >= VOXELS and len(lines) == len(meshes) and up is None
+    if among and medium is not None and medium.middles.shape[1] > MANY:
+        return [_in_medium(mesh, medium, thick, threads) for mesh in meshes]
+    above = [ABOVE if up is None and is_grid(mesh) else up for mesh in meshes]
+    shapes = [_shape(mesh, thick, axis) for mesh, axis in zip(meshes, above, strict=True)]
+    hidden = _occluders(shapes)
+    if among and medium is not None:
+        found = [_in_medium(mesh, medium, thick, threads) for mesh in meshes]
+        worst = [_missed(sky, shape, hidden) for sky, shape in zip(found, shapes, strict=True)]
+        if max(worst) <= error:
+            return [
+                sky._replace(record=sky.record | {"error": own})
+                for sky, own in zip(found, worst, strict=True)
+            ]
+    total = sum(len(shape.ids) for shape in shapes)
+    if hidden.tracer.name != "rays by Embree" and total > SLOW:
+        remedy = "pip install 'vizlight[rays]'"
+        _check.warn(f"the sky takes 20 times as long without embreex (try: {remedy})")
+    made, done = [], 0
+    for mesh, shape, axis in zip(meshes, shapes, above, strict=True):
+        seen = hidden.seen(
+            shape.places, error=error, up=None if axis is None else np.array(axis, np.float64),
+            report=lambda now, done=done: report(done + now),  # type: ignore[misc]
+        )  # fmt: skip
+        done += len(shape.ids)
+        share = np.zeros(mesh.n_points, np.float32)
+        valid = np.zeros(mesh.n_points, np.bool_)
+        share[shape.ids], valid[shape.ids] = seen.share, seen.valid
+        record: Record = {
+            "method": hidden.tracer.name, "error": seen.error, "rays": seen.rays,
+            "directions": round(seen.rays / max(len(shape.ids), 1)),
+        }  # fmt: skip
+        if polylines.has_lines_only(mesh):
+            record["diameter"] = thick
+        places = np.asarray(mesh.points, np.float64)
+        made.append(Sky(_filled(share, valid, places), valid, None, record))
+    return made
+
+
+def _occluders(shapes: Sequence[_Shape]) -> sky_rays.Occluders:
+    """Return the triangles of all shapes."""
+    counts = np.cumsum([0, *(len(shape.points) for shape in shapes)])
+    faces = [shape.triangles + at for shape, at in zip(shapes, counts[:-1], strict=True)]
+    points = np.concatenate([shape.points for shape in shapes])
+    return sky_rays.Occluders(points, np.concatenate(faces))
+
+
+def _missed(sky: Sky, shape: _Shape, hidden: sky_rays.Occluders) -> float:
+    """Return the error that 95 of 100 points keep to, as rays from some of them find it."""
+    some = np.random.default_rng(0).permutation(np.flatnonzero(sky.valid))[:SAMPLES]
+    if not len(some):
+        return 0.0
+    points, ways, radius = shape.places
+    seen = hidden.seen(sky_rays.Places(points[some], ways[some], radius), error=VOXELS / 4)
+    return float(np.quantile(np.abs(sky.share[some] - seen.share), 0.95))
+
+
+def in_medium(
+    mesh: pv.DataSet,
+    lines: tuple[media.Medium, float],
+    normals: Array | None = None,
+    threads: int | None = None,
+) -> Array:
+    """Return the share of light from all sides at points of a surface, or of lines, among lines.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh of lines, or a surface with ``normals``.
+    lines : Medium, float
+        Lines, and their diameter.
+    normals : ndarray, shape (N, 3), optional
+    threads : int, optional
+    """
+    medium, thick = lines
+    points = np.asarray(mesh.points)
+    if normals is not None:
+        targets = medium.targets(points, normals)
+    else:
+        lengths = polylines.of_points(mesh, media.line_lengths)
+        targets = medium.targets(points, polylines.line_tangents(mesh), lengths)
+    return medium.sky(targets, thick, SIDES, threads=threads)
+
+
+def _in_medium(mesh: pv.DataSet, medium: media.Medium, thick: float, threads: int | None) -> Sky:
+    """Return the sky of lines inside a medium of lines, by voxels."""
+    points, tangents = np.asarray(mesh.points), polylines.line_tangents(mesh)
+    share = in_medium(mesh, (medium, thick), threads=threads)
+    valid: Bools = np.any(tangents, axis=1) & np.isfinite(points).all(axis=1)
+    record: Record = {
+        "method": "voxels", "error": None, "directions": SIDES, "rays": 0, "diameter": thick,
+        "voxel": medium.voxel,
+    }  # fmt: skip
+    return Sky(_filled(share, valid, points.astype(np.float64)), valid, None, record)
+
+
+def _shape(mesh: pv.DataSet, thick: float, up: tuple[float, ...] | None) -> _Shape:
+    """Return what a mesh hides, and its points that look at the sky.
+
+    Open pieces without normals of their own face a sky that is above.
+    """
+    if polylines.has_lines_only(mesh):
+        points, ids, offsets = polylines.cells_of(mesh)
+        vertices, faces = sky_rays.tubes(points, ids, offsets, thick / 2)
+        ways = polylines.line_tangents(mesh)
+        places = sky_rays.Places(np.asarray(mesh.points), ways, thick / 2)
+        return _Shape(vertices, faces, places, np.arange(mesh.n_points))
+    surface, ids = _surface(mesh)
+    if not has_faces(surface):
+        remedy = "take its surface, lines or glyphs, which have directions"
+        got = f"{type(mesh).__name__} without either"
+        raise ValueError(_check.message("mesh", "a mesh with faces or lines", got, remedy))
+    points = np.asarray(pv.wrap(surface).points, np.float64)
+    faces = np.asarray(triangles(faces_only(surface)), np.intp)
+    view = None if up is None else View(direction=up)
+    ways = np.asarray(normals.normals_of(mesh, None, 3, view), np.float64)
+    there = ids >= 0
+    own = ids[there]
+    return _Shape(points, faces, sky_rays.Places(points[there], ways[own]), own)
+
+
+def _surface(mesh: pv.DataSet) -> tuple[pv.PolyData, Indices]:
+    """Return the surface of a mesh without hidden cells, and its points' indices in the mesh.
+
+    Cells of other pieces stay: they hide the sky.
+    """
+    marks = mesh.cell_data.get(GHOSTS)
+    if marks is not None:
+        hidden = (np.asarray(marks) & HIDDEN) > 0
+        mesh = mesh.copy(deep=False)
+        del mesh.cell_data[GHOSTS]
+        if hidden.any():
+            kept = mesh.extract_cells(np.asarray(~hidden, dtype=bool))
+            numbers = np.asarray(kept.point_data["vtkOriginalPointIds"], np.intp)
+            surface, ids = hull.outer_surface(kept)
+            return pv.PolyData(surface), np.where(ids >= 0, numbers[ids], -1)
+    if isinstance(mesh, pv.PolyData):
+        return mesh, np.arange(mesh.n_points)
+    surface, ids = hull.outer_surface(mesh)
+    return pv.PolyData(surface), ids

@@ -1,0 +1,367 @@
+"""The share of a uniform sky that points of surfaces and of tubes see, by rays, point by point.
+
+A point of a surface sees ``1/pi * integral of max(n . w, 0)`` over the directions w in which no
+triangle stands. A point of a line sees the mean of that over the circumference of its tube.
+Directions are nets that add a constant step to each point (Roberts' R2), which 64 shifts tell apart
+from point to point, turned to the normal. Their number doubles only for points like which others
+are not right enough yet.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+
+import numpy as np
+from vtkmodules.vtkCommonCore import mutable
+from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
+
+from vizlight import _check
+from vizlight.geometry.lines.bundle import segment_starts
+from vizlight.geometry.lines.curves import polyline_tangents
+from vizlight.mesh import blocks, embree_rays
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from embreex.rtcore_scene import EmbreeScene
+
+    from vizlight._types import Array, Bools, Indices
+
+#: Distance of starts from the surface as a share of the size of the scene: what float32 resolves.
+OFFSET = 2e-6
+#: Distance from a triangle at which VTK finds a hit: at 0 rays pass through edges.
+TOLERANCE = 1e-9
+#: Numbers of rays per point at first and at most, rays that are followed at once, shifts of nets.
+FEWEST, MOST, AT_ONCE, SHIFTS = 32, 1 << 14, 1 << 17, 64
+#: Steps of additive nets in 2 and 3 dimensions, from the roots of x^3 = x + 1 and x^4 = x + 1.
+RATES = {
+    2: np.array([0.7548776662466927, 0.5698402909980532]),
+    3: np.array([0.8191725133961645, 0.6710436067037893, 0.5497004779019703]),
+}
+#: Ranges of the share in which points are taken for alike.
+CLASSES = 16
+#: Error that 95 of 100 points keep to, per root mean square.
+QUANTILE = 2.0
+#: Square of a net's error times its rays to the power 1.5, per V (1 - V), as a rule, and number of
+#: points that this rule stands for.
+USUAL, WEIGHT = 2.0, 8
+#: Sides of the prism that stands for a tube, its radius for the tube's mean width, and a factor
+#: that takes a start outside of its corners.
+SIDES = 6
+PRISM = np.pi / (SIDES * np.sin(np.pi / SIDES))
+OUTSIDE = 1.06
+
+
+class Places(NamedTuple):
+    """Points that look at the sky.
+
+    Attributes
+    ----------
+    points : ndarray, shape (N, 3)
+    ways : ndarray, shape (N, 3)
+        Normals of a surface or tangents of lines; a row that is 0 or not finite has no sky.
+    radius : float or None
+        Radius of the tubes; None for a surface.
+    """
+
+    points: Array
+    ways: Array
+    radius: float | None = None
+
+
+class Seen(NamedTuple):
+    """What points see.
+
+    Attributes
+    ----------
+    share : ndarray of float32, shape (N,)
+    valid : ndarray of bool, shape (N,)
+        Whether a point has a sky: it has a normal, and is not buried inside of the surface.
+    error : float
+        Error that 95 of 100 points keep to, as estimated.
+    rays : int
+        Number of rays of all points.
+    """
+
+    share: Array
+    valid: Bools
+    error: float
+    rays: int
+
+
+class Tracer(Protocol):
+    """Finds triangles on rays."""
+
+    name: str
+
+    def free(self, start: Array, way: Array) -> Bools:
+        """Return whether rays meet nothing."""
+
+    def first(self, start: Array, way: Array) -> Indices:
+        """Return the first triangle on each ray, -1 for none."""
+
+
+class _Embree:
+    name = "rays by Embree"
+
+    def __init__(self, scene: EmbreeScene) -> None:
+        self._scene = scene
+
+    def free(self, start: Array, way: Array) -> Bools:
+        hit: Indices = np.asarray(self._scene.run(start, way, query="OCCLUDED"))
+        return np.asarray(hit != 0)
+
+    def first(self, start: Array, way: Array) -> Indices:
+        return np.asarray(self._scene.run(start, way), dtype=np.intp)
+
+
+class _Locator:
+    name = "rays by VTK"
+
+    def __init__(self, points: Array, triangles: Indices) -> None:
+        self._tree = vtkStaticCellLocator()
+        self._tree.SetDataSet(blocks.polydata(points, triangles))
+        self._tree.BuildLocator()
+
+    def free(self, start: Array, way: Array) -> Bools:
+        return self.first(start, way) < 0
+
+    def first(self, start: Array, way: Array) -> Indices:
+        t, part, cell = mutable(0.0), mutable(0), mutable(0)
+        place, weights = [0.0] * 3, [0.0] * 3
+        find: Any = self._tree.IntersectWithLine
+        found = np.full(len(start), -1)
+        ends = start + 2 * way
+        for row, (a, b) in enumerate(zip(start.tolist(), ends.tolist(), strict=True)):
+            if find(a, b, TOLERANCE, t, place, weights, part, cell):
+                found[row] = int(cell)
+        return found
+
+
+class Occluders:
+    """Triangles that hide the sky, scaled to size 1 about 0 so that float32 loses nothing."""
+
+    def __init__(self, points: Array, triangles: Indices) -> None:
+        used = points[triangles]
+        used = used[(np.abs(used) <= _check.FARTHEST).all(axis=(1, 2))]
+        low = used.min(axis=(0, 1), initial=np.inf) if len(used) else np.zeros(3)
+        high = used.max(axis=(0, 1), initial=-np.inf) if len(used) else np.zeros(3)
+        self.middle = low / 2 + high / 2
+        self.size = float(np.linalg.norm(high - low)) or 1.0
+        self.corners = (used - self.middle) / self.size
+        a, b, c = self.corners.transpose(1, 0, 2)
+        self.normals = np.cross(b - a, c - a)
+        scene = embree_rays.tree(self.corners) if len(used) else None
+        self.tracer: Tracer
+        if scene is not None:
+            self.tracer = _Embree(scene)
+        else:
+            numbers = np.arange(3 * len(used)).reshape(-1, 3)
+            self.tracer = _Locator(self.corners.reshape(-1, 3), numbers)
+
+    def seen(
+        self,
+        places: Places,
+        *,
+        error: float,
+        up: Array | None = None,
+        report: Callable[[int], None] = lambda _: None,
+    ) -> Seen:
+        """Return the share of the sky that points see.
+
+        Parameters
+        ----------
+        places : Places
+        error : float
+            Error that 95 of 100 points shall keep to.
+        up : ndarray, shape (3,), optional
+            Direction of the half space that is the sky.
+        report : callable, optional
+            Function of the number of points that are done.
+
+        Returns
+        -------
+        Seen
+        """
+        ways = np.asarray(places.ways, np.float64)
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            ways = ways / np.abs(ways).max(axis=1, initial=0, keepdims=True)
+            ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+        points = (np.asarray(places.points, np.float64) - self.middle) / self.size
+        near = (np.abs(points) <= _check.FARTHEST).all(axis=1)
+        valid: Bools = np.isfinite(ways).all(axis=1) & near
+        share = np.zeros(len(points), np.float32)
+        if not valid.any():
+            return Seen(share, valid, 0.0, 0)
+        rows = np.flatnonzero(valid)
+        radius = None if places.radius is None else places.radius / self.size
+        work = _Estimate(self.tracer, points[rows], ways[rows], radius, up)
+        share[rows], missed = work.until(error, report)
+        dark = rows[share[rows] == 0]
+        if len(dark) and radius is None:
+            valid[dark] = ~self._buried(points[dark], ways[dark])
+        return Seen(share, valid, missed, work.rays)
+
+    def _buried(self, points: Array, normals: Array) -> Bools:
+        """Return whether points see the inner side of triangles in most directions."""
+        local = _net(1, 64, 0)[0]
+        behind = np.zeros(len(points))
+        for part, (start, way) in _rays(points, normals, local, None):
+            hit = self.tracer.first(start, way)
+            inner = np.einsum("ij,ij->i", way, self.normals[hit]) > 0
+            behind[part] = np.reshape((hit >= 0) & inner, (len(local.ways), -1)).mean(axis=0)
+        return np.asarray(behind > 1 / 2)
+
+
+class _Net(NamedTuple):
+    """Directions, and normals of a tube, in the frame of a point; both of shape (n, 3)."""
+
+    ways: Array
+    outward: Array
+
+
+class _Estimate:
+    """Shares of points as means over halves of their rays."""
+
+    def __init__(
+        self, tracer: Tracer, points: Array, ways: Array, radius: float | None, up: Array | None
+    ) -> None:
+        self.tracer, self.points, self.ways, self.radius = tracer, points, ways, radius
+        self.up = None if up is None else (up / np.linalg.norm(up)).astype(np.float32)
+        # Neighbours in the order of points have other shifts.
+        self.shift = np.random.default_rng(0).permutation(len(points)) % SHIFTS
+        self.rays = 0
+
+    def until(self, error: float, report: Callable[[int], None]) -> tuple[Array, float]:
+        """Return the shares, and the error that 95 of 100 of them keep to."""
+        count = added = FEWEST // 2
+        going = np.arange(len(self.points))
+        one = self._free(going, 0, count)
+        share = np.zeros(len(going), np.float32)
+        squares = 0.0
+        while True:
+            other, total = self._free(going, count, added), count + added
+            # The square of a net's error falls with the power 1.5 of its rays, which gives that of
+            # both parts together from their difference.
+            square = (one - other) ** 2 * total**-1.5 / (count**-1.5 + added**-1.5)
+            mean = (count * one + added * other) / total
+            share[going] = mean
+            # Few points tell little: what nets err by as a rule stands for some more of each class.
+            rule = USUAL * mean * (1 - mean) * total**-1.5
+            kind = np.minimum((mean * CLASSES).astype(np.intp), CLASSES - 1)
+            size, found, usual = (
+                np.bincount(kind, rows, minlength=CLASSES) for rows in (None, square, rule)
+            )
+            pooled = (found + WEIGHT * usual / np.maximum(size, 1)) / (size + WEIGHT)
+            done = (QUANTILE * np.sqrt(pooled) <= error)[kind] | (total >= MOST)
+            squares += float(pooled[kind[done]].sum())
+            going, one = going[~done], mean[~done]
+            report(len(share) - len(going))
+            if not len(going):
+                return share, QUANTILE * float(np.sqrt(squares / len(share)))
+            count, added = total, total // 2
+
+    def _free(self, rows: Indices, first: int, count: int) -> Array:
+        """Return the share of some rays of each point that meet nothing."""
+        line = self.radius is not None
+        nets = _net(SHIFTS, count, first, line=line)
+        found = np.empty(len(rows), np.float32)
+        self.rays += len(rows) * count
+        order = np.argsort(self.shift[rows], kind="stable")
+        ends = np.searchsorted(self.shift[rows][order], np.arange(SHIFTS + 1))
+        for number in range(SHIFTS):
+            own = order[ends[number] : ends[number + 1]]
+            at = rows[own]
+            parts = _rays(self.points[at], self.ways[at], nets[number], self.radius)
+            for part, (start, way) in parts:
+                free = self.tracer.free(start, way)
+                if self.up is not None:
+                    free &= way @ self.up > 0
+                found[own[part]] = free.reshape(count, -1).mean(axis=0)
+        return found
+
+
+def _net(shifts: int, count: int, first: int, *, line: bool = False) -> list[_Net]:
+    """Return shifted parts of a net of directions, weighted by the cosine."""
+    net = (np.arange(first, first + count)[:, np.newaxis] + 0.5) * RATES[3 if line else 2]
+    made = []
+    for shift in np.random.default_rng(1).random((shifts, net.shape[1])):
+        h = (net + shift) % 1
+        angle, cosine = 2 * np.pi * h[:, 1], np.sqrt(1 - h[:, 0])
+        x, y = np.sqrt(h[:, 0]) * np.cos(angle), np.sqrt(h[:, 0]) * np.sin(angle)
+        ways, outward = np.stack([x, y, cosine], axis=1), np.tile([0.0, 0.0, 1.0], (count, 1))
+        if line:
+            # The normal goes round the line, which is the third axis.
+            around = 2 * np.pi * h[:, 2]
+            c, s = np.cos(around), np.sin(around)
+            ways = np.stack([cosine * c - y * s, cosine * s + y * c, x], axis=1)
+            outward = np.stack([c, s, np.zeros(count)], axis=1)
+        made.append(_Net(ways.astype(np.float32), outward.astype(np.float32)))
+    return made
+
+
+def _rays(
+    points: Array, ways: Array, net: _Net, radius: float | None
+) -> Iterator[tuple[slice, tuple[Array, Array]]]:
+    """Yield some points, and the starts and directions of their rays, one ray of each at a time."""
+    count = len(net.ways)
+    for first in range(0, len(points), max(1, AT_ONCE // count)):
+        part = slice(first, first + max(1, AT_ONCE // count))
+        frame = _frames(ways[part])
+        across = frame.transpose(1, 0, 2).reshape(3, -1)
+        way = (net.ways @ across).reshape(-1, 3)
+        if radius is None:
+            begin = (points[part] + OFFSET * ways[part]).astype(np.float32)
+            start: Array = np.tile(begin, (count, 1))
+        else:
+            away = (OUTSIDE * radius + OFFSET) * net.outward
+            start = (away @ across).reshape(count, -1, 3) + points[part].astype(np.float32)
+            start = start.reshape(-1, 3)
+        yield part, (np.ascontiguousarray(start, np.float32), way)
+
+
+def _frames(ways: Array) -> Array:
+    """Return orthonormal frames of float32, shape (N, 3, 3), whose last rows are unit vectors.
+
+    Source: Duff and others, Journal of Computer Graphics Techniques 6 (2017), without branches.
+    """
+    x, y, z = ways.T
+    sign = np.where(z >= 0, 1.0, -1.0)
+    a = -1 / (sign + z)
+    b = x * y * a
+    rows = [1 + sign * x * x * a, sign * b, -sign * x, b, sign + y * y * a, -y, x, y, z]
+    return np.stack(rows, axis=1).reshape(-1, 3, 3).astype(np.float32)
+
+
+def tubes(points: Array, ids: Indices, offsets: Indices, radius: float) -> tuple[Array, Indices]:
+    """Return vertices and triangles of prisms about polylines, of the mean width of round tubes.
+
+    Parameters
+    ----------
+    points : ndarray, shape (N, 3)
+    ids : ndarray of int, shape (M,)
+        Indices of the points of each line, one line after the other.
+    offsets : ndarray of int, shape (L + 1,)
+        Start of each line in ``ids``, followed by its length.
+    radius : float
+        Radius of the tubes.
+    """
+    place = points[ids].astype(np.float64)
+    tangents = polyline_tangents(place, offsets=offsets)
+    frame = _frames(np.where(np.any(tangents, axis=1, keepdims=True), tangents, [0.0, 0.0, 1.0]))
+    turn = 2 * np.pi * np.arange(SIDES) / SIDES
+    ring = PRISM * radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    vertices = place[:, np.newaxis] + ring @ frame[:, :2].astype(np.float64)
+    first = segment_starts(ids, offsets)
+    good = np.any(tangents[first], axis=1) & np.any(tangents[first + 1], axis=1)
+    first = first[good & np.isfinite(place[first] + place[first + 1]).all(axis=1)]
+    # The corner of the next ring that is nearest in angle to the first of this one.
+    u, v = (np.einsum("ij,ij->i", frame[first, 0], frame[first + 1, k]) for k in (0, 1))
+    shift = np.rint(np.arctan2(v, u) * SIDES / (2 * np.pi)).astype(np.intp)[:, np.newaxis]
+    side = np.arange(SIDES)
+    near = first[:, np.newaxis] * SIDES
+    far = near + SIDES
+    a, b = near + side, near + (side + 1) % SIDES
+    c, d = far + (side + shift) % SIDES, far + (side + shift + 1) % SIDES
+    halves = [np.stack(corners, axis=2).reshape(-1, 3) for corners in ((a, b, d), (a, d, c))]
+    return vertices.reshape(-1, 3), np.concatenate(halves)
