@@ -141,6 +141,9 @@ def _shares(mesh: pv.DataSet, lights: int) -> Shares:
     found = Shares(
         *(np.asarray(mesh.point_data[name]) if name in made else None for name in Shares._fields)
     )
+    name = (records.read(mesh, DEFAULT_NAME) or {}).get("options", {}).get("occlusion")
+    if isinstance(name, str) and name in mesh.point_data:
+        found = found._replace(occlusion=np.asarray(mesh.point_data[name]))
     if found.transmittance is None:
         return found
     columns = found.transmittance.reshape(mesh.n_points, -1)
