@@ -25,7 +25,13 @@ def lit_by(occlusion, ambient):
         material=Material(ambient=ambient, diffuse=0.75, specular=0, color="#f2e6d0"),
     )
     lit = vizlight.relief_shadow(
-        terrain, scene, lit=True, elevation="elevation", factor=STEEP, depth=40, occlusion=occlusion
+        terrain,
+        scene,
+        lit=True,
+        elevation="elevation",
+        exaggeration=STEEP,
+        depth=40,
+        occlusion=occlusion,
     )
     ground = lit.cast_to_structured_grid()
     ground.points[:, 2] = STEEP * np.asarray(lit["elevation"])

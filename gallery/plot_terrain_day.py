@@ -22,7 +22,7 @@ day = vizlight.relief_day(
     hours=hours,
     depth=60,
     elevation="elevation",
-    factor=2,
+    exaggeration=2,
     angular_diameter=0.0093,
 )
 for column, hour in enumerate(hours):

@@ -178,7 +178,7 @@ FILTERS = {
 }
 #: Options that no text on the command line can give, or that a file has none of.
 IN_SCRIPTS = {
-    "light": {"positions"},
+    "light": {"positions", "occlusion"},
     "streamlines": {
         "positions",
         "tangents",
@@ -219,7 +219,7 @@ def test_help_has_groups_and_an_example_and_fits_a_screen(name, capfd, monkeypat
         out.index(f"─ {group} ─") for group in groups
     )
     assert f"Example: vizlight {name} " in out
-    assert len(out.splitlines()) <= 86
+    assert len(out.splitlines()) <= 92
 
 
 def test_the_first_clause_of_an_option():
@@ -355,17 +355,20 @@ def test_report_stands_in_the_script_too(folder, capfd):
     code, out, _ = run(capfd, *arguments)
     for text in (printed, out):
         assert "points" in text
-        assert "from samples along each ray" in text
+        assert "not measured between points: cast shadows" in text
 
 
 @pytest.mark.parametrize(
     ("line", "words"),
     [
-        ("streamlines flow.vti --vectors U", "vectors: expected the name of a point array"),
+        ("streamlines flow.vti --vectors U", "vectors: expected the name of an array of 3"),
         ("streamlines flow.vti --step 0", "step: expected"),
         ("streamlines flow.vti --seeds x", "--seeds"),
         ("streamlines flow.vti --vectors V --confined", "surface: expected a surface"),
-        ("streamlines flow.vti --vectors V -o a.vti", "ends in .vtp, .vtk, .vtu for PolyData"),
+        (
+            "streamlines flow.vti --vectors V -o a.vti",
+            "ends in .vtp, .vtk, .vtu, .stl for PolyData",
+        ),
         (
             "relief flow.vti --contour r --exaggeration 3",
             "--exaggeration: expected --warp",
@@ -559,7 +562,7 @@ def test_parts_are_blocks_of_one_file_and_one_page(folder, capfd):
     again = Path("c.html").read_text(encoding="utf-8")
     assert again.replace('": "c"', '": "a"') == page
     code, _, err = run(capfd, "light", "flow.vti", "-o", "d.vtm")
-    assert (code, "a name that ends in .vtp, .vtk, .vtu for PolyData" in err) == (2, True)
+    assert (code, "a name that ends in .vtp, .vtk, .vtu, .stl for PolyData" in err) == (2, True)
 
 
 def test_steps_without_a_flow_name_those_that_have_one(folder, capfd):

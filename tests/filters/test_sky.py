@@ -208,11 +208,11 @@ def test_sun_and_sky_of_a_map_in_one_call():
     flat = valley()
     sun = vizlight.Scene(lights=vizlight.Light(direction=(-1, 0, 0.5)), material=SCENE.material)
     bare = vizlight.relief_shadow(flat, sun, lit=True)
-    lit = vizlight.relief_shadow(flat, sun, lit=True, occlusion="sky", factor=2.0)
+    lit = vizlight.relief_shadow(flat, sun, lit=True, occlusion="sky", exaggeration=2.0)
     steeper = flat.copy()
     steeper["height"] *= 2
     share = vizlight.sky(steeper, error=0.02)["sky"]
-    plain = vizlight.relief_shadow(flat, sun, lit=True, factor=2.0)
+    plain = vizlight.relief_shadow(flat, sun, lit=True, exaggeration=2.0)
     dimmed = plain["luminance"] - 0.5 * (1 - share)
     np.testing.assert_allclose(lit["luminance"], dimmed, atol=1e-6)
     assert bare["luminance"].max() > lit["luminance"].max()

@@ -48,8 +48,6 @@ def test_points_without_cells_are_lit_by_vectors_of_their_own(cloud):
     sheets = vizlight.illuminate(cloud, scene, normals=vectors, facing="as given")
     expected = vizlight.engine.shade(points, None, scene, normals=vectors)
     np.testing.assert_array_equal(sheets["luminance"], expected.luminance)
-    with pytest.raises(ValueError, match=r"mesh: expected a surface.*tangents= or .* normals="):
-        vizlight.illuminate(cloud, scene)
     with pytest.raises(ValueError, match="mesh: expected a surface with faces"):
         vizlight.isoluminance(cloud, scene)
     with pytest.raises(ValueError, match="mesh: expected faces or lines, got points alone"):

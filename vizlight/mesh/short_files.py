@@ -14,7 +14,7 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkGenericCell
 
-from vizlight.mesh import blocks
+from vizlight.mesh import blocks, steps
 from vizlight.reading.cells import POLYDATA, connectivity
 
 if TYPE_CHECKING:
@@ -250,6 +250,8 @@ _FORMATS: dict[str, Callable[[BinaryIO], str]] = {
 
 #: Largest number of points of a mesh: half of the addresses that processors have.
 _MOST_POINTS = 1 << 40
+#: Field arrays that a reader adds.
+_ADDED = (steps.TIME, steps.STEPS)
 #: Words of a text that stand for numbers.
 _NO_NUMBERS = (b"nan", b"inf", b"infinity")
 #: Number of points of a cell, by VTK's number of its type; other types have any number.
@@ -367,8 +369,9 @@ def _of_text(block: pv.DataSet, path: Path) -> str:
     if isinstance(block, pv.UnstructuredGrid):
         expected += block.n_cells
     for data in (block.point_data, block.cell_data, block.field_data):
-        for array in map(np.asarray, data.values()):
-            if array.dtype.kind in "biuf":
+        for name, values in data.items():
+            array = np.asarray(values)
+            if array.dtype.kind in "biuf" and name not in _ADDED:
                 own = array.shape[1] if array.ndim > 1 else 1
                 expected += len(array) * components.get(own, own)
     return f"{found} of {expected} numbers are there" if found < expected else ""
