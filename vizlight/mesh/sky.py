@@ -169,8 +169,8 @@ def _of_field(
         "method": "horizons" if made.near else "horizons by NumPy",
         "error": made.error, "directions": made.azimuths, "rays": made.azimuths * share.size,
     }  # fmt: skip
-    if not made.near and share.size > SLOW:
-        _check.warn(f"the sky takes ten times as long by NumPy: {_compiled.why_not()}")
+    if (reason := _compiled.why_not()) and share.size > SLOW:
+        _check.warn(f"the sky takes ten times as long by NumPy: {reason}")
     points = field.points()
     return Sky(_filled(share, valid, points), valid, opened, record)
 

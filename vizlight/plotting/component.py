@@ -523,14 +523,15 @@ class Component:
 
     def _update(self, renderer: vtkRenderer) -> None:
         """Light what a renderer is about to draw, and say once what does not show."""
-        lost = set()
+        lost, any_live = set(), False
         for actor in items(renderer.GetActors()):
             live = self._live_of(actor)
             if live is not None:
+                any_live = True
                 live.update(renderer, actor)
             elif is_copy(actor):
                 lost.add("a copy of an actor has light that does not follow; add its mesh instead")
-        if self.has_live_light and renderer.GetPass() is not None:
+        if any_live and renderer.GetPass() is not None:
             passes = [name for kind, name in UNLIT_PASSES.items() if has_pass(renderer, kind)]
             lost |= {f"{name} of PyVista do not show on meshes with live light" for name in passes}
         for text in sorted(lost - self._lost):
