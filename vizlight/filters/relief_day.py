@@ -124,7 +124,7 @@ def relief_day(
         arrays[name + VALID] = np.asarray(found.point_data[name + VALID])
     record = records.provenance(found, name)
     record["filter"] = "relief_day"
-    for other in ("lit", "components"):
+    for other in ("lit", "components", "occlusion"):
         del record["options"][other]
     record["options"] |= plain(own)
     records.attach(found, name, arrays, record)

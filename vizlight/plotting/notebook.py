@@ -98,13 +98,20 @@ def is_live(plotter: pv.BasePlotter) -> bool:
     return bool(plotter.vizlight.has_live_light)
 
 
+def _static(plotter: pv.BasePlotter, **options: object) -> object:
+    """Show a picture, by what needs IPython."""
+    from pyvista.jupyter.notebook import show_static_image
+
+    shown: object = show_static_image(plotter, **options)  # type: ignore[arg-type]
+    return shown
+
+
 def guard() -> None:
     """Let the backends of PyVista that draw in the browser know of live light."""
     known = pv.jupyter.registered_jupyter_backends()
     if all(registered.name != "html" for registered in known):
         # Without trame, which live light does not need, other plotters are pictures as before.
-        static = pv.jupyter.notebook.show_static_image
-        pv.jupyter.register_jupyter_backend("html", Guarded("html", static), override=True)
+        pv.jupyter.register_jupyter_backend("html", Guarded("html", _static), override=True)
     for registered in known:
         if registered.name in DRAWN_BY_THE_BROWSER and not isinstance(registered.handler, Guarded):
             guarded = Guarded(registered.name, registered.handler)
