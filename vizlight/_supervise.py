@@ -38,7 +38,11 @@ PATIENCE = 5.0
 READ_VARIABLE = "VIZLIGHT_READ_SECONDS"
 
 #: Signals to the parent that end the child. They are blocked until the parent can pass them on.
-_PASSED_ON = (signal.SIGTERM, signal.SIGHUP, signal.SIGINT)
+_PASSED_ON = tuple(
+    signal.Signals[name]
+    for name in ("SIGTERM", "SIGHUP", "SIGINT")
+    if name in signal.Signals.__members__
+)
 _PR_SET_PDEATHSIG = 1
 _channel: int | None = None
 
