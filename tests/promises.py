@@ -613,7 +613,7 @@ def bundles(random, times):
             place = np.array([0.1, 0.05, -0.08])
             lamp = Light(position=place) if light == "near" else Light(direction=toward)
             scene = Scene(lights=lamp, view=View(direction=(0, 0, 1)))
-            lit = vizlight.illuminate(lines, scene, bundle=Bundle(diameter=d, directions=0))
+            lit = vizlight.illuminate(lines, scene, bundle=Bundle(diameter=d))
             got = np.asarray(lit["transmittance"]).reshape(count, 3)[:, 1].astype(float)
             rows = random.choice(count, 150 * times, replace=False)
             free = []

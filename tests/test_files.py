@@ -520,3 +520,15 @@ def test_files_whose_standard_has_y_up_stand_upright(tmp_path):
     tall.save(tmp_path / "a.ply")
     assert np.argmax(files.read(tmp_path / "a.ply").bounds_size) == 1
     assert np.argmax(files.read(tmp_path / "a.wrl").bounds_size) == 2
+
+
+def test_cells_without_a_corner_are_refused(tmp_path):
+    """VTK writes a legacy file of them that it cannot read."""
+    header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+    header += (
+        "property float z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n"
+    )
+    path = tmp_path / "a.ply"
+    path.write_text(f"{header}0 0 0\n1 0 0\n0 1 0\n0\n0\n")
+    with pytest.raises(files.FileError, match="2 cells without a corner"):
+        vizlight.read(path)

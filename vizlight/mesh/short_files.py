@@ -311,6 +311,8 @@ def _cells(block: pv.DataSet) -> list[vtkCellArray]:
 def _of_cells(cells: vtkCellArray, count: int) -> str:
     """Return how cells contradict their ``count`` points."""
     ids, offsets = connectivity(cells)
+    if len(offsets) > 1 and not ids.size:
+        return f"{len(offsets) - 1} cells without a corner"
     if ids.size and not 0 <= ids.min() <= ids.max() < count:
         return f"cells of the points {ids.min()} to {ids.max()}, but {count} points are there"
     ends = (offsets[0], offsets[-1]) if len(offsets) else (0, 0)
