@@ -46,10 +46,10 @@ plotter = render.make_plotter(panels, background="white", **options)
 plotter.show()
 
 # %%
-# The shares of light are point arrays: ``transmittance`` for each light and ``occlusion`` for light
+# The shares of light are point arrays: ``transmittance`` for each light and ``sky`` for light
 # from all sides, here on their own. They are computed again only where lines or lights have
 # changed, not where the eye has moved.
 
-shares = [render.Panel(lit, name, name) for name in ("transmittance", "occlusion")]
+shares = [render.Panel(lit, name, name) for name in ("transmittance", "sky")]
 plotter = render.make_plotter(shares, background="black", **options)
 plotter.show()
