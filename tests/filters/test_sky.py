@@ -240,6 +240,21 @@ def test_bad_input(make, options, words):
         vizlight.sky(make(), **options)
 
 
+def test_a_map_in_degrees_has_the_sky_of_one_in_metres():
+    x, y = np.meshgrid(np.linspace(7, 7.1, 30), np.linspace(45, 45.1, 30))
+    heights = 300 * np.sin(200 * x) * np.cos(150 * y)
+    degrees = pv.StructuredGrid(x, y, 0 * x)
+    metres = pv.StructuredGrid(
+        111_195 * np.cos(np.radians(45.05)) * (x - 7.05), 111_195 * (y - 45.05), 0 * x
+    )
+    for grid in (degrees, metres):
+        grid["height"] = heights.ravel(order="F")
+    degrees.field_data["unit"] = ["degree"]
+    found, expected = (vizlight.sky(grid)["sky"] for grid in (degrees, metres))
+    assert expected.min() < 0.95
+    np.testing.assert_allclose(found, expected, atol=2e-3)
+
+
 def test_constant_heights_missing_heights_and_faces_of_no_size():
     flat = valley()
     flat["height"][:] = 3.0

@@ -12,8 +12,10 @@ import math
 import differential
 import numpy as np
 import pytest
+import pyvista as pv
 from lamps import SHINY, shiny
 
+import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View, _compiled, engine
 from vizlight.model import formulas
 from vizlight.shading import compiled, loops
@@ -236,6 +238,15 @@ def test_engine_runs_compiled_code(fast, random):
     other = engine.shade(wide[:, 1:7:2], Source(), SCENE, normals=normals, components=True)
     assert other.plan.compiled
     np.testing.assert_array_equal(other.luminance, lit.luminance)
+
+
+def test_arrays_among_the_options_are_lit_by_compiled_code(fast):
+    ball = pv.Sphere()
+    normals = np.array(ball["Normals"])
+    lit = vizlight.illuminate(ball, SCENE, normals=normals, components=True)
+    same = vizlight.illuminate(ball, SCENE, normals="Normals", components=True)
+    np.testing.assert_array_equal(lit["luminance"], same["luminance"])
+    assert "diffuse" in lit.point_data
 
 
 @pytest.mark.parametrize("fault", [1, 3])

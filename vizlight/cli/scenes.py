@@ -81,8 +81,9 @@ def times(file: Path, target: Part) -> list[float | str | None]:
     expected = "all, or indices of steps FIRST:END or FIRST:END:STEP, beside no --time"
     there = steps.of(vizlight.read(file))
     try:
-        ends = [int(end) if end else None for end in target.times.split(":")]
-        asked = slice(None) if target.times == "all" else slice(*ends)
+        asked = slice(None)
+        if target.times != "all":
+            asked = slice(*(int(end) if end else None for end in target.times.split(":")))
         found = there[asked] if target.time is None else []
     except (TypeError, ValueError):
         found = []

@@ -11,7 +11,7 @@ import scipy
 from vizlight import _check, _compiled
 from vizlight.geometry.lines import bundle as media
 from vizlight.geometry.relief import sky as fields
-from vizlight.mesh import bundles, normals, sky_rays
+from vizlight.mesh import bundles, georeference, normals, sky_rays
 from vizlight.mesh.height_grids import Grid, heights_of
 from vizlight.reading import hull, polylines
 from vizlight.reading.cells import GHOSTS, faces_only, has_faces, triangles
@@ -138,6 +138,7 @@ def _field(mesh: pv.DataSet, elevation: str | None, factor: float) -> Heights | 
     """Return the height field of a grid of one layer; None where it is none."""
     if not (is_grid(mesh) and isinstance(mesh, Grid) and mesh.dimensions[2] == 1):
         return None
+    mesh = georeference.in_metres(mesh)
     if not isinstance(mesh, pv.StructuredGrid):
         return heights_of(mesh, elevation, factor)
     try:

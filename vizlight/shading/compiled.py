@@ -20,6 +20,7 @@ from vizlight.model import cylinder_kernels
 from vizlight.shading.arrays import SMALLEST_HELD, Output, shade_block
 from vizlight.shading.elementary import HELPERS
 from vizlight.shading.inputs import PLACED, SHARES
+from vizlight.shading.options import ShadingOptions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -223,7 +224,9 @@ def _program(plan: Plan, inputs: ShadingInputs) -> Program:
             # In float32 where nothing is lost by it.
             narrow = source.dtype == np.float32 or (source.dtype == np.float16 and work == "f4")
             kinds.append((name, work if name in SHARES else "f4" if narrow else "f8"))
-    bare = dataclasses.replace(plan, compiled=False, code="")
+    # What was asked for may hold arrays; of it the terms read whether they are kept.
+    asked = ShadingOptions(components=plan.components)
+    bare = dataclasses.replace(plan, options=asked, compiled=False, code="")
     return program(bare, tuple(kinds))
 
 
