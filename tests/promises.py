@@ -163,8 +163,10 @@ def reflections(random, times):
     yield found["phong"].of(
         "reflection.specular, Phong", "(4 + s) eps; (8 + 3 sqrt s) eps; (8 eps)^s"
     )
-    yield found["blinn"].of("reflection.specular, Blinn", "the same, eps / |wi + wo|")
-    yield found["split"].of("frames.split", "10 eps |x|")
+    yield found["blinn"].of(
+        "reflection.specular, Blinn", "the same, eps over the length of wi + wo"
+    )
+    yield found["split"].of("frames.split", "10 eps times the length of x")
     yield found["frame"].of("frames.orthonormalize", "6 eps")
 
 
@@ -214,7 +216,7 @@ def cylinders(random, times):
             true = mean(shine, at=[*ends, *around, *(peak + e * mpmath.pi / 2 for e in (-1, 1))])
             limit = 10 * eps / float(min(a, b, size(h)))
             specular.add(cylinder.specular(wi, wo, t, shininess=s), true, limit)
-    yield diffuse.of("cylinder.diffuse", "4 eps / |wo_N|")
+    yield diffuse.of("cylinder.diffuse", "4 eps over the length of wo_N")
     yield specular.of("cylinder.specular", "10 eps / d")
 
 
@@ -241,7 +243,7 @@ def brightnesses(random, times):
         got = brightness.exponent(k, n)
         true = mpmath.findroot(lambda power: integral(power) - 0.5, (got * 0.99, got * 1.01))
         root.add(got, true, 2e-14 * true)
-    yield mean.of("brightness.mean_intensity", "32 eps (1 + |ln I|), relative")
+    yield mean.of("brightness.mean_intensity", "32 eps (1 + abs(ln I)), relative")
     yield root.of("brightness.exponent", "2e-14, relative")
 
 
@@ -346,7 +348,7 @@ def half_vectors(random, times):
                 of_angles.add(got, true, 8 * eps)
     yield zero.of("half_vector.identity", "16 eps")
     yield of_angles.of("half_vector.reflection_cosine", "8 eps")
-    yield found.of("half_vector.reflection", "16 eps / |wi + wo|")
+    yield found.of("half_vector.reflection", "16 eps over the length of wi + wo")
     yield from_half.of("half_vector.reflection_from_half", "4 eps")
 
 
@@ -379,7 +381,7 @@ def falloffs(random, times):
             true = (1 - mpmath.mpf(rho)) ** (mpmath.mpf(float(h)) / mpmath.mpf(float(sine)))
             fur.add(falloff.fur(h, sine, rho), true, 3 * eps)
     yield distance.of("falloff.distance", "2 eps, relative")
-    yield cue.of("falloff.depth_cue", "4 eps max(|I|, |Icue|), exact depths")
+    yield cue.of("falloff.depth_cue", "4 eps max(abs(I), abs(Icue)), exact depths")
     yield fur.of("falloff.fur", "3 eps")
 
 
