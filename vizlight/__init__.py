@@ -161,7 +161,8 @@ def _join_qt() -> None:
 
 
 def __dir__() -> list[str]:
-    return sorted([*__all__, *_MODULES, "__version__"])
+    # Sphinx takes names from elsewhere for those of the package where it finds "__all__".
+    return sorted([*__all__, *_MODULES, "__all__", "__version__"])
 
 
 _join_qt()
