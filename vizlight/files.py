@@ -140,7 +140,7 @@ def read(
     -----
     Readers are libraries in C and C++; the command line reads in a process of its own. A file is
     refused where its reader gives an error or a warning, and where it is shorter than its format
-    states; a .obj file states nothing. Threads may read at the same time: what VTK says is told
+    states (.obj states no size). Threads may read at the same time: what VTK says is told
     apart by thread, and no stream is redirected. Libraries other than VTK may print.
     """
     path = _path("file", path)

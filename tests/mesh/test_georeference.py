@@ -73,5 +73,5 @@ def test_a_raised_map_is_in_metres_without_its_holes():
 def test_heights_are_exaggerated_until_they_can_be_seen(scale, expected):
     grid = chart()
     grid["height"] *= scale
-    grid["height"][5] *= 1e3  # one wrong height has no say
+    grid["height"][5] *= 1e3  # one wrong height does not change the range
     assert georeference.exaggeration(grid, "height") == expected

@@ -141,10 +141,7 @@ def relief(
         camera = look.camera(raised, is_map=found is not None)
         scene = look.scene(camera)
         shaded = _step("shaded", "relief_shadow", mesh, scene, on | given, common.out)
-        shown = None
-        if heights is not None:
-            shown = Step("shown", raised.path, shaded, *raised.arguments[1:])
-            shown.note = raised.note
+        shown = None if heights is None else _raised_like(raised, shaded)
         made = Job(shaded, asked.name, look, camera, shown=shown, scalars=asked.name, before=mesh)
         made.suffix = ".vtp" if found is None else _suffix(found)
         if asked.lit:
@@ -192,15 +189,20 @@ def sky(
         # The sky is that of the heights as they are.
         raised = mesh if heights is None else scenes.warped("raised", mesh, heights, 1.0)
         camera = look.camera(raised, is_map=field)
-        made = _step("open", "sky", mesh, None, given, common.out)
-        shown = None
-        if heights is not None:
-            shown = Step("shown", raised.path, made, *raised.arguments[1:])
-        job = Job(made, asked.name, look, camera, shown=shown, scalars=asked.name, before=mesh)
-        job.suffix = _suffix(found) if field else ""
-        return job
+        lit = _step("skylit", "sky", mesh, None, given, common.out)
+        shown = None if heights is None else _raised_like(raised, lit)
+        made = Job(lit, asked.name, look, camera, shown=shown, scalars=asked.name, before=mesh)
+        made.suffix = _suffix(found) if field else ""
+        return made
 
     return carry_out(files, job, common.out, "sky", shape)
+
+
+def _raised_like(raised: Step, lit: Step) -> Step:
+    """Return the step that raises a lit map as another step raises the map."""
+    shown = Step("shown", raised.path, lit, *raised.arguments[1:])
+    shown.note = raised.note
+    return shown
 
 
 def _level_light(lights: Sequence[Light]) -> float:

@@ -22,7 +22,7 @@ UNIT, DEGREE = "unit", "degree"
 METRES = math.radians(6_371_008.8)
 #: Range of heights, as a share of the side of a map, that needs no exaggeration.
 ENOUGH = (0.05, 0.5)
-#: Percentiles between which the range of heights is measured: a wrong height has no say.
+#: Percentiles of the heights that bound their range, so that single wrong heights do not matter.
 RANGE = (1.0, 99.0)
 
 

@@ -35,7 +35,7 @@ SIDES = 64
 HIDDEN = 32
 #: Up of a height field.
 ABOVE = (0.0, 0.0, 1.0)
-#: Number of points from which the slow ways are told of.
+#: Least number of points for which a warning names the missing package.
 SLOW = 5000
 
 

@@ -255,16 +255,6 @@ class Shader(Writer):
     def known(self, x: Value) -> None:
         """Do nothing."""
 
-    def present(self, x: Value, distance: Value | None) -> Value:
-        """Return x."""
-        del distance
-        return x
-
-    def sound(self, x: Value, other: float) -> Value:
-        """Return x."""
-        del other
-        return x
-
     # Results.
 
     def total(self) -> Total:

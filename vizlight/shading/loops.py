@@ -262,16 +262,6 @@ class Loop(Writer):
             self.lines.append(f"odd = odd | (not ({good}))")
         self.squares = {}
 
-    def present(self, x: Value, distance: Value | None) -> Value:
-        """Return x: a point at a lamp or at the eye is marked."""
-        del distance
-        return x
-
-    def sound(self, x: Value, other: float) -> Value:
-        """Return x."""
-        del other
-        return x
-
     # Lamps and results.
 
     def lamps(self) -> Iterator[Lamp]:

@@ -123,6 +123,16 @@ class Writer(Algebra):
         """Return a number of [0, 1] to a power."""
         raise NotImplementedError
 
+    def present(self, x: Value, distance: Value | None) -> Value:
+        """Return x: what becomes of points at their lamp or eye is decided at the end."""
+        del distance
+        return x
+
+    def sound(self, x: Value, other: float) -> Value:
+        """Return x: what becomes of points without light is decided at the end."""
+        del other
+        return x
+
     def named(self, text: str, kind: str) -> Value:
         """Return the symbol of an expression, which is written once."""
         if (text, kind) not in self.names:
