@@ -35,6 +35,8 @@ def _client():
 def client(_client):
     """Return a client of two workers; one that a test killed has been started again."""
     # The scheduler may not know yet of one that is gone.
-    while len(_client.run(os.getpid, on_error="ignore")) < 2:
+    for _ in range(600):
+        if len(_client.run(os.getpid, on_error="ignore")) == 2:
+            return _client
         time.sleep(0.05)
-    return _client
+    pytest.fail("a worker that was killed has not been started again in 30 seconds")

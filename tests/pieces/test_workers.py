@@ -8,7 +8,6 @@ import os
 import signal
 import subprocess
 import sys
-import threading
 import time
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
@@ -70,7 +69,7 @@ def slabs(folder):
     return pieces.Slabs({"s": np.load(folder / "s.npy", mmap_mode="r")})
 
 
-GYROID = {"contour": "s", "level": 0.5, "normals": "gradient", "slab": 0.02}
+GYROID = {"contour": "s", "level": 0.5, "normals": "gradient", "slab": 0.005}
 
 
 def same(lit, expected):
@@ -79,21 +78,31 @@ def same(lit, expected):
     return all(one.read_bytes() == other.read_bytes() for one, other in pairs)
 
 
+def ends_after(count):
+    """Return what makes a worker kill its process once so many pieces are written."""
+
+    def arm():
+        from vizlight.pieces import task
+
+        light = task.light
+
+        def fatal(piece, job, target):
+            if len(list(target.parent.glob("*.vtp"))) >= count:
+                os.kill(os.getpid(), signal.SIGKILL)
+            return light(piece, job, target)
+
+        task.light = fatal
+
+    return arm
+
+
 def test_a_killed_worker_leaves_nothing_and_the_result_is_the_same(tmp_path, client):
     source = slabs(tmp_path)
     expected = pieces.light(source, PLAIN, out=tmp_path / "one.pvtp", **GYROID)
-    pids = list(client.run(os.getpid).values())
-
-    def kill():
-        while len(list((tmp_path / "two").glob(".vizlight-*/*.vtp"))) < 2:
-            time.sleep(0.01)
-        os.kill(pids[0], signal.SIGKILL)
-
-    killer = threading.Thread(target=kill)
-    killer.start()
+    worker, pid = next(iter(client.run(os.getpid).items()))
+    client.run(ends_after(1), workers=[worker])
     lit = pieces.light(source, PLAIN, out=tmp_path / "two.pvtp", map=client, **GYROID)
-    killer.join()
-    assert pids[0] not in client.run(os.getpid, on_error="ignore").values()
+    assert pid not in client.run(os.getpid, on_error="ignore").values()
     with pytest.raises(pieces.PieceError, match=r"slices \[0:.*tangents: expected the name"):
         pieces.light(source, PLAIN, out=tmp_path / "three.pvtp", map=client.map, tangents="W")
     assert same(lit, expected)
@@ -192,21 +201,13 @@ def test_a_cluster_that_goes_away_is_named_and_nothing_is_left(balls):
     quiet = {"stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL, "text": True}
     with subprocess.Popen([sys.executable, "-c", CLUSTER], **quiet) as cluster:
         assert cluster.stdout
-        address = cluster.stdout.readline().strip()
-
-        def kill():
-            while len(list((balls / "lit").glob(".vizlight-*/*.vtp"))) < 3:
-                time.sleep(0.002)
+        try:
+            with distributed.Client(cluster.stdout.readline().strip(), timeout=10) as client:
+                client.run(ends_after(3))
+                with pytest.raises(pieces.PieceError, match=r"piece .*: its workers went away"):
+                    light(balls, map=client)
+        finally:
             cluster.kill()
-
-        killer = threading.Thread(target=kill)
-        killer.start()
-        with (
-            distributed.Client(address, timeout=10) as client,
-            pytest.raises(pieces.PieceError, match=r"piece .*ball\d\d\.vtp: its workers went away"),
-        ):
-            light(balls, map=client)
-        killer.join()
     assert nothing_is_left(balls)
 
 
