@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from studies import PIXEL, SHINY, Row, Study, cheapest, note_spread, peak_memory, words
-from vizlight import _compiled
+from vizlight import _compiled, _pool
 from vizlight.model import brightness
 from vizlight.scene import Light, Scene, View
 from vizlight.shading import engine
@@ -74,7 +74,7 @@ def measure(count: int, repeats: int = 5) -> list[Row]:
                 continue
             ways[f"{code}, {name}", block] = partial(_run, light, fast)
             if name == "float32":
-                ways[f"{code}, {name}, 1 thread", block] = partial(_run, light, fast, threads=1)
+                ways[f"{code}, {name}, 1 thread", block] = partial(_alone, light, fast)
                 for other in (1 << 12, 1 << 15, 1 << 20):
                     way = f"{code}, {name}, other blocks"
                     ways[way, other] = partial(_run, light, fast, block=other)
@@ -106,6 +106,12 @@ def _run(light: Callable[..., engine.Shading], fast: str, **options: int) -> Arr
     """Return the luminance by compiled code ("1") or by NumPy ("0")."""
     with _compiled.setting(fast):
         return light(**options).luminance
+
+
+def _alone(light: Callable[..., engine.Shading], fast: str) -> Array:
+    """Return the luminance by one thread."""
+    with _pool.threads(1):
+        return _run(light, fast)
 
 
 def _take_turns(

@@ -137,7 +137,7 @@ def exchange(
             view=View(direction=(0, 0, 1)),
             material=Material(ambient=0, diffuse=0, specular=1, shininess=power),
         )
-        return engine.shade(points, tangents, scene, threads=1, model=model)
+        return engine.shade(points, tangents, scene, model=model)
 
     ways = {"phong": lambda: light("phong"), "blinn": lambda: light("blinn")}
     seconds = take_turns(ways, repeats)

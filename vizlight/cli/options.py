@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 #: filter's option that has none of them is left to scripts.
 TYPES: Mapping[str, type] = {"bool": bool, "int": int, "float": float, "str": str}
 #: Keywords of filters that are not options of what they make.
-NOT_OPTIONS = ("scene", "threads", "inplace", "progress_bar")
+NOT_OPTIONS = ("scene", "inplace", "progress_bar")
 #: Number of letters of a description that is shortened.
 SHORTEST, LENGTH = 10, 64
 

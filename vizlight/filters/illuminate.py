@@ -48,7 +48,6 @@ def illuminate(
     model: Model = "phong",
     components: bool = False,
     precision: Precision | None = None,
-    threads: int | None = None,
     inplace: bool = False,
     progress_bar: bool = False,
 ) -> MeshT:
@@ -131,8 +130,6 @@ def illuminate(
         Whether the terms ``ambient``, ``diffuse`` and ``specular`` are kept, before any depth cue.
     precision : {"float32", "float64"}, optional
         Precision of the work and the result. Default: the precision of the tangents or normals.
-    threads : int, optional
-        Number of threads. Default: the processors that this process may use.
     inplace : bool, default: False
         Whether the result is attached to the mesh itself, without a copy. Else the result shares
         no memory with the mesh; ``illuminate(mesh.copy(deep=False), ..., inplace=True)`` saves the
@@ -186,9 +183,7 @@ def illuminate(
     if asked.refine and _check.boolean("inplace", inplace):
         expected, remedy = "False for a mesh that gets new points", "leave it out"
         raise ValueError(_check.message("inplace", expected, inplace, remedy))
-    return light_mesh(
-        mesh, scene, asked, threads=threads, inplace=inplace, progress_bar=progress_bar
-    )
+    return light_mesh(mesh, scene, asked, inplace=inplace, progress_bar=progress_bar)
 
 
 def light_mesh(
@@ -196,7 +191,6 @@ def light_mesh(
     scene: Scene | None,
     options: LightOptions,
     *,
-    threads: int | None = None,
     inplace: bool = False,
     progress_bar: bool = False,
     max_points: int | None = None,
@@ -219,7 +213,7 @@ def light_mesh(
         known.append(sided)
     # The sky of new points is that of the refined mesh.
     early = dataclasses.replace(options, occlusion=None) if options.refine else options
-    taken = with_sky(taken, early.occlusion, threads)
+    taken = with_sky(taken, early.occlusion)
     # Each mesh is refined alone, and has shares of light inside its own bundle.
     groups, parts = batches.parts_of(
         taken, [path for _, path in named], scene, early,
@@ -230,13 +224,13 @@ def light_mesh(
     if options.refine:
         fitted = lighting.fit_depth_cue(scene, [part.inputs for part in parts])
         refined = [
-            refining.refined(own, path, part, fitted, max_points, threads)
+            refining.refined(own, path, part, fitted, max_points)
             for own, (_, path), part in zip(taken, named, parts, strict=True)
         ]
         refining.warn_of_rest(refined, options.refine)
         taken = [one.mesh for one in refined]
         parts, rest = [one.part for one in refined], [one.left for one in refined]
-        taken = with_sky(taken, options.occlusion, threads)
+        taken = with_sky(taken, options.occlusion)
         parts = [
             part._replace(inputs=occluded(part.inputs, own, options.occlusion))
             for part, own in zip(parts, taken, strict=True)
@@ -245,13 +239,12 @@ def light_mesh(
     dimmings: list[bundles.Dimming] = []
     if isinstance(options.bundle, Bundle):
         dimmings = lighting.dimmings(
-            taken, inputs, scene, options.bundle, options.name, threads, show=progress_bar
+            taken, inputs, scene, options.bundle, options.name, show=progress_bar
         )
         inputs = lighting.dimmed(inputs, dimmings)
     shadings, fitted = lighting.light(
         [(given, part.options) for given, part in zip(inputs, parts, strict=True)],
         scene,
-        threads=threads,
         progress_bar=progress_bar,
     )
     results = batches.split(groups, shadings)

@@ -97,7 +97,6 @@ def pathlines(
     model: Model = "phong",
     components: bool = False,
     precision: Precision | None = None,
-    threads: int | None = None,
     progress_bar: bool = False,
 ) -> Iterator[pv.PolyData]:
     """Carry particles by vectors that change with time, and light their lines at each step.
@@ -131,7 +130,7 @@ def pathlines(
         As for :func:`vizlight.illuminate`.
     occlusion, name, exponent, model, components, precision
         As for :func:`vizlight.illuminate`.
-    threads, progress_bar
+    progress_bar
         As for :func:`vizlight.illuminate`.
 
     Yields
@@ -192,7 +191,7 @@ def pathlines(
     def lit() -> Iterator[pv.PolyData]:
         with _progress.progress("carry", len(steps.times) - 1, show=progress_bar) as report:
             for lines, light in _lines(steps, seeds, asked, report):
-                yield light_mesh(lines, scene, light, threads=threads, inplace=True)
+                yield light_mesh(lines, scene, light, inplace=True)
 
     return lit()
 

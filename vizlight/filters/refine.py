@@ -62,7 +62,6 @@ def refine(
     model: Model = "phong",
     components: bool = False,
     precision: Precision | None = None,
-    threads: int | None = None,
     progress_bar: bool = False,
 ) -> MeshT:
     """Split triangles and polylines where light bends, and light the mesh.
@@ -89,7 +88,7 @@ def refine(
         As for :func:`vizlight.illuminate`.
     name, exponent, model, components, precision
         As for :func:`vizlight.illuminate`.
-    threads, progress_bar
+    progress_bar
         As for :func:`vizlight.illuminate`.
 
     Returns
@@ -152,7 +151,6 @@ def refine(
         blocks.like(mesh, (_faces(block) for block, _ in blocks.check(mesh))),
         scene,
         light,
-        threads=threads,
         progress_bar=progress_bar,
         max_points=asked.max_points,
     )

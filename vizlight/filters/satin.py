@@ -58,7 +58,6 @@ def satin(
     model: Model = "phong",
     components: bool = False,
     precision: Precision | None = None,
-    threads: int | None = None,
     progress_bar: bool = False,
 ) -> pv.MultiBlock:
     """Light a surface with a tangent field in four ways: the panels of Banks' illustration 2.
@@ -80,7 +79,7 @@ def satin(
         As for :func:`vizlight.illuminate`.
     model, components, precision
         As for :func:`vizlight.illuminate`.
-    threads, progress_bar
+    progress_bar
         As for :func:`vizlight.illuminate`.
 
     Returns
@@ -126,11 +125,9 @@ def satin(
         normals=None,
         facing="auto",
     )
-    curves = light_lines(
-        traced, scene, lines, threads=threads, progress_bar=progress_bar, argument="surface"
-    )
+    curves = light_lines(traced, scene, lines, progress_bar=progress_bar, argument="surface")
     made = {
-        name: light_mesh(surface, scene, panel, threads=threads, progress_bar=progress_bar)
+        name: light_mesh(surface, scene, panel, progress_bar=progress_bar)
         for name, panel in panels.items()
     }
     return pv.MultiBlock({"curves": curves, **made})

@@ -129,7 +129,6 @@ def streamlines(
     model: Model = "phong",
     components: bool = False,
     precision: Precision | None = None,
-    threads: int | None = None,
     progress_bar: bool = False,
 ) -> pv.PolyData:
     """Integrate streamlines, light them by the field, condition them by a surface.
@@ -184,7 +183,7 @@ def streamlines(
         As for :func:`vizlight.illuminate`.
     model, components, precision
         As for :func:`vizlight.illuminate`.
-    threads, progress_bar
+    progress_bar
         As for :func:`vizlight.illuminate`.
 
     Returns
@@ -241,9 +240,7 @@ def streamlines(
     >>> "luminance" in lines.point_data
     True
     """
-    return light_lines(
-        mesh, scene, StreamlineOptions.of(locals()), threads=threads, progress_bar=progress_bar
-    )
+    return light_lines(mesh, scene, StreamlineOptions.of(locals()), progress_bar=progress_bar)
 
 
 def light_lines(
@@ -251,7 +248,6 @@ def light_lines(
     scene: Scene | None,
     options: StreamlineOptions,
     *,
-    threads: int | None,
     progress_bar: bool,
     argument: str = "mesh",
 ) -> pv.PolyData:
@@ -273,7 +269,7 @@ def light_lines(
     light = dataclasses.replace(made, conditioned=conditioned, normals=normals)
     if light.tangents is None:
         light = dataclasses.replace(light, tangents=tangents)
-    lit = light_mesh(lines, scene, light, threads=threads, inplace=True, progress_bar=progress_bar)
+    lit = light_mesh(lines, scene, light, inplace=True, progress_bar=progress_bar)
     recorded = dataclasses.replace(options, vectors=made.vectors)
     records.amend(lit, options.name, "streamlines", recorded)
     return lit

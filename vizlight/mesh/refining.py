@@ -76,9 +76,7 @@ class Refined(NamedTuple):
     left: Left
 
 
-def refined(
-    mesh: pv.DataSet, path: str, part: Part, scene: Scene, most: int | None, threads: int | None
-) -> Refined:
+def refined(mesh: pv.DataSet, path: str, part: Part, scene: Scene, most: int | None) -> Refined:
     """Return a mesh with its segments or triangles split where light bends.
 
     Parameters
@@ -93,8 +91,6 @@ def refined(
         Scene whose depth cue, if it has one, has both ends.
     most : int, optional
         Largest number of points.
-    threads : int, optional
-        Number of threads.
 
     Raises
     ------
@@ -114,8 +110,8 @@ def refined(
         parents = splitting.simplices(flat)
     inputs, options, count = part.inputs, part.options, mesh.n_points
     with engine.observed(None):
-        shading = engine.run(inputs, scene, options, threads=threads)
-    between = Between(inputs, scene, options, threads)
+        shading = engine.run(inputs, scene, options)
+    between = Between(inputs, scene, options)
     most = max(MANY, 2 * count) if most is None else most
     cells, left = refine(between, shading, parents, options.refine, most)
     given = _named(flat, between, options)

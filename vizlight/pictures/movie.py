@@ -158,7 +158,6 @@ def turn(
     model: Model = "phong",
     components: bool = False,
     precision: Precision | None = None,
-    threads: int | None = None,
     progress_bar: bool = False,
 ) -> list[Path]:
     """Rotate a mesh in a plane of n-space, light it at every step, and save the pictures.
@@ -189,8 +188,6 @@ def turn(
     picture : mapping, optional
         Further options of :func:`vizlight.pictures.render.make_plotter`: size, scalars, cmap, clim,
         background.
-    threads : int, optional
-        Number of threads for the light. Default: the processors that this process may use.
     progress_bar : bool, default: False
         Show progress on standard error.
     rotation, hyperplane, distance, positions, frame, vectors, cut, light
@@ -242,7 +239,7 @@ def turn(
             rotation = turned if before is None else [before, turned]
             with warnings.catch_warnings(record=True) as caught:
                 warnings.simplefilter("always")
-                step = project(mesh, scene=scene, threads=threads, rotation=rotation, **settings)
+                step = project(mesh, scene=scene, rotation=rotation, **settings)
             notes.extend(str(warning.message) for warning in caught[:1])
             yield step
 
