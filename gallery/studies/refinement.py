@@ -178,7 +178,7 @@ def verdict(rows: Sequence[Row]) -> str:
     start = [next(row for row in rows if row.way == f"{name}, {UNIFORM}") for name in names]
     grown = [fine.cost / first.cost for fine, first in zip(finest, start, strict=True)]
     text = (
-        "pass refine=1/255: splitting where light bends takes "
+        "call vizlight.refine: splitting where light bends takes "
         f"{span(100 * value for value in known)} % of the points of uniform refinement at an equal "
         f"error, {span(grown)} times those of the mesh, for errors of at most "
         f"{words(max(row.error for row in finest) / PIXEL)} of 255"

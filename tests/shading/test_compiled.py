@@ -295,6 +295,7 @@ def test_calls_add_up_until_a_kernel_pays(random, monkeypatch):
     monkeypatch.setattr(_compiled, "preparation", lambda: 0.3)
     monkeypatch.setattr(_compiled.Kernel, "_own_start", lambda self: 0.7)
     monkeypatch.setattr(_compiled.Kernel, "ready", lambda self: True)
+    monkeypatch.setenv("VIZLIGHT_THREADS", "1")
     monkeypatch.setattr(compiled, "SAVED", 0.1)
     monkeypatch.setattr(compiled, "SAVED_PER_LIGHT", 0.2)
     compiled._kernel.cache_clear()
@@ -306,7 +307,7 @@ def test_calls_add_up_until_a_kernel_pays(random, monkeypatch):
     )
     with _compiled.setting(""):
         ran = [
-            compiled.prepare(plan, inputs, 1)[0] is not None
+            compiled.prepare(plan, inputs)[0] is not None
             for plan in (one, one, two, one, one, two, two, two)
         ]
     assert ran == [False, False, False, True, True, False, True, True]

@@ -76,7 +76,6 @@ def _exponent(name: str, text: str) -> object:
 
 #: Options whose text is read in a way of its own, and its description.
 READ: Mapping[str, tuple[Callable[[str, str], object], str]] = {
-    "refine": (fraction, "Largest error between points; cells are split where it is more: 1/255."),
     "levels": (_levels, "Number of steps (8), largest error (0.02) or values (0.2,0.4,0.6)."),
     "feature_angle": (
         _angle,

@@ -45,7 +45,6 @@ def manifold(
     feature_angle: FeatureAngle = None,
     conditioned: bool | str | None = False,
     line_field: bool = False,
-    refine: float = 0.0,
     bundle: bool | Bundle = False,
     occlusion: str | None = None,
     name: str = "luminance",
@@ -65,7 +64,7 @@ def manifold(
         As for :func:`project`.
     rotation, hyperplane, distance, positions, frame, vectors, cut, light
         As for :func:`vizlight.project`.
-    tangents, normals, facing, feature_angle, conditioned, line_field, refine, bundle, occlusion
+    tangents, normals, facing, feature_angle, conditioned, line_field, bundle, occlusion
         As for :func:`vizlight.illuminate`.
     name, exponent, model, components, precision
         As for :func:`vizlight.illuminate`.

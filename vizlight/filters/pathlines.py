@@ -89,7 +89,6 @@ def pathlines(
     feature_angle: FeatureAngle = None,
     conditioned: bool | str | None = False,
     line_field: bool = False,
-    refine: float = 0.0,
     bundle: bool | Bundle = False,
     occlusion: str | None = None,
     name: str = "luminance",
@@ -126,7 +125,7 @@ def pathlines(
         Duration that the lines show, in the unit of the times. Default: all since the first time.
     step : float, default: 0.3
         Largest step of the integration, in cell lengths; lines have a point at each.
-    tangents, positions, normals, facing, feature_angle, conditioned, line_field, refine, bundle
+    tangents, positions, normals, facing, feature_angle, conditioned, line_field, bundle
         As for :func:`vizlight.illuminate`.
     occlusion, name, exponent, model, components, precision
         As for :func:`vizlight.illuminate`.

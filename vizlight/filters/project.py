@@ -95,7 +95,6 @@ def project(
     feature_angle: FeatureAngle = None,
     conditioned: bool | str | None = False,
     line_field: bool = False,
-    refine: float = 0.0,
     bundle: bool | Bundle = False,
     occlusion: str | None = None,
     name: str = "luminance",
@@ -141,7 +140,7 @@ def project(
     light : {"before", "after"}
         Light in n-space, with lights and eye of n components, before the projection; or in
         3-space, by the projected points and frame, after it.
-    tangents, normals, facing, feature_angle, conditioned, line_field, refine, bundle, occlusion
+    tangents, normals, facing, feature_angle, conditioned, line_field, bundle, occlusion
         As for :func:`vizlight.illuminate`.
     name, exponent, model, components, precision
         As for :func:`vizlight.illuminate`.

@@ -50,7 +50,6 @@ def satin(
     normals: str | ArrayLike | None = None,
     facing: Facing = "auto",
     feature_angle: FeatureAngle = None,
-    refine: float = 0.0,
     bundle: bool | Bundle = False,
     occlusion: str | None = None,
     name: str = "luminance",
@@ -75,7 +74,7 @@ def satin(
         Points at which curves start; a number stands for places on the surface, uniform in area.
     line_field, seed, spacing, step, max_length, max_steps
         As for :func:`vizlight.streamlines`.
-    tangents, positions, normals, facing, feature_angle, refine, bundle, occlusion, name, exponent
+    tangents, positions, normals, facing, feature_angle, bundle, occlusion, name, exponent
         As for :func:`vizlight.illuminate`.
     model, components, precision
         As for :func:`vizlight.illuminate`.

@@ -121,7 +121,6 @@ def streamlines(
     normals: str | ArrayLike | None = None,
     facing: Facing = "auto",
     feature_angle: FeatureAngle = None,
-    refine: float = 0.0,
     bundle: bool | Bundle = False,
     occlusion: str | None = None,
     name: str = "luminance",
@@ -179,7 +178,7 @@ def streamlines(
     conditioned : bool or str, optional
         Whether the lines inherit the self-shadow of the surface, see
         :func:`vizlight.illuminate`. Default: whether there is a surface.
-    tangents, positions, normals, facing, feature_angle, refine, bundle, occlusion, name, exponent
+    tangents, positions, normals, facing, feature_angle, bundle, occlusion, name, exponent
         As for :func:`vizlight.illuminate`.
     model, components, precision
         As for :func:`vizlight.illuminate`.

@@ -76,7 +76,9 @@ class Refined(NamedTuple):
     left: Left
 
 
-def refined(mesh: pv.DataSet, path: str, part: Part, scene: Scene, most: int | None) -> Refined:
+def refined(
+    mesh: pv.DataSet, path: str, part: Part, scene: Scene, error: float, most: int | None
+) -> Refined:
     """Return a mesh with its segments or triangles split where light bends.
 
     Parameters
@@ -86,9 +88,11 @@ def refined(mesh: pv.DataSet, path: str, part: Part, scene: Scene, most: int | N
     path : str
         Path of the mesh in a MultiBlock, for an error.
     part : Part
-        What it is lit by, with the allowed error, ``refine``, in the options.
+        What it is lit by.
     scene : Scene
         Scene whose depth cue, if it has one, has both ends.
+    error : float
+        Largest error allowed.
     most : int, optional
         Largest number of points.
 
@@ -99,10 +103,10 @@ def refined(mesh: pv.DataSet, path: str, part: Part, scene: Scene, most: int | N
     """
     try:
         flat = splitting.as_polydata(mesh)
-    except ValueError as error:
+    except ValueError as cause:
         if not path:
             raise
-        raise ValueError(f"block {path}: {error}") from error
+        raise ValueError(f"block {path}: {cause}") from cause
     origin: Indices | None = None
     if has_faces(flat):
         parents, origin = splitting.triangles(flat)
@@ -113,7 +117,7 @@ def refined(mesh: pv.DataSet, path: str, part: Part, scene: Scene, most: int | N
         shading = engine.run(inputs, scene, options)
     between = Between(inputs, scene, options)
     most = max(MANY, 2 * count) if most is None else most
-    cells, left = refine(between, shading, parents, options.refine, most)
+    cells, left = refine(between, shading, parents, error, most)
     given = _named(flat, between, options)
     found = splitting.rebuilt(flat, cells, origin, given, places=options.positions)
     records.carry(mesh, found)

@@ -35,7 +35,6 @@ if TYPE_CHECKING:
 
 #: Options of light that depend on a mesh as a whole.
 WHOLE = {
-    "refine": "split edges of neighbours would not match; refine the pieces' union",
     "bundle": "lines of all pieces dim one another; light them together",
 }
 
