@@ -65,10 +65,7 @@ def sphere(cells: int) -> pv.PolyData:
 def measure(way: str, parameter: float, flow: pv.DataSet, step: float, repeats: int) -> list[Row]:
     """Return the row of one flow and step, with the drift from circles relative to the radius."""
     seeds = np.array([[r, 0.0, (1 - r * r) ** 0.5 if way == SPHERE else HEIGHT] for r in RADII])
-    trace = partial(
-        streamlines, flow, SCENE, vectors="V", seeds=seeds, step=step, max_length=8.0,
-        max_steps=200_000,
-    )  # fmt: skip
+    trace = partial(streamlines, flow, SCENE, vectors="V", seeds=seeds, step=step, max_length=8.0)
     taken, lines = take_turns({"": trace}, repeats)[""], trace()
     drift = 0.0
     for i in range(lines.n_cells):

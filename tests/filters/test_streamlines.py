@@ -175,12 +175,6 @@ def test_options_reach_the_light():
             TypeError,
             "inplace: expected an option of",
         ),
-        (
-            vortex,
-            {"vectors": "V", "normals": "V"},
-            ValueError,
-            "normals: expected no normals beside tangents",
-        ),
         (vortex, {"vectors": "V", "step": 0}, ValueError, "step: expected"),
         (vortex, {"vectors": "V", "max_length": -1}, ValueError, "max_length: expected"),
         (lambda: np.ones(3), {"vectors": "V"}, TypeError, "mesh: expected a PyVista dataset"),

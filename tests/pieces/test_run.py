@@ -371,7 +371,6 @@ def test_pieces_without_points_pass_as_parallel_writers_make_them(balls):
         ({"facing": "auto"}, r"facing: expected 'eye' or 'as given'"),
         ({"facing": "outward"}, r"facing: expected 'eye' or 'as given'"),
         ({"feature_angle": "auto"}, r"feature_angle: expected a number or None"),
-        ({"refine": 0.01}, r"refine: expected no such option"),
         ({"bundle": True}, r"bundle: expected no such option"),
         ({"tangets": "V"}, r"tangets: expected an option of illuminate.*tangents"),
         ({"tangents": np.zeros((3, 3))}, r"tangents: expected the name of a point array"),

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from vizlight._types import VectorLike
     from vizlight.filters.project import LightWhen
     from vizlight.scene import Scene
-    from vizlight.shading.options import Bundle, Exponent, Facing, FeatureAngle, Model, Precision
+    from vizlight.shading.options import Exponent, Facing, Model, Precision
 
 
 @named
@@ -42,10 +42,8 @@ def manifold(
     tangents: str | ArrayLike | None = None,
     normals: str | ArrayLike | None = None,
     facing: Facing = "auto",
-    feature_angle: FeatureAngle = None,
     conditioned: bool | str | None = False,
     line_field: bool = False,
-    bundle: bool | Bundle = False,
     occlusion: str | None = None,
     name: str = "luminance",
     exponent: Exponent = "compensated",
@@ -64,9 +62,9 @@ def manifold(
         As for :func:`project`.
     rotation, hyperplane, distance, positions, frame, vectors, cut, light
         As for :func:`vizlight.project`.
-    tangents, normals, facing, feature_angle, conditioned, line_field, bundle, occlusion
+    tangents, normals, facing, conditioned, line_field, occlusion, name, exponent, model, components
         As for :func:`vizlight.illuminate`.
-    name, exponent, model, components, precision
+    precision
         As for :func:`vizlight.illuminate`.
 
     Returns

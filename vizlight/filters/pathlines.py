@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
 
 import numpy as np
 import pyvista as pv
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array
     from vizlight.scene import Scene
-    from vizlight.shading.options import Bundle, Exponent, Facing, FeatureAngle, Model, Precision
+    from vizlight.shading.options import Bundle, Exponent, Facing, Model, Precision
 
 #: Kinds of lines in a flow that changes with time.
 Kind = Literal["pathlines", "streaklines"]
@@ -44,6 +44,7 @@ class PathlineOptions(LightOptions):
     The fields are keywords of :func:`vizlight.pathlines`.
     """
 
+    DECIDED: ClassVar = frozenset({"tangents", "positions", "feature_angle"})
     kind: Kind = "pathlines"
     times: ArrayLike | None = None
     vectors: str | None = None
@@ -61,7 +62,6 @@ class PathlineOptions(LightOptions):
             seed=_check.integer("seed", self.seed, low=0),
         )
         point_arrays.refuse_unnamed("vectors", self.vectors)
-        point_arrays.refuse_unnamed("tangents", self.tangents)
         if self.conditioned and not isinstance(self.conditioned, str) and self.normals is None:
             expected = "the name of normals by normals= beside it, for lines have no surface"
             raise ValueError(_check.message("conditioned", expected, "none"))
@@ -82,11 +82,8 @@ def pathlines(
     seed: int = 0,
     tail: float | None = None,
     step: float = 0.3,
-    tangents: str | ArrayLike | None = None,
-    positions: str | None = None,
     normals: str | ArrayLike | None = None,
     facing: Facing = "auto",
-    feature_angle: FeatureAngle = None,
     conditioned: bool | str | None = False,
     line_field: bool = False,
     bundle: bool | Bundle = False,
@@ -125,9 +122,9 @@ def pathlines(
         Duration that the lines show, in the unit of the times. Default: all since the first time.
     step : float, default: 0.3
         Largest step of the integration, in cell lengths; lines have a point at each.
-    tangents, positions, normals, facing, feature_angle, conditioned, line_field, bundle
+    normals, facing, conditioned, line_field, bundle, occlusion, name, exponent, model, components
         As for :func:`vizlight.illuminate`.
-    occlusion, name, exponent, model, components, precision
+    precision
         As for :func:`vizlight.illuminate`.
     progress_bar
         As for :func:`vizlight.illuminate`.
@@ -225,7 +222,7 @@ def _lines(
     name, streaks = str(options.vectors), options.kind == "streaklines"
     names = {field.name for field in dataclasses.fields(LightOptions)}
     light = LightOptions(**{key: getattr(options, key) for key in names})
-    if not streaks and light.tangents is None:
+    if not streaks:
         light = dataclasses.replace(light, tangents=TANGENTS if name != TANGENTS else OWN_TANGENTS)
     carrier, times = Carrier(steps.mesh(0)), steps.times
     rows = Rows(np.empty((0, *seeds.shape)), np.empty((0, *seeds.shape)), np.empty(0))

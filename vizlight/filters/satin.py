@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import pyvista as pv
 
@@ -29,6 +29,7 @@ class SatinOptions(StreamlineOptions):
     The fields are keywords of :func:`vizlight.satin`.
     """
 
+    DECIDED: ClassVar = frozenset({"conditioned", "vectors", "surface", "confined"})
     seeds: int | ArrayLike | pv.DataSet = 300
 
 
@@ -44,7 +45,6 @@ def satin(
     spacing: float | None = None,
     step: float = 0.3,
     max_length: float | None = None,
-    max_steps: int = 4000,
     tangents: str | ArrayLike | None = None,
     positions: str | None = None,
     normals: str | ArrayLike | None = None,
@@ -72,7 +72,7 @@ def satin(
         panels have ``exponent=1``.
     seeds : int or array_like, shape (M, 3), or mesh, default: 300
         Points at which curves start; a number stands for places on the surface, uniform in area.
-    line_field, seed, spacing, step, max_length, max_steps
+    line_field, seed, spacing, step, max_length
         As for :func:`vizlight.streamlines`.
     tangents, positions, normals, facing, feature_angle, bundle, occlusion, name, exponent
         As for :func:`vizlight.illuminate`.

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from vizlight._types import VectorLike
     from vizlight.filters.project import LightWhen
     from vizlight.scene import Scene
-    from vizlight.shading.options import Bundle, Exponent, Facing, FeatureAngle, Model, Precision
+    from vizlight.shading.options import Exponent, Facing, Model, Precision
 
     Picture = NDArray[np.uint8]
 
@@ -147,10 +147,8 @@ def turn(
     tangents: str | ArrayLike | None = None,
     normals: str | ArrayLike | None = None,
     facing: Facing = "auto",
-    feature_angle: FeatureAngle = None,
     conditioned: bool | str | None = False,
     line_field: bool = False,
-    bundle: bool | Bundle = False,
     occlusion: str | None = None,
     name: str = "luminance",
     exponent: Exponent = "compensated",
@@ -191,7 +189,7 @@ def turn(
         Show progress on standard error.
     rotation, hyperplane, distance, positions, frame, vectors, cut, light
         As for :func:`vizlight.project`.
-    tangents, normals, facing, feature_angle, conditioned, line_field, bundle, occlusion
+    tangents, normals, facing, conditioned, line_field, occlusion
         As for :func:`vizlight.illuminate`.
     name, exponent, model, components, precision
         As for :func:`vizlight.illuminate`.

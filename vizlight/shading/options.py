@@ -8,7 +8,7 @@ import functools
 import inspect
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, get_args
 
 import numpy as np
 
@@ -114,6 +114,9 @@ class Bundle:
 
 class Options:
     """Base of the options of a filter, which stand as keywords in its signature."""
+
+    #: Fields that the filter decides by itself: no keywords of it.
+    DECIDED: ClassVar[frozenset[str]] = frozenset()
 
     @classmethod
     def of(cls, given: Mapping[str, Any]) -> Self:
