@@ -395,7 +395,7 @@ def test_what_vtk_says_is_told_apart_by_thread(tmp_path, capfd):
     assert vtkOutputWindow.GetInstance() is window
 
 
-@pytest.mark.parametrize("suffix", ["mdpa", "mesh", "su2", "meshb"])
+@pytest.mark.parametrize("suffix", ["mdpa", "mesh", "su2", "meshb", "tec"])
 def test_no_cut_of_a_text_with_counts_is_read(suffix, tmp_path):
     meshio = pytest.importorskip("meshio")
     points = np.random.default_rng(1).random((12, 3))

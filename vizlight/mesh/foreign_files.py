@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import io
 import tempfile
 import zipfile
 from pathlib import Path
@@ -106,8 +107,13 @@ def _of_meshio(path: Path, kinds: Sequence[str] = ()) -> pv.DataSet:
 
     kinds = kinds or meshio.extension_to_filetypes[path.suffix.lower()]
     for kind in kinds:
+        reader = getattr(meshio, kind)
         try:
-            found = getattr(meshio, kind).read(path)
+            if kind == "tecplot":
+                with _Lines(path.open("rb")) as lines:
+                    found = reader.read(lines)
+            else:
+                found = reader.read(path)
         except meshio.ReadError:
             if kind == kinds[-1]:
                 raise
@@ -115,6 +121,24 @@ def _of_meshio(path: Path, kinds: Sequence[str] = ()) -> pv.DataSet:
             break
     found.cell_sets = {}
     return pv.from_meshio(found)
+
+
+class _Lines(io.TextIOWrapper):
+    """A text whose reader looks for lines behind its end without end."""
+
+    past = 0
+
+    def readline(self, size: int = -1, /) -> str:
+        """Return the next line, an empty text behind the end."""
+        line = super().readline(size)
+        self.past += not line
+        if self.past > _PAST:
+            raise EOFError("its end is missing")
+        return line
+
+
+#: Number of times that a reader may ask for a line behind the end.
+_PAST = 100
 
 
 def _refuse_narrow(path: Path) -> None:
