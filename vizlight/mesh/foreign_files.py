@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import importlib
-import io
 import tempfile
 import zipfile
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TextIO
 
 import numpy as np
 import pyvista as pv
@@ -110,8 +109,8 @@ def _of_meshio(path: Path, kinds: Sequence[str] = ()) -> pv.DataSet:
         reader = getattr(meshio, kind)
         try:
             if kind == "tecplot":
-                with _Lines(path.open("rb")) as lines:
-                    found = reader.read(lines)
+                with path.open() as file:
+                    found = reader.read(_Lines(file))
             else:
                 found = reader.read(path)
         except meshio.ReadError:
@@ -123,14 +122,16 @@ def _of_meshio(path: Path, kinds: Sequence[str] = ()) -> pv.DataSet:
     return pv.from_meshio(found)
 
 
-class _Lines(io.TextIOWrapper):
+class _Lines:
     """A text whose reader looks for lines behind its end without end."""
 
-    past = 0
+    def __init__(self, file: TextIO) -> None:
+        self.read, self.tell, self.seek = file.read, file.tell, file.seek
+        self._next, self.past = file.readline, 0
 
-    def readline(self, size: int = -1, /) -> str:
+    def readline(self) -> str:
         """Return the next line, an empty text behind the end."""
-        line = super().readline(size)
+        line = self._next()
         self.past += not line
         if self.past > _PAST:
             raise EOFError("its end is missing")
