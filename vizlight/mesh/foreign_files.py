@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import importlib
+import re
 import tempfile
+import threading
 import zipfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
@@ -104,6 +106,7 @@ def _of_meshio(path: Path, kinds: Sequence[str] = ()) -> pv.DataSet:
     """
     import meshio
 
+    meshio._common.Console, _SAID.texts = _Console, []
     kinds = kinds or meshio.extension_to_filetypes[path.suffix.lower()]
     for kind in kinds:
         reader = getattr(meshio, kind)
@@ -118,8 +121,27 @@ def _of_meshio(path: Path, kinds: Sequence[str] = ()) -> pv.DataSet:
                 raise
         else:
             break
+    if _SAID.texts:
+        more = f" (the first of {len(_SAID.texts)} warnings)" if len(_SAID.texts) > 1 else ""
+        _check.warn(f"file: '{path}': {_SAID.texts[0]}{more}")
     found.cell_sets = {}
     return pv.from_meshio(found)
+
+
+#: What meshio said to each thread.
+_SAID = threading.local()
+
+
+class _Console:
+    """In place of the console on which meshio prints: what is said there is kept, by thread."""
+
+    def __init__(self, **_options: object) -> None:
+        pass
+
+    def print(self, text: str, **_options: object) -> None:
+        """Keep a text without its marks of style."""
+        plain = " ".join(re.sub(r"\[/?[a-z]+\]|Warning:", "", text).split())
+        _SAID.texts = [*getattr(_SAID, "texts", ()), plain]
 
 
 class _Lines:
