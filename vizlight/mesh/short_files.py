@@ -49,7 +49,10 @@ def missing_part(path: Path, /) -> str:
         Reason why the file cannot be whole; empty if it may be, or is of another format.
     """
     with path.open("rb") as file:
-        return _FORMATS.get(path.suffix.lower(), _nothing)(file)
+        try:
+            return _FORMATS.get(path.suffix.lower(), _nothing)(file)
+        except (IndexError, ValueError, struct.error) as error:
+            return f"its header cannot be read: {error}"
 
 
 def _nothing(_file: BinaryIO) -> str:

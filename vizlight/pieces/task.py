@@ -217,7 +217,7 @@ def _lit(mesh: pv.DataSet, piece: Piece, job: Job) -> tuple[Any, float | None]:
     if own.n_points:
         own.set_active_scalars(job.name)
         assert record is not None
-        records.write(own, job.name, record, {*made, valid})
+        records.write(own, job.name, record, dict.fromkeys((*made, valid)))
     return own, sharp
 
 
