@@ -356,6 +356,8 @@ def test_report_stands_in_the_script_too(folder, capfd):
     for text in (printed, out):
         assert "points" in text
         assert "not measured between points: cast shadows" in text
+    code, out, _ = run(capfd, "sky", "terrain.vti", "--report", "-o", "skylit.vti")
+    assert (code, "or less at 95 of 100 points, as estimated, horizons" in out) == (0, True)
 
 
 @pytest.mark.parametrize(

@@ -95,11 +95,11 @@ def tinted(mesh: pv.DataSet, *, warn: bool = True) -> tuple[str | None, dict[str
         return None, {}
     options = record["options"]
     name = options["scalars"]
-    if name not in mesh.point_data:
+    if name not in (*mesh.point_data, *mesh.cell_data):
         if warn:
             _check.warn(
                 f"the light is shown without colours: they are those of {name}, which the mesh has "
-                "no point array of; attach it, and pass its name to vizlight.tint"
+                "no array of; attach it, and pass its name to vizlight.tint"
             )
         return None, {}
     return name, {"cmap": unlit_colors(mesh), "component": options["component"]}

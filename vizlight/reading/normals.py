@@ -98,7 +98,7 @@ class Sided:
         """Whether a piece has a border."""
         return bool(np.any(self.open))
 
-    def part(self, i: int, rows: slice, /) -> Sided:
+    def part(self, i: int, rows: slice | Indices, /) -> Sided:
         """Return what belongs to a mesh of a batch, by its number and its points."""
         return Sided(
             self.vectors[rows],
