@@ -178,10 +178,10 @@ def measure(kind: str, points: int, grid: int, count: int) -> list[Row]:
     targets = lines.targets(made.places, made.tangents[made.own], np.full(points, LENGTH))
     lights = [(TOWARD, False), (LAMP, True)]
     if count:
-        sides = lines.sky(targets, DIAMETER, count, threads=1)
+        sides = lines.sky(targets, DIAMETER, count)
         cost = 1e9 * (time.process_time() - start) / points
         return [_row(f"{kind}, all sides", count, sides - true.around, true.around, cost)]
-    left = lines.dimmed(targets, DIAMETER, lights, threads=1)
+    left = lines.dimmed(targets, DIAMETER, lights)
     cost = 1e9 * (time.process_time() - start) / points
     return [
         _row(f"{kind}, {name}", grid, left[:, i] - known, known, cost / 2)

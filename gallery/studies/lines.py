@@ -141,14 +141,12 @@ def _costs(repeats: int, count: int = 200_000) -> dict[str, tuple[float, float]]
         material=dataclasses.replace(SHINY, shininess=SHININESS),
     )
 
-    light = partial(engine.shade, points, tangents, scene, threads=1)
+    light = partial(engine.shade, points, tangents, scene)
     ways = {
         "line": light,
         "line, Blinn": partial(light, model="blinn"),
         "cylinder": partial(light, model="cylinder"),
-        "surface": partial(
-            engine.shade, points, None, scene, normals=tangents, threads=1, model="blinn"
-        ),
+        "surface": partial(engine.shade, points, None, scene, normals=tangents, model="blinn"),
     }
     seconds = take_turns(ways, repeats)
     each = {way: 1e9 * spent / count for way, spent in seconds.items()}

@@ -98,7 +98,7 @@ def of_field(side: int, slope: float, error: float) -> list[Row]:
     # Code is compiled before it is timed.
     fields.sky(x[:64], x[:64], z[:64, :64], error=0.001)
     start = time.process_time()
-    made = fields.sky(x, x, z, error=error, threads=1)
+    made = fields.sky(x, x, z, error=error)
     cost = time.process_time() - start
     missed = np.abs(made.share[tuple(at.T)] - true)
     row = _row(
@@ -119,7 +119,7 @@ def of_surface(points: int, error: float) -> list[Row]:
     """Return the row of an error asked for on a surface."""
     ball, true = surface_truth(points)
     start = time.process_time()
-    (made,) = meshes.skies([ball], error=error, threads=1)
+    (made,) = meshes.skies([ball], error=error)
     cost = time.process_time() - start
     missed = np.abs(made.share - true)
     rays = float(str(made.record["directions"]))

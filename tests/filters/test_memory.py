@@ -124,14 +124,14 @@ def grid(*sides):
 
 scene = Scene(lights=Light(direction=(0.3, 0.2, 1)), view=View(direction=(0, 0, 1)))
 for small in (line(100, 10), surface(9), creased(9), grid(9, 9, 3)):  # all is imported
-    vizlight.illuminate(small, scene, threads=1)
-vizlight.illuminate(creased(9), scene, threads=1, feature_angle=30)
+    vizlight.illuminate(small, scene)
+vizlight.illuminate(creased(9), scene, feature_angle=30)
 mesh = {MAKE}
 gc.collect()
 ctypes.CDLL(None).malloc_trim(0)
 Path("/proc/self/clear_refs").write_text("5")
 before = status("VmRSS")
-vizlight.illuminate(mesh, scene, threads=1, {MORE})
+vizlight.illuminate(mesh, scene, {MORE})
 print((status("VmHWM") - before) / mesh.actual_memory_size)
 """
 
@@ -152,7 +152,7 @@ print((status("VmHWM") - before) / mesh.actual_memory_size)
 def test_light_takes_at_most_three_times_the_memory_of_the_mesh(make):
     make, more, _ = make.partition(" with feature_angle")
     code = PEAK.replace("{MAKE}", make).replace("{MORE}", "feature_angle=30" if more else "")
-    environment = {**os.environ, "VIZLIGHT_FAST": "0"}
+    environment = {**os.environ, "VIZLIGHT_FAST": "0", "VIZLIGHT_THREADS": "1"}
     peaks: list[float] = []
     # In one run of eight or so the C library keeps more of what is freed.
     while len(peaks) < 5 and not (peaks and min(peaks) < 3):

@@ -181,7 +181,7 @@ def test_an_array_of_any_name_and_marked_points():
 
 
 def test_refined_and_many_small_meshes():
-    lit = vizlight.illuminate(pv.Sphere(), SCENE, occlusion="sky", refine=0.02)
+    lit = vizlight.refine(pv.Sphere(), SCENE, occlusion="sky", error=0.02)
     assert lit["sky"].shape == (lit.n_points,)
     many = pv.MultiBlock(balls(1.05))
     found = vizlight.illuminate(many, SCENE, occlusion="sky")

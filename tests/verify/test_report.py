@@ -336,7 +336,7 @@ def test_command_line(tmp_path, monkeypatch, capfd):
     assert "error" in said
     assert "diffuse: max(0, N.wi) to the power 1" in said
     assert cli.main(["light", "ball.vtp", "-o", "lit.vtp", "--refine", "much"]) == 2
-    assert "--refine: expected a number or a fraction such as 1/255" in capfd.readouterr().err
+    assert "--refine: expected a number of at least 1e-05, such as 1/255" in capfd.readouterr().err
 
 
 def test_light_above_one_is_counted():

@@ -88,7 +88,6 @@ def isoluminance(
     conditioned: bool = False,
     exponent: Exponent = "compensated",
     name: str = "luminance",
-    threads: int | None = None,
     progress_bar: bool = False,
 ) -> pv.MultiBlock:
     """Return contours of equal luminance, and the bands between them with one value per band.
@@ -117,8 +116,6 @@ def isoluminance(
         Arrays and options as for :func:`vizlight.illuminate`, for a mesh only.
     name : str, default: "luminance"
         Name of the resulting cell arrays.
-    threads : int, optional
-        Number of threads.
     progress_bar : bool, default: False
         Whether the share of triangles that keep the allowed error is shown on standard error.
 
@@ -158,9 +155,7 @@ def isoluminance(
     asked = ContourOptions.of(locals())
     start = time.perf_counter()
     with report.paused(), _progress.progress("contours", 100, show=progress_bar) as show:
-        made, bands, light = _make(
-            mesh, scene, asked, threads, lambda share: show(int(100 * share))
-        )
+        made, bands, light = _make(mesh, scene, asked, lambda share: show(int(100 * share)))
         show(100)
     seconds = time.perf_counter() - start
     if report.is_open():
@@ -172,12 +167,11 @@ def _make(
     mesh: pv.DataSet | pv.MultiBlock | Solid,
     scene: Scene | None,
     options: ContourOptions,
-    threads: int | None,
     progress: Callable[[float], None],
 ) -> tuple[pv.MultiBlock, Bands, _Light]:
     """Return bands and contours as meshes, the bands as arrays, and their luminance."""
     scene = as_scene(scene)
-    light = _Light(scene, options, threads, progress)
+    light = _Light(scene, options, progress)
     if isinstance(mesh, Solid):
         for option in ("normals", "tangents"):
             if getattr(options, option) is not None:
@@ -208,10 +202,9 @@ class _Light:
         self,
         scene: Scene,
         options: ContourOptions,
-        threads: int | None,
         progress: Callable[[float], None],
     ) -> None:
-        self.scene, self.options, self.threads = scene, options, threads
+        self.scene, self.options = scene, options
         #: Function that is called with the share of the refinement that is done.
         self.progress = progress
         self.last: Shading | None = None
@@ -231,7 +224,6 @@ class _Light:
             normals=normals,
             model=asked.model,
             precision="float64",
-            threads=self.threads,
         )
         return self.last
 
@@ -291,7 +283,6 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
     (lit,), fitted = lighting.light(
         [(inputs, asked)],
         scene,
-        threads=light.threads,
         progress_bar=False,
     )
     invalid = int(np.count_nonzero(~lit.valid[used]))

@@ -45,7 +45,6 @@ def manifold(
     feature_angle: FeatureAngle = None,
     conditioned: bool | str | None = False,
     line_field: bool = False,
-    refine: float = 0.0,
     bundle: bool | Bundle = False,
     occlusion: str | None = None,
     name: str = "luminance",
@@ -53,7 +52,6 @@ def manifold(
     model: Model = "phong",
     components: bool = False,
     precision: Precision | None = None,
-    threads: int | None = None,
     progress_bar: bool = False,
 ) -> pv.DataSet | pv.MultiBlock:
     """Return a sampled manifold as a mesh in 3-space.
@@ -62,11 +60,11 @@ def manifold(
     ----------
     shape : Manifold
         Manifold, such as one of :mod:`vizlight.geometry.nspace.manifolds`.
-    scene, threads, progress_bar
+    scene, progress_bar
         As for :func:`project`.
     rotation, hyperplane, distance, positions, frame, vectors, cut, light
         As for :func:`vizlight.project`.
-    tangents, normals, facing, feature_angle, conditioned, line_field, refine, bundle, occlusion
+    tangents, normals, facing, feature_angle, conditioned, line_field, bundle, occlusion
         As for :func:`vizlight.illuminate`.
     name, exponent, model, components, precision
         As for :func:`vizlight.illuminate`.
@@ -108,4 +106,4 @@ def manifold(
         mesh = polydata(points, shape.cells)
     mesh.point_data[POSITION] = shape.points
     mesh.point_data[FRAME] = shape.frame.reshape(count, shape.k * n)
-    return project(mesh, scene=scene, threads=threads, progress_bar=progress_bar, **asked)
+    return project(mesh, scene=scene, progress_bar=progress_bar, **asked)

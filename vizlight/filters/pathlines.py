@@ -89,7 +89,6 @@ def pathlines(
     feature_angle: FeatureAngle = None,
     conditioned: bool | str | None = False,
     line_field: bool = False,
-    refine: float = 0.0,
     bundle: bool | Bundle = False,
     occlusion: str | None = None,
     name: str = "luminance",
@@ -97,7 +96,6 @@ def pathlines(
     model: Model = "phong",
     components: bool = False,
     precision: Precision | None = None,
-    threads: int | None = None,
     progress_bar: bool = False,
 ) -> Iterator[pv.PolyData]:
     """Carry particles by vectors that change with time, and light their lines at each step.
@@ -127,11 +125,11 @@ def pathlines(
         Duration that the lines show, in the unit of the times. Default: all since the first time.
     step : float, default: 0.3
         Largest step of the integration, in cell lengths; lines have a point at each.
-    tangents, positions, normals, facing, feature_angle, conditioned, line_field, refine, bundle
+    tangents, positions, normals, facing, feature_angle, conditioned, line_field, bundle
         As for :func:`vizlight.illuminate`.
     occlusion, name, exponent, model, components, precision
         As for :func:`vizlight.illuminate`.
-    threads, progress_bar
+    progress_bar
         As for :func:`vizlight.illuminate`.
 
     Yields
@@ -192,7 +190,7 @@ def pathlines(
     def lit() -> Iterator[pv.PolyData]:
         with _progress.progress("carry", len(steps.times) - 1, show=progress_bar) as report:
             for lines, light in _lines(steps, seeds, asked, report):
-                yield light_mesh(lines, scene, light, threads=threads, inplace=True)
+                yield light_mesh(lines, scene, light, inplace=True)
 
     return lit()
 

@@ -95,7 +95,6 @@ def project(
     feature_angle: FeatureAngle = None,
     conditioned: bool | str | None = False,
     line_field: bool = False,
-    refine: float = 0.0,
     bundle: bool | Bundle = False,
     occlusion: str | None = None,
     name: str = "luminance",
@@ -103,7 +102,6 @@ def project(
     model: Model = "phong",
     components: bool = False,
     precision: Precision | None = None,
-    threads: int | None = None,
     progress_bar: bool = False,
 ) -> pv.DataSet | pv.MultiBlock:
     """Turn a mesh in n-space, cut it by a hyperplane, project it to 3-space; light it on the way.
@@ -142,12 +140,10 @@ def project(
     light : {"before", "after"}
         Light in n-space, with lights and eye of n components, before the projection; or in
         3-space, by the projected points and frame, after it.
-    tangents, normals, facing, feature_angle, conditioned, line_field, refine, bundle, occlusion
+    tangents, normals, facing, feature_angle, conditioned, line_field, bundle, occlusion
         As for :func:`vizlight.illuminate`.
     name, exponent, model, components, precision
         As for :func:`vizlight.illuminate`.
-    threads : int, optional
-        Number of threads of the light. Default: the processors that this process may use.
     progress_bar : bool, default: False
         Whether progress is shown on standard error.
 
@@ -215,7 +211,7 @@ def project(
         _check_space(shown, scene, when, job.positions)
         frame = None if asked.frame is None else f"{prefix}{asked.frame}"
         if when == "before" or frame is None or asked.tangents is not None:
-            return light_mesh(shown, scene, asked.by(frame, positions), threads=threads)
+            return light_mesh(shown, scene, asked.by(frame, positions))
         # Folds are lit by the limit of the tangents, which the result does not keep.
         named = list(blocks.all_blocks(shown))
         found = [np.asarray(block.point_data[frame]) for block in named]
@@ -223,7 +219,7 @@ def project(
             limit = continued(block, frame)
             if limit is not None:
                 point_arrays.attach_rows(block, frame, limit)
-        made = light_mesh(shown, scene, asked.by(frame, positions), threads=threads)
+        made = light_mesh(shown, scene, asked.by(frame, positions))
         for block, rows in zip(blocks.all_blocks(made), found, strict=True):
             point_arrays.attach_rows(block, frame, rows)
         return made

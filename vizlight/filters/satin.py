@@ -50,7 +50,6 @@ def satin(
     normals: str | ArrayLike | None = None,
     facing: Facing = "auto",
     feature_angle: FeatureAngle = None,
-    refine: float = 0.0,
     bundle: bool | Bundle = False,
     occlusion: str | None = None,
     name: str = "luminance",
@@ -58,7 +57,6 @@ def satin(
     model: Model = "phong",
     components: bool = False,
     precision: Precision | None = None,
-    threads: int | None = None,
     progress_bar: bool = False,
 ) -> pv.MultiBlock:
     """Light a surface with a tangent field in four ways: the panels of Banks' illustration 2.
@@ -76,11 +74,11 @@ def satin(
         Points at which curves start; a number stands for places on the surface, uniform in area.
     line_field, seed, spacing, step, max_length, max_steps
         As for :func:`vizlight.streamlines`.
-    tangents, positions, normals, facing, feature_angle, refine, bundle, occlusion, name, exponent
+    tangents, positions, normals, facing, feature_angle, bundle, occlusion, name, exponent
         As for :func:`vizlight.illuminate`.
     model, components, precision
         As for :func:`vizlight.illuminate`.
-    threads, progress_bar
+    progress_bar
         As for :func:`vizlight.illuminate`.
 
     Returns
@@ -126,11 +124,9 @@ def satin(
         normals=None,
         facing="auto",
     )
-    curves = light_lines(
-        traced, scene, lines, threads=threads, progress_bar=progress_bar, argument="surface"
-    )
+    curves = light_lines(traced, scene, lines, progress_bar=progress_bar, argument="surface")
     made = {
-        name: light_mesh(surface, scene, panel, threads=threads, progress_bar=progress_bar)
+        name: light_mesh(surface, scene, panel, progress_bar=progress_bar)
         for name, panel in panels.items()
     }
     return pv.MultiBlock({"curves": curves, **made})

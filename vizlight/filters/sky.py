@@ -65,7 +65,6 @@ def sky(
     diameter: float | None = None,
     openness: bool = False,
     name: str = SKY,
-    threads: int | None = None,
     inplace: bool = False,
     progress_bar: bool = False,
 ) -> MeshT:
@@ -91,8 +90,6 @@ def sky(
         horizon of a height field, in radians.
     name : str, default: "sky"
         Name of the result.
-    threads : int, optional
-        Number of threads. Default: the processors that this process may use.
     inplace, progress_bar
         As for :func:`vizlight.illuminate`.
 
@@ -142,7 +139,7 @@ def sky(
     own = [asked.name + OPENNESS] if asked.openness else []
     records.refuse_overwriting(chosen, asked.name, [asked.name, asked.name + VALID, *own])
     meshes = [block for block, _ in chosen]
-    found = _found(meshes, asked, threads, show=progress_bar)
+    found = _found(meshes, asked, show=progress_bar)
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
     lit = meshes if inplace else [block.copy() for block in meshes]
     _attach(lit, found, asked)
@@ -152,7 +149,6 @@ def sky(
 def with_sky(
     meshes: Sequence[pv.DataSet],
     occlusion: str | None,
-    threads: int | None = None,
     *,
     elevation: str | None = None,
     factor: float = 1.0,
@@ -168,7 +164,7 @@ def with_sky(
         return list(meshes)
     lines = all(has_lines_only(mesh) for mesh in meshes)
     asked = SkyOptions(error=FOR_LINES if lines else FOR_LIGHT, up=up)
-    found = _found(meshes, asked, threads, show=False, elevation=elevation, factor=factor)
+    found = _found(meshes, asked, show=False, elevation=elevation, factor=factor)
     lit = [mesh.copy(deep=False) for mesh in meshes]
     _attach(lit, found, asked)
     return lit
@@ -177,7 +173,6 @@ def with_sky(
 def _found(
     meshes: Sequence[pv.DataSet],
     asked: SkyOptions,
-    threads: int | None,
     *,
     show: bool,
     elevation: str | None = None,
@@ -187,7 +182,7 @@ def _found(
     with _progress.progress("sky", total, show=show) as report:
         return skies(
             meshes, error=asked.error, up=None if asked.up is None else tuple(asked.up),
-            diameter=asked.diameter, openness=asked.openness, threads=threads,
+            diameter=asked.diameter, openness=asked.openness,
             report=lambda now: report(min(now, total)), elevation=elevation, factor=factor,
         )  # fmt: skip
 

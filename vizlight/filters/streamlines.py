@@ -121,7 +121,6 @@ def streamlines(
     normals: str | ArrayLike | None = None,
     facing: Facing = "auto",
     feature_angle: FeatureAngle = None,
-    refine: float = 0.0,
     bundle: bool | Bundle = False,
     occlusion: str | None = None,
     name: str = "luminance",
@@ -129,7 +128,6 @@ def streamlines(
     model: Model = "phong",
     components: bool = False,
     precision: Precision | None = None,
-    threads: int | None = None,
     progress_bar: bool = False,
 ) -> pv.PolyData:
     """Integrate streamlines, light them by the field, condition them by a surface.
@@ -180,11 +178,11 @@ def streamlines(
     conditioned : bool or str, optional
         Whether the lines inherit the self-shadow of the surface, see
         :func:`vizlight.illuminate`. Default: whether there is a surface.
-    tangents, positions, normals, facing, feature_angle, refine, bundle, occlusion, name, exponent
+    tangents, positions, normals, facing, feature_angle, bundle, occlusion, name, exponent
         As for :func:`vizlight.illuminate`.
     model, components, precision
         As for :func:`vizlight.illuminate`.
-    threads, progress_bar
+    progress_bar
         As for :func:`vizlight.illuminate`.
 
     Returns
@@ -241,9 +239,7 @@ def streamlines(
     >>> "luminance" in lines.point_data
     True
     """
-    return light_lines(
-        mesh, scene, StreamlineOptions.of(locals()), threads=threads, progress_bar=progress_bar
-    )
+    return light_lines(mesh, scene, StreamlineOptions.of(locals()), progress_bar=progress_bar)
 
 
 def light_lines(
@@ -251,7 +247,6 @@ def light_lines(
     scene: Scene | None,
     options: StreamlineOptions,
     *,
-    threads: int | None,
     progress_bar: bool,
     argument: str = "mesh",
 ) -> pv.PolyData:
@@ -273,7 +268,7 @@ def light_lines(
     light = dataclasses.replace(made, conditioned=conditioned, normals=normals)
     if light.tangents is None:
         light = dataclasses.replace(light, tangents=tangents)
-    lit = light_mesh(lines, scene, light, threads=threads, inplace=True, progress_bar=progress_bar)
+    lit = light_mesh(lines, scene, light, inplace=True, progress_bar=progress_bar)
     recorded = dataclasses.replace(options, vectors=made.vectors)
     records.amend(lit, options.name, "streamlines", recorded)
     return lit

@@ -150,7 +150,6 @@ def turn(
     feature_angle: FeatureAngle = None,
     conditioned: bool | str | None = False,
     line_field: bool = False,
-    refine: float = 0.0,
     bundle: bool | Bundle = False,
     occlusion: str | None = None,
     name: str = "luminance",
@@ -158,7 +157,6 @@ def turn(
     model: Model = "phong",
     components: bool = False,
     precision: Precision | None = None,
-    threads: int | None = None,
     progress_bar: bool = False,
 ) -> list[Path]:
     """Rotate a mesh in a plane of n-space, light it at every step, and save the pictures.
@@ -189,13 +187,11 @@ def turn(
     picture : mapping, optional
         Further options of :func:`vizlight.pictures.render.make_plotter`: size, scalars, cmap, clim,
         background.
-    threads : int, optional
-        Number of threads for the light. Default: the processors that this process may use.
     progress_bar : bool, default: False
         Show progress on standard error.
     rotation, hyperplane, distance, positions, frame, vectors, cut, light
         As for :func:`vizlight.project`.
-    tangents, normals, facing, feature_angle, conditioned, line_field, refine, bundle, occlusion
+    tangents, normals, facing, feature_angle, conditioned, line_field, bundle, occlusion
         As for :func:`vizlight.illuminate`.
     name, exponent, model, components, precision
         As for :func:`vizlight.illuminate`.
@@ -242,7 +238,7 @@ def turn(
             rotation = turned if before is None else [before, turned]
             with warnings.catch_warnings(record=True) as caught:
                 warnings.simplefilter("always")
-                step = project(mesh, scene=scene, threads=threads, rotation=rotation, **settings)
+                step = project(mesh, scene=scene, rotation=rotation, **settings)
             notes.extend(str(warning.message) for warning in caught[:1])
             yield step
 

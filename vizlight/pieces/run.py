@@ -13,7 +13,7 @@ from collections import Counter
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from vizlight import _check, _compiled, files
+from vizlight import _check, _compiled, _pool, files
 from vizlight.mesh import normals
 from vizlight.pieces import index, task
 from vizlight.pieces.kinds import INDEX, PieceError, index_files, union
@@ -35,7 +35,6 @@ if TYPE_CHECKING:
 
 #: Options of light that depend on a mesh as a whole.
 WHOLE = {
-    "refine": "split edges of neighbours would not match; refine the pieces' union",
     "bundle": "lines of all pieces dim one another; light them together",
 }
 
@@ -192,11 +191,10 @@ def light(
         ghost=ghost if filter == "illuminate" else 0,
         suffix={own: suffix for suffix, own in INDEX.items()}[path.suffix.lower()],
         compiled="1" if _compiled.wanted() == "1" else "0",
+        # Workers share the processors.
+        threads=_pool.workers() if checked(map) is builtins.map else 1,
     )
     retries = _check.integer("retries", retries, low=0)
-    if checked(map) is not builtins.map:
-        # Workers share the processors.
-        job = dataclasses.replace(job, options={"threads": 1} | dict(job.options))
     parts = pieces_of(sources, _check.positive("slab", slab))
     work = Work(map, retries, progress_bar)
     folder = path.with_suffix("")

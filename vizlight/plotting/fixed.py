@@ -65,7 +65,7 @@ def lit_colors(source: Source, scene: Scene, colors: Bytes | None) -> Bytes:
         return on_colors(colors, *light_on_colors([source], scene)[0])
     inputs = source.seen_from(scene.view, source.inputs)
     parts = [(inputs, source.options)]
-    (shading,), _ = lighting.light(parts, scene, threads=None, progress_bar=False)
+    (shading,), _ = lighting.light(parts, scene, progress_bar=False)
     rgb = shading.luminance[:, np.newaxis] if shading.rgb is None else shading.rgb
     shown = displayable(np.broadcast_to(rgb, (len(rgb), 3)))
     shown[~shading.valid] = NO_DATA

@@ -41,7 +41,7 @@ __all__ = ["Shader", "save", "shader"]
 EYE = View(direction=(0, 0, 1))
 #: Options of light that a program of fragments has no use for.
 WITHOUT = (
-    "positions", "feature_angle", "line_field", "refine", "bundle", "occlusion",
+    "positions", "feature_angle", "line_field", "bundle", "occlusion",
     "name", "components", "precision",
 )  # fmt: skip
 #: How normals are turned, by ``facing``; otherwise they stay as they are.

@@ -103,7 +103,7 @@ class Points:
             _write(live.drawn, COLORS, on_colors(_colors(live, actor), *light))
             return
         parts = [(source.inputs, source.options)]
-        (shading,), _ = lighting.light(parts, scene, threads=None, progress_bar=False)
+        (shading,), _ = lighting.light(parts, scene, progress_bar=False)
         if live.scene is None or live.scene.colored:
             rgb = shading.rgb
             if rgb is None:

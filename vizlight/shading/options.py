@@ -35,10 +35,6 @@ FeatureAngle: TypeAlias = float | Literal["auto"] | None
 Facing = Literal["auto", "eye", "outward", "as given"]
 
 
-#: Least error between points that light is refined to: rounding in float32 is about 1e-6.
-FINEST = 1e-5
-
-
 @dataclass(frozen=True)
 class Bundle:
     """Light inside a bundle of lines, which are taken for a medium of thin cylinders.
@@ -178,7 +174,6 @@ class LightOptions(ShadingOptions):
     feature_angle: FeatureAngle = None
     conditioned: bool | str | None = False
     line_field: bool = False
-    refine: float = 0.0
     bundle: bool | Bundle = False
     occlusion: str | None = None
     name: str = "luminance"
@@ -188,10 +183,6 @@ class LightOptions(ShadingOptions):
         _check.set_fields(self, bundle=checked_bundle(self.bundle))
         if self.occlusion is not None:
             _check.text("occlusion", self.occlusion, expected="the name of a point array")
-        _check.set_fields(self, refine=_check.number("refine", self.refine, low=0.0))
-        if 0 < self.refine < FINEST:
-            expected, remedy = f"0 or {FINEST:g} at least", "a picture shows 1/255"
-            raise ValueError(_check.message("refine", expected, self.refine, remedy))
         check_sides(self.facing, self.feature_angle)
 
 

@@ -232,11 +232,11 @@ def _lines(run: Run) -> list[str]:
             text += f"; {_percent(run.visible)} are off by more than 1/255"
         if run.visible > unseen(run.places):
             if run.finer:
-                text += f": cells 1/{run.finer} as long, or refine=1/255, would do"
+                text += f": cells 1/{run.finer} as long, or refining to 1/255, would do"
             else:
                 text += (
                     ": cells 1/128 as long would not do; "
-                    "refine=1/255 leaves only places where the light jumps"
+                    "refining to 1/255 leaves only places where the light jumps"
                 )
         found.append(text)
     if run.unmeasured:
