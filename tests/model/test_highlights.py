@@ -170,18 +170,6 @@ def test_general_relation_of_the_codimension(random):
         assert abs(mirror - (1 - 2 * cos2 * (1 - normal**2) - (a - b) ** 2 / 2)) < 1e-45
 
 
-def test_required_factor_against_50_digits(dtype, figure):
-    rho = np.array([1e-30, 1e-9, 1e-5, 1e-3, 0.1, 0.7, 0.8, 1.2, 1.5], dtype=dtype)
-    for angle, value in zip(rho, highlights.required_factor(rho), strict=True):
-        assert value.dtype == dtype
-        x = oracles.exact(angle)
-        true = mp.log(mp.cos(x)) / mp.log(mp.cos(x / 2)) if x > 1e-20 else mp.mpf(4)
-        error = abs(float(oracles.exact(value) / true - 1)) / oracles.eps(dtype)
-        figure("required_factor", "relative", dtype, error, 8)
-    assert highlights.required_factor(dtype(0)) == 4
-    assert np.isinf(highlights.required_factor([np.pi / 2 + 1e-9, np.pi])).all()
-
-
 @pytest.mark.parametrize("r", [5.0, 40.0, 1e4])
 def test_the_better_rule_is_better(r):
     """The best factor by the worst error is no worse than 4 and 4 cos(beta), and these agree."""

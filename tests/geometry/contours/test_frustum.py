@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import banded
 import numpy as np
-import oracles
 import pytest
 
 from vizlight.geometry.contours.isoluminance import truncus
 
-mp = oracles.mp
-EPS = np.finfo(float).eps
 SHAPES = {
     "cylinder": (2.0, (0.5, 0.5)),
     "cone up": (1.5, (0.0, 0.7)),
@@ -26,17 +23,6 @@ AXIS /= np.linalg.norm(AXIS)
 def made(shape, **options):
     height, radii = SHAPES[shape]
     return truncus((0, 0, 0), AXIS, radii, height=height, ambient=0.1, diffuse=0.8, **options)
-
-
-def source_normal(point, axis, height, radii):
-    """The source's N at a point of the side, by its h: p14 - (c - h a/|a|), in 50 digits."""
-    a, p = oracles.exact(axis), oracles.exact(point)
-    r1, r2 = (mp.mpf(r) for r in radii)
-    h = (r2 * r2 - r1 * r1) / (2 * mp.mpf(height))
-    along = oracles.dot(p, a)
-    across = oracles.unit([x - along * y for x, y in zip(p, a, strict=True)])
-    middle = [(r1 + r2) / 2 * x for x in across]
-    return oracles.unit([m + h * y for m, y in zip(middle, a, strict=True)])
 
 
 def normals(points, shape):
@@ -70,26 +56,6 @@ def onto(points, patch, shape):
     normal = normals(side, shape)
     normal[patch == 1], normal[patch == 2] = AXIS, -AXIS
     return on, normal
-
-
-@pytest.mark.parametrize("shape", SHAPES)
-@pytest.mark.parametrize("power", [1.0, 25.0])
-def test_rulings_against_50_digits(shape, power, figure):
-    direction = (1, -2, 0.5)
-    bands = made(shape, direction=direction, power=power, levels=7)
-    assert len(np.unique(bands.line_levels)) == 7
-    light = oracles.unit(oracles.exact(direction))
-    for (top, bottom), level in zip(bands.lines, bands.line_levels, strict=True):
-        middle = (bands.points[top] + bands.points[bottom]) / 2
-        normal = source_normal(middle, AXIS, *SHAPES[shape])
-        cosine = max(oracles.dot(normal, light), 0)
-        error = abs(mp.mpf(0.1) + mp.mpf(0.8) * cosine**power - mp.mpf(float(level)))
-        # At the lowest level, the terminator, only the cosine can be compared.
-        height, radii = SHAPES[shape]
-        bound = 8 + 4 * power + height / max(radii)
-        figure(
-            "isoluminance.truncus", f"{shape}, power {power:g}", float, float(error) / EPS, bound
-        )
 
 
 @pytest.mark.parametrize("shape", SHAPES)

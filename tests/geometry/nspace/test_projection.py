@@ -9,8 +9,6 @@ from scipy.stats import special_ortho_group
 
 from vizlight.geometry import manifolds, projection
 
-mp = oracles.mp
-
 
 def test_plane_rotation():
     turn = projection.plane_rotation(4, "xw", np.pi / 2)
@@ -60,41 +58,6 @@ def test_turns_one_after_the_other(random):
 def test_bad_rotations(turns, error, words):
     with pytest.raises(error, match=words):
         projection.rotation(4, turns)
-
-
-def exact_image(x, distance):
-    x = list(x)
-    while len(x) > 3:
-        last = x.pop()
-        x = [v / (1 - last / distance) for v in x]
-    return x
-
-
-@pytest.mark.parametrize("n", [4, 5, 8])
-def test_perspective_and_its_derivative_against_50_digits(n, random, figure):
-    points = random.uniform(-0.4, 0.4, (20, n))
-    vectors = random.standard_normal((20, 2, n))
-    d = 1.5
-    images = projection.perspective(points, distance=d)
-    pushed = projection.push_forward(vectors, points, distance=d)
-    for x, vs, image, rows in zip(points, vectors, images, pushed, strict=True):
-        p = oracles.exact(x)
-        scale = mp.sqrt(oracles.dot(p, p))
-        true = exact_image(p, mp.mpf(d))
-        error = max(abs(oracles.exact(a) - b) for a, b in zip(image, true, strict=True)) / scale
-        figure("perspective", f"n = {n}", float, float(error) / oracles.eps(float), 6 * (n - 3))
-        for v, row in zip(vs, rows, strict=True):
-            along = oracles.exact(v)
-            size = mp.sqrt(oracles.dot(along, along))
-
-            def moved(t, i, p=p, along=along):
-                return exact_image([a + t * b for a, b in zip(p, along, strict=True)], mp.mpf(d))[i]
-
-            true = [mp.diff(lambda t, i=i: moved(t, i), 0) for i in range(3)]
-            error = max(abs(oracles.exact(a) - b) for a, b in zip(row, true, strict=True)) / size
-            figure(
-                "push_forward", f"n = {n}", float, float(error) / oracles.eps(float), 16 * (n - 3)
-            )
 
 
 def test_orthographic_is_perspective_from_infinity(random):
