@@ -138,8 +138,8 @@ OF_NUMBERS = {
         "Places(face, weights * (1.0, 1.0, 0.0))",
     ),
     "streamlines: lit by their chords": (
-        "filters/streamlines.py", "replace(light, tangents=tangents)",
-        "replace(light, tangents=None)",
+        "filters/streamlines.py", "made, tangents=tangents, conditioned",
+        "made, tangents=None, conditioned",
     ),
     "line fields: vertices are not aligned": (
         "geometry/lines/tracing.py", "np.where(turned[:, :, np.newaxis], -corners, corners)",

@@ -8,6 +8,7 @@ import pytest
 from studies import sky
 
 
+@pytest.mark.filterwarnings("ignore:the sky changes inside of triangles")
 def test_rows_of_a_field_and_of_a_surface():
     (field,) = sky.of_field(48, 0.3, 0.02)
     assert 0 < field.error <= 0.02
