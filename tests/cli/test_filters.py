@@ -360,6 +360,25 @@ def test_report_stands_in_the_script_too(folder, capfd):
     assert (code, "or less at 95 of 100 points, as estimated, horizons" in out) == (0, True)
 
 
+def test_components_of_vectors_are_joined(folder, capfd):
+    mesh = pv.read("flow.vti")
+    x, y, z = mesh["V"].T
+    mesh["u"], mesh["v"] = x, y
+    mesh.save("parts.vti")
+    mesh["V"] = np.column_stack([x, y, 0 * z])
+    mesh.save("whole.vti")
+    for file, name in (("parts", "u,v"), ("whole", "V")):
+        code, _, _ = run(
+            capfd, "light", f"{file}.vti", "--tangents", name, "-o", f"{file}-lit.vtp",
+        )  # fmt: skip
+        assert code == 0
+    parts, whole = pv.read("parts-lit.vtp"), pv.read("whole-lit.vtp")
+    np.testing.assert_array_equal(parts["luminance"], whole["luminance"])
+    code, _, _ = run(capfd, "streamlines", "parts.vti", "--vectors", "u,v", "-o", "lines.vtp")
+    assert code == 0
+    assert np.ptp(pv.read("lines.vtp").points[:, 2]) > 0.1
+
+
 @pytest.mark.parametrize(
     ("line", "words"),
     [
@@ -426,10 +445,16 @@ def test_report_stands_in_the_script_too(folder, capfd):
         ("light flow.vti flow.vti", "file: expected files of different names"),
         ("light flow.vti torus.vtp -o a.png", "output: expected a folder that exists"),
         ("light flow.vti -o none/a.png", "output: expected a folder that exists, got 'none'"),
+        ("light flow.vti -o a.vtm", "it is one mesh, which has no blocks"),
+        ("light flow.vti --tangents r,q", "names U,V of components, one of ['r', 'V'"),
+        ("light terrain.vti --for slope", "for a surface without a flow, such as terrain, take --"),
+        ("streamlines flow.vti --vectors U", "'U'; pass --vectors V"),
+        ("fur scan.vtp", "mesh: expected a surface with faces, got a PolyData mesh without"),
     ],
 )
 def test_bad_input_is_one_line_and_exit_code_2(line, words, folder, capfd):
     Path("list.json").write_text("[1, 2]")
+    pv.PolyData(np.random.default_rng(0).random((30, 3))).save("scan.vtp")
     before = sorted(folder.iterdir())
     code, out, err = run(capfd, *line.split())
     assert (code, out) == (2, ""), err

@@ -644,6 +644,19 @@ def test_two_files_serve_a_strict_policy(browser, tmp_path):
     assert said == []
 
 
+def test_scans_are_points_in_the_page(tmp_path):
+    scan = pv.PolyData(np.random.default_rng(0).normal(size=(500, 3)))
+    for step in (scan, vizlight.illuminate(scan), pv.MultiBlock([scan, pv.Sphere()])):
+        _, _, content = scene_in(vizlight.live_html(step, None, tmp_path / "scan.html"))
+        assert all(mesh["live"] for mesh in content["meshes"])
+        assert "verts" in content["meshes"][0]
+        # White points show before black.
+        dark = not isinstance(step, pv.MultiBlock)
+        assert content["background"] == ("#000000" if dark else "#ffffff")
+    with pytest.raises(ValueError, match="mesh: expected a surface, whose normals are lit"):
+        vizlight.live_html(pv.PolyData(np.eye(3)), None, tmp_path / "few.html")
+
+
 def test_light_that_cannot_follow_is_fixed_and_said_to_be(tmp_path):
     mesh, scene = torus(), Scene(lights=FAR, material=SHINY)
     with pytest.warns(UserWarning, match="does not follow the eye, because .*cylinder.*ambient"):

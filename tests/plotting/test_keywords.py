@@ -115,6 +115,8 @@ def test_points_alone_and_blocks_without_the_array_are_drawn():
     assert [*plotter.scalar_bars.keys()] == ["height"]
     plotter.close()
     options = {"cmap": "viridis", "scalars": "height", "point_size": 9}
+    with pytest.raises(ValueError, match="scalars: expected a point array or a cell array"):
+        picture(cloud(), scalars="nope")
     same = picture(cloud(), live=False, **options)
     np.testing.assert_array_equal(picture(cloud(), **options), same)
     with pytest.raises(ValueError, match="scalars: expected a point array"):

@@ -191,7 +191,7 @@ class Output:
     size
         Width and height of the picture in pixels.
     background
-        Colour behind the mesh. Default: white, or black behind lines.
+        Colour behind the mesh. Default: white, or black behind lines and points.
     line_width
         Width of lines in pixels.
     backend

@@ -326,7 +326,7 @@ def _light(job: Job, out: Output) -> pv.DataSet:
         if note:
             say(f"note     {note}")
     for warning in caught:
-        complain(warning.message)
+        complain(one_line(warning.message))
     record = vizlight.provenance(lit, job.name)
     terms = " + ".join(record.get("terms", [job.name]))
     points = sum(block.n_points for block in all_blocks(lit))

@@ -126,7 +126,8 @@ def builder(
         lights, place = "vizlight.refine", {"error": _finest(refine)}
 
     def job(path: Path, time: float | str | None) -> Job:
-        mesh = data = scenes.data(path, target, time)
+        data = scenes.data(path, target, time)
+        mesh = data = scenes.joined(data, given.get("tangents"))
         if taken:
             mesh = scenes.surface(data, target)
         scenes.check_answers(common.lights.question, mesh, color, given.get("tangents"))

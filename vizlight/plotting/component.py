@@ -5,13 +5,12 @@ from __future__ import annotations
 import weakref
 from typing import TYPE_CHECKING, Any, get_args
 
-import numpy as np
 import pyvista as pv
 
 from vizlight import _check
 from vizlight.filters import relight
 from vizlight.filters.key import key, question_of
-from vizlight.filters.tint import RGB, are_colors, default_map, default_nan_color
+from vizlight.filters.tint import RGB, are_colors, default_map, default_nan_color, values_of
 from vizlight.mesh import blocks, records
 from vizlight.plotting import keywords
 from vizlight.plotting.corner import PLACES, CornerKey, ink_on
@@ -586,8 +585,7 @@ def _add_cloud(
     else:
         own = {"cmap": default_map(drawing.get("cmap"))}
         own["nan_color"] = default_nan_color(drawing.get("nan_color"))
-        values = mesh.point_data if scalars in mesh.point_data else mesh.cell_data
-        drawing = drawing | ({"rgb": True} if are_colors(np.asarray(values[scalars])) else own)
+        drawing = drawing | ({"rgb": True} if are_colors(values_of(mesh, scalars)) else own)
     actor: pv.Actor = plotter.add_mesh(mesh, scalars=scalars, **drawing)
     return actor
 

@@ -25,7 +25,9 @@ from vizlight.mesh import records
 from vizlight.mesh.blocks import all_blocks
 from vizlight.mesh.polylines import backdrop
 from vizlight.plotting import backends
+from vizlight.plotting.keywords import is_cloud
 from vizlight.plotting.page import Page
+from vizlight.reading.normals import is_scan
 from vizlight.scene import Scene
 from vizlight.shading.results import DEFAULT_NAME
 
@@ -93,7 +95,7 @@ def live_html(
         First camera. Default: the view of the scene or of the mesh's record, otherwise one that
         shows the whole mesh.
     background : colour, optional
-        Background colour. Default: black for lines alone, otherwise white.
+        Background colour. Default: black for lines or points alone, otherwise white.
     panel : bool, default: True
         Whether the panel is open at first.
     key : bool, default: True
@@ -161,8 +163,9 @@ def live_html(
         owners: list[int | None] = []
         for number, step in enumerate(steps.values()):
             made = plotter.vizlight.add_mesh(
-                step, scene=scene, light=light, scalars=scalars, render=False, **options
-            )
+                step, scene=scene, light=light, scalars=scalars, render=False,
+                **_lit_points(step) | options,
+            )  # fmt: skip
             count = len(made) if isinstance(made, list) else 1
             owners += [number if len(steps) > 1 else None] * count
         every = [block for step in steps.values() for block in all_blocks(step)]
@@ -181,6 +184,14 @@ def live_html(
         )  # fmt: skip
     finally:
         plotter.close()
+
+
+def _lit_points(mesh: pv.DataSet | pv.MultiBlock) -> dict[str, Any]:
+    """Return an option of light, its default, for points that PyVista alone would draw."""
+    every = [*all_blocks(mesh)]
+    clouds = [block for block in every if is_cloud(block, {})]
+    alone = len(clouds) == len(every)
+    return {"facing": "auto"} if clouds and (alone or all(map(is_scan, clouds))) else {}
 
 
 def _look(plotter: Any, mesh: pv.DataSet | pv.MultiBlock, scene: Scene | None) -> None:

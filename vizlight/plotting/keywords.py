@@ -11,6 +11,7 @@ import pyvista as pv
 from pyvista.plotting.colors import get_cycler
 
 from vizlight import _check
+from vizlight.filters import relight
 from vizlight.mesh import blocks, records
 from vizlight.shading.options import FeatureAngle, LightOptions, unknown_option
 
@@ -84,8 +85,9 @@ def left_to_pyvista(drawing: dict[str, Any]) -> str | None:
 
 
 def is_cloud(mesh: pv.DataSet, own: dict[str, Any]) -> bool:
-    """Return whether a mesh is points alone, with nothing that light could fall on."""
-    if own.keys() & {"tangents", "normals"} or mesh.point_data.active_normals is not None:
+    """Return whether a mesh is points alone, for which no light is asked and that have none."""
+    asked = own.keys() & {"tangents", "normals", "facing"}
+    if asked or mesh.point_data.active_normals is not None or relight.is_lit(mesh):
         return False
     kinds = pv.PolyData | pv.PointSet | pv.UnstructuredGrid
     return isinstance(mesh, kinds) and mesh.n_points > 0 and mesh.max_cell_dimensionality == 0
