@@ -155,7 +155,7 @@ if not TYPE_CHECKING:  # a name that is not there is an error to a type checker
 
 
 def _join_qt() -> None:
-    """Let windows of pyvistaqt find ``plotter.vizlight``: their look-up hides that of PyVista."""
+    """Let windows of pyvistaqt find ``plotter.vizlight``: their look-up hides PyVista's."""
     if "pyvistaqt" in sys.modules:
         importlib.import_module("vizlight.plotting.component")
 

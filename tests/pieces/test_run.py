@@ -351,7 +351,7 @@ def test_sources_are_given_once_and_never_replaced(balls):
     first = run(balls)
     before = digests(first)
     for source in (first.path, *first.files):
-        with pytest.raises(pieces.PieceError, match="out: expected another name than that of the"):
+        with pytest.raises(pieces.PieceError, match="out: expected another name than the sources'"):
             run(balls, source, name="second")
     assert digests(first) == before
 

@@ -198,7 +198,7 @@ def light_mesh(
         own, sided = _split(block, path, options)
         taken.append(own)
         known.append(sided)
-    # The sky of new points is that of the refined mesh.
+    # New points see the sky of the refined mesh.
     early = dataclasses.replace(options, occlusion=None) if error else options
     taken = with_sky(taken, early.occlusion)
     # Each mesh is refined alone, and has shares of light inside its own bundle.

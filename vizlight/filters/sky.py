@@ -96,7 +96,7 @@ def sky(
         Direction of the half space that is the sky. Default: the z axis for a grid of one layer,
         else the sky is all round.
     diameter : float, optional
-        Diameter of lines, in the unit of the mesh. Default: that of a bundle, see
+        Diameter of lines, in the unit of the mesh. Default: as in a bundle, see
         :class:`vizlight.Bundle`.
     openness : bool, default: False
         Whether the array ``<name>_openness`` is added: the mean angle between the zenith and the
@@ -190,7 +190,7 @@ def with_sky(
 
     Where its name is "sky" and some mesh has none, it is computed for all, as :func:`sky` does with
     an error of 0.02, lines as voxels; those meshes are shallow copies. ``elevation`` and ``factor``
-    are those of :func:`vizlight.relief_shadow`.
+    are the same as in :func:`vizlight.relief_shadow`.
     """
     if occlusion is not None:
         _warn_if_stale(meshes, occlusion)

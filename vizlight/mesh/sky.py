@@ -46,7 +46,7 @@ class Sky(NamedTuple):
     Attributes
     ----------
     share : ndarray of float32, shape (N,)
-        Share of the sky that each point sees; a point without a sky has that of the nearest point.
+        Share of the sky that each point sees; one without a sky has the nearest point's.
     valid : ndarray of bool, shape (N,)
         Whether a point has a sky.
     openness : ndarray of float32, shape (N,), or None
@@ -182,7 +182,7 @@ def _of_field(
 
 
 def _filled(share: Array, valid: Bools, points: Array) -> Array:
-    """Return shares in which points without a sky have that of the nearest point with one."""
+    """Return shares where points without a sky have the nearest point's."""
     if valid.all():
         return share
     share = np.where(valid, share, 1.0).astype(np.float32)

@@ -248,7 +248,7 @@ def _common_options(
     fields = {one.name for one in dataclasses.fields(LightOptions)}
     asked = LightOptions(**{name: value for name, value in options.items() if name in fields})
     if asked.feature_angle == "auto":
-        remedy = "pass a number of degrees, such as 30: a piece does not know those of the whole"
+        remedy = "pass a number of degrees, such as 30: a piece does not know the whole's creases"
         raise ValueError(_check.message("feature_angle", "a number or None", "'auto'", remedy))
     if options.get("facing", "eye") not in ("eye", "as given"):
         remedy = "a piece cannot tell which side of the whole is outside"
@@ -269,7 +269,7 @@ def _spare_sources(parts: Sequence[Piece], path: Path, outputs: Sequence[Path]) 
         source = None if source is None else source.resolve()
         earlier = source is not None and source.parent == folder and own.fullmatch(source.name)
         if source in taken or earlier:
-            expected = "another name than that of the sources"
+            expected = "another name than the sources'"
             raise PieceError(_check.message("out", expected, f"'{path}'"))
 
 

@@ -110,7 +110,7 @@ class Component:
             later changes of the mesh; and keywords of ``pyvista.Plotter.add_mesh``, such
             as ``clim``, ``name``, ``opacity``, ``line_width``, ``pickable``, and ``cmap``, which is
             ``vizlight.maps.even`` unless the theme's was changed. ``smooth_shading=False`` splits
-            the points at every edge, so that faces are flat, ``split_sharp_edges`` at those of the
+            the points at every edge, so that faces are flat, ``split_sharp_edges`` at edges of the
             theme's angle. PyVista draws the mesh with its own light if ``lighting=False``,
             ``pbr=True`` or ``style="points_gaussian"``, and points that have no vectors. With
             ``render_lines_as_tubes=True`` lines wider than a pixel have, where light is in
@@ -143,7 +143,7 @@ class Component:
         :meth:`export_html` of this component can.
 
         With ``bundle`` the shares of light are computed again only for lights that have moved. The
-        lights of a scene must stay fixed; those of the plotter may follow the camera, at the cost
+        lights of a scene must stay fixed; the plotter's lights may follow the camera, at the cost
         of one grid for each of them in each frame.
 
         Light at the points is bit-identical to the filter's for the same camera. Light in

@@ -94,7 +94,7 @@ def is_cloud(mesh: pv.DataSet, own: dict[str, Any]) -> bool:
 
 
 def block_colors(drawing: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    """Take ``multi_colors`` from keywords, and yield those of each block after another."""
+    """Take ``multi_colors`` from keywords, and yield each block's after another."""
     if not drawing.pop("multi_colors", False):
         return itertools.repeat({})
     return ({"color": row["color"]} for row in itertools.cycle(get_cycler("default")))  # type: ignore[no-untyped-call]

@@ -262,7 +262,7 @@ class Live:
         if named is not None:
             scene = self.scene_of(renderer, actor)
             if self.scene is None:
-                # Shares of light inside a bundle are those of the lights of each frame.
+                # Shares of light inside a bundle belong to the lights of each frame.
                 fixed = [light.seen_from(scene.view) for light in scene.lights]
                 scene = scene.replace(lights=fixed)
             source = relight.read(mesh, "", scene, named)

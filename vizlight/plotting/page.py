@@ -227,7 +227,7 @@ class Page:
     ) -> tuple[dict[str, int], dict[str, list[float]], Plan]:
         """Return the texts for all lamps that the page may have, their constants, and a plan.
 
-        A key is the number of lamps with a place, that of lamps without, and "cue"; "data" before
+        A key is the number of lamps with a place, the number without, and "cue"; "data" before
         it where colours come from data, "free " where the light of conditioned tangents leaves the
         surface out.
         """

@@ -23,7 +23,7 @@ __all__ = ["plot"]
 
 #: Endings of the names of pictures that VTK writes.
 PICTURES = (".png", ".jpeg", ".jpg", ".bmp", ".tif", ".tiff")
-#: Keywords of ``pyvista.plot`` that are those of a new plotter.
+#: Keywords of ``pyvista.plot`` that a new plotter takes.
 _WINDOW = ("off_screen", "notebook", "theme", "border", "border_color", "border_width")
 #: Keywords of ``pyvista.plot`` by which it shows the plotter.
 _SHOWN = (

@@ -77,11 +77,11 @@ def _split(mesh: pv.DataSet, asked: LightOptions) -> pv.DataSet:
 
 
 def _fit_no_face(split: pv.PolyData, given: str) -> bool:
-    """Return whether normals from before a split are those of neither side of many edges."""
+    """Return whether normals from before a split fit neither side of many edges."""
     own, new = kernels.unit_rows(split.point_data[given]), computed_normals(split).vectors
     cosine, known = np.abs(np.einsum("ij,ij->i", own, new)), np.any(new, axis=1)
     apart = known & (cosine < np.cos(np.radians(SHARP / 2)))
-    # Faces without area are those of points that were rounded, whose edges are no creases.
+    # Faces without area come from points that were rounded; their edges are no creases.
     return bool(np.mean(apart) > MANY_SHARP >= np.mean(~known))
 
 

@@ -536,7 +536,7 @@ def is_open() -> bool:
 
 @contextlib.contextmanager
 def tinted() -> Iterator[None]:
-    """Record light in this context as that of colours, of points that were lit before."""
+    """Record light in this context as the colours' light, of points that were lit before."""
     token = _TINTED.set(True)
     try:
         yield
