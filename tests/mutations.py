@@ -4,7 +4,8 @@
 comparison, an operator, a number, a condition, a call whose result nobody takes. It breaks a copy
 of the tree at one place after the other and runs the tests that mirror or name the file, then
 those around it. It prints a line per mutation and a table per folder; what survives asks for an
-assertion, or changes nothing that can be seen. ``--seed`` draws other places, ``--only WORD`` from files whose
+assertion, or changes nothing that can be seen. ``--seed`` draws other places, ``--only WORD`` from
+files whose
 path has the word. A mutation takes some 15 s.
 """
 
