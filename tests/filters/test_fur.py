@@ -299,14 +299,6 @@ def test_colour_name_and_provenance():
         assert told["options"]["density"] == 0.02
 
 
-def test_provenance_makes_the_fur_again():
-    coat = fur(torus(), SCENE, density=0.02, fibres=50, bend=1.0, toward=np.array([0, 0, -1.0]))
-    told = vizlight.provenance(coat["fibres"])
-    again = fur(torus(), Scene.from_dict(told["scene"]), **told["options"])
-    for block in ("fibres", "skin"):
-        np.testing.assert_array_equal(again[block]["luminance"], coat[block]["luminance"])
-
-
 def test_an_array_called_normals_that_is_none():
     mesh = torus()
     normals = np.array(mesh["Normals"])
@@ -473,14 +465,6 @@ def test_absorption_where_lengths_vary_is_that_of_the_mean_length():
     ):
         with pytest.raises(ValueError, match=words):
             fur(mesh, SCENE, fibres=5, **options)
-
-
-def test_fibres_do_not_depend_on_the_number_of_threads():
-    coat = fur(torus(24), SCENE, fibres=500, segments=3, curl=0.2)
-    with _pool.threads(1):
-        again = fur(torus(24), SCENE, fibres=500, segments=3, curl=0.2)
-    np.testing.assert_array_equal(coat["fibres"].points, again["fibres"].points)
-    np.testing.assert_array_equal(coat["fibres"]["luminance"], again["fibres"]["luminance"])
 
 
 def test_points_of_the_skin_are_split_at_sharp_edges():

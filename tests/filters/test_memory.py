@@ -1,4 +1,4 @@
-"""A result shares no memory with what was given, unless sharing was asked for."""
+"""What every filter keeps: memory of its own, a record that makes it again, progress apart."""
 
 from __future__ import annotations
 
@@ -50,37 +50,70 @@ def torus():
     return vizlight.manifold(manifolds.torus(1.5, 0.75, resolution=8))
 
 
+#: A mesh, a filter and its options.
 FILTERS = {
-    "illuminate": (ball, lambda mesh: vizlight.illuminate(mesh, SCENE)),
-    "by tangents": (ball, lambda mesh: vizlight.illuminate(mesh, SCENE, tangents="V")),
-    "split": (ball, lambda mesh: vizlight.illuminate(mesh, SCENE, feature_angle=10)),
+    "illuminate": (ball, vizlight.illuminate, {"scene": SCENE}),
+    "by tangents": (ball, vizlight.illuminate, {"scene": SCENE, "tangents": "V"}),
+    "split": (ball, vizlight.illuminate, {"scene": SCENE, "feature_angle": 10}),
     "blocks": (
         lambda: pv.MultiBlock([ball(), pv.MultiBlock([hills()])]),
-        lambda mesh: vizlight.illuminate(mesh, SCENE),
+        vizlight.illuminate, {"scene": SCENE},
     ),
-    "refine": (ball, lambda mesh: vizlight.refine(mesh, SCENE)),
-    "project": (torus, vizlight.project),
-    "project lit": (torus, lambda mesh: vizlight.project(mesh, scene=SCENE_4)),
-    "satin": (ball, lambda mesh: vizlight.satin(mesh, SCENE, tangents="V")),
-    "fur": (ball, lambda mesh: vizlight.fur(mesh, SCENE)),
-    "relief_shadow": (hills, lambda mesh: vizlight.relief_shadow(mesh, SCENE)),
-    "isoluminance": (ball, lambda mesh: vizlight.isoluminance(mesh, SCENE)),
-}
+    "refine": (ball, vizlight.refine, {"scene": SCENE, "error": 0.01}),
+    "streamlines": (ball, vizlight.streamlines, {"scene": SCENE, "vectors": "V", "seeds": 5}),
+    "line field": (
+        ball, vizlight.streamlines,
+        {"scene": SCENE, "vectors": "V", "seeds": 5, "line_field": True},
+    ),
+    "even": (ball, vizlight.streamlines, {"scene": SCENE, "vectors": "V", "spacing": 0.3}),
+    "project": (torus, vizlight.project, {}),
+    "project lit": (torus, vizlight.project, {"scene": SCENE_4}),
+    "satin": (ball, vizlight.satin, {"scene": SCENE, "tangents": "V"}),
+    "fur": (
+        ball, vizlight.fur, {"scene": SCENE, "bend": 1.0, "toward": (0, 0, -1.0), "fibres": 50}
+    ),
+    "relief_shadow": (hills, vizlight.relief_shadow, {"scene": SCENE}),
+    "bas_relief": (ball, vizlight.bas_relief, {"resolution": 30}),
+    "isoluminance": (ball, vizlight.isoluminance, {"scene": SCENE}),
+}  # fmt: skip
 
 
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("name", FILTERS)
 def test_a_result_has_memory_of_its_own(name):
-    make, run = FILTERS[name]
+    make, filter_, options = FILTERS[name]
     mesh = make()
     before = [array.copy() for array in arrays(mesh)]
-    out = run(mesh)
+    out = filter_(mesh, **options)
     assert arrays(out)
     for own in arrays(out):
         assert not any(np.shares_memory(own, given) for given in arrays(mesh))
         own[...] = 0
     for array, was in zip(arrays(mesh), before, strict=True):
         np.testing.assert_array_equal(array, was)
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("name", sorted(set(FILTERS) - {"project", "bas_relief", "satin"}))
+def test_a_record_makes_the_result_again(name):
+    make, filter_, options = FILTERS[name]
+    made = filter_(make(), **options)
+    block = made if isinstance(made, pv.DataSet) else made[0]
+    told = vizlight.provenance(block, "t" if name == "relief_shadow" else "luminance")
+    assert told["filter"] == filter_.__name__
+    again = filter_(make(), scene=Scene.from_dict(told["scene"]), **told["options"])
+    for one, other in zip(arrays(made), arrays(again), strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("name", FILTERS)
+def test_progress_is_shown_on_standard_error(name, capfd):
+    make, filter_, options = FILTERS[name]
+    filter_(make(), **options, progress_bar=True)
+    out, err = capfd.readouterr()
+    assert "100%" in err or name == "project"
+    assert out == ""
 
 
 def test_a_result_is_shared_where_that_is_asked_for():

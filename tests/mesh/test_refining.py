@@ -371,14 +371,6 @@ def test_results_of_filters_and_blocks_are_refined():
     assert blocks["a"].n_points == ball().n_points
 
 
-def test_a_record_makes_the_same_mesh():
-    made = refine(ball(), SCENE, error=0.01)
-    record = vizlight.provenance(made)
-    assert record["filter"] == "refine"
-    again = refine(ball(), Scene.from_dict(record["scene"]), **record["options"])
-    assert np.array_equal(again["luminance"], made["luminance"])
-
-
 def test_colour_depth_cue_and_frames_of_n_space():
     cue = SCENE.replace(depth_cue=DepthCue(back_scale=0.3), material=shiny(color="tomato"))
     fine = refine(ball(), cue)

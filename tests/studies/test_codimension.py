@@ -7,7 +7,6 @@ import math
 import numpy as np
 import pytest
 
-import vizlight
 from studies import codimension
 from vizlight import render
 from vizlight.geometry import manifolds
@@ -104,12 +103,6 @@ def test_statistics():
     mean, contrast = codimension.statistics(np.array([1.0, 3.0]), np.array([3.0, 1.0]))
     assert mean == 1.5
     assert contrast == pytest.approx(math.sqrt(0.75) / 1.5)
-
-
-def test_panels_can_be_made_again(panels):
-    told = vizlight.provenance(panels[2, 4, True].mesh)
-    assert told["scene"]["lights"][0]["direction"] == [0.7, 0.6, 0.38, 0.0]
-    assert told["exponent"] == 2.0
 
 
 @pytest.mark.opengl

@@ -94,34 +94,6 @@ def test_curves_of_a_near_light(shape, light, random):
     assert error.max() <= 1.5 * bands.steps.error
 
 
-def test_curves_are_the_roots_of_a_quadratic():
-    """Along a ruling N . (l - p) is constant: |l - p| = that / level has two roots."""
-    position = np.array([1.5, -1.0, 0.8])
-    bands = truncus((0, 0, 0), AXIS, (0.3, 0.8), height=1.0, position=position, levels=6)
-    lit = bands.line_levels > 0
-    point, level = bands.points[bands.lines[lit, 0]], bands.line_levels[lit]
-    along = point @ AXIS
-    side = np.abs(along) < 0.5 - 1e-9
-    point, level, along = point[side], level[side], along[side]
-    across = point - np.outer(along, AXIS)
-    across /= np.linalg.norm(across, axis=1, keepdims=True)
-    normal = across + 0.5 * AXIS
-    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-    # The ruling: p(s) = foot + s way, s from -1/2 to 1/2.
-    foot, way = 0.55 * across, AXIS - 0.5 * across
-    constant = np.einsum("ij,ij->i", normal, position - foot)
-    a = np.einsum("ij,ij->i", way, way)
-    b = -2 * np.einsum("ij,ij->i", way, position - foot)
-    c = np.sum((position - foot) ** 2, axis=1) - (constant / level) ** 2
-    root = np.sqrt(b * b - 4 * a * c)
-    distance = np.minimum(
-        np.abs((-b - root) / (2 * a) - along), np.abs((-b + root) / (2 * a) - along)
-    )
-    assert len(point) > 50
-    assert distance.max() < 1e-7
-    assert np.median(distance) < 1e-12
-
-
 def test_terminator_of_a_near_light_is_a_ruling():
     bands = truncus((0, 0, 0), (0, 0, 2), (0.5, 0.5), position=(3, 0, 0.2), levels=4)
     on = np.unique(bands.lines[bands.line_levels == 0])
