@@ -20,8 +20,8 @@ from differential import by_numpy, by_text
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View, cli, files
+from vizlight.draw import html, program
 from vizlight.mesh import brains, foreign_files
-from vizlight.plotting import html, program
 from vizlight.shading.arrays import Output
 from vizlight.shading.decide import decide
 from vizlight.shading.inputs import ShadingInputs

@@ -15,8 +15,8 @@ import numpy as np
 import pyvista as pv
 
 from studies import Row, Study, peak_memory, take_turns
+from vizlight.draw import render
 from vizlight.filters.fur import fur
-from vizlight.pictures import render
 from vizlight.scene import Light, Material, Scene, View
 
 if TYPE_CHECKING:

@@ -14,10 +14,10 @@ import numpy as np
 
 from studies import SHINY, Row, Study, lines, take_turns
 from vizlight.data import load_example
+from vizlight.draw import render
 from vizlight.filters.illuminate import illuminate
 from vizlight.filters.streamlines import streamlines
 from vizlight.model import cylinder
-from vizlight.pictures import render
 from vizlight.scene import Light, Scene, View
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight import Scene, cli, render
-from vizlight.plotting import backends
+from vizlight.draw import backends
 
 
 @pytest.fixture

@@ -11,9 +11,9 @@ from lamps import SHINY, shiny
 
 import vizlight
 from vizlight import _compiled, _pool
+from vizlight.draw import fragments
 from vizlight.filters import relight
 from vizlight.geometry.lines import bundle as geometry
-from vizlight.plotting import fragments
 from vizlight.shading import engine
 from vizlight.shading.options import LightOptions
 

@@ -10,9 +10,9 @@ import pyvista as pv
 
 import vizlight
 from vizlight import _compiled
+from vizlight.draw import fragments
 from vizlight.filters import relight
 from vizlight.mesh import embree_rays, sky
-from vizlight.plotting import fragments
 from vizlight.shading import compiled, engine
 from vizlight.shading.options import LightOptions
 

@@ -10,6 +10,7 @@ import pytest
 
 import vizlight
 from vizlight import _words
+from vizlight.draw import movie, paraview
 from vizlight.filters.fur import FurOptions
 from vizlight.filters.isoluminance import ContourOptions
 from vizlight.filters.pathlines import PathlineOptions
@@ -19,8 +20,6 @@ from vizlight.filters.relief_shadow import ReliefOptions
 from vizlight.filters.satin import SatinOptions
 from vizlight.filters.sky import SkyOptions
 from vizlight.filters.streamlines import StreamlineOptions
-from vizlight.pictures import movie
-from vizlight.plotting import paraview
 from vizlight.shading import engine
 from vizlight.shading.options import LightOptions, ShadingOptions, named
 

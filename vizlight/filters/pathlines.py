@@ -136,7 +136,7 @@ def pathlines(
         vectors that carry the particle, and ``Time``: when the particle was there, on pathlines,
         or when it left its seed, on streaklines. Pathlines are lit by the vectors (``Tangents``),
         streaklines by their own tangents. The field array ``TimeValue`` is the time of the step.
-        :func:`vizlight.pictures.movie.save` makes a movie of them.
+        :func:`vizlight.draw.movie.save` makes a movie of them.
 
     Raises
     ------

@@ -11,10 +11,10 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check, _compiled, _pool, files
+from vizlight.draw import cameras
 from vizlight.filters.illuminate import illuminate
 from vizlight.filters.streamlines import streamlines
 from vizlight.mesh import normals, records
-from vizlight.pictures import cameras
 from vizlight.pieces.ghosts import GHOST
 from vizlight.pieces.kinds import INDEX, SUFFIX, Piece, PieceError
 from vizlight.reading.polylines import has_lines_only

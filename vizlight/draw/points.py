@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vizlight import _check
+from vizlight.draw import strokes
+from vizlight.draw.live import COLORS, LUMINANCE, NORMALS
+from vizlight.draw.program import Stroke
 from vizlight.filters import lighting
 from vizlight.filters.tint import light_on_colors, map_colors
 from vizlight.mesh import point_arrays
-from vizlight.plotting import strokes
-from vizlight.plotting.live import COLORS, LUMINANCE, NORMALS
-from vizlight.plotting.program import Stroke
 from vizlight.reading import polylines
 from vizlight.shading.decide import decide
 from vizlight.shading.display import NO_DATA, displayable, on_colors
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
-    from vizlight.plotting.live import Live
+    from vizlight.draw.live import Live
     from vizlight.scene import Scene
 
 #: Fragment shader that draws the colours of the points.

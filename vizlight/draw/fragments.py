@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 
+from vizlight.draw import dialects, glsl, program, strokes
+from vizlight.draw.live import NORMALS, TANGENTS
+from vizlight.draw.program import Stroke
 from vizlight.filters import lighting
 from vizlight.mesh import hull, point_arrays
 from vizlight.model import kernels
-from vizlight.plotting import dialects, glsl, program, strokes
-from vizlight.plotting.live import NORMALS, TANGENTS
-from vizlight.plotting.program import Stroke
 from vizlight.reading import polylines
 from vizlight.scene.light import NO_ATTENUATION, WHITE
 from vizlight.scene.vtk import LARGEST_POWER
@@ -26,9 +26,9 @@ if TYPE_CHECKING:
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
     from vizlight._types import Array, Bools, Indices
+    from vizlight.draw.live import Live
+    from vizlight.draw.program import Uniform
     from vizlight.filters.relight import Source
-    from vizlight.plotting.live import Live
-    from vizlight.plotting.program import Uniform
     from vizlight.scene import Light, Scene, View
     from vizlight.shading.inputs import ArraySource, ShadingInputs
     from vizlight.shading.options import ShadingOptions

@@ -14,10 +14,10 @@ from lamps import SHINY
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View
+from vizlight.draw import component
+from vizlight.draw.live import COLORS, LUMINANCE, scene_of
 from vizlight.geometry import manifolds
 from vizlight.geometry.lines import bundle
-from vizlight.plotting import component
-from vizlight.plotting.live import COLORS, LUMINANCE, scene_of
 from vizlight.shading.display import displayable
 
 pytestmark = pytest.mark.opengl

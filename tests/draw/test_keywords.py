@@ -7,7 +7,7 @@ import pytest
 import pyvista as pv
 
 import vizlight
-from vizlight.plotting import keywords
+from vizlight.draw import keywords
 
 pytestmark = pytest.mark.opengl
 

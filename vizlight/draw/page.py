@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 import numpy as np
 import pyvista as pv
 
+from vizlight.draw import dialects, program
+from vizlight.draw.fixed import LEFT_OUT, fixed_colors, lit_colors
+from vizlight.draw.fragments import Fragments, exact_plan, without_highlight
+from vizlight.draw.live import NORMALS, TANGENTS, items
 from vizlight.filters.key import TEXTS
 from vizlight.filters.tint import map_colors
 from vizlight.mesh import hull, records
-from vizlight.plotting import dialects, program
-from vizlight.plotting.fixed import LEFT_OUT, fixed_colors, lit_colors
-from vizlight.plotting.fragments import Fragments, exact_plan, without_highlight
-from vizlight.plotting.live import NORMALS, TANGENTS, items
 from vizlight.scene import DepthCue, Light, Scene, View, presets
 from vizlight.scene.light import WHITE
 from vizlight.scene.vtk import lights_of
@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
     from vizlight._types import Array, Indices
+    from vizlight.draw.live import Live
     from vizlight.filters.relight import Source
-    from vizlight.plotting.live import Live
     from vizlight.shading.plan import Plan
 
 #: Largest number of colours of a scalar bar.

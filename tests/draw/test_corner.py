@@ -7,7 +7,7 @@ from lamps import HEADLIT
 
 import vizlight
 from vizlight import Scene, View, presets
-from vizlight.pictures import render
+from vizlight.draw import render
 
 SIZE = (400, 300)
 pytestmark = pytest.mark.opengl

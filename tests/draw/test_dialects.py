@@ -7,7 +7,7 @@ import re
 import pytest
 
 from vizlight import DepthCue, Light, Scene, View
-from vizlight.plotting import dialects, program
+from vizlight.draw import dialects, program
 from vizlight.shading.decide import plan
 
 NEAR = Light(position=(1, 2, 3), attenuation=(0.5, 0.1, 0))

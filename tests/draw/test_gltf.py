@@ -145,7 +145,7 @@ def test_what_does_not_fit_is_refused_and_nothing_is_written(options, message, t
 
 @pytest.mark.skipif(
     shutil.which("node") is None or not (MODULES / "gltf-validator").is_dir(),
-    reason="needs Node.js and npm ci in vizlight/plotting/web",
+    reason="needs Node.js and npm ci in vizlight/draw/web",
 )
 def test_the_validator_of_gltf_has_no_objection(tmp_path):
     both = pv.MultiBlock({"ball": pv.Sphere(), "lines": vizlight.load_example("fibre_bundle.vtp")})

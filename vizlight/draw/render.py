@@ -10,14 +10,8 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.files import check_output, replace_file
-from vizlight.filters.tint import RGB, unlit_colors
-from vizlight.mesh import records
-from vizlight.mesh.blocks import all_blocks, check
-from vizlight.mesh.polylines import backdrop
-from vizlight.pictures.cameras import Mesh, camera_on, common_bounds, over_shoulder
-from vizlight.plotting import strokes
-from vizlight.plotting.backends import (
+from vizlight.draw import strokes
+from vizlight.draw.backends import (
     Backend,
     BackendError,
     Probe,
@@ -25,8 +19,14 @@ from vizlight.plotting.backends import (
     probe,
     window_class,
 )
-from vizlight.plotting.corner import CornerKey, ink_on
-from vizlight.plotting.program import Stroke
+from vizlight.draw.cameras import Mesh, camera_on, common_bounds, over_shoulder
+from vizlight.draw.corner import CornerKey, ink_on
+from vizlight.draw.program import Stroke
+from vizlight.files import check_output, replace_file
+from vizlight.filters.tint import RGB, unlit_colors
+from vizlight.mesh import records
+from vizlight.mesh.blocks import all_blocks, check
+from vizlight.mesh.polylines import backdrop
 from vizlight.reading import polylines
 from vizlight.reading.polylines import has_lines_only
 from vizlight.shading.display import NO_DATA, displayable
@@ -244,7 +244,7 @@ def make_plotter(
                 position_x=0.82, position_y=0.12,
             )  # fmt: skip
             if any(panel.scalars + VALID in mesh.point_data for mesh in all_blocks(panel.mesh)):
-                from vizlight.plotting.component import name_no_data
+                from vizlight.draw.component import name_no_data
 
                 name_no_data(made)
     except BaseException:
@@ -471,7 +471,7 @@ def _add_in_fragments(
     """Add a mesh whose light is computed in each fragment; lines that cannot be round are flat."""
     drawing = width | {"show_scalar_bar": False}
     flat = drawing | {"render_lines_as_tubes": False}
-    from vizlight.plotting.component import add_recorded
+    from vizlight.draw.component import add_recorded
 
     return any(add_recorded(plotter, mesh, name, **options) for options in (drawing, flat))
 

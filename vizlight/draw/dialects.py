@@ -6,13 +6,13 @@ import dataclasses
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
-from vizlight.plotting import glsl
-from vizlight.plotting.program import Varying, suffixed
+from vizlight.draw import glsl
+from vizlight.draw.program import Varying, suffixed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from vizlight.plotting.program import Program, Uniform
+    from vizlight.draw.program import Program, Uniform
 
 #: Matrix from the coordinates of a buffer of VTK to world coordinates.
 WORLD = "MCWCMatrix"

@@ -1,7 +1,7 @@
 """The light of a plan as a program of a graphics card, and the numbers that it is given.
 
 One text serves all renderers; what differs between them is a dialect
-(:mod:`vizlight.plotting.dialects`).
+(:mod:`vizlight.draw.dialects`).
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 
 from vizlight import _check
-from vizlight.plotting import glsl
+from vizlight.draw import glsl
 from vizlight.scene.light import WHITE
 from vizlight.shading.display import LEAST
 

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vizlight.plotting import dialects, glsl
-from vizlight.plotting.dialects import Replacement
-from vizlight.plotting.program import ALONG, suffixed
+from vizlight.draw import dialects, glsl
+from vizlight.draw.dialects import Replacement
+from vizlight.draw.program import ALONG, suffixed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from vtkmodules.vtkRenderingCore import vtkActor
 
-    from vizlight.plotting.program import Stroke
+    from vizlight.draw.program import Stroke
 
 #: Width in pixels above 1, as VTK draws no quads for narrower lines; also the least width of lines
 #: of a diameter, so that none breaks up.

@@ -17,7 +17,7 @@ from PIL import Image
 
 import vizlight
 from vizlight import Light, Scene, View
-from vizlight.plotting import component, notebook
+from vizlight.draw import component, notebook
 
 pytestmark = pytest.mark.opengl
 
@@ -33,7 +33,7 @@ SCENE = Scene(lights=Light(direction=(1, 0.6, 0.5)), material=SHINY)
 KERNEL = """
 import asyncio, json, sys
 import pyvista as pv
-import vizlight.plotting.component
+import vizlight.draw.component
 from vizlight import Light, Material, Scene
 
 async def kernel():

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from vizlight import DepthCue, Light, Material, Scene, View
+from vizlight.draw import glsl, program
 from vizlight.model import formulas
-from vizlight.plotting import glsl, program
 from vizlight.scene.light import WHITE
 from vizlight.shading import display, engine
 from vizlight.shading.decide import plan

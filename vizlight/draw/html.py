@@ -18,15 +18,15 @@ import pyvista as pv
 from PIL import Image
 
 from vizlight import _check
+from vizlight.draw import backends
+from vizlight.draw.keywords import is_cloud
+from vizlight.draw.page import Page
 from vizlight.files import check_output, replace_file
 from vizlight.filters import relight
 from vizlight.filters.key import TEXTS, preset_of
 from vizlight.mesh import records
 from vizlight.mesh.blocks import all_blocks
 from vizlight.mesh.polylines import backdrop
-from vizlight.plotting import backends
-from vizlight.plotting.keywords import is_cloud
-from vizlight.plotting.page import Page
 from vizlight.reading.normals import is_scan
 from vizlight.scene import Scene
 from vizlight.shading.results import DEFAULT_NAME
@@ -35,8 +35,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from vizlight._types import ColorLike
-    from vizlight.plotting.live import LightAt, Live
-    from vizlight.plotting.page import Shown
+    from vizlight.draw.live import LightAt, Live
+    from vizlight.draw.page import Shown
 
 __all__ = ["live_html"]
 
@@ -132,7 +132,7 @@ def live_html(
 
     See Also
     --------
-    vizlight.plotting.component.Component.export_html : The same for the meshes of a plotter.
+    vizlight.draw.component.Component.export_html : The same for the meshes of a plotter.
 
     Notes
     -----
@@ -344,4 +344,4 @@ def _key_words(live: Live) -> list[str] | None:
 
 
 def _web(name: str) -> str:
-    return resources.files("vizlight.plotting").joinpath("web", name).read_text("utf-8")
+    return resources.files("vizlight.draw").joinpath("web", name).read_text("utf-8")

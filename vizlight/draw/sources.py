@@ -9,12 +9,12 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight.draw.live import headlight_scene, lifted
 from vizlight.filters import relight
 from vizlight.filters.tint import RGB, unlit_colors
 from vizlight.mesh import blocks, hull, records
 from vizlight.mesh.normals import split_where_computed
 from vizlight.model import kernels
-from vizlight.plotting.live import headlight_scene, lifted
 from vizlight.reading.inputs import uses_normals
 from vizlight.reading.normals import computed_normals
 from vizlight.reading.orientation import MANY_SHARP, SHARP

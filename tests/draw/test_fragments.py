@@ -14,9 +14,9 @@ from lamps import SHINY, shiny
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View
+from vizlight.draw import component
+from vizlight.draw.backends import probe
 from vizlight.geometry import manifolds
-from vizlight.plotting import component
-from vizlight.plotting.backends import probe
 
 pytestmark = pytest.mark.opengl
 

@@ -16,12 +16,12 @@ from PIL import Image
 
 from vizlight import _check
 from vizlight._progress import progress
+from vizlight.draw import render
+from vizlight.draw.cameras import Mesh, common_bounds
 from vizlight.files import check_output, replace_file
 from vizlight.filters.project import ProjectOptions, project
 from vizlight.filters.tint import RGB
 from vizlight.mesh.blocks import all_blocks
-from vizlight.pictures import render
-from vizlight.pictures.cameras import Mesh, common_bounds
 from vizlight.shading.options import named
 from vizlight.shading.results import DEFAULT_NAME
 
@@ -67,7 +67,7 @@ def save(
     ----------
     frames : iterable of meshes or Panels, or of pictures
         Meshes to draw, one after the other; or pictures, arrays of uint8 of one shape (height,
-        width, 3), such as :func:`vizlight.pictures.render.pictures` makes. They are written as they
+        width, 3), such as :func:`vizlight.draw.render.pictures` makes. They are written as they
         come.
     path : path
         Path of a movie or of a sequence of PNGs, as for :func:`turn`.
@@ -77,7 +77,7 @@ def save(
         Camera of all frames. Default: one that shows them all; the frames are then kept in memory
         until the last is there. Pictures have theirs.
     picture : mapping, optional
-        Further options of :func:`vizlight.pictures.render.make_plotter`, for meshes.
+        Further options of :func:`vizlight.draw.render.make_plotter`, for meshes.
     progress_bar : bool, default: False
         Show progress on standard error.
 
@@ -183,7 +183,7 @@ def turn(
     camera : pyvista.Camera, optional
         Camera of all frames. Default: one that shows the whole mesh at every step.
     picture : mapping, optional
-        Further options of :func:`vizlight.pictures.render.make_plotter`: size, scalars, cmap, clim,
+        Further options of :func:`vizlight.draw.render.make_plotter`: size, scalars, cmap, clim,
         background.
     progress_bar : bool, default: False
         Show progress on standard error.

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 import pyvista as pv
 
 from vizlight import _check
+from vizlight.draw import keywords
 from vizlight.files import check_output
 from vizlight.filters.sky import SKY
-from vizlight.plotting import keywords
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from vizlight.plotting.live import LightAt
+    from vizlight.draw.live import LightAt
     from vizlight.scene import Scene
 
 __all__ = ["plot"]

@@ -13,9 +13,9 @@ from vtkmodules.vtkRenderingCore import (
     vtkTextActor,
 )
 
+from vizlight.draw.live import items
 from vizlight.filters.key import WORDS
 from vizlight.filters.tint import RGB
-from vizlight.plotting.live import items
 
 if TYPE_CHECKING:
     import pyvista as pv

@@ -22,9 +22,9 @@ from PIL import Image
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View, presets
+from vizlight.draw import html
 from vizlight.files import FileError
 from vizlight.filters import key
-from vizlight.plotting import html
 
 pytestmark = pytest.mark.opengl
 

@@ -84,7 +84,7 @@ class Guarded:
 
 def _frame(plotter: pv.BasePlotter) -> Frame:
     """Return the page of a plotter with live light, as high as its window."""
-    from vizlight.plotting.html import page_text
+    from vizlight.draw.html import page_text
 
     shown = plotter.vizlight.shown()
     if not plotter.camera_set:

@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from vizlight import _check, files
+from vizlight.draw import dialects, program
+from vizlight.draw.fragments import Fragments, unfit, unfit_layout, without_highlight
+from vizlight.draw.live import NORMALS, TANGENTS, Live
+from vizlight.draw.sources import sources_of
 from vizlight.filters.tint import color_table
 from vizlight.mesh import blocks
-from vizlight.plotting import dialects, program
-from vizlight.plotting.fragments import Fragments, unfit, unfit_layout, without_highlight
-from vizlight.plotting.live import NORMALS, TANGENTS, Live
-from vizlight.plotting.sources import sources_of
 from vizlight.scene import Scene, View
 from vizlight.scene.light import WHITE
 from vizlight.shading.decide import decide
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     import pyvista as pv
     from numpy.typing import ArrayLike
 
-    from vizlight.plotting.program import Program
+    from vizlight.draw.program import Program
     from vizlight.shading.options import Exponent, Facing, Model
     from vizlight.shading.plan import Plan
 

@@ -18,7 +18,7 @@ from lamps import HEADLIT, SHINY, shiny
 
 import vizlight
 from vizlight import Light, Material, Scene, View, render
-from vizlight.plotting import backends
+from vizlight.draw import backends
 from vizlight.reading import polylines
 
 pytestmark = pytest.mark.opengl

@@ -12,11 +12,11 @@ import numpy as np
 
 from vizlight import _check, files
 from vizlight._version import __version__
+from vizlight.draw.fixed import LEFT_OUT, fixed_colors
+from vizlight.draw.live import lifted
+from vizlight.draw.sources import sources_of, tinted
 from vizlight.filters.tint import color_table, map_colors, values_of
 from vizlight.mesh import blocks, hull
-from vizlight.plotting.fixed import LEFT_OUT, fixed_colors
-from vizlight.plotting.live import lifted
-from vizlight.plotting.sources import sources_of, tinted
 from vizlight.scene import Scene, View
 from vizlight.shading.options import LightOptions
 

@@ -8,20 +8,20 @@ from typing import TYPE_CHECKING, Any, get_args
 import pyvista as pv
 
 from vizlight import _check
+from vizlight.draw import keywords
+from vizlight.draw.corner import PLACES, CornerKey, ink_on
+from vizlight.draw.fragments import Fragments, unfit
+from vizlight.draw.html import write_page
+from vizlight.draw.live import LightAt, Live, colorless, has_pass, is_copy, items
+from vizlight.draw.notebook import guard, guard_exports
+from vizlight.draw.page import Shown
+from vizlight.draw.points import Points
+from vizlight.draw.program import Stroke
+from vizlight.draw.sources import sources_of, tinted
 from vizlight.filters import relight
 from vizlight.filters.key import key, question_of
 from vizlight.filters.tint import RGB, are_colors, default_map, default_nan_color, values_of
 from vizlight.mesh import blocks, records
-from vizlight.plotting import keywords
-from vizlight.plotting.corner import PLACES, CornerKey, ink_on
-from vizlight.plotting.fragments import Fragments, unfit
-from vizlight.plotting.html import write_page
-from vizlight.plotting.live import LightAt, Live, colorless, has_pass, is_copy, items
-from vizlight.plotting.notebook import guard, guard_exports
-from vizlight.plotting.page import Shown
-from vizlight.plotting.points import Points
-from vizlight.plotting.program import Stroke
-from vizlight.plotting.sources import sources_of, tinted
 from vizlight.reading.polylines import has_lines_only
 from vizlight.scene import Material, Scene
 from vizlight.shading.display import NO_DATA_NAME, titled
@@ -36,9 +36,9 @@ if TYPE_CHECKING:
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
     from vizlight._types import ColorLike
+    from vizlight.draw.corner import Corner
     from vizlight.filters.key import Question
     from vizlight.filters.relight import Source
-    from vizlight.plotting.corner import Corner
 
 __all__ = ["Component", "add_recorded"]
 

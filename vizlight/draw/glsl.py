@@ -1,6 +1,6 @@
 """The algebra of a graphics card: the terms of a plan as the GLSL of one fragment.
 
-The numbers of a scene are uniforms by name (:mod:`vizlight.plotting.program` gives their values),
+The numbers of a scene are uniforms by name (:mod:`vizlight.draw.program` gives their values),
 so that a lamp or a camera can move and the text stays.
 """
 
