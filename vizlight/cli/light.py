@@ -199,7 +199,7 @@ def _hint(mesh: pv.DataSet | pv.MultiBlock, *, surface: bool) -> str:
 def _explain(lit: pv.DataSet, asked: LightOptions) -> None:
     """Print the plan by which a mesh was lit."""
     from vizlight.mesh.blocks import all_blocks
-    from vizlight.mesh.inputs import inputs_of
+    from vizlight.mesh.parts import inputs_of
     from vizlight.shading.decide import decide
 
     record = vizlight.provenance(lit, asked.name)

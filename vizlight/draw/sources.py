@@ -15,9 +15,9 @@ from vizlight.filters.tint import RGB, unlit_colors
 from vizlight.mesh import blocks, hull, records
 from vizlight.mesh.normals import split_where_computed
 from vizlight.model import kernels
-from vizlight.reading.inputs import uses_normals
 from vizlight.reading.normals import computed_normals
 from vizlight.reading.orientation import MANY_SHARP, SHARP
+from vizlight.reading.parts import uses_normals
 from vizlight.shading.options import LightOptions
 
 if TYPE_CHECKING:

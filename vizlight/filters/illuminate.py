@@ -12,7 +12,7 @@ from vizlight.filters import lighting
 from vizlight.filters.sky import with_sky
 from vizlight.mesh import batches, blocks, bundles, normals, refining
 from vizlight.reading.arrays import is_of_cells
-from vizlight.reading.inputs import occluded, uses_normals
+from vizlight.reading.parts import occluded, uses_normals
 from vizlight.scene.scene import as_scene
 from vizlight.shading.options import Bundle, LightOptions, named
 

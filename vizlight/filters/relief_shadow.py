@@ -20,7 +20,7 @@ from vizlight.mesh.height_grids import Grid
 from vizlight.mesh.normals import split_where_computed
 from vizlight.mesh.sky import ABOVE
 from vizlight.reading.cells import check_whole
-from vizlight.reading.inputs import share_of
+from vizlight.reading.parts import share_of
 from vizlight.scene import Light, Scene
 from vizlight.scene.scene import as_scene
 from vizlight.shading import engine

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import pyvista as pv
 
     from vizlight._types import Array, Bools, Indices
-    from vizlight.reading.inputs import Part
+    from vizlight.reading.parts import Part
     from vizlight.scene import Scene
     from vizlight.shading.engine import Shading
     from vizlight.shading.inputs import ArraySource

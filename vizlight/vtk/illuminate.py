@@ -14,7 +14,7 @@ from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
 from vizlight import _check
 from vizlight.reading.cells import GHOSTS, as_vtk, check_whole
-from vizlight.reading.inputs import Part, part_of, uses_normals
+from vizlight.reading.parts import Part, part_of, uses_normals
 from vizlight.scene import Scene
 from vizlight.scene.scene import as_scene
 from vizlight.shading import engine

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal, Protocol, get_args
 import numpy as np
 
 from vizlight import _check, _compiled, _pool
-from vizlight.geometry.relief import compiled, height_field, marching, strips, sweeping
+from vizlight.geometry.relief import height_field, marching, strips, sweeping, walks
 from vizlight.model import kernels
 
 if TYPE_CHECKING:
@@ -327,7 +327,7 @@ def _lengths(
             below = _largest_offset(field, start(np.arange(count)))
         if _compiled.active():
             made = strips.strips(field, ray.direction, below, count)
-            if made is not None and strips.lengths.pays(compiled.SAVED * count):
+            if made is not None and strips.lengths.pays(walks.SAVED * count):
                 _by_strip(made, start, length, report)
                 return length
         elif method == "fast":
@@ -335,10 +335,10 @@ def _lengths(
             if profiles is not None:
                 _by_profile(profiles, start, length, report)
                 return length
-    fast = compiled.walk.pays(compiled.SAVED * count)
+    fast = walks.walk.pays(walks.SAVED * count)
     # Asked for once, before threads need them.
     pyramid = field.bounds
-    bounds = compiled.levels(pyramid) if fast else None
+    bounds = walks.levels(pyramid) if fast else None
 
     def work(rows: slice) -> int:
         places = start(np.arange(rows.start, rows.stop))
@@ -346,7 +346,7 @@ def _lengths(
         if bounds is None:
             length[rows] = marching.march(field, places, way, reach, coarse=True)
         else:
-            compiled.walk(
+            walks.walk(
                 np.ascontiguousarray(places), np.ascontiguousarray(way), reach, *field.edges,
                 field.corners, bounds, float(field.base), float(field.top),
                 field.border == "wall", length[rows],

@@ -6,14 +6,14 @@ import dataclasses
 from typing import TYPE_CHECKING
 
 from vizlight.mesh import normals, splitting
-from vizlight.reading import inputs as reading
+from vizlight.reading import parts as reading
 
 if TYPE_CHECKING:
     import pyvista as pv
 
     from vizlight._types import Indices
-    from vizlight.reading.inputs import Part
     from vizlight.reading.normals import Sided
+    from vizlight.reading.parts import Part
     from vizlight.scene import Scene
     from vizlight.shading.inputs import ShadingInputs
     from vizlight.shading.options import LightOptions
@@ -34,7 +34,7 @@ def part_of(
     starts: Indices | None = None,
     known: Sided | None = None,
 ) -> Part:
-    """Return what one mesh is lit by; see :func:`vizlight.reading.inputs.part_of`.
+    """Return what one mesh is lit by; see :func:`vizlight.reading.parts.part_of`.
 
     ``known`` are normals of its surface that were computed already.
     """

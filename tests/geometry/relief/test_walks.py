@@ -8,7 +8,7 @@ from fields import by_cells, hills, places, sun
 
 from vizlight import _compiled
 from vizlight.geometry import relief
-from vizlight.geometry.relief import compiled, height_field, marching, strips
+from vizlight.geometry.relief import height_field, marching, strips, walks
 
 pytestmark = pytest.mark.skipif(not _compiled.active(), reason="numba is not available")
 
@@ -26,9 +26,9 @@ def test_squares_are_the_cells(way, border, random):
     start = (places(x, y, z, 500, random) - field.origin).T.copy()
     found = np.empty(500)
     ways = np.repeat(way[:, None], 500, axis=1)
-    compiled.walk(
+    walks.walk(
         start, ways, np.full(500, marching.FAR), *field.edges, field.corners,
-        compiled.levels(field.bounds), field.base, field.top, border == "wall", found,
+        walks.levels(field.bounds), field.base, field.top, border == "wall", found,
     )  # fmt: skip
     np.testing.assert_allclose(found, by_cells(field, start, way), atol=1e-11)
 
@@ -42,7 +42,7 @@ def test_numpy_follows_the_rays_that_a_kernel_fails_with(light, monkeypatch):
     with _compiled.setting("0"):
         numpys = relief.shadow(x, y, z, depth=0.1, **light)
     monkeypatch.setattr(_compiled, "_BROKEN", [])
-    for kernel in (compiled.walk, strips.lengths):
+    for kernel in (walks.walk, strips.lengths):
         monkeypatch.setattr(kernel, "_proven", True)
         monkeypatch.setattr(kernel, "_compiled", broken)
     with pytest.warns(RuntimeWarning, match="LLVM ERROR") as caught:
