@@ -14,7 +14,7 @@ import pytest
 import pyvista as pv
 
 import vizlight
-from vizlight import files
+from vizlight import files, pieces
 
 
 def volume():
@@ -225,7 +225,7 @@ def test_a_symbolic_link_stays_and_its_file_is_replaced(tmp_path):
 def test_the_limit_of_file_sizes_is_seen_before_writing(suffix, tmp_path):
     code = f"""
 import resource, pyvista as pv
-from vizlight import files
+from vizlight import files, pieces
 resource.setrlimit(resource.RLIMIT_FSIZE, (10_000, 10_000))
 try:
     files.write_mesh(pv.Sphere(), {str(tmp_path / "a")!r} + {suffix!r})
@@ -476,11 +476,29 @@ def test_no_cut_of_a_binary_ply_file_of_polygons_is_read(cells, tmp_path):
 def test_pipes_are_refused_at_once(tmp_path):
     pipe = tmp_path / "a.vtp"
     os.mkfifo(pipe)
-    with pytest.raises(files.FileError, match=r"file: expected a file, got '.*' \(a pipe\)"):
-        files.read(pipe)
+    ball = tmp_path / "ball.vtp"
+    pv.Cube().save(ball)
+    for name, words in (("file", (pipe,)), ("overlay", (ball, pipe))):
+        with pytest.raises(files.FileError, match=f"{name}: expected a file, .*pipe or device"):
+            files.read(words[0], overlay=words[1:])
+    with pytest.raises(pieces.PieceError, match="sources: expected a file, .*pipe or device"):
+        pieces.light(pipe, vizlight.Scene(), out=tmp_path / "lit.pvtp")
     with pytest.raises(files.FileError, match="output: expected a file, got the device or pipe"):
         files.write_mesh(pv.Cube(), pipe)
     assert pipe.is_fifo()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a folder in use stays")
+def test_a_working_folder_that_is_gone_is_seen_early(tmp_path, monkeypatch):
+    gone = tmp_path / "gone"
+    gone.mkdir()
+    monkeypatch.chdir(gone)
+    gone.rmdir()
+    with pytest.raises(files.FileError, match=r"out: expected a folder .*working folder .* gone"):
+        files.check_output("lit.vtp", (".vtp",), name="out")
+    assert files.check_output(tmp_path / "lit.vtp", (".vtp",)) == tmp_path / "lit.vtp"
+    with pytest.raises(files.FileError, match="file: expected a file, got 'a.vtp'"):
+        files.read("a.vtp")
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no locks of folders")

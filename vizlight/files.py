@@ -145,13 +145,13 @@ def read(
     """
     path = _path("file", path)
     overlays = [_path("overlay", one) for one in _listed(overlay)]
-    if not path.is_file():
-        what = "no such file" if not path.exists() else "a folder" if path.is_dir() else "a pipe"
-        remedy = ""
-        if (path / "constant").is_dir():
-            case = path / f"{path.resolve().name}.foam"
-            remedy = f"an OpenFOAM case is read by an empty file in it: touch '{case}'"
-        raise FileError(_check.message("file", "a file", f"'{path}' ({what})", remedy))
+    for name, one in (("file", path), *(("overlay", one) for one in overlays)):
+        if what := no_file(one):
+            remedy = ""
+            if (one / "constant").is_dir():
+                case = one / f"{one.resolve().name}.foam"
+                remedy = f"an OpenFOAM case is read by an empty file in it: touch '{case}'"
+            raise FileError(_check.message(name, "a file", f"'{one}' ({what})", remedy))
     if not os.access(path, os.R_OK):
         raise FileError(_check.message("file", "a readable file", f"'{path}'"))
     if str(path).encode("utf-8", "replace") != os.fsencode(path):
@@ -190,6 +190,13 @@ def read(
             f"which are left out: {names}; light pyvista.read(...) to keep all blocks"
         )
     return mesh
+
+
+def no_file(path: Path) -> str:
+    """Return why a path is no file that can be read, an empty text if it is one."""
+    if path.is_file():
+        return ""
+    return "a folder" if path.is_dir() else "a pipe or device" if path.exists() else "no such file"
 
 
 def _listed(overlay: object) -> list[object]:
@@ -493,6 +500,11 @@ def check_output(path: str | Path, /, formats: tuple[str, ...], *, name: str = "
         If the extension is not allowed, or the folder is missing or not writable.
     """
     path = _path(name, path)
+    try:
+        path.absolute()
+    except FileNotFoundError as error:
+        got = f"'{path}' in a working folder that is gone"
+        raise FileError(_check.message(name, "a folder that exists", got)) from error
     if path.suffix.lower() not in formats:
         raise FileError(
             _check.message(name, f"a name that ends in {', '.join(formats)}", f"'{path}'")

@@ -117,6 +117,8 @@ def test_other_light_does_not_keep_the_error():
 
 def test_a_refined_mesh_needs_no_refinement():
     fine = refine(ball(), SCENE, normals="normal")
+    given = refine(ball(), SCENE, normals=ball()["normal"], positions=ball().points)
+    np.testing.assert_array_equal(given["luminance"], fine["luminance"])
     again = refine(fine, SCENE, normals="normal", name="again")
     assert again.n_points <= 1.01 * fine.n_points
 

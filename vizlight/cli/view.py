@@ -83,8 +83,6 @@ def view(
     if page is not None and page.suffix.lower() != HTML:
         expected = f"a name that ends in {HTML}"
         raise FileError(message("output", expected, f"'{page}'"))
-    if not file.is_file():
-        raise FileError(message("file", "a file", f"'{file}' (no such file)"))
     folder = None
     if page is None:
         # Only this user may look into the folder.

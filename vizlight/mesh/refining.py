@@ -119,7 +119,8 @@ def refined(
     most = max(MANY, 2 * count) if most is None else most
     cells, left = refine(between, shading, parents, error, most)
     given = _named(flat, between, options)
-    found = splitting.rebuilt(flat, cells, origin, given, places=options.positions)
+    positions = options.positions if isinstance(options.positions, str) else None
+    found = splitting.rebuilt(flat, cells, origin, given, places=positions)
     records.carry(mesh, found)
     made = _extended(part, between, cells.corners)
     if origin is None and options.tangents is None and made.inputs.tangents is not None:
@@ -129,8 +130,9 @@ def refined(
 
 def _named(mesh: pv.PolyData, between: Between, options: LightOptions) -> dict[str, Array]:
     """Return the vectors of new points by the names of the point arrays that they belong to."""
+    active = mesh.point_data.active_normals_name
     named = {
-        "normals": options.normals or mesh.point_data.active_normals_name,
+        "normals": active if options.normals is None else options.normals,
         "tangents": options.tangents,
         "base_tangents": options.conditioned,
     }

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import pyvista as pv
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
-from vizlight import _check
+from vizlight import _check, files
 from vizlight.pieces.kinds import (
     HDF,
     INDICES,
@@ -76,18 +76,17 @@ def _paths(source: str | Path) -> list[Path]:
     """Return the files of a path or a pattern, in the order of their names."""
     text = str(source)
     try:
-        is_file, is_folder = Path(text).is_file(), Path(text).is_dir()
+        what = files.no_file(Path(text))
     except (OSError, ValueError):  # such as a name of more characters than the system takes
-        is_file = is_folder = False
-    if is_file:
+        what = "no such file"
+    if not what:
         return [Path(text)]
     if any(sign in text for sign in "*?["):
         found = sorted(Path(file) for file in glob.glob(text, recursive=True))  # noqa: PTH207
         if found:
             return found
         raise PieceError(_check.message("sources", "a pattern that files match", repr(text)))
-    what = "a folder" if is_folder else "no such file"
-    remedy = f"name its files, as '{text}/*.vtu'" if is_folder else ""
+    remedy = f"name its files, as '{text}/*.vtu'" if what == "a folder" else ""
     raise PieceError(
         _check.message("sources", "a file", f"{_check.describe(text)} ({what})", remedy)
     )
