@@ -277,7 +277,8 @@ def _warn_of_wide(mesh: pv.DataSet, t: Array, raster: float | None) -> None:
     if share > SMEARED:
         _check.warn(
             f"shadows end within triangles that are {share:.0%} of the surface, and are "
-            'interpolated over them; smaller ones show their edges: mesh.subdivide(3, "linear")'
+            "interpolated over them; smaller ones show their edges: "
+            "mesh.triangulate().subdivide(3, 'linear')"
         )
 
 
