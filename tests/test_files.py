@@ -395,7 +395,7 @@ def test_what_vtk_says_is_told_apart_by_thread(tmp_path, capfd):
     assert vtkOutputWindow.GetInstance() is window
 
 
-@pytest.mark.parametrize("suffix", ["mdpa", "mesh", "su2", "meshb"])
+@pytest.mark.parametrize("suffix", ["mdpa", "mesh", "su2", "meshb", "tec"])
 def test_no_cut_of_a_text_with_counts_is_read(suffix, tmp_path):
     meshio = pytest.importorskip("meshio")
     points = np.random.default_rng(1).random((12, 3))
@@ -410,6 +410,29 @@ def test_no_cut_of_a_text_with_counts_is_read(suffix, tmp_path):
         path.write_bytes(whole[:end])
         with pytest.raises(files.FileError, match="file: expected a "):
             files.read(path)
+
+
+def test_what_meshio_says_is_a_warning_or_left_to_the_error(tmp_path, capfd):
+    meshio = pytest.importorskip("meshio")
+    path = tmp_path / "a.su2"
+    meshio.Mesh(np.eye(4, 3), [("tetra", [[0, 1, 2, 3]])]).write(path)
+    path.write_text("1 2 3\n4 5 6\n" + path.read_text())
+    with pytest.warns(UserWarning, match=r"a\.su2': meshio could not .*first of 2 warnings"):
+        assert files.read(path).n_cells == 1
+    path = tmp_path / "a.msh"
+    path.write_text("$MeshFormat\n4.1 0 8\nno end\n")
+    with pytest.raises(files.FileError, match="section not found"):
+        files.read(path)
+    assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("line", ["property", "property list uchar"])
+def test_a_header_that_breaks_off_within_a_line_is_refused(line, tmp_path):
+    path = tmp_path / "a.ply"
+    head = f"ply\nformat binary_little_endian 1.0\nelement vertex 3\n{line}\nend_header\n"
+    path.write_bytes(head.encode() + bytes(100))
+    with pytest.raises(files.FileError, match="its header cannot be read"):
+        files.read(path)
 
 
 @pytest.mark.parametrize("version", [42, 51])

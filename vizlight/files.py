@@ -630,7 +630,7 @@ def _ended(path: Path) -> bool:
 def _check_names(mesh: pv.DataSet, *, legacy: bool) -> None:
     """Check that a file can hold the names of the arrays.
 
-    VTK's writers of XML do not escape them, and that of legacy files ends the process at braces.
+    VTK's writers of XML do not escape them; its writer of legacy files ends the process at braces.
     """
     wrong, signs = '[<&"\x00-\x1f]', "<, &, quotation marks and control characters"
     other = "a .vtk file"

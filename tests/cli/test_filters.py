@@ -80,7 +80,7 @@ COMMANDS = {
     "scene of a file": "light flow.vti --contour r --scene scene.json --specular 0.1",
     "view of a scene": "light flow.vti --contour r --scene view.json",
     "saved camera": "light flow.vti --contour r --view camera.json --zoom 2 --parallel",
-    "streamlines": "streamlines flow.vti --vectors V --seeds 12 --model cylinder --max-steps 90",
+    "streamlines": "streamlines flow.vti --vectors V --seeds 12 --model cylinder",
     "colour of data": "light flow.vti --slice z:4 --scalars r --diffuse 0.9",
     "streamlines by data": "streamlines flow.vti --vectors V --seeds 9 --scalars r --cmap plasma",
     "lines by direction": "light tract.vtp --scalars direction --line-width 3",

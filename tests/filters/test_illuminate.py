@@ -319,14 +319,6 @@ def test_empty_meshes(kind):
     assert "luminance" in lit.point_data
 
 
-def test_progress_bar_is_drawn_on_standard_error(capfd):
-    illuminate(meshes()["PolyData"], SCENE, tangents="V", progress_bar=True)
-    out, err = capfd.readouterr()
-    assert out == ""
-    assert "light" in err
-    assert "100%" in err
-
-
 def test_a_shared_result_does_not_hold_the_input_in_memory_twice():
     plane = meshes()["PolyData"]
     lit = illuminate(plane.copy(deep=False), SCENE, tangents="V", inplace=True)

@@ -10,9 +10,9 @@ import pyvista as pv
 
 import vizlight
 from vizlight import _compiled
+from vizlight.draw import fragments
 from vizlight.filters import relight
 from vizlight.mesh import embree_rays, sky
-from vizlight.plotting import fragments
 from vizlight.shading import compiled, engine
 from vizlight.shading.options import LightOptions
 
@@ -262,7 +262,7 @@ def test_an_array_of_any_name_and_marked_points():
 
 
 def test_refined_and_many_small_meshes():
-    lit = vizlight.illuminate(pv.Sphere(), SCENE, occlusion="sky", refine=0.02)
+    lit = vizlight.refine(pv.Sphere(), SCENE, occlusion="sky", error=0.02)
     assert lit["sky"].shape == (lit.n_points,)
     many = pv.MultiBlock(balls(1.05))
     found = vizlight.illuminate(many, SCENE, occlusion="sky")

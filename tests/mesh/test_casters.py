@@ -238,7 +238,8 @@ def test_progress_advances_within_one_light(kind, monkeypatch):
     if kind == "field":
         mesh = pv.ImageData(dimensions=(30, 30, 1))
         mesh["height"] = np.arange(900.0) % 7
-    relief_shadow(mesh, SCENE, progress_bar=True, angular_diameter=0.1, samples=3, threads=1)
+    monkeypatch.setenv("VIZLIGHT_THREADS", "1")
+    relief_shadow(mesh, SCENE, progress_bar=True, angular_diameter=0.1, samples=3)
     total, *steps = told
     assert total == 3 * mesh.n_points
     assert steps == sorted(steps)

@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import pyvista as pv
+import traces
 
 from vizlight import Scene, View, pieces
 from vizlight.files import FileError
@@ -134,63 +135,17 @@ def test_calls_of_a_process_that_is_killed_are_made_again(tmp_path):
     assert list(work(abs, [-1])) == [1], f"after {LOST} losses others start"
 
 
-def listening(pids):
-    """Return the sockets of some processes that listen, by the tables of the kernel."""
-    found = set()
-    for table, state, listens, inode in (
-        ("tcp", 3, "0A", 9), ("tcp6", 3, "0A", 9), ("unix", 3, "00010000", 6),
-    ):  # fmt: skip
-        for row in Path(f"/proc/net/{table}").read_text().splitlines()[1:]:
-            fields = row.split()
-            if fields[state] == listens:
-                found.add(f"socket:[{fields[inode]}]")
-    own = set()
-    for pid in pids:
-        for link in Path(f"/proc/{pid}/fd").glob("*"):
-            try:
-                own.add(str(link.readlink()))
-            except OSError:  # it was closed meanwhile
-                continue
-    return found & own
-
-
-def children(pid):
-    """Return a process and all below it."""
-    tasks = Path(f"/proc/{pid}/task").glob("*/children")
-    return [pid, *(one for task in tasks for own in task.read_text().split()
-                   for one in children(int(own)))]  # fmt: skip
-
-
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 def test_no_process_listens_and_a_script_needs_no_guard(balls):
-    import socket
-
-    with socket.socket() as known:
-        known.bind(("127.0.0.1", 0))
-        known.listen()
-        assert listening([os.getpid()]), "the look itself finds a socket"
     (balls / "script.py").write_text(SCRIPT, encoding="utf-8")
-    seen, most = set(), 0
-    with subprocess.Popen(
-        [sys.executable, "script.py"], cwd=balls, stdout=subprocess.PIPE, text=True
-    ) as run:
-        while run.poll() is None:
-            try:
-                there = children(run.pid)
-                seen |= listening(there)
-                most = max(most, len(there))
-            except OSError:  # one ended meanwhile
-                pass
-            time.sleep(0.02)
-        assert run.stdout.read() == "12\n"
-    assert most >= 3, "a parent and two processes"
-    assert not seen
+    seen = traces.watched([sys.executable, "script.py"], [], cwd=balls)
+    assert seen.out == "12\n"
+    assert seen.processes >= 3, "a parent and two processes"
+    assert not seen.sockets
 
 
 def test_executors_light_the_same(balls):
-    expected = pieces.light(
-        str(balls / "ball*.vtp"), PLAIN, ghost=0, out=balls / "one.pvtp", threads=1
-    )
+    expected = pieces.light(str(balls / "ball*.vtp"), PLAIN, ghost=0, out=balls / "one.pvtp")
     with ProcessPoolExecutor(2, multiprocessing.get_context("spawn")) as pool:
         for work in (pool, pool.map):
             assert same(light(balls, map=work), expected)

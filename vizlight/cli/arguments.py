@@ -341,7 +341,7 @@ def fraction(name: str, text: str, expected: str = "a number or a fraction such 
 
 def pixels(text: str) -> tuple[int, int]:
     """Return the width and the height of a picture."""
-    from vizlight.pictures import render
+    from vizlight.draw import render
 
     width, _, height = text.lower().partition("x")
     if not (width.isdecimal() and height.isdecimal()):

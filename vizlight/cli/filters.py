@@ -186,7 +186,7 @@ def sky(
         if shape.contour is not None or shape.slice is not None:
             mesh = scenes.surface(mesh, shape)
         heights = _heights(found, None) if field else None
-        # The sky is that of the heights as they are.
+        # The sky belongs to the heights as they are.
         raised = mesh if heights is None else scenes.warped("raised", mesh, heights, 1.0)
         camera = look.camera(raised, is_map=field)
         lit = _step("skylit", "sky", mesh, None, given, common.out)

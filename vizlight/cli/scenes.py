@@ -315,7 +315,7 @@ class Look:
 
     def scene_in(self, n: int) -> Step:
         """Return the step that makes a scene of n-space, seen from infinity."""
-        from vizlight.pictures import render
+        from vizlight.draw import render
 
         toward = self._toward or VIEW
         if self._fixed is not None:

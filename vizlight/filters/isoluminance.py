@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from vizlight.model.reflection import SpecularModel
     from vizlight.scene import Scene
     from vizlight.shading.engine import Shading
+    from vizlight.shading.inputs import ShadingInputs
     from vizlight.shading.options import Exponent, FeatureAngle
     from vizlight.shading.results import Record
 
@@ -88,7 +89,6 @@ def isoluminance(
     conditioned: bool = False,
     exponent: Exponent = "compensated",
     name: str = "luminance",
-    threads: int | None = None,
     progress_bar: bool = False,
 ) -> pv.MultiBlock:
     """Return contours of equal luminance, and the bands between them with one value per band.
@@ -117,8 +117,6 @@ def isoluminance(
         Arrays and options as for :func:`vizlight.illuminate`, for a mesh only.
     name : str, default: "luminance"
         Name of the resulting cell arrays.
-    threads : int, optional
-        Number of threads.
     progress_bar : bool, default: False
         Whether the share of triangles that keep the allowed error is shown on standard error.
 
@@ -152,15 +150,14 @@ def isoluminance(
     over each triangle and normalised. Contour points are found by bracketing, so that the
     terminator is not restricted to corners, and triangles are split where the luminance is not
     linear. With tangents the luminance itself is interpolated. An empty mesh has no bands. A
-    sphere or a frustum under one light without a highlight has closed forms.
+    sphere or a frustum under one light without a highlight has closed forms. The memory that is
+    taken, with the result, is at most three times that of mesh and result.
     Source: Isoluminance.
     """
     asked = ContourOptions.of(locals())
     start = time.perf_counter()
     with report.paused(), _progress.progress("contours", 100, show=progress_bar) as show:
-        made, bands, light = _make(
-            mesh, scene, asked, threads, lambda share: show(int(100 * share))
-        )
+        made, bands, light = _make(mesh, scene, asked, lambda share: show(int(100 * share)))
         show(100)
     seconds = time.perf_counter() - start
     if report.is_open():
@@ -172,12 +169,11 @@ def _make(
     mesh: pv.DataSet | pv.MultiBlock | Solid,
     scene: Scene | None,
     options: ContourOptions,
-    threads: int | None,
     progress: Callable[[float], None],
 ) -> tuple[pv.MultiBlock, Bands, _Light]:
     """Return bands and contours as meshes, the bands as arrays, and their luminance."""
     scene = as_scene(scene)
-    light = _Light(scene, options, threads, progress)
+    light = _Light(scene, options, progress)
     if isinstance(mesh, Solid):
         for option in ("normals", "tangents"):
             if getattr(options, option) is not None:
@@ -208,10 +204,9 @@ class _Light:
         self,
         scene: Scene,
         options: ContourOptions,
-        threads: int | None,
         progress: Callable[[float], None],
     ) -> None:
-        self.scene, self.options, self.threads = scene, options, threads
+        self.scene, self.options = scene, options
         #: Function that is called with the share of the refinement that is done.
         self.progress = progress
         self.last: Shading | None = None
@@ -231,7 +226,6 @@ class _Light:
             normals=normals,
             model=asked.model,
             precision="float64",
-            threads=self.threads,
         )
         return self.last
 
@@ -291,17 +285,15 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
     (lit,), fitted = lighting.light(
         [(inputs, asked)],
         scene,
-        threads=light.threads,
         progress_bar=False,
     )
     invalid = int(np.count_nonzero(~lit.valid[used]))
     if invalid:
         _check.warn(unlit(invalid, len(used)))
-    points = np.array(surface.points, dtype=np.float64)
     carried = {
-        str(name): np.asarray(value, dtype=np.float64).reshape(len(points), -1)
+        str(name): value.reshape(len(value), -1)
         for name, value in surface.point_data.items()
-        if np.issubdtype(value.dtype, np.floating) and len(points)
+        if np.issubdtype(value.dtype, np.floating) and len(value)
     }
     rgb: Array | None = None
     if not len(triangles):
@@ -310,33 +302,36 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
         bands, _ = banding.cut(np.empty((0, 3)), triangles, np.empty((0, 3)), steps)
         bands = dataclasses.replace(bands, error=0.0)
     elif options.tangents is None:
-        found = normals.normals_of(
-            surface, asked.normals, 3, normals.onlooker(scene), warn=angle is None
-        )
-        unit = kernels.unit_rows(np.asarray(found, dtype=np.float64))
-        rows = np.concatenate([points, unit, *carried.values()], axis=1)
+        unit, shown = _normals(surface, asked, inputs, scene, warn=angle is None)
+        del inputs
         valid = lit.valid
-        assert inputs.normals is not None
-        shown = np.asarray(inputs.normals[0 : len(unit)], dtype=np.float64)
         averted: Bools = np.einsum("ij,ij->i", unit, shown) < 0
+        columns = [surface.points, unit, *carried.values()]
         if averted.any():
             # Of an open piece each triangle shows one side, also where the normals between its
             # corners would turn over.
             other = np.count_nonzero(averted[triangles], axis=1) > 1
-            back = np.concatenate([points, -unit, *carried.values()], axis=1)
-            rows, valid = np.concatenate([rows, back]), np.tile(valid, 2)
+            columns = [np.concatenate([column, column]) for column in columns]
+            columns[1][len(unit) :] *= -1
+            valid = np.tile(valid, 2)
             triangles = triangles + len(unit) * other[:, np.newaxis]
+        rows = np.concatenate(columns, axis=1, dtype=np.float64)
+        del unit, shown, averted, columns
         near = any(lamp.position is not None for lamp in scene.lights)
         near |= scene.view is not None and scene.view.position is not None
-        placed = near or scene.depth_cue is not None
-        lit_facets = facets.Facets(rows, triangles, light, valid, placed)
+        lit_facets = facets.Facets(
+            rows, triangles, light, valid, near or scene.depth_cue is not None
+        )
+        del rows, triangles
         bands = refinement.refine(lit_facets, levels, progress=light.progress)
     else:
-        values = np.asarray(lit.luminance[triangles], dtype=np.float64)
-        steps = spacing.steps(levels, float(values.min()), float(values.max()), exact=True)
+        values = np.asarray(lit.luminance, dtype=np.float64)
+        low, high = values[triangles].min(), values[triangles].max()
+        steps = spacing.steps(levels, float(low), float(high), exact=True)
         # Colours are interpolated like the luminance.
-        columns = [points, lit.luminance[:, np.newaxis], *([] if lit.rgb is None else [lit.rgb])]
-        rows = np.concatenate([*columns, *carried.values()], axis=1)
+        light_columns = [lit.luminance[:, np.newaxis], *([] if lit.rgb is None else [lit.rgb])]
+        columns = [surface.points, *light_columns, *carried.values()]
+        rows = np.concatenate(columns, axis=1, dtype=np.float64)
         cut, _ = banding.cut(rows, triangles, values, steps)
         bands = dataclasses.replace(cut, error=steps.error)
         if lit.rgb is not None:
@@ -357,6 +352,16 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
         shape = (len(found), *surface.point_data[name].shape[1:])
         bands_block.point_data[name] = np.ascontiguousarray(found.reshape(shape), dtype=kind)
     return made, bands, light
+
+
+def _normals(
+    surface: pv.PolyData, asked: LightOptions, inputs: ShadingInputs, scene: Scene, *, warn: bool
+) -> tuple[Array, Array]:
+    """Return unit normals of a surface, and normals on the sides that are lit."""
+    found = normals.normals_of(surface, asked.normals, 3, normals.onlooker(scene), warn=warn)
+    assert inputs.normals is not None
+    shown = np.asarray(inputs.normals[0 : len(found)], dtype=np.float64)
+    return kernels.unit_rows(np.asarray(found, dtype=np.float64)), shown
 
 
 def _on_surface(
@@ -389,8 +394,12 @@ def _surface(mesh: pv.DataSet) -> tuple[pv.PolyData, Indices, Indices, Indices |
     bare.SetStrips(surface.GetStrips())
     bare = bare if bare.is_all_triangles else bare.triangulate()
     triangles = np.asarray(bare.regular_faces, dtype=np.intp).reshape(-1, 3)
+    used = np.zeros(surface.n_points, np.bool_)
+    used[triangles] = True
     finite: Bools = np.isfinite(np.asarray(surface.points)).all(axis=1)
-    return surface, triangles[finite[triangles].all(axis=1)], np.unique(triangles), ids
+    if not finite.all():
+        triangles = triangles[finite[triangles].all(axis=1)]
+    return surface, triangles, np.flatnonzero(used), ids
 
 
 def _note(bands: Bands, light: _Light, seconds: float, size: int, *, sampled: bool) -> None:
@@ -440,10 +449,15 @@ def _blocks(
     bands: Bands, name: str, record: Record, rgb: Array | None, *, patches: bool
 ) -> pv.MultiBlock:
     """Return bands and contours as meshes."""
-    points = bands.points[:, :3]
-    size = np.diff(bands.offsets)
-    cells = np.insert(bands.corners, bands.offsets[:-1], size)
-    surface = pv.PolyData(points, faces=cells) if len(size) else pv.PolyData()
+    points = np.ascontiguousarray(bands.points[:, :3])
+    surface = pv.PolyData()
+    if len(bands.values):
+        surface.points = points
+        surface.SetPolys(
+            pv.CellArray.from_arrays(
+                np.asarray(bands.offsets, dtype=int), np.asarray(bands.corners, dtype=int)
+            )
+        )
     surface.cell_data[part_name(name, "band")] = bands.band
     if patches:
         surface.cell_data[part_name(name, "patch")] = bands.patch

@@ -98,7 +98,6 @@ def relief_shadow(
     thickness: float | None = None,
     feature_angle: FeatureAngle = None,
     occluders: pv.PolyData | Sequence[pv.PolyData] = (),
-    threads: int | None = None,
     inplace: bool = False,
     progress_bar: bool = False,
 ) -> MeshT:
@@ -156,8 +155,6 @@ def relief_shadow(
         :func:`vizlight.illuminate`. Default: none is.
     occluders : pyvista.PolyData or sequence of pyvista.PolyData
         Further closed surfaces between the surface and the light.
-    threads : int, optional
-        Number of threads. Default: the processors that this process may use.
     inplace, progress_bar
         As for :func:`vizlight.illuminate`.
 
@@ -198,7 +195,7 @@ def relief_shadow(
     inplace = _check.boolean("inplace", inplace)
     if isinstance(mesh, pv.MultiBlock):
         given: dict[str, Any] = asked.changed()
-        given |= {"sun": sun, "threads": threads, "progress_bar": progress_bar}
+        given |= {"sun": sun, "progress_bar": progress_bar}
         return blocks.each(mesh, lambda one: relief_shadow(one, scene, inplace=inplace, **given))
     if isinstance(mesh, pv.DataSet) and not isinstance(mesh, pv.PolyData | Grid):
         mesh = blocks.surface(mesh, "mesh")
@@ -209,10 +206,10 @@ def relief_shadow(
     scene, lights = _lights(scene)
     own = mesh if asked.raster is not None else split_where_computed(mesh, asked.feature_angle)
     (sunlit,) = with_sky(
-        [own], asked.occlusion, threads, elevation=asked.elevation, factor=asked.exaggeration,
+        [own], asked.occlusion, elevation=asked.elevation, factor=asked.exaggeration,
         up=None if asked.raster is None else ABOVE,
     )  # fmt: skip
-    shadow = caster(own, scene, asked, threads)
+    shadow = caster(own, scene, asked)
     name = asked.name
     each = [f"{name}_{i}" for i in range(len(lights) if asked.components else 0)]
     refuse_overwriting([(mesh, "")], name, components=False, colored=False)
@@ -232,7 +229,7 @@ def relief_shadow(
     if asked.lit:
         fixed = scene.replace(lights=lights)
         shading = engine.shade(
-            shadow.points, None, fixed, normals=shadow.normals, shadow=t, threads=threads,
+            shadow.points, None, fixed, normals=shadow.normals, shadow=t,
             components=asked.components, occlusion=share_of(sunlit, asked.occlusion),
         )  # fmt: skip
 

@@ -332,7 +332,7 @@ def _light_again(
         )
         for source in sources
     ]
-    results, _ = lighting.light(parts, scene, threads=None, progress_bar=False)
+    results, _ = lighting.light(parts, scene, progress_bar=False)
     for source, shading in zip(sources, results, strict=True):
         stored = _check.floats(f"mesh, {name}", source.mesh.point_data[name])
         if stored.shape != shading.luminance.shape:

@@ -77,7 +77,6 @@ def sky(
     openness: bool = False,
     feature_angle: FeatureAngle = "auto",
     name: str = SKY,
-    threads: int | None = None,
     inplace: bool = False,
     progress_bar: bool = False,
 ) -> MeshT:
@@ -97,7 +96,7 @@ def sky(
         Direction of the half space that is the sky. Default: the z axis for a grid of one layer,
         else the sky is all round.
     diameter : float, optional
-        Diameter of lines, in the unit of the mesh. Default: that of a bundle, see
+        Diameter of lines, in the unit of the mesh. Default: as in a bundle, see
         :class:`vizlight.Bundle`.
     openness : bool, default: False
         Whether the array ``<name>_openness`` is added: the mean angle between the zenith and the
@@ -109,8 +108,6 @@ def sky(
         that of its mean normal.
     name : str, default: "sky"
         Name of the result.
-    threads : int, optional
-        Number of threads. Default: the processors that this process may use.
     inplace, progress_bar
         As for :func:`vizlight.illuminate`.
 
@@ -166,7 +163,7 @@ def sky(
     records.refuse_overwriting(chosen, asked.name, [asked.name, asked.name + VALID, *own])
     meshes = [block for block, _ in chosen]
     taken = [_split(block, asked) for block in meshes]
-    found = _found(taken, asked, threads, show=progress_bar)
+    found = _found(taken, asked, show=progress_bar)
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
     lit = [
         own if own is not block or inplace else own.copy()
@@ -184,7 +181,6 @@ def sky(
 def with_sky(
     meshes: Sequence[pv.DataSet],
     occlusion: str | None,
-    threads: int | None = None,
     *,
     elevation: str | None = None,
     factor: float = 1.0,
@@ -194,14 +190,14 @@ def with_sky(
 
     Where its name is "sky" and some mesh has none, it is computed for all, as :func:`sky` does with
     an error of 0.02, lines as voxels; those meshes are shallow copies. ``elevation`` and ``factor``
-    are those of :func:`vizlight.relief_shadow`.
+    are the same as in :func:`vizlight.relief_shadow`.
     """
     if occlusion is not None:
         _warn_if_stale(meshes, occlusion)
     if occlusion != SKY or all(SKY in mesh.point_data for mesh in meshes):
         return list(meshes)
     asked = SkyOptions(error=_error(meshes, FOR_LIGHT), up=up, feature_angle=None)
-    found = _found(meshes, asked, threads, show=False, elevation=elevation, factor=factor)
+    found = _found(meshes, asked, show=False, elevation=elevation, factor=factor)
     lit = [mesh.copy(deep=False) for mesh in meshes]
     _attach(lit, found, asked)
     return lit
@@ -255,7 +251,6 @@ def _warn_if_stale(meshes: Sequence[pv.DataSet], name: str) -> None:
 def _found(
     meshes: Sequence[pv.DataSet],
     asked: SkyOptions,
-    threads: int | None,
     *,
     show: bool,
     elevation: str | None = None,
@@ -266,7 +261,7 @@ def _found(
     with _progress.progress("sky", total, show=show) as report, noted_sky(total) as note:
         found = skies(
             meshes, error=error, up=None if asked.up is None else tuple(asked.up),
-            diameter=asked.diameter, openness=asked.openness, threads=threads,
+            diameter=asked.diameter, openness=asked.openness,
             report=lambda now: report(min(now, total)), elevation=elevation, factor=factor,
         )  # fmt: skip
         note([made.record for made in found])

@@ -350,17 +350,13 @@ def map_colors(
     return np.array(pv.convert_array(mapped), np.uint8).reshape(-1, components)
 
 
-def light_on_colors(
-    sources: Sequence[relight.Source], scene: Scene, *, threads: int | None = None
-) -> list[tuple[Array, Bools]]:
+def light_on_colors(sources: Sequence[relight.Source], scene: Scene) -> list[tuple[Array, Bools]]:
     """Return for each source the light on colours of data, and where there is any.
 
     Parameters
     ----------
     sources : sequence of Source
     scene : Scene
-    threads : int, optional
-        Number of threads.
 
     Returns
     -------
@@ -369,7 +365,7 @@ def light_on_colors(
     """
     plain = display.for_colors(scene)
     parts = [(source.seen_from(scene.view, source.inputs), source.options) for source in sources]
-    shaded, _ = lighting.light(parts, plain, threads=threads, progress_bar=False)
+    shaded, _ = lighting.light(parts, plain, progress_bar=False)
     return [(shading.luminance, shading.valid) for shading in shaded]
 
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import importlib
+import re
 import tempfile
+import threading
 import zipfile
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TextIO
 
 import numpy as np
 import pyvista as pv
@@ -100,21 +102,66 @@ def _of_meshio(path: Path, kinds: Sequence[str] = ()) -> pv.DataSet:
     """Return a mesh by the first reader of meshio that takes a file.
 
     ``meshio.read`` prints what its readers say, and ends the process. Names of parts are left out:
-    those of gmsh are not of the form that PyVista takes, and their numbers are cell data.
+    gmsh's sets are not of the form that PyVista takes, and their numbers are cell data.
     """
     import meshio
 
+    meshio._common.Console, _SAID.texts = _Console, []
     kinds = kinds or meshio.extension_to_filetypes[path.suffix.lower()]
     for kind in kinds:
+        reader = getattr(meshio, kind)
         try:
-            found = getattr(meshio, kind).read(path)
+            if kind == "tecplot":
+                with path.open() as file:
+                    found = reader.read(_Lines(file))
+            else:
+                found = reader.read(path)
         except meshio.ReadError:
             if kind == kinds[-1]:
                 raise
         else:
             break
+    if _SAID.texts:
+        more = f" (the first of {len(_SAID.texts)} warnings)" if len(_SAID.texts) > 1 else ""
+        _check.warn(f"file: '{path}': {_SAID.texts[0]}{more}")
     found.cell_sets = {}
     return pv.from_meshio(found)
+
+
+#: What meshio said to each thread.
+_SAID = threading.local()
+
+
+class _Console:
+    """In place of the console on which meshio prints: what is said there is kept, by thread."""
+
+    def __init__(self, **_options: object) -> None:
+        pass
+
+    def print(self, text: str, **_options: object) -> None:
+        """Keep a text without its marks of style."""
+        plain = " ".join(re.sub(r"\[/?[a-z]+\]|Warning:", "", text).split())
+        _SAID.texts = [*getattr(_SAID, "texts", ()), plain]
+
+
+class _Lines:
+    """A text whose reader looks for lines behind its end without end."""
+
+    def __init__(self, file: TextIO) -> None:
+        self.read, self.tell, self.seek = file.read, file.tell, file.seek
+        self._next, self.past = file.readline, 0
+
+    def readline(self) -> str:
+        """Return the next line, an empty text behind the end."""
+        line = self._next()
+        self.past += not line
+        if self.past > _PAST:
+            raise EOFError("its end is missing")
+        return line
+
+
+#: Number of times that a reader may ask for a line behind the end.
+_PAST = 100
 
 
 def _refuse_narrow(path: Path) -> None:

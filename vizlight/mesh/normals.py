@@ -209,7 +209,7 @@ def split_values(mesh: pv.PolyData, name: str) -> tuple[pv.PolyData, Indices]:
     """Return a surface with points split where cells of different values meet, and the origins.
 
     The origin of a point is the point that it was. Values that are averaged from cells to points
-    are then those of the cells.
+    are then the cells' own.
     """
     values = np.asarray(mesh.cell_data[name])[_rows(mesh)][mesh.n_verts + mesh.n_lines :]
     ids, ends, _ = _corners(mesh, mesh)

@@ -23,6 +23,10 @@ if TYPE_CHECKING:
     from vizlight.shading.results import Record
 
 
+#: In place of a digest of arrays of a piece, which stay vizlight's own where pieces are joined.
+ANY = "any"
+
+
 def attach(
     mesh: pv.DataSet,
     name: str,
@@ -48,15 +52,15 @@ def write(
 ) -> None:
     """Attach the record of an array, with digests of the point arrays that it tells of.
 
-    ``arrays`` has their names; a dict also has what they hold. ``common`` is the JSON text of other
-    entries, which many records have in common.
+    ``arrays`` has their names; a dict also has what they hold, or None for :data:`ANY`. ``common``
+    is the JSON text of other entries, which many records have in common.
     """
     if not isinstance(arrays, dict):
         data = point_data(mesh)
         arrays = {own: as_numpy(data.GetAbstractArray(own)) for own in arrays}
     # VTK has no columns of width 1.
     digests = {
-        own: digest(rows[:, 0] if rows.shape[1:] == (1,) else rows)
+        own: ANY if rows is None else digest(rows[:, 0] if rows.shape[1:] == (1,) else rows)
         for own, rows in sorted(arrays.items())
     }
     text = json.dumps(record | {"arrays": digests})
@@ -110,13 +114,17 @@ def count(record: Mapping[str, object], name: str, most: int) -> int:
 
 
 def made(mesh: pv.DataSet, name: str) -> set[str]:
-    """Return the names of the point arrays attached under a name that are unchanged since."""
+    """Return the names of the point arrays attached under a name that are unchanged since.
+
+    Those of pieces count whatever became of them.
+    """
     claimed: dict[str, str] = (read(mesh, name) or {}).get("arrays", {})
     data = point_data(mesh)
     return {
         own
         for own, made_as in claimed.items()
-        if data.HasArray(own) and digest(as_numpy(data.GetAbstractArray(own))) == made_as
+        if data.HasArray(own)
+        and (made_as == ANY or digest(as_numpy(data.GetAbstractArray(own))) == made_as)
     }
 
 
@@ -182,7 +190,8 @@ def provenance(mesh: pv.DataSet | pv.MultiBlock, /, name: str = "luminance") -> 
         mesh: ``illuminate(mesh, Scene.from_dict(p["scene"]), **p["options"])``; ``project`` takes
         the scene by ``scene=``, ``relief_day`` takes none. Meshes and arrays of more than 100
         numbers among the options are replaced by a description. ``p["arrays"]`` holds a digest of
-        each array that was attached; only arrays that still have it are replaced by new light.
+        each array that was attached, or "any" of pieces, which may be joined; only arrays that
+        still have it are replaced by new light.
 
     Raises
     ------

@@ -46,7 +46,7 @@ class Sky(NamedTuple):
     Attributes
     ----------
     share : ndarray of float32, shape (N,)
-        Share of the sky that each point sees; a point without a sky has that of the nearest point.
+        Share of the sky that each point sees; one without a sky has the nearest point's.
     valid : ndarray of bool, shape (N,)
         Whether a point has a sky.
     openness : ndarray of float32, shape (N,), or None
@@ -86,7 +86,6 @@ def skies(
     up: tuple[float, ...] | None = None,
     diameter: float | None = None,
     openness: bool = False,
-    threads: int | None = None,
     report: Callable[[int], None] = lambda _: None,
     elevation: str | None = None,
     factor: float = 1.0,
@@ -104,7 +103,6 @@ def skies(
         Diameter of lines.
     openness : bool
         Whether fields have their openness, too.
-    threads : int, optional
     report : callable
         Function of the number of points, or of azimuths of a field, that are done.
     elevation, factor
@@ -125,12 +123,12 @@ def skies(
         if up is not None and not _is_above(up):
             remedy = "leave it out, or pass the surface of the grid"
             raise ValueError(_check.message("up", "(0, 0, 1) for a height field", up, remedy))
-        found[number] = _of_field(field, error, openness=openness, threads=threads, report=report)
+        found[number] = _of_field(field, error, openness=openness, report=report)
     if shapes and openness:
         remedy = "leave it out"
         raise ValueError(_check.message("openness", "a height field", "another mesh", remedy))
     if shapes:
-        made = _by_rays([*shapes.values()], error, up, diameter, threads, report)
+        made = _by_rays([*shapes.values()], error, up, diameter, report)
         found |= dict(zip(shapes, made, strict=True))
     return [found[number] for number in range(len(meshes))]
 
@@ -163,16 +161,13 @@ def _of_field(
     error: float,
     *,
     openness: bool,
-    threads: int | None,
     report: Callable[[int], None],
 ) -> Sky:
     """Return the sky of a height field."""
-    made = fields.sky(field.x, field.y, field.z, error=error, threads=threads, progress=report)
+    made = fields.sky(field.x, field.y, field.z, error=error, progress=report)
     opened = None
     if openness:
-        other = fields.sky(
-            field.x, field.y, field.z, error=error, openness=True, threads=threads, progress=report
-        )
+        other = fields.sky(field.x, field.y, field.z, error=error, openness=True, progress=report)
         opened = np.nan_to_num(field.to_points(other.share))
     share = field.to_points(made.share)
     valid: Bools = np.isfinite(share)
@@ -187,7 +182,7 @@ def _of_field(
 
 
 def _filled(share: Array, valid: Bools, points: Array) -> Array:
-    """Return shares in which points without a sky have that of the nearest point with one."""
+    """Return shares where points without a sky have the nearest point's."""
     if valid.all():
         return share
     share = np.where(valid, share, 1.0).astype(np.float32)
@@ -203,7 +198,6 @@ def _by_rays(
     error: float,
     up: tuple[float, ...] | None,
     diameter: float | None,
-    threads: int | None,
     report: Callable[[int], None],
 ) -> list[Sky]:
     """Return the skies of meshes that hide one another's sky."""
@@ -218,12 +212,12 @@ def _by_rays(
     thick = thick if diameter is None else diameter
     among = medium is not None and error >= VOXELS and len(lines) == len(meshes) and up is None
     if among and medium is not None and medium.middles.shape[1] > MANY:
-        return [_in_medium(mesh, medium, thick, threads) for mesh in meshes]
+        return [_in_medium(mesh, medium, thick) for mesh in meshes]
     above = [ABOVE if up is None and is_grid(mesh) else up for mesh in meshes]
     shapes = [_shape(mesh, thick, axis) for mesh, axis in zip(meshes, above, strict=True)]
     hidden = _occluders(shapes)
     if among and medium is not None:
-        found = [_in_medium(mesh, medium, thick, threads) for mesh in meshes]
+        found = [_in_medium(mesh, medium, thick) for mesh in meshes]
         worst = [_missed(sky, shape, hidden) for sky, shape in zip(found, shapes, strict=True)]
         if max(worst) <= error:
             return [
@@ -300,7 +294,6 @@ def in_medium(
     mesh: pv.DataSet,
     lines: tuple[media.Medium, float],
     normals: Array | None = None,
-    threads: int | None = None,
 ) -> Array:
     """Return the share of light from all sides at points of a surface, or of lines, among lines.
 
@@ -311,7 +304,6 @@ def in_medium(
     lines : Medium, float
         Lines, and their diameter.
     normals : ndarray, shape (N, 3), optional
-    threads : int, optional
     """
     medium, thick = lines
     points = np.asarray(mesh.points)
@@ -320,13 +312,13 @@ def in_medium(
     else:
         lengths = polylines.of_points(mesh, media.line_lengths)
         targets = medium.targets(points, polylines.line_tangents(mesh), lengths)
-    return medium.sky(targets, thick, SIDES, threads=threads)
+    return medium.sky(targets, thick, SIDES)
 
 
-def _in_medium(mesh: pv.DataSet, medium: media.Medium, thick: float, threads: int | None) -> Sky:
+def _in_medium(mesh: pv.DataSet, medium: media.Medium, thick: float) -> Sky:
     """Return the sky of lines inside a medium of lines, by voxels."""
     points, tangents = np.asarray(mesh.points), polylines.line_tangents(mesh)
-    share = in_medium(mesh, (medium, thick), threads=threads)
+    share = in_medium(mesh, (medium, thick))
     valid: Bools = np.any(tangents, axis=1) & np.isfinite(points).all(axis=1)
     record: Record = {
         "method": "voxels", "error": None, "directions": SIDES, "rays": 0, "diameter": thick,

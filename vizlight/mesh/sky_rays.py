@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 #: Distance of starts from the surface as a share of the size of the scene: what float32 resolves.
 OFFSET = 2e-6
-#: Distance of a place beside a point, as a share of that of the middle of its triangle.
+#: Distance of a place beside a point, as a share of the distance of its triangle's middle.
 BESIDE = 0.05
 #: Distance from a triangle at which VTK finds a hit: at 0 rays pass through edges.
 TOLERANCE = 1e-9

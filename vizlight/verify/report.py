@@ -237,11 +237,11 @@ def _lines(run: Run) -> list[str]:
             text += f"; {_percent(run.visible)} are off by more than 1/255"
         if run.visible > unseen(run.places):
             if run.finer:
-                text += f": cells 1/{run.finer} as long, or refine=1/255, would do"
+                text += f": cells 1/{run.finer} as long, or refining to 1/255, would do"
             else:
                 text += (
                     ": cells 1/128 as long would not do; "
-                    "refine=1/255 leaves only places where the light jumps"
+                    "refining to 1/255 leaves only places where the light jumps"
                 )
         found.append(text)
     if run.unmeasured:
@@ -536,7 +536,7 @@ def is_open() -> bool:
 
 @contextlib.contextmanager
 def tinted() -> Iterator[None]:
-    """Record light in this context as that of colours, of points that were lit before."""
+    """Record light in this context as the colours' light, of points that were lit before."""
     token = _TINTED.set(True)
     try:
         yield

@@ -34,6 +34,8 @@ PARTS, MOST = 2048, 32
 NARROW, JUMP = 2.0**-20, 1e-3
 #: Share of the edge below which a contour point is merged with the corner.
 SNAP = 1e-11
+#: Number of triangles that are taken at once.
+BLOCK = 1 << 15
 
 
 @dataclass(frozen=True)
@@ -175,8 +177,8 @@ def cut(
         Positions.
     triangles : ndarray of int, shape (T, 3)
         Indices of corners.
-    values : ndarray, shape (T, 3)
-        Luminance at the corners; it may differ between both sides of a crease.
+    values : ndarray, shape (T, 3) or (P,)
+        Luminance at the corners, which may differ between both sides of a crease, or at the points.
     steps : Steps
         Luminance of contours and bands.
     patch : ndarray of int, shape (T,), optional
@@ -207,42 +209,49 @@ def cut(
     side they come from: a closed surface stays closed. Triangles without contour points are taken
     over as they are.
     """
-    count = len(triangles)
-    patch = np.zeros(count, np.intp) if patch is None else np.asarray(patch, np.intp)
     levels = steps.edges[: max(len(steps.edges) - 1, 1)]
-    bands = np.searchsorted(levels, values, side="left")
-    touched = _touched(triangles, bands, patch)
+    lowest, touched = _touched(triangles, values, levels, patch)
     rows, whole = np.flatnonzero(touched), np.flatnonzero(~touched)
+    patch = np.broadcast_to(np.intp(0), len(triangles)) if patch is None else patch
     pieces, new, lines, line_level = _pieces(
-        points, triangles[rows], values[rows], bands[rows], levels, patch[rows], place, luminance,
-        Crossings() if known is None else known,
+        points, triangles[rows], at_corners(values, triangles, rows), levels, patch[rows], place,
+        luminance, Crossings() if known is None else known,
     )  # fmt: skip
+    # The triangles that stay whole follow the pieces of the others.
     triangle = np.concatenate([rows[pieces.triangle], whole])
-    order = np.argsort(triangle, kind="stable")
-    offsets, corners = _reordered(
-        np.concatenate([np.diff(pieces.offsets), np.full(len(whole), 3)]),
-        np.concatenate([pieces.corners, triangles[whole].ravel()]),
-        order,
-    )
-    triangle = triangle[order]
-    band = np.concatenate([pieces.band, bands[whole, 0]])[order]
-    made = np.concatenate([points, new])
-    used, corners, lookup = _compact(corners, len(made))
+    band = np.concatenate([pieces.band, lowest[whole]])
+    offsets = np.empty(len(triangle) + 1, np.intp)
+    offsets[: len(pieces.offsets)] = pieces.offsets
+    offsets[len(pieces.offsets) :] = pieces.offsets[-1] + 3 * np.arange(1, len(whole) + 1)
+    corners = np.empty(offsets[-1], np.intp)
+    corners[: pieces.offsets[-1]] = pieces.corners
+    np.take(triangles, whole, axis=0, out=corners[pieces.offsets[-1] :].reshape(-1, 3))
+    count = len(points)
+    used, lookup = _compact(corners, count + len(new))
+    old = np.searchsorted(used, count)
+    made = np.empty((len(used), points.shape[1]))
+    np.take(points, used[:old], axis=0, out=made[:old])
+    np.take(new, used[old:] - count, axis=0, out=made[old:])
     lines = lookup[lines]
     kept = np.all(lines >= 0, axis=1) & (lines[:, 0] != lines[:, 1])
     cut_bands = Bands(
-        points=made[used],
+        points=made,
         offsets=offsets,
         corners=corners,
         band=band,
         values=steps.values[band],
-        patch=patch[triangle],
+        patch=np.broadcast_to(patch[:1], len(band)) if patch.strides == (0,) else patch[triangle],
         lines=lines[kept],
         line_levels=levels[line_level[kept]],
         steps=steps,
         error=float("nan"),
     )
     return cut_bands, triangle
+
+
+def at_corners(values: Array, triangles: Indices, rows: slice | Indices) -> Array:
+    """Return the values at the corners of some triangles, from values at corners or at points."""
+    return np.asarray(values[rows] if values.ndim == 2 else values[triangles[rows]])
 
 
 class Crossings:
@@ -296,15 +305,14 @@ class _Pieces:
 
 
 def _pieces(
-    points: Array, triangles: Indices, values: Array, bands: Indices, levels: Array,
-    patch: Indices, place: Callable[[Indices, Indices, Array], Array] | None,
-    luminance: Luminance | None, known: Crossings,
+    points: Array, triangles: Indices, values: Array, levels: Array, patch: Indices,
+    place: Callable[[Indices, Indices, Array], Array] | None, luminance: Luminance | None,
+    known: Crossings,
 ) -> tuple[_Pieces, Array, Indices, Indices]:  # fmt: skip
     """Return the pieces of triangles, the contour points, and the contours with their levels.
 
     The contour points follow the given points.
     """
-    count = len(triangles)
     side, edge, ends, owner, side_values = _sides(triangles, values, patch)
     at = np.searchsorted(levels, side_values, side="left")
     first, last = at.min(axis=1), at.max(axis=1)
@@ -336,20 +344,35 @@ def _pieces(
         new = place(a[between], b[between], share[between])
     starts = np.searchsorted(edge[of_side], np.arange(len(ends) + 1))
 
-    turn = np.argsort(bands, axis=1, kind="stable")
-    rows = np.arange(count)[:, np.newaxis]
-    flipped = ((turn[:, 1] - turn[:, 0]) % 3) == 2
-    sorted_band, sorted_corner = bands[rows, turn], triangles[rows, turn]
-    record = _walk(
-        sorted_corner, sorted_band, turn, side, edge, ends, starts, of_side, level, vertex
+    parts = []
+    for begin in range(0, max(len(triangles), 1), BLOCK):
+        block = slice(begin, begin + BLOCK)
+        bands = np.searchsorted(levels, values[block], side="left")
+        turn = np.argsort(bands, axis=1, kind="stable")
+        rows = np.arange(len(bands))[:, np.newaxis]
+        flipped = ((turn[:, 1] - turn[:, 0]) % 3) == 2
+        triangle, band, position, corner, crossed = _walk(
+            triangles[block][rows, turn], bands[rows, turn], turn, side[block], edge, ends, starts,
+            of_side, level, vertex,
+        )  # fmt: skip
+        position = np.where(flipped[triangle], -position, position)
+        order = _sorted(triangle, band, position)
+        size, corners, first_row = _polygons(triangle[order], band[order], corner[order])
+        which = order[first_row]
+        parts.append(
+            (
+                size,
+                corners,
+                band[which],
+                begin + triangle[which],
+                *_lines(triangle, crossed, corner),
+            )
+        )
+    size, corners, band, triangle, lines, line_level = (
+        np.concatenate(part) for part in zip(*parts, strict=True)
     )
-    triangle, band, position, corner, crossed = record
-    position = np.where(flipped[triangle], -position, position)
-    order = _sorted(triangle, band, position)
-    offsets, corners, first_row = _polygons(triangle[order], band[order], corner[order])
-    which = order[first_row]
-    lines, line_level = _lines(triangle, crossed, corner)
-    return _Pieces(offsets, corners, band[which], triangle[which]), new, lines, line_level
+    offsets = np.concatenate([[0], np.cumsum(size)])
+    return _Pieces(offsets, corners, band, triangle), new, lines, line_level
 
 
 def _sorted(triangle: Indices, band: Indices, position: Indices) -> Indices:
@@ -362,36 +385,41 @@ def _sorted(triangle: Indices, band: Indices, position: Indices) -> Indices:
     return np.lexsort((position, band, triangle))
 
 
-def _touched(triangles: Indices, bands: Indices, patch: Indices) -> Bools:
-    """Return which triangles have contour points on their edges, or too few corners."""
-    a, b, c = triangles.T
-    touched: Bools = (a == b) | (b == c) | (c == a)
-    own = bands != np.roll(bands, -1, axis=1)
-    touched |= own.any(axis=1)
-    if len(patch) and np.any(patch != patch[0]) and np.any(own):
+def _touched(
+    triangles: Indices, values: Array, levels: Array, patch: Indices | None
+) -> tuple[Indices, Bools]:
+    """Return the band of each triangle's first corner, and which triangles are not left whole.
+
+    These have contour points on their edges, or too few corners.
+    """
+    lowest = np.empty(len(triangles), np.intp)
+    own = np.empty((len(triangles), 3), np.bool_)
+    touched = np.empty(len(triangles), np.bool_)
+    for start in range(0, len(triangles), BLOCK):
+        rows = slice(start, start + BLOCK)
+        bands = np.searchsorted(levels, at_corners(values, triangles, rows), side="left")
+        lowest[rows] = bands[:, 0]
+        own[rows] = bands != np.roll(bands, -1, axis=1)
+        a, b, c = triangles[rows].T
+        touched[rows] = (a == b) | (b == c) | (c == a) | own[rows].any(axis=1)
+    if patch is not None and np.any(patch != patch[:1]) and np.any(own):
         # At a crease the contour points of one side are corners on the other one, too.
         stop = np.roll(triangles, -1, axis=1)
         size = int(triangles.max(initial=0)) + 1
         codes = np.minimum(triangles, stop) * size + np.maximum(triangles, stop)
         touched |= np.isin(codes, codes[own]).any(axis=1)
-    return touched
+    return lowest, touched
 
 
-def _reordered(size: Indices, corners: Indices, order: Indices) -> tuple[Indices, Indices]:
-    """Return the offsets and the corners of polygons in another order."""
-    start = np.cumsum(size) - size
-    size = size[order]
-    offsets = np.concatenate([[0], np.cumsum(size)]).astype(np.intp)
-    step = np.repeat(start[order] - offsets[:-1], size)
-    return offsets, corners[step + np.arange(len(step))]
-
-
-def _compact(corners: Indices, count: int) -> tuple[Indices, Indices, Indices]:
-    """Return the points that are used, the corners as indices of these, and the new indices."""
+def _compact(corners: Indices, count: int) -> tuple[Indices, Indices]:
+    """Return the points that are used and the new indices, which the corners get in place."""
     there = np.zeros(count, np.bool_)
     there[corners] = True
     lookup = np.where(there, np.cumsum(there) - 1, -1)
-    return np.flatnonzero(there), lookup[corners], lookup
+    for start in range(0, len(corners), BLOCK):
+        rows = slice(start, start + BLOCK)
+        corners[rows] = lookup[corners[rows]]
+    return np.flatnonzero(there), lookup
 
 
 def weld(bands: Bands, clusters: Indices) -> Bands:
@@ -411,15 +439,15 @@ def weld(bands: Bands, clusters: Indices) -> Bands:
     """
     size = np.diff(bands.offsets)
     owner = np.repeat(np.arange(len(size)), size)
-    offsets, corners, first = _polygons(owner, owner, clusters[bands.corners])
+    size, corners, first = _polygons(owner, owner, clusters[bands.corners])
     cell = owner[first]
-    used, corners, lookup = _compact(corners, len(bands.points))
+    used, lookup = _compact(corners, len(bands.points))
     lines = lookup[clusters[bands.lines]]
     kept = lines[:, 0] != lines[:, 1]
     return dataclasses.replace(
         bands,
         points=bands.points[used],
-        offsets=offsets,
+        offsets=np.concatenate([[0], np.cumsum(size)]),
         corners=corners,
         band=bands.band[cell],
         values=bands.values[cell],
@@ -652,9 +680,9 @@ def _walk(
 def _polygons(
     triangle: Indices, band: Indices, corner: Indices
 ) -> tuple[Indices, Indices, Indices]:
-    """Return offsets, corners and the first row of polygons with at least three corners."""
+    """Return size, corners and the first row of polygons with at least three corners."""
     if not len(triangle):
-        return np.zeros(1, np.intp), corner, triangle
+        return triangle, corner, triangle
     new = np.ones(len(triangle), np.bool_)
     new[1:] = (triangle[1:] != triangle[:-1]) | (band[1:] != band[:-1])
     group = np.cumsum(new) - 1
@@ -668,8 +696,7 @@ def _polygons(
     size = np.bincount(group[kept], minlength=len(first))
     good = size >= 3
     kept &= good[group]
-    offsets = np.concatenate([[0], np.cumsum(size[good])])
-    return offsets.astype(np.intp), corner[kept], first[good]
+    return size[good], corner[kept], first[good]
 
 
 def _lines(triangle: Indices, crossed: Indices, corner: Indices) -> tuple[Indices, Indices]:

@@ -44,10 +44,11 @@ class Facets:
         self.points, self.triangles, self.lit = points, triangles, lit
         self._light = luminance
         self._first = 0 if placed else 3
-        self._values = np.zeros(len(points))
         used = np.zeros(len(points), np.bool_)
         used[triangles] = True
-        self._values[used] = self.light(points[used])
+        found = self.light(points[used])
+        self._values = np.full(len(points), found.min(initial=np.inf))
+        self._values[used] = found
 
     def light(self, points: Array) -> Array:
         """Return the luminance of rows of points."""
@@ -60,14 +61,14 @@ class Facets:
         return np.asarray(self._light(places, normals), dtype=np.float64)
 
     def corners(self) -> Array:
-        """Return the luminance at the corners of all triangles."""
-        return np.asarray(self._values[self.triangles])
+        """Return the luminance at the points."""
+        return self._values
 
     def cut(
         self, values: Array, steps: Steps, known: Crossings, rows: Indices | None
     ) -> tuple[Bands, Indices]:
         """Return the bands, and the triangle that each polygon was cut from."""
-        rows_of = np.ascontiguousarray(self.points[:, self._first : 6])
+        rows_of = self.points[:, self._first : 6]
 
         def along(a: Indices, b: Indices, share: Array, _: Indices) -> Array:
             start = rows_of[a]
@@ -75,9 +76,11 @@ class Facets:
             return self._lit(places).reshape(share.shape)
 
         if rows is None:
-            rows = np.arange(len(self.triangles))
+            return banding.cut(
+                self.points, self.triangles, values, steps, luminance=along, known=known
+            )
         made, triangle = banding.cut(
-            self.points, self.triangles[rows], values[rows], steps, luminance=along, known=known
+            self.points, self.triangles[rows], values, steps, luminance=along, known=known
         )
         return made, rows[triangle]
 

@@ -105,7 +105,7 @@ class LitTriangles(Protocol):
         """Indices of the corners of the current triangles."""
 
     def corners(self) -> Array:
-        """Return the luminance at the corners of all triangles."""
+        """Return the luminance at the corners of all triangles, or at their points."""
 
     def cut(
         self, values: Array, steps: Steps, known: Crossings, rows: Indices | None
@@ -229,8 +229,11 @@ def _peaks(
     which determines the steps, is found more exactly. ``highest`` holds the highest luminance of
     the first triangles, as far as it is known; it is returned for all that are searched.
     """
-    count = len(values)
-    top = values.max(axis=1, initial=-np.inf)
+    count = len(surface.triangles)
+    top = np.empty(count)
+    for start in range(0, count, BLOCK):
+        block = slice(start, start + BLOCK)
+        top[block] = banding.at_corners(values, surface.triangles, block).max(axis=1)
     ceiling = top.max(initial=-np.inf) + STILL * allowed
     if count > ASKED:
         rows = np.argpartition(top, -BRIGHTEST)[-BRIGHTEST:]
@@ -409,7 +412,7 @@ def measured(
         Columns of points that ``light`` takes.
     """
     worst = np.zeros(len(bands.values))
-    taken = np.ascontiguousarray(bands.points.T[columns])
+    taken = bands.points[:, columns].T
     first = 0
     while first < len(worst):
         last = int(np.searchsorted(bands.offsets, bands.offsets[first] + BLOCK, side="right")) - 1
