@@ -190,11 +190,16 @@ def test_grids_have_their_light_too():
     np.testing.assert_array_equal(a, b)
 
 
-@pytest.mark.parametrize("kind", ["surface", "volume"])
+@pytest.mark.parametrize("kind", ["surface", "volume", "image", "explicit"])
 def test_creases_are_sharp_and_round_shapes_are_left_whole(kind):
-    box = pv.ImageData(dimensions=(5, 5, 5)).cast_to_unstructured_grid()
+    box = pv.ImageData(dimensions=(5, 5, 5))
     box["value"] = np.arange(box.n_points) * 1.0
-    box = box if kind == "volume" else box.extract_surface(algorithm=None)
+    if kind == "surface":
+        box = box.extract_surface(algorithm=None)
+    elif kind == "volume":
+        box = box.cast_to_unstructured_grid()
+    elif kind == "explicit":
+        box = box.cast_to_structured_grid().cast_to_explicit_structured_grid()
     options = {"scene": Scene(), "scalars": "value", "cmap": ["white", "white"]}
     colors = []
     for angle in ("auto", None):

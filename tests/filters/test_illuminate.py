@@ -488,3 +488,18 @@ def test_a_scan_is_lit_by_planes_through_its_neighbours(kind):
     found = illuminate(kind(ball.points), scene)["luminance"]
     front = ball.points @ (1, 1, 1) > 0.2  # what is not averted
     assert np.abs(known - found)[front].max() < 0.05
+
+
+def test_normals_that_contradict_the_faces_are_told_and_believed():
+    ball = pv.Sphere()
+    good = vizlight.illuminate(ball, SCENE)
+    ball["Normals"] *= -1
+    turned = vizlight.illuminate(ball, SCENE)
+    np.testing.assert_array_equal(turned["luminance"], good["luminance"])
+    ball["Normals"][:] = (0, 0, 1)
+    for mesh in (ball, pv.MultiBlock([pv.Cube(), ball])):
+        words = r"lean from its faces by .* 4\d% .* clear them"
+        with pytest.warns(UserWarning, match=words) as told:
+            lit = vizlight.illuminate(mesh, SCENE, components=True)
+        assert len(told) == 1
+    assert np.ptp(lit[1]["diffuse"]) < 0.05 < np.ptp(good["luminance"])

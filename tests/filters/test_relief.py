@@ -451,3 +451,21 @@ def test_the_shadow_does_not_replace_the_light(name, options):
     with pytest.raises(ValueError, match="name: expected a name that the light does not use"):
         vizlight.relief_shadow(field, SCENE, lit=True, name=name, **options)
     assert field.array_names == ["h"]
+
+
+def test_shadows_that_end_within_large_triangles_are_told():
+    corners = [[0, 0, 0], [20, 0, 0], [20, 1, 0], [2, 1, 0], [2, 3, 0], [0, 3, 0]]
+    section = pv.PolyData(np.array(corners, float), faces=[6, 0, 1, 2, 3, 4, 5])
+    step = section.triangulate().extrude((0, 0, 3), capping=True).triangulate().clean()
+    scene = Scene(lights=Light(direction=(-2, 1, 0.2)))
+    with pytest.warns(UserWarning, match=r"shadows end within triangles .*subdivide\(3"):
+        relief_shadow(step, scene, feature_angle=30)
+    fine = relief_shadow(step.subdivide(3, "linear"), scene, feature_angle=30)
+    assert 0 < fine["t"].mean() < 1
+    # A shadow ends on the long triangles beside a ridge, whose own are as small as the raster.
+    x = np.array([0, 1, 1.1, 1.2, 1.3, 8])
+    grid = pv.StructuredGrid(*np.meshgrid(x, [0, 4.0, 8.0], indexing="ij"), np.zeros((6, 3)))
+    grid.points[:, 2] = np.where(np.isclose(grid.points[:, 0], 1.1), 0.4, 0)
+    open_ = grid.extract_surface(algorithm=None).triangulate()
+    with pytest.warns(UserWarning, match="shadows end within triangles"):
+        relief_shadow(open_, Scene(lights=Light(direction=(-1, 0, 1))), raster=0.1)

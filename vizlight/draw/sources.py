@@ -65,7 +65,7 @@ def _split(mesh: pv.DataSet, asked: LightOptions) -> pv.DataSet:
         bare = mesh.copy(deep=False)
         bare.point_data.active_normals_name = None
     surface = bare
-    if isinstance(bare, pv.UnstructuredGrid):
+    if isinstance(bare, pv.UnstructuredGrid) or bare.GetMaxSpatialDimension() == 3:
         surface = hull.outer_surface(bare)[0]
     if not isinstance(surface, pv.PolyData):
         return mesh

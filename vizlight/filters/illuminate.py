@@ -153,7 +153,8 @@ def illuminate(
     UserWarning
         Once, with the count, if points could not be lit: a zero, infinite or NaN vector,
         dependent tangents, or no normal. They have the ambient light. Points inside a volume
-        are not counted. Once, if many edges are sharp and normals are averaged across them.
+        are not counted. Once, if many edges are sharp and normals are averaged across them; once,
+        if the normals of a mesh lean from its faces by more than 60 degrees on a quarter of it.
 
     Notes
     -----
@@ -317,6 +318,12 @@ def _warn_of_normals(
         mesh for mesh, own in zip(meshes, sides, strict=True) if own is not None and own.computed
     ]
     normals.warn_of_rounding(computed)
+    given = [
+        mesh
+        for mesh, own in zip(meshes, sides, strict=True)
+        if own is not None and not own.computed and options.positions is None
+    ]
+    normals.warn_of_contradiction(given, options.normals)
 
 
 def separate_copy(mesh: MeshT) -> MeshT:

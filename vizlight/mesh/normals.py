@@ -48,6 +48,9 @@ ROUNDED = 0.05
 #: Number of points from which normals are kept. Normals of smaller meshes are computed for many at
 #: once, sooner than what is kept is checked.
 FEWEST = 256
+#: Numbers of meshes, and of triangles of each, whose normals are compared with the faces, and share
+#: of the area from which they contradict them.
+MOST_MESHES, MOST_FACES, CONTRADICT = 16, 4096, 0.25
 _NONE = np.empty(0)
 
 
@@ -98,6 +101,34 @@ def warn_of_rounding(meshes: Sequence[pv.DataSet]) -> None:
             "of the spacing between them, and normals computed from them are off by as much; "
             "subtract an origin from them before they become float32, or keep them in float64"
         )
+
+
+def warn_of_contradiction(meshes: Sequence[pv.DataSet], value: object) -> None:
+    """Warn once if many of the normals that surfaces have are none of their faces.
+
+    A sign is no contradiction: light takes the side that is seen.
+    """
+    for mesh in meshes[:MOST_MESHES]:
+        if not isinstance(mesh, pv.PolyData) or not has_faces(mesh):
+            continue
+        rows = given_normals(mesh, value, 3)
+        if rows is None:
+            continue
+        corners = triangles(mesh)
+        corners = corners[:: max(len(corners) // MOST_FACES, 1)]
+        a, b, c = np.asarray(places(mesh)[corners], np.float64).transpose(1, 0, 2)
+        faces, own = np.cross(b - a, c - a), np.asarray(rows[corners], np.float64).mean(axis=1)
+        area, size = (np.sqrt(np.einsum("ij,ij->i", x, x)) for x in (faces, own))
+        with np.errstate(invalid="ignore", over="ignore"):
+            off = np.abs(np.einsum("ij,ij->i", faces, own)) < area * size / 2
+            share = float(np.sum(area, where=off) / np.sum(area))
+        if share > CONTRADICT:
+            _check.warn(
+                f"the mesh has normals that lean from its faces by more than 60 degrees on "
+                f"{share:.0%} of the surface, and is lit by them; if they are wrong, clear them: "
+                "mesh.point_data.active_normals_name = None"
+            )
+            return
 
 
 def onlooker(scene: Scene) -> View | None:
