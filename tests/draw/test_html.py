@@ -278,31 +278,6 @@ def test_the_page_reads_the_numbers_that_were_packed(browser, tmp_path):
     assert np.abs(rows - mesh["n"]).max() < 5e-5
 
 
-@needs_browser
-def test_page_has_the_picture_of_the_plotter(browser, tmp_path):
-    mesh, scene = torus(), Scene(lights=[FAR, NEAR], material=SHINY)
-    plotter = pv.Plotter(off_screen=True, window_size=list(SIZE.values()))
-    plotter.background_color = "black"
-    plotter.render_window.SetMultiSamples(4)
-    plotter.vizlight.add_mesh(mesh, scene=scene, normals="n", light="points")
-    plotter.camera = first_camera()
-    path = vizlight.live_html(
-        mesh, scene, tmp_path / "a.html", normals="n", camera=plotter.camera, background="black"
-    )
-    page, _ = opened(browser, path)
-    for degrees in (0, 60):
-        plotter.camera.azimuth += degrees
-        plotter.renderer.reset_camera_clipping_range()
-        turn(page, degrees)
-        plotter.render()
-        expected = np.array(plotter.screenshot(None, return_img=True), dtype=np.int16)
-        error = np.abs(shot(page) - expected)
-        assert error.mean() <= 1
-        assert np.quantile(error.max(axis=-1), 0.99) <= 4
-    plotter.close()
-    page.close()
-
-
 def plain_page(tmp_path, **options):
     ball = pv.Sphere(theta_resolution=60, phi_resolution=60)
     scene = Scene(lights=Light(direction=(1, 0.2, 0.3)), material=SHINY)

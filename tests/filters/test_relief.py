@@ -10,7 +10,6 @@ import pytest
 import pyvista as pv
 from fields import X, Y, Z, grids, level
 from lamps import SHINY, SHOULDER, shiny
-from scipy.interpolate import RegularGridInterpolator
 
 import vizlight
 from studies.relief import hills
@@ -282,34 +281,6 @@ def test_shadows_are_as_large_as_hard_ones(kind):
         soft, hard = dark_shares(*shapes()[kind], azimuth)
         assert hard > 0.05
         assert soft == pytest.approx(hard, rel=0.2)
-
-
-@pytest.mark.parametrize(("name", "terrain"), list(terrains()))
-def test_hard_shadows_of_real_terrain_are_those_of_the_horizon(name, terrain):
-    """The highest angle on the way to the sun, sampled: no cells, no rays."""
-    columns, rows = terrain.dimensions[:2]
-    z = np.asarray(terrain["height"]).reshape(rows, columns)
-    x, y = (np.arange(n) * s for n, s in zip((columns, rows), terrain.spacing, strict=False))
-    surface = RegularGridInterpolator((y, x), z)
-    gx, gy = np.meshgrid(x, y)
-    across = np.array([-1.0, 0.7]) / np.hypot(1, 0.7)
-    horizon = np.full(z.shape, -np.inf)
-    for k in np.arange(0.02, 1.5 * max(columns, rows), 0.25) * terrain.spacing[0]:
-        place = [np.clip(gy + k * across[1], 0, y[-1]), np.clip(gx + k * across[0], 0, x[-1])]
-        horizon = np.maximum(horizon, (surface(np.stack(place, axis=-1)) - z) / k)
-    down, right = np.gradient(z, y, x)
-    for elevation in (8, 15, 30):
-        rise = np.tan(np.radians(elevation))
-        scene = Scene(lights=Light(direction=(*across, rise)), material=SHINY)
-        options = {"elevation": "height", "method": "exact"}
-        t = relief_shadow(terrain, scene, depth=0, **options)["t"].reshape(z.shape)
-        facing = rise > right * across[0] + down * across[1]
-        expected = (horizon < rise) & facing
-        assert np.mean((t > 0) != expected) < 2e-3
-        # Softened over a depth the dark is dark still, the light the cosine.
-        soft = relief_shadow(terrain, scene, depth=0.02 * terrain.spacing[0], **options)
-        deep = horizon > np.tan(np.radians(elevation + 10))
-        assert np.all(soft["t"].reshape(z.shape)[deep] < 0.2)
 
 
 def test_a_disc_softens_the_edge_and_keeps_the_middle():

@@ -64,7 +64,7 @@ def cloud(random, count, dtype, k=1, n=3):
 @pytest.mark.parametrize("model", ["phong", "blinn"])
 @pytest.mark.parametrize("what", ["line", "frame", "surface", "conditioned", "two-sided"])
 @pytest.mark.parametrize("name", SCENES)
-def test_every_term_against_50_digits(name, what, model, dtype, random, figure):
+def test_every_term_against_50_digits(name, what, model, dtype, random):
     scene = SCENES[name]
     points, tangents, normals = cloud(random, 6, dtype, k=2 if what == "frame" else 1)
     with_normals = what in ("surface", "conditioned", "two-sided")
@@ -97,12 +97,12 @@ def test_every_term_against_50_digits(name, what, model, dtype, random, figure):
         if shaded.rgb is not None:
             pairs += list(zip(shaded.rgb[i], rgb, strict=True))
         error = max(oracles.units(seen, true, dtype) for seen, true in pairs)
-        figure("engine.shade", f"{what}, {model}", dtype, error, bound)
+        assert error <= bound
 
 
 @pytest.mark.parametrize("what", ["conditioned", "free", "surface"])
 @pytest.mark.parametrize("name", ["sun, far eye", "lamp, near eye"])
-def test_fur_against_50_digits(name, what, dtype, random, figure):
+def test_fur_against_50_digits(name, what, dtype, random):
     scene, density = SCENES[name], 0.4
     points, tangents, normals = cloud(random, 30, dtype)
     depth = random.uniform(0, 0.5, 30).astype(dtype)
@@ -127,7 +127,7 @@ def test_fur_against_50_digits(name, what, dtype, random, figure):
         passes = (1 - exact(density)) ** path
         for seen, true in ((shaded.diffuse[i], diffuse), (shaded.specular[i], specular)):
             error = oracles.units(seen, true * passes, dtype)
-            figure("engine.shade", "fur", dtype, error, 40)
+            assert error <= 40
 
 
 def test_shadow_takes_the_place_of_the_cosine(random):
@@ -187,7 +187,7 @@ def test_bad_depth(random):
 
 
 @pytest.mark.parametrize(("k", "n"), [(1, 2), (1, 4), (2, 4), (3, 5), (1, 8)])
-def test_n_space_against_50_digits(k, n, dtype, random, figure):
+def test_n_space_against_50_digits(k, n, dtype, random):
     points, tangents, _ = cloud(random, 5, dtype, k, n)
     scene = Scene(
         lights=[
@@ -203,12 +203,10 @@ def test_n_space_against_50_digits(k, n, dtype, random, figure):
     for i in range(len(points)):
         true = oracles.shade(points[i], tangents[i], None, scene, exponent=shaded.plan.exponent)[3]
         bound = 2 * (4 + 2 * shaded.plan.exponent + 24) + 4
-        figure(
-            "engine.shade", "n-space", dtype, oracles.units(shaded.luminance[i], true, dtype), bound
-        )
+        assert oracles.units(shaded.luminance[i], true, dtype) <= bound
 
 
-def test_far_from_the_origin_float32_points_lose_nothing(random, figure):
+def test_far_from_the_origin_float32_points_lose_nothing(random):
     """Terrain in metres north of the equator, a lamp a few metres away."""
     offset = np.array([4.5e5, 5e6, 800.0])
     points = (offset + random.uniform(-8, 8, (40, 3))).astype(np.float32)
@@ -225,7 +223,7 @@ def test_far_from_the_origin_float32_points_lose_nothing(random, figure):
                 points[i], tangents[i], None, scene, exponent=shaded.plan.exponent
             )[3]
             error = oracles.units(shaded.luminance[i], true, np.dtype(precision).type)
-            figure("engine.shade", "5e6 from the origin", precision, error, 44)
+            assert error <= 44
 
 
 def test_float64_points_in_float32_work_keep_their_differences(random):
