@@ -6,7 +6,7 @@ The primitives of Conway and Cottingham, *The Isoluminance Contour Model*: spher
 frustum and disc, in bands of constant luminance between contours; and a machined part made from
 them by union and difference, which has such bands too.
 
-The contours of the sphere are circles about the direction of the light, those of the other
+The contours of the sphere are circles about the direction of the light, the contours of the other
 primitives are rulings; each end has one luminance. The source leaves set operations, as in the
 machined part, as an open problem. The last two panels show cases that the source approximates, a
 highlight and a nearby light; here their contours are found by bisection.

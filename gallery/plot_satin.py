@@ -7,7 +7,7 @@ four panels of illustration 2 of Banks, *Illumination in Diverse Codimensions*.
 
 A: integral curves, each lit as a line. B: the sphere, lit by its normals. C: the sphere lit by the
 field alone, including the side that the light cannot reach. D: the sphere lit by the field and
-conditioned by its normals; its dark side is as dark as that of B. All panels use the plain cosine
+conditioned by its normals; its dark side is as dark as in B. All panels use the plain cosine
 law of the paper (``exponent=1``). In A a dark sphere hides the threads on the far side.
 """
 

@@ -102,11 +102,11 @@ FILTERS = {
     },
     "relief_shadow": lambda: {"mesh": hills(), "scene": SUN, "depth": 0.1, "elevation": "h"},
     "satin": lambda: {
-        "surface": ball(), "scene": SCENE, "tangents": "V", "seeds": 5, "max_steps": 20,
+        "surface": ball(), "scene": SCENE, "tangents": "V", "seeds": 5,
     },
     "sky": lambda: {"mesh": ball(), "error": 0.1},
     "streamlines": lambda: {
-        "mesh": flow(), "scene": SCENE, "vectors": "V", "seeds": 5, "max_steps": 20,
+        "mesh": flow(), "scene": SCENE, "vectors": "V", "seeds": 5,
     },
     "tint": lambda: {"lit": lit(), "scalars": "s"},
 }  # fmt: skip

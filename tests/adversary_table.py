@@ -15,8 +15,8 @@ import pyvista as pv
 import vizlight
 from vizlight import Light, Material
 from vizlight.accessor import Accessor
+from vizlight.draw.render import PlotterKeywords
 from vizlight.geometry.solids.primitives import Solid
-from vizlight.pictures.render import PlotterKeywords
 from vizlight.scene.scene import SceneKeywords
 from vizlight.shading.engine import Shading
 from vizlight.shading.options import Options
@@ -26,7 +26,7 @@ PAGES = Path(__file__).parent.parent / "gallery" / "pages" / "api.rst"
 BESIDE = (
     "vizlight.accessor", "vizlight.data", "vizlight.geometry.solids",
     "vizlight.geometry.solids.primitives", "vizlight.geometry.solids.polyhedra",
-    "vizlight.plotting.component", "vizlight.plotting.show", "vizlight.scene",
+    "vizlight.draw.component", "vizlight.draw.show", "vizlight.scene",
 )  # fmt: skip
 #: Public classes that only vizlight makes, and methods that only it calls.
 RETURNED = {

@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import os
 import sys
-from collections import defaultdict
 from pathlib import Path
 
 import hypothesis
@@ -16,25 +15,9 @@ hypothesis.settings.load_profile("suite")
 # A test's threads and blocks must not depend on the machine.
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
-FIGURES: dict[tuple[str, str, str], list[float]] = defaultdict(lambda: [0.0, 0.0, 0])
-
 
 def pytest_addoption(parser):
     parser.addoption("--skipped", metavar="FILE", help="file of the names of skipped tests")
-
-
-@pytest.fixture
-def figure():
-    """Record an error in eps of a type and check it against the bound that is claimed."""
-
-    def record(kernel, case, dtype, measured, bound):
-        row = FIGURES[kernel, case, np.dtype(dtype).name]
-        if bound and measured / bound >= (row[0] / row[1] if row[1] else -1):
-            row[0], row[1] = measured, bound
-        row[2] += 1
-        assert measured <= bound, f"{kernel}, {case}: {measured:.3g} eps, claimed {bound:.3g}"
-
-    return record
 
 
 def pytest_collection_modifyitems(config, items):
@@ -55,16 +38,6 @@ def pytest_terminal_summary(terminalreporter, config):
     if path := config.getoption("--skipped"):
         names = {report.nodeid for report in terminalreporter.stats.get("skipped", ())}
         Path(path).write_text("\n".join(sorted(names)), encoding="utf-8")
-    if not FIGURES:
-        return
-    terminalreporter.section("largest errors against 50 digits, in eps")
-    terminalreporter.line(
-        f"{'kernel':<24}{'case':<34}{'type':<9}{'seen':>10}{'claimed':>10}{'of':>7}"
-    )
-    for (kernel, case, dtype), (seen, bound, count) in sorted(FIGURES.items()):
-        terminalreporter.line(
-            f"{kernel:<24}{case:<34}{dtype:<9}{seen:>10.3g}{bound:>10.3g}{count:>7}"
-        )
 
 
 @pytest.fixture(autouse=True)

@@ -1,246 +1,147 @@
-"""Mutations: put one wrong sign, exponent or term into a copy of the package, and see what fails.
+"""Mutations: break the package at random places, one at a time, and see whether a test fails.
 
-``python tests/mutations.py [WORD ...]`` copies the package and breaks one line of the copy at a
-time. For MUTATIONS it runs the picture tests and, where no picture differs, the tests of the broken
-module; for OF_NUMBERS the tests of the module alone. It prints the tests that failed and ends with
-exit code 1 if a mutation passed them all. Words select the mutations whose titles contain all of
-them. A run takes minutes, so it is no part of the test suite; ``test_mutations.py`` checks that
-each line to break is still there.
+``python tests/mutations.py 80`` draws 80 places, from all folders of the package alike: a
+comparison, an operator, a number, a condition, a call whose result nobody takes. It breaks a copy
+of the tree at one place after the other and runs the tests that mirror or name the file, then
+those around it. It prints a line per mutation and a table per folder; what survives asks for an
+assertion, or changes nothing that can be seen. ``--seed`` draws other places, ``--only WORD`` from
+files whose
+path has the word. A mutation takes some 15 s.
 """
 
 from __future__ import annotations
 
+import argparse
+import ast
 import os
-import re
+import random
 import shutil
 import subprocess
 import sys
 import tempfile
+from collections import Counter
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-PICTURES = ["tests/test_pictures.py"]
-
-#: What the pictures show: file, text in it, replacement.
-MUTATIONS = {
-    "Phong: sign of wo's tangential part (the slip of Banks' equation 2)": (
-        "shading/terms.py",
-        "eye.along, strict=True))\n            return formulas.phong(along, ",
-        "eye.along, strict=True))\n            return formulas.phong(_square(lit.along), ",
-    ),
-    "Phong: normal parts added": (
-        "model/formulas.py", "apart = sine_i - sine_o", "apart = sine_i + sine_o",
-    ),
-    "Phong on a surface: half of the deficit": (
-        "model/formulas.py", "deficit = 0.5 * (along", "deficit = 1.0 * (along",
-    ),
-    "Blinn: power halved": (
-        "model/formulas.py", "power(across * scale, along * scale, 0.5 * shininess)",
-        "power(across * scale, along * scale, 0.25 * shininess)",
-    ),
-    "Blinn, one half vector: power halved": (
-        "shading/terms.py", "formulas.power(_side(plan, up), None, h.shininess)",
-        "formulas.power(_side(plan, up), None, h.shininess / 2)",
-    ),
-    "diffuse: cosine to the tangent for the sine": (
-        "shading/terms.py", "return Split(x, along, rest, sqrt(w.dot(rest, rest)))",
-        "return Split(x, along, rest, sqrt(formulas.maximum(1 - w.dot(rest, rest), 0)))",
-    ),
-    "diffuse on a surface: not clamped": (
-        "shading/terms.py", "if plan.two_sided else formulas.one_side(cosine)",
-        "if plan.two_sided else formulas.both_sides(cosine)",
-    ),
-    "diffuse: no compensation": (
-        "model/brightness.py", "def exponent(k: int, n: int) -> float:",
-        "def exponent(k: int, n: int) -> float:\n    return 1.0\n\n\n"
-        "def _unused(k: int, n: int) -> float:",
-    ),
-    "compensation: half the codimension": (
-        "model/brightness.py", "a, d, h = (n - k) / 2,", "a, d, h = (n - k) / 4,",
-    ),
-    "highlight: on the dark side too": (
-        "shading/terms.py",
-        "return value if plan.two_sided else formulas.lit_highlight(value, lit.size)",
-        "return value",
-    ),
-    "distance: no linear term": (
-        "model/formulas.py", "distance * (linear + distance * quadratic)",
-        "distance * (distance * quadratic)",
-    ),
-    "distance: d in place of its square": (
-        "model/formulas.py", "distance * (linear + distance * quadratic)",
-        "distance * (linear + quadratic)",
-    ),
-    "depth cue: front and back exchanged": (
-        "model/formulas.py", "t = clamp((depth - back) / (front - back), 0.0, 1.0)",
-        "t = clamp((depth - front) / (back - front), 0.0, 1.0)",
-    ),
-    "depth cue: smooth step's 3 a 2": (
-        "model/formulas.py", "3.0 - 2.0 * u", "2.0 - u",
-    ),
-    "fur: path times the sine": ("model/formulas.py", "height / sine", "height * sine"),
-    "fur: density in place of 1 - density": (
-        "model/falloff.py", "np.log1p(-density)", "np.log(density)",
-    ),
-    "exact line: alpha for pi - alpha": (
-        "model/formulas.py", "arctan2(cross, -dot)", "arctan2(cross, dot)",
-    ),
-    "exact line: sine's term is missing": (
-        "model/formulas.py", "-dot) * dot + cross)", "-dot) * dot)",
-    ),
-    "exact line: highlight without its ends": (
-        "model/formulas.py", "cos_b * integrals + ends", "cos_b * integrals",
-    ),
-    "turn in n-space: wrong way round": (
-        "geometry/nspace/projection.py", "matrix[j, i] = math.sin(angle)",
-        "matrix[j, i] = -math.sin(angle)",
-    ),
-    "perspective in n-space: sign of the depth": (
-        "geometry/nspace/projection.py", "(1 - image[..., -1] / distance)",
-        "(1 + image[..., -1] / distance)",
-    ),
-    "cos-theta: r / d (the slip of its section 3)": (
-        "geometry/relief/shadowing.py", "np.divide(depth, t, out=t)",
-        "np.divide(t, 2 * t.max(), out=t)",
-    ),
-    "cos-theta: out of the ground in place of into it": (
-        "geometry/relief/shadowing.py", "place - inset * normal", "place + inset * normal",
-    ),
-    "light 5 % too bright": (
-        "model/formulas.py", "return power(sine * sine, along, 0.5 * exponent)",
-        "return 1.05 * power(sine * sine, along, 0.5 * exponent)",
-    ),
-}  # fmt: skip
-
-#: What no picture is needed for.
-OF_NUMBERS = {
-    "Phong in numbers: sign of wo's tangential part": (
-        "shading/terms.py",
-        "eye.along, strict=True))\n            return formulas.phong(along, ",
-        "eye.along, strict=True))\n            return formulas.phong(_square(lit.along), ",
-    ),
-    "half vector: tangential parts subtracted": (
-        "shading/terms.py", "split(w, lit.vector + eye.vector, self.rows)",
-        "split(w, lit.vector - eye.vector, self.rows)",
-    ),
-    "fur of cylinders: the skin's own model is lost": (
-        "filters/fur.py", "options.shading.for_surface()", "options.shading",
-    ),
-    "streamlines: the part across the surface added": (
-        "filters/streamlines.py", "array - np.einsum", "array + np.einsum",
-    ),
-    "streamlines: forward alone": (
-        "mesh/tracers.py", "SetIntegrationDirectionToBoth()",
-        "SetIntegrationDirectionToForward()",
-    ),
-    "streamlines: seeds on one edge of each triangle": (
-        "mesh/tracers.py", "Places(face, weights.astype(np.float64))",
-        "Places(face, weights * (1.0, 1.0, 0.0))",
-    ),
-    "streamlines: lit by their chords": (
-        "filters/streamlines.py", "replace(light, tangents=tangents)",
-        "replace(light, tangents=None)",
-    ),
-    "line fields: vertices are not aligned": (
-        "geometry/lines/tracing.py", "np.where(turned[:, :, np.newaxis], -corners, corners)",
-        "corners",
-    ),
-    "camera: up is not set": ("pictures/cameras.py", "    camera.up = tuple(upward)\n", ""),
-    "camera: fitted with another up": (
-        "pictures/cameras.py", "right = np.cross(up, toward)",
-        "right = np.cross((0.1, 1.0, 0.2), toward)",
-    ),
-    "camera: clipping range is VTK's own": (
-        "pictures/cameras.py", "    camera.clipping_range = (", "    _ = (",
-    ),
-    "camera: clipped at the centre": (
-        "pictures/cameras.py", "(max(distance - 2 * radius, distance * 1e-3)", "(max(distance, 0)",
-    ),
-    "camera: clipped behind the centre": (
-        "pictures/cameras.py", "distance * 1e-3), distance + 2 * radius)",
-        "distance * 1e-3), distance)",
-    ),
-    "surface: Bezier's control points taken as nodes": (
-        "reading/hull.py",
-        "np.where(off <= 1e-5 * np.abs(skin).max(initial=0), ids, -1)", "ids",
-    ),
-    "between: tangents added whatever their signs": (
-        "verify/between.py", "best = np.argmax(scores, axis=0)", "best = np.zeros(m, int)",
-    ),
-    "between: no random places in the second half of a cell": (
-        "verify/between.py", "turned = (rest.sum(axis=1) > 1.5)", "turned = (rest.sum(axis=1) > 9)",
-    ),
-    "refinement: no place where a highlight peaks in a triangle": (
-        "mesh/refining.py", "tried += self.between.peaks(self.cells.corners[cells])", "pass",
-    ),
-    "refinement: twins get numbers of their own": (
-        "mesh/splitting.py", "_, twin = np.unique(edge[first], return_inverse=True)",
-        "twin = np.arange(len(first))",
-    ),
-    "report: no time": ("verify/report.py", "made.seconds += time.perf_counter() - start", "pass"),
-    "report: the check counted as time": (
-        "verify/report.py", "active.seconds -= time.perf_counter() - start", "pass",
-    ),
+#: What runs after the tests of the file and of its folder.
+AROUND = [
+    "tests/test_laws.py", "tests/shading/test_engine.py", "tests/filters/test_illuminate.py",
+    "tests/stability/test_stability.py",
+]  # fmt: skip
+#: What stands in place of an operator; a comparison of numbers loses its boundary, or turns round.
+OTHERS = {
+    ast.Add: [ast.Sub], ast.Sub: [ast.Add], ast.Mult: [ast.Div], ast.Div: [ast.Mult],
+    ast.Pow: [ast.Mult], ast.FloorDiv: [ast.Mult], ast.Mod: [ast.Mult], ast.And: [ast.Or],
+    ast.Or: [ast.And], ast.BitAnd: [ast.BitOr], ast.BitOr: [ast.BitAnd], ast.Eq: [ast.NotEq],
+    ast.NotEq: [ast.Eq], ast.Is: [ast.IsNot], ast.IsNot: [ast.Is], ast.In: [ast.NotIn],
+    ast.NotIn: [ast.In], ast.Lt: [ast.LtE, ast.Gt], ast.LtE: [ast.Lt, ast.GtE],
+    ast.Gt: [ast.GtE, ast.Lt], ast.GtE: [ast.Gt, ast.LtE],
 }  # fmt: skip
 
 
-def tests_of(path: str) -> list[str]:
-    """Return the test files that mirror a file of the package; else those of its folder."""
-    file = ROOT / "tests" / path
-    own = sorted(file.parent.glob(f"test_{file.stem}*.py")) or [file.parent]
-    return [str(found.relative_to(ROOT)) for found in own]
+def changes(node: ast.AST):
+    """Yield for each mutation of a node the part of it that goes, and the text in its place."""
+    if isinstance(node, ast.Compare):
+        for new in OTHERS[type(node.ops[0])]:
+            other = ast.Compare(node.left, [new(), *node.ops[1:]], node.comparators)
+            yield node, f"({ast.unparse(other)})"
+    elif isinstance(node, ast.BinOp | ast.BoolOp | ast.AugAssign):
+        for new in OTHERS.get(type(node.op), ()):
+            other = ast.unparse(type(node)(**{**vars(node), "op": new()}))
+            yield node, other if isinstance(node, ast.AugAssign) else f"({other})"
+    elif isinstance(node, ast.Constant) and isinstance(node.value, bool):
+        yield node, str(not node.value)
+    elif isinstance(node, ast.Constant) and isinstance(node.value, int | float):
+        yield node, repr(1.5 * node.value if node.value % 1 else node.value + 1)
+    elif isinstance(node, ast.If | ast.While | ast.IfExp):
+        yield node.test, f"(not ({ast.unparse(node.test)}))"
+    elif isinstance(node, ast.Expr) and isinstance(node.value, ast.Call):
+        yield node, "pass"
 
 
-def failed(folder: Path, tests: list[str]) -> list[str]:
-    """Return the names of the tests that fail on a copy."""
-    run = subprocess.run(
-        [sys.executable, "-m", "pytest", "-q", "-rfE", "--tb=no", *tests],
-        cwd=folder,
-        env={**os.environ, "PYTHONPATH": f"{folder}{os.pathsep}{folder / 'tests'}"},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    if run.returncode not in (0, 1):
-        sys.exit(run.stdout + run.stderr)
-    return re.findall(r"^(?:FAILED|ERROR) \S*?([\w/]+\.py::\S+)", run.stdout, re.MULTILINE)
+def places(tree: ast.AST):
+    """Yield the nodes of a tree but those of types and texts."""
+    for name, value in ast.iter_fields(tree):
+        for node in value if isinstance(value, list) else [value]:
+            types = isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test)
+            types |= name in {"annotation", "returns", "decorator_list"}
+            if isinstance(node, ast.AST) and not isinstance(node, ast.JoinedStr) and not types:
+                yield node
+                yield from places(node)
 
 
-def main() -> int:
+def drawn(count: int, seed: int, word: str):
+    """Return random mutations, from each folder alike: file, node to replace, text."""
+    folders: dict[str, list] = {}
+    for path in sorted((ROOT / "vizlight").rglob("*.py")):
+        inside = path.relative_to(ROOT / "vizlight")
+        # ParaView has a Python of its own.
+        if word in str(inside) and not {"paraview", "_version.py"} & set(inside.parts):
+            nodes = places(ast.parse(path.read_text(encoding="utf-8")))
+            folder = folders.setdefault(str(inside.parent).partition("/")[0], [])
+            folder += [(inside, *change) for node in nodes for change in changes(node)]
+    chance = random.Random(seed)
+    for found in folders.values():
+        chance.shuffle(found)
+    turns = [found[i] for i in range(count) for found in folders.values() if i < len(found)]
+    return turns[:count]
+
+
+def mutated(text: str, node: ast.AST, new: str) -> str:
+    """Return a source with a node's text replaced."""
+    lines = [line.encode() for line in text.splitlines(keepends=True)]
+    start = sum(map(len, lines[: node.lineno - 1])) + node.col_offset
+    end = sum(map(len, lines[: node.end_lineno - 1])) + node.end_col_offset
+    whole = b"".join(lines)
+    return (whole[:start] + new.encode() + whole[end:]).decode()
+
+
+def tests_of(path: Path) -> list[list[Path]]:
+    """Return the tests to try, in turn: those that mirror or name a file, then those around it."""
+    folder = ROOT / "tests" / path.parent
+    near = sorted(folder.glob("test_*.py"))
+    own = [f for f in near if f.stem == f"test_{path.stem.lstrip('_')}"]
+    own = own or [f for f in near if path.stem in f.read_text(encoding="utf-8")]
+    around = [*(near if path.parent.name else []), *(ROOT / file for file in AROUND)]
+    return [own, [file for file in around if file not in own]]
+
+
+def survives(copy: Path, tests: list[Path]) -> bool:
+    """Return whether tests pass on a copy; one that hangs fails."""
+    command = [sys.executable, "-m", "pytest", "-qx", "--tb=no", "-m", "not slow"]
+    command += [str(file.relative_to(ROOT)) for file in tests]
+    env = {**os.environ, "PYTHONPATH": str(copy)}
+    run = subprocess.run(command, cwd=copy, env=env, capture_output=True, check=False)
+    # 5: all tests of a file are slow.
+    return not tests or run.returncode in (0, 5)
+
+
+def main() -> None:
     """Break, run, print."""
-    escaped = 0
+    parser = argparse.ArgumentParser()
+    parser.add_argument("count", type=int)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--only", default="")
+    table, options = Counter(), parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
-        copy = Path(name) / "copy"
-        for folder in ("vizlight", "tests", "datasets"):
-            shutil.copytree(ROOT / folder, copy / folder)
-        for file in ("pyproject.toml", "README.md"):
-            shutil.copy(ROOT / file, copy)
-        chosen = {
-            title: mutation
-            for title, mutation in (MUTATIONS | OF_NUMBERS).items()
-            if all(word in title for word in sys.argv[1:])
-        }
-        whole = {test for path, _, _ in chosen.values() for test in tests_of(path)}
-        if chosen.keys() & MUTATIONS.keys():
-            whole.update(PICTURES)
-        if found := failed(copy, sorted(whole)):
-            sys.exit(f"these fail without a mutation: {found}")
-        for title, (path, old, new) in chosen.items():
-            file = copy / "vizlight" / path
-            text = file.read_text()
-            if text.count(old) < 1:
-                sys.exit(f"{title}: {path} does not hold {old!r}")
-            file.write_text(text.replace(old, new))
-            caught = title in MUTATIONS and failed(copy, PICTURES)
-            caught = caught or failed(copy, tests_of(path))
-            file.write_text(text)
-            escaped += not caught
-            tests = dict.fromkeys(re.split(r"::|\[", name)[1] for name in caught or ())
-            names = ", ".join(tests) or "NOTHING"
-            print(f"{title}\n    {names}", flush=True)  # noqa: T201
-    print(f"{len(chosen) - escaped} of {len(chosen)} caught")  # noqa: T201
-    return 1 if escaped else 0
+        copy = Path(name)
+        unread = shutil.ignore_patterns(".*", "build", "dist")
+        shutil.copytree(ROOT, copy, dirs_exist_ok=True, ignore=unread)
+        for i, (path, node, new) in enumerate(drawn(options.count, options.seed, options.only)):
+            text = (ROOT / "vizlight" / path).read_text(encoding="utf-8")
+            lived, file = True, copy / "vizlight" / path
+            for source, ahead in ((mutated(text, node, new), 2 * i + 1), (text, 2 * i + 2)):
+                file.write_text(source, encoding="utf-8")
+                # A stamp of its own, by which Python and numba see that the file has changed.
+                os.utime(file, (file.stat().st_atime, file.stat().st_mtime + ahead))
+                if source != text:
+                    lived = all(survives(copy, tests) for tests in tests_of(path))
+            table[path.parts[0], lived] += 1
+            line = f"{path}:{node.lineno}: {ast.unparse(node)} -> {new}"
+            sys.stdout.write(f"{'SURVIVED' if lived else 'killed  '}  {line}\n")
+    for (folder, lived), many in sorted(table.items()):
+        sys.stdout.write(f"{folder:12} {'survived' if lived else 'killed'} {many}\n")
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -5,8 +5,6 @@ Inputs are taken as the exact numbers that the floats are.
 
 from __future__ import annotations
 
-import math
-
 import mpmath
 import numpy as np
 
@@ -128,34 +126,3 @@ def frames(random, count, k, n, dtype):
     """Return random orthonormal frames, rounded to the type."""
     q, _ = np.linalg.qr(random.standard_normal((count, n, k)))
     return np.swapaxes(q, 1, 2).astype(dtype)
-
-
-def hard_directions(random, frame, dtype):
-    """Return directions that are hard for a frame (k, n): in, near and across its space."""
-    k, n = frame.shape
-    tangent = random.standard_normal(k) @ frame.astype(float)
-    tangent /= np.linalg.norm(tangent)
-    other = random.standard_normal(n)
-    normal = other - frame.T.astype(float) @ (frame.astype(float) @ other)
-    normal /= np.linalg.norm(normal)
-    found = [other / np.linalg.norm(other), tangent, -tangent, normal]
-    for step in (0.03, 1e-2, 1e-3, 1e-4, 1e-8, 1e-12):
-        found += [tangent + step * normal, normal + step * tangent]
-    found = [np.asarray(v, dtype=dtype) for v in found]
-    nudged = found[1].copy()
-    nudged[0] = np.nextafter(nudged[0], dtype(math.inf))
-    return [*found, nudged]
-
-
-def reflections(random, wi, frame, dtype):
-    """Return eyes for a light: any, near the reflection of wi, opposite, and at wi itself."""
-    f, w = frame.astype(float), wi.astype(float)
-    along = f.T @ (f @ w)
-    other = random.standard_normal(len(w))
-    normal = other - f.T @ (f @ other)
-    normal *= np.linalg.norm(w - along) / np.linalg.norm(normal)
-    mirror = normal - along
-    found = [other / np.linalg.norm(other), mirror, -w, w]
-    found += [mirror + step * other for step in (1e-1, 1e-3, 1e-5)]
-    found += [-w + 1e-3 * other]
-    return [np.asarray(v, dtype=dtype) for v in found]

@@ -1,13 +1,6 @@
-"""Random trees of solids with degenerate positions, and what must hold for each of them.
-
-``python tests/solid_trees.py`` tries 300 trees and prints those that fail; see ``--help``.
-"""
+"""Random trees of solids with degenerate positions, and what must hold for each of them."""
 
 from __future__ import annotations
-
-import argparse
-import sys
-import time
 
 import banded
 import numpy as np
@@ -202,12 +195,10 @@ def sampled_volume(solid, random, count):
 
 
 def problems(solid, *, tolerance=3e-3, count=100_000, levels=8, seed=0, bounds=False):
-    """Return what is wrong with the mesh and the bands of a solid, and the seconds it took."""
+    """Return what is wrong with the mesh and the bands of a solid, and its mesh."""
     random = np.random.default_rng(seed)
     found = []
-    start = time.perf_counter()
     mesh = solids.tessellate(solid, tolerance=tolerance)
-    seconds = time.perf_counter() - start
     first, after = mesh.triangles, np.roll(mesh.triangles, -1, axis=1)
     forth, back = first * len(mesh.points) + after, after * len(mesh.points) + first
     if len(np.unique(forth)) != forth.size or not np.array_equal(np.unique(forth), np.unique(back)):
@@ -234,33 +225,4 @@ def problems(solid, *, tolerance=3e-3, count=100_000, levels=8, seed=0, bounds=F
             found.append("open bands")
         if bands.error > 1.1 * bands.steps.error:
             found.append(f"error of {bands.error / bands.steps.error:.3f} half steps")
-    return found, seconds, mesh
-
-
-def main(arguments=None):
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, default=30, help="number of trees of each kind")
-    parser.add_argument("--series", type=int, default=1990, help="first number of each seed")
-    parser.add_argument("--kinds", nargs="+", choices=KINDS, default=list(KINDS))
-    asked = parser.parse_args(arguments)
-    failed = total = 0
-    slowest = (0.0, "")
-    for kind in asked.kinds:
-        for seed in range(asked.seeds):
-            total += 1
-            try:
-                found, seconds, _ = problems(tree(kind, seed, asked.series), bounds=True)
-            except (ValueError, ArithmeticError, IndexError) as error:
-                found, seconds = [f"{type(error).__name__}: {error}"], 0.0
-            slowest = max(slowest, (seconds, f"{kind} {seed}"))
-            if found:
-                failed += 1
-                sys.stdout.write(f"{kind} {seed}: {'; '.join(found)}" + "\n")
-    sys.stdout.write(
-        f"{total} trees, {failed} failed; the slowest took {slowest[0]:.2f} s ({slowest[1]})\n"
-    )
-    return int(failed > 0)
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    return found, mesh

@@ -17,9 +17,9 @@ from vizlight import _check
 EACH = 6
 #: Beginnings of the names of callables that draw or start a process.
 DRAWING = (
-    "plotting.backends",
-    "pictures.movie",
-    "pictures.render",
+    "draw.backends",
+    "draw.movie",
+    "draw.render",
     "plotting",
     "accessor.Accessor.plot",
 )

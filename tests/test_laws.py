@@ -116,7 +116,7 @@ def test_the_mean_over_lights_is_one_half_on_the_torus_too():
     means, count = [], 4000
     for toward in random.standard_normal((count, 4)):
         scene = Scene(lights=Light(direction=toward), material=MATTE)
-        means.append(engine.shade(shape.points, shape.frame, scene, threads=1).luminance[:8])
+        means.append(engine.shade(shape.points, shape.frame, scene).luminance[:8])
     means = np.array(means)
     sigma = means.std(axis=0) / math.sqrt(count)
     assert np.all(np.abs(means.mean(axis=0) - 0.5) < 5 * sigma)

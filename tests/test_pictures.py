@@ -1,7 +1,7 @@
 """The pictures that matter, each small, compared with one that was looked at.
 
 Two comparisons: pytest-pyvista's, which also finds pictures that no test draws any more, and
-:mod:`vizlight.pictures.testing`'s, which is the strict one: its limits let edges be drawn
+:mod:`vizlight.draw.testing`'s, which is the strict one: its limits let edges be drawn
 otherwise, and not light 5 % too bright. A scene with limits of its own says why.
 """
 

@@ -69,7 +69,7 @@ def test_the_wheel_holds_what_runs(wheel):
     names = set(wheel.namelist())
     data = {f"vizlight/datasets/{p.name}" for p in (ROOT / "datasets").glob("*.vt?")}
     web = {
-        f"vizlight/plotting/web/{name}"
+        f"vizlight/draw/web/{name}"
         for name in ("gl.js", "app.js", "copied.js", "panel.js", "page.css", "page.html")
     }
     assert data | web | {"vizlight/py.typed"} <= names

@@ -37,7 +37,7 @@ TIERS = [
     {"reading"},
     {"mesh", "data"},
     {"files", "filters"},
-    {"pictures", "pieces", "plotting", "vtk"},
+    {"draw", "pieces", "vtk"},
     {"observers"},
     {"accessor", "demo", "doctor", "presets"},
     {"cli"},

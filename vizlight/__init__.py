@@ -19,6 +19,12 @@ if TYPE_CHECKING:
     from vizlight import vtk as vtk
     from vizlight.data import example_path as example_path
     from vizlight.data import load_example as load_example
+    from vizlight.draw import movie as movie
+    from vizlight.draw import paraview as paraview
+    from vizlight.draw import render as render
+    from vizlight.draw import testing as testing
+    from vizlight.draw.gltf import save_gltf as save_gltf
+    from vizlight.draw.html import live_html as live_html
     from vizlight.files import read as read
     from vizlight.filters.bas_relief import bas_relief as bas_relief
     from vizlight.filters.fur import fur as fur
@@ -61,12 +67,6 @@ if TYPE_CHECKING:
     from vizlight.mesh.records import provenance as provenance
     from vizlight.observers.legibility import legibility as legibility
     from vizlight.observers.record import Legibility as Legibility
-    from vizlight.pictures import movie as movie
-    from vizlight.pictures import render as render
-    from vizlight.pictures import testing as testing
-    from vizlight.plotting import paraview as paraview
-    from vizlight.plotting.gltf import save_gltf as save_gltf
-    from vizlight.plotting.html import live_html as live_html
     from vizlight.scene import (
         DepthCue as DepthCue,
     )
@@ -112,8 +112,8 @@ _NAMES = {
     "mesh.records": "provenance",
     "observers.legibility": "legibility",
     "observers.record": "Legibility",
-    "plotting.gltf": "save_gltf",
-    "plotting.html": "live_html",
+    "draw.gltf": "save_gltf",
+    "draw.html": "live_html",
     "scene": "DepthCue Light Material Scene View",
     "shading.options": "Bundle",
     "verify.report": "report",
@@ -128,12 +128,12 @@ _MODULES = {
     "geometry": "geometry",
     "maps": "maps",
     "model": "model",
-    "movie": "pictures.movie",
-    "paraview": "plotting.paraview",
+    "movie": "draw.movie",
+    "paraview": "draw.paraview",
     "pieces": "pieces",
     "presets": "presets",
-    "render": "pictures.render",
-    "testing": "pictures.testing",
+    "render": "draw.render",
+    "testing": "draw.testing",
     "vtk": "vtk",
 }
 
@@ -155,9 +155,9 @@ if not TYPE_CHECKING:  # a name that is not there is an error to a type checker
 
 
 def _join_qt() -> None:
-    """Let windows of pyvistaqt find ``plotter.vizlight``: their look-up hides that of PyVista."""
+    """Let windows of pyvistaqt find ``plotter.vizlight``: their look-up hides PyVista's."""
     if "pyvistaqt" in sys.modules:
-        importlib.import_module("vizlight.plotting.component")
+        importlib.import_module("vizlight.draw.component")
 
 
 def __dir__() -> list[str]:

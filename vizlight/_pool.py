@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import contextvars
 import os
 from collections import deque
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -17,6 +19,7 @@ if TYPE_CHECKING:
 
 #: Size in bytes of a piece of memory that is freed before the first blocks run.
 PIECE = (1 << 25) - (1 << 20)
+_SETTING: contextvars.ContextVar[str] = contextvars.ContextVar("threads", default="")
 
 
 @cache
@@ -34,20 +37,42 @@ def blocks(count: int, size: int) -> list[slice]:
     return [slice(i, min(i + size, count)) for i in range(0, count, size)]
 
 
-def workers(threads: int | None) -> int:
-    """Return ``threads``, or for None the number of processors that this process may use."""
-    if threads is not None:
-        return _check.integer("threads", threads, low=1)
+def workers() -> int:
+    """Return the number of threads that share the work.
+
+    It is ``VIZLIGHT_THREADS``, or else the number of processors that this process may use.
+
+    Raises
+    ------
+    ValueError
+        If the variable is no integer above 0.
+    """
+    asked = _SETTING.get() or os.environ.get("VIZLIGHT_THREADS", "")
+    if asked:
+        if not asked.isdecimal() or not int(asked):
+            expected = "an integer of at least 1, or nothing (all processors)"
+            raise ValueError(_check.message("VIZLIGHT_THREADS", expected, repr(asked)))
+        return int(asked)
     try:
         return len(os.sched_getaffinity(0))
     except AttributeError:  # macOS and Windows lack this function
         return os.cpu_count() or 1
 
 
-def run(work: Callable[[slice], int], parts: list[slice], threads: int | None) -> Iterator[int]:
+@contextlib.contextmanager
+def threads(count: int) -> Iterator[None]:
+    """Take a number of threads in place of VIZLIGHT_THREADS's while this context is entered."""
+    token = _SETTING.set(str(count))
+    try:
+        yield
+    finally:
+        _SETTING.reset(token)
+
+
+def run(work: Callable[[slice], int], parts: list[slice]) -> Iterator[int]:
     """Yield the result of ``work`` for each part, in the order of the parts."""
     _keep_memory()
-    count = min(workers(threads), len(parts))
+    count = min(workers(), len(parts))
     if count <= 1:
         yield from map(work, parts)
         return

@@ -51,7 +51,7 @@ class _Method(Generic[Options, Result]):
 
 
 def _plot() -> Callable[..., object]:
-    from vizlight.plotting.show import plot
+    from vizlight.draw.show import plot
 
     return plot
 

@@ -10,11 +10,11 @@ import pyvista as pv
 
 from vizlight import files
 from vizlight.data import load_example
+from vizlight.draw import render
+from vizlight.draw.backends import choose_backend, window_class
 from vizlight.filters.illuminate import illuminate
 from vizlight.filters.streamlines import streamlines
 from vizlight.observers.legibility import legibility
-from vizlight.pictures import render
-from vizlight.plotting.backends import choose_backend, window_class
 from vizlight.scene import Scene, View, presets
 from vizlight.shading import engine
 from vizlight.verify import reference
@@ -22,8 +22,8 @@ from vizlight.verify import reference
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from vizlight.draw.backends import Backend
     from vizlight.observers.record import Direction
-    from vizlight.plotting.backends import Backend
 
 EYE = (0.42, 1.0, 0.2)
 #: Distance between lines, and length of arrows, as shares of the globe's radius.

@@ -7,7 +7,7 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import get_args
 
 from vizlight import _compiled, data
-from vizlight.pictures import render
+from vizlight.draw import render
 
 #: Packages that vizlight always needs.
 PACKAGES = ("vizlight", "numpy", "scipy", "vtk", "pyvista", "cyclopts", "rich", "pillow")

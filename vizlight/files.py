@@ -401,6 +401,35 @@ def surface_of(
     return found
 
 
+def with_vectors(mesh: pv.DataSet, /, *components: str) -> pv.DataSet:
+    """Return a mesh with a point array of vectors, given the names of their components.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh, which is not changed.
+    *components : str
+        Names of two or three arrays of one component; a third that is missing is 0. Together,
+        joined by commas, they are the name of the vectors. Arrays of cells are averaged to the
+        points.
+
+    Returns
+    -------
+    pyvista.DataSet
+
+    Raises
+    ------
+    ValueError
+        If an array does not exist.
+    """
+    _dataset(mesh)
+    found = point_arrays.averaged(mesh, *components).copy(deep=False)
+    columns = [_scalars(found, "components", name) for name in components]
+    columns += [np.zeros_like(columns[0])] * (3 - len(columns))
+    found.point_data[",".join(components)] = np.column_stack(columns)
+    return found
+
+
 def warped(mesh: pv.DataSet, name: str, factor: float, /) -> pv.DataSet:
     """Return a mesh whose points are displaced by a point array of one component.
 
@@ -511,7 +540,8 @@ def check_format(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
     formats = FORMATS[kind]
     if path.suffix.lower() not in formats:
         expected = f"a name that ends in {', '.join(formats)} for {kind}"
-        raise FileError(_check.message("output", expected, f"'{path.name}'"))
+        remedy = "it is one mesh, which has no blocks" if path.suffix.lower() == ".vtm" else ""
+        raise FileError(_check.message("output", expected, f"'{path.name}'", remedy))
     return path
 
 
@@ -619,7 +649,7 @@ def _ended(path: Path) -> bool:
 def _check_names(mesh: pv.DataSet, *, legacy: bool) -> None:
     """Check that a file can hold the names of the arrays.
 
-    VTK's writers of XML do not escape them, and that of legacy files ends the process at braces.
+    VTK's writers of XML do not escape them; its writer of legacy files ends the process at braces.
     """
     wrong, signs = '[<&"\x00-\x1f]', "<, &, quotation marks and control characters"
     other = "a .vtk file"

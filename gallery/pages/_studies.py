@@ -15,7 +15,7 @@ sys.path += [str(KEPT.parents[1]), str(KEPT.parents[2] / "tests")]
 
 
 def write(app):
-    """Write a page, a table and a figure for each study, and the table of all verdicts."""
+    """Write a page, a table and a figure for each study, and the table of all studies."""
     from stability import suite
 
     import studies
@@ -45,20 +45,19 @@ def write(app):
         study = result.study
         result.draw(folder / f"{name}.png")
         cells = [[_plain(studies.number(cell)) for cell in row] for row in rows]
-        approximates, verdict = _plain(study.approximates), _plain(result.verdict)
-        overview.append([f":doc:`{name} <studies/{name}>`", approximates, verdict])
+        approximates, reference = _plain(study.approximates), _plain(study.reference)
+        overview.append([f":doc:`{name} <studies/{name}>`", approximates, reference])
         page = [
             name, "=" * len(name), "",
             f"Approximated: {approximates}.", "",
-            f"Reference: {_plain(study.reference)}.", "",
-            f"**Verdict**: {verdict}.", "",
+            f"Reference: {reference}.", "",
             f".. figure:: {name}.png", f"   :alt: {study.error} over {study.cost}", "",
             f"   ``{command}``.", "",
             *_table(map(_plain, headings), cells),
         ]  # fmt: skip
         (folder / f"{name}.rst").write_text("\n".join(page) + "\n", encoding="utf-8")
-    table = _table(["study", "what is approximated", "verdict"], overview, "12 28 60")
-    (folder / "_verdicts.txt").write_text("\n".join(table) + "\n", encoding="utf-8")
+    table = _table(["study", "what is approximated", "reference"], overview, "20 45 35")
+    (folder / "_overview.txt").write_text("\n".join(table) + "\n", encoding="utf-8")
 
 
 def _plain(text):

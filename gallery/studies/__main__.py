@@ -16,7 +16,7 @@ import studies
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Print the table and the verdict of a study; write NAME.csv and the figure NAME.png."""
+    """Print the table of a study; write NAME.csv and the figure NAME.png."""
     parser = argparse.ArgumentParser(prog="gallery/studies", description=main.__doc__)
     parser.add_argument("name", nargs="?", choices=studies.names(), metavar="NAME")
     parser.add_argument("--quick", action="store_true", help="measure less: under 20 s on 2 cores")
@@ -24,22 +24,15 @@ def main(arguments: list[str] | None = None) -> None:
     options = parser.parse_args(arguments)
     console = Console(markup=False, highlight=False, width=140)
     if options.name is None:
-        table = Table("study", "approximated quantity", "reference", "parameter")
         for name in studies.names():
-            study = studies.load(name)
-            table.add_row(name, study.approximates, study.reference, study.parameter)
-        console.print(table)
+            console.print(f"{name}: {studies.load(name).approximates}")
         return
-    study = studies.load(options.name)
-    result = studies.run(options.name, study, quick=options.quick, progress_bar=True)
+    result = studies.run(options.name, studies.load(options.name), quick=options.quick)
     headings, lines = result.table()
-    table = Table(*headings)
+    table = Table(*headings, caption=f"reference: {result.study.reference}")
     for line in lines:
         table.add_row(*map(studies.number, line))
     console.print(table)
-    console.print(f"approximated: {result.study.approximates}")
-    console.print(f"reference: {result.study.reference}")
-    console.print(f"verdict: {result.verdict}")
     options.out.mkdir(parents=True, exist_ok=True)
     console.print(f"table: {result.write_csv(options.out / f'{options.name}.csv')}")
     console.print(f"figure: {result.draw(options.out / f'{options.name}.png')}")

@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from studies import Row, Study, words
+from studies import Row, Study
 from vizlight import _check
 from vizlight.geometry.lines import bundle as geometry
 from vizlight.mesh import embree_rays
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
 
     from vizlight._types import Array, Indices
 
@@ -178,10 +178,10 @@ def measure(kind: str, points: int, grid: int, count: int) -> list[Row]:
     targets = lines.targets(made.places, made.tangents[made.own], np.full(points, LENGTH))
     lights = [(TOWARD, False), (LAMP, True)]
     if count:
-        sides = lines.sky(targets, DIAMETER, count, threads=1)
+        sides = lines.sky(targets, DIAMETER, count)
         cost = 1e9 * (time.process_time() - start) / points
         return [_row(f"{kind}, all sides", count, sides - true.around, true.around, cost)]
-    left = lines.dimmed(targets, DIAMETER, lights, threads=1)
+    left = lines.dimmed(targets, DIAMETER, lights)
     cost = 1e9 * (time.process_time() - start) / points
     return [
         _row(f"{kind}, {name}", grid, left[:, i] - known, known, cost / 2)
@@ -210,19 +210,6 @@ def steps(quick: bool) -> list[Callable[[], list[Row]]]:
     ]
 
 
-def verdict(rows: Sequence[Row]) -> str:
-    """Return the errors at the default numbers of voxels and directions."""
-    parts = []
-    for name, at in (("far light", 128), ("light inside", 128), ("all sides", 64)):
-        own = [r for r in rows if r.way.endswith(name) and r.parameter == at]
-        worst = max(own, key=lambda row: row.error)
-        parts.append(f"{words(worst.error)} for {name} ({worst.way.partition(',')[0]})")
-    return (
-        "with the default 128 voxels and 64 directions the mean share of light is off by at most "
-        + ", ".join(parts)
-    )
-
-
 STUDY = Study(
     approximates="light among tubes by a medium of lines",
     reference="rays among real tubes (Embree)",
@@ -230,6 +217,5 @@ STUDY = Study(
     error="error of the mean share of light",
     cost="ns per point",
     steps=steps,
-    verdict=verdict,
     axes=("parameter", "error"),
 )

@@ -1,8 +1,7 @@
 """Brightness and contrast of curves and surfaces in 3-space and 4-space: Banks' illustration 1.
 
 Eight panels show the torus of Banks' section 3 and a curve on it: k = 1 and 2, n = 3 and 4, plain
-and compensated. In addition, the light is averaged over uniform directions for several (k, n),
-where the mean of compensated light is 1/2.
+and compensated.
 """
 
 from __future__ import annotations
@@ -16,15 +15,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
-from studies import Curve, Row, Study, span, take_turns, words
+from studies import Curve, Row, Study, take_turns
 from vizlight.filters.manifold import manifold
 from vizlight.geometry.nspace import manifolds
-from vizlight.model import brightness, reflection
+from vizlight.model import brightness
 from vizlight.scene import Light, Material, Scene
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
-
     from vizlight._types import Array, Indices
 
 #: Light of illustration 1. Its coefficients are not given; these are those of Banks' section 3:
@@ -123,14 +120,6 @@ def measures(points: Array, cells: Indices) -> Array:
     return np.asarray(np.bincount(cells.ravel(), share, minlength=len(points)), dtype=np.float64)
 
 
-def uniform(k: int, n: int, count: int = 200_000, *, seed: int = 0) -> tuple[float, float, float]:
-    """Return mean, standard error of the mean, and contrast over uniform light directions."""
-    toward = np.random.default_rng(seed).standard_normal((count, n))
-    light = reflection.diffuse(toward, np.eye(n)[:k], exponent=brightness.exponent(k, n))
-    mean, contrast = statistics(light, np.ones(count))
-    return mean, contrast * mean / math.sqrt(count), contrast
-
-
 def rows_of_panels(resolution: int) -> list[Row]:
     """Return one row for each panel."""
     found: list[Panel] = []
@@ -148,56 +137,13 @@ def rows_of_panels(resolution: int) -> list[Row]:
     ]
 
 
-def rows_of_directions(k: int, n: int, count: int) -> list[Row]:
-    """Return the row of uniform directions, whose error is the sampling error."""
-    start: list[tuple[float, float, float]] = []
-    seconds = take_turns({"": lambda: start.append(uniform(k, n, count))}, 1)[""]
-    mean, _, contrast = start[0]
-    more = {"k": k, "n": n, "mean": mean, "contrast (std / mean)": contrast}
-    error = abs(mean - brightness.STANDARD)
-    return [Row("uniform directions, compensated", n - k, error, 1e9 * seconds / count, more)]
-
-
-def steps(quick: bool) -> list[Callable[[], Iterable[Row]]]:
-    """Return the steps: the panels, then uniform directions in several spaces."""
-    found: list[Callable[[], Iterable[Row]]] = [partial(rows_of_panels, 48 if quick else 192)]
-    for k, n in ((1, 2), (1, 3), (1, 4), (2, 3), (2, 4), (2, 5), (3, 4), (1, 12)):
-        found.append(partial(rows_of_directions, k, n, 50_000 if quick else 200_000))
-    return found
-
-
-def verdict(rows: Sequence[Row]) -> str:
-    """Return whether compensation equalises brightness and contrast."""
-    plain, compensated = (
-        [row for row in rows if row.way == f"torus and curve, {how}"]
-        for how in ("plain", "compensated")
-    )
-    before, after = (max(row.error for row in of) for of in (plain, compensated))
-    near, far = (
-        [float(row.more["contrast (std / mean)"]) for row in of] for of in (compensated, plain)
-    )
-    keep = "keep exponent='compensated'" if after < before else "use exponent=1"
-    equal = "equalises" if np.ptp(near) < np.ptp(far) else "does not equalise"
-    return (
-        f"{keep} if manifolds of several codimensions share a picture: means differ from 1/2 by at "
-        f"most {words(after)} with compensation and {words(before)} without; compensation {equal} "
-        f"contrast: {span(near)} with, {span(far)} without"
-    )
-
-
-def curve_of(row: Row) -> Curve | None:
-    """Return the curve of a row, one for each k, or None if its error is only rounding."""
-    return Curve(row.way, f"k = {row.more['k']:g}") if row.error > 1e-12 else None
-
-
 STUDY = Study(
     approximates="brightness 1/2 of a surface in 3-space by manifolds of any codimension",
     reference="1/2, the mean over all directions of light",
     parameter="codimension",
     error="difference of the mean from 1/2",
     cost="ns per point",
-    steps=steps,
-    verdict=verdict,
+    steps=lambda quick: [partial(rows_of_panels, 48 if quick else 192)],
     axes=("parameter", "error"),
-    curve=curve_of,
+    curve=lambda row: Curve(row.way, f"k = {row.more['k']:g}"),
 )

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from studies import PIXEL, SHINY, Row, Study, holding, order, take_turns, words
+from studies import SHINY, Row, Study, take_turns
 from vizlight._types import Array, Numbers
 from vizlight.geometry.nspace import manifolds
 from vizlight.geometry.nspace.parametric import CENTRAL_STEP
@@ -20,8 +20,6 @@ from vizlight.scene import Light, Scene, View
 from vizlight.shading import engine
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from vizlight.geometry.nspace.manifolds import Manifold
 
 R1, R2 = 1.5, 0.75
@@ -80,43 +78,6 @@ def _projector(shape: Manifold) -> Array:
     return np.asarray(np.einsum("bki,bkj->bij", shape.frame, shape.frame))
 
 
-def verdict(rows: Sequence[Row]) -> str:
-    """Return which method and step to use, and the order of the differences."""
-    central = [row for row in rows if row.way.startswith("central")]
-    best = min(central, key=lambda row: row.error)
-    above = [row for row in central if float(row.parameter) >= float(best.parameter)]
-    coarse = holding(above)
-    steps = (
-        f"for an error of 1/255 any step from {best.parameter:g} to {coarse.parameter:g} of the "
-        "domain is suitable" if coarse
-        else f"no step of central differences is within 1/255, and the error of the best one is "
-        f"{words(best.error / PIXEL)} of 255"
-    )  # fmt: skip
-    own = next((row for row in central if row.parameter == DEFAULT), best)
-    # The best step may lie between two measured ones, so the default need not be the best row.
-    choice = (
-        f"keep the default step {own.parameter:g} (error {own.error:.1g}"
-        if own.error <= 10 * best.error
-        else f"set the step to {best.parameter:g} (error {best.error:.1g}, with the default "
-        f"{own.error:.1g}"
-    )
-    smooth = [row for row in above if float(row.parameter) > 10 * float(best.parameter)]
-    if len(smooth) > 1:
-        choice += f"; larger steps have order {order(smooth):.2f}, in theory 2"
-    return f"{steps}; {choice}){_complex_step(rows, own)}"
-
-
-def _complex_step(rows: Sequence[Row], own: Row) -> str:
-    """Return what the complex step gains over the default step of central differences."""
-    step = min((row for row in rows if row.way.startswith("complex")), key=lambda row: row.error)
-    if step.error >= own.error:
-        return f"; tangents='complex' is not more accurate: error {step.error:.1g}"
-    return (
-        f", or use tangents='complex' if the function accepts complex numbers: error "
-        f"{step.error:.1g} in {words(step.cost / own.cost)} times the time"
-    )
-
-
 STUDY = Study(
     approximates="tangents of a torus in 4-space with waves, and its light",
     reference="exact tangents",
@@ -124,6 +85,5 @@ STUDY = Study(
     error="largest error of luminance",
     cost="ns per point",
     steps=lambda quick: [partial(frame_errors, 64 if quick else 128, 3 if quick else 5)],
-    verdict=verdict,
     axes=("parameter", "error"),
 )

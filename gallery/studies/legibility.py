@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from studies import Row, Study, words
+from studies import Row, Study
 from studies._readable import LINES, VIEWS, known
 from vizlight import DepthCue, Light, Material, Scene, View, illuminate
 from vizlight.filters import lighting
@@ -319,22 +319,6 @@ def _option(name: str, places: Callable[[], list[Place]], samples: int) -> list[
     return option(name, places(), samples)
 
 
-def verdict(rows: Sequence[Row]) -> str:
-    """Return what the presets leave of the errors, and which options never gain."""
-    parts = []
-    for question, best in BEST.items():
-        own = [row for row in rows if row.way == f"presets.{best}" and row.parameter == question]
-        parts += [f"{question} {words(row.cost)} to {words(row.error)}" for row in own]
-    gains: dict[str, bool] = {}
-    for row in rows:
-        if row.way in OPTIONS and row.more["beside"] == f"presets.{BEST[str(row.parameter)]}":
-            gain = float(row.more["mean gain"]) > LEAST[str(row.parameter)]
-            gains[row.way] = gains.get(row.way, False) or gain
-    never = [name for name, gained in gains.items() if not gained]
-    text = f"from the default to the preset: {', '.join(parts)}"
-    return text + (f"; beside the presets no gain in the mean: {', '.join(never)}" if never else "")
-
-
 STUDY = Study(
     approximates="what ideal readers read back from pictures of lit data",
     reference="the data",
@@ -342,7 +326,6 @@ STUDY = Study(
     error="error with it",
     cost="error without it",
     steps=steps,
-    verdict=verdict,
     joined=False,
     diagonal="no gain",
 )

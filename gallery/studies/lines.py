@@ -16,42 +16,24 @@ compensated exponent is not exact anywhere.
 from __future__ import annotations
 
 import dataclasses
-from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
 
-from studies import SHINY, Curve, Panel, Row, Study, cheapest, take_turns, words
+from studies import SHINY, Curve, Row, Study, take_turns
 from vizlight.model import brightness, cylinder, highlights, reflection
 from vizlight.scene import Light, Scene, View
 from vizlight.shading import engine
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
     from vizlight._types import Array
 
 SHININESS = 20.0
 SIDES = (3, 4, 6, 8, 12, 20, 40)
 #: Nodes of the quadrature along a face.
 NODES = 16
-
-
-@dataclass(frozen=True)
-class Model:
-    """Errors of one model of one term, and its cost per point of the line in ns and bytes."""
-
-    setting: str
-    term: str
-    model: str
-    worst: float
-    rms: float
-    scaled_worst: float
-    scaled_rms: float
-    nanoseconds: float
-    bytes: float
 
 
 def directions(count: int, *, headlight: bool) -> tuple[Array, Array, Array]:
@@ -97,70 +79,52 @@ def tube(
     return diffuse / width, specular / width
 
 
-def measure(count: int = 20_000, repeats: int = 3) -> list[Model]:
-    """Return the errors and costs of each model, for random lights and for a headlight."""
+def measure(count: int = 20_000, repeats: int = 3) -> list[Row]:
+    """Return the errors and costs of each model, for random lights and for a headlight.
+
+    The parameter is the number of sides of a tube, or 0.
+    """
     rows = []
     costs = _costs(repeats)
     for setting in ("random", "headlight"):
         wi, wo, t = directions(count, headlight=setting == "headlight")
-        frame = t[:, np.newaxis]
-        exact = {
-            "diffuse": cylinder.diffuse(wi, wo, t),
-            "specular": cylinder.specular(wi, wo, t, shininess=SHININESS),
+        frame, phong = t[:, np.newaxis], float(highlights.phong_from_blinn(SHININESS))
+        shine = partial(reflection.specular, wi, wo, frame)
+        compensated = reflection.diffuse(wi, frame, exponent=brightness.exponent(1, 3))
+        found: dict[str, list[tuple[str, int, str, Array]]] = {
+            "diffuse": [
+                ("exact", 0, "cylinder", cylinder.diffuse(wi, wo, t)),
+                ("Banks, p = 1", 0, "line", reflection.diffuse(wi, frame)),
+                ("Banks, p(1, 3)", 0, "line", compensated),
+            ],
+            "specular": [
+                ("exact", 0, "cylinder", cylinder.specular(wi, wo, t, shininess=SHININESS)),
+                ("Blinn", 0, "line, Blinn", shine(shininess=SHININESS, model="blinn")),
+                (f"Banks' Phong, power {phong:g}", 0, "line", shine(shininess=phong)),
+            ],
         }
-        phong = float(highlights.phong_from_blinn(SHININESS))
-        found: list[tuple[str, str, str, Array]] = [
-            ("diffuse", "Banks, p = 1", "line", reflection.diffuse(wi, frame)),
-            (
-                "diffuse",
-                "Banks, p(1, 3)",
-                "line",
-                reflection.diffuse(wi, frame, exponent=brightness.exponent(1, 3)),
-            ),
-            (
-                "specular",
-                "Blinn",
-                "line, Blinn",
-                reflection.specular(wi, wo, frame, shininess=SHININESS, model="blinn"),
-            ),
-            (
-                "specular",
-                f"Banks' Phong, power {phong:g}",
-                "line",
-                reflection.specular(wi, wo, frame, shininess=phong),
-            ),
-        ]
         for sides in SIDES:
-            pair = tube(wi, wo, t, sides)
-            for term, value in zip(("diffuse", "specular"), pair, strict=True):
-                found.append((term, f"tube of {sides} sides", f"tube {sides}", value))
-        for term in ("diffuse", "specular"):
-            found.append((term, "exact", "cylinder", exact[term]))
-        for term in ("diffuse", "specular"):
-            rows += [
-                _row(setting, term, model, value, exact[term], costs[cost])
-                for own, model, cost, value in found
-                if own == term
-            ]
+            for term, value in zip(found, tube(wi, wo, t, sides), strict=True):
+                found[term].append(("tube", sides, f"tube {sides}", value))
+        for term, own in found.items():
+            exact = own[0][-1]
+            for model, sides, cost, value in own:
+                way = f"{model}, {term}, {setting}"
+                rows.append(_row(way, sides, value, exact, *costs[cost]))
     return rows
 
 
-def _row(
-    setting: str, term: str, model: str, value: Array, exact: Array, cost: tuple[float, float]
-) -> Model:
+def _row(way: str, sides: int, value: Array, exact: Array, seconds: float, size: float) -> Row:
     """Return the errors of one model, without and with the best common factor."""
     factor = float(np.sum(value * exact) / np.sum(value * value))
     plain, scaled = value - exact, factor * value - exact
-    return Model(
-        setting,
-        term,
-        model,
-        float(np.abs(plain).max()),
-        float(np.sqrt(np.mean(plain * plain))),
-        float(np.abs(scaled).max()),
-        float(np.sqrt(np.mean(scaled * scaled))),
-        *cost,
-    )
+    more = {
+        "largest error with the best factor": float(np.abs(scaled).max()),
+        "RMS error without factor": float(np.sqrt(np.mean(plain * plain))),
+        "largest error without factor": float(np.abs(plain).max()),
+        "bytes per point": size,
+    }
+    return Row(way, sides, float(np.sqrt(np.mean(scaled * scaled))), seconds, more)
 
 
 def _costs(repeats: int, count: int = 200_000) -> dict[str, tuple[float, float]]:
@@ -177,14 +141,12 @@ def _costs(repeats: int, count: int = 200_000) -> dict[str, tuple[float, float]]
         material=dataclasses.replace(SHINY, shininess=SHININESS),
     )
 
-    light = partial(engine.shade, points, tangents, scene, threads=1)
+    light = partial(engine.shade, points, tangents, scene)
     ways = {
         "line": light,
         "line, Blinn": partial(light, model="blinn"),
         "cylinder": partial(light, model="cylinder"),
-        "surface": partial(
-            engine.shade, points, None, scene, normals=tangents, threads=1, model="blinn"
-        ),
+        "surface": partial(engine.shade, points, None, scene, normals=tangents, model="blinn"),
     }
     seconds = take_turns(ways, repeats)
     each = {way: 1e9 * spent / count for way, spent in seconds.items()}
@@ -202,63 +164,10 @@ def _costs(repeats: int, count: int = 200_000) -> dict[str, tuple[float, float]]
     return costs
 
 
-def rows(count: int = 20_000, repeats: int = 3) -> list[Row]:
-    """Return one row for each model; the parameter is the number of sides of a tube, or 0."""
-    found = []
-    for m in measure(count, repeats):
-        tube_of = m.model.split()[2] if m.model.startswith("tube") else "0"
-        more: dict[str, float | str] = {
-            "term": m.term,
-            "largest error with the best factor": m.scaled_worst,
-            "RMS error without factor": m.rms,
-            "largest error without factor": m.worst,
-            "bytes per point": m.bytes,
-        }
-        name = "tube" if int(tube_of) else m.model
-        way = f"{name}, {m.term}, {m.setting}"
-        found.append(Row(way, int(tube_of), m.scaled_rms, m.nanoseconds, more))
-    return found
-
-
-def verdict(rows: Sequence[Row]) -> str:
-    """Return which model to use for random lights and for a headlight."""
-    choices = []
-    for term in ("diffuse", "specular"):
-        for setting in ("random", "headlight"):
-            own = [r for r in rows if r.way.endswith(f", {term}, {setting}")]
-            where = f"{term} with a headlight" if setting == "headlight" else term
-            best = cheapest(own)
-            least = min(own, key=lambda row: row.error)
-            if best is None:
-                choices.append(
-                    f"{where}: none, '{_model(least)}' has an error of {least.error:.2g}"
-                )
-                continue
-            choices.append(f"{where}: '{_model(best)}' at {words(best.cost)} ns per point")
-            cheaper = [r for r in own if r.cost < best.cost and not r.parameter]
-            if cheaper:
-                near = min(cheaper, key=lambda row: row.error)
-                choices[-1] += (
-                    f" ('{_model(near)}' at {words(near.cost)} ns has an error of {near.error:.2g})"
-                )
-    return (
-        f"models to use for an RMS error of 1/255, each with its best factor: {'; '.join(choices)}"
-    )
-
-
-def _model(row: Row) -> str:
-    """Return the name of a row's model for a sentence."""
-    name = row.way.split(f", {row.more['term']}")[0]
-    return f"{name} of {row.parameter} sides" if row.parameter else name
-
-
-def curve_of(term: str) -> Callable[[Row], Curve | None]:
-    """Return the function from a row to its curve, for one term with random lights."""
-    return lambda row: (
-        Curve(row.way.removesuffix(f", {term}, random"), term)
-        if row.way.endswith(f"{term}, random")
-        else None
-    )
+def _curve(row: Row) -> Curve | None:
+    """Return the curve of a row with random lights."""
+    model, _, rest = row.way.rpartition(", ")[0].rpartition(", ")
+    return Curve(model, rest) if row.way.endswith("random") else None
 
 
 STUDY = Study(
@@ -267,8 +176,6 @@ STUDY = Study(
     parameter="sides of a tube, 0 for a line",
     error="RMS error of the term with its best factor",
     cost="ns per point",
-    steps=lambda quick: [lambda: rows(4000 if quick else 20_000, 3)],
-    verdict=verdict,
-    curve=curve_of("diffuse"),
-    beside=(Panel(curve=curve_of("specular")),),
+    steps=lambda quick: [lambda: measure(4000 if quick else 20_000, 3)],
+    curve=_curve,
 )

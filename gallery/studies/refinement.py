@@ -7,20 +7,18 @@ and each side of a triangle evenly, and lights all new points with interpolated,
 
 from __future__ import annotations
 
-import math
 import warnings
 from functools import cache, partial
-from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pyvista as pv
 
-from studies import PIXEL, SHINY, Curve, Row, Study, span, words
+from studies import PIXEL, SHINY, Curve, Row, Study
 from vizlight import data
 from vizlight.filters.refine import refine
 from vizlight.mesh import splitting
-from vizlight.mesh.inputs import inputs_of
+from vizlight.mesh.parts import inputs_of
 from vizlight.scene import Light, Scene, View
 from vizlight.shading import engine
 from vizlight.shading.options import LightOptions
@@ -152,43 +150,6 @@ def curve(row: Row) -> Curve:
     return Curve(name, how)
 
 
-def share(rows: Sequence[Row], name: str) -> float:
-    """Return the points of the finest adaptive refinement, in those of the uniform one.
-
-    The uniform curve is interpolated at the adaptive error; NaN where it does not reach it.
-    """
-    own = [row for row in rows if row.way == f"{name}, {UNIFORM}" and row.error > 0]
-    fine = [row for row in rows if row.way == f"{name}, {ADAPTIVE}"][-1]
-    own.sort(key=lambda row: row.cost)
-    for before, after in pairwise(own):
-        if after.error <= fine.error:
-            low, high = math.log(before.error), math.log(after.error)
-            t = (low - math.log(fine.error)) / (low - high) if low > high else 1.0
-            grown = math.log(after.cost / before.cost) * min(max(t, 0.0), 1.0)
-            return fine.cost / (before.cost * math.exp(grown))
-    return math.nan
-
-
-def verdict(rows: Sequence[Row]) -> str:
-    """Return what adaptive refinement saves at equal error."""
-    names = list(dict.fromkeys(curve(row).name for row in rows))
-    shares = {name: share(rows, name) for name in names}
-    known = [value for value in shares.values() if not math.isnan(value)]
-    finest = [[row for row in rows if row.way == f"{name}, {ADAPTIVE}"][-1] for name in names]
-    start = [next(row for row in rows if row.way == f"{name}, {UNIFORM}") for name in names]
-    grown = [fine.cost / first.cost for fine, first in zip(finest, start, strict=True)]
-    text = (
-        "pass refine=1/255: splitting where light bends takes "
-        f"{span(100 * value for value in known)} % of the points of uniform refinement at an equal "
-        f"error, {span(grown)} times those of the mesh, for errors of at most "
-        f"{words(max(row.error for row in finest) / PIXEL)} of 255"
-    )
-    lacking = [name for name, value in shares.items() if math.isnan(value)]
-    if lacking:
-        text += f"; uniform refinement does not reach that for: {', '.join(lacking)}"
-    return text
-
-
 STUDY = Study(
     approximates="light between the points of real meshes by interpolation",
     reference="light of the interpolated, normalised vectors at 4,096 random places",
@@ -196,6 +157,5 @@ STUDY = Study(
     error="largest error of luminance",
     cost="points",
     steps=steps,
-    verdict=verdict,
     curve=curve,
 )

@@ -1,18 +1,15 @@
-"""The light of the sky: error against time, for fields and for surfaces, beside other packages.
+"""The light of the sky: error against time, for fields and for surfaces.
 
 Fields are fractal ground of a root mean square slope; the truth at random nodes follows 512
 azimuths through every cell. Surfaces are a bumpy ball; the truth at its points has 16 times the
-rays of the finest row. Packages beside vizlight are measured where they are installed, each against
-its own definition: RVT's sky-view factor weighs the sky by solid angle, without the cosine, and so
-does libigl's ambient occlusion; trimesh follows the same rays as vizlight by the same Embree.
+rays of the finest row.
 """
 
 from __future__ import annotations
 
-import importlib
 import time
 from functools import cache, partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -24,16 +21,14 @@ from vizlight.geometry.relief import sky as fields
 from vizlight.mesh import sky as meshes
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable, Sequence
 
     from vizlight._types import Array, Indices
 
 #: Nodes along a side of a field, and its slopes; errors that are asked for.
 SIDE, SLOPES, ASKED = 512, (0.3, 1.0), (0.02, 0.01, 0.005, 0.002)
-#: Places and azimuths of the truth of a field, rays of the truth of a surface.
-PLACES, AZIMUTHS, RAYS = 100, 512, 1 << 14
-#: Directions and radii of RVT, rays of libigl and of trimesh.
-RVT, IGL, TRIMESH = ((16, 10), (16, 50), (32, 100)), (64, 256, 1024), (64, 256)
+#: Places and azimuths of the truth of a field.
+PLACES, AZIMUTHS = 100, 512
 
 
 def ground(side: int, slope: float, seed: int = 1) -> Array:
@@ -100,8 +95,10 @@ def of_field(side: int, slope: float, error: float) -> list[Row]:
     """Return the row of an error asked for on a field."""
     z, x = ground(side, slope), np.arange(float(side))
     at, true = field_truth(side, slope)
+    # Code is compiled before it is timed.
+    fields.sky(x[:64], x[:64], z[:64, :64], error=0.001)
     start = time.process_time()
-    made = fields.sky(x, x, z, error=error, threads=1)
+    made = fields.sky(x, x, z, error=error)
     cost = time.process_time() - start
     missed = np.abs(made.share[tuple(at.T)] - true)
     row = _row(
@@ -109,25 +106,6 @@ def of_field(side: int, slope: float, error: float) -> list[Row]:
         made.azimuths, f"{1e9 * cost / z.size / made.azimuths:.0f} ns per azimuth",
     )  # fmt: skip
     return [row]
-
-
-def of_rvt(side: int, slope: float, directions: int, radius: int) -> list[Row]:
-    """Return the row of RVT, against its own definition from the same horizons."""
-    try:
-        vis: Any = importlib.import_module("rvt.vis")
-    except ImportError:
-        return []
-    z = ground(side, slope)
-    at, _, t, _ = horizons(side, slope)
-    true = (1 - t / np.sqrt(1 + t * t)).mean(axis=1)
-    start = time.process_time()
-    made = vis.sky_view_factor(
-        dem=z, resolution=1, svf_n_dir=directions, svf_r_max=radius, svf_noise=0
-    )["svf"]
-    cost = time.process_time() - start
-    missed = np.abs(np.asarray(made)[tuple(at.T)] - true)
-    asked = f"{directions} directions, radius {radius}"
-    return [_row(f"RVT, slope {slope:g}", asked, missed, cost / z.size, np.nan, directions, "")]
 
 
 @cache
@@ -141,7 +119,7 @@ def of_surface(points: int, error: float) -> list[Row]:
     """Return the row of an error asked for on a surface."""
     ball, true = surface_truth(points)
     start = time.process_time()
-    (made,) = meshes.skies([ball], error=error, threads=1)
+    (made,) = meshes.skies([ball], error=error)
     cost = time.process_time() - start
     missed = np.abs(made.share - true)
     rays = float(str(made.record["directions"]))
@@ -151,45 +129,6 @@ def of_surface(points: int, error: float) -> list[Row]:
         f"{plain / rays:.1f} times fewer rays than at random",
     )  # fmt: skip
     return [row]
-
-
-def of_libigl(points: int, rays: int) -> list[Row]:
-    """Return the row of libigl, against its own definition: a sky without the cosine."""
-    try:
-        igl: Any = importlib.import_module("igl")
-    except ImportError:
-        return []
-    ball, _ = surface_truth(points)
-    vertices, faces = np.asarray(ball.points, np.float64), np.asarray(ball.regular_faces, np.int64)
-    normals = np.asarray(ball.point_data["Normals"], np.float64)
-    true = igl.ambient_occlusion(vertices, faces, vertices + 2e-6 * normals, normals, RAYS)
-    start = time.process_time()
-    made = igl.ambient_occlusion(vertices, faces, vertices + 2e-6 * normals, normals, rays)
-    cost = time.process_time() - start
-    missed = np.abs(np.asarray(made) - np.asarray(true))
-    return [_row("libigl", rays, missed, cost / len(vertices), np.nan, rays, "")]
-
-
-def of_trimesh(points: int, rays: int) -> list[Row]:
-    """Return the row of trimesh's rays by Embree, in random directions by the cosine."""
-    try:
-        trimesh: Any = importlib.import_module("trimesh")
-    except ImportError:
-        return []
-    ball, true = surface_truth(points)
-    mesh = trimesh.Trimesh(np.asarray(ball.points), ball.regular_faces, process=False)
-    normals = np.asarray(ball.point_data["Normals"], np.float64)
-    random = np.random.default_rng(0)
-    start = time.process_time()
-    shares = np.zeros(len(true))
-    for _ in range(rays):
-        way = random.normal(size=normals.shape)
-        way = normals + way / np.linalg.norm(way, axis=1, keepdims=True)
-        hit = mesh.ray.intersects_any(np.asarray(ball.points) + 2e-6 * normals, way)
-        shares += ~np.asarray(hit)
-    cost = time.process_time() - start
-    missed = np.abs(shares / rays - true)
-    return [_row("trimesh by Embree", rays, missed, cost / len(true), np.nan, rays, "")]
 
 
 def _row(
@@ -203,41 +142,13 @@ def _row(
     return Row(way, asked, float(np.quantile(missed, 0.95)), 1e9 * seconds, more)
 
 
-def steps(quick: bool) -> Sequence[Callable[[], Iterable[Row]]]:
+def steps(quick: bool) -> Sequence[Callable[[], list[Row]]]:
     """Return one function for each row."""
-    made: list[Callable[[], Iterable[Row]]] = []
     side, points = (192, 2500) if quick else (SIDE, 16000)
     if not _compiled.active():
         side = 64
-    # Code is compiled before it is timed.
-    fields.sky(np.arange(64.0), np.arange(64.0), ground(64, 1.0), error=0.001)
-    for slope in SLOPES:
-        for error in ASKED:
-            made.append(partial(of_field, side, slope, error))
-        for directions, radius in RVT[: 1 if quick else None]:
-            made.append(partial(of_rvt, side, slope, directions, radius))
-    for error in (0.04, 0.02, 0.01):
-        made.append(partial(of_surface, points, error))
-    for rays in IGL[: 1 if quick else None]:
-        made.append(partial(of_libigl, points, rays))
-    for rays in TRIMESH[: 1 if quick else None]:
-        made.append(partial(of_trimesh, points, rays))
-    return made
-
-
-def verdict(rows: Sequence[Row]) -> str:
-    """Return whether the stated errors hold, and what 0.01 costs."""
-    own = [row for row in rows if isinstance(row.parameter, float)]
-    held = sum(row.error <= row.parameter for row in own if isinstance(row.parameter, float))
-    rough = [row for row in own if row.way.startswith("field") and row.parameter == 0.01]
-    flat = [row for row in own if row.way == "surface" and row.parameter == 0.01]
-    field = max((row.cost for row in rough), default=np.nan)
-    surface = max((row.cost for row in flat), default=np.nan)
-    return (
-        f"the error asked for holds at 95 of 100 points in {held} of {len(own)} rows; 0.01 takes "
-        f"{field / 1e3:.1f} microseconds per node of a field and {surface / 1e3:.0f} per point of "
-        "a surface"
-    )
+    made = [partial(of_field, side, slope, error) for slope in SLOPES for error in ASKED]
+    return made + [partial(of_surface, points, error) for error in (0.04, 0.02, 0.01)]
 
 
 STUDY = Study(
@@ -247,5 +158,4 @@ STUDY = Study(
     error="error of 95 of 100 points",
     cost="processor time in ns per point",
     steps=steps,
-    verdict=verdict,
 )

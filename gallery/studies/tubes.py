@@ -12,16 +12,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from studies import PIXEL, SHINY, Row, Study, cheapest, holding, lines, take_turns, words
+from studies import SHINY, Row, Study, lines, take_turns
 from vizlight.data import load_example
+from vizlight.draw import render
 from vizlight.filters.illuminate import illuminate
 from vizlight.filters.streamlines import streamlines
 from vizlight.model import cylinder
-from vizlight.pictures import render
 from vizlight.scene import Light, Scene, View
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
 
     import pyvista as pv
 
@@ -89,33 +89,6 @@ def time_to_draw(mesh: pv.PolyData, camera: pv.Camera, repeats: int = 5) -> floa
         plotter.close()
 
 
-def verdict(rows: Sequence[Row]) -> str:
-    """Return whether lines or tubes are drawn faster, and the number of sides a tube needs."""
-    (line,), tubes = ([row for row in rows if row.way == way] for way in ("lit lines", "tubes"))
-    enough = holding(tubes, coarse=False)
-    tube = enough or max(tubes, key=lambda row: int(row.parameter))
-    best = cheapest([line, *([enough] if enough else [])])
-    fewer = max(
-        (int(r.parameter) for r in tubes if int(r.parameter) < int(tube.parameter)), default=0
-    )
-    needed = (
-        f"a tube needs {tube.parameter} sides for an RMS error of 1/255"
-        + (f" ({fewer} are too few)" if fewer else "")
-        if enough
-        else f"tubes of {tube.parameter} sides have an error of {tube.error / PIXEL:.2g} of 255"
-    )
-    size, build = (
-        float(tube.more[key]) / float(line.more[key]) for key in ("MB", "build and light, ms")
-    )
-    use = "lit lines (model='cylinder')" if best is line else f"tubes of {tube.parameter} sides"
-    why = "which are faster to draw" if enough else "which alone are within 1/255"
-    return (
-        f"for lines thinner than a pixel use {use}, {why}: {needed}; such a tube needs "
-        f"{words(size)} times the memory of a lit line, {words(build)} times the time to build "
-        f"and {words(tube.cost / line.cost)} times the time to draw"
-    )
-
-
 STUDY = Study(
     approximates="streamlines of the rotating disk as round cylinders",
     reference="the exact light of a thin cylinder",
@@ -123,5 +96,4 @@ STUDY = Study(
     error="RMS error of luminance",
     cost="ms per frame",
     steps=lambda quick: [lambda: measure(30 if quick else 300, 3 if quick else 5)[0]],
-    verdict=verdict,
 )

@@ -80,7 +80,7 @@ COMMANDS = {
     "scene of a file": "light flow.vti --contour r --scene scene.json --specular 0.1",
     "view of a scene": "light flow.vti --contour r --scene view.json",
     "saved camera": "light flow.vti --contour r --view camera.json --zoom 2 --parallel",
-    "streamlines": "streamlines flow.vti --vectors V --seeds 12 --model cylinder --max-steps 90",
+    "streamlines": "streamlines flow.vti --vectors V --seeds 12 --model cylinder",
     "colour of data": "light flow.vti --slice z:4 --scalars r --diffuse 0.9",
     "streamlines by data": "streamlines flow.vti --vectors V --seeds 9 --scalars r --cmap plasma",
     "lines by direction": "light tract.vtp --scalars direction --line-width 3",
@@ -356,6 +356,29 @@ def test_report_stands_in_the_script_too(folder, capfd):
     for text in (printed, out):
         assert "points" in text
         assert "not measured between points: cast shadows" in text
+    code, out, _ = run(capfd, "sky", "terrain.vti", "--report", "-o", "skylit.vti")
+    assert (code, "or less at 95 of 100 points, as estimated, horizons" in out) == (0, True)
+
+
+def test_components_of_vectors_are_joined(folder, capfd):
+    mesh = pv.read("flow.vti")
+    x, y, z = mesh["V"].T
+    mesh["u"], mesh["v"] = x, y
+    mesh.save("parts.vti")
+    mesh["V"] = np.column_stack([x, y, 0 * z])
+    mesh.save("whole.vti")
+    for file, name in (("parts", "u,v"), ("whole", "V")):
+        code, _, _ = run(
+            capfd, "light", f"{file}.vti", "--tangents", name, "-o", f"{file}-lit.vtp",
+        )  # fmt: skip
+        assert code == 0
+    parts, whole = pv.read("parts-lit.vtp"), pv.read("whole-lit.vtp")
+    np.testing.assert_array_equal(parts["luminance"], whole["luminance"])
+    joined = vizlight.files.with_vectors(pv.read("parts.vti"), "v", "u")
+    np.testing.assert_array_equal(joined["v,u"][:, [1, 0, 2]], pv.read("whole.vti")["V"])
+    code, _, _ = run(capfd, "streamlines", "parts.vti", "--vectors", "u,v", "-o", "lines.vtp")
+    assert code == 0
+    assert np.ptp(pv.read("lines.vtp").points[:, 2]) > 0.1
 
 
 @pytest.mark.parametrize(
@@ -424,10 +447,16 @@ def test_report_stands_in_the_script_too(folder, capfd):
         ("light flow.vti flow.vti", "file: expected files of different names"),
         ("light flow.vti torus.vtp -o a.png", "output: expected a folder that exists"),
         ("light flow.vti -o none/a.png", "output: expected a folder that exists, got 'none'"),
+        ("light flow.vti -o a.vtm", "it is one mesh, which has no blocks"),
+        ("light flow.vti --tangents r,q", "names U,V of components, one of ['r', 'V'"),
+        ("light terrain.vti --for slope", "for a surface without a flow, such as terrain, take --"),
+        ("streamlines flow.vti --vectors U", "'U'; pass --vectors V"),
+        ("fur scan.vtp", "mesh: expected a surface with faces, got a PolyData mesh without"),
     ],
 )
 def test_bad_input_is_one_line_and_exit_code_2(line, words, folder, capfd):
     Path("list.json").write_text("[1, 2]")
+    pv.PolyData(np.random.default_rng(0).random((30, 3))).save("scan.vtp")
     before = sorted(folder.iterdir())
     code, out, err = run(capfd, *line.split())
     assert (code, out) == (2, ""), err

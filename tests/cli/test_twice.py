@@ -39,7 +39,7 @@ def ball(tmp_path):
 def test_a_lit_mesh_is_read_once_and_nothing_that_draws_is_loaded(ball):
     reads, modules = counted(ball, "light", "ball.vtp", "-o", "lit.vtp")
     assert reads == 1
-    drawing = {"vizlight.plotting.component", "vizlight.pieces.run", "vizlight.pieces.kinds"}
+    drawing = {"vizlight.draw.component", "vizlight.pieces.run", "vizlight.pieces.kinds"}
     assert not modules & {*drawing, "numba", "scipy.optimize", "scipy.spatial"}
 
 
@@ -48,7 +48,7 @@ def test_a_picture_reads_its_file_once(ball):
     reads, modules = counted(ball, "light", "ball.vtp", "-o", "lit.png", "--size", "60x40")
     assert reads == 1
     assert not modules & {"vizlight.pieces.run", "numba", "scipy.optimize", "scipy.spatial"}
-    assert "vizlight.plotting.component" in modules
+    assert "vizlight.draw.component" in modules
 
 
 def test_help_reads_the_arguments_of_its_command_once(monkeypatch, capsys):

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-import vizlight
 from vizlight import Light, Scene, bas_relief, relief_shadow
 
 BALL = pv.Sphere(theta_resolution=8, phi_resolution=8)
@@ -51,16 +50,6 @@ def test_bad_bas_relief():
     edge = pv.Plane(direction=(1, 0, 0))
     with pytest.raises(ValueError, match="mesh: expected a surface wider than a node"):
         bas_relief(edge, direction=(0, 0, 1))
-
-
-def test_progress_is_shown_on_standard_error(capfd):
-    plain = vizlight.bas_relief(pv.Sphere(), resolution=50)
-    shown = vizlight.bas_relief(pv.Sphere(), resolution=50, progress_bar=True)
-    np.testing.assert_array_equal(shown["height"], plain["height"])
-    said = capfd.readouterr()
-    assert "depth" in said.err
-    assert "100%" in said.err
-    assert said.out == ""
 
 
 def test_a_raised_grid_has_a_relief():

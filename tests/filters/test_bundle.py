@@ -10,10 +10,10 @@ import pyvista as pv
 from lamps import SHINY, shiny
 
 import vizlight
-from vizlight import _compiled
+from vizlight import _compiled, _pool
+from vizlight.draw import fragments
 from vizlight.filters import relight
 from vizlight.geometry.lines import bundle as geometry
-from vizlight.plotting import fragments
 from vizlight.shading import engine
 from vizlight.shading.options import LightOptions
 
@@ -109,10 +109,10 @@ def test_what_has_not_changed_is_not_computed_again(monkeypatch):
 
 def test_the_same_with_any_number_of_threads_and_without_compiled_code(monkeypatch):
     mesh = lines(200)
-    one, two = (
-        vizlight.illuminate(mesh, SCENE, bundle=QUICK, occlusion="sky", threads=threads)
-        for threads in (1, 2)
-    )
+    with _pool.threads(1):
+        one = vizlight.illuminate(mesh, SCENE, bundle=QUICK, occlusion="sky")
+    with _pool.threads(2):
+        two = vizlight.illuminate(mesh, SCENE, bundle=QUICK, occlusion="sky")
     assert np.array_equal(one["transmittance"], two["transmittance"])
     assert np.array_equal(one["sky"], two["sky"])
     monkeypatch.setenv("VIZLIGHT_FAST", "0")

@@ -319,14 +319,6 @@ def test_empty_meshes(kind):
     assert "luminance" in lit.point_data
 
 
-def test_progress_bar_is_drawn_on_standard_error(capfd):
-    illuminate(meshes()["PolyData"], SCENE, tangents="V", progress_bar=True)
-    out, err = capfd.readouterr()
-    assert out == ""
-    assert "light" in err
-    assert "100%" in err
-
-
 def test_a_shared_result_does_not_hold_the_input_in_memory_twice():
     plane = meshes()["PolyData"]
     lit = illuminate(plane.copy(deep=False), SCENE, tangents="V", inplace=True)
@@ -496,3 +488,18 @@ def test_a_scan_is_lit_by_planes_through_its_neighbours(kind):
     found = illuminate(kind(ball.points), scene)["luminance"]
     front = ball.points @ (1, 1, 1) > 0.2  # what is not averted
     assert np.abs(known - found)[front].max() < 0.05
+
+
+def test_normals_that_contradict_the_faces_are_told_and_believed():
+    ball = pv.Sphere()
+    good = vizlight.illuminate(ball, SCENE)
+    ball["Normals"] *= -1
+    turned = vizlight.illuminate(ball, SCENE)
+    np.testing.assert_array_equal(turned["luminance"], good["luminance"])
+    ball["Normals"][:] = (0, 0, 1)
+    for mesh in (ball, pv.MultiBlock([pv.Cube(), ball])):
+        words = r"lean from its faces by .* 4\d% .* clear them"
+        with pytest.warns(UserWarning, match=words) as told:
+            lit = vizlight.illuminate(mesh, SCENE, components=True)
+        assert len(told) == 1
+    assert np.ptp(lit[1]["diffuse"]) < 0.05 < np.ptp(good["luminance"])

@@ -275,14 +275,6 @@ def test_areas_of_bands_against_vtk():
     np.testing.assert_allclose(ours, theirs, rtol=2e-3, atol=1e-3)
 
 
-def test_the_input_is_not_changed():
-    mesh = pv.Sphere()
-    mesh["luminance"] = np.arange(mesh.n_points)
-    before = mesh.copy()
-    isoluminance(mesh, DULL)
-    assert mesh == before
-
-
 def test_a_closed_mesh_stays_closed():
     for mesh in (pv.Sphere().clean(), pv.ParametricTorus().clean(), pv.Cube().clean()):
         found = isoluminance(mesh, DULL, levels=9)["bands"]
@@ -397,17 +389,6 @@ def test_nothing_of_a_solid_is_left(color):
     scene = Scene(lights=Light(direction=(0, 0, 1)), material=shiny(specular=0, color=color))
     nothing = isoluminance(Sphere() - Sphere(radius=2), scene)
     assert [block.n_cells for block in nothing] == [0, 0]
-
-
-def test_progress_is_shown_on_standard_error(capsys):
-    scene = Scene(
-        lights=Light(direction=(1, 1, 1)), view=View(direction=(1, 0, 0.3)), material=shiny()
-    )
-    vizlight.isoluminance(pv.Sphere(), scene, progress_bar=True)
-    shown = capsys.readouterr()
-    assert "contours" in shown.err
-    assert "100%" in shown.err
-    assert shown.out == ""
 
 
 @pytest.mark.parametrize("grid", [False, True])

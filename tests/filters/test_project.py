@@ -513,11 +513,6 @@ def test_empty_mesh():
     assert project(mesh, frame=None, rotation=TURN, distance=2.0).n_points == 0
 
 
-def test_progress(torus, capsys):
-    project(torus, scene=SCENE4, progress_bar=True)
-    assert "project" in capsys.readouterr().err
-
-
 def test_a_mesh_without_places_is_told_where_they_come_from():
     with pytest.raises(ValueError, match=r"positions: expected places .* vizlight\.manifold makes"):
         vizlight.project(pv.Sphere())

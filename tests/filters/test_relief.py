@@ -10,7 +10,6 @@ import pytest
 import pyvista as pv
 from fields import X, Y, Z, grids, level
 from lamps import SHINY, SHOULDER, shiny
-from scipy.interpolate import RegularGridInterpolator
 
 import vizlight
 from studies.relief import hills
@@ -284,34 +283,6 @@ def test_shadows_are_as_large_as_hard_ones(kind):
         assert soft == pytest.approx(hard, rel=0.2)
 
 
-@pytest.mark.parametrize(("name", "terrain"), list(terrains()))
-def test_hard_shadows_of_real_terrain_are_those_of_the_horizon(name, terrain):
-    """The highest angle on the way to the sun, sampled: no cells, no rays."""
-    columns, rows = terrain.dimensions[:2]
-    z = np.asarray(terrain["height"]).reshape(rows, columns)
-    x, y = (np.arange(n) * s for n, s in zip((columns, rows), terrain.spacing, strict=False))
-    surface = RegularGridInterpolator((y, x), z)
-    gx, gy = np.meshgrid(x, y)
-    across = np.array([-1.0, 0.7]) / np.hypot(1, 0.7)
-    horizon = np.full(z.shape, -np.inf)
-    for k in np.arange(0.02, 1.5 * max(columns, rows), 0.25) * terrain.spacing[0]:
-        place = [np.clip(gy + k * across[1], 0, y[-1]), np.clip(gx + k * across[0], 0, x[-1])]
-        horizon = np.maximum(horizon, (surface(np.stack(place, axis=-1)) - z) / k)
-    down, right = np.gradient(z, y, x)
-    for elevation in (8, 15, 30):
-        rise = np.tan(np.radians(elevation))
-        scene = Scene(lights=Light(direction=(*across, rise)), material=SHINY)
-        options = {"elevation": "height", "method": "exact"}
-        t = relief_shadow(terrain, scene, depth=0, **options)["t"].reshape(z.shape)
-        facing = rise > right * across[0] + down * across[1]
-        expected = (horizon < rise) & facing
-        assert np.mean((t > 0) != expected) < 2e-3
-        # Softened over a depth the dark is dark still, the light the cosine.
-        soft = relief_shadow(terrain, scene, depth=0.02 * terrain.spacing[0], **options)
-        deep = horizon > np.tan(np.radians(elevation + 10))
-        assert np.all(soft["t"].reshape(z.shape)[deep] < 0.2)
-
-
 def test_a_disc_softens_the_edge_and_keeps_the_middle():
     x = np.linspace(0, 4, 401)
     grid = pv.ImageData(dimensions=(401, 3, 1), spacing=(0.01, 1, 1))
@@ -451,3 +422,21 @@ def test_the_shadow_does_not_replace_the_light(name, options):
     with pytest.raises(ValueError, match="name: expected a name that the light does not use"):
         vizlight.relief_shadow(field, SCENE, lit=True, name=name, **options)
     assert field.array_names == ["h"]
+
+
+def test_shadows_that_end_within_large_triangles_are_told():
+    corners = [[0, 0, 0], [20, 0, 0], [20, 1, 0], [2, 1, 0], [2, 3, 0], [0, 3, 0]]
+    section = pv.PolyData(np.array(corners, float), faces=[6, 0, 1, 2, 3, 4, 5])
+    step = section.triangulate().extrude((0, 0, 3), capping=True).triangulate().clean()
+    scene = Scene(lights=Light(direction=(-2, 1, 0.2)))
+    with pytest.warns(UserWarning, match=r"shadows end within triangles .*subdivide\(3"):
+        relief_shadow(step, scene, feature_angle=30)
+    fine = relief_shadow(step.subdivide(3, "linear"), scene, feature_angle=30)
+    assert 0 < fine["t"].mean() < 1
+    # A shadow ends on the long triangles beside a ridge, whose own are as small as the raster.
+    x = np.array([0, 1, 1.1, 1.2, 1.3, 8])
+    grid = pv.StructuredGrid(*np.meshgrid(x, [0, 4.0, 8.0], indexing="ij"), np.zeros((6, 3)))
+    grid.points[:, 2] = np.where(np.isclose(grid.points[:, 0], 1.1), 0.4, 0)
+    open_ = grid.extract_surface(algorithm=None).triangulate()
+    with pytest.warns(UserWarning, match="shadows end within triangles"):
+        relief_shadow(open_, Scene(lights=Light(direction=(-1, 0, 1))), raster=0.1)

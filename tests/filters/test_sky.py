@@ -10,9 +10,9 @@ import pyvista as pv
 
 import vizlight
 from vizlight import _compiled
+from vizlight.draw import fragments
 from vizlight.filters import relight
 from vizlight.mesh import embree_rays, sky
-from vizlight.plotting import fragments
 from vizlight.shading import compiled, engine
 from vizlight.shading.options import LightOptions
 
@@ -52,7 +52,7 @@ def test_kinds_of_height_fields_agree():
         np.testing.assert_allclose(vizlight.sky(other, error=0.02)["sky"], found["sky"], atol=1e-6)
     # The same as a surface below the half space above, whose border is open.
     surface = warped.extract_surface(algorithm="dataset_surface")
-    rays = vizlight.sky(surface, error=0.02, up=(0, 0, 1))
+    rays = vizlight.sky(surface, error=0.02, up=(0, 0, 1), feature_angle=None)
     inner = (np.abs(surface.points[:, :2]) < 5).all(axis=1)
     same = found["sky"][surface["vtkOriginalPointIds"]]
     assert np.abs(rays["sky"] - same)[inner].mean() < 0.05
@@ -98,7 +98,10 @@ def test_ghost_cells_hide_the_sky_and_hidden_ones_do_not():
 
 def test_volumes_and_lines():
     box = pv.ImageData(dimensions=(6, 6, 6)).cast_to_unstructured_grid()
-    with pytest.warns(UserWarning, match="64 of 216 points have no sky"):
+    with (
+        pytest.warns(UserWarning, match="64 of 216 points have no sky"),
+        pytest.warns(UserWarning, match=r"edges are sharper .* take the extract_surface\(\)"),
+    ):
         found = vizlight.sky(box)
     assert found["sky"].min() > 0.98
     assert np.count_nonzero(~found["sky_valid"]) == 64
@@ -130,6 +133,84 @@ def test_points_without_a_sky_are_marked_and_have_that_of_the_nearest():
         found = vizlight.sky(hole, error=0.05)
     assert np.isfinite(found["sky"]).all()
     assert np.flatnonzero(~found["sky_valid"]).tolist() == [30, 31, 32]
+
+
+def step(length=4):
+    """Return a step of a length: a prism whose section is an L."""
+    corners = [[0, 0, 0], [length, 0, 0], [length, 1, 0], [2, 1, 0], [2, 3, 0], [0, 3, 0]]
+    section = pv.PolyData(np.array(corners, float), faces=[6, 0, 1, 2, 3, 4, 5])
+    return section.triangulate().extrude((0, 0, 3), capping=True).clean()
+
+
+def test_points_of_creases_see_the_sky_of_each_side():
+    part = step()
+    found = vizlight.sky(part)
+    assert found.n_points == vizlight.mesh.normals.split_edges(part, "auto").n_points == 36
+    assert "sky_valid" not in found.point_data
+    # Beside the end of the inner edge something between a half and three quarters is free.
+    inner = (found.points[:, :2] == [2, 1]).all(axis=1)
+    assert np.sort(found["sky"][inner]).tolist() == pytest.approx([0.63] * 4 + [1] * 2, abs=0.05)
+    assert found["sky"][~inner].min() > 0.9
+    with pytest.warns(UserWarning, match="sky changes inside of triangles"):
+        whole = vizlight.sky(part, feature_angle=None)
+    assert whole.n_points == part.n_points == 12
+    vizlight.sky(part, inplace=True)
+    assert part.n_points == 36
+    lit = vizlight.illuminate(part, SCENE, occlusion="sky", components=True)
+    np.testing.assert_allclose(lit["ambient"], 0.5 * part["sky"], atol=1e-6)
+
+
+def test_a_sky_that_changes_inside_of_triangles_is_told():
+    part = step(20)
+    with pytest.warns(UserWarning, match=r"sky changes inside .*subdivide_adaptive\(") as told:
+        found = vizlight.sky(part)
+    between = vizlight.provenance(found, "sky")["between"]
+    assert f"off by {between:.2f} or more" in str(told[0].message)
+    fine = vizlight.sky(part.subdivide_adaptive(max_edge_len=0.4), error=0.05)
+    assert vizlight.provenance(fine, "sky")["between"] < 0.1
+
+
+def test_points_that_see_nothing_are_counted():
+    cave = pv.Sphere(theta_resolution=8, phi_resolution=8)
+    cave["Normals"] *= -1
+    cave.flip_faces(inplace=True)
+    with pytest.warns(UserWarning, match=f"{cave.n_points} of {cave.n_points} points see nothing"):
+        found = vizlight.sky(cave)
+    assert not found["sky"].any()
+
+
+def test_a_sky_that_is_older_than_the_mesh_is_told():
+    known = vizlight.sky(pv.merge(balls(), merge_points=False), error=0.05)
+    for same in (known, known.triangulate(), known.clip("z")):
+        vizlight.illuminate(same, SCENE, occlusion="sky")
+    moved, fewer = known.copy(), known.copy()
+    moved.points[0] *= 1.1
+    fewer.faces = known.faces[:-4]
+    for stale in (moved, fewer):
+        with pytest.warns(UserWarning, match=r"have changed since .* vizlight.sky\(mesh\) finds"):
+            vizlight.illuminate(stale, SCENE, occlusion="sky")
+    part = pv.Cube().clean()
+    named = vizlight.sky(part, name="view", feature_angle=None)
+    vizlight.illuminate(named, SCENE, occlusion="view", feature_angle="auto")
+
+
+def test_the_report_tells_the_errors_and_the_time():
+    with vizlight.report() as report:
+        vizlight.sky(pv.MultiBlock([valley(), *balls()]), error=0.05)
+    lines = str(report).splitlines()
+    assert lines[0].startswith("1341 points see the sky; ")
+    assert [line.partition("; ")[0].partition(",")[0] for line in lines[1:]] == [
+        f"  error {vizlight.provenance(one, 'sky')['error']:.2g} or less at 95 of 100 points"
+        for one in vizlight.sky(pv.MultiBlock([valley(), *balls()]), error=0.05)
+    ]
+    assert [";" in line for line in lines[1:]] == [False, True, True]
+
+
+def test_lines_have_a_default_of_their_own():
+    line = pv.lines_from_points(np.random.default_rng(0).random((200, 3)))
+    default, asked = (vizlight.sky(line, error=error) for error in (None, 0.1))
+    assert np.array_equal(default["sky"], asked["sky"])
+    assert vizlight.provenance(vizlight.sky(balls()[0]), "sky")["error"] <= 0.01
 
 
 def test_openness_and_names():
@@ -181,7 +262,7 @@ def test_an_array_of_any_name_and_marked_points():
 
 
 def test_refined_and_many_small_meshes():
-    lit = vizlight.illuminate(pv.Sphere(), SCENE, occlusion="sky", refine=0.02)
+    lit = vizlight.refine(pv.Sphere(), SCENE, occlusion="sky", error=0.02)
     assert lit["sky"].shape == (lit.n_points,)
     many = pv.MultiBlock(balls(1.05))
     found = vizlight.illuminate(many, SCENE, occlusion="sky")

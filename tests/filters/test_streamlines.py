@@ -175,12 +175,6 @@ def test_options_reach_the_light():
             TypeError,
             "inplace: expected an option of",
         ),
-        (
-            vortex,
-            {"vectors": "V", "normals": "V"},
-            ValueError,
-            "normals: expected no normals beside tangents",
-        ),
         (vortex, {"vectors": "V", "step": 0}, ValueError, "step: expected"),
         (vortex, {"vectors": "V", "max_length": -1}, ValueError, "max_length: expected"),
         (lambda: np.ones(3), {"vectors": "V"}, TypeError, "mesh: expected a PyVista dataset"),
@@ -285,15 +279,6 @@ def test_carotid_artery():
     lines = streamlines(flow, SCENE, vectors="vectors", surface=wall, confined=True, seeds=30)
     assert lines.field_data["drift"][0] < 1e-2 * wall.length
     assert np.all(np.isfinite(lines["luminance"]))
-
-
-def test_provenance_makes_the_lines_again():
-    sphere = ball()
-    lines = streamlines(sphere, SCENE, vectors="V", seeds=6, exponent=1)
-    told = vizlight.provenance(lines)
-    assert told["filter"] == "streamlines"
-    again = streamlines(sphere, Scene.from_dict(told["scene"]), **told["options"])
-    np.testing.assert_array_equal(again["luminance"], lines["luminance"])
 
 
 def test_arrays_of_words_and_active_arrays_stay_as_they_are():
@@ -641,13 +626,3 @@ def test_bad_cross_fields(options, error, words):
     signless = {} if "pass" in words else {"line_field": True}
     with pytest.raises(error, match=words):
         streamlines(mesh, SCENE, **signless, **options)
-
-
-@pytest.mark.parametrize("options", [{}, {"line_field": True}, {"spacing": 0.5}])
-def test_progress_is_shown_on_standard_error(options, capfd):
-    lines = streamlines(vortex(), SCENE, vectors="V", seeds=9, progress_bar=True, **options)
-    shown = capfd.readouterr()
-    assert lines.n_lines
-    assert "trace" in shown.err
-    assert "100%" in shown.err
-    assert shown.out == ""

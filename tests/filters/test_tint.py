@@ -281,3 +281,34 @@ def test_bad_input():
         tint(moved, "height")
     with pytest.raises(ValueError, match="expected the result of tint"):
         unlit_colors(vizlight.illuminate(mesh, SCENE, name="rgb"))
+
+
+@pytest.mark.parametrize("strips", [False, True])
+def test_cells_have_one_colour_each_under_smooth_light(strips):
+    mesh = ball()
+    mesh = mesh.strip() if strips else mesh
+    mesh.cell_data["rank"] = np.arange(mesh.n_cells) * 10 // mesh.n_cells
+    lit = vizlight.illuminate(mesh, SCENE)
+    colored = tint(lit, "rank", cmap="viridis")
+    table = unlit_colors(colored)
+    # Points are shared within a rank.
+    assert mesh.n_points < colored.n_points < 1.7 * mesh.n_points
+    assert table.scalar_range == (0, mesh.cell_data["rank"].max())
+    assert "luminance" in vizlight.mesh.records.made(colored, "luminance")
+    faces = colored.regular_faces
+    unlit = table.map_value(3, opacity=False)
+    inside = np.unique(faces[colored.cell_data["rank"] == 3])
+    share = colored["rgb"][inside] / (255 * np.array(unlit[:3]))
+    np.testing.assert_allclose(share, share[:, :1].repeat(3, axis=1), atol=0.03)
+    # The light is that of the smooth surface, which is lit again without its highlight.
+    mesh["one"] = np.full(mesh.n_points, 3.0)
+    even = tint(vizlight.illuminate(mesh, SCENE), "one", cmap="viridis", clim=table.scalar_range)
+    own = inside[inside < mesh.n_points]
+    assert np.array_equal(colored["rgb"][own], even["rgb"][own])
+    del mesh.point_data["Normals"]
+    rough = tint(vizlight.illuminate(mesh, SCENE), "rank", cmap="viridis")
+    again = vizlight.illuminate(rough, SCENE)
+    np.testing.assert_allclose(again["luminance"], rough["luminance"], atol=1e-5)
+    place = lit.copy(deep=False)
+    tint(place, "rank", cmap="viridis", inplace=True)
+    assert np.array_equal(place["rgb"], colored["rgb"])

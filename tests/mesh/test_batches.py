@@ -133,7 +133,7 @@ def contents(mesh):
 def lit(mesh, scene, options):
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")
-        return vizlight.illuminate(mesh, scene, threads=1, **options), said
+        return vizlight.illuminate(mesh, scene, **options), said
 
 
 @pytest.mark.parametrize("scene", [SCENE, COLORED, Scene(lights=LIGHTS[:1])], ids=str)

@@ -86,15 +86,6 @@ def test_lines_in_a_case_are_those_in_its_cells():
     np.testing.assert_allclose(one.points, other.points)
 
 
-def test_colours_of_cells_are_their_means_at_the_points():
-    ball = pv.Sphere(theta_resolution=8, phi_resolution=8)
-    ball.cell_data["c"] = np.arange(ball.n_cells, dtype=float)
-    lit = vizlight.illuminate(ball, SCENE)
-    means = ball.cell_data_to_point_data()["c"]
-    known = vizlight.tint(lit, means, name="known")["known"]
-    np.testing.assert_array_equal(vizlight.tint(lit, "c", name="made")["made"], known)
-
-
 def test_a_field_of_heights_in_cells_casts_shadows():
     grid = pv.ImageData(dimensions=(9, 9, 1))
     grid["h"] = np.sin(grid.points[:, 0])

@@ -359,31 +359,18 @@ def test_a_jump_of_the_light_is_confined():
     assert fine.n_points < 100_000
 
 
-def test_every_filter_that_lights_takes_the_option():
-    fine = illuminate(ball(), SCENE, refine=PIXEL)
-    assert fine.n_points == refine(ball(), SCENE).n_points
-    flow = vizlight.load_example()
-    rough, smooth = (
-        streamlines(flow, SCENE, vectors="V", seeds=5, refine=error) for error in (0, PIXEL)
-    )
+def test_results_of_filters_and_blocks_are_refined():
+    fine = refine(ball(), SCENE)
+    rough = streamlines(vizlight.load_example(), SCENE, vectors="V", seeds=5)
+    smooth = refine(rough, SCENE)
     assert rough.n_lines == smooth.n_lines
     assert smooth.n_points > rough.n_points
-    assert vizlight.provenance(smooth)["filter"] == "streamlines"
     blocks = pv.MultiBlock({"a": ball(), "none": None, "b": pv.MultiBlock([ball(14), arc(9)])})
     made = refine(blocks, SCENE)
     assert made["a"].n_points == fine.n_points
     assert made["b"][1].n_lines == 1
     assert all("luminance_error" in made["b"][i].field_data for i in (0, 1))
     assert blocks["a"].n_points == ball().n_points
-
-
-def test_a_record_makes_the_same_mesh():
-    for made in (refine(ball(), SCENE, error=0.01), illuminate(ball(), SCENE, refine=0.01)):
-        record = vizlight.provenance(made)
-        filter_ = getattr(vizlight, record["filter"])
-        again = filter_(ball(), Scene.from_dict(record["scene"]), **record["options"])
-        assert np.array_equal(again["luminance"], made["luminance"])
-    assert vizlight.provenance(refine(ball(), SCENE))["filter"] == "refine"
 
 
 def test_colour_depth_cue_and_frames_of_n_space():
@@ -459,10 +446,6 @@ def test_bad_input():
     mesh = ball()
     with pytest.raises(ValueError, match="error: expected a finite number of at least 1e-05"):
         refine(mesh, SCENE, error=0)
-    with pytest.raises(ValueError, match="refine: expected 0 or 1e-05 at least, got 1e-09; "):
-        illuminate(mesh, SCENE, refine=1e-9)
-    with pytest.raises(ValueError, match="inplace: expected False for a mesh that gets new points"):
-        illuminate(mesh, SCENE, refine=0.1, inplace=True)
     with pytest.raises(TypeError, match="refine: expected an option of refine"):
         refine(mesh, SCENE, refine=0.1)
     with pytest.raises(ValueError, match="max_points: expected an integer of at least 1"):

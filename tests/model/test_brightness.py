@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import oracles
 import pytest
 from scipy.integrate import quad
 
@@ -49,44 +48,6 @@ def test_mean_by_quadrature(n):
             for power in (p, 0)
         )
         assert brightness.mean_intensity(k, n, p) == pytest.approx(top / whole, rel=1e-11)
-
-
-def test_mean_by_monte_carlo(random):
-    count = 200_000
-    for k, n in [(1, 3), (2, 4), (3, 5), (1, 12), (11, 12)]:
-        x = random.standard_normal((count, n))
-        sine = np.sqrt(np.sum(x[:, k:] ** 2, axis=1) / np.sum(x**2, axis=1))
-        p = brightness.exponent(k, n)
-        sample = sine**p
-        assert abs(sample.mean() - 0.5) < 5 * sample.std() / math.sqrt(count)
-
-
-def test_mean_against_50_digits(random, figure):
-    for _ in range(400):
-        n = int(10 ** random.uniform(0.302, 6))
-        k = int(random.choice([1, n - 1, random.integers(1, n)]))
-        p = float(10 ** random.uniform(-3, 6.6))
-        true = oracles.mean_intensity(k, n, p)
-        if true < 1e-290:
-            continue
-        seen = brightness.mean_intensity(k, n, p)
-        error = float(abs(oracles.exact(seen) / true - 1)) / oracles.eps(float)
-        bound = 32 * (1 + abs(float(oracles.mp.log(true))))
-        figure("mean_intensity", "n up to 1e6", float, error, bound)
-
-
-def test_exponent_against_50_digits(random, figure):
-    sizes = [(1, 10**6), (10**6 - 1, 10**6), (2, 10**6), (123_456, 10**6), (1, 100), (99, 100)]
-    sizes += [(int(random.integers(1, n)), int(n)) for n in random.integers(2, 5000, 30)]
-    sizes += [(k, n) for n in range(2, 9) for k in range(1, n)]
-    for k, n in sizes:
-        p = brightness.exponent(k, n)
-        true = oracles.mp.findroot(
-            lambda q, k=k, n=n: oracles.mp.log(2 * oracles.mean_intensity(k, n, q)),
-            oracles.mp.mpf(p),
-        )
-        error = float(abs(p / true - 1)) / oracles.eps(float)
-        figure("exponent", "n up to 1e6", float, error, 2e-14 / oracles.eps(float))
 
 
 def test_exponent_for_large_n():

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import oracles
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -11,30 +10,6 @@ from hypothesis import strategies as st
 from vizlight.model import falloff
 
 coefficient = st.floats(0, 100, width=32)
-
-
-def distance(d, c1, c2, c3):
-    d, c1, c2, c3 = (oracles.exact(x) for x in (d, c1, c2, c3))
-    denominator = c1 + c2 * d + c3 * d * d
-    return oracles.mp.mpf(1) if denominator <= 1 else 1 / denominator
-
-
-def depth_cue(i, z, zt, zb, st_, sb, cue, smooth):
-    i, z, zt, zb, st_, sb, cue = (oracles.exact(x) for x in (i, z, zt, zb, st_, sb, cue))
-    t = min(max((z - zb) / (zt - zb), oracles.mp.mpf(0)), oracles.mp.mpf(1))
-    if smooth:
-        t = t * t * (3 - 2 * t)
-    s = sb + (st_ - sb) * t
-    return s * i + (1 - s) * cue
-
-
-def test_distance_against_50_digits(dtype, random, figure):
-    for _ in range(300):
-        c = 10 ** random.uniform(-3, 2, 3)
-        d = dtype(10 ** random.uniform(-5, 8))
-        true = distance(d, *c)
-        error = float(abs(oracles.exact(falloff.distance(d, *c)) / true - 1)) / oracles.eps(dtype)
-        figure("distance", "", dtype, error, 4)
 
 
 @given(st.floats(0, 1e6), coefficient, coefficient, st.floats(2**-10, 100, width=32))
@@ -67,35 +42,6 @@ def test_bad_distance(arguments, words):
         falloff.distance(*arguments)
 
 
-@pytest.mark.parametrize("smooth", [False, True])
-def test_depth_cue_against_50_digits(smooth, dtype, random, figure):
-    for _ in range(300):
-        i, cue = (float(dtype(x)) for x in random.uniform(0, 2, 2))
-        low, high = sorted(random.uniform(0, 1, 2))
-        front, back = random.uniform(-10, 10, 2)
-        z = dtype(random.uniform(-12, 12))
-        seen = falloff.depth_cue(
-            dtype(i),
-            z,
-            front=front,
-            back=back,
-            front_scale=high,
-            back_scale=low,
-            cue=dtype(cue),
-            smooth=smooth,
-        )
-        true = depth_cue(i, z, front, back, high, low, cue, smooth)
-        # The depth's own rounding, in parts of the range, is the caller's.
-        blow = max(1, (abs(float(z)) + abs(back)) / abs(front - back))
-        figure(
-            "depth_cue",
-            "smooth" if smooth else "linear",
-            dtype,
-            oracles.units(seen, true, dtype),
-            8 * max(i, cue) * blow,
-        )
-
-
 def test_depth_cue_at_its_ends():
     z = np.array([-5.0, 0, 1, 2, 9])
     faded = falloff.depth_cue(1.0, z, front=2, back=0, front_scale=0.9, back_scale=0.1, cue=0.5)
@@ -126,17 +72,6 @@ def test_bad_depth_cue():
         falloff.depth_cue(1.0, 0.0, front=1, back=1)
     with pytest.raises(ValueError, match="back_scale: expected a number from 0 to 1, got 2"):
         falloff.depth_cue(1.0, 0.0, front=1, back=0, back_scale=2)
-
-
-def test_fur_against_50_digits(dtype, random, figure):
-    for _ in range(300):
-        height, sine = dtype(10 ** random.uniform(-6, 3)), dtype(10 ** random.uniform(-6, 0))
-        density = float(random.choice([random.uniform(0, 1), 1e-6, 1 - 1e-6]))
-        path = oracles.exact(height) / oracles.exact(sine)
-        true = oracles.mp.exp(path * oracles.mp.log(1 - oracles.exact(density)))
-        seen = falloff.fur(height, sine, density)
-        assert seen.dtype == dtype
-        figure("fur", "", dtype, oracles.units(seen, true, dtype), 4)
 
 
 def test_fur_at_its_ends(dtype):

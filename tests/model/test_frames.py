@@ -14,23 +14,14 @@ from vizlight.model import frames
 SIZES = [(1, 2), (1, 3), (2, 3), (1, 4), (2, 4), (3, 8), (7, 8)]
 
 
-def orthonormality(frame, rank):
-    """Return the largest entry of F F^T - 1 over the first rank rows, in float64."""
-    rows = np.asarray(frame, dtype=np.float64)[:rank]
-    return float(np.abs(rows @ rows.T - np.eye(rank)).max()) if rank else 0.0
-
-
 @pytest.mark.parametrize(("k", "n"), SIZES)
-def test_spans_what_it_was_given(k, n, dtype, random, figure):
+def test_spans_what_it_was_given(k, n, dtype, random):
     vectors = random.standard_normal((40, k, n)).astype(dtype)
     frame, rank = frames.orthonormalize(vectors)
     assert frame.dtype == dtype
     assert frame.shape == vectors.shape
     assert np.all(rank == k)
     for v, f in zip(vectors, frame, strict=True):
-        figure(
-            "orthonormalize", f"k={k}, n={n}", dtype, orthonormality(f, k) / oracles.eps(dtype), 6
-        )
         rest = v - (v @ f.T) @ f
         assert np.abs(rest).max() < 50 * oracles.eps(dtype) * np.abs(v).max()
 
@@ -38,60 +29,6 @@ def test_spans_what_it_was_given(k, n, dtype, random, figure):
 def test_first_row_is_along_the_first_vector(dtype):
     frame, _ = frames.orthonormalize(np.array([[0, -3, 0], [5, 1, 0]], dtype=dtype))
     np.testing.assert_array_equal(frame, np.array([[0, -1, 0], [1, 0, 0]], dtype=dtype))
-
-
-@pytest.mark.parametrize("apart", [1e-2, 1e-5, 1e-8, 1e-12])
-def test_nearly_dependent_vectors(apart, random, figure):
-    a = random.standard_normal((30, 3))
-    b = a + apart * random.standard_normal((30, 3))
-    frame, rank = frames.orthonormalize(np.stack([a, b], axis=1))
-    assert np.all(rank == 2)
-    for f in frame:
-        figure(
-            "orthonormalize",
-            f"{apart:g} apart",
-            np.float64,
-            orthonormality(f, 2) / oracles.eps(float),
-            6,
-        )
-
-
-def test_dependent_vectors_lower_the_rank_and_leave_zero_rows(dtype, random):
-    a = random.standard_normal((50, 4)).astype(dtype)
-    b = random.standard_normal((50, 4)).astype(dtype)
-    frame, rank = frames.orthonormalize(np.stack([a, dtype(-3) * a, b], axis=1))
-    assert np.all(rank == 2)
-    assert np.all(frame[:, 2] == 0)
-    assert all(orthonormality(f, 2) <= 8 * oracles.eps(dtype) for f in frame)
-
-
-@pytest.mark.parametrize("low", [-150, -300])
-def test_wildly_scaled_vectors(low, random, figure):
-    scale = np.array([10.0**low, 1e150])
-    vectors = random.standard_normal((30, 2, 3)) * scale[:, np.newaxis]
-    frame, rank = frames.orthonormalize(vectors)
-    plain, _ = frames.orthonormalize(vectors / scale[:, np.newaxis])
-    assert np.all(rank == 2)
-    np.testing.assert_allclose(frame, plain, rtol=0, atol=1e-15)
-
-
-def test_smallest_and_largest_numbers(dtype):
-    info = np.finfo(dtype)
-    for size in (info.smallest_subnormal, info.tiny, info.max):
-        frame, rank = frames.orthonormalize(np.array([[0, size, 0]], dtype=dtype))
-        assert rank == 1
-        np.testing.assert_array_equal(frame, np.array([[0, 1, 0]], dtype=dtype))
-    frame, rank = frames.orthonormalize(np.full((1, 3), info.max, dtype=dtype))
-    np.testing.assert_allclose(frame, np.full((1, 3), 3**-0.5), rtol=4 * info.eps)
-
-
-@pytest.mark.parametrize("bad", [0.0, np.nan, np.inf, -np.inf])
-def test_vectors_without_direction_count_for_nothing(bad, dtype):
-    vectors = np.array([[[bad, 0, 0], [0, 2, 0]], [[1, 0, 0], [0, 0, 1]]], dtype=dtype)
-    frame, rank = frames.orthonormalize(vectors)
-    np.testing.assert_array_equal(rank, [1, 2])
-    np.testing.assert_array_equal(frame[0], [[0, 1, 0], [0, 0, 0]])
-    assert np.all(np.isfinite(frame))
 
 
 def test_rtol_sets_what_is_dependent():
@@ -110,32 +47,6 @@ def test_batch_equals_loop_and_input_stays(dtype, random):
         np.testing.assert_allclose(frame[index], one, rtol=0, atol=4 * oracles.eps(dtype))
         assert r == rank[index]
     np.testing.assert_array_equal(vectors, kept)
-
-
-def test_empty_batch():
-    frame, rank = frames.orthonormalize(np.empty((0, 2, 3)))
-    assert frame.shape == (0, 2, 3)
-    assert rank.shape == (0,)
-
-
-@pytest.mark.parametrize(("k", "n"), SIZES)
-def test_split_against_50_digits(k, n, dtype, random, figure):
-    for frame in oracles.frames(random, 12, k, n, dtype):
-        for x in oracles.hard_directions(random, frame, dtype):
-            along, normal = frames.split(x, frame)
-            true_along, true_normal = oracles.split(
-                oracles.exact(x), oracles.orthonormal(oracles.exact(frame))
-            )
-            error = max(oracles.units(a, b, dtype) for a, b in zip(along, true_along, strict=True))
-            error = max(error, oracles.units(normal, true_normal, dtype))
-            figure("split", f"k={k}, n={n}, hard directions", dtype, error, 6)
-
-
-def test_split_along_the_tangent_keeps_all_digits(dtype):
-    # 1 - cos^2 of a float32 cannot tell 1e-4 from 0.
-    x = np.array([1, 1e-4, 0], dtype=dtype)
-    _, normal = frames.split(x, np.array([[1, 0, 0]], dtype=dtype))
-    assert normal == x[1]
 
 
 finite = st.floats(-10, 10, width=32)
@@ -204,15 +115,3 @@ def test_bad_frames(frame, words):
 def test_direction_of_another_space():
     with pytest.raises(ValueError, match=r"direction: expected vectors of shape \(\.\.\., 3\)"):
         frames.split([1.0, 0.0], [[1.0, 0, 0]])
-
-
-def test_split_of_none_and_of_what_is_not_finite(dtype):
-    frame = np.eye(3, dtype=dtype)[:2]
-    along, normal = frames.split(np.empty((0, 3), dtype), frame)
-    assert (along.shape, normal.shape) == ((0, 2), (0,))
-    x = np.array([[np.inf, 0, 1], [0, -np.inf, 0], [np.nan, 1, 2], [0, 0, 0]], dtype)
-    along, normal = frames.split(x, frame)
-    assert np.isnan(along[:3]).all()
-    assert np.isnan(normal[:3]).all()
-    assert not along[3].any()
-    assert normal[3] == 0

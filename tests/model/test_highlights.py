@@ -156,32 +156,6 @@ def test_phong_lies_between_two_of_blinn_in_every_codimension(k, n, random):
         assert np.all(255 * np.abs(error) <= bound + 1e-9)
 
 
-def test_general_relation_of_the_codimension(random):
-    """(9'), in 50 digits, for lines, planes and 3-spaces."""
-    for k, n in ((1, 2), (2, 3), (1, 3), (2, 4), (3, 6)):
-        frame = oracles.orthonormal(oracles.exact(random.standard_normal((k, n))))
-        wi, wo = (oracles.unit(oracles.exact(v)) for v in random.standard_normal((2, n)))
-        along_i, a = oracles.split(wi, frame)
-        along_o, b = oracles.split(wo, frame)
-        half = oracles.unit([x + y for x, y in zip(wi, wo, strict=True)])
-        normal = oracles.split(half, frame)[1]
-        mirror = a * b - oracles.dot(along_i, along_o)
-        cos2 = (1 + oracles.dot(wi, wo)) / 2
-        assert abs(mirror - (1 - 2 * cos2 * (1 - normal**2) - (a - b) ** 2 / 2)) < 1e-45
-
-
-def test_required_factor_against_50_digits(dtype, figure):
-    rho = np.array([1e-30, 1e-9, 1e-5, 1e-3, 0.1, 0.7, 0.8, 1.2, 1.5], dtype=dtype)
-    for angle, value in zip(rho, highlights.required_factor(rho), strict=True):
-        assert value.dtype == dtype
-        x = oracles.exact(angle)
-        true = mp.log(mp.cos(x)) / mp.log(mp.cos(x / 2)) if x > 1e-20 else mp.mpf(4)
-        error = abs(float(oracles.exact(value) / true - 1)) / oracles.eps(dtype)
-        figure("required_factor", "relative", dtype, error, 8)
-    assert highlights.required_factor(dtype(0)) == 4
-    assert np.isinf(highlights.required_factor([np.pi / 2 + 1e-9, np.pi])).all()
-
-
 @pytest.mark.parametrize("r", [5.0, 40.0, 1e4])
 def test_the_better_rule_is_better(r):
     """The best factor by the worst error is no worse than 4 and 4 cos(beta), and these agree."""
@@ -226,36 +200,6 @@ def test_best_factor_by_the_sphere(by):
     assert worst == pytest.approx(63.75, abs=1e-9)
 
 
-@pytest.mark.parametrize("degrees", [0.0, 60.0, 90.0, 150.0])
-def test_sphere_error_by_random_normals(degrees, random):
-    angle, r = np.deg2rad(degrees), 10.0
-    normals = random.standard_normal((400_000, 3))
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    error, facing = errors_of_normals(angle, r, 4.0, normals)
-    error = error[(facing > 0) & (normals[:, 2] > 0)]
-    rms = highlights.sphere_error(angle, r)
-    volume = highlights.sphere_error(angle, r, by="volume")
-    # Four standard errors of the sample mean.
-    spread = 4 / np.sqrt(len(error))
-    assert abs(np.mean(error**2) - rms**2) <= spread * np.std(error**2)
-    assert abs(np.mean(np.abs(error)) - volume) <= spread * np.std(np.abs(error))
-
-
-def test_highlights_of_equal_light_on_a_sphere():
-    """4 cos(beta) keeps the light of a highlight, for large powers: both integrate alike."""
-    angle, r = np.deg2rad(100.0), 4000.0
-    u = np.linspace(-0.2, 0.2, 1201)
-    p, q = np.meshgrid(u, u)
-    half = np.array([-np.sin(angle / 2), 0, np.cos(angle / 2)])
-    side, along = np.array([0.0, 1, 0]), np.array([np.cos(angle / 2), 0, np.sin(angle / 2)])
-    normals = half + p[..., np.newaxis] * side + q[..., np.newaxis] * along
-    normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
-    factor = highlights.simple_factor(angle)
-    error, _ = errors_of_normals(angle, r, factor, normals)
-    one, _ = errors_of_normals(angle, r, 1e9, normals)
-    assert abs(error.sum()) < 2e-3 * one.sum()
-
-
 @pytest.mark.parametrize(
     ("k", "n", "rule"),
     [
@@ -281,27 +225,6 @@ def test_exchange_rate_by_random_tangent_spaces(k, n, random):
     mean, error = -np.mean(logs) / k, np.std(logs) / k / np.sqrt(len(logs))
     value = np.log(highlights.exchange_rate(angle, k=k, n=n) / (4 * np.cos(angle / 2) ** 2))
     assert abs(value - mean) < 4 * error
-
-
-def test_the_ratio_of_exponents_near_the_bright_set(random):
-    """-log V.R over -log |h_N| at the derived ratio, in lines and planes of 4-space."""
-    for k, n in ((1, 3), (1, 4), (2, 4), (2, 3)):
-        wi, wo = random.standard_normal((2, n))
-        wi, wo = wi / np.linalg.norm(wi), wo / np.linalg.norm(wo)
-        half, d = wi + wo, wi - wo
-        cos2 = half @ half / 4
-        basis = random.standard_normal((n, k))
-        basis -= np.outer(half, half @ basis) / (half @ half)
-        basis = np.linalg.qr(basis)[0]
-        tilted = basis.copy()
-        tilted[:, 0] += 1e-4 * half / np.linalg.norm(half)
-        frame = np.linalg.qr(tilted)[0].T
-        w, e = frame @ half, frame @ d
-        ratio = 4 * cos2 * (1 + (w @ e) ** 2 / (w @ w) / (4 - e @ e))
-        r = 1e6
-        phong = reflection.specular(wi, wo, frame, shininess=r)
-        blinn = reflection.specular(wi, wo, frame, shininess=r, model="blinn")
-        assert np.log(phong) / np.log(blinn) == pytest.approx(ratio, rel=1e-3)
 
 
 def test_conversions_there_and_back():

@@ -11,9 +11,9 @@ import pyvista as pv
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View
+from vizlight.draw.backends import BackendError
+from vizlight.draw.cameras import camera_on
 from vizlight.observers import places
-from vizlight.pictures.cameras import camera_on
-from vizlight.plotting.backends import BackendError
 
 pytestmark = pytest.mark.opengl
 

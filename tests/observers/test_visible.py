@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import pyvista as pv
 
+from vizlight.draw.backends import choose_backend
+from vizlight.draw.cameras import camera_on
 from vizlight.observers import visible
 from vizlight.observers.visible import Drawn, rays, weights
-from vizlight.pictures.cameras import camera_on
-from vizlight.plotting.backends import choose_backend
 
 pytestmark = pytest.mark.opengl
 

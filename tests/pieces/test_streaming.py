@@ -31,7 +31,7 @@ CODE = """
             "slabs": lambda: pieces.Slabs({"s": np.load("s.npy", mmap_mode="r")}),
             "surfaces": lambda: "surface*.vtp",
         }.get(kind, lambda: f"grid.{kind}")()
-        lit = pieces.light(source, scene, threads=1, out=f"{kind}.pvtp",
+        lit = pieces.light(source, scene, out=f"{kind}.pvtp",
                            **({} if kind == "surfaces" else grid))
         assert len(lit.files) > 15 and lit.points > 80_000, lit
         return lit.points
@@ -45,11 +45,11 @@ CODE = """
         else:
             mesh = pv.read(f"grid.{kind}")
         mesh = mesh.contour([0.5], scalars="s") if kind != "surfaces" else mesh
-        assert vizlight.illuminate(mesh, scene, threads=1).n_points > 80_000
+        assert vizlight.illuminate(mesh, scene).n_points > 80_000
 
     small = pv.ImageData(dimensions=(9, 9, 9))
     small["s"] = np.arange(729.0)
-    vizlight.illuminate(small.contour([300.0], scalars="s"), scene, threads=1)  # all is imported
+    vizlight.illuminate(small.contour([300.0], scalars="s"), scene)  # all is imported
     used = int(re.search(r"VmData:\\s+(\\d+)", Path("/proc/self/status").read_text())[1]) * 1024
     resource.setrlimit(resource.RLIMIT_DATA, (used + %d * 10**6,) * 2)
     for kind in %s:
@@ -95,6 +95,7 @@ def test_pieces_fit_where_the_whole_does_not(tmp_path):
         plane.save(tmp_path / f"surface{i:02d}.vtp")
     # Dask leaves settings of the C library behind, which a process reads when it starts.
     kept = {name: value for name, value in os.environ.items() if not name.startswith("MALLOC_")}
+    kept["VIZLIGHT_THREADS"] = "1"
     code = textwrap.dedent(CODE % (SIDE, LIMIT, kinds))
     run = subprocess.run(
         [sys.executable, "-c", code], cwd=tmp_path, env=kept,

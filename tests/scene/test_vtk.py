@@ -190,7 +190,8 @@ def test_warnings_tell_what_vtk_cannot():
     ):
         Material(specular=1.0, shininess=500.0).to_property(lights=[turned(30)])
     with pytest.warns(
-        UserWarning, match=r"can differ by 33\.\d of 255 from that of the Blinn model with power 40"
+        UserWarning,
+        match=r"can differ by 33\.\d of 255 from the highlight of the Blinn model",
     ):
         Material(specular=1.0, shininess=40.0).to_property(
             lights=[turned(90)], view=AXIS, model="blinn"

@@ -210,7 +210,7 @@ def test_engine_runs_compiled_code(fast, random):
     seen, steps = [], []
     with engine.observed(lambda inputs, scene, shading, options: seen.append(shading)):
         lit = engine.shade(
-            points, tangents, SCENE, normals=normals, components=True, block=128, threads=2,
+            points, tangents, SCENE, normals=normals, components=True, block=128,
             progress=lambda done, of: steps.append((done, of)),
         )  # fmt: skip
     assert seen == [lit]
@@ -252,8 +252,9 @@ def test_arrays_among_the_options_are_lit_by_compiled_code(fast):
 @pytest.mark.parametrize("fault", [1, 3])
 def test_numpy_lights_what_a_kernel_fails_with(fast, random, monkeypatch, fault):
     """Whether it fails at once or in the middle, with one warning and words in the plan."""
+    monkeypatch.setenv("VIZLIGHT_THREADS", "1")
     points, tangents, normals = cloud(random, 300)
-    options = {"normals": normals, "components": True, "threads": 1, "block": 100}
+    options = {"normals": normals, "components": True, "block": 100}
     with _compiled.setting("0"):
         same = engine.shade(points, tangents, SCENE, **options)
     made = engine.shade(points, tangents, SCENE, **options)
@@ -294,6 +295,7 @@ def test_calls_add_up_until_a_kernel_pays(random, monkeypatch):
     monkeypatch.setattr(_compiled, "preparation", lambda: 0.3)
     monkeypatch.setattr(_compiled.Kernel, "_own_start", lambda self: 0.7)
     monkeypatch.setattr(_compiled.Kernel, "ready", lambda self: True)
+    monkeypatch.setenv("VIZLIGHT_THREADS", "1")
     monkeypatch.setattr(compiled, "SAVED", 0.1)
     monkeypatch.setattr(compiled, "SAVED_PER_LIGHT", 0.2)
     compiled._kernel.cache_clear()
@@ -305,7 +307,7 @@ def test_calls_add_up_until_a_kernel_pays(random, monkeypatch):
     )
     with _compiled.setting(""):
         ran = [
-            compiled.prepare(plan, inputs, 1)[0] is not None
+            compiled.prepare(plan, inputs)[0] is not None
             for plan in (one, one, two, one, one, two, two, two)
         ]
     assert ran == [False, False, False, True, True, False, True, True]

@@ -10,6 +10,7 @@ import pytest
 
 import vizlight
 from vizlight import _words
+from vizlight.draw import movie, paraview
 from vizlight.filters.fur import FurOptions
 from vizlight.filters.isoluminance import ContourOptions
 from vizlight.filters.pathlines import PathlineOptions
@@ -19,8 +20,6 @@ from vizlight.filters.relief_shadow import ReliefOptions
 from vizlight.filters.satin import SatinOptions
 from vizlight.filters.sky import SkyOptions
 from vizlight.filters.streamlines import StreamlineOptions
-from vizlight.pictures import movie
-from vizlight.plotting import paraview
 from vizlight.shading import engine
 from vizlight.shading.options import LightOptions, ShadingOptions, named
 
@@ -31,7 +30,7 @@ FUNCTIONS = [
     (vizlight.illuminate, LightOptions, set()),
     (vizlight.streamlines, StreamlineOptions, set()),
     (vizlight.pathlines, PathlineOptions, set()),
-    (vizlight.satin, SatinOptions, {"conditioned", "vectors", "surface", "confined"}),
+    (vizlight.satin, SatinOptions, set()),
     (vizlight.project, ProjectOptions, set()),
     (vizlight.manifold, ProjectOptions, set()),
     (movie.turn, ProjectOptions, set()),
@@ -39,9 +38,9 @@ FUNCTIONS = [
     (vizlight.isoluminance, ContourOptions, set()),
     (vizlight.relief_shadow, ReliefOptions, set()),
     (vizlight.relief_day, ReliefOptions, {"lit", "components", "occlusion"}),
-    (vizlight.refine, RefineOptions, {"refine"}),
+    (vizlight.refine, RefineOptions, set()),
     (paraview.shader, LightOptions, set(paraview.WITHOUT)),
-    (vizlight.vtk.Illuminate, LightOptions, {"feature_angle", "line_field", "refine", "bundle"}),
+    (vizlight.vtk.Illuminate, LightOptions, {"feature_angle", "line_field", "bundle"}),
     (vizlight.sky, SkyOptions, set()),
 ]
 IDS = [function.__qualname__ for function, _, _ in FUNCTIONS]
@@ -53,6 +52,7 @@ def test_the_signature_lists_the_options(function, kind, without):
     parameters = inspect.signature(function).parameters
     kinds = {p.kind for p in parameters.values()}
     assert inspect.Parameter.VAR_KEYWORD not in kinds
+    without = without | kind.DECIDED
     fields = {f.name: f for f in dataclasses.fields(kind)}
     assert without <= fields.keys()
     positional = {p.name for p in parameters.values() if p.kind is not p.KEYWORD_ONLY}

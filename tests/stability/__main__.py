@@ -30,8 +30,8 @@ def main():
         sys.exit("mpmath is missing, the reference of 50 digits; pip install 'vizlight[test]'")
     import studies
 
-    result = studies.run("stability", suite.STUDY, quick=options.quick, progress_bar=True)
-    for line in [*suite.worst(result.rows)[1], [result.verdict]]:
+    result = studies.run("stability", suite.STUDY, quick=options.quick)
+    for line in [*suite.worst(result.rows)[1], [suite.verdict(result.rows)]]:
         print(*(cell if isinstance(cell, str) else f"{cell:.4g}" for cell in line), sep="  ")  # noqa: T201
     out = options.out or (None if options.quick else TABLE)
     if out is not None:

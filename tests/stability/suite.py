@@ -107,7 +107,7 @@ def read(path):
         Row(line[0], *map(float, line[1:4]), dict(zip(names, line[4:], strict=True)))
         for line in lines
     ]
-    return Result(path.stem, STUDY, rows, verdict(rows))
+    return Result(path.stem, STUDY, rows)
 
 
 def curve(row):
@@ -128,7 +128,6 @@ STUDY = Study(
     error="seen, eps",
     cost="ns per input",
     steps=steps,
-    verdict=verdict,
     axes=("parameter", "error"),
     joined=False,
     curve=curve,

@@ -7,7 +7,6 @@ import math
 import numpy as np
 import pytest
 
-import vizlight
 from studies import codimension
 from vizlight import render
 from vizlight.geometry import manifolds
@@ -90,13 +89,6 @@ def test_the_torus_of_three_space_is_one_of_revolution(panels):
     )
 
 
-@pytest.mark.parametrize(("k", "n"), [(1, 2), (1, 3), (1, 4), (2, 3), (2, 4), (3, 7)])
-def test_uniform_directions_have_a_mean_of_one_half(k, n):
-    mean, sigma, contrast = codimension.uniform(k, n, 100_000, seed=k + n)
-    assert abs(mean - 0.5) < 5 * sigma
-    assert 0.4 < contrast < 0.8
-
-
 def test_measures_add_up_to_length_and_area():
     torus = manifolds.torus(1.5, 0.75, resolution=200)
     area = codimension.measures(torus.points, torus.cells)
@@ -111,35 +103,6 @@ def test_statistics():
     mean, contrast = codimension.statistics(np.array([1.0, 3.0]), np.array([3.0, 1.0]))
     assert mean == 1.5
     assert contrast == pytest.approx(math.sqrt(0.75) / 1.5)
-
-
-def test_rows_of_the_study():
-    rows = codimension.rows_of_panels(24) + codimension.rows_of_directions(1, 4, 2000)
-    assert len(rows) == 9
-    assert rows[0].parameter == 2
-    assert codimension.verdict(rows).startswith("keep exponent='compensated' if")
-    assert "compensation equalises contrast" in codimension.verdict(rows)
-
-
-def test_the_verdict_follows_from_the_rows():
-    def worse(row):
-        if row.way != "torus and curve, compensated":
-            return row
-        more = {
-            **row.more,
-            "contrast (std / mean)": row.more["contrast (std / mean)"] * row.parameter,
-        }
-        return row._replace(error=row.error + 0.5, more=more)
-
-    said = codimension.verdict([worse(row) for row in codimension.rows_of_panels(24)])
-    assert said.startswith("use exponent=1 if")
-    assert "does not equalise contrast" in said
-
-
-def test_panels_can_be_made_again(panels):
-    told = vizlight.provenance(panels[2, 4, True].mesh)
-    assert told["scene"]["lights"][0]["direction"] == [0.7, 0.6, 0.38, 0.0]
-    assert told["exponent"] == 2.0
 
 
 @pytest.mark.opengl

@@ -1,11 +1,11 @@
-"""The study of legibility: its rows, and the verdict that follows from them."""
+"""The study of legibility: its rows."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from studies import Row, _readable, legibility
+from studies import _readable, legibility
 
 pytestmark = pytest.mark.opengl
 
@@ -49,18 +49,3 @@ def test_an_option_is_compared_with_the_light_that_it_changes(places):
     assert {row.parameter for row in shadowed} == {"direction", "key"}
     lines = legibility.option("bundle=True", places, 64)
     assert {row.parameter for row in lines} == {"slope", "heading"}
-
-
-def test_the_verdict_follows_from_the_rows():
-    more = {"mean gain": 0.0, "beside": "presets.shape"}
-    rows = [
-        Row("presets.shape", "shape", 3.0, 30.0, more),
-        Row("exponent=2", "shape", 3.0, 3.0, more),
-        Row("exponent=1", "shape", 3.0, 3.0, more),
-        Row("exponent=1", "slope", 1.0, 3.0, {"mean gain": 2.0, "beside": "presets.slope"}),
-        Row("color", "slope", 1.0, 3.0, {"mean gain": 2.0, "beside": legibility.DEFAULT}),
-    ]
-    assert legibility.verdict(rows) == (
-        "from the default to the preset: shape 30 to 3; beside the presets no gain in the mean: "
-        "exponent=2"
-    )

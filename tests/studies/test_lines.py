@@ -5,32 +5,37 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from studies import lines, words
+from studies import lines
 from vizlight.model import cylinder
 
 
 @pytest.fixture(scope="module")
 def rows():
-    found = lines.measure(2000, repeats=1)
-    return {(row.setting, row.term, row.model): row for row in found}
+    return {(row.way, row.parameter): row for row in lines.measure(2000, repeats=1)}
 
 
 def test_what_is_exact_up_to_a_factor_and_what_is_not(rows):
-    for term, model in (("diffuse", "Banks, p = 1"), ("specular", "Blinn")):
-        assert rows["headlight", term, model].scaled_worst < 1e-13
-        assert rows["random", term, model].scaled_worst > 0.1
-    assert rows["headlight", "diffuse", "Banks, p(1, 3)"].scaled_rms > 0.1
-    assert rows["random", "diffuse", "exact"].worst == 0
+    worst = "largest error with the best factor"
+    for way in ("Banks, p = 1, diffuse", "Blinn, specular"):
+        assert rows[f"{way}, headlight", 0].more[worst] < 1e-13
+        assert rows[f"{way}, random", 0].more[worst] > 0.1
+    assert rows["Banks, p(1, 3), diffuse, headlight", 0].error > 0.1
+    assert rows["exact, diffuse, random", 0].error == 0
 
 
 def test_tubes_near_the_cylinder_at_second_order(rows):
     for term in ("diffuse", "specular"):
-        rough, fine = (rows["random", term, f"tube of {n} sides"].rms for n in (8, 40))
+        rough, fine = (
+            rows[f"tube, {term}, random", n].more["RMS error without factor"] for n in (8, 40)
+        )
         assert np.log(rough / fine) / np.log(5) == pytest.approx(2, abs=0.2)
-    sizes = [rows["random", "diffuse", f"tube of {n} sides"].bytes for n in lines.SIDES]
+    sizes = [rows["tube, diffuse, random", n].more["bytes per point"] for n in lines.SIDES]
     assert sizes == sorted(sizes)
-    assert sizes[0] > 3 * rows["random", "diffuse", "exact"].bytes
-    assert all(row.nanoseconds > 0 for row in rows.values())
+    assert sizes[0] > 3 * rows["exact, diffuse, random", 0].more["bytes per point"]
+    assert all(row.cost > 0 for row in rows.values())
+    shown = {lines.STUDY.curve(row) for row in rows.values()} - {None}
+    assert ("Banks, p = 1", "diffuse") in shown
+    assert len(shown) == 8
 
 
 def test_a_tube_of_many_sides_is_the_cylinder():
@@ -39,22 +44,3 @@ def test_a_tube_of_many_sides_is_the_cylinder():
     np.testing.assert_allclose(diffuse, cylinder.diffuse(wi, wo, t), atol=2e-4)
     exact = cylinder.specular(wi, wo, t, shininess=10.0)
     np.testing.assert_allclose(specular, exact, atol=2e-4)
-
-
-def test_rows_of_the_study(monkeypatch):
-    monkeypatch.setattr(lines, "SIDES", (3, 40))
-    rows = lines.rows(500, repeats=1)
-    assert {row.parameter for row in rows} == {0, 3, 40}
-    said = lines.verdict(rows)
-    assert said.startswith(
-        "models to use for an RMS error of 1/255, each with its best factor: diffuse: "
-    )
-    assert "diffuse with a headlight: 'Banks, p = 1'" in said
-    # The errors are those by the best factor, as in the table.
-    blinn = next(row for row in rows if row.way == "Blinn, specular, random")
-    assert f"('Blinn' at {words(blinn.cost)} ns has an error of {blinn.error:.2g})" in said
-    assert blinn.error < 0.04 < 0.2 < blinn.more["RMS error without factor"]
-    far = [row._replace(error=0.5) for row in rows]
-    assert "diffuse: none, 'Banks, p = 1' has an error of 0.5" in lines.verdict(far)
-    shown = {lines.STUDY.curve(row) for row in rows} - {None}
-    assert {name for name, _ in shown} == {"Banks, p = 1", "Banks, p(1, 3)", "tube", "exact"}

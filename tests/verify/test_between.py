@@ -10,8 +10,8 @@ import pyvista as pv
 from lamps import SHINY, shiny
 
 import vizlight
-from vizlight import Light, Material, Scene, View, engine, illuminate
-from vizlight.mesh.inputs import inputs_of
+from vizlight import Light, Material, Scene, View, engine, illuminate, refine
+from vizlight.mesh.parts import inputs_of
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import LightOptions, ShadingOptions
 from vizlight.verify import between
@@ -83,8 +83,8 @@ def test_words(ball):
     assert "rounding error" in said
     assert "all 1522 points computed again one by one in float64" in said
     assert "at 4096 random places; 95 %: fewer than 0.08 % of the places are worse" in said
-    assert "are off by more than 1/255: cells 1/4 as long, or refine=1/255, would do" in said
-    fine = str(report_of(lambda: illuminate(ball, SCENE, normals="normal", refine=1 / 255)))
+    assert "are off by more than 1/255: cells 1/4 as long, or refining to 1/255, would do" in said
+    fine = str(report_of(lambda: refine(ball, SCENE, normals="normal")))
     assert "would do" not in fine
     part = str(report_of(lambda: illuminate(ball, SCENE, normals="normal"), sample=100))
     assert "100 points computed again" in part
@@ -99,7 +99,7 @@ def test_a_resolution_that_is_not_enough_is_named():
     scene = Scene(lights=Light(direction=(0, 0, 1)), view=View(direction=(0, 0, 1)), material=SHINY)
     found = report_of(lambda: illuminate(mesh, scene, normals="n", facing="as given"))
     assert found.runs[0].finer is None
-    assert "cells 1/128 as long would not do; refine=1/255 leaves" in str(found)
+    assert "cells 1/128 as long would not do; refining to 1/255 leaves" in str(found)
 
 
 @pytest.mark.parametrize("count", [1, 10, 300, 4096])

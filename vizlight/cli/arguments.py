@@ -191,7 +191,7 @@ class Output:
     size
         Width and height of the picture in pixels.
     background
-        Colour behind the mesh. Default: white, or black behind lines.
+        Colour behind the mesh. Default: white, or black behind lines and points.
     line_width
         Width of lines in pixels.
     backend
@@ -341,7 +341,7 @@ def fraction(name: str, text: str, expected: str = "a number or a fraction such 
 
 def pixels(text: str) -> tuple[int, int]:
     """Return the width and the height of a picture."""
-    from vizlight.pictures import render
+    from vizlight.draw import render
 
     width, _, height = text.lower().partition("x")
     if not (width.isdecimal() and height.isdecimal()):

@@ -73,7 +73,7 @@ def streamlines(
     asked = StreamlineOptions(**given)
 
     def job(path: Path, time: float | str | None) -> Job:
-        mesh = scenes.data(path, part, time)
+        mesh = scenes.joined(scenes.data(path, part, time), asked.vectors)
         scenes.check_flow(path, mesh.run(), asked.vectors)
         scenes.check_answers(common.lights.question, mesh, color, asked.vectors)
         if color.scalars in mesh.run().cell_data and color.scalars not in mesh.run().point_data:
@@ -186,7 +186,7 @@ def sky(
         if shape.contour is not None or shape.slice is not None:
             mesh = scenes.surface(mesh, shape)
         heights = _heights(found, None) if field else None
-        # The sky is that of the heights as they are.
+        # The sky belongs to the heights as they are.
         raised = mesh if heights is None else scenes.warped("raised", mesh, heights, 1.0)
         camera = look.camera(raised, is_map=field)
         lit = _step("skylit", "sky", mesh, None, given, common.out)
@@ -336,8 +336,9 @@ def _step(
 def _tips(mesh: Step, asked: FurOptions) -> Step:
     """Return the step that moves the points of a surface to where straight fur ends."""
     from vizlight.filters.fur import LENGTH
+    from vizlight.mesh import blocks
 
-    found: pv.PolyData = mesh.run()
+    found: pv.PolyData = blocks.surface(mesh.run(), "mesh")
     length = LENGTH * found.length if asked.length is None else asked.length
     if isinstance(length, str):
         known = length in found.point_data and found.n_points

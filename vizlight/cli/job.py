@@ -194,7 +194,7 @@ def _check_paths(job: Job, inputs: Sequence[Path]) -> None:
     for path in (*job.pictures, *(path for _, path in job.meshes)):
         files.check_output(path, (".png", *SHOWN, *files.SUFFIXES))
         if path.suffix.lower() == ".py":
-            from vizlight.plotting.paraview import beside
+            from vizlight.draw.paraview import beside
 
             path = beside(path)
         if any(path.exists() and file.exists() and path.samefile(file) for file in inputs):
@@ -300,7 +300,7 @@ def _run(job: Job, out: Output) -> int:
 
 def _window(out: Output) -> contextlib.AbstractContextManager[None]:
     """Return a context for windows that need no display; a page is written without them too."""
-    from vizlight.plotting import backends
+    from vizlight.draw import backends
 
     try:
         return backends.window_class(backends.choose_backend(out.backend))
@@ -326,7 +326,7 @@ def _light(job: Job, out: Output) -> pv.DataSet:
         if note:
             say(f"note     {note}")
     for warning in caught:
-        complain(warning.message)
+        complain(one_line(warning.message))
     record = vizlight.provenance(lit, job.name)
     terms = " + ".join(record.get("terms", [job.name]))
     points = sum(block.n_points for block in all_blocks(lit))

@@ -23,6 +23,7 @@ from vizlight.cli.arguments import (
     Flag,
     Pieces,
     Target,
+    fraction,
 )  # fmt: skip
 from vizlight.cli.job import Job, carry_out
 from vizlight.cli.output import say
@@ -53,6 +54,7 @@ def light(
     explain: Annotated[Flag, Parameter(group=GROUPS["Output"])] = False,
     legibility: Annotated[Flag, Parameter(group=GROUPS["Output"])] = False,
     sky: Annotated[Flag, Parameter(group=GROUPS["Light"])] = False,
+    refine: Annotated[str | None, Parameter(group=GROUPS["Light"])] = None,
 ) -> int:
     """Light a mesh from any file that PyVista reads, and write the lit mesh and a picture.
 
@@ -68,6 +70,8 @@ def light(
         Print what an ideal reader reads back from the picture.
     sky
         Take the ambient light from an even sky.
+    refine
+        Largest error between points, such as 1/255: cells are split where it is more.
     """
     given = keywords(how, sky=sky)
     if in_pieces.are_asked(common.out, pieces):
@@ -77,8 +81,13 @@ def light(
         if legibility:
             got = "pieces"
             raise ValueError(_words.message("--legibility", "one mesh, lit as a whole", got))
+        if refine:
+            remedy = "refine their union, so that split edges match"
+            raise ValueError(_words.message("--refine", "one mesh", "pieces", remedy))
         return in_pieces.light(files, target, given, common, color, pieces, look)
-    build = builder(target, how, common, color, sky=sky, explain=explain, legibility=legibility)
+    build = builder(
+        target, how, common, color, sky=sky, refine=refine, explain=explain, legibility=legibility
+    )
     return carry_out(files, build, common.out, "lit", target)
 
 
@@ -94,6 +103,7 @@ def builder(
     color: Color,
     *,
     sky: bool = False,
+    refine: str | None = None,
     explain: bool = False,
     legibility: bool = False,
 ) -> Callable[[Path, float | str | None], Job]:
@@ -111,22 +121,24 @@ def builder(
     if common.lights.question in CONDITIONED and "tangents" in given:
         given = {"conditioned": True} | given
     asked = LightOptions(**given)
+    lights, place = "vizlight.illuminate", dict[str, object](inplace=True)
+    if refine is not None:
+        lights, place = "vizlight.refine", {"error": _finest(refine)}
 
     def job(path: Path, time: float | str | None) -> Job:
-        mesh = data = scenes.data(path, target, time)
+        data = scenes.data(path, target, time)
+        mesh = data = scenes.joined(data, given.get("tangents"))
         if taken:
             mesh = scenes.surface(data, target)
         scenes.check_answers(common.lights.question, mesh, color, given.get("tangents"))
         camera = look.camera(mesh)
         progress = {"progress_bar": True} if common.out.progress else {}
         scene = look.scene(camera)
-        source, place = mesh, {}
-        if not asked.refine:
-            # The lit mesh shares the arrays of the file.
-            source, place = Step("", ".copy", mesh, deep=False), {"inplace": True}
-        lit = Step("lit", "vizlight.illuminate", source, scene, **given, **place, **progress)
-        made = Job(lit, asked.name, look, camera, suffix=".vtp" if taken or asked.refine else "")
-        made.before = None if asked.refine else mesh
+        # The lit mesh shares the arrays of the file; a refined one is new.
+        source = mesh if refine else Step("", ".copy", mesh, deep=False)
+        lit = Step("lit", lights, source, scene, **given, **place, **progress)
+        made = Job(lit, asked.name, look, camera, suffix=".vtp" if taken or refine else "")
+        made.before = None if refine else mesh
         made.source = [str(path), *options.words(target, how), *(["--sky"] if sky else [])]
         made.tint(lit, data, color)
         if not (target.contour or target.warp or target.slice):
@@ -142,6 +154,17 @@ def builder(
         return made
 
     return job
+
+
+def _finest(text: str) -> float:
+    """Return the error between points that is asked for."""
+    from vizlight.filters.refine import FINEST
+
+    expected = f"a number of at least {FINEST:g}, such as 1/255"
+    error = fraction("refine", text, expected)
+    if error < FINEST:
+        raise ValueError(_words.message("--refine", expected, text))
+    return error
 
 
 def _read(made: Job, scene: Step, given: dict[str, object]) -> Step:
@@ -176,7 +199,7 @@ def _hint(mesh: pv.DataSet | pv.MultiBlock, *, surface: bool) -> str:
 def _explain(lit: pv.DataSet, asked: LightOptions) -> None:
     """Print the plan by which a mesh was lit."""
     from vizlight.mesh.blocks import all_blocks
-    from vizlight.mesh.inputs import inputs_of
+    from vizlight.mesh.parts import inputs_of
     from vizlight.shading.decide import decide
 
     record = vizlight.provenance(lit, asked.name)

@@ -195,7 +195,7 @@ def doctor() -> int:
     from rich.table import Table
 
     from vizlight import doctor
-    from vizlight.pictures import render
+    from vizlight.draw import render
 
     table = Table("part", "found", title="vizlight doctor")
     table.columns[1].overflow = "fold"

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 #: filter's option that has none of them is left to scripts.
 TYPES: Mapping[str, type] = {"bool": bool, "int": int, "float": float, "str": str}
 #: Keywords of filters that are not options of what they make.
-NOT_OPTIONS = ("scene", "threads", "inplace", "progress_bar")
+NOT_OPTIONS = ("scene", "inplace", "progress_bar")
 #: Number of letters of a description that is shortened.
 SHORTEST, LENGTH = 10, 64
 
@@ -76,7 +76,6 @@ def _exponent(name: str, text: str) -> object:
 
 #: Options whose text is read in a way of its own, and its description.
 READ: Mapping[str, tuple[Callable[[str, str], object], str]] = {
-    "refine": (fraction, "Largest error between points; cells are split where it is more: 1/255."),
     "levels": (_levels, "Number of steps (8), largest error (0.02) or values (0.2,0.4,0.6)."),
     "feature_angle": (
         _angle,

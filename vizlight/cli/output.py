@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shlex
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
@@ -40,11 +41,16 @@ def one_line(error: object) -> str:
     text = " ".join(str(error).split())
     # A name of two words at the start is an option; one of one word may be an array or a file.
     text = re.sub(r"^([a-z]+(?:_[a-z]+)+)(?=:)", _option, text)
-    return re.sub(r"(?<![\w.(])([a-z]+(?:_[a-z]+)*)=(?:True)?(?=[ ,;.)]|$)", _option, text)
+    value = r"(?:True|('[^']*'|[\w./-]*\w))?"
+    return re.sub(rf"(?<![\w.(])([a-z]+(?:_[a-z]+)*)={value}(?=[ ,;.)]|$)", _option, text)
 
 
 def _option(found: re.Match[str]) -> str:
-    return f"--{found[1].replace('_', '-')}"
+    if re.search(r"\w\([^()]*$", found.string[: found.start()]):
+        # A call of Python stays what it is.
+        return found[0]
+    value = (found[2] if found.re.groups > 1 else "") or ""
+    return f"--{found[1].replace('_', '-')} {shlex.quote(value.strip(chr(39)))}".removesuffix(" ''")
 
 
 def complain(text: object) -> None:

@@ -126,6 +126,19 @@ def warped(name: str, mesh: Step, heights: str, factor: float | None) -> Step:
     return step
 
 
+def joined(mesh: Step, names: object) -> Step:
+    """Return the step that joins arrays U,V or U,V,W, one for each component, to vectors."""
+    found = mesh.run()
+    every = names.split(",") if isinstance(names, str) else []
+    if len(every) not in (2, 3) or names in found.array_names:
+        return mesh
+    there = (*found.point_data, *found.cell_data)
+    if unknown := [name for name in every if name not in there]:
+        expected = f"the name of an array of vectors, or names U,V of components, {one_of(there)}"
+        raise ValueError(message("arrays", expected, ", ".join(map(repr, unknown))))
+    return Step("joined", "files.with_vectors", mesh, *every)
+
+
 def check_flow(file: Path, mesh: pv.DataSet, vectors: str | tuple[str, str] | None) -> None:
     """Check that a step has vectors that are not zero everywhere, if another step has them.
 
@@ -302,7 +315,7 @@ class Look:
 
     def scene_in(self, n: int) -> Step:
         """Return the step that makes a scene of n-space, seen from infinity."""
-        from vizlight.pictures import render
+        from vizlight.draw import render
 
         toward = self._toward or VIEW
         if self._fixed is not None:
@@ -386,7 +399,7 @@ def check_answers(question: str | None, mesh: Step, color: Color, tangents: obje
     from vizlight.mesh.blocks import all_blocks
 
     found = list(all_blocks(mesh.run()))
-    asked, needs = f"--for {question}", ""
+    asked, needs, remedy = f"--for {question}", "", ""
     if question == "value" and color.scalars is None:
         scalars = [name for one in found for name in (*one.point_data, *one.cell_data)]
         needs = f"--scalars with it, {one_of([*dict.fromkeys(scalars)])}"
@@ -400,8 +413,9 @@ def check_answers(question: str | None, mesh: Step, color: Color, tangents: obje
         if any(one.GetMaxSpatialDimension() != 1 for one in found):
             named = one_of([*dict.fromkeys(vectors)])
             needs = f"--tangents with it where there are no lines, {named}"
+            remedy = "for a surface without a flow, such as terrain, take --for shape"
     if needs:
-        raise ValueError(message(asked, needs, "none"))
+        raise ValueError(message(asked, needs, "none", remedy))
     if question in ("direction", "heading", "shape") and color.scalars is not None:
         expected = "no --scalars beside it, whose hues would hide the hues of the light"
         raise ValueError(message(asked, expected, f"--scalars {color.scalars}"))

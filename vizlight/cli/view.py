@@ -43,7 +43,7 @@ class Window:
     browser
         Open the page in the browser.
     background
-        Colour behind the mesh. Default: white, or black behind lines.
+        Colour behind the mesh. Default: white, or black behind lines and points.
     line_width
         Width of lines in pixels.
     progress

@@ -156,7 +156,6 @@ def fur(
     exponent: Exponent = "compensated",
     model: Model = "phong",
     name: str = "luminance",
-    threads: int | None = None,
     progress_bar: bool = False,
 ) -> pv.MultiBlock:
     """Cover a surface with fibres and light them and the skin below.
@@ -208,7 +207,7 @@ def fur(
     exponent, model, name
         As for :func:`vizlight.illuminate`; with ``model="cylinder"`` the highlight of the skin is
         Blinn's.
-    threads, progress_bar
+    progress_bar
         As for :func:`vizlight.illuminate`.
 
     Returns
@@ -236,14 +235,13 @@ def fur(
     across the surface at the root, from the point to the highest point of its fibre. Sources: Banks
     4.2, 5, (7), (8).
     """
-    return _grow(surface, scene, FurOptions.of(locals()), threads, progress_bar=progress_bar)
+    return _grow(surface, scene, FurOptions.of(locals()), progress_bar=progress_bar)
 
 
 def _grow(
     surface: pv.PolyData,
     scene: Scene | None,
     options: FurOptions,
-    threads: int | None,
     *,
     progress_bar: bool,
 ) -> pv.MultiBlock:
@@ -275,7 +273,6 @@ def _grow(
         options.segments + 1,
         np.dtype(np.float64) if far else np.result_type(skin.points.dtype, np.float32),
         straight=options.straight,
-        threads=threads,
         unit=coat.unit,
     )
     through = options.lost
@@ -296,18 +293,18 @@ def _grow(
         if far:
             lines.points = np.asarray(lines.points) + np.array(coat.origin)
         dimmings = lighting.dimmings(
-            [lines, surface], [fibres, below], scene, options.bundle, name, threads,
+            [lines, surface], [fibres, below], scene, options.bundle, name,
             show=progress_bar,
         )  # fmt: skip
         medium = bundles.medium_of(bundles.joined([lines]), options.bundle)
         sides = np.asarray(skin.point_data[surfaces.NORMALS])
-        shares = in_medium(lines, medium, None, threads), in_medium(skin, medium, sides, threads)
+        shares = in_medium(lines, medium, None), in_medium(skin, medium, sides)
         fibres, below = (
             dataclasses.replace(given, occlusion=share)
             for given, share in zip(lighting.dimmed([fibres, below], dimmings), shares, strict=True)
         )
     parts = [(fibres, options.shading), (below, options.shading.for_surface())]
-    results, scene = lighting.light(parts, scene, threads=threads, progress_bar=progress_bar)
+    results, scene = lighting.light(parts, scene, progress_bar=progress_bar)
     if far:
         strands.points += np.array(coat.origin, strands.points.dtype)
     inside = int(np.count_nonzero(strands.inside))

@@ -12,7 +12,7 @@ from vizlight.filters import lighting
 from vizlight.filters.sky import with_sky
 from vizlight.mesh import batches, blocks, bundles, normals, refining
 from vizlight.reading.arrays import is_of_cells
-from vizlight.reading.inputs import occluded, uses_normals
+from vizlight.reading.parts import occluded, uses_normals
 from vizlight.scene.scene import as_scene
 from vizlight.shading.options import Bundle, LightOptions, named
 
@@ -40,7 +40,6 @@ def illuminate(
     feature_angle: FeatureAngle = None,
     conditioned: bool | str | None = False,
     line_field: bool = False,
-    refine: float = 0.0,
     bundle: bool | Bundle = False,
     occlusion: str | None = None,
     name: str = "luminance",
@@ -48,7 +47,6 @@ def illuminate(
     model: Model = "phong",
     components: bool = False,
     precision: Precision | None = None,
-    threads: int | None = None,
     inplace: bool = False,
     progress_bar: bool = False,
 ) -> MeshT:
@@ -97,14 +95,9 @@ def illuminate(
         own brightness ``sin(a)^p(j, n)`` is the factor. In codimension 1 that is ``|N . wi|``.
     line_field : bool, default: False
         Whether the signs of ``tangents`` have no meaning, as those of eigenvectors. It matters
-        between the points alone, for ``refine`` and :func:`vizlight.report`: vectors are
-        interpolated linearly, as by VTK, and lines are turned alike before. Means of a cell array
-        are lines in any case.
-    refine : float, default: 0.0
-        Error between the points, such as 1/255: segments and triangles are split where
-        interpolation of the light would be further off. It is no bound for each place: with 95 %
-        confidence fewer than 0.08 % are further off where light does not jump, see
-        :func:`vizlight.refine`. 0: the mesh stays as it is.
+        between the points alone, for :func:`vizlight.refine` and :func:`vizlight.report`: vectors
+        are interpolated linearly, as by VTK, and lines are turned alike before. Means of a cell
+        array are lines in any case.
     bundle : bool or Bundle, default: False
         Whether lines dim one another, and surfaces among them, as a bundle of thin cylinders; a
         :class:`vizlight.Bundle` says how. The point array ``transmittance``, with one component
@@ -131,8 +124,6 @@ def illuminate(
         Whether the terms ``ambient``, ``diffuse`` and ``specular`` are kept, before any depth cue.
     precision : {"float32", "float64"}, optional
         Precision of the work and the result. Default: the precision of the tangents or normals.
-    threads : int, optional
-        Number of threads. Default: the processors that this process may use.
     inplace : bool, default: False
         Whether the result is attached to the mesh itself, without a copy. Else the result shares
         no memory with the mesh; ``illuminate(mesh.copy(deep=False), ..., inplace=True)`` saves the
@@ -147,9 +138,7 @@ def illuminate(
         has a colour; ``luminance_valid`` where some point could not be lit; and the field array
         ``luminance_provenance``, which :func:`vizlight.provenance` reads. Normals that had to be
         computed, for 256 points or more, stay as ``vizlight_normals``, so that the result is lit
-        again in a fraction of the time, as long as points and cells have not changed. With
-        ``refine`` it consists of triangles or polylines with more points, as
-        :func:`vizlight.refine` returns it.
+        again in a fraction of the time, as long as points and cells have not changed.
 
     Raises
     ------
@@ -164,7 +153,8 @@ def illuminate(
     UserWarning
         Once, with the count, if points could not be lit: a zero, infinite or NaN vector,
         dependent tangents, or no normal. They have the ambient light. Points inside a volume
-        are not counted. Once, if many edges are sharp and normals are averaged across them.
+        are not counted. Once, if many edges are sharp and normals are averaged across them; once,
+        if the normals of a mesh lean from its faces by more than 60 degrees on a quarter of it.
 
     Notes
     -----
@@ -183,12 +173,7 @@ def illuminate(
     'luminance'
     """
     asked = LightOptions.of(locals())
-    if asked.refine and _check.boolean("inplace", inplace):
-        expected, remedy = "False for a mesh that gets new points", "leave it out"
-        raise ValueError(_check.message("inplace", expected, inplace, remedy))
-    return light_mesh(
-        mesh, scene, asked, threads=threads, inplace=inplace, progress_bar=progress_bar
-    )
+    return light_mesh(mesh, scene, asked, inplace=inplace, progress_bar=progress_bar)
 
 
 def light_mesh(
@@ -196,15 +181,12 @@ def light_mesh(
     scene: Scene | None,
     options: LightOptions,
     *,
-    threads: int | None = None,
     inplace: bool = False,
     progress_bar: bool = False,
+    error: float | None = None,
     max_points: int | None = None,
 ) -> MeshT:
-    """Light a mesh by options that are checked; see :func:`illuminate`.
-
-    With ``options.refine`` the result is a new mesh, also with ``inplace``.
-    """
+    """Light a mesh by options that are checked; see :func:`illuminate` and :func:`refine`."""
     scene = as_scene(scene)
     named = blocks.check(mesh)
     inplace = _check.boolean("inplace", inplace)
@@ -217,26 +199,26 @@ def light_mesh(
         own, sided = _split(block, path, options)
         taken.append(own)
         known.append(sided)
-    # The sky of new points is that of the refined mesh.
-    early = dataclasses.replace(options, occlusion=None) if options.refine else options
-    taken = with_sky(taken, early.occlusion, threads)
+    # New points see the sky of the refined mesh.
+    early = dataclasses.replace(options, occlusion=None) if error else options
+    taken = with_sky(taken, early.occlusion)
     # Each mesh is refined alone, and has shares of light inside its own bundle.
     groups, parts = batches.parts_of(
         taken, [path for _, path in named], scene, early,
-        join=not (options.refine or options.bundle), known=known,
+        join=not (error or options.bundle), known=known,
     )  # fmt: skip
     _tell_of_averages(named, options)
     rest: list[refining.Left] = []
-    if options.refine:
+    if error:
         fitted = lighting.fit_depth_cue(scene, [part.inputs for part in parts])
         refined = [
-            refining.refined(own, path, part, fitted, max_points, threads)
+            refining.refined(own, path, part, fitted, error, max_points)
             for own, (_, path), part in zip(taken, named, parts, strict=True)
         ]
-        refining.warn_of_rest(refined, options.refine)
+        refining.warn_of_rest(refined, error)
         taken = [one.mesh for one in refined]
         parts, rest = [one.part for one in refined], [one.left for one in refined]
-        taken = with_sky(taken, options.occlusion, threads)
+        taken = with_sky(taken, options.occlusion)
         parts = [
             part._replace(inputs=occluded(part.inputs, own, options.occlusion))
             for part, own in zip(parts, taken, strict=True)
@@ -245,13 +227,12 @@ def light_mesh(
     dimmings: list[bundles.Dimming] = []
     if isinstance(options.bundle, Bundle):
         dimmings = lighting.dimmings(
-            taken, inputs, scene, options.bundle, options.name, threads, show=progress_bar
+            taken, inputs, scene, options.bundle, options.name, show=progress_bar
         )
         inputs = lighting.dimmed(inputs, dimmings)
     shadings, fitted = lighting.light(
         [(given, part.options) for given, part in zip(inputs, parts, strict=True)],
         scene,
-        threads=threads,
         progress_bar=progress_bar,
     )
     results = batches.split(groups, shadings)
@@ -262,18 +243,18 @@ def light_mesh(
     parts.clear()
     groups.clear()
     out, lit = mesh, taken
-    if not (inplace or options.refine):
+    if not (inplace or error):
         # Split meshes are new.
         lit = [
             own.copy() if own is block else own
             for own, (block, _) in zip(taken, named, strict=True)
         ]
-    elif not options.refine:
+    elif not error:
         lit = [block for block, _ in named]
         for block, own in zip(lit, taken, strict=True):
             if own is not block:
                 block.ShallowCopy(own)
-    if options.refine or not inplace:
+    if error or not inplace:
         out = blocks.like(mesh, iter(lit))
     for block, kept in zip(lit, sides, strict=True):
         if kept is not None:
@@ -337,6 +318,12 @@ def _warn_of_normals(
         mesh for mesh, own in zip(meshes, sides, strict=True) if own is not None and own.computed
     ]
     normals.warn_of_rounding(computed)
+    given = [
+        mesh
+        for mesh, own in zip(meshes, sides, strict=True)
+        if own is not None and not own.computed and options.positions is None
+    ]
+    normals.warn_of_contradiction(given, options.normals)
 
 
 def separate_copy(mesh: MeshT) -> MeshT:

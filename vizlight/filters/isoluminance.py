@@ -17,7 +17,7 @@ from vizlight.geometry.contours import isoluminance as closed
 from vizlight.geometry.solids import exact_surfaces, tessellation, triangle_mesh
 from vizlight.geometry.solids.primitives import Frustum, Solid, Sphere
 from vizlight.mesh import blocks, hull, normals, records
-from vizlight.mesh.inputs import inputs_of
+from vizlight.mesh.parts import inputs_of
 from vizlight.model import kernels
 from vizlight.reading.arrays import array_of
 from vizlight.scene.scene import as_scene
@@ -89,7 +89,6 @@ def isoluminance(
     conditioned: bool = False,
     exponent: Exponent = "compensated",
     name: str = "luminance",
-    threads: int | None = None,
     progress_bar: bool = False,
 ) -> pv.MultiBlock:
     """Return contours of equal luminance, and the bands between them with one value per band.
@@ -118,8 +117,6 @@ def isoluminance(
         Arrays and options as for :func:`vizlight.illuminate`, for a mesh only.
     name : str, default: "luminance"
         Name of the resulting cell arrays.
-    threads : int, optional
-        Number of threads.
     progress_bar : bool, default: False
         Whether the share of triangles that keep the allowed error is shown on standard error.
 
@@ -160,9 +157,7 @@ def isoluminance(
     asked = ContourOptions.of(locals())
     start = time.perf_counter()
     with report.paused(), _progress.progress("contours", 100, show=progress_bar) as show:
-        made, bands, light = _make(
-            mesh, scene, asked, threads, lambda share: show(int(100 * share))
-        )
+        made, bands, light = _make(mesh, scene, asked, lambda share: show(int(100 * share)))
         show(100)
     seconds = time.perf_counter() - start
     if report.is_open():
@@ -174,12 +169,11 @@ def _make(
     mesh: pv.DataSet | pv.MultiBlock | Solid,
     scene: Scene | None,
     options: ContourOptions,
-    threads: int | None,
     progress: Callable[[float], None],
 ) -> tuple[pv.MultiBlock, Bands, _Light]:
     """Return bands and contours as meshes, the bands as arrays, and their luminance."""
     scene = as_scene(scene)
-    light = _Light(scene, options, threads, progress)
+    light = _Light(scene, options, progress)
     if isinstance(mesh, Solid):
         for option in ("normals", "tangents"):
             if getattr(options, option) is not None:
@@ -210,10 +204,9 @@ class _Light:
         self,
         scene: Scene,
         options: ContourOptions,
-        threads: int | None,
         progress: Callable[[float], None],
     ) -> None:
-        self.scene, self.options, self.threads = scene, options, threads
+        self.scene, self.options = scene, options
         #: Function that is called with the share of the refinement that is done.
         self.progress = progress
         self.last: Shading | None = None
@@ -233,7 +226,6 @@ class _Light:
             normals=normals,
             model=asked.model,
             precision="float64",
-            threads=self.threads,
         )
         return self.last
 
@@ -293,7 +285,6 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
     (lit,), fitted = lighting.light(
         [(inputs, asked)],
         scene,
-        threads=light.threads,
         progress_bar=False,
     )
     invalid = int(np.count_nonzero(~lit.valid[used]))

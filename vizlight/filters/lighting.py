@@ -31,7 +31,6 @@ def light(
     scene: Scene,
     /,
     *,
-    threads: int | None,
     progress_bar: bool,
 ) -> tuple[list[engine.Shading], Scene]:
     """Light all inputs, each by its options.
@@ -49,7 +48,7 @@ def light(
     with _progress.progress("light", total, show=progress_bar) as report:
         for inputs, options in parts:
             progress = _after(done, report)
-            results.append(engine.run(inputs, fitted, options, threads=threads, progress=progress))
+            results.append(engine.run(inputs, fitted, options, progress=progress))
             done += inputs.count
     return results, fitted
 
@@ -103,7 +102,6 @@ def dimmings(
     scene: Scene,
     bundle: Bundle,
     name: str,
-    threads: int | None,
     *,
     show: bool,
 ) -> list[Dimming]:
@@ -112,7 +110,7 @@ def dimmings(
     with _progress.progress("bundle", 100, show=show) as report:
         return bundles.dim(
             meshes, inputs, scene, bundle, names,
-            threads=threads, progress=lambda done, total: report(100 * done // total),
+            progress=lambda done, total: report(100 * done // total),
         )  # fmt: skip
 
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from vizlight._types import VectorLike
     from vizlight.filters.project import LightWhen
     from vizlight.scene import Scene
-    from vizlight.shading.options import Bundle, Exponent, Facing, FeatureAngle, Model, Precision
+    from vizlight.shading.options import Exponent, Facing, Model, Precision
 
 
 @named
@@ -42,18 +42,14 @@ def manifold(
     tangents: str | ArrayLike | None = None,
     normals: str | ArrayLike | None = None,
     facing: Facing = "auto",
-    feature_angle: FeatureAngle = None,
     conditioned: bool | str | None = False,
     line_field: bool = False,
-    refine: float = 0.0,
-    bundle: bool | Bundle = False,
     occlusion: str | None = None,
     name: str = "luminance",
     exponent: Exponent = "compensated",
     model: Model = "phong",
     components: bool = False,
     precision: Precision | None = None,
-    threads: int | None = None,
     progress_bar: bool = False,
 ) -> pv.DataSet | pv.MultiBlock:
     """Return a sampled manifold as a mesh in 3-space.
@@ -62,13 +58,13 @@ def manifold(
     ----------
     shape : Manifold
         Manifold, such as one of :mod:`vizlight.geometry.nspace.manifolds`.
-    scene, threads, progress_bar
+    scene, progress_bar
         As for :func:`project`.
     rotation, hyperplane, distance, positions, frame, vectors, cut, light
         As for :func:`vizlight.project`.
-    tangents, normals, facing, feature_angle, conditioned, line_field, refine, bundle, occlusion
+    tangents, normals, facing, conditioned, line_field, occlusion, name, exponent, model, components
         As for :func:`vizlight.illuminate`.
-    name, exponent, model, components, precision
+    precision
         As for :func:`vizlight.illuminate`.
 
     Returns
@@ -108,4 +104,4 @@ def manifold(
         mesh = polydata(points, shape.cells)
     mesh.point_data[POSITION] = shape.points
     mesh.point_data[FRAME] = shape.frame.reshape(count, shape.k * n)
-    return project(mesh, scene=scene, threads=threads, progress_bar=progress_bar, **asked)
+    return project(mesh, scene=scene, progress_bar=progress_bar, **asked)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
 
 import numpy as np
 import pyvista as pv
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array
     from vizlight.scene import Scene
-    from vizlight.shading.options import Bundle, Exponent, Facing, FeatureAngle, Model, Precision
+    from vizlight.shading.options import Bundle, Exponent, Facing, Model, Precision
 
 #: Kinds of lines in a flow that changes with time.
 Kind = Literal["pathlines", "streaklines"]
@@ -44,6 +44,7 @@ class PathlineOptions(LightOptions):
     The fields are keywords of :func:`vizlight.pathlines`.
     """
 
+    DECIDED: ClassVar = frozenset({"tangents", "positions", "feature_angle"})
     kind: Kind = "pathlines"
     times: ArrayLike | None = None
     vectors: str | None = None
@@ -61,7 +62,6 @@ class PathlineOptions(LightOptions):
             seed=_check.integer("seed", self.seed, low=0),
         )
         point_arrays.refuse_unnamed("vectors", self.vectors)
-        point_arrays.refuse_unnamed("tangents", self.tangents)
         if self.conditioned and not isinstance(self.conditioned, str) and self.normals is None:
             expected = "the name of normals by normals= beside it, for lines have no surface"
             raise ValueError(_check.message("conditioned", expected, "none"))
@@ -82,14 +82,10 @@ def pathlines(
     seed: int = 0,
     tail: float | None = None,
     step: float = 0.3,
-    tangents: str | ArrayLike | None = None,
-    positions: str | None = None,
     normals: str | ArrayLike | None = None,
     facing: Facing = "auto",
-    feature_angle: FeatureAngle = None,
     conditioned: bool | str | None = False,
     line_field: bool = False,
-    refine: float = 0.0,
     bundle: bool | Bundle = False,
     occlusion: str | None = None,
     name: str = "luminance",
@@ -97,7 +93,6 @@ def pathlines(
     model: Model = "phong",
     components: bool = False,
     precision: Precision | None = None,
-    threads: int | None = None,
     progress_bar: bool = False,
 ) -> Iterator[pv.PolyData]:
     """Carry particles by vectors that change with time, and light their lines at each step.
@@ -127,11 +122,11 @@ def pathlines(
         Duration that the lines show, in the unit of the times. Default: all since the first time.
     step : float, default: 0.3
         Largest step of the integration, in cell lengths; lines have a point at each.
-    tangents, positions, normals, facing, feature_angle, conditioned, line_field, refine, bundle
+    normals, facing, conditioned, line_field, bundle, occlusion, name, exponent, model, components
         As for :func:`vizlight.illuminate`.
-    occlusion, name, exponent, model, components, precision
+    precision
         As for :func:`vizlight.illuminate`.
-    threads, progress_bar
+    progress_bar
         As for :func:`vizlight.illuminate`.
 
     Yields
@@ -141,7 +136,7 @@ def pathlines(
         vectors that carry the particle, and ``Time``: when the particle was there, on pathlines,
         or when it left its seed, on streaklines. Pathlines are lit by the vectors (``Tangents``),
         streaklines by their own tangents. The field array ``TimeValue`` is the time of the step.
-        :func:`vizlight.pictures.movie.save` makes a movie of them.
+        :func:`vizlight.draw.movie.save` makes a movie of them.
 
     Raises
     ------
@@ -192,7 +187,7 @@ def pathlines(
     def lit() -> Iterator[pv.PolyData]:
         with _progress.progress("carry", len(steps.times) - 1, show=progress_bar) as report:
             for lines, light in _lines(steps, seeds, asked, report):
-                yield light_mesh(lines, scene, light, threads=threads, inplace=True)
+                yield light_mesh(lines, scene, light, inplace=True)
 
     return lit()
 
@@ -227,7 +222,7 @@ def _lines(
     name, streaks = str(options.vectors), options.kind == "streaklines"
     names = {field.name for field in dataclasses.fields(LightOptions)}
     light = LightOptions(**{key: getattr(options, key) for key in names})
-    if not streaks and light.tangents is None:
+    if not streaks:
         light = dataclasses.replace(light, tangents=TANGENTS if name != TANGENTS else OWN_TANGENTS)
     carrier, times = Carrier(steps.mesh(0)), steps.times
     rows = Rows(np.empty((0, *seeds.shape)), np.empty((0, *seeds.shape)), np.empty(0))

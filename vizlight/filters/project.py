@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import TYPE_CHECKING, ClassVar, Literal, get_args
 
 import numpy as np
 import pyvista as pv
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from vizlight._types import VectorLike
-    from vizlight.shading.options import Bundle, Exponent, Facing, FeatureAngle, Model, Precision
+    from vizlight.shading.options import Exponent, Facing, Model, Precision
     from vizlight.shading.results import Record
 
 LightWhen = Literal["before", "after"]
@@ -40,6 +40,7 @@ class ProjectOptions(LightOptions):
     The fields are keywords of :func:`vizlight.project`.
     """
 
+    DECIDED: ClassVar = frozenset({"feature_angle", "bundle"})
     rotation: object = None
     hyperplane: tuple[VectorLike, float] | None = None
     distance: float | None = None
@@ -92,18 +93,14 @@ def project(
     tangents: str | ArrayLike | None = None,
     normals: str | ArrayLike | None = None,
     facing: Facing = "auto",
-    feature_angle: FeatureAngle = None,
     conditioned: bool | str | None = False,
     line_field: bool = False,
-    refine: float = 0.0,
-    bundle: bool | Bundle = False,
     occlusion: str | None = None,
     name: str = "luminance",
     exponent: Exponent = "compensated",
     model: Model = "phong",
     components: bool = False,
     precision: Precision | None = None,
-    threads: int | None = None,
     progress_bar: bool = False,
 ) -> pv.DataSet | pv.MultiBlock:
     """Turn a mesh in n-space, cut it by a hyperplane, project it to 3-space; light it on the way.
@@ -142,12 +139,10 @@ def project(
     light : {"before", "after"}
         Light in n-space, with lights and eye of n components, before the projection; or in
         3-space, by the projected points and frame, after it.
-    tangents, normals, facing, feature_angle, conditioned, line_field, refine, bundle, occlusion
+    tangents, normals, facing, conditioned, line_field, occlusion, name, exponent, model, components
         As for :func:`vizlight.illuminate`.
-    name, exponent, model, components, precision
+    precision
         As for :func:`vizlight.illuminate`.
-    threads : int, optional
-        Number of threads of the light. Default: the processors that this process may use.
     progress_bar : bool, default: False
         Whether progress is shown on standard error.
 
@@ -215,7 +210,7 @@ def project(
         _check_space(shown, scene, when, job.positions)
         frame = None if asked.frame is None else f"{prefix}{asked.frame}"
         if when == "before" or frame is None or asked.tangents is not None:
-            return light_mesh(shown, scene, asked.by(frame, positions), threads=threads)
+            return light_mesh(shown, scene, asked.by(frame, positions))
         # Folds are lit by the limit of the tangents, which the result does not keep.
         named = list(blocks.all_blocks(shown))
         found = [np.asarray(block.point_data[frame]) for block in named]
@@ -223,7 +218,7 @@ def project(
             limit = continued(block, frame)
             if limit is not None:
                 point_arrays.attach_rows(block, frame, limit)
-        made = light_mesh(shown, scene, asked.by(frame, positions), threads=threads)
+        made = light_mesh(shown, scene, asked.by(frame, positions))
         for block, rows in zip(blocks.all_blocks(made), found, strict=True):
             point_arrays.attach_rows(block, frame, rows)
         return made
@@ -236,8 +231,9 @@ def project(
         out = lit(_each(out, lambda block: job.projected(block, done, lost)), "after")
         if scene is not None:
             for block in blocks.all_blocks(out):
-                light = records.provenance(block, asked.name)["options"]
-                records.amend(block, asked.name, "project", light, _own(asked))
+                told = records.provenance(block, asked.name)["options"].items()
+                own = {key: value for key, value in told if key not in asked.DECIDED}
+                records.amend(block, asked.name, "project", own, _own(asked))
     if lost.count:
         _check.warn(
             f"{lost.count} points cannot be projected (on or behind the eye's hyperplane, or not "

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import dataclasses
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from vizlight import _check
 from vizlight.filters.illuminate import light_mesh
 from vizlight.mesh import blocks, records
-from vizlight.shading.options import FINEST, LightOptions, named
+from vizlight.shading.options import LightOptions, named
 from vizlight.shading.results import plain
 
 if TYPE_CHECKING:
@@ -19,6 +18,9 @@ if TYPE_CHECKING:
     from vizlight.mesh.blocks import MeshT
     from vizlight.scene import Scene
     from vizlight.shading.options import Bundle, Exponent, Facing, FeatureAngle, Model, Precision
+
+#: Least error between points that light is refined to: rounding in float32 is about 1e-6.
+FINEST = 1e-5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,7 +64,6 @@ def refine(
     model: Model = "phong",
     components: bool = False,
     precision: Precision | None = None,
-    threads: int | None = None,
     progress_bar: bool = False,
 ) -> MeshT:
     """Split triangles and polylines where light bends, and light the mesh.
@@ -89,7 +90,7 @@ def refine(
         As for :func:`vizlight.illuminate`.
     name, exponent, model, components, precision
         As for :func:`vizlight.illuminate`.
-    threads, progress_bar
+    progress_bar
         As for :func:`vizlight.illuminate`.
 
     Returns
@@ -147,18 +148,16 @@ def refine(
     (True, True)
     """
     asked = RefineOptions.of(locals())
-    light = dataclasses.replace(asked, refine=asked.error)
     lit = light_mesh(
         blocks.like(mesh, (_faces(block) for block, _ in blocks.check(mesh))),
         scene,
-        light,
-        threads=threads,
+        asked,
         progress_bar=progress_bar,
+        error=asked.error,
         max_points=asked.max_points,
     )
-    recorded = {key: value for key, value in plain(asked).items() if key != "refine"}
     for block in blocks.all_blocks(lit):
-        records.amend(block, asked.name, "refine", recorded)
+        records.amend(block, asked.name, "refine", plain(asked))
     return lit
 
 

@@ -49,7 +49,6 @@ def relief_day(
     thickness: float | None = None,
     feature_angle: FeatureAngle = None,
     occluders: pv.PolyData | Sequence[pv.PolyData] = (),
-    threads: int | None = None,
     progress_bar: bool = False,
 ) -> MeshT:
     """Return a mesh with its cos-theta shadow at several hours of a day.
@@ -72,7 +71,7 @@ def relief_day(
         As for :func:`vizlight.relief_shadow`.
     thickness, feature_angle, occluders
         As for :func:`vizlight.relief_shadow`.
-    threads, progress_bar
+    progress_bar
         As for :func:`relief_shadow`.
 
     Returns
@@ -107,7 +106,6 @@ def relief_day(
     found = relief_shadow(
         mesh,
         scene,
-        threads=threads,
         progress_bar=progress_bar,
         **asked.changed() | {"components": True},
     )

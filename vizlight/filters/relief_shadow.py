@@ -19,8 +19,8 @@ from vizlight.mesh.casters import CasterOptions, caster
 from vizlight.mesh.height_grids import Grid
 from vizlight.mesh.normals import split_where_computed
 from vizlight.mesh.sky import ABOVE
-from vizlight.reading.cells import check_whole
-from vizlight.reading.inputs import share_of
+from vizlight.reading.cells import check_whole, triangles
+from vizlight.reading.parts import share_of
 from vizlight.scene import Light, Scene
 from vizlight.scene.scene import as_scene
 from vizlight.shading import engine
@@ -39,6 +39,10 @@ if TYPE_CHECKING:
     from vizlight.mesh.blocks import MeshT
     from vizlight.mesh.casters import Caster
     from vizlight.shading.options import FeatureAngle
+
+#: Share of a surface in which shadows end from which a warning is given, and sides of triangles, in
+#: cells of the raster, that are long.
+SMEARED, WIDE = 0.3, 4.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,7 +98,6 @@ def relief_shadow(
     thickness: float | None = None,
     feature_angle: FeatureAngle = None,
     occluders: pv.PolyData | Sequence[pv.PolyData] = (),
-    threads: int | None = None,
     inplace: bool = False,
     progress_bar: bool = False,
 ) -> MeshT:
@@ -152,8 +155,6 @@ def relief_shadow(
         :func:`vizlight.illuminate`. Default: none is.
     occluders : pyvista.PolyData or sequence of pyvista.PolyData
         Further closed surfaces between the surface and the light.
-    threads : int, optional
-        Number of threads. Default: the processors that this process may use.
     inplace, progress_bar
         As for :func:`vizlight.illuminate`.
 
@@ -172,7 +173,8 @@ def relief_shadow(
     Warns
     -----
     UserWarning
-        Once, with the count, if points have no height or no normal.
+        Once, with the count, if points have no height or no normal. Once, if shadows end within
+        triangles that are more than 0.3 of a surface, with ``raster`` within long ones.
 
     Notes
     -----
@@ -193,7 +195,7 @@ def relief_shadow(
     inplace = _check.boolean("inplace", inplace)
     if isinstance(mesh, pv.MultiBlock):
         given: dict[str, Any] = asked.changed()
-        given |= {"sun": sun, "threads": threads, "progress_bar": progress_bar}
+        given |= {"sun": sun, "progress_bar": progress_bar}
         return blocks.each(mesh, lambda one: relief_shadow(one, scene, inplace=inplace, **given))
     if isinstance(mesh, pv.DataSet) and not isinstance(mesh, pv.PolyData | Grid):
         mesh = blocks.surface(mesh, "mesh")
@@ -204,10 +206,10 @@ def relief_shadow(
     scene, lights = _lights(scene)
     own = mesh if asked.raster is not None else split_where_computed(mesh, asked.feature_angle)
     (sunlit,) = with_sky(
-        [own], asked.occlusion, threads, elevation=asked.elevation, factor=asked.exaggeration,
+        [own], asked.occlusion, elevation=asked.elevation, factor=asked.exaggeration,
         up=None if asked.raster is None else ABOVE,
     )  # fmt: skip
-    shadow = caster(own, scene, asked, threads)
+    shadow = caster(own, scene, asked)
     name = asked.name
     each = [f"{name}_{i}" for i in range(len(lights) if asked.components else 0)]
     refuse_overwriting([(mesh, "")], name, components=False, colored=False)
@@ -227,7 +229,7 @@ def relief_shadow(
     if asked.lit:
         fixed = scene.replace(lights=lights)
         shading = engine.shade(
-            shadow.points, None, fixed, normals=shadow.normals, shadow=t, threads=threads,
+            shadow.points, None, fixed, normals=shadow.normals, shadow=t,
             components=asked.components, occlusion=share_of(sunlit, asked.occlusion),
         )  # fmt: skip
 
@@ -247,10 +249,34 @@ def relief_shadow(
             f"{missing} of {len(t)} points have no height or no normal and t = 0; "
             f"the point array {name + VALID!r} marks them"
         )
+    _warn_of_wide(own, t, asked.raster)
     records.attach(out, name, arrays, record)
     if asked.lit:
         point_arrays.activate(out, DEFAULT_NAME)
     return out
+
+
+def _warn_of_wide(mesh: pv.DataSet, t: Array, raster: float | None) -> None:
+    """Warn if shadows end within large triangles of a surface, over which they are interpolated."""
+    if not isinstance(mesh, pv.PolyData):
+        return
+    corners, unit = triangles(mesh), blocks.box(mesh)[1]
+    with np.errstate(invalid="ignore", over="ignore"):
+        points = np.asarray(mesh.points, np.float64)[corners] / unit
+        sides = points - np.roll(points, 1, axis=1)
+        area = np.nan_to_num(np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)) / 2
+    # A shadow's edge lies between a corner in light and one in shadow.
+    across = (np.ptp(t[corners], axis=1) > 1 / 2).any(axis=1)
+    if raster is not None:
+        spacing = raster / unit or (area.sum() / mesh.n_points) ** 0.5
+        across &= np.linalg.norm(sides, axis=2).max(axis=1) > WIDE * spacing
+    share = float(area[across].sum() / area.sum()) if area.any() else 0.0
+    if share > SMEARED:
+        _check.warn(
+            f"shadows end within triangles that are {share:.0%} of the surface, and are "
+            "interpolated over them; smaller ones show their edges: "
+            "mesh.triangulate().subdivide(3, 'linear')"
+        )
 
 
 def _check_names(own: set[str]) -> None:

@@ -13,8 +13,8 @@ from vizlight import _check
 from vizlight.filters import lighting
 from vizlight.filters.sky import with_sky
 from vizlight.mesh import blocks, bundles, records
-from vizlight.mesh.inputs import part_of
 from vizlight.mesh.nspace import PROJECTED
+from vizlight.mesh.parts import part_of
 from vizlight.scene import Scene
 from vizlight.shading import engine
 from vizlight.shading.options import Bundle, LightOptions
@@ -332,7 +332,7 @@ def _light_again(
         )
         for source in sources
     ]
-    results, _ = lighting.light(parts, scene, threads=None, progress_bar=False)
+    results, _ = lighting.light(parts, scene, progress_bar=False)
     for source, shading in zip(sources, results, strict=True):
         stored = _check.floats(f"mesh, {name}", source.mesh.point_data[name])
         if stored.shape != shading.luminance.shape:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import pyvista as pv
 
@@ -29,6 +29,7 @@ class SatinOptions(StreamlineOptions):
     The fields are keywords of :func:`vizlight.satin`.
     """
 
+    DECIDED: ClassVar = frozenset({"conditioned", "vectors", "surface", "confined"})
     seeds: int | ArrayLike | pv.DataSet = 300
 
 
@@ -44,13 +45,11 @@ def satin(
     spacing: float | None = None,
     step: float = 0.3,
     max_length: float | None = None,
-    max_steps: int = 4000,
     tangents: str | ArrayLike | None = None,
     positions: str | None = None,
     normals: str | ArrayLike | None = None,
     facing: Facing = "auto",
     feature_angle: FeatureAngle = None,
-    refine: float = 0.0,
     bundle: bool | Bundle = False,
     occlusion: str | None = None,
     name: str = "luminance",
@@ -58,7 +57,6 @@ def satin(
     model: Model = "phong",
     components: bool = False,
     precision: Precision | None = None,
-    threads: int | None = None,
     progress_bar: bool = False,
 ) -> pv.MultiBlock:
     """Light a surface with a tangent field in four ways: the panels of Banks' illustration 2.
@@ -74,13 +72,13 @@ def satin(
         panels have ``exponent=1``.
     seeds : int or array_like, shape (M, 3), or mesh, default: 300
         Points at which curves start; a number stands for places on the surface, uniform in area.
-    line_field, seed, spacing, step, max_length, max_steps
+    line_field, seed, spacing, step, max_length
         As for :func:`vizlight.streamlines`.
-    tangents, positions, normals, facing, feature_angle, refine, bundle, occlusion, name, exponent
+    tangents, positions, normals, facing, feature_angle, bundle, occlusion, name, exponent
         As for :func:`vizlight.illuminate`.
     model, components, precision
         As for :func:`vizlight.illuminate`.
-    threads, progress_bar
+    progress_bar
         As for :func:`vizlight.illuminate`.
 
     Returns
@@ -126,11 +124,9 @@ def satin(
         normals=None,
         facing="auto",
     )
-    curves = light_lines(
-        traced, scene, lines, threads=threads, progress_bar=progress_bar, argument="surface"
-    )
+    curves = light_lines(traced, scene, lines, progress_bar=progress_bar, argument="surface")
     made = {
-        name: light_mesh(surface, scene, panel, threads=threads, progress_bar=progress_bar)
+        name: light_mesh(surface, scene, panel, progress_bar=progress_bar)
         for name, panel in panels.items()
     }
     return pv.MultiBlock({"curves": curves, **made})

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 import pyvista as pv
@@ -37,6 +38,8 @@ TANGENTS = "Tangents"
 RESTING = 0.01
 #: Its name where the traced mesh has an array of that name.
 OWN_TANGENTS = "vizlight tangents"
+#: Largest length of a line in cell lengths.
+REACH = 1200
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,6 +49,8 @@ class StreamlineOptions(LightOptions):
     The fields are keywords of :func:`vizlight.streamlines`.
     """
 
+    DECIDED: ClassVar = frozenset({"tangents", "positions", "normals"})
+
     vectors: str | tuple[str, str] | None = None
     surface: pv.PolyData | None = None
     confined: bool | None = None
@@ -54,7 +59,6 @@ class StreamlineOptions(LightOptions):
     spacing: float | None = None
     step: float = 0.3
     max_length: float | None = None
-    max_steps: int = 4000
     conditioned: bool | str | None = None
 
     def __post_init__(self) -> None:
@@ -62,7 +66,6 @@ class StreamlineOptions(LightOptions):
         _check.set_fields(
             self,
             step=_check.number("step", self.step, low=1e-6, high=1e3),
-            max_steps=int(_check.number("max_steps", self.max_steps, low=1, high=1e9)),
         )
         if self.confined is not None:
             _check.boolean("confined", self.confined)
@@ -114,14 +117,9 @@ def streamlines(
     spacing: float | None = None,
     step: float = 0.3,
     max_length: float | None = None,
-    max_steps: int = 4000,
     conditioned: bool | str | None = None,
-    tangents: str | ArrayLike | None = None,
-    positions: str | None = None,
-    normals: str | ArrayLike | None = None,
     facing: Facing = "auto",
     feature_angle: FeatureAngle = None,
-    refine: float = 0.0,
     bundle: bool | Bundle = False,
     occlusion: str | None = None,
     name: str = "luminance",
@@ -129,7 +127,6 @@ def streamlines(
     model: Model = "phong",
     components: bool = False,
     precision: Precision | None = None,
-    threads: int | None = None,
     progress_bar: bool = False,
 ) -> pv.PolyData:
     """Integrate streamlines, light them by the field, condition them by a surface.
@@ -174,17 +171,13 @@ def streamlines(
         Largest step of the integration, in cell lengths.
     max_length : float, optional
         Largest length of a line, in the unit of the mesh. Default: four diagonals of the bounding
-        box.
-    max_steps : int, default: 4000
-        Largest number of steps of a line.
+        box. A line ends after 1,200 cell lengths in any case.
     conditioned : bool or str, optional
         Whether the lines inherit the self-shadow of the surface, see
         :func:`vizlight.illuminate`. Default: whether there is a surface.
-    tangents, positions, normals, facing, feature_angle, refine, bundle, occlusion, name, exponent
-        As for :func:`vizlight.illuminate`.
-    model, components, precision
-        As for :func:`vizlight.illuminate`.
-    threads, progress_bar
+    facing, feature_angle, bundle, occlusion, name, exponent, model, components, precision
+        As for :func:`vizlight.illuminate`; edges of the surface are split.
+    progress_bar
         As for :func:`vizlight.illuminate`.
 
     Returns
@@ -241,9 +234,7 @@ def streamlines(
     >>> "luminance" in lines.point_data
     True
     """
-    return light_lines(
-        mesh, scene, StreamlineOptions.of(locals()), threads=threads, progress_bar=progress_bar
-    )
+    return light_lines(mesh, scene, StreamlineOptions.of(locals()), progress_bar=progress_bar)
 
 
 def light_lines(
@@ -251,7 +242,6 @@ def light_lines(
     scene: Scene | None,
     options: StreamlineOptions,
     *,
-    threads: int | None,
     progress_bar: bool,
     argument: str = "mesh",
 ) -> pv.PolyData:
@@ -269,11 +259,9 @@ def light_lines(
     with _progress.progress("trace", 100, show=progress_bar) as report:
         lines, tangents = _traced(mesh, scene, made, report, argument)
     conditioned = made.surface is not None if made.conditioned is None else made.conditioned
-    normals = "Normals" if conditioned is True and made.normals is None else made.normals
-    light = dataclasses.replace(made, conditioned=conditioned, normals=normals)
-    if light.tangents is None:
-        light = dataclasses.replace(light, tangents=tangents)
-    lit = light_mesh(lines, scene, light, threads=threads, inplace=True, progress_bar=progress_bar)
+    normals = "Normals" if conditioned is True else None
+    light = dataclasses.replace(made, tangents=tangents, conditioned=conditioned, normals=normals)
+    lit = light_mesh(lines, scene, light, inplace=True, progress_bar=progress_bar)
     recorded = dataclasses.replace(options, vectors=made.vectors)
     records.amend(lit, options.name, "streamlines", recorded)
     return lit
@@ -390,7 +378,10 @@ def _lines(
     """Return the lines of TRACED in a mesh that was moved to the origin and scaled to size 1."""
     seed = _check.integer("seed", options.seed, low=0)
     how = tracers.Tracing(
-        options.step, _max_length(mesh, options.max_length, size), options.max_steps, seed
+        options.step,
+        _max_length(mesh, options.max_length, size),
+        math.ceil(REACH / options.step),
+        seed,
     )
     count, places = _seeds(options.seeds, origin, size)
     if not (options.confined or options.line_field or options.spacing is not None):

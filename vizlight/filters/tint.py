@@ -12,7 +12,9 @@ import pyvista as pv
 from vizlight import _check
 from vizlight._version import __version__
 from vizlight.filters import lighting, relight
-from vizlight.mesh import blocks, point_arrays, records
+from vizlight.mesh import blocks, normals, point_arrays, records
+from vizlight.reading.arrays import is_of_cells
+from vizlight.reading.cells import has_faces
 from vizlight.scene import Scene
 from vizlight.shading import display
 from vizlight.shading.results import DEFAULT_NAME, VALID, part_name
@@ -62,9 +64,10 @@ def tint(
         Mesh with the light of a filter, such as :func:`vizlight.illuminate`; not changed, unless
         ``inplace``.
     scalars : str or array_like, shape (N,) or (N, c), optional
-        Point array whose values are coloured, by its name or as an array. Default: the active
-        scalars, if they are not the light. The length of vectors is taken, unless ``component``;
-        three or four unsigned bytes are colours.
+        Array whose values are coloured, by its name, or as an array with a row per point. Default:
+        the active scalars of the points, if they are not the light. Cells of a PolyData surface
+        have one colour each, as in PyVista; other cell arrays are averaged to the points. The
+        length of vectors is taken, unless ``component``; three or four unsigned bytes are colours.
     cmap : str, list, matplotlib colormap or pyvista.LookupTable, optional
         Colour map, as for ``pyvista.Plotter.add_mesh``. Default: the map of PyVista's theme if it
         was changed, otherwise ``vizlight.maps.even``, which can be read in any light.
@@ -96,13 +99,14 @@ def tint(
     pyvista.DataSet or pyvista.MultiBlock
         The mesh with the point array ``rgb`` of three bytes (active scalars), and the field array
         ``rgb_provenance``, from which :func:`unlit_colors` makes the scalar bar. It shares points,
-        cells and the other arrays with ``lit``.
+        cells and the other arrays with ``lit``; for a cell array points are split where cells of
+        different values meet, and stand behind the others.
 
     Raises
     ------
     TypeError, ValueError
-        If the mesh is not lit or has changed since, an array is missing or is cell data, or an
-        option does not fit.
+        If the mesh is not lit or has changed since, an array is missing, or an option does not
+        fit.
 
     Notes
     -----
@@ -126,14 +130,15 @@ def tint(
     dtype('uint8')
     """
     blocks.check(lit)
-    shared = (block.copy(deep=False) for block in blocks.all_blocks(lit))
-    out = lit if _check.boolean("inplace", inplace) else blocks.like(lit, shared)
-    every = list(blocks.named_blocks(out))
-    meshes = [block for block, _ in every]
+    inplace = _check.boolean("inplace", inplace)
+    every = list(blocks.named_blocks(lit))
+    own = [block for block, _ in every]
     _check.array_name("name", name)
-    if not _holds_light(meshes, name):
+    if not _holds_light(own, name):
         records.refuse_overwriting(every, name, [name])
     component = None if component is None else _check.integer("component", component, low=0)
+    split = [_split(mesh, scalars) for mesh in own]
+    meshes = [mesh for mesh, _ in split]
     values = [values_of(mesh, scalars, component) for mesh in meshes]
     table = color_table(
         values,
@@ -143,15 +148,31 @@ def tint(
     )  # fmt: skip
     record = _record(table, scalars, light, component)
     with report.tinted():
-        lights = _light_of(out, meshes, light)
+        lights = _light_of(lit, own, light)
     made = [
-        display.on_colors(map_colors(table, value, components=3), *own)
-        for value, own in zip(values, lights, strict=True)
+        display.on_colors(
+            map_colors(table, value, components=3),
+            share[origin],
+            None if valid is None else valid[origin],
+        )
+        for value, (share, valid), (_, origin) in zip(values, lights, split, strict=True)
     ]
+    if inplace:
+        for block, mesh in zip(own, meshes, strict=True):
+            block.ShallowCopy(mesh)
+        meshes = own
     for mesh, array in zip(meshes, made, strict=True):
         kept = records.read(mesh, light) or {}
         records.attach(mesh, name, {name: array}, record | {"scene": kept.get("scene")})
-    return out
+    return lit if inplace else blocks.like(lit, iter(meshes))
+
+
+def _split(mesh: pv.DataSet, scalars: object) -> tuple[pv.DataSet, NDArray[np.intp] | slice]:
+    """Return a mesh whose cells have the colours of their values, and the point each point was."""
+    of_cells = isinstance(scalars, str) and is_of_cells(mesh, scalars)
+    if isinstance(scalars, str) and of_cells and isinstance(mesh, pv.PolyData) and has_faces(mesh):
+        return normals.split_values(mesh, scalars)
+    return mesh.copy(deep=False), slice(None)
 
 
 def _holds_light(meshes: Sequence[pv.DataSet], name: str) -> bool:
@@ -329,17 +350,13 @@ def map_colors(
     return np.array(pv.convert_array(mapped), np.uint8).reshape(-1, components)
 
 
-def light_on_colors(
-    sources: Sequence[relight.Source], scene: Scene, *, threads: int | None = None
-) -> list[tuple[Array, Bools]]:
+def light_on_colors(sources: Sequence[relight.Source], scene: Scene) -> list[tuple[Array, Bools]]:
     """Return for each source the light on colours of data, and where there is any.
 
     Parameters
     ----------
     sources : sequence of Source
     scene : Scene
-    threads : int, optional
-        Number of threads.
 
     Returns
     -------
@@ -348,7 +365,7 @@ def light_on_colors(
     """
     plain = display.for_colors(scene)
     parts = [(source.seen_from(scene.view, source.inputs), source.options) for source in sources]
-    shaded, _ = lighting.light(parts, plain, threads=threads, progress_bar=False)
+    shaded, _ = lighting.light(parts, plain, progress_bar=False)
     return [(shading.luminance, shading.valid) for shading in shaded]
 
 

@@ -10,7 +10,7 @@ from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
 
 from vizlight.mesh import normals, splitting
-from vizlight.mesh.inputs import part_of
+from vizlight.mesh.parts import part_of
 from vizlight.reading import polylines
 from vizlight.reading.cells import (
     GHOSTS,
@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from vtkmodules.vtkCommonDataModel import vtkCellArray
 
     from vizlight._types import Indices
-    from vizlight.reading.inputs import Part
     from vizlight.reading.normals import Sided
+    from vizlight.reading.parts import Part
     from vizlight.scene import Scene
     from vizlight.shading.options import LightOptions
 

@@ -64,7 +64,6 @@ def dim(
     names: tuple[str, str],
     /,
     *,
-    threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> list[Dimming]:
     """Return the shares of light that reach the points of meshes inside a bundle of lines.
@@ -82,8 +81,6 @@ def dim(
     names : tuple of str
         Names of the luminance and the transmittance. Shares that a mesh has under that name are
         used again where nothing that they depend on has changed.
-    threads : int, optional
-        Number of threads.
     progress : callable, optional
         Function that is called with the number of grids that are done, and of all.
 
@@ -97,7 +94,7 @@ def dim(
     TypeError, ValueError
         If there are no lines, or points that are not in 3-space.
     """
-    work = _work_of(meshes, inputs, bundle, threads)
+    work = _work_of(meshes, inputs, bundle)
     lights = _lights(scene)
     made = []
     for number, (mesh, given) in enumerate(zip(meshes, inputs, strict=True)):
@@ -115,7 +112,6 @@ def _work_of(
     meshes: Sequence[pv.DataSet],
     inputs: Sequence[ShadingInputs],
     bundle: Bundle,
-    threads: int | None,
 ) -> _Work:
     """Return the lines that dim meshes."""
     for given in inputs:
@@ -129,7 +125,7 @@ def _work_of(
         raise ValueError(_check.message("bundle", "a mesh with lines", "none", remedy))
     asked = [bundle.diameter, bundle.depth, bundle.grid]
     source = _digest(lines.points, lines.ids, lines.offsets, np.array(repr([asked, own])))
-    return _Work(lines, source, bundle, threads)
+    return _Work(lines, source, bundle)
 
 
 def _lights(scene: Scene) -> list[Light]:
@@ -155,7 +151,7 @@ class Live:
     def __init__(
         self, mesh: pv.DataSet, inputs: ShadingInputs, bundle: Bundle, names: tuple[str, str]
     ) -> None:
-        self._target = _Target(_work_of([mesh], [inputs], bundle, None), mesh, inputs, names)
+        self._target = _Target(_work_of([mesh], [inputs], bundle), mesh, inputs, names)
 
     def dimmed(self, inputs: ShadingInputs, scene: Scene) -> ShadingInputs:
         """Return inputs with the shares of the lights of a scene.
@@ -172,8 +168,8 @@ class Live:
 class _Work:
     """Lines and what is computed of them once they are needed."""
 
-    def __init__(self, lines: Lines, source: str, bundle: Bundle, threads: int | None) -> None:
-        self.lines, self.source, self.bundle, self.threads = lines, source, bundle, threads
+    def __init__(self, lines: Lines, source: str, bundle: Bundle) -> None:
+        self.lines, self.source, self.bundle = lines, source, bundle
         self._made: tuple[Medium, float] | None = None
 
     def medium(self) -> tuple[Medium, float]:
@@ -260,7 +256,6 @@ class _Target:
                 medium.targets(self._points, self._rows, self._lengths),
                 diameter,
                 [_place(lights[i]) for i in missing],
-                threads=self._work.threads,
                 progress=progress,
             )
             columns |= {keys[i]: found[:, j] for j, i in enumerate(missing)}

@@ -89,7 +89,7 @@ class Caster(Protocol):
         """Return t at one point by an independent method; NaN where that does not apply."""
 
 
-def caster(mesh: pv.DataSet, scene: Scene, options: CasterOptions, threads: int | None) -> Caster:
+def caster(mesh: pv.DataSet, scene: Scene, options: CasterOptions) -> Caster:
     """Return the shadow caster of a mesh."""
     sampled = options.raster is not None
     if isinstance(mesh, Grid) or (sampled and isinstance(mesh, pv.PolyData)):
@@ -99,7 +99,7 @@ def caster(mesh: pv.DataSet, scene: Scene, options: CasterOptions, threads: int 
                 got = len(value) if option == "occluders" else repr(value)
                 remedy = "leave it out, or pass the surface of the grid as a closed mesh"
                 raise ValueError(_check.message(option, "none on a height field", got, remedy))
-        return _FieldCaster(mesh, options, threads)
+        return _FieldCaster(mesh, options)
     if isinstance(mesh, pv.PolyData):
         defaults = {field.name: field.default for field in dataclasses.fields(options)}
         for option in FIELD_ALONE:
@@ -116,15 +116,13 @@ def caster(mesh: pv.DataSet, scene: Scene, options: CasterOptions, threads: int 
 class _FieldCaster:
     """Shadows of a height field."""
 
-    def __init__(
-        self, grid: Grid | pv.PolyData, options: CasterOptions, threads: int | None
-    ) -> None:
+    def __init__(self, grid: Grid | pv.PolyData, options: CasterOptions) -> None:
         grid = georeference.in_metres(grid)
         found = heights_of(grid, options.elevation, options.exaggeration, options.raster)
         self._field = height_field.make(found.x, found.y, found.z, base=None, border=options.border)
         self._normal = height_field.normals(self._field)
         self._holes = np.isnan(found.z)
-        self._to_points, self._method, self._threads = found.to_points, options.method, threads
+        self._to_points, self._method = found.to_points, options.method
         self._turn = found.turn
         self.depth = _depth(options.depth, height_field.default_depth(self._field))
         self.points = found.points()
@@ -144,7 +142,7 @@ class _FieldCaster:
         )
         ray = shadowing.toward(self._field, direction=way, position=end)
         t = shadowing.ratio(
-            self._field, self._normal, self.depth, ray, method=self._method, threads=self._threads,
+            self._field, self._normal, self.depth, ray, method=self._method,
             report=report,
         )  # fmt: skip
         t[self._holes] = 0

@@ -102,7 +102,7 @@ def _of_meshio(path: Path, kinds: Sequence[str] = ()) -> pv.DataSet:
     """Return a mesh by the first reader of meshio that takes a file.
 
     ``meshio.read`` prints what its readers say, and ends the process. Names of parts are left out:
-    those of gmsh are not of the form that PyVista takes, and their numbers are cell data.
+    gmsh's sets are not of the form that PyVista takes, and their numbers are cell data.
     """
     import meshio
 

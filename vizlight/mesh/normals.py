@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from typing import TypeVar
 
-    from vtkmodules.vtkCommonDataModel import vtkCellArray
+    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
     from vizlight._types import Array, Indices
     from vizlight.scene import Scene
@@ -48,6 +48,9 @@ ROUNDED = 0.05
 #: Number of points from which normals are kept. Normals of smaller meshes are computed for many at
 #: once, sooner than what is kept is checked.
 FEWEST = 256
+#: Numbers of meshes, and of triangles of each, whose normals are compared with the faces, and share
+#: of the area from which they contradict them.
+MOST_MESHES, MOST_FACES, CONTRADICT = 16, 4096, 0.25
 _NONE = np.empty(0)
 
 
@@ -98,6 +101,34 @@ def warn_of_rounding(meshes: Sequence[pv.DataSet]) -> None:
             "of the spacing between them, and normals computed from them are off by as much; "
             "subtract an origin from them before they become float32, or keep them in float64"
         )
+
+
+def warn_of_contradiction(meshes: Sequence[pv.DataSet], value: object) -> None:
+    """Warn once if many of the normals that surfaces have are none of their faces.
+
+    A sign is no contradiction: light takes the side that is seen.
+    """
+    for mesh in meshes[:MOST_MESHES]:
+        if not isinstance(mesh, pv.PolyData) or not has_faces(mesh):
+            continue
+        rows = given_normals(mesh, value, 3)
+        if rows is None:
+            continue
+        corners = triangles(mesh)
+        corners = corners[:: max(len(corners) // MOST_FACES, 1)]
+        a, b, c = np.asarray(places(mesh)[corners], np.float64).transpose(1, 0, 2)
+        faces, own = np.cross(b - a, c - a), np.asarray(rows[corners], np.float64).mean(axis=1)
+        area, size = (np.sqrt(np.einsum("ij,ij->i", x, x)) for x in (faces, own))
+        with np.errstate(invalid="ignore", over="ignore"):
+            off = np.abs(np.einsum("ij,ij->i", faces, own)) < area * size / 2
+            share = float(np.sum(area, where=off) / np.sum(area))
+        if share > CONTRADICT:
+            _check.warn(
+                f"the mesh has normals that lean from its faces by more than 60 degrees on "
+                f"{share:.0%} of the surface, and is lit by them; if they are wrong, clear them: "
+                "mesh.point_data.active_normals_name = None"
+            )
+            return
 
 
 def onlooker(scene: Scene) -> View | None:
@@ -165,29 +196,67 @@ def _split(mesh: pv.PolyData, angle: float) -> pv.PolyData:
 
     One that is split shares no memory with the mesh.
     """
-    ids, ends = connectivity(faces_only(mesh).GetPolys())
+    ids, ends, more = _corners(faces_only(mesh), mesh)
+    split, origin = creases.split(places(mesh), ids, ends, angle)
+    if len(origin) == mesh.n_points:
+        return mesh
+    if len(ends) - 1 - more < mesh.GetNumberOfPolys():
+        ends, split = _with_twins(mesh.GetPolys(), split, ends, origin)
+    return _at(mesh, split, ends, origin)
+
+
+def split_values(mesh: pv.PolyData, name: str) -> tuple[pv.PolyData, Indices]:
+    """Return a surface with points split where cells of different values meet, and the origins.
+
+    The origin of a point is the point that it was. Values that are averaged from cells to points
+    are then the cells' own.
+    """
+    values = np.asarray(mesh.cell_data[name])[_rows(mesh)][mesh.n_verts + mesh.n_lines :]
+    ids, ends, _ = _corners(mesh, mesh)
+    _, kind = np.unique(values, axis=0, return_inverse=True)
+    code = ids * (kind.max(initial=0) + 1) + np.repeat(kind.reshape(-1), np.diff(ends))
+    _, first, number = np.unique(code, return_index=True, return_inverse=True)
+    # Of the values at a point the first leaves it as it is.
+    own = ids[first]
+    more = np.diff(own, prepend=-1) == 0
+    place = np.where(more, mesh.n_points - 1 + np.cumsum(more), own)
+    origin = np.concatenate([np.arange(mesh.n_points), own[more]])
+    found = _at(mesh, place[number.reshape(-1)], ends, origin)
+    if (sided := kept(mesh)) is not None:
+        # The surface is as smooth as it was.
+        keep(found, dataclasses.replace(sided.part(0, origin), kept=False))
+    return found, origin
+
+
+def _corners(surface: vtkPolyData, mesh: pv.PolyData) -> tuple[Indices, Indices, int]:
+    """Return corners and ends of polygons and of a mesh's strips, the last number of triangles."""
+    ids, ends = connectivity(surface.GetPolys())
     strips = pv.PolyData()
     strips.SetPoints(mesh.GetPoints())
     strips.SetStrips(mesh.GetStrips())
     more = triangles(strips)
     ids = np.concatenate([ids, more.ravel()]) if len(more) else ids
     ends = np.concatenate([ends, ends[-1] + 3 * np.arange(1, len(more) + 1)])
-    split, origin = creases.split(places(mesh), ids, ends, angle)
-    if len(origin) == mesh.n_points:
-        return mesh
-    if len(ends) - 1 - len(more) < mesh.GetNumberOfPolys():
-        ends, split = _with_twins(mesh.GetPolys(), split, ends, origin)
+    return ids, ends, len(more)
+
+
+def _at(mesh: pv.PolyData, corners: Indices, ends: Indices, origin: Indices) -> pv.PolyData:
+    """Return a surface with other corners of its faces, at points that were points of it.
+
+    Points that were split stand behind the mesh's own.
+    """
     found = pv.PolyData()
     found.SetPoints(pv.vtk_points(places(mesh)[origin]))
-    # Points that were split stand behind the mesh's own.
     for put, cells in ((found.SetVerts, mesh.GetVerts()), (found.SetLines, mesh.GetLines())):
         own = pv.CellArray()
         own.DeepCopy(cells)
         put(own)
-    found.SetPolys(creases.cell_array(split, ends))
+    found.SetPolys(creases.cell_array(corners, ends))
     for key, array in mesh.point_data.items():
         point_arrays.attach_rows(found, key, np.asarray(array)[origin])
-    _carry_cells(mesh, found)
+    rows = _rows(mesh)
+    for key, array in mesh.cell_data.items():
+        found.cell_data[key] = np.asarray(array)[rows]
     point_arrays.carry_active(mesh, found)
     found.GetFieldData().DeepCopy(mesh.GetFieldData())
     records.carry(mesh, found)
@@ -225,13 +294,11 @@ def _with_twins(
     )
 
 
-def _carry_cells(mesh: pv.PolyData, split: pv.PolyData) -> None:
-    """Carry the cell arrays of a mesh to one whose strips are triangles."""
+def _rows(mesh: pv.PolyData) -> Indices:
+    """Return the cell of a mesh that each cell is once its strips are triangles."""
     size = np.diff(connectivity(mesh.GetStrips())[1])
     rows = np.repeat(np.arange(mesh.n_cells - len(size), mesh.n_cells), np.maximum(size - 2, 0))
-    rows = np.concatenate([np.arange(mesh.n_cells - len(size)), rows])
-    for key, array in mesh.cell_data.items():
-        split.cell_data[key] = np.asarray(array)[rows] if len(size) else np.array(array)
+    return np.concatenate([np.arange(mesh.n_cells - len(size)), rows])
 
 
 def fingerprint(mesh: pv.DataSet) -> str | None:

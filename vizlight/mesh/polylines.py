@@ -20,8 +20,9 @@ if TYPE_CHECKING:
 
 
 def backdrop(meshes: Iterable[pv.DataSet]) -> str:
-    """Return the colour before which meshes stand out: lines alone before black, else white."""
-    return "black" if all(has_lines_only(mesh) for mesh in meshes) else "white"
+    """Return the colour before which meshes stand out: lines or points before black, else white."""
+    thin = [mesh.n_points > 0 and mesh.max_cell_dimensionality < 2 for mesh in meshes]
+    return "black" if all(thin) else "white"
 
 
 def direction_colors(mesh: pv.DataSet, /) -> Array:

@@ -145,6 +145,8 @@ def carry(mesh: pv.DataSet, derived: pv.DataSet) -> None:
     for name in _names(mesh):
         record = read(derived, name)
         if record is not None:
+            # What it was computed from is not the derived mesh.
+            record.pop("source", None)
             write(derived, name, record, made(mesh, name) & set(derived.point_data))
 
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import pyvista as pv
 
     from vizlight._types import Array, Bools, Indices
-    from vizlight.reading.inputs import Part
+    from vizlight.reading.parts import Part
     from vizlight.scene import Scene
     from vizlight.shading.engine import Shading
     from vizlight.shading.inputs import ArraySource
@@ -77,7 +77,7 @@ class Refined(NamedTuple):
 
 
 def refined(
-    mesh: pv.DataSet, path: str, part: Part, scene: Scene, most: int | None, threads: int | None
+    mesh: pv.DataSet, path: str, part: Part, scene: Scene, error: float, most: int | None
 ) -> Refined:
     """Return a mesh with its segments or triangles split where light bends.
 
@@ -88,13 +88,13 @@ def refined(
     path : str
         Path of the mesh in a MultiBlock, for an error.
     part : Part
-        What it is lit by, with the allowed error, ``refine``, in the options.
+        What it is lit by.
     scene : Scene
         Scene whose depth cue, if it has one, has both ends.
+    error : float
+        Largest error allowed.
     most : int, optional
         Largest number of points.
-    threads : int, optional
-        Number of threads.
 
     Raises
     ------
@@ -103,10 +103,10 @@ def refined(
     """
     try:
         flat = splitting.as_polydata(mesh)
-    except ValueError as error:
+    except ValueError as cause:
         if not path:
             raise
-        raise ValueError(f"block {path}: {error}") from error
+        raise ValueError(f"block {path}: {cause}") from cause
     origin: Indices | None = None
     if has_faces(flat):
         parents, origin = splitting.triangles(flat)
@@ -114,10 +114,10 @@ def refined(
         parents = splitting.simplices(flat)
     inputs, options, count = part.inputs, part.options, mesh.n_points
     with engine.observed(None):
-        shading = engine.run(inputs, scene, options, threads=threads)
-    between = Between(inputs, scene, options, threads)
+        shading = engine.run(inputs, scene, options)
+    between = Between(inputs, scene, options)
     most = max(MANY, 2 * count) if most is None else most
-    cells, left = refine(between, shading, parents, options.refine, most)
+    cells, left = refine(between, shading, parents, error, most)
     given = _named(flat, between, options)
     positions = options.positions if isinstance(options.positions, str) else None
     found = splitting.rebuilt(flat, cells, origin, given, places=positions)

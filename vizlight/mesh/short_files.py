@@ -198,7 +198,7 @@ _PAIR = rb"^\s*Begin\s", rb"^\s*End\s+\w"
 
 
 def _medit(file: BinaryIO) -> str:
-    """Follow the sections of a binary Medit file, each of which names the place of the next."""
+    """Follow the sections of a binary Medit file; each names the place of the next."""
     head = file.read(8)
     if len(head) < 8:
         return "its header is not whole"
@@ -343,7 +343,7 @@ def _of_types(grid: pv.UnstructuredGrid) -> str:
 
 
 def _of_text(block: pv.DataSet, path: Path) -> str:
-    """Compare the numbers of a legacy file of text with those of its mesh, which VTK makes up."""
+    """Compare the numbers of a legacy file of text with its mesh's, which VTK makes up."""
     with path.open("rb") as file:
         head = file.read(_HEAD)
         if isinstance(block, pv.ImageData):

@@ -17,6 +17,7 @@ from vizlight.reading import hull, polylines
 from vizlight.reading.cells import GHOSTS, faces_only, has_faces, triangles
 from vizlight.scene import View
 from vizlight.shading.options import Bundle
+from vizlight.verify import between
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -45,23 +46,32 @@ class Sky(NamedTuple):
     Attributes
     ----------
     share : ndarray of float32, shape (N,)
-        Share of the sky that each point sees; a point without a sky has that of the nearest point.
+        Share of the sky that each point sees; one without a sky has the nearest point's.
     valid : ndarray of bool, shape (N,)
         Whether a point has a sky.
     openness : ndarray of float32, shape (N,), or None
         Openness in radians.
     record : dict
         Way in which it was found, its error, and its effort.
+    dark : int
+        Number of points of a surface that see nothing.
+    between : float
+        Error of values interpolated between the points of a surface, of 95 of 100 places.
     """
 
     share: Array
     valid: Bools
     openness: Array | None
     record: Record
+    dark: int = 0
+    between: float = 0.0
 
 
 class _Shape(NamedTuple):
-    """Triangles of a mesh, and the points that look at the sky with their indices in the mesh."""
+    """Triangles of a mesh, and the points that look at the sky with their indices in the mesh.
+
+    Points of a surface that are none of the mesh have the index -1.
+    """
 
     points: Array
     triangles: Indices
@@ -76,7 +86,6 @@ def skies(
     up: tuple[float, ...] | None = None,
     diameter: float | None = None,
     openness: bool = False,
-    threads: int | None = None,
     report: Callable[[int], None] = lambda _: None,
     elevation: str | None = None,
     factor: float = 1.0,
@@ -94,7 +103,6 @@ def skies(
         Diameter of lines.
     openness : bool
         Whether fields have their openness, too.
-    threads : int, optional
     report : callable
         Function of the number of points, or of azimuths of a field, that are done.
     elevation, factor
@@ -115,12 +123,12 @@ def skies(
         if up is not None and not _is_above(up):
             remedy = "leave it out, or pass the surface of the grid"
             raise ValueError(_check.message("up", "(0, 0, 1) for a height field", up, remedy))
-        found[number] = _of_field(field, error, openness=openness, threads=threads, report=report)
+        found[number] = _of_field(field, error, openness=openness, report=report)
     if shapes and openness:
         remedy = "leave it out"
         raise ValueError(_check.message("openness", "a height field", "another mesh", remedy))
     if shapes:
-        made = _by_rays([*shapes.values()], error, up, diameter, threads, report)
+        made = _by_rays([*shapes.values()], error, up, diameter, report)
         found |= dict(zip(shapes, made, strict=True))
     return [found[number] for number in range(len(meshes))]
 
@@ -153,16 +161,13 @@ def _of_field(
     error: float,
     *,
     openness: bool,
-    threads: int | None,
     report: Callable[[int], None],
 ) -> Sky:
     """Return the sky of a height field."""
-    made = fields.sky(field.x, field.y, field.z, error=error, threads=threads, progress=report)
+    made = fields.sky(field.x, field.y, field.z, error=error, progress=report)
     opened = None
     if openness:
-        other = fields.sky(
-            field.x, field.y, field.z, error=error, openness=True, threads=threads, progress=report
-        )
+        other = fields.sky(field.x, field.y, field.z, error=error, openness=True, progress=report)
         opened = np.nan_to_num(field.to_points(other.share))
     share = field.to_points(made.share)
     valid: Bools = np.isfinite(share)
@@ -177,7 +182,7 @@ def _of_field(
 
 
 def _filled(share: Array, valid: Bools, points: Array) -> Array:
-    """Return shares in which points without a sky have that of the nearest point with one."""
+    """Return shares where points without a sky have the nearest point's."""
     if valid.all():
         return share
     share = np.where(valid, share, 1.0).astype(np.float32)
@@ -193,7 +198,6 @@ def _by_rays(
     error: float,
     up: tuple[float, ...] | None,
     diameter: float | None,
-    threads: int | None,
     report: Callable[[int], None],
 ) -> list[Sky]:
     """Return the skies of meshes that hide one another's sky."""
@@ -208,12 +212,12 @@ def _by_rays(
     thick = thick if diameter is None else diameter
     among = medium is not None and error >= VOXELS and len(lines) == len(meshes) and up is None
     if among and medium is not None and medium.middles.shape[1] > MANY:
-        return [_in_medium(mesh, medium, thick, threads) for mesh in meshes]
+        return [_in_medium(mesh, medium, thick) for mesh in meshes]
     above = [ABOVE if up is None and is_grid(mesh) else up for mesh in meshes]
     shapes = [_shape(mesh, thick, axis) for mesh, axis in zip(meshes, above, strict=True)]
     hidden = _occluders(shapes)
     if among and medium is not None:
-        found = [_in_medium(mesh, medium, thick, threads) for mesh in meshes]
+        found = [_in_medium(mesh, medium, thick) for mesh in meshes]
         worst = [_missed(sky, shape, hidden) for sky, shape in zip(found, shapes, strict=True)]
         if max(worst) <= error:
             return [
@@ -233,15 +237,21 @@ def _by_rays(
         done += len(shape.ids)
         share = np.zeros(mesh.n_points, np.float32)
         valid = np.zeros(mesh.n_points, np.bool_)
-        share[shape.ids], valid[shape.ids] = seen.share, seen.valid
+        own = shape.ids >= 0
+        share[shape.ids[own]], valid[shape.ids[own]] = seen.share[own], seen.valid[own]
         record: Record = {
             "method": hidden.tracer.name, "error": seen.error, "rays": seen.rays,
             "directions": round(seen.rays / max(len(shape.ids), 1)),
         }  # fmt: skip
+        dark, off = 0, 0.0
         if polylines.has_lines_only(mesh):
             record["diameter"] = thick
+        else:
+            dark = int(np.count_nonzero(valid & (share == 0)))
+            off = _between(seen, shape, hidden, axis)
+            record |= {"dark": dark, "between": off}
         places = np.asarray(mesh.points, np.float64)
-        made.append(Sky(_filled(share, valid, places), valid, None, record))
+        made.append(Sky(_filled(share, valid, places), valid, None, record, dark, off))
     return made
 
 
@@ -253,12 +263,29 @@ def _occluders(shapes: Sequence[_Shape]) -> sky_rays.Occluders:
     return sky_rays.Occluders(points, np.concatenate(faces))
 
 
+def _between(
+    seen: sky_rays.Seen, shape: _Shape, hidden: sky_rays.Occluders, up: tuple[float, ...] | None
+) -> float:
+    """Return how far interpolated shares are off at 95 of 100 places on the faces."""
+    places, _ = between.random_places(
+        shape.points, shape.triangles, SAMPLES, np.random.default_rng(0)
+    )
+    good = seen.valid[places.corners].all(axis=1)
+    places = between.Places(places.corners[good], places.weights[good])
+    at = between.interpolated(shape.points, places)
+    ways = sky_rays.facing(shape.points, places.corners, np.asarray(shape.places.ways))
+    axis = None if up is None else np.array(up, np.float64)
+    true = hidden.seen(sky_rays.Places(at, ways), error=VOXELS / 4, up=axis)
+    off = np.abs(true.share - between.interpolated(seen.share, places))[true.valid]
+    return float(np.quantile(off, 0.95)) if len(off) else 0.0
+
+
 def _missed(sky: Sky, shape: _Shape, hidden: sky_rays.Occluders) -> float:
     """Return the error that 95 of 100 points keep to, as rays from some of them find it."""
     some = np.random.default_rng(0).permutation(np.flatnonzero(sky.valid))[:SAMPLES]
     if not len(some):
         return 0.0
-    points, ways, radius = shape.places
+    points, ways, radius, _ = shape.places
     seen = hidden.seen(sky_rays.Places(points[some], ways[some], radius), error=VOXELS / 4)
     return float(np.quantile(np.abs(sky.share[some] - seen.share), 0.95))
 
@@ -267,7 +294,6 @@ def in_medium(
     mesh: pv.DataSet,
     lines: tuple[media.Medium, float],
     normals: Array | None = None,
-    threads: int | None = None,
 ) -> Array:
     """Return the share of light from all sides at points of a surface, or of lines, among lines.
 
@@ -278,7 +304,6 @@ def in_medium(
     lines : Medium, float
         Lines, and their diameter.
     normals : ndarray, shape (N, 3), optional
-    threads : int, optional
     """
     medium, thick = lines
     points = np.asarray(mesh.points)
@@ -287,13 +312,13 @@ def in_medium(
     else:
         lengths = polylines.of_points(mesh, media.line_lengths)
         targets = medium.targets(points, polylines.line_tangents(mesh), lengths)
-    return medium.sky(targets, thick, SIDES, threads=threads)
+    return medium.sky(targets, thick, SIDES)
 
 
-def _in_medium(mesh: pv.DataSet, medium: media.Medium, thick: float, threads: int | None) -> Sky:
+def _in_medium(mesh: pv.DataSet, medium: media.Medium, thick: float) -> Sky:
     """Return the sky of lines inside a medium of lines, by voxels."""
     points, tangents = np.asarray(mesh.points), polylines.line_tangents(mesh)
-    share = in_medium(mesh, (medium, thick), threads=threads)
+    share = in_medium(mesh, (medium, thick))
     valid: Bools = np.any(tangents, axis=1) & np.isfinite(points).all(axis=1)
     record: Record = {
         "method": "voxels", "error": None, "directions": SIDES, "rays": 0, "diameter": thick,
@@ -322,9 +347,9 @@ def _shape(mesh: pv.DataSet, thick: float, up: tuple[float, ...] | None) -> _Sha
     faces = np.asarray(triangles(faces_only(surface)), np.intp)
     view = None if up is None else View(direction=up)
     ways = np.asarray(normals.normals_of(mesh, None, 3, view), np.float64)
-    there = ids >= 0
-    own = ids[there]
-    return _Shape(points, faces, sky_rays.Places(points[there], ways[own]), own)
+    outward = np.where((ids >= 0)[:, np.newaxis], ways[ids], 0.0)
+    beside = sky_rays.beside(points, faces, outward)
+    return _Shape(points, faces, sky_rays.Places(points, outward, beside=beside), ids)
 
 
 def _surface(mesh: pv.DataSet) -> tuple[pv.PolyData, Indices]:

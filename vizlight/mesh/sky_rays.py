@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 #: Distance of starts from the surface as a share of the size of the scene: what float32 resolves.
 OFFSET = 2e-6
+#: Distance of a place beside a point, as a share of the distance of its triangle's middle.
+BESIDE = 0.05
 #: Distance from a triangle at which VTK finds a hit: at 0 rays pass through edges.
 TOLERANCE = 1e-9
 #: Numbers of rays per point at first and at most, rays that are followed at once, shifts of nets.
@@ -62,11 +64,14 @@ class Places(NamedTuple):
         Normals of a surface or tangents of lines; a row that is 0 or not finite has no sky.
     radius : float or None
         Radius of the tubes; None for a surface.
+    beside : tuple of two ndarray, or None
+        Points and ways from which a point that sees nothing looks again; see :func:`beside`.
     """
 
     points: Array
     ways: Array
     radius: float | None = None
+    beside: tuple[Array, Array] | None = None
 
 
 class Seen(NamedTuple):
@@ -198,9 +203,15 @@ class Occluders:
         work = _Estimate(self.tracer, points[rows], ways[rows], radius, up)
         share[rows], missed = work.until(error, report)
         dark = rows[share[rows] == 0]
-        if len(dark) and radius is None:
+        if not len(dark) or radius is not None:
+            return Seen(share, valid, missed, work.rays)
+        if places.beside is None:
             valid[dark] = ~self._buried(points[dark], ways[dark])
-        return Seen(share, valid, missed, work.rays)
+            return Seen(share, valid, missed, work.rays)
+        near, out = places.beside
+        again = self.seen(Places(near[dark], out[dark]), error=error, up=up)
+        share[dark], valid[dark] = again.share, again.valid
+        return Seen(share, valid, missed, work.rays + again.rays)
 
     def _buried(self, points: Array, normals: Array) -> Bools:
         """Return whether points see the inner side of triangles in most directions."""
@@ -331,6 +342,46 @@ def _frames(ways: Array) -> Array:
     b = x * y * a
     rows = [1 + sign * x * x * a, sign * b, -sign * x, b, sign + y * y * a, -y, x, y, z]
     return np.stack(rows, axis=1).reshape(-1, 3, 3).astype(np.float32)
+
+
+def beside(points: Array, triangles: Indices, ways: Array) -> tuple[Array, Array]:
+    """Return places close to points, each on the largest triangle of its point, and their normals.
+
+    Where faces meet inward a point is on the wrong side of one of them by rounding, or its mean
+    normal takes the start of its rays there: it sees nothing, but the places beside it do.
+
+    Parameters
+    ----------
+    points, ways : ndarray, shape (N, 3)
+        Points of a surface, and their normals, which tell the side.
+    triangles : ndarray of int, shape (M, 3)
+
+    Returns
+    -------
+    ndarray, shape (N, 3)
+    ndarray, shape (N, 3)
+        0 where a point has no triangle.
+    """
+    normals = facing(points, triangles, ways)
+    area = np.nan_to_num(np.einsum("ij,ij->i", normals, normals), posinf=0.0)
+    largest = np.full(len(points), -1)
+    # Of equal indices the last value stays.
+    order = np.argsort(area)
+    largest[triangles[order].ravel()] = np.repeat(order, 3)
+    there = largest >= 0
+    near, out = points.copy(), np.zeros(points.shape)
+    own = largest[there]
+    near[there] += BESIDE * (points[triangles[own]].mean(axis=1) - points[there])
+    out[there] = normals[own]
+    return near, out
+
+
+def facing(points: Array, triangles: Indices, ways: Array) -> Array:
+    """Return normals of triangles, as long as twice their areas, on the side of their points'."""
+    a, b, c = points[triangles].transpose(1, 0, 2)
+    normals = np.cross(b - a, c - a)
+    side = np.einsum("ij,ikj->i", normals, ways[triangles])
+    return np.asarray(normals * np.where(side < 0, -1.0, 1.0)[:, np.newaxis])
 
 
 def tubes(points: Array, ids: Indices, offsets: Indices, radius: float) -> tuple[Array, Indices]:

@@ -34,7 +34,7 @@ TIME = "TimeValue"
 STEPS = "TimeSteps"
 #: Largest number of times that a message lists.
 LISTED = 8
-#: Largest deviation of a time from that of a step, as a share of the largest time.
+#: Largest deviation of a time from a step's, as a share of the largest time.
 SAME = 1e-6
 
 
@@ -91,7 +91,7 @@ def listed(times: Sequence[float]) -> str:
 
 
 def marked(mesh: Any, times: Sequence[float], index: int) -> Any:
-    """Attach the time of a step, and those of all steps of the file.
+    """Attach the time of a step, and the times of all steps of the file.
 
     Parameters
     ----------

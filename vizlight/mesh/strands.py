@@ -50,10 +50,9 @@ class Strands:
         kind: np.dtype[np.floating],
         *,
         straight: bool,
-        threads: int | None,
         unit: float = 1.0,
     ) -> None:
-        self._grow, self._straight, self._threads = grow, straight, threads
+        self._grow, self._straight = grow, straight
         self._block, self._unit = threading.local(), np.float32(unit)
         self.points = np.empty((count, m, 3), kind)
         self.inside = np.zeros(count, np.bool_)
@@ -66,7 +65,7 @@ class Strands:
     @property
     def block(self) -> int:
         """Number of fibres in a block, a power of two so that no block has seeds of two blocks."""
-        share = POINTS_AT_ONCE // (self.m * _pool.workers(self._threads))
+        share = POINTS_AT_ONCE // (self.m * _pool.workers())
         return min(SEED_BLOCK, 1 << max(share, 1).bit_length() - 1)
 
     def inputs(self, *, normals: bool, fur: float, origin: Vector) -> ShadingInputs:

@@ -12,7 +12,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.filters.tint import values_of
 from vizlight.mesh import blocks, records, splitting
-from vizlight.mesh.inputs import part_of
+from vizlight.mesh.parts import part_of
 from vizlight.observers.visible import Drawn
 from vizlight.shading.results import DEFAULT_NAME
 

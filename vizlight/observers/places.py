@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight import _check
+from vizlight.draw.backends import BackendError, choose_backend
+from vizlight.draw.cameras import VIEW_ANGLE, camera_on
 from vizlight.observers.parts import rows_of
 from vizlight.observers.samples import Sample, sample
 from vizlight.observers.visible import visible
-from vizlight.pictures.cameras import VIEW_ANGLE, camera_on
-from vizlight.plotting.backends import BackendError, choose_backend
 from vizlight.scene import Scene, View
 from vizlight.scene.view import as_view, is_camera
 

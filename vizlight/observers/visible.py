@@ -10,7 +10,7 @@ from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow
 
-from vizlight.plotting.backends import window_class
+from vizlight.draw.backends import window_class
 from vizlight.reading.cells import as_numpy, as_vtk
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from vtkmodules.vtkCommonCore import vtkPoints
 
     from vizlight._types import Array, Indices
-    from vizlight.plotting.backends import Backend
+    from vizlight.draw.backends import Backend
 
 #: Width and height of the picture.
 SIZE = 512, 512
@@ -65,7 +65,7 @@ def visible(parts: Sequence[Drawn], camera: pv.Camera, backend: Backend | None) 
     camera : pyvista.Camera
         Camera of the picture; its clipping range is set to show all.
     backend : {"egl", "osmesa"} or None
-        OpenGL library that draws, see :func:`vizlight.plotting.backends.choose_backend`.
+        OpenGL library that draws, see :func:`vizlight.draw.backends.choose_backend`.
 
     Returns
     -------

@@ -13,7 +13,7 @@ from collections import Counter
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from vizlight import _check, _compiled, files
+from vizlight import _check, _compiled, _pool, files
 from vizlight.mesh import normals
 from vizlight.pieces import index, task
 from vizlight.pieces.kinds import INDEX, PieceError, index_files, union
@@ -35,7 +35,6 @@ if TYPE_CHECKING:
 
 #: Options of light that depend on a mesh as a whole.
 WHOLE = {
-    "refine": "split edges of neighbours would not match; refine the pieces' union",
     "bundle": "lines of all pieces dim one another; light them together",
 }
 
@@ -192,11 +191,10 @@ def light(
         ghost=ghost if filter == "illuminate" else 0,
         suffix={own: suffix for suffix, own in INDEX.items()}[path.suffix.lower()],
         compiled="1" if _compiled.wanted() == "1" else "0",
+        # Workers share the processors.
+        threads=_pool.workers() if checked(map) is builtins.map else 1,
     )
     retries = _check.integer("retries", retries, low=0)
-    if checked(map) is not builtins.map:
-        # Workers share the processors.
-        job = dataclasses.replace(job, options={"threads": 1} | dict(job.options))
     parts = pieces_of(sources, _check.positive("slab", slab))
     work = Work(map, retries, progress_bar)
     folder = path.with_suffix("")
@@ -250,7 +248,7 @@ def _common_options(
     fields = {one.name for one in dataclasses.fields(LightOptions)}
     asked = LightOptions(**{name: value for name, value in options.items() if name in fields})
     if asked.feature_angle == "auto":
-        remedy = "pass a number of degrees, such as 30: a piece does not know those of the whole"
+        remedy = "pass a number of degrees, such as 30: a piece does not know the whole's creases"
         raise ValueError(_check.message("feature_angle", "a number or None", "'auto'", remedy))
     if options.get("facing", "eye") not in ("eye", "as given"):
         remedy = "a piece cannot tell which side of the whole is outside"
@@ -271,7 +269,7 @@ def _spare_sources(parts: Sequence[Piece], path: Path, outputs: Sequence[Path]) 
         source = None if source is None else source.resolve()
         earlier = source is not None and source.parent == folder and own.fullmatch(source.name)
         if source in taken or earlier:
-            expected = "another name than that of the sources"
+            expected = "another name than the sources'"
             raise PieceError(_check.message("out", expected, f"'{path}'"))
 
 

@@ -9,8 +9,8 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight.draw import cameras
 from vizlight.filters import lighting
-from vizlight.pictures import cameras
 from vizlight.pieces import task
 from vizlight.pieces.kinds import FilePiece, PieceError
 from vizlight.pieces.sources import pieces_of
@@ -48,12 +48,12 @@ def camera_on(
         As for :func:`light`. Without ``contour`` only the corners of an image are taken; an
         isosurface costs a first reading and contouring.
     direction, up, parallel, zoom, aspect
-        As for :func:`vizlight.pictures.render.camera_on`.
+        As for :func:`vizlight.draw.render.camera_on`.
 
     Returns
     -------
     pyvista.Camera
-        The camera of :func:`vizlight.pictures.render.camera_on` for the mesh of all pieces, to
+        The camera of :func:`vizlight.draw.render.camera_on` for the mesh of all pieces, to
         rounding.
 
     Raises

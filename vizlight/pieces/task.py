@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 import pyvista as pv
 
-from vizlight import _check, _compiled, files
+from vizlight import _check, _compiled, _pool, files
+from vizlight.draw import cameras
 from vizlight.filters.illuminate import illuminate
 from vizlight.filters.streamlines import streamlines
 from vizlight.mesh import normals, records
-from vizlight.pictures import cameras
 from vizlight.pieces.ghosts import GHOST
 from vizlight.pieces.kinds import INDEX, SUFFIX, Piece, PieceError
 from vizlight.reading.polylines import has_lines_only
@@ -48,6 +48,7 @@ class Job:
     ghost: int
     suffix: str
     compiled: str = "0"
+    threads: int = 1
 
     @property
     def name(self) -> str:
@@ -165,7 +166,8 @@ def light(piece: Piece, job: Job, target: Path) -> Done:
     """
     mesh = read(piece, job.ghost)
     try:
-        with warnings.catch_warnings(record=True) as caught, _compiled.setting(job.compiled):
+        ready = _compiled.setting(job.compiled), _pool.threads(job.threads)
+        with warnings.catch_warnings(record=True) as caught, ready[0], ready[1]:
             warnings.simplefilter("always", UserWarning)
             if job.contour is not None:
                 mesh = isosurface(mesh, job)

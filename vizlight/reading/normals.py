@@ -98,7 +98,7 @@ class Sided:
         """Whether a piece has a border."""
         return bool(np.any(self.open))
 
-    def part(self, i: int, rows: slice, /) -> Sided:
+    def part(self, i: int, rows: slice | Indices, /) -> Sided:
         """Return what belongs to a mesh of a batch, by its number and its points."""
         return Sided(
             self.vectors[rows],
@@ -367,7 +367,7 @@ def computed_normals(
     if grids.in_parts(mesh):
         return _of_grid(mesh, view, as_wound=as_wound, sides=sides)
     surface, origin = _skin(mesh)
-    if surface is None and starts is None and _is_cloud(mesh):
+    if surface is None and starts is None and is_scan(mesh):
         return _of_cloud(mesh, view)
     if surface is None:
         expected, got = "a surface, whose normals are lit", f"a {type(mesh).__name__} without faces"
@@ -406,7 +406,7 @@ def computed_normals(
     return all_of.part(0, slice(None)) if starts is None else all_of
 
 
-def _is_cloud(mesh: Dataset) -> bool:
+def is_scan(mesh: Dataset) -> bool:
     """Return whether a mesh is a scan: points in space that no cells join."""
     bare = isinstance(mesh, vtkPolyData) and mesh.GetNumberOfVerts() == mesh.GetNumberOfCells()
     return mesh.GetNumberOfPoints() >= NEIGHBOURS and (bare or not mesh.GetNumberOfCells())

@@ -332,7 +332,7 @@ def sides_of(vectors: Array, piece: Indices | None, border: Bools) -> Indices:
     piece : ndarray of int, shape (n_points,), or None
         Piece of each point; None for a single one.
     border : ndarray of bool, shape (count,)
-        Pieces of which either side may be seen.
+        Pieces that may be seen from either side.
 
     Returns
     -------

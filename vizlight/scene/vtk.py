@@ -239,8 +239,8 @@ def _warn_of_error(
         )
     _check.warn(
         f"VTK lights this scene with the {used.capitalize()} model and power {shown:.4g}; its "
-        f"highlight can differ by {error:.1f} of 255 from that of the {model.capitalize()} model "
-        f"with power {wanted:g}{remedy}"
+        f"highlight can differ by {error:.1f} of 255 from the highlight of the "
+        f"{model.capitalize()} model with power {wanted:g}{remedy}"
     )
 
 

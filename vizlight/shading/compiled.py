@@ -119,15 +119,13 @@ class Compiled(NamedTuple):
             a[w * whole :] = own[: a.size - w * whole]
 
 
-def prepare(plan: Plan, inputs: ShadingInputs, threads: int | None) -> tuple[Compiled | None, str]:
+def prepare(plan: Plan, inputs: ShadingInputs) -> tuple[Compiled | None, str]:
     """Return the compiled form of a plan for some inputs, and why there is none.
 
     Parameters
     ----------
     plan : Plan
     inputs : ShadingInputs
-    threads : int or None
-        Number of threads that would share the work.
 
     Returns
     -------
@@ -140,7 +138,7 @@ def prepare(plan: Plan, inputs: ShadingInputs, threads: int | None) -> tuple[Com
     if reason:
         return None, reason
     saved = inputs.count * (SAVED + SAVED_PER_LIGHT * len(plan.scene.lights))
-    saved *= plan.dtype.itemsize / 4 / _pool.workers(threads)
+    saved *= plan.dtype.itemsize / 4 / _pool.workers()
     # The text itself takes a millisecond: it is not written while nothing could pay for it.
     sort = _sort(plan)
     missed = _MISSED.get(sort, 0.0)

@@ -156,7 +156,6 @@ def shade(
     conditioned: bool | str | None = True,
     components: bool = False,
     precision: Precision | None = None,
-    threads: int | None = None,
 ) -> Shading:
     """Light points by a scene.
 
@@ -194,8 +193,6 @@ def shade(
     repeat : int, default: 1
         Number of points, one after the other, that share a normal, such as the points of a fibre:
         N = M repeat. Tangents have N rows or M. What depends on the row alone is computed once.
-    threads : int, optional
-        Number of threads. Default: the processors that this process may use.
     block : int, optional
         Number of rows in a block. Default: what suits the caches, see :attr:`Plan.block`.
     progress : callable, optional
@@ -257,7 +254,7 @@ def shade(
         repeat=repeat,
     )
     chosen = ShadingOptions.of(locals())
-    return run(inputs, scene, chosen, threads=threads, block=block, progress=progress)
+    return run(inputs, scene, chosen, block=block, progress=progress)
 
 
 def run(
@@ -266,7 +263,6 @@ def run(
     options: ShadingOptions,
     /,
     *,
-    threads: int | None = None,
     block: int | None = None,
     progress: Progress | None = None,
 ) -> Shading:
@@ -280,7 +276,7 @@ def run(
         Scene in the space of the points, before ``inputs.origin`` was subtracted.
     options : ShadingOptions
         How light is computed.
-    threads, block, progress
+    block, progress
         As for :func:`shade`.
 
     Returns
@@ -306,7 +302,7 @@ def run(
     start = time.perf_counter()
     count, repeat = inputs.count, inputs.repeat
     output = Output(made, count)
-    code, reason = compiled.prepare(made, inputs, threads)
+    code, reason = compiled.prepare(made, inputs)
     made = dataclasses.replace(made, compiled=code is not None, code=reason or compiled.IN_WORDS)
     light = shade_block if code is None else code.shade_block
     block = inputs.block if block is None else block
@@ -317,7 +313,7 @@ def run(
             light(made, rows, inputs, output)
         return int(rows.stop) * repeat
 
-    for done in _pool.run(work, _pool.blocks(inputs.rows, step), threads):
+    for done in _pool.run(work, _pool.blocks(inputs.rows, step)):
         if progress is not None:
             progress(done, count)
     if code is not None and (reason := _compiled.why_not()):

@@ -175,7 +175,7 @@ class Loop(Writer):
         return [self._row(name, j * self.n, self.n, k * self.n) for j in range(k)]
 
     def number(self, value: Value, array: str = "g") -> Value:
-        """Return a number of the plan; those of a lamp count from its own first one."""
+        """Return a number of the plan; a lamp's numbers count from its own first one."""
         if isinstance(value, Symbol):
             return value
         own = self.numbers if self.lamp is None else self.lamp
@@ -265,7 +265,7 @@ class Loop(Writer):
     # Lamps and results.
 
     def lamps(self) -> Iterator[Lamp]:
-        """Yield the lamps; those of a kind leave the same text, and many of them become a loop."""
+        """Yield the lamps; lamps of a kind leave the same text, and many of them become a loop."""
         self.check()
         lines, names, count, most = self.lines, self.names, self.count, self.count
         kinds: dict[tuple[str, ...], list[tuple[int, dict[str, list[float]]]]] = {}

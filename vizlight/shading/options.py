@@ -8,7 +8,7 @@ import functools
 import inspect
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, get_args
 
 import numpy as np
 
@@ -33,10 +33,6 @@ FINEST_GRID = 1024
 Exponent: TypeAlias = float | Literal["compensated"]
 FeatureAngle: TypeAlias = float | Literal["auto"] | None
 Facing = Literal["auto", "eye", "outward", "as given"]
-
-
-#: Least error between points that light is refined to: rounding in float32 is about 1e-6.
-FINEST = 1e-5
 
 
 @dataclass(frozen=True)
@@ -119,6 +115,9 @@ class Bundle:
 class Options:
     """Base of the options of a filter, which stand as keywords in its signature."""
 
+    #: Fields that the filter decides by itself: no keywords of it.
+    DECIDED: ClassVar[frozenset[str]] = frozenset()
+
     @classmethod
     def of(cls, given: Mapping[str, Any]) -> Self:
         """Return the options among the values of a function's parameters, ``locals()``."""
@@ -178,7 +177,6 @@ class LightOptions(ShadingOptions):
     feature_angle: FeatureAngle = None
     conditioned: bool | str | None = False
     line_field: bool = False
-    refine: float = 0.0
     bundle: bool | Bundle = False
     occlusion: str | None = None
     name: str = "luminance"
@@ -188,10 +186,6 @@ class LightOptions(ShadingOptions):
         _check.set_fields(self, bundle=checked_bundle(self.bundle))
         if self.occlusion is not None:
             _check.text("occlusion", self.occlusion, expected="the name of a point array")
-        _check.set_fields(self, refine=_check.number("refine", self.refine, low=0.0))
-        if 0 < self.refine < FINEST:
-            expected, remedy = f"0 or {FINEST:g} at least", "a picture shows 1/255"
-            raise ValueError(_check.message("refine", expected, self.refine, remedy))
         check_sides(self.facing, self.feature_angle)
 
 

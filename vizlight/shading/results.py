@@ -12,6 +12,7 @@ import numpy as np
 
 from vizlight import _check
 from vizlight._version import __version__
+from vizlight.shading.options import Options
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -115,7 +116,8 @@ def plain(options: object) -> Record:
     """Return options, a dataclass or a dict, as values that JSON can hold."""
     if not isinstance(options, Mapping):
         names = [field.name for field in dataclasses.fields(options)]  # type: ignore[arg-type]
-        options = {name: getattr(options, name) for name in names}
+        decided = options.DECIDED if isinstance(options, Options) else ()
+        options = {name: getattr(options, name) for name in names if name not in decided}
     return {str(name): _plain(value) for name, value in options.items()}
 
 

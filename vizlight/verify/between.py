@@ -65,8 +65,6 @@ class Between:
         Scene whose depth cue, if it has one, has both ends.
     options : ShadingOptions
         How light is computed. ``precision`` has no effect: places are lit in float64.
-    threads : int, optional
-        Number of threads.
 
     Attributes
     ----------
@@ -85,9 +83,8 @@ class Between:
         inputs: ShadingInputs,
         scene: Scene,
         options: ShadingOptions,
-        threads: int | None = None,
     ) -> None:
-        self.inputs, self.scene, self.threads = inputs, scene, threads
+        self.inputs, self.scene = inputs, scene
         self.options = dataclasses.replace(options, precision="float64", components=False)
         n = int(inputs.points.shape[1])
         self.points = _rows(inputs.points)
@@ -160,7 +157,7 @@ class Between:
             own["points"] = points
             inputs = dataclasses.replace(self.inputs, **own)  # type: ignore[arg-type]
             with engine.observed(None):
-                lit = engine.run(inputs, self.scene, self.options, threads=self.threads)
+                lit = engine.run(inputs, self.scene, self.options)
             found[block] = columns(lit)
         return found
 

@@ -18,13 +18,14 @@ from vizlight.shading.engine import observed
 from vizlight.verify import between, oracle
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
 
     from vizlight._types import Array, Bools
     from vizlight.scene import Scene
     from vizlight.shading.engine import Shading
     from vizlight.shading.inputs import ArraySource, ShadingInputs
     from vizlight.shading.options import ShadingOptions
+    from vizlight.shading.results import Record
 
 
 #: Error that a picture of 8 bits shows.
@@ -128,6 +129,8 @@ class Report:
     sample: int = 4096
     seed: int = 0
     runs: list[Run] = field(default_factory=list)
+    #: What is known of each sky, in words.
+    skies: list[str] = field(default_factory=list)
     seconds: float = 0.0
     #: Number of points that workers lit, which record nothing here.
     elsewhere: int = 0
@@ -170,10 +173,12 @@ class Report:
         return tuple(dict.fromkeys(term for run in self.runs for term in run.terms))
 
     def __str__(self) -> str:
-        lines = [
-            f"{self.points} points lit in {len(self.runs)} run(s), {self.seconds:.3f} s in all, "
-            f"{self.bytes / 1e6:.3g} MB of light"
-        ]
+        lines = [*self.skies]
+        if self.runs or not self.skies:
+            lines.append(
+                f"{self.points} points lit in {len(self.runs)} run(s), {self.seconds:.3f} s in "
+                f"all, {self.bytes / 1e6:.3g} MB of light"
+            )
         if self.bright:
             lines.append(f"{self.bright} points are brighter than 1, which a picture shows as 1")
         if self.elsewhere:
@@ -232,11 +237,11 @@ def _lines(run: Run) -> list[str]:
             text += f"; {_percent(run.visible)} are off by more than 1/255"
         if run.visible > unseen(run.places):
             if run.finer:
-                text += f": cells 1/{run.finer} as long, or refine=1/255, would do"
+                text += f": cells 1/{run.finer} as long, or refining to 1/255, would do"
             else:
                 text += (
                     ": cells 1/128 as long would not do; "
-                    "refine=1/255 leaves only places where the light jumps"
+                    "refining to 1/255 leaves only places where the light jumps"
                 )
         found.append(text)
     if run.unmeasured:
@@ -276,8 +281,8 @@ def report(*, sample: int = 4096, seed: int = 0) -> Iterator[Report]:
     ------
     Report
         Report to print after the filters ran, with the attributes ``points``, ``terms``,
-        ``seconds``, ``bytes``, ``error``, ``between``, ``invalid``, and ``runs``, one for each mesh
-        that was lit.
+        ``seconds``, ``bytes``, ``error``, ``between``, ``invalid``, ``runs``, one for each mesh
+        that was lit, and ``skies``, what is known of each sky.
 
     Raises
     ------
@@ -448,6 +453,35 @@ def note_ratio(
     active.runs.append(dataclasses.replace(run, unmeasured=SHADOWED if active.sample else ""))
 
 
+@contextlib.contextmanager
+def noted_sky(points: int) -> Iterator[Callable[[Sequence[Record]], None]]:
+    """Give a function that adds the records of the skies of a mesh to the open report."""
+    start, active = time.perf_counter(), _ACTIVE.get()
+
+    def note(records: Sequence[Record]) -> None:
+        if active is None:
+            return
+        seconds = time.perf_counter() - start
+        each = 1e6 * seconds / max(points, 1)
+        active.skies.append(
+            f"{points} points see the sky; {seconds:.3g} s, {each:.3g} µs per point"
+        )
+        active.skies += [_of_sky(record) for record in records]
+
+    yield note
+
+
+def _of_sky(record: Record) -> str:
+    """Return the errors of a sky in words."""
+    found = "  error unknown"
+    if record["error"] is not None:
+        found = f"  error {record['error']:.2g} or less at 95 of 100 points, as estimated"
+    found += f", {record['method']}"
+    if "between" in record:
+        found += f"; between the points {record['between']:.2g} or less at 95 of 100 places"
+    return found
+
+
 def note_bands(
     values: Array, points: int, places: Array, normals: Array, scene: Scene,
     terms: tuple[str, ...], seconds: float, size: int, bound: float, *, model: str,
@@ -502,7 +536,7 @@ def is_open() -> bool:
 
 @contextlib.contextmanager
 def tinted() -> Iterator[None]:
-    """Record light in this context as that of colours, of points that were lit before."""
+    """Record light in this context as the colours' light, of points that were lit before."""
     token = _TINTED.set(True)
     try:
         yield

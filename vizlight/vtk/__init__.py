@@ -22,7 +22,7 @@ Ambient 1 and Diffuse 0. In a script of ``pvpython``:
 
 On several processes light is the same as on one; where it depends on the normals of faces, put the
 filter *Ghost Cells* before the contour, as :class:`Illuminate` explains. Without a plugin,
-:func:`vizlight.plotting.paraview.shader` lights each fragment.
+:func:`vizlight.draw.paraview.shader` lights each fragment.
 """
 
 from vizlight.vtk.illuminate import Illuminate

@@ -14,7 +14,7 @@ from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
 from vizlight import _check
 from vizlight.reading.cells import GHOSTS, as_vtk, check_whole
-from vizlight.reading.inputs import Part, part_of, uses_normals
+from vizlight.reading.parts import Part, part_of, uses_normals
 from vizlight.scene import Scene
 from vizlight.scene.scene import as_scene
 from vizlight.shading import engine
@@ -32,7 +32,7 @@ __all__ = ["Illuminate"]
 #: Options that are names of arrays: a pipeline has no others.
 _NAMES = ("tangents", "normals", "positions", "occlusion")
 #: Options that matter between points, give a mesh new ones, or need PyVista.
-_WITHOUT = ("feature_angle", "line_field", "refine", "bundle")
+_WITHOUT = ("feature_angle", "line_field", "bundle")
 _NO_GHOSTS = (
     "light at the borders of the pieces is computed without their neighbours; give the pieces a "
     "layer of ghost cells before they are contoured, or normals as a point array"

@@ -6,7 +6,6 @@ import math
 
 import banded
 import numpy as np
-import oracles
 import pytest
 
 from vizlight import Light, View
@@ -14,8 +13,6 @@ from vizlight.geometry import isoluminance
 from vizlight.geometry.contours import spacing
 from vizlight.geometry.contours.isoluminance import sphere, virtual_light
 
-mp = oracles.mp
-EPS = np.finfo(float).eps
 LIGHTS = {
     "far": {"direction": (1, -2, 0.5)},
     "near": {"position": (0.3, 1.2, -0.4)},
@@ -24,23 +21,6 @@ LIGHTS = {
     "highlight": {"direction": (1, 1, 1), "power": 40.0},
     "sharp": {"direction": (1, 1, 1), "power": 1e5},
 }
-
-
-def luminance(point, *, direction=None, position=None, power=1.0, attenuation=(1, 0, 0),
-              ambient=0.1, diffuse=0.8):  # fmt: skip
-    """The law at one point of the unit sphere, in 50 digits."""
-    normal = oracles.unit(oracles.exact(point))
-    if direction is not None:
-        toward, fading = oracles.exact(direction), mp.mpf(1)
-    else:
-        toward = [a - b for a, b in zip(oracles.exact(position), normal, strict=True)]
-        d = mp.sqrt(oracles.dot(toward, toward))
-        c1, c2, c3 = oracles.exact(attenuation)
-        fading = min(mp.mpf(1), 1 / (c1 + c2 * d + c3 * d * d))
-    cosine = oracles.dot(normal, oracles.unit(toward))
-    if cosine <= 0:
-        return mp.mpf(ambient)
-    return mp.mpf(ambient) + mp.mpf(diffuse) * cosine ** mp.mpf(power) * fading
 
 
 def many(points, *, direction=None, position=None, power=1.0, attenuation=(1, 0, 0)):
@@ -56,29 +36,6 @@ def many(points, *, direction=None, position=None, power=1.0, attenuation=(1, 0,
 
 def made(light, **options):
     return sphere((0, 0, 0), 1.0, ambient=0.1, diffuse=0.8, **LIGHTS[light], **options)
-
-
-@pytest.mark.parametrize("light", LIGHTS)
-def test_contours_against_50_digits(light, figure):
-    bands = made(light, levels=9, segments=5)
-    power = LIGHTS[light].get("power", 1.0)
-    span = bands.steps.edges[-1] - 0.1
-    seen = set()
-    for (a, _), level in zip(bands.lines, bands.line_levels, strict=True):
-        if level > 0.1:
-            error = abs(luminance(bands.points[a], **LIGHTS[light]) - mp.mpf(float(level)))
-            bound = (16 + 4 * power) * (1e6 if light == "close" else 1)
-            figure("isoluminance.sphere", light, float, float(error) / EPS / span, bound)
-            seen.add(float(level))
-    assert len(seen) == 8
-    assert bands.steps.edges[-1] == pytest.approx(
-        float(luminance(_pole(light), **LIGHTS[light])), rel=1e-14
-    )
-
-
-def _pole(light):
-    toward = np.asarray(LIGHTS[light].get("direction", LIGHTS[light].get("position")), float)
-    return toward / np.linalg.norm(toward)
 
 
 @pytest.mark.parametrize("light", LIGHTS)

@@ -7,7 +7,6 @@ import pytest
 import pyvista as pv
 from scipy.spatial import cKDTree
 
-import vizlight
 from vizlight import Light, Scene, View, streamlines
 
 SCENE = Scene(lights=Light(direction=(1, -1, 0.8)), view=View(direction=(0.2, -1, 0.3)))
@@ -190,11 +189,3 @@ def test_far_from_the_origin_and_of_any_size():
 def test_bad_input(options, error, words):
     with pytest.raises(error, match=words):
         streamlines(ball(12), SCENE, vectors="spiral", **options)
-
-
-def test_the_record_makes_the_lines_again():
-    mesh = ball(20)
-    lines = streamlines(mesh, SCENE, vectors="spiral", spacing=0.3)
-    told = vizlight.provenance(lines)
-    again = streamlines(mesh, Scene.from_dict(told["scene"]), **told["options"])
-    np.testing.assert_array_equal(again["luminance"], lines["luminance"])

@@ -9,8 +9,6 @@ from scipy.stats import special_ortho_group
 
 from vizlight.geometry import manifolds, projection
 
-mp = oracles.mp
-
 
 def test_plane_rotation():
     turn = projection.plane_rotation(4, "xw", np.pi / 2)
@@ -62,52 +60,6 @@ def test_bad_rotations(turns, error, words):
         projection.rotation(4, turns)
 
 
-def exact_image(x, distance):
-    x = list(x)
-    while len(x) > 3:
-        last = x.pop()
-        x = [v / (1 - last / distance) for v in x]
-    return x
-
-
-@pytest.mark.parametrize("n", [4, 5, 8])
-def test_perspective_and_its_derivative_against_50_digits(n, random, figure):
-    points = random.uniform(-0.4, 0.4, (20, n))
-    vectors = random.standard_normal((20, 2, n))
-    d = 1.5
-    images = projection.perspective(points, distance=d)
-    pushed = projection.push_forward(vectors, points, distance=d)
-    for x, vs, image, rows in zip(points, vectors, images, pushed, strict=True):
-        p = oracles.exact(x)
-        scale = mp.sqrt(oracles.dot(p, p))
-        true = exact_image(p, mp.mpf(d))
-        error = max(abs(oracles.exact(a) - b) for a, b in zip(image, true, strict=True)) / scale
-        figure("perspective", f"n = {n}", float, float(error) / oracles.eps(float), 6 * (n - 3))
-        for v, row in zip(vs, rows, strict=True):
-            along = oracles.exact(v)
-            size = mp.sqrt(oracles.dot(along, along))
-
-            def moved(t, i, p=p, along=along):
-                return exact_image([a + t * b for a, b in zip(p, along, strict=True)], mp.mpf(d))[i]
-
-            true = [mp.diff(lambda t, i=i: moved(t, i), 0) for i in range(3)]
-            error = max(abs(oracles.exact(a) - b) for a, b in zip(row, true, strict=True)) / size
-            figure(
-                "push_forward", f"n = {n}", float, float(error) / oracles.eps(float), 16 * (n - 3)
-            )
-
-
-def test_orthographic_is_perspective_from_infinity(random):
-    points, vectors = random.standard_normal((30, 6)), random.standard_normal((30, 3, 6))
-    np.testing.assert_array_equal(projection.perspective(points), points[:, :3])
-    np.testing.assert_allclose(
-        projection.perspective(points, distance=1e9), points[:, :3], atol=1e-7
-    )
-    np.testing.assert_array_equal(projection.push_forward(vectors, points), vectors[..., :3])
-    near = projection.push_forward(vectors, points, distance=1e9)
-    np.testing.assert_allclose(near, vectors[..., :3], atol=1e-7)
-
-
 def test_planes_and_space_stay(random):
     x, v = random.standard_normal((4, 3)), random.standard_normal((4, 1, 3))
     np.testing.assert_array_equal(projection.perspective(x, distance=2.0), x)
@@ -134,12 +86,6 @@ def test_stereographic_projection_keeps_circles_and_angles():
     scale = gram[:, :1, :1]
     np.testing.assert_allclose(gram / scale, np.tile(np.eye(3), (len(rows), 1, 1)), atol=1e-12)
     assert rest is not None
-
-
-def test_a_vector_at_the_eye_vanishes():
-    x = np.array([[0.3, -0.2, 0.1, 0.4]])
-    toward_eye = np.array([[[0, 0, 0, 2.0]]]) - x[:, np.newaxis]
-    np.testing.assert_allclose(projection.push_forward(toward_eye, x, distance=2.0), 0, atol=1e-16)
 
 
 def test_a_frame_of_what_is_seen(random):

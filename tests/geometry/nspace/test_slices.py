@@ -81,7 +81,7 @@ def test_a_circle_is_cut_in_two_points():
     np.testing.assert_allclose(x, 0.3, atol=1e-15)
 
 
-def test_frames_of_a_slice(random, figure):
+def test_frames_of_a_slice(random):
     for k, n in [(2, 3), (2, 4), (3, 4), (5, 8)]:
         frame = oracles.frames(random, 40, k, n, np.float64)
         normal = random.standard_normal(n)
@@ -89,7 +89,7 @@ def test_frames_of_a_slice(random, figure):
         assert found.shape == (40, k - 1, n)
         gram = np.einsum("bki,bli->bkl", found, found)
         worst = np.abs(gram - np.eye(k - 1)).max() / oracles.eps(float)
-        figure("slice_frame", "orthonormal", float, worst, 8)
+        assert worst <= 8
         assert np.abs(found @ normal).max() < 1e-14
         inside = np.einsum("bki,bji,bjm->bkm", found, frame, frame)
         np.testing.assert_allclose(inside, found, atol=1e-14)

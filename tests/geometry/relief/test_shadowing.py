@@ -30,14 +30,6 @@ def test_a_batch_is_a_loop_and_shapes_are_kept(random):
     assert odd[1] > 1
 
 
-def test_a_light_very_far_is_one_at_infinity():
-    x, y, z = hills(30)
-    way = sun(20, 130)
-    near = relief.shadow(x, y, z, depth=0.2, position=1e9 * way, method="exact")
-    far = relief.shadow(x, y, z, depth=0.2, direction=way, method="exact")
-    np.testing.assert_allclose(near, far, atol=1e-6)
-
-
 @pytest.mark.parametrize("method", METHODS)
 def test_more_occluder_is_less_light(method):
     x = np.linspace(0, 10, 101)

@@ -104,23 +104,6 @@ def test_hemisphere_on_a_plane_below_1e_6_by_the_exact_method(b):
     assert order == pytest.approx(2, abs=0.2)
 
 
-def test_hemisphere_on_a_plane_below_1e_3_by_default():
-    """In the mean; at the rim and the shadow's edge the chord goes as the root of the height."""
-    errors = []
-    for n in (151, 301, 601):
-        x = np.linspace(-3, 3, n)
-        z = hemisphere(x, x[:, None])
-        p = np.stack([*np.meshgrid(x, x), z], axis=-1)
-        normal = np.where(z[..., None] > 0, p, [0, 0, 1.0])
-        depth, way = 0.1, sun(35, 20)
-        start = p - depth * normal
-        expected = np.minimum(depth / np.maximum(ball_length(start, way), 1e-9), 1)
-        t = relief.shadow(x, x, z, depth=depth, direction=way, normals=normal)
-        errors.append(np.abs(t - expected).mean())
-    assert errors[-1] < 1e-3
-    assert np.log2(errors[0] / errors[-1]) / 2 > 1
-
-
 @pytest.mark.parametrize("method", METHODS)
 def test_both_methods_are_of_second_order_on_a_smooth_field(method, random):
     """Against roots of the field itself along the ray, not of its cells."""

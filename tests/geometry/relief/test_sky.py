@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from vizlight import _compiled
+from vizlight import _compiled, _pool
 from vizlight.geometry.relief import sky as module
 from vizlight.geometry.relief.sky import sky
 
@@ -131,7 +131,10 @@ def test_unequal_spacing_and_the_number_of_threads():
     random = np.random.default_rng(2)
     x, y = (np.cumsum(random.uniform(0.3, 3, n)) for n in (70, 90))
     z = 3 * np.sin(x / 5) * np.cos(y[:, None] / 7) + 0.5 * np.sin(x / 1.7 + y[:, None])
-    one, two = (sky(x, y, z, error=0.01, threads=threads) for threads in (1, 2))
+    with _pool.threads(1):
+        one = sky(x, y, z, error=0.01)
+    with _pool.threads(2):
+        two = sky(x, y, z, error=0.01)
     assert np.array_equal(one.share, two.share)
     at = random.integers(1, 69, (10, 2))
     missed = [abs(one.share[j, i] - truth(x, y, z, j, i)) for j, i in at]

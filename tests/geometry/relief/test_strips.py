@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from fields import by_cells, hills, places, sun
 
-from vizlight import _compiled
+from vizlight import _compiled, _pool
 from vizlight.geometry import relief
 from vizlight.geometry.relief import height_field, strips
 
@@ -63,8 +63,10 @@ def test_fast_is_exact_whatever_the_number_of_threads(monkeypatch):
     monkeypatch.setattr(strips, "BAND", 300)
     x, y, z = hills(60, 50)
     shade = {"depth": 0.1, "direction": sun(15, 70)}
-    one = relief.shadow(x, y, z, threads=1, **shade)
-    np.testing.assert_array_equal(relief.shadow(x, y, z, threads=3, **shade), one)
+    with _pool.threads(1):
+        one = relief.shadow(x, y, z, **shade)
+    with _pool.threads(3):
+        np.testing.assert_array_equal(relief.shadow(x, y, z, **shade), one)
     np.testing.assert_array_equal(relief.shadow(x, y, z, method="exact", **shade), one)
 
 

@@ -79,7 +79,7 @@ def test_a_mesh_contains_what_vtk_says(random):
 def test_a_mesh_is_an_operand():
     ball = pv.Sphere(theta_resolution=24, phi_resolution=24)
     solid = Polyhedron(ball) - Frustum(axis=(0, 0, 3), radii=(0.2, 0.2))
-    found, _, mesh = solid_trees.problems(solid, bounds=True)
+    found, mesh = solid_trees.problems(solid, bounds=True)
     assert not found
     assert mesh.volume * mesh.scale**3 < ball.volume
     whole = solids.tessellate(Polyhedron(ball) | Block((2, 0, 0)))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import itertools
 
 import banded
 import numpy as np
@@ -98,37 +97,6 @@ def test_bands_are_right_on_the_exact_surface(name, random):
     assert error.max() < 1.5 * bands.steps.error
 
 
-@pytest.mark.parametrize("wall", [0.1, 0.03, 0.01])
-def test_thin_shells(wall):
-    bands = bands_of(Sphere() - Sphere((0, 0, 0), 1 - wall), levels=2)
-    assert banded.is_closed(bands)
-    expected = 4 * PI / 3 * (1 - (1 - wall) ** 3)
-    assert banded.volume(bands) == pytest.approx(expected, rel=3e-3)
-
-
-# Sizes of a block and of the block that is subtracted from it.
-THIN = {
-    "wall of 3 %": ((2, 2, 0.5), (1.94, 1.94, 1)),
-    "wall of 1 %": ((2, 2, 0.5), (1.98, 1.98, 1)),
-    "plate": ((2, 2, 0.01), (1, 1, 1)),
-}
-
-
-@pytest.mark.parametrize("name", THIN)
-def test_thin_plane_walls(name):
-    size, hole = (np.array(x, dtype=float) for x in THIN[name])
-    mesh = solids.tessellate(Block(size=size) - Block(size=hole))
-    bands = refinement.draw(mesh, lambert, 2, low=0.1)
-    assert banded.is_closed(bands)
-    height = min(size[2], hole[2])
-    expected = size.prod() - hole[0] * hole[1] * height
-    # Triangles that cut off edges cost less than 0.4 % of the area.
-    assert banded.volume(bands) == pytest.approx(expected, rel=5e-3)
-    across = size[0] * size[1] - hole[0] * hole[1]
-    around = 4 * height * (size[0] + hole[0])
-    assert banded.area(bands) == pytest.approx(2 * across + around, rel=2e-3)
-
-
 def test_what_is_small_beside_the_rest():
     # The spacing of the bore, used everywhere, would need more than 400 thousand points.
     radius = 0.015
@@ -152,25 +120,6 @@ def test_points_are_on_the_exact_surfaces():
     assert edge.sum() > 40
     assert np.abs(ball[edge]).max() < 1e-14
     assert np.abs(bore[edge]).max() < 1e-14
-
-
-def test_nested_to_any_depth_against_monte_carlo(random):
-    part = Frustum((0, 0, 0), (0, 0, 0.4), (1, 1)) | Frustum((0, 0, 0.5), (0, 0, 0.8), (0.4, 0.5))
-    part = part - Frustum((0, 0, 0.3), (0, 0, 3), (0.25, 0.25))
-    for k in range(4):
-        x, y = 0.75 * np.cos(k * PI / 3), 0.75 * np.sin(k * PI / 3)
-        part = part - Frustum((x, y, 0), (0, 0, 1), (0.1, 0.1))
-    part = (part - Block((0, -0.9, 0), (0.3, 0.6, 2))) | (
-        Sphere((0, 0.75, 0.3), 0.2) & Block((0, 0.75, 0.5), (1, 1, 0.4))
-    )
-    bands = bands_of(part, levels=4)
-    assert banded.is_closed(bands)
-    low, high = np.array([-1, -1, -0.2]), np.array([1, 1, 0.9])
-    inside = part.contains(random.uniform(low, high, (400_000, 3)))
-    expected = inside.mean() * np.prod(high - low)
-    sigma = np.sqrt(inside.mean() / len(inside)) * np.prod(high - low)
-    assert abs(banded.volume(bands) - expected) < 4 * sigma + 2e-3
-    assert len(np.unique(bands.patch)) > 12
 
 
 def block(x=0.0, y=0.0, z=0.0, size=(1, 1, 1)):
@@ -315,17 +264,6 @@ def test_moved_and_scaled_solids_are_the_same():
         )
 
 
-def test_any_turn_gives_the_same_solid(random):
-    volumes = []
-    for _ in range(4):
-        turn = np.linalg.qr(random.standard_normal((3, 3)))[0]
-        solid = Block(size=(1, 1, 1), axes=turn) - Frustum((0, 0, 0), 2 * turn[0], (0.3, 0.3))
-        bands = bands_of(solid, levels=4)
-        assert banded.is_closed(bands)
-        volumes.append(banded.volume(bands))
-    np.testing.assert_allclose(volumes, 1 - PI * 0.09, rtol=2e-3)
-
-
 def test_contains_is_the_combination(random):
     a, b, c = Sphere(), Block((0.5, 0, 0)), Frustum((0, 0, 0), (0, 0, 3), (0.2, 0.4))
     solid = (a | b) - (c & a)
@@ -338,15 +276,6 @@ def test_contains_is_the_combination(random):
     np.testing.assert_array_equal(
         c.contains(p), (np.hypot(p[:, 0], p[:, 1]) < radius) & (np.abs(p[:, 2]) < 1.5)
     )
-
-
-@pytest.mark.parametrize("solid", [Sphere(), Frustum(), Frustum(radii=(0, 1)), Block()])
-def test_single_primitives(solid, random):
-    bands = bands_of(solid)
-    assert banded.is_closed(bands)
-    box = random.uniform(-1, 1, (200_000, 3))
-    assert banded.volume(bands) == pytest.approx(8 * solid.contains(box).mean(), rel=0.02)
-    assert bands.error <= 1.3 * bands.steps.error
 
 
 @pytest.mark.parametrize("wall", [2e-3, 1e-4, 1e-6])
@@ -372,30 +301,10 @@ def test_thin_tubes_and_narrow_bores(wall, offset):
     assert shell.volume * shell.scale**3 == pytest.approx(expected, rel=1e-2)
 
 
-def test_equal_crossing_cylinders():
-    """What remains of one cylinder is bounded by half of Steinmetz' solid."""
-    ends = (0.5, 0.5)
-    solid = Frustum(axis=(0, 0, 2), radii=ends) - Frustum(axis=(2, 0, 0), radii=ends)
-    bands = bands_of(solid, levels=2)
-    assert banded.is_closed(bands)
-    assert banded.volume(bands) == pytest.approx(PI / 2 - 2 / 3, rel=3e-3)
-    assert banded.area(bands) == pytest.approx(2.5 * PI, rel=3e-3)
-
-
-def test_many_holes():
-    plate, volume = Block(size=(2, 2, 0.1)), 0.4
-    for x, y in itertools.product(np.arange(12) * 0.16 - 0.88, repeat=2):
-        plate, volume = plate - Frustum((x, y, 0), radii=(0.05, 0.05)), volume - PI * 0.05**2 * 0.1
-    mesh = mesh_of(plate)
-    assert mesh.volume * mesh.scale**3 == pytest.approx(volume, rel=1e-2)
-    assert abs(mesh.volume * mesh.scale**3 - volume) <= mesh.volume_error * mesh.scale**3
-
-
 @pytest.mark.parametrize("kind", solid_trees.KINDS)
 @pytest.mark.parametrize("seed", [0, 11])
 def test_random_trees(kind, seed):
-    """A sample of ``python tests/solid_trees.py``, which tries more of them."""
-    found, _, _ = solid_trees.problems(solid_trees.tree(kind, seed, 2026), bounds=True)
+    found, _ = solid_trees.problems(solid_trees.tree(kind, seed, 2026), bounds=True)
     assert not found
 
 
@@ -418,7 +327,7 @@ HARD = {
 
 @pytest.mark.parametrize("name", HARD)
 def test_positions_that_flip_triangles_or_move_creases(name):
-    found, _, _ = solid_trees.problems(solid_trees.tree(*HARD[name]), count=20_000)
+    found, _ = solid_trees.problems(solid_trees.tree(*HARD[name]), count=20_000)
     assert not found
 
 
@@ -440,15 +349,6 @@ def test_thin_walls_keep_the_volume_of_parallel_facets():
     assert abs(mesh.volume * mesh.scale**3 - expected) <= mesh.volume_error * mesh.scale**3
     assert len(mesh.triangles) < 3000
     assert not repair.flipped(mesh).any()
-
-
-def test_the_area_of_closed_forms():
-    for solid, _, area in CLOSED_FORMS.values():
-        mesh = mesh_of(solid)
-        corners = mesh.points[mesh.triangles]
-        across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        found = np.linalg.norm(across, axis=1).sum() / 2 * mesh.scale**2
-        assert found == pytest.approx(area, rel=3 * 3e-3)
 
 
 @pytest.mark.parametrize("name", CLOSED_FORMS)
@@ -518,17 +418,3 @@ def test_too_fine_is_refused():
 def test_bad_input(make, kind, words):
     with pytest.raises(kind, match=words):
         make()
-
-
-def test_all_operations_of_two_shapes_keep_the_sum_of_volumes():
-    """|A or B| + |A and B| = |A| + |B|, and |A - B| + |A and B| = |A|."""
-    shapes = [
-        Sphere(),
-        Frustum((0.4, 0, 0), (0, 1, 1), (0.3, 0.6)),
-        Block((0, 0.5, 0.2), (1, 1, 1)),
-    ]
-    single = [banded.volume(bands_of(s)) for s in shapes]
-    for (a, first), (b, second) in itertools.combinations(zip(shapes, single, strict=True), 2):
-        both, either, less = (banded.volume(bands_of(s, levels=2)) for s in (a & b, a | b, a - b))
-        assert either + both == pytest.approx(first + second, rel=8e-3)
-        assert less + both == pytest.approx(first, rel=8e-3)

@@ -210,7 +210,6 @@ class Medium:
         diameter: float,
         lights: Sequence[tuple[VectorLike, bool]],
         *,
-        threads: int | None = None,
         progress: Callable[[int], None] | None = None,
     ) -> Array:
         """Return the share of each light that is left at points.
@@ -223,8 +222,6 @@ class Medium:
             Diameter of the lines in the unit of the lines.
         lights : sequence of (vector of 3 components, bool)
             Direction toward each light, or its position and True.
-        threads : int, optional
-            Number of threads that share the lights.
         progress : callable, optional
             Function that is called with the number of grids that are done.
 
@@ -241,15 +238,13 @@ class Medium:
             left[order, part.start] = self._light(targets, thick, *lights[part.start])
             return int(part.start)
 
-        for number in _pool.run(work, _pool.blocks(len(lights), 1), threads):
+        for number in _pool.run(work, _pool.blocks(len(lights), 1)):
             if progress is not None:
                 progress(number + 1)
         left[order[~targets.known]] = 1
         return left
 
-    def sky(
-        self, targets: Targets, diameter: float, count: int, *, threads: int | None = None
-    ) -> Array:
+    def sky(self, targets: Targets, diameter: float, count: int) -> Array:
         """Return the share of light from all sides that is left at points.
 
         Parameters
@@ -259,8 +254,6 @@ class Medium:
             Diameter of the lines in the unit of the lines.
         count : int
             Number of directions, each weighted by :meth:`Targets.facing`.
-        threads : int, optional
-            Number of threads that share the directions.
 
         Returns
         -------
@@ -277,7 +270,7 @@ class Medium:
             return int(part.start)
 
         total = np.zeros((2, targets.places.shape[1]))
-        for number in _pool.run(work, _pool.blocks(len(ways), 1), threads):
+        for number in _pool.run(work, _pool.blocks(len(ways), 1)):
             # In the order of the parts, so that sums do not depend on the threads.
             total += found.pop(number)
         with np.errstate(invalid="ignore"):

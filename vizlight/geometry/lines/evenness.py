@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 #: What a gap is known to, in spacings.
 KNOWN = 0.005
-#: Side of the boxes, in spacings, in which the distances of all cells are bounded by that of one.
+#: Side of the boxes, in spacings, in which one cell's distance bounds the distances of all.
 BOX = 0.25
 #: Number of parts of cells that are halved at once, and most halves that are smaller than boxes:
 #: along each axis per spacing, but at least so many.

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal, Protocol, get_args
 import numpy as np
 
 from vizlight import _check, _compiled, _pool
-from vizlight.geometry.relief import compiled, height_field, marching, strips, sweeping
+from vizlight.geometry.relief import height_field, marching, strips, sweeping, walks
 from vizlight.model import kernels
 
 if TYPE_CHECKING:
@@ -45,7 +45,6 @@ def inside_length(
     base: float | None = None,
     border: Border = "extend",
     method: Method = "fast",
-    threads: int | None = None,
 ) -> Array:
     """Return the length inside a height field of segments from points to a light.
 
@@ -74,8 +73,6 @@ def inside_length(
         where all of them are above or below the ray. "fast": the same for a light with a position
         and, with the extra ``fast``, for every light; without it the field is resampled, for a
         light at infinity, in profiles along the light's azimuth.
-    threads : int, optional
-        Number of threads. Default: the number of processors that this process may use.
 
     Returns
     -------
@@ -122,7 +119,7 @@ def inside_length(
     def start(rays: Indices, _quick: bool = False, /) -> Array:
         return flat.take(rays, axis=0).T
 
-    length = lengths(field, start, len(flat), ray, method, threads)
+    length = lengths(field, start, len(flat), ray, method)
     length[odd] = np.nan
     return length.reshape(starts.shape[:-1])
 
@@ -140,13 +137,12 @@ def shadow(
     base: float | None = None,
     border: Border = "extend",
     method: Method = "fast",
-    threads: int | None = None,
 ) -> Array:
     """Return the cos-theta shadow of a height field at its nodes.
 
     Parameters
     ----------
-    x, y, z, direction, position, base, border, method, threads
+    x, y, z, direction, position, base, border, method
         As for :func:`inside_length`.
     depth : float
         Depth d below the surface at which the light is collected, 0 or more, in the unit of the
@@ -189,7 +185,7 @@ def shadow(
         dark |= ~(np.any(normal, axis=-1) & np.all(np.isfinite(normal), axis=-1))
         normal[dark] = 0
     ray = toward(field, direction=direction, position=position)
-    t = ratio(field, normal, depth, ray, method=method, threads=threads)
+    t = ratio(field, normal, depth, ray, method=method)
     t[dark] = 0
     return t
 
@@ -252,7 +248,6 @@ def ratio(
     ray: Ray,
     *,
     method: Method = "fast",
-    threads: int | None = None,
     report: Callable[[int], None] | None = None,
 ) -> Array:
     """Return :func:`shadow` for a validated field and its normals.
@@ -278,7 +273,7 @@ def ratio(
         return np.asarray(place - inset * normals.take(rays, axis=0).T)
 
     count = normal.shape[0] * normal.shape[1]
-    t = lengths(field, start, count, ray, method, threads, inset, report)
+    t = lengths(field, start, count, ray, method, inset, report)
     if limit:
         step = min(np.diff(field.x).min(), np.diff(field.y).min())
         free = t <= 1e-6 * step
@@ -298,7 +293,6 @@ def lengths(
     count: int,
     ray: Ray,
     method: Method,
-    threads: int | None,
     below: float | None = None,
     report: Callable[[int], None] | None = None,
 ) -> Array:
@@ -309,9 +303,9 @@ def lengths(
     """
     _check.choice("method", method, get_args(Method))
     with contextlib.suppress(_compiled.FailedError):
-        return _lengths(field, start, count, ray, method, threads, below, report)
+        return _lengths(field, start, count, ray, method, below, report)
     # Compiled code is off from here on.
-    return _lengths(field, start, count, ray, method, threads, below, report)
+    return _lengths(field, start, count, ray, method, below, report)
 
 
 def _lengths(
@@ -320,7 +314,6 @@ def _lengths(
     count: int,
     ray: Ray,
     method: Method,
-    threads: int | None,
     below: float | None,
     report: Callable[[int], None] | None,
 ) -> Array:
@@ -334,18 +327,18 @@ def _lengths(
             below = _largest_offset(field, start(np.arange(count)))
         if _compiled.active():
             made = strips.strips(field, ray.direction, below, count)
-            if made is not None and strips.lengths.pays(compiled.SAVED * count):
-                _by_strip(made, start, length, threads, report)
+            if made is not None and strips.lengths.pays(walks.SAVED * count):
+                _by_strip(made, start, length, report)
                 return length
         elif method == "fast":
             profiles = sweeping.profiles(field, ray.direction, below)
             if profiles is not None:
-                _by_profile(profiles, start, length, threads, report)
+                _by_profile(profiles, start, length, report)
                 return length
-    fast = compiled.walk.pays(compiled.SAVED * count)
+    fast = walks.walk.pays(walks.SAVED * count)
     # Asked for once, before threads need them.
     pyramid = field.bounds
-    bounds = compiled.levels(pyramid) if fast else None
+    bounds = walks.levels(pyramid) if fast else None
 
     def work(rows: slice) -> int:
         places = start(np.arange(rows.start, rows.stop))
@@ -353,14 +346,14 @@ def _lengths(
         if bounds is None:
             length[rows] = marching.march(field, places, way, reach, coarse=True)
         else:
-            compiled.walk(
+            walks.walk(
                 np.ascontiguousarray(places), np.ascontiguousarray(way), reach, *field.edges,
                 field.corners, bounds, float(field.base), float(field.top),
                 field.border == "wall", length[rows],
             )  # fmt: skip
         return int(rows.stop)
 
-    _all(work, _pool.blocks(count, BLOCK), threads, report)
+    _all(work, _pool.blocks(count, BLOCK), report)
     return length
 
 
@@ -368,7 +361,6 @@ def _by_strip(
     made: strips.Strips,
     start: Start,
     length: Array,
-    threads: int | None,
     report: Callable[[int], None] | None,
 ) -> None:
     """Fill in lengths by compiled code, one band of strips and its rays after the other."""
@@ -379,7 +371,7 @@ def _by_strip(
         band[rows] = made.band(start(np.arange(rows.start, rows.stop), True), width)
         return int(rows.stop)
 
-    _all(find, _pool.blocks(len(length), BLOCK), threads)
+    _all(find, _pool.blocks(len(length), BLOCK))
     order, ends = made.order(band, width)
 
     def work(part: slice) -> int:
@@ -387,14 +379,13 @@ def _by_strip(
         return int(part.stop)
 
     parts = [slice(int(a), int(b)) for a, b in pairwise(ends)]
-    _all(work, parts, threads, report)
+    _all(work, parts, report)
 
 
 def _by_profile(
     profiles: sweeping.Profiles,
     start: Start,
     length: Array,
-    threads: int | None,
     report: Callable[[int], None] | None,
 ) -> None:
     """Fill in lengths, one band of profiles and its rays after the other."""
@@ -407,7 +398,7 @@ def _by_profile(
         band[rows] = profiles.profile_index(start(np.arange(rows.start, rows.stop))) // width
         return int(rows.stop)
 
-    _all(sort, _pool.blocks(count, BLOCK), threads)
+    _all(sort, _pool.blocks(count, BLOCK))
     short = np.int32 if count < 1 << 31 else np.int64
     order: Indices = np.argsort(band, kind="stable").astype(short)
     ends = np.cumsum(np.bincount(band))
@@ -421,16 +412,15 @@ def _by_profile(
             length[some] = made.lengths(start(some))
         return int(part.stop)
 
-    _all(work, parts, threads, report)
+    _all(work, parts, report)
 
 
 def _all(
     work: Callable[[slice], int],
     parts: list[slice],
-    threads: int | None,
     report: Callable[[int], None] | None = None,
 ) -> None:
-    for done in _pool.run(work, parts, threads):
+    for done in _pool.run(work, parts):
         if report is not None:
             report(done)
 

@@ -76,7 +76,6 @@ def sky(
     *,
     error: float = 0.01,
     openness: bool = False,
-    threads: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Sky:
     """Return the share of the sky that the nodes of a height field see.
@@ -94,8 +93,6 @@ def sky(
         Error that 95 of 100 nodes shall keep to, from 0.0001 to 0.5; of the openness in radians.
     openness : bool, default: False
         Whether the mean angle between the zenith and the horizon is returned, in radians.
-    threads : int, optional
-        Number of threads.
     progress : callable, optional
         Function of the number of azimuths that are done.
 
@@ -115,7 +112,7 @@ def sky(
     """
     error = _check.number("error", error, low=LEAST, high=LARGEST)
     field = height_field.make(x, y, np.asarray(z), base=None, border="wall")
-    search = _Search(field, openness=openness, threads=threads, progress=progress)
+    search = _Search(field, openness=openness, progress=progress)
     return search.until(error)
 
 
@@ -127,12 +124,11 @@ class _Search:
         field: height_field.Field,
         *,
         openness: bool,
-        threads: int | None,
         progress: Callable[[int], None] | None,
     ) -> None:
         self.x, self.y, self.z = field.x, field.y, field.heights
         self.field = field
-        self.top, self.openness, self.threads = field.top, openness, threads
+        self.top, self.openness = field.top, openness
         self.progress = progress
         self.done = 0
         random = np.random.default_rng(0)
@@ -264,7 +260,7 @@ class _Scan:
     """A field that is padded by near cells, and its transposed copy, for compiled code."""
 
     def __init__(self, search: _Search, near: int) -> None:
-        self.near, self.mode, self.threads = near, int(search.openness), search.threads
+        self.near, self.mode = near, int(search.openness)
         self.shape = search.z.shape
         wide = np.pad(search.z, near, mode="edge")
         x, y = (_padded(axis, near) for axis in (search.x, search.y))
@@ -314,7 +310,7 @@ class _Scan:
             )  # fmt: skip
             return int(part.stop)
 
-        for _ in _pool.run(work, _pool.blocks(count, LINES), self.threads):
+        for _ in _pool.run(work, _pool.blocks(count, LINES)):
             pass
 
 

@@ -1,0 +1,431 @@
+"""Light in fragments is that of the filters on fine meshes, and right between coarse points."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import pyvista as pv
+from fields import swatches
+from lamps import SHINY, shiny
+
+import vizlight
+from vizlight import DepthCue, Light, Material, Scene, View
+from vizlight.draw import component
+from vizlight.draw.backends import probe
+from vizlight.geometry import manifolds
+
+pytestmark = pytest.mark.opengl
+
+FAR = Light(direction=(1, 0.9, 0.5), intensity=0.6)
+NEAR = Light(position=(3, 4, 5), intensity=0.5, attenuation=(0.5, 0.1, 0.01), color=(1, 0.8, 0.5))
+CUE = DepthCue(back_scale=0.3, cue=0.1, color=(0.3, 0.4, 1.0))
+
+
+def torus():
+    """Return a fine surface with a tangent field that has no singular point."""
+    angles = np.linspace(0, 2 * np.pi, 240)
+    angles[-1] = 0.0
+    u, v = np.meshgrid(angles, angles, indexing="ij")
+    ring = 1 + 0.4 * np.cos(v)
+    grid = pv.StructuredGrid(ring * np.cos(u), ring * np.sin(u), 0.4 * np.sin(v))
+    mesh = grid.extract_surface(algorithm=None)
+    a, b = (np.ravel(x, order="F") for x in (u, v))
+    mesh["Normals"] = np.stack([np.cos(a) * np.cos(b), np.sin(a) * np.cos(b), np.sin(b)], 1)
+    mesh.point_data.active_normals_name = "Normals"
+    mesh["around"] = np.stack([-np.sin(a), np.cos(a), 0 * a], 1)
+    mesh["height"] = np.array(mesh.points[:, 2])
+    return mesh
+
+
+def helix(count=12001):
+    t = np.linspace(0, 12 * np.pi, count)
+    mesh = pv.MultipleLines(np.stack([np.cos(t), np.sin(t), t * 0.03 - 0.6], 1))
+    mesh["height"] = np.array(mesh.points[:, 2])
+    return mesh
+
+
+def shot(plotter, camera=None):
+    if camera is None:
+        plotter.view_vector((1, 0.6, 0.8))
+        plotter.camera.zoom(1.3)
+    else:
+        plotter.camera = camera.copy()
+    plotter.render()
+    return np.array(plotter.screenshot(None, return_img=True), dtype=np.int16)
+
+
+def pictures(mesh, scene, **options):
+    """Return the pictures with light in fragments and at the points."""
+    found, camera = [], None
+    for light in ("fragments", "points"):
+        plotter = pv.Plotter(off_screen=True, window_size=(240, 200))
+        plotter.background_color = "black"
+        # At the outline samples of a pixel lie outside their triangle, where light is extrapolated.
+        plotter.render_window.SetMultiSamples(0)
+        options["show_scalar_bar"] = False
+        plotter.vizlight.add_mesh(mesh, scene=scene, light=light, **options)
+        found.append(shot(plotter, camera))
+        camera = plotter.camera.copy()
+        plotter.close()
+    return found
+
+
+SURFACE = {
+    "surface": {},
+    "tangents": {"tangents": "around"},
+    "conditioned": {"tangents": "around", "conditioned": True},
+}
+SCENES = {
+    "far": Scene(lights=FAR, material=SHINY),
+    "near": Scene(lights=NEAR, material=shiny(specular=0.3, shininess=35.5)),
+    "two in fog": Scene(
+        lights=[FAR, NEAR], depth_cue=CUE, ambient_color=(0.7, 0.8, 1), material=SHINY
+    ),
+    "headlight": Scene(material=shiny(color="tan", specular_color=(1, 0.9, 0.8))),
+}
+
+
+@pytest.mark.parametrize("light", ["fragments", "points"])
+@pytest.mark.parametrize("lighting", ["light kit", "none"])
+def test_without_a_scene_the_material_is_that_of_the_default_scene(light, lighting):
+    """The lights are those of the plotter: its kit stands for those of the default scene."""
+    scene = Scene() if lighting == "light kit" else Scene(lights=[])
+    seen = []
+    for given in (scene, None):
+        plotter = pv.Plotter(off_screen=True, window_size=(120, 90), lighting=lighting)
+        plotter.vizlight.add_mesh(torus(), scene=given, color="white", light=light)
+        seen.append(np.asarray(plotter.screenshot(return_img=True)).astype(int))
+        plotter.close()
+    assert np.abs(seen[0] - seen[1]).max() <= 1
+    drawn = (seen[0] != seen[0][0, 0]).any(axis=2)
+    assert seen[0][drawn].min() >= 0.29 * 255
+
+
+@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("model", ["phong", "blinn"])
+@pytest.mark.parametrize("shape", [*SURFACE, "lines"])
+def test_within_four_of_the_light_at_points(shape, model, scene):
+    lines = shape == "lines"
+    mesh = helix() if lines else torus()
+    options = {"line_width": 3} if lines else SURFACE[shape]
+    fragments, points = pictures(mesh, SCENES[scene], model=model, **options)
+    assert points.std() > 5
+    assert np.abs(fragments - points).max() <= 4
+
+
+@pytest.mark.parametrize("shape", ["surface", "conditioned", "lines"])
+def test_colours_of_data_within_four(shape):
+    lines = shape == "lines"
+    mesh = helix() if lines else torus()
+    options = {"line_width": 3} if lines else SURFACE[shape]
+    fragments, points = pictures(
+        mesh, SCENES["two in fog"], scalars="height", cmap="viridis", **options
+    )
+    error = np.abs(fragments - points)
+    # Colours are mapped in each fragment too, which is another rounding.
+    assert error.max() <= 5
+    assert error.mean() < 0.3
+
+
+BRIGHT = Material(ambient=0.4, diffuse=1.0, specular=0.5, shininess=3)
+
+
+@pytest.mark.parametrize("cmap", ["turbo", "coolwarm"])
+def test_colours_of_data_in_bright_light_are_the_same_baked_and_live(cmap, tmp_path):
+    """One rule for light on data: tint, both kinds of live light, and pictures."""
+    mesh = swatches()
+    camera = vizlight.render.camera_on(mesh, (0, 0, 1))
+    camera.parallel_projection = True
+    scene = Scene(
+        lights=Light(direction=(0.3, 0.2, 1)), material=BRIGHT, view=View.from_camera(camera)
+    )
+    lit = vizlight.tint(vizlight.illuminate(mesh, scene), "value", cmap=cmap)
+    found = []
+    for light in ("fragments", "points"):
+        plotter = pv.Plotter(off_screen=True, window_size=(320, 240))
+        plotter.render_window.SetMultiSamples(0)
+        plotter.vizlight.add_mesh(
+            mesh, scene=scene, light=light, scalars="value", cmap=cmap, show_scalar_bar=False
+        )
+        found.append(shot(plotter, camera))
+        plotter.close()
+    path = vizlight.render.save_png(
+        lit, tmp_path / "lit.png", camera=camera, size=(320, 240), anti_aliasing=None,
+        background="white",
+    )  # fmt: skip
+    found.append(np.array(pv.read(path).active_scalars).reshape(240, 320, -1)[::-1, :, :3])
+    expected = lit["rgb"][::4].astype(int)
+    assert len(np.unique(expected, axis=0)) > 40
+    for picture in found:
+        shown = np.unique(picture.reshape(-1, 3).astype(int), axis=0)
+        apart = np.abs(shown[:, None] - expected).max(axis=-1)
+        assert apart.min(axis=0).max() <= 1, "a colour of tint that is not shown"
+        known = apart.min(axis=1) <= 1
+        assert known.sum() >= len(shown) - 1, "a colour that tint does not have"
+
+
+@pytest.mark.filterwarnings("ignore:light='fragments'")
+def test_fur_within_four():
+    scene = Scene(
+        lights=Light(direction=(1, 0.5, 0.3)), view=View(direction=(1, 0, 0)), material=SHINY
+    )
+    coat = vizlight.fur(
+        pv.Sphere(theta_resolution=90, phi_resolution=90), scene, density=0.6, fibres=300,
+        length=0.2, segments=40,
+    )  # fmt: skip
+    fragments, points = pictures(coat, None, line_width=3)
+    assert points.std() > 10
+    assert np.quantile(np.abs(fragments - points), 0.999) <= 4
+
+
+def test_grids_have_their_light_too():
+    mesh = torus()
+    grid = mesh.cast_to_unstructured_grid()
+    a, _ = pictures(grid, SCENES["near"], tangents="around", conditioned=True)
+    b, _ = pictures(mesh, SCENES["near"], tangents="around", conditioned=True)
+    np.testing.assert_array_equal(a, b)
+
+
+@pytest.mark.parametrize("kind", ["surface", "volume", "image", "explicit"])
+def test_creases_are_sharp_and_round_shapes_are_left_whole(kind):
+    box = pv.ImageData(dimensions=(5, 5, 5))
+    box["value"] = np.arange(box.n_points) * 1.0
+    if kind == "surface":
+        box = box.extract_surface(algorithm=None)
+    elif kind == "volume":
+        box = box.cast_to_unstructured_grid()
+    elif kind == "explicit":
+        box = box.cast_to_structured_grid().cast_to_explicit_structured_grid()
+    options = {"scene": Scene(), "scalars": "value", "cmap": ["white", "white"]}
+    colors = []
+    for angle in ("auto", None):
+        plotter = pv.Plotter(off_screen=True, window_size=(160, 120))
+        actor = plotter.vizlight.add_mesh(
+            box, feature_angle=angle, show_scalar_bar=False, **options
+        )
+        seen = shot(plotter, plotter.camera)
+        colors.append(len(np.unique(seen.reshape(-1, 3), axis=0)))
+        if angle is None:
+            assert actor.mapper.dataset.n_points == len(box.extract_surface(algorithm=None).points)
+        plotter.close()
+    # Three flat faces, their edges, and the background; and shades from edge to edge.
+    assert colors[0] < 40 < 60 < colors[1]
+    ball = torus()
+    ball.point_data.clear()
+    plotter = pv.Plotter(off_screen=True)
+    actor = plotter.vizlight.add_mesh(ball)
+    assert actor.mapper.dataset.n_points == ball.n_points
+    plotter.close()
+
+
+def test_volumes_are_lit_by_the_normals_of_their_surface():
+    grid = pv.ImageData(dimensions=(41, 41, 41), origin=(-1, -1, -1), spacing=(0.05,) * 3)
+    grid["r"] = np.linalg.norm(grid.points, axis=1)
+    volume = grid.threshold(0.9, scalars="r", invert=True)
+    for mesh in (volume, grid):
+        fragments, points = pictures(mesh, SCENES["near"], feature_angle=None)
+        surface = mesh.extract_surface(algorithm="geometry")
+        of_surface, _ = pictures(surface, SCENES["near"], feature_angle=None)
+        assert points.std() > 10
+        assert np.abs(fragments - of_surface).mean() < 0.1
+
+
+def test_coarse_data_are_as_if_they_were_split():
+    """Light in fragments is that at the points of split segments, which share no code with it."""
+    bundle = vizlight.load_example("fibre_bundle.vtp")
+    points, at = np.asarray(bundle.points, dtype=np.float64), 0
+    rows, tangents, cells = [], [], []
+    coarse_rows, coarse_tangents, coarse_cells = [], [], []
+    count = coarse_count = 0
+    while at < len(bundle.lines):
+        n = bundle.lines[at]
+        line = points[bundle.lines[at + 1 : at + 1 + n]][::4]
+        at += n + 1
+        if len(line) < 3:
+            continue
+        unit = np.gradient(line, axis=0)
+        unit /= np.linalg.norm(unit, axis=1, keepdims=True)
+        coarse_rows.append(line)
+        coarse_tangents.append(unit)
+        coarse_cells.append([len(line), *range(coarse_count, coarse_count + len(line))])
+        coarse_count += len(line)
+        fine = np.linspace(0, len(line) - 1, 24 * (len(line) - 1) + 1)
+        for found, values in ((rows, line), (tangents, unit)):
+            found.append(
+                np.stack([np.interp(fine, np.arange(len(line)), axis) for axis in values.T], axis=1)
+            )
+        cells.append([len(fine), *range(count, count + len(fine))])
+        count += len(fine)
+    coarse = pv.PolyData(np.concatenate(coarse_rows), lines=np.concatenate(coarse_cells))
+    coarse["t"] = np.concatenate(coarse_tangents)
+    split = pv.PolyData(np.concatenate(rows), lines=np.concatenate(cells))
+    split["t"] = np.concatenate(tangents)
+    scene = Scene(lights=FAR, material=shiny(shininess=40))
+    fragments, at_points = pictures(coarse, scene, tangents="t", line_width=2)
+    _, expected = pictures(split, scene, tangents="t", line_width=2)
+    covered = np.all([p.max(axis=-1) > 0 for p in (fragments, at_points, expected)], axis=0)
+    error, coarse_error = (np.abs(p - expected)[covered] for p in (fragments, at_points))
+    assert error.mean() < 0.5 * coarse_error.mean()
+    assert np.quantile(error, 0.98) < 0.2 * np.quantile(coarse_error, 0.98)
+
+
+@pytest.mark.filterwarnings("ignore:.* of the edges are sharper")
+def test_open_surface_faces_the_eye_in_each_fragment():
+    half = torus().clip(normal="x", origin=(0.2, 0, 0)).extract_surface(algorithm=None)
+    half.point_data.clear()
+    for facing in ("auto", "eye"):
+        fragments, points = pictures(half, SCENES["near"], facing=facing)
+        assert points.std() > 5
+        # Where it turns away, light at the points is a mean of that on both sides.
+        assert np.quantile(np.abs(fragments - points), 0.99) <= 4
+
+
+def test_coarse_lines_are_right_between_their_points():
+    scene = Scene(lights=Light(direction=(1, 0.9, 0.5)), material=shiny(shininess=60))
+    coarse, coarse_points = pictures(helix(73), scene, line_width=3)
+    fine, _ = pictures(helix(73 * 120 + 1), scene, line_width=3)
+    # The courses of both lines differ by less than the width, so pixels that both cover count.
+    both = (fine.min(axis=-1) > 0) & (coarse.min(axis=-1) > 0)
+    fragments, points = (np.abs(picture - fine)[both].mean() for picture in (coarse, coarse_points))
+    assert fragments < 0.5 * points
+
+
+def test_camera_light_and_moved_actor_are_followed():
+    mesh = torus()
+    plotter = pv.Plotter(off_screen=True, window_size=(240, 200))
+    plotter.background_color = "black"
+    actor = plotter.vizlight.add_mesh(mesh, scene=SCENES["two in fog"], tangents="around")
+    assert plotter.vizlight.explain(actor).startswith("light in each fragment")
+    plotter.show(auto_close=False)
+    actor.user_matrix = np.diag([1.0, 0.6, 1.5, 1.0])
+    for step in range(3):
+        plotter.camera.azimuth += 70
+        plotter.camera.parallel_projection = step == 1
+        got = shot(plotter, plotter.camera)
+        moved = mesh.transform(actor.user_matrix, inplace=False, transform_all_input_vectors=False)
+        moved["around"] = np.asarray(mesh["around"]) * (1.0, 0.6, 1.5)
+        scene = SCENES["two in fog"].replace(view=View.from_camera(plotter.camera))
+        lit = vizlight.illuminate(moved, scene, tangents="around")
+        lit["rgb"] = np.clip(lit["rgb"], 0, 1)
+        other = pv.Plotter(off_screen=True, window_size=(240, 200))
+        other.background_color = "black"
+        other.add_mesh(lit, scalars="rgb", rgb=True, lighting=False)
+        expected = shot(other, plotter.camera)
+        other.close()
+        assert np.quantile(np.abs(got - expected), 0.9995) <= 4
+    plotter.close()
+
+
+def test_lights_of_the_plotter_may_come_and_go():
+    plotter = pv.Plotter(off_screen=True, window_size=(120, 100))
+    plotter.background_color = "black"
+    plotter.render_window.SetMultiSamples(0)
+    plotter.vizlight.add_mesh(torus(), light="fragments", color="white", ambient=0.2)
+    lit = shot(plotter)
+    plotter.remove_all_lights()
+    dark = shot(plotter, plotter.camera)
+    assert lit.max() > 100
+    assert set(np.unique(dark)) == {0, 51}
+    plotter.add_light(pv.Light(position=(5, 5, 5), light_type="scene light", positional=True))
+    assert shot(plotter, plotter.camera).max() > 100
+    plotter.close()
+
+
+@pytest.mark.parametrize("open_", [False, True])
+def test_lights_of_a_scene_do_not_need_those_of_the_plotter(open_):
+    mesh = pv.Plane(i_resolution=9, j_resolution=9) if open_ else torus()
+    plotter = pv.Plotter(off_screen=True, window_size=(120, 100))
+    plotter.background_color = "black"
+    plotter.vizlight.add_mesh(mesh, scene=SCENES["far"], light="fragments")
+    lit = shot(plotter)
+    plotter.remove_all_lights()
+    without = shot(plotter, plotter.camera)
+    plotter.close()
+    assert lit.max() > 40
+    np.testing.assert_array_equal(without, lit)
+
+
+def reversing():
+    mesh = torus()
+    signs = np.random.default_rng(3).choice([-1.0, 1.0], mesh.n_points)
+    mesh["around"] = np.asarray(mesh["around"]) * signs[:, np.newaxis]
+    return mesh
+
+
+def strands():
+    mesh = helix(100)
+    mesh["Normals"] = np.array(mesh.points)
+    mesh.point_data.active_normals_name = "Normals"
+    return mesh
+
+
+FALLBACKS = {
+    "2 tangents per point": (
+        lambda: manifolds_mesh("after"), Scene(lights=FAR, material=SHINY),
+        {"tangents": "projected_frame"},
+    ),
+    "4-space": (
+        lambda: manifolds_mesh("before"), Scene(lights=FAR, material=SHINY),
+        {"tangents": "frame", "positions": "position"},
+    ),
+    "cylinder": (helix, Scene(lights=FAR, material=SHINY), {"model": "cylinder"}),
+    "sign is arbitrary": (reversing, Scene(lights=FAR, material=SHINY), {"tangents": "around"}),
+    "spheres and tubes": (
+        torus, Scene(lights=FAR, material=SHINY), {"render_lines_as_tubes": True}
+    ),
+    "alone can be round": (
+        strands, Scene(lights=FAR, material=SHINY),
+        {"render_lines_as_tubes": True, "line_width": 3, "conditioned": True},
+    ),
+}  # fmt: skip
+
+
+def manifolds_mesh(when):
+    shape = manifolds.clifford_torus(resolution=12)
+    return vizlight.manifold(shape, distance=2.0)
+
+
+@pytest.mark.parametrize("reason", FALLBACKS)
+def test_what_fragments_cannot_do_is_done_at_points_with_the_reason(reason):
+    mesh, scene, options = FALLBACKS[reason]
+    plotter = pv.Plotter(off_screen=True, window_size=(60, 50))
+    actor = plotter.vizlight.add_mesh(mesh(), scene=scene, **options)
+    assert reason in plotter.vizlight.explain(actor).splitlines()[0]
+    with pytest.warns(UserWarning, match=f"computed at the points, because .*{reason}"):
+        plotter.vizlight.add_mesh(mesh(), scene=scene, light="fragments", **options)
+    plotter.close()
+
+
+@pytest.mark.parametrize("backend", ["egl", "osmesa"])
+def test_each_backend_draws_the_light_in_fragments(backend):
+    if not probe(backend).works:
+        pytest.skip(probe(backend).detail)
+    code = (
+        "import sys; sys.path[:0] = ['tests', 'tests/plotting']\n"
+        "import test_fragments as t, numpy as np\n"
+        "scene, options = t.SCENES['two in fog'], t.SURFACE['conditioned']\n"
+        "a, b = t.pictures(t.torus(), scene, **options)\n"
+        "print(np.abs(a - b).max(), int(b.std()))"
+    )
+    window = {"egl": "vtkEGLRenderWindow", "osmesa": "vtkOSOpenGLRenderWindow"}[backend]
+    run = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        check=True,
+        cwd=os.fspath(pytest.importorskip("pathlib").Path(__file__).parents[2]),
+        env={**os.environ, "VTK_DEFAULT_OPENGL_WINDOW": window},
+    )
+    error, spread = map(int, run.stdout.split()[-2:])
+    assert error <= 4
+    assert spread > 5
+
+
+def test_component_is_the_one_of_the_plotter():
+    plotter = pv.Plotter(off_screen=True)
+    assert isinstance(plotter.vizlight, component.Component)
+    plotter.close()

@@ -1,0 +1,738 @@
+"""A page by itself shows the light of the engine as the eye moves, and says what it cannot."""
+
+from __future__ import annotations
+
+import base64
+import functools
+import http.server
+import importlib.util
+import io
+import json
+import re
+import shutil
+import threading
+import zlib
+
+import numpy as np
+import pytest
+import pyvista as pv
+from fields import half_known, swatches
+from lamps import HEADLIT, SHINY, shiny
+from PIL import Image
+
+import vizlight
+from vizlight import DepthCue, Light, Material, Scene, View, presets
+from vizlight.draw import html
+from vizlight.files import FileError
+from vizlight.filters import key
+
+pytestmark = pytest.mark.opengl
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+SOFTWARE = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader"]
+SOFTWARE += ["--enable-unsafe-swiftshader"]
+MISSING = [name for name in ("playwright",) if importlib.util.find_spec(name) is None]
+MISSING += [] if CHROMIUM else ["chromium"]
+needs_browser = pytest.mark.skipif(bool(MISSING), reason=f"needs {', '.join(MISSING)}")
+SIZE = {"width": 300, "height": 250}
+#: A window with its panel beside the picture.
+WIDE = {"viewport": {"width": 1200, "height": 1000}}
+FAR = Light(direction=(1, 0.9, 0.5), intensity=0.8)
+NEAR = Light(position=(3, 4, 5), intensity=0.5, attenuation=(0.5, 0.1, 0.01), color=(1, 0.8, 0.5))
+CUE = DepthCue(back_scale=0.3, cue=0.1, color=(0.3, 0.4, 1.0))
+
+
+def torus(centre=(0.0, 0.0, 0.0)):
+    """Return a surface in float64 with a field of tangents."""
+    angles = np.linspace(0, 2 * np.pi, 151)
+    u, v = (np.ravel(x) for x in np.meshgrid(angles, angles, indexing="ij"))
+    ring = 1 + 0.4 * np.cos(v)
+    rows = np.stack([ring * np.cos(u), ring * np.sin(u), 0.4 * np.sin(v)], 1) + centre
+    grid = pv.StructuredGrid()
+    grid.points, grid.dimensions = rows, (151, 151, 1)
+    mesh = grid.extract_surface(algorithm=None)
+    mesh["n"] = np.stack([np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)], 1)
+    mesh["around"] = np.stack([-np.sin(u), np.cos(u), 0 * u], 1)
+    mesh["height"] = np.asarray(mesh.points)[:, 2] - centre[2]
+    return mesh
+
+
+def winding():
+    """Return lines on the same torus, with its normals."""
+    u = np.linspace(0, 2 * np.pi * 40, 12001)
+    ring, v = 1 + 0.4 * np.cos(u / 40), u / 40
+    mesh = pv.MultipleLines(np.stack([ring * np.cos(u), ring * np.sin(u), 0.4 * np.sin(v)], 1))
+    mesh["n"] = np.stack([np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)], 1)
+    return mesh
+
+
+AWAY = (5e6, -5e6, 2e6)
+CASES = {
+    "lines": (winding, Scene(lights=FAR, material=SHINY), {}),
+    "conditioned lines": (
+        winding, Scene(lights=FAR, material=SHINY), {"conditioned": True, "normals": "n"}
+    ),
+    "surface with a field": (
+        torus, Scene(lights=FAR, material=SHINY),
+        {"tangents": "around", "conditioned": True, "normals": "n"},
+    ),
+    "compensated with colours": (torus, Scene(lights=FAR, material=SHINY), {"tangents": "around"}),
+    "two lights, one near, in fog": (
+        torus,
+        Scene(lights=[FAR, NEAR], depth_cue=CUE, ambient_color=(0.7, 0.8, 1), material=SHINY),
+        {"normals": "n", "model": "blinn"},
+    ),
+    "far from the origin": (
+        lambda: torus(AWAY),
+        Scene(lights=[FAR, Light(position=np.add(AWAY, (3, 4, 5)), intensity=0.2)], material=SHINY),
+        {"normals": "n"},
+    ),
+}  # fmt: skip
+COLORED = {"compensated with colours": {"scalars": "height", "cmap": "plasma"}}
+
+
+@pytest.fixture(scope="module")
+def chromium():
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as play:
+        yield play.chromium
+
+
+@pytest.fixture(scope="module")
+def browser(chromium):
+    made = chromium.launch(executable_path=CHROMIUM, args=SOFTWARE)
+    yield made
+    made.close()
+
+
+#: Leaves the picture alone in the window.
+BARE = "body { grid-template: minmax(0, 1fr) 0 / minmax(0, 1fr) 0 !important }"
+BARE += " #panel, h1, #legend, #triad, #frames, #notice { display: none !important }"
+
+
+def opened(browser, path, *, bare=True, **options):
+    """Return a page, without its panel, and what it has asked for and complained of."""
+    page = browser.new_page(**({"viewport": SIZE} | options))
+    seen = []
+    page.on("request", lambda request: seen.append(request.url))
+    page.on("console", lambda message: seen.append(message.text))
+    page.on("pageerror", lambda error: seen.append(str(error)))
+    page.goto(path.as_uri())
+    page.wait_for_selector("body[data-ready]")
+    if bare:
+        page.evaluate(
+            """(text) => {
+            const sheet = new CSSStyleSheet();
+            sheet.replaceSync(text);
+            document.adoptedStyleSheets = [...document.adoptedStyleSheets, sheet];
+            }""",
+            BARE,
+        )
+    return page, seen
+
+
+def shot(page):
+    page.evaluate("() => new Promise((done) => requestAnimationFrame(() => done()))")
+    page.evaluate("() => { vizlight.moving = false; vizlight.draw(); }")
+    return np.array(Image.open(io.BytesIO(page.screenshot())).convert("RGB"), dtype=np.int16)
+
+
+def turn(page, degrees):
+    page.evaluate(f"() => vizlight.orbit({-np.radians(degrees)}, 0)")
+
+
+def first_camera(centre=(0.0, 0.0, 0.0)):
+    camera = pv.Camera()
+    camera.position, camera.up = np.add(centre, (2.6, 1.6, 2.1)), (0, 0, 1)
+    camera.focal_point, camera.view_angle = centre, 40
+    return camera
+
+
+def scene_in(path):
+    text = path.read_text("utf-8")
+    found = re.search(r'<script type="application/json" id="scene">(.*?)</script>', text, re.S)
+    return text, found[1], json.loads(found[1])
+
+
+def baked(path, colors):
+    """Return the page with colours of the points in place of light that follows."""
+    text, given, content = scene_in(path)
+    data = base64.b64encode(zlib.compress(colors.tobytes())).decode()
+    for mesh in content["meshes"]:
+        mesh |= {"live": False, "colors": {"data": data, "kind": "u1"}, "color": [1, 1, 1]}
+    made = path.with_name("baked.html")
+    made.write_text(text.replace(given, json.dumps(content)), "utf-8")
+    return made
+
+
+def recolor(page, colors):
+    """Give a baked page other colours."""
+    page.evaluate(
+        "(text) => vizlight.meshes[0].paint(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)))",
+        base64.b64encode(colors.tobytes()).decode(),
+    )
+
+
+def engine_colors(mesh, scene, camera, options, colored):
+    """Return the colours of the filters for an eye, in bytes."""
+    seen = scene.replace(view=View.from_camera(camera))
+    lit = vizlight.illuminate(mesh, seen, **options)
+    if colored:
+        found = vizlight.tint(lit, colored["scalars"], cmap=colored["cmap"])["rgb"]
+        return np.column_stack([found[:, :3], np.full(len(found), 255, np.uint8)])
+    rgb = lit["rgb"] if "rgb" in lit.point_data else np.repeat(lit["luminance"][:, None], 3, axis=1)
+    return np.insert(np.clip(rgb, 0, 1) * 255 + 0.5, 3, 255, axis=1).astype(np.uint8)
+
+
+@needs_browser
+@pytest.mark.parametrize("case", CASES)
+def test_page_has_the_light_of_the_engine_before_and_after_turning(case, browser, tmp_path):
+    """The browser draws both: the light that follows, and the numbers of the filters as colours.
+
+    Another renderer's lines have other edges, whatever their light.
+    """
+    make, scene, options = CASES[case]
+    mesh, colored = make(), COLORED.get(case, {})
+    centre = AWAY if case == "far from the origin" else (0.0, 0.0, 0.0)
+    camera = first_camera(centre)
+    path = vizlight.live_html(
+        mesh, scene, tmp_path / "live.html", camera=camera, background="black", panel=False,
+        line_width=2, **options, **colored,
+    )  # fmt: skip
+    live, seen = opened(browser, path)
+    other, _ = opened(browser, baked(path, engine_colors(mesh, scene, camera, options, colored)))
+    pictures = []
+    for degrees in (0, 60):
+        camera.azimuth += degrees
+        turn(live, degrees)
+        turn(other, degrees)
+        recolor(other, engine_colors(mesh, scene, camera, options, colored))
+        got, expected = shot(live), shot(other)
+        pictures.append(got)
+        error = np.abs(got - expected)
+        assert expected.std() > 10
+        assert error.mean() <= 1
+        assert np.quantile(error.max(axis=-1)[expected.max(axis=-1) > 0], 0.99) <= 4
+    assert seen == [path.as_uri()]
+    assert np.abs(pictures[1] - pictures[0]).mean() > 1
+    live.close()
+    other.close()
+
+
+@needs_browser
+def test_colours_of_data_in_bright_light_are_those_of_tint(browser, tmp_path):
+    mesh = swatches()
+    camera = vizlight.render.camera_on(mesh, (0, 0, 1))
+    camera.parallel_projection = True
+    bright = Material(ambient=0.4, diffuse=1.0, specular=0.5, shininess=3)
+    scene = Scene(lights=Light(direction=(0.3, 0.2, 1)), material=bright)
+    path = vizlight.live_html(
+        mesh, scene, tmp_path / "live.html", camera=camera, background="black", panel=False,
+        scalars="value", cmap="turbo",
+    )  # fmt: skip
+    page, _ = opened(browser, path)
+    shown = np.unique(shot(page).reshape(-1, 3), axis=0)
+    page.close()
+    seen = scene.replace(view=View.from_camera(camera))
+    lit = vizlight.tint(vizlight.illuminate(mesh, seen), "value", cmap="turbo")
+    expected = lit["rgb"][::4].astype(int)
+    apart = np.abs(shown[:, None] - expected).max(axis=-1)
+    assert len(np.unique(expected, axis=0)) > 40
+    assert apart.min(axis=0).max() <= 1
+
+
+@needs_browser
+def test_the_page_reads_the_numbers_that_were_packed(browser, tmp_path):
+    """Places to the rounding of float32, cells to the bit, and no place for what is not finite."""
+    mesh = pv.Sphere(theta_resolution=20, phi_resolution=20)
+    mesh["n"] = 2 * np.asarray(mesh.points)
+    mesh = mesh.translate((3.0, -2.0, 1.0))
+    mesh.points[7] = (np.nan, 1, 2)
+    mesh.points[9] = (0, np.inf, 2)
+    camera = first_camera((3.0, -2.0, 1.0))
+    path = vizlight.live_html(
+        mesh, Scene(lights=FAR, material=SHINY), tmp_path / "a.html", normals="n", camera=camera
+    )
+    page, _ = opened(browser, path)
+    read = """async () => {
+        const { gl, places, batches: [{ order, buffers, count }], given } = vizlight.meshes[0];
+        const normals = new Int16Array(places.length);
+        gl.bindBuffer(gl.ARRAY_BUFFER, buffers.vizNormalMC);
+        gl.getBufferSubData(gl.ARRAY_BUFFER, 0, normals);
+        const numbers = (list) => Array.from(list, (x) => (Number.isNaN(x) ? null : x));
+        return [places, order, normals.map((x) => x)].map(numbers);
+    }"""
+    points, cells, normals = page.evaluate(read)
+    page.close()
+    places = np.array(points, dtype=float).reshape(-1, 3)
+    expected = np.asarray(mesh.points, dtype=float) - camera.focal_point
+    lost = ~np.all(np.isfinite(expected), axis=1)
+    np.testing.assert_array_equal(np.flatnonzero(lost), [7, 9])
+    np.testing.assert_array_equal(np.isnan(places).all(axis=1), lost)
+    assert np.abs(places - expected)[~lost].max() <= 2.0**-23 * np.abs(expected[~lost]).max()
+    np.testing.assert_array_equal(np.reshape(cells, (-1, 3)), mesh.regular_faces)
+    rows = np.reshape(normals, (-1, 3))
+    # Their length says how far they may lean away from the eye.
+    rows = rows / np.linalg.norm(rows, axis=1, keepdims=True)
+    assert np.abs(rows - mesh["n"]).max() < 5e-5
+
+
+def plain_page(tmp_path, **options):
+    ball = pv.Sphere(theta_resolution=60, phi_resolution=60)
+    scene = Scene(lights=Light(direction=(1, 0.2, 0.3)), material=SHINY)
+    return vizlight.live_html(ball, scene, tmp_path / "ball.html", background="black", **options)
+
+
+def slide(page, label, value):
+    page.get_by_label(label, exact=True).evaluate(
+        """(input, x) => {
+        input.value = x;
+        ['input', 'change'].forEach((kind) => input.dispatchEvent(new Event(kind)));
+        }""",
+        value,
+    )
+
+
+@needs_browser
+def test_panel_moves_light_and_material_and_back(browser, tmp_path):
+    page, seen = opened(browser, plain_page(tmp_path, title="A <ball> & more"), bare=False, **WIDE)
+    assert page.title() == "A <ball> & more"
+    first = shot(page)
+    for label, value in (
+        ("Brightness", 0.3), ("Ambient", 0.6), ("Diffuse", 0.1), ("Highlight", 0), ("Sharpness", 3),
+        ("Depth fade", 0.8),
+    ):  # fmt: skip
+        slide(page, label, value)
+        page.mouse.move(5, 5)
+        assert np.abs(shot(page) - first)[:, :400].max() > 15, label
+        page.keyboard.press("Control+z")
+        np.testing.assert_array_equal(shot(page)[:, :400], first[:, :400])
+    page.keyboard.press("Control+y")
+    assert np.abs(shot(page) - first)[:, :400].max() > 15
+    page.keyboard.press("Control+z")
+    page.get_by_role("radio", name="Eye").check()
+    held = shot(page)
+    np.testing.assert_allclose(held[:880, :400], first[:880, :400], atol=2)
+    before = page.evaluate(
+        "vizlight.draw(), vizlight.lightOf(vizlight.leader, []).numbers.vizLight0"
+    )
+    turn(page, 90)
+    after = page.evaluate("vizlight.lightOf(vizlight.leader, []).numbers.vizLight0")
+    np.testing.assert_allclose(after, before)
+    with page.expect_download() as saved:
+        page.get_by_role("button", name="Save picture").click()
+    picture = np.array(Image.open(saved.value.path()).convert("RGB"), dtype=np.int16)
+    assert picture.shape[0] == WIDE["viewport"]["height"]
+    assert np.abs(picture[:, :400] - shot(page)[:, :400]).mean() < 5
+    assert seen == [(tmp_path / "ball.html").as_uri()]
+    page.close()
+
+
+@needs_browser
+def test_lamps_are_dragged_over_the_ball_and_past_its_rim(browser, tmp_path):
+    page, _ = opened(browser, plain_page(tmp_path), bare=False, **WIDE)
+    box = page.locator(".pad").bounding_box()
+    middle = np.array([box["x"] + box["width"] / 2, box["y"] + box["height"] / 2])
+    read = "vizlight.seen(vizlight.lamps[0], [1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1])"
+    page.get_by_role("radio", name="Eye").check()
+    first = shot(page)
+    page.mouse.move(*middle)
+    page.mouse.down()
+    for share, expected in ((0.95, -0.5), (0.0, 1.0), (0.5, None)):
+        page.mouse.move(*(middle - (share * box["width"] / 2, 0)))
+        x, y, z = page.evaluate(read)
+        assert x <= 0.02
+        assert abs(y) < 0.02
+        assert expected is None or z * expected > 0.4
+    page.mouse.up()
+    assert np.abs(shot(page) - first)[:, :400].max() > 20
+    assert page.evaluate("vizlight.state.look") == "*"
+    page.locator(".lamp").focus()
+    page.keyboard.press("ArrowRight")
+    assert page.evaluate(read)[0] > x
+    page.get_by_label("Add a lamp").click()
+    assert page.locator(".lamp").count() == 2
+    page.get_by_label("Remove the lamp").click()
+    page.get_by_label("Remove the lamp").click()
+    assert shot(page)[:, :400].min() >= 0
+    page.close()
+
+
+@needs_browser
+@pytest.mark.parametrize("question", ["direction", "slope", "heading", "shape"])
+def test_light_by_question_is_that_of_the_preset(question, browser, tmp_path):
+    mesh, camera = torus(), first_camera()
+    how = {"tangents": "around"} | ({"conditioned": True} if question == "shape" else {})
+    preset = getattr(presets, question)()
+    own = vizlight.live_html(
+        mesh, preset, tmp_path / "own.html", camera=camera, background="black", **how
+    )
+    other = vizlight.live_html(
+        mesh, Scene(lights=FAR), tmp_path / "other.html", camera=camera, background="black",
+        tangents="around", conditioned=True,
+    )  # fmt: skip
+    expected, _ = opened(browser, own)
+    page, _ = opened(browser, other)
+    page.evaluate("(name) => vizlight.look(name)", question)
+    np.testing.assert_allclose(shot(page), shot(expected), atol=1)
+    assert page.evaluate("vizlight.page.looks")[question]["key"] == list(key.TEXTS[question])
+    page.close()
+    expected.close()
+
+
+@needs_browser
+def test_arrays_colour_the_mesh_as_in_the_plotter(browser, tmp_path):
+    mesh, camera, scene = torus(), first_camera(), presets.value()
+    options = {"camera": camera, "background": "black", "normals": "n"}
+    colored = vizlight.live_html(
+        mesh, scene, tmp_path / "a.html", scalars="height", cmap="viridis", **options
+    )
+    page, _ = opened(browser, vizlight.live_html(mesh, scene, tmp_path / "b.html", **options))
+    expected, _ = opened(browser, colored)
+    page.evaluate("() => vizlight.change({ color: 'height', cmap: 'viridis' })")
+    error = np.abs(shot(page) - shot(expected))
+    assert error.mean() < 0.5
+    assert np.quantile(error, 0.99) <= 3
+    page.evaluate("() => vizlight.change({ color: 'height', cmap: 'plasma' })")
+    assert np.abs(shot(page) - shot(expected)).max() > 40
+    page.close()
+    expected.close()
+
+
+@needs_browser
+def test_a_slider_shows_one_of_the_frames(browser, tmp_path):
+    frames = {level: pv.Sphere(radius=level) for level in (0.5, 1.0, 2.0)}
+    scene = Scene(lights=FAR, view=View(direction=(1, 0, 0)))
+    path = vizlight.live_html(
+        frames, scene, tmp_path / "a.html", frames="level in m", background="black"
+    )
+    page, _ = opened(browser, path, bare=False, **WIDE)
+    counts = []
+    for i in range(3):
+        slide(page, "level in m", i)
+        counts.append(int((shot(page)[:, :600].max(axis=2) > 40).sum()))
+    assert counts[0] > 0
+    assert counts[1] > 3 * counts[0]
+    assert counts[2] > 3 * counts[1]
+    page.keyboard.press("Control+z")
+    assert page.evaluate("vizlight.state.frame") == 1
+    page.close()
+
+
+@needs_browser
+def test_a_cut_leaves_one_side(browser, tmp_path):
+    camera = vizlight.render.camera_on(pv.Sphere(), (0, 0, 1), parallel=True)
+    page, _ = opened(browser, plain_page(tmp_path, camera=camera))
+    page.evaluate("() => vizlight.change({ cut: { axis: 0, at: 0.5, far: false } })")
+    seen = shot(page).max(axis=2) > 0
+    middle = SIZE["width"] // 2
+    assert seen[:, : middle - 1].sum() > 1000
+    assert not seen[:, middle + 2 :].any()
+    page.evaluate("() => vizlight.change({ cut: { axis: 0, at: 0.5, far: true } })")
+    assert not (shot(page).max(axis=2) > 0)[:, : middle - 2].any()
+    page.close()
+
+
+@needs_browser
+def test_a_page_starts_at_the_view_of_its_scene(browser, tmp_path):
+    mesh = torus()
+    for view in (View(direction=(0, -1, 0.4)), View(position=(3.0, 2.0, 1.5))):
+        scene = Scene(lights=FAR, view=view)
+        for given in ((mesh, scene), (vizlight.illuminate(mesh, scene), None)):
+            path = vizlight.live_html(*given, tmp_path / "a.html")
+            camera = scene_in(path)[2]["camera"]
+            toward = np.subtract(camera["position"], camera["focal"])
+            expected = view.direction or np.subtract(view.position, mesh.center)
+            cosine = toward @ expected / np.linalg.norm(toward) / np.linalg.norm(expected)
+            assert cosine > 0.9999
+
+
+@needs_browser
+@pytest.mark.parametrize("state", ["first", "own lamp", "question", "colours", "cut", "parallel"])
+def test_the_copied_program_draws_the_picture(state, browser, tmp_path, monkeypatch):
+    """Python, run as it was copied, draws what the page shows."""
+    mesh = torus()
+    del mesh.point_data["n"]
+    mesh.save(tmp_path / "ring.vtp")
+    scene = Scene(lights=[FAR, NEAR], view=View(direction=(1, 0.6, 0.8)))
+    path = vizlight.live_html(
+        pv.read(tmp_path / "ring.vtp"), scene, tmp_path / "a.html", background="black",
+        source=[str(tmp_path / "ring.vtp")],
+    )  # fmt: skip
+    page, _ = opened(browser, path)
+    act = {
+        "own lamp": "app.put(app.lamps[0], [0.6, 0, 0.8]); app.change({ fade: 0.5 })",
+        "question": "app.look('shape')",
+        "colours": "app.change({ color: 'height', cmap: 'plasma' })",
+        "cut": "app.change({ cut: { axis: 2, at: 0.4, far: false } })",
+        "parallel": "app.state.camera.parallel = true; app.orbit(0.3, 0.2); app.change({})",
+    }.get(state, "app.draw()")
+    page.evaluate(f"() => {{ const app = vizlight; {act}; }}")
+    seen, text = shot(page), page.evaluate("vizlight.texts().python")
+    page.close()
+    monkeypatch.setattr(pv, "OFF_SCREEN", True)
+    monkeypatch.chdir(tmp_path)
+    text = text.replace("clim=", "show_scalar_bar=False, clim=")
+    exec(compile(text, "copied", "exec"), {})
+    drawn = np.array(Image.open(tmp_path / "a.png").convert("RGB"), dtype=np.int16)
+    error = np.abs(seen - drawn)
+    assert drawn.std() > 10
+    assert error.mean() <= 1.5
+    assert np.quantile(error.max(axis=-1), 0.97) <= 6
+
+
+@needs_browser
+def test_keys_and_fingers_turn_the_page(browser, tmp_path):
+    page, _ = opened(browser, plain_page(tmp_path), has_touch=True)
+    where = """() => {
+        const { position, focal } = vizlight.state.camera;
+        return [position, Math.hypot(...position.map((x, i) => x - focal[i]))];
+    }"""
+    first, far = page.evaluate(where)
+    page.keyboard.press("Tab")
+    page.keyboard.press("ArrowLeft")
+    turned, same = page.evaluate(where)
+    assert np.linalg.norm(np.subtract(turned, first)) > 0.02 * far
+    assert same == pytest.approx(far)
+    page.keyboard.press("+")
+    assert page.evaluate(where)[1] == pytest.approx(far / 1.1)
+    page.keyboard.press("r")
+    assert page.evaluate(where)[0] == pytest.approx(first)
+    wire = page.context.new_cdp_session(page)
+
+    def touch(kind, *points):
+        rows = [{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(points)]
+        wire.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": rows})
+
+    touch("touchStart", (100, 150))
+    for i in range(10):
+        touch("touchMove", (100 + 8 * i, 150))
+    touch("touchEnd")
+    turned, same = page.evaluate(where)
+    assert np.linalg.norm(np.subtract(turned, first)) > 0.1 * far
+    assert same == pytest.approx(far)
+    touch("touchStart", (150, 150), (200, 150))
+    for i in range(10):
+        touch("touchMove", (150 - 5 * i, 150), (200 + 5 * i, 150))
+    touch("touchEnd")
+    assert page.evaluate(where)[1] < 0.8 * far
+    page.close()
+
+
+@needs_browser
+def test_several_meshes_can_be_switched_off_each(browser, tmp_path):
+    both = pv.MultiBlock({"ball": pv.Sphere(), "ring": torus().translate((0, 0, 1))})
+    path = vizlight.live_html(
+        both, Scene(lights=FAR, material=SHINY), tmp_path / "a.html", background="black"
+    )
+    page, _ = opened(browser, path, bare=False, **WIDE)
+    every = shot(page)[60:880, :840]
+    for name in ("ball", "ring"):
+        page.get_by_role("checkbox", name=name).uncheck()
+        seen = shot(page)[60:880, :840]
+        assert np.abs(seen - every).max() > 30
+    assert seen.max() == 0
+    page.close()
+
+
+@needs_browser
+def test_many_meshes_stand_in_a_closed_list_after_the_sliders(browser, tmp_path):
+    many = pv.MultiBlock({f"ball {i}": pv.Sphere(radius=0.1, center=(i, 0, 0)) for i in range(12)})
+    path = vizlight.live_html(
+        many, Scene(lights=FAR, material=SHINY), tmp_path / "a.html", background="black"
+    )
+    page, _ = opened(browser, path, bare=False, **WIDE)
+    meshes = page.locator("details", has_text="Meshes (12)")
+    assert not meshes.evaluate("(list) => list.open")
+    meshes.locator("summary").focus()
+    page.keyboard.press("Enter")
+    page.get_by_label("ball 7", exact=True).uncheck()
+    every = page.get_by_label("All", exact=True)
+    assert every.evaluate("(box) => box.indeterminate")
+    every.check()
+    assert shot(page)[60:880, :840].max() > 30
+    every.uncheck()
+    assert shot(page)[60:880, :840].max() == 0
+    page.close()
+
+
+@needs_browser
+def test_page_without_webgl_shows_the_picture_and_says_so(chromium, tmp_path):
+    path = plain_page(tmp_path)
+    bare = chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", "--disable-3d-apis"])
+    page = bare.new_page(viewport=SIZE)
+    page.goto(path.as_uri())
+    assert "needs WebGL 2" in page.get_by_role("alert").inner_text()
+    assert page.evaluate("document.getElementById('picture').naturalWidth") > 100
+    seen = np.array(Image.open(io.BytesIO(page.screenshot())).convert("L"), dtype=int)
+    assert seen.std() > 10
+    bare.close()
+
+
+@needs_browser
+def test_a_background_that_nobody_chose_is_dark_on_dark_pages_but_not_on_paper(browser, tmp_path):
+    scene = Scene(lights=FAR)
+    for options, corners in (({}, [22, 255, 255]), ({"background": "white"}, [255, 255, 255])):
+        path = vizlight.live_html(pv.Sphere(), scene, tmp_path / "a.html", **options)
+        page, _ = opened(browser, path)
+        seen = []
+        for media in (
+            {"color_scheme": "dark"}, {"color_scheme": "light"},
+            {"color_scheme": "dark", "media": "print"},
+        ):  # fmt: skip
+            page.emulate_media(**media)
+            seen.append(int(shot(page)[3, 3, 0]))
+        page.close()
+        assert seen == corners
+
+
+@needs_browser
+def test_two_files_serve_a_strict_policy(browser, tmp_path):
+    path = plain_page(tmp_path, files=2)
+    assert (tmp_path / "viewer.js").read_text("utf-8") == html.viewer()
+    assert "<script>" not in path.read_text("utf-8")
+
+    class Strict(http.server.SimpleHTTPRequestHandler):
+        def end_headers(self):
+            policy = "default-src 'none'; script-src 'self'; img-src 'self' data: blob:"
+            self.send_header("Content-Security-Policy", policy)
+            super().end_headers()
+
+        def log_message(self, *_):
+            """Say nothing."""
+
+    handler = functools.partial(Strict, directory=tmp_path)
+    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+        thread = threading.Thread(target=server.serve_forever)
+        thread.start()
+        page, said = browser.new_page(viewport=SIZE), []
+        page.on("console", lambda message: said.append(message.text))
+        page.on("pageerror", lambda error: said.append(str(error)))
+        page.goto(f"http://127.0.0.1:{server.server_port}/ball.html")
+        page.wait_for_selector("body[data-ready]")
+        assert page.evaluate("getComputedStyle(document.getElementById('panel')).display") == "flex"
+        assert shot(page).std() > 10
+        page.close()
+        server.shutdown()
+        thread.join()
+    assert said == []
+
+
+def test_scans_are_points_in_the_page(tmp_path):
+    scan = pv.PolyData(np.random.default_rng(0).normal(size=(500, 3)))
+    for step in (scan, vizlight.illuminate(scan), pv.MultiBlock([scan, pv.Sphere()])):
+        _, _, content = scene_in(vizlight.live_html(step, None, tmp_path / "scan.html"))
+        assert all(mesh["live"] for mesh in content["meshes"])
+        assert "verts" in content["meshes"][0]
+        # White points show before black.
+        dark = not isinstance(step, pv.MultiBlock)
+        assert content["background"] == ("#000000" if dark else "#ffffff")
+    with pytest.raises(ValueError, match="mesh: expected a surface, whose normals are lit"):
+        vizlight.live_html(pv.PolyData(np.eye(3)), None, tmp_path / "few.html")
+
+
+def test_light_that_cannot_follow_is_fixed_and_said_to_be(tmp_path):
+    mesh, scene = torus(), Scene(lights=FAR, material=SHINY)
+    with pytest.warns(UserWarning, match="does not follow the eye, because .*cylinder.*ambient"):
+        path = vizlight.live_html(
+            mesh, scene, tmp_path / "a.html", tangents="around", model="cylinder"
+        )
+    _, _, content = scene_in(path)
+    assert "does not follow the eye" in content["notices"][0]
+    assert not content["meshes"][0]["live"]
+    with pytest.warns(UserWarning, match="does not follow the eye; ambient and diffuse"):
+        path = vizlight.live_html(pv.Sphere(), scene, path, light="points")
+    _, _, content = scene_in(path)
+    packed = content["meshes"][0]["colors"]["data"]
+    colors = np.frombuffer(zlib.decompress(base64.b64decode(packed)), np.uint8).reshape(-1, 4)
+    bare = Scene(lights=FAR, material=shiny(specular=0))
+    expected = vizlight.illuminate(pv.Sphere(), bare)["luminance"]
+    assert np.abs(colors[:, 0] - 255 * np.clip(expected, 0, 1)).max() <= 1
+
+
+def test_plotter_writes_its_meshes_with_their_own_light(tmp_path):
+    plotter = pv.Plotter(off_screen=True)
+    with pytest.raises(ValueError, match="plotter: expected a mesh with live light"):
+        plotter.vizlight.export_html(tmp_path / "a.html")
+    plotter.vizlight.add_mesh(torus(), scene=Scene(lights=FAR, material=SHINY), scalars="height")
+    plotter.vizlight.add_mesh(winding(), scene=Scene(**HEADLIT), line_width=3, name="coil")
+    plotter.add_mesh(pv.Cube())
+    with pytest.warns(UserWarning, match="1 actors without light of vizlight"):
+        path = plotter.vizlight.export_html(tmp_path / "a.html", title="Both")
+    plotter.close()
+    _, _, content = scene_in(path)
+    assert [mesh["name"] for mesh in content["meshes"]] == ["mesh 1", "coil"]
+    assert [light["eye"] for (light,) in content["lights"]] == [False, True]
+    assert content["bars"][0]["title"] == "height"
+    assert content["meshes"][1]["lineWidth"] == 3
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"path": "lit.png"}, "output: expected a name that ends in .html, .htm"),
+        ({"path": "none/lit.html"}, "output: expected a folder that exists"),
+        ({"tangents": "height"}, "tangents: expected .*'height'"),
+        ({"scalars": "nothing"}, "scalars: expected .*'nothing'"),
+        ({"files": 3}, "files: expected"),
+        ({"title": 3}, "title: expected"),
+    ],
+)
+def test_what_does_not_fit_is_refused_and_nothing_is_written(options, message, tmp_path):
+    path = tmp_path / options.pop("path", "lit.html")
+    with pytest.raises((FileError, TypeError, ValueError), match=message):
+        vizlight.live_html(torus(), Scene(lights=FAR, material=SHINY), path, **options)
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_viewer_is_small_and_asks_for_nothing():
+    text = html.viewer()
+    assert len(text.encode()) < 80_000
+    text = text.replace("http://www.w3.org/2000/svg", "")
+    assert not re.search(r"https?:|fetch\(|XMLHttp|eval\(|innerHTML|document\.write", text)
+
+
+@pytest.mark.parametrize(("mesh", "colour"), [(pv.Line(), "#000000"), (pv.Plane(), "#ffffff")])
+def test_lines_alone_stand_before_black(mesh, colour, tmp_path):
+    path = vizlight.live_html(mesh, Scene(lights=FAR, material=SHINY), tmp_path / "a.html")
+    assert scene_in(path)[2]["background"] == colour
+
+
+@needs_browser
+@pytest.mark.filterwarnings("ignore:.*could not be lit")
+def test_what_is_not_data_is_grey_and_has_a_name(browser, tmp_path):
+    camera = vizlight.render.camera_on((-0.5, 0.5, -0.5, 0.5, 0, 0), (0, 0, 1), parallel=True)
+    camera.parallel_scale = 0.5
+    path = vizlight.live_html(
+        half_known(), Scene(lights=Light(direction=(1, 0, 1)), material=SHINY), tmp_path / "a.html",
+        camera=camera, tangents="V", scalars="height", panel=False,
+    )  # fmt: skip
+    page, _ = opened(browser, path)
+    picture = shot(page)
+    page.close()
+    np.testing.assert_array_equal(picture[80:170, 165:240], 128)
+    missing, known = picture[30:100, 40:140], picture[160:220, 40:140]
+    assert np.ptp(missing, axis=2).max() == 0
+    assert np.ptp(known, axis=2).min() > 10
+    bars = scene_in(path)[2]["bars"]
+    assert [bar["title"] for bar in bars] == ["height", "no data"]
+    assert bars[1]["colors"] == ["#808080"] * 2
+
+
+def test_a_page_has_the_key_of_its_light(tmp_path):
+    ball = pv.Sphere()
+    ball["flow"] = np.cross((0.3, 0.2, 1.0), ball.points)
+    ball["z"] = ball.points[:, 2]
+
+    def key_of(scene, **options):
+        path = vizlight.live_html(ball, scene, tmp_path / "a.html", **options)
+        return scene_in(path)[2]["key"]
+
+    scene = presets.direction()
+    assert key_of(scene, tangents="flow") == ["direction on the screen"]
+    assert key_of(scene, tangents="flow", key=False) is None
+    # The bar tells values, and hues of data hide those of the light.
+    assert key_of(scene, tangents="flow", scalars="z") is None
+    assert key_of(Scene(), scalars="z") is None
+    assert key_of(Scene(lights=Light(direction=(1, 2, 3)))) is None

@@ -1,0 +1,248 @@
+"""Each option and each part of a scene has an effect in all that computes or writes light.
+
+The fields are taken from the classes themselves: a new one needs a line below, and fails where an
+algebra, the oracle, the filter, the page or the command line ignores it.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import re
+import warnings
+from pathlib import Path
+
+import numpy as np
+import oracles
+import pytest
+import pyvista as pv
+from differential import by_numpy, by_text
+
+import vizlight
+from vizlight import DepthCue, Light, Material, Scene, View, cli, files
+from vizlight.draw import html, program
+from vizlight.mesh import brains, foreign_files
+from vizlight.shading.arrays import Output
+from vizlight.shading.decide import decide
+from vizlight.shading.inputs import ShadingInputs
+from vizlight.shading.options import LightOptions, ShadingOptions
+
+CUE = DepthCue(front=2, back=9, front_scale=0.9, back_scale=0.3, cue=0.1)
+FAR = Light(direction=(1, 2, 3))
+LAMP = Light(position=(3, 4, 5), intensity=0.8)
+SHINE = Material(ambient=0.2, diffuse=0.5, specular=0.4)
+SCENE = Scene(lights=LAMP, material=SHINE, view=View(position=(1, -2, 6), direction=(0.2, -0.3, 1)))
+BASES = {Light: LAMP, Material: SHINE, DepthCue: CUE, Scene: SCENE}
+#: Another value of each field, or a pair: what to compare with, and it with another value.
+PARTS = {
+    Light: {
+        "direction": (FAR, Light(direction=(3, 2, 1))), "position": (-3, 4, 5), "intensity": 0.7,
+        "attenuation": (0.5, 0.1, 0.01), "color": (1, 0.6, 0.3),
+        "follows_view": (FAR, Light(direction=(1, 2, 3), follows_view=True)),
+    },
+    Material: {
+        "ambient": 0.3, "diffuse": 0.6, "specular": 0.3, "shininess": 5.0,
+        "color": (0.9, 0.6, 0.4), "specular_color": (0.9, 0.6, 0.4),
+    },
+    DepthCue: {
+        "front": 3.0, "back": 8.0, "front_scale": 0.8, "back_scale": 0.2, "cue": 0.3,
+        "color": (0.3, 0.4, 1), "smooth": True,
+    },
+    Scene: {
+        "lights": [LAMP, FAR], "material": Material(diffuse=0.6), "depth_cue": CUE,
+        "view": View(position=(2, -0.2, 6), direction=(0.2, 0, 1)),
+        "ambient_intensity": 0.5, "ambient_color": (0.6, 0.8, 1),
+    },
+}  # fmt: skip
+#: Another value of each option than its default; a pair is that and the options beside both.
+OPTIONS = {
+    "model": "blinn", "exponent": (1.0, {"tangents": "around"}),
+    "conditioned": (True, {"tangents": "around", "conditioned": False}), "components": True,
+    "precision": ("float64", {"precision": "float32"}), "tangents": "around",
+    "positions": "place", "normals": "tilted", "facing": "eye",
+    "feature_angle": (20.0, {"feature_angle": 179.0}), "line_field": (True, {"tangents": "around"}),
+    "bundle": (True, {"bundle": False}), "occlusion": "share", "name": "other",
+}  # fmt: skip
+#: What has no effect in a place, and why.
+WITHOUT = {
+    ("Glsl", "components"): "a fragment has one colour",
+    ("Glsl", "precision"): "fragments are float32",
+    ("Oracle", "components"): "it always returns them",
+    ("Oracle", "precision"): "it has the one of its numbers",
+    ("Filter", "line_field"): "it matters between points, to refine and to the report",
+    ("Page", "line_field"): "it matters between points, to refine and to the report",
+    ("Page", "components"): "a page shows one picture",
+    ("Shell", "positions"): "lights in n-space are for scripts",
+    ("Shell", "occlusion"): "it is --sky there",
+}
+
+
+def within(part):
+    """Return the scene with another part in its place."""
+    if isinstance(part, Scene):
+        return part
+    name = {Light: "lights", Material: "material", DepthCue: "depth_cue"}[type(part)]
+    return SCENE.replace(**{name: part})
+
+
+def two_scenes(kind, name):
+    """Return two scenes that differ in one field of a part."""
+    value = PARTS[kind][name]
+    if not (isinstance(value, tuple) and isinstance(value[0], kind)):
+        value = BASES[kind], dataclasses.replace(BASES[kind], **{name: value})
+    return [within(part) for part in value]
+
+
+def two_options(name):
+    """Return two sets of options that differ in one."""
+    value, beside = OPTIONS[name] if isinstance(OPTIONS[name], tuple) else (OPTIONS[name], {})
+    return beside, beside | {name: value}
+
+
+class Points:
+    """What computes light of points alone, whose options have no names of arrays."""
+
+    def __init__(self, **_):
+        given = np.random.default_rng(3).normal(size=(3, 6, 3))
+        self.inputs = ShadingInputs(points=given[0], tangents=given[1][:, None], normals=given[2])
+
+    def plan(self, scene, options):
+        """Return the options, and the plan that they make."""
+        asked = ShadingOptions(**{k: v for k, v in options.items() if k != "tangents"})
+        return asked, decide(scene, self.inputs.layout, asked, asked.precision)
+
+
+class NumPy(Points):
+    """The algebra of arrays."""
+
+    light = staticmethod(by_numpy)
+
+    def __call__(self, scene, options):
+        _, plan = self.plan(scene, options)
+        output = Output(plan, self.inputs.count)
+        self.light(plan, self.inputs, output)
+        return [(str(v.dtype), v.tolist()) for v in vars(output).values() if v is not None]
+
+
+class Loops(NumPy):
+    """The algebra that writes loops for numba; its text is run as Python."""
+
+    light = staticmethod(by_text)
+
+
+class Glsl(Points):
+    """The algebra that writes text for fragments, with the numbers that it is given."""
+
+    def __call__(self, scene, options):
+        _, plan = self.plan(scene, options)
+        lights = [light.seen_from(scene.view) for light in scene.lights]
+        held = program.numbers(scene, lights, shown=program.Shown(), fur=0.0, tallest=1.0)
+        # The renderer holds the colours of the material.
+        colors = scene.material.color, scene.material.specular_color
+        return program.write(plan, turned=False), held, colors
+
+
+class Oracle(Points):
+    """The second implementation."""
+
+    def __call__(self, scene, options):
+        asked, _ = self.plan(scene, options)
+        known = {k: v for k, v in vars(asked).items() if k not in ("components", "precision")}
+        rows = zip(
+            *(getattr(self.inputs, n) for n in ("points", "tangents", "normals")), strict=True
+        )
+        return [oracles.digits.light(*(v.tolist() for v in row), scene, **known) for row in rows]
+
+
+class Filter:
+    """The filter of meshes: all its point arrays."""
+
+    def __init__(self, folder, **_):
+        self.folder, random = folder, np.random.default_rng(5)
+        body = pv.Cylinder(resolution=12, capping=True).triangulate()
+        self.meshes = {False: body, True: pv.MultipleLines(random.normal(size=(30, 3)))}
+        for mesh in self.meshes.values():
+            mesh.clear_data()
+            places = np.asarray(mesh.points, float)
+            mesh["around"], mesh["place"] = np.cross(places, (0.3, 0.2, 1.0)), places * (1, 1, 2)
+            mesh["tilted"] = places + random.normal(size=places.shape)
+            mesh["share"] = np.linspace(0, 1, len(places))
+
+    def mesh(self, options):
+        """Return lines for a bundle, else a body with edges."""
+        return self.meshes["bundle" in options]
+
+    def __call__(self, scene, options):
+        lit = vizlight.illuminate(self.mesh(options), scene, **options)
+        return {k: (str(v.dtype), v.tolist()) for k, v in lit.point_data.items()}
+
+
+class Page(Filter):
+    """The page: all its data and texts."""
+
+    def __init__(self, monkeypatch, **given):
+        super().__init__(**given)
+        monkeypatch.setattr(html, "_picture", lambda _: "")
+
+    def __call__(self, scene, options):
+        path = vizlight.live_html(self.mesh(options), scene, self.folder / "a.html", **options)
+        return path.read_text("utf-8")
+
+
+class Shell(Filter):
+    """The command line: all arrays of the file that it writes, records among them."""
+
+    def __call__(self, scene, options):
+        paths = [str(self.folder / name) for name in ("a.vtp", "scene.json", "lit.vtp")]
+        self.mesh(options).save(paths[0])
+        Path(paths[1]).write_text(json.dumps(scene.to_dict()))
+        words = [
+            f"--{k.replace('_', '-')}" + ("" if v is True else f"={v}".replace(" ", "-"))
+            for k, v in options.items() if v is not False
+        ]  # fmt: skip
+        assert cli.main(["light", paths[0], "--scene", paths[1], *words, "-o", paths[2]]) == 0
+        lit = pv.read(paths[2])
+        return [{k: v.tolist() for k, v in d.items()} for d in (lit.point_data, lit.field_data)]
+
+
+ALGEBRAS, WRITERS = (NumPy, Loops, Glsl, Oracle), (Filter, Page, Shell)
+CASES = [
+    (place, kind, field.name)
+    for place in (*ALGEBRAS, *WRITERS)
+    for kind in (*BASES, ShadingOptions if place in ALGEBRAS else LightOptions)
+    for field in dataclasses.fields(kind)
+]
+
+
+@pytest.mark.opengl
+@pytest.mark.parametrize(("place", "kind", "name"), CASES, ids=lambda x: getattr(x, "__name__", x))
+def test_a_field_has_an_effect(place, kind, name, tmp_path, monkeypatch):
+    made = place(folder=tmp_path, monkeypatch=monkeypatch)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        if kind in BASES:
+            one, other = (made(scene, {}) for scene in two_scenes(kind, name))
+        elif place in WRITERS and (place.__name__, name) in WITHOUT:
+            return
+        else:
+            one, other = (made(SCENE, options) for options in two_options(name))
+    ignored = (place.__name__, name) in WITHOUT
+    assert (one == other) == ignored, f"{place.__name__} and {kind.__name__}.{name}"
+
+
+def test_no_line_is_left_of_a_field_that_is_gone():
+    known = {(place.__name__, name) for place, _, name in CASES}
+    assert known >= set(WITHOUT)
+    assert {field.name for field in dataclasses.fields(LightOptions)} == set(OPTIONS)
+    for kind, values in PARTS.items():
+        assert {field.name for field in dataclasses.fields(kind)} == set(values)
+
+
+def test_each_format_has_a_file_that_is_read():
+    """Of what meshio and rasterio read, some formats stand for all; two endings are aliases."""
+    known = {*files.SUFFIXES, *files.SOUPS, *files.Y_UP, *brains.SURFACES} - {".vrml"}
+    others = ("meshio", "rasterio")
+    known |= {ending for ending, (by, _) in foreign_files.PACKAGES.items() if by not in others}
+    text = "".join(path.read_text("utf-8") for path in Path(__file__).parent.rglob("*.py"))
+    names = set(re.findall(r"\w(\.\w+(?:\.gz)?)\b", text))
+    assert sorted(known - names - {".cdf"}) == []

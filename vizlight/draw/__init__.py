@@ -1,0 +1,1 @@
+"""Pictures: plotters whose light follows the camera, offscreen, movies, pages, glTF, ParaView."""

@@ -1,0 +1,654 @@
+"""The plotter component ``plotter.vizlight``: meshes whose light follows the camera."""
+
+from __future__ import annotations
+
+import weakref
+from typing import TYPE_CHECKING, Any, get_args
+
+import pyvista as pv
+
+from vizlight import _check
+from vizlight.draw import keywords
+from vizlight.draw.corner import PLACES, CornerKey, ink_on
+from vizlight.draw.fragments import Fragments, unfit
+from vizlight.draw.html import write_page
+from vizlight.draw.live import LightAt, Live, colorless, has_pass, is_copy, items
+from vizlight.draw.notebook import guard, guard_exports
+from vizlight.draw.page import Shown
+from vizlight.draw.points import Points
+from vizlight.draw.program import Stroke
+from vizlight.draw.sources import sources_of, tinted
+from vizlight.filters import relight
+from vizlight.filters.key import key, question_of
+from vizlight.filters.tint import RGB, are_colors, default_map, default_nan_color, values_of
+from vizlight.mesh import blocks, records
+from vizlight.reading.polylines import has_lines_only
+from vizlight.scene import Material, Scene
+from vizlight.shading.display import NO_DATA_NAME, titled
+from vizlight.shading.results import DEFAULT_NAME, unlit
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import ArrayLike
+    from vtkmodules.vtkCommonCore import vtkObject
+    from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
+    from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
+
+    from vizlight._types import ColorLike
+    from vizlight.draw.corner import Corner
+    from vizlight.filters.key import Question
+    from vizlight.filters.relight import Source
+
+__all__ = ["Component", "add_recorded"]
+
+#: Passes of VTK that need its own light or normals, and what they draw.
+UNLIT_PASSES = {"vtkShadowMapPass": "the shadows", "vtkSSAOPass": "the ambient occlusions (SSAO)"}
+#: Coefficients ka, kd and ks of an actor that PyVista was not told others for.
+UNTOUCHED = (0.0, 1.0, 0.0)
+
+
+@pv.register_plotter_component("vizlight")
+class Component:
+    """Meshes of one plotter whose light follows the camera.
+
+    Parameters
+    ----------
+    plotter : pyvista.Plotter
+        Plotter.
+    """
+
+    def __init__(self, plotter: pv.BasePlotter) -> None:
+        self._plotter = weakref.ref(plotter)
+        self._holders: weakref.WeakValueDictionary[str, _Holder] = weakref.WeakValueDictionary()
+        self._observed: list[tuple[vtkRenderer, int]] = []
+        #: What was said to be lost.
+        self._lost: set[str] = set()
+
+    def add_mesh(
+        self,
+        mesh: pv.DataSet | pv.MultiBlock,
+        /,
+        *,
+        scene: Scene | None = None,
+        light: LightAt = "auto",
+        scalars: str | ArrayLike | None = None,
+        line_diameter: float | None = None,
+        **options: Any,
+    ) -> pv.Actor | list[pv.Actor]:
+        """Add a mesh whose light follows the camera.
+
+        Parameters
+        ----------
+        mesh : pyvista.DataSet or pyvista.MultiBlock
+            Mesh that is lit and drawn; not changed. One with the light of a filter is lit again
+            from its record, unless options of light are given.
+        scene : Scene, optional
+            Lights, material and depth cue. Default: the scene of the mesh's record, otherwise the
+            lights of the plotter and the material of the actor (``ambient=``, ``diffuse=``,
+            ``specular=``, ``specular_power=``, ``color=``). The camera takes the place of its
+            view, unless the view is one of n-space.
+        light : {"auto", "points", "fragments"}
+            Place where the light is computed: at the points of the mesh, the numbers that a filter
+            attaches; or in each fragment, from interpolated tangents and normals, which is right
+            between the points of a coarse mesh too. "auto": in fragments where the plan allows.
+            ``"fragments"`` warns where it does not.
+        scalars : str or array_like, optional
+            Array that gives the colours, by its name or with one row per point or cell. Light keeps
+            them readable, as in :func:`vizlight.tint`: there is no highlight, and values that are
+            missing are grey. With ``rgb=True`` the array holds colours. Blocks without the array
+            have no colours of data. Default: the array of :func:`vizlight.tint` for a mesh that it
+            returned; as in PyVista, the active scalars, where no ``color``, no ``tangents`` and no
+            ``scene`` say that the light itself is looked at; otherwise none.
+        line_diameter : float, optional
+            Diameter of lines in the unit of the mesh, at least a pixel, in place of PyVista's
+            ``line_width`` in pixels: nearer lines are wider.
+        **options
+            Options of :func:`vizlight.illuminate`, such as ``tangents=`` and ``conditioned=``,
+            except ``name`` and ``components``, with ``feature_angle="auto"`` by default: where
+            edges are creases a copy is drawn whose points are split there, which does not follow
+            later changes of the mesh; and keywords of ``pyvista.Plotter.add_mesh``, such
+            as ``clim``, ``name``, ``opacity``, ``line_width``, ``pickable``, and ``cmap``, which is
+            ``vizlight.maps.even`` unless the theme's was changed. ``smooth_shading=False`` splits
+            the points at every edge, so that faces are flat, ``split_sharp_edges`` at edges of the
+            theme's angle. PyVista draws the mesh with its own light if ``lighting=False``,
+            ``pbr=True`` or ``style="points_gaussian"``, and points that have no vectors. With
+            ``render_lines_as_tubes=True`` lines wider than a pixel have, where light is in
+            fragments, the light of the cylinder that they stand for across their width: its mean is
+            the light of ``model="cylinder"``.
+
+        Returns
+        -------
+        pyvista.Actor, or list of them
+            Actor, for a MultiBlock one for each block.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If an argument does not fit, as for :func:`vizlight.illuminate`, or the record of the
+            mesh does not suffice.
+        RuntimeError
+            If the plotter is closed.
+
+        Warns
+        -----
+        UserWarning
+            Once, if points cannot be lit; before a frame, if the mesh can no longer be lit, such
+            as after an array was removed: it keeps the light that it has.
+
+        Notes
+        -----
+        Scenes that PyVista exports cannot hold live light: ``plotter.export_html``,
+        ``export_gltf`` and the like raise a ValueError with the remedy while there is any.
+        :meth:`export_html` of this component can.
+
+        With ``bundle`` the shares of light are computed again only for lights that have moved. The
+        lights of a scene must stay fixed; the plotter's lights may follow the camera, at the cost
+        of one grid for each of them in each frame.
+
+        Light at the points is bit-identical to the filter's for the same camera. Light in
+        fragments is within 4 of 255 of it on fine meshes.
+        """
+        plotter = self._open_plotter()
+        blocks.check(mesh)
+        _check.instance("scene", scene, Scene, optional=True)
+        _check.choice("light", light, get_args(LightAt))
+        own, drawing = keywords.sorted_out("plotter.vizlight.add_mesh", options, scene)
+        if line_diameter is not None:
+            line_diameter = _check.positive("line_diameter", line_diameter)
+        if _check.boolean("copy_mesh", drawing.pop("copy_mesh", False)):
+            mesh = mesh.copy(deep=False)
+        why = keywords.left_to_pyvista(drawing)
+        if why is not None:
+            if why:
+                _check.warn(f"the mesh has PyVista's light in place of vizlight's: {why}")
+            given: Any = scalars
+            unlit: pv.Actor = plotter.add_mesh(mesh, scalars=given, **drawing)
+            return unlit
+        if scalars is None and scene is None and not (own or relight.is_lit(mesh)):
+            others = any(drawing.get(name) for name in ("color", "multi_colors", "texture"))
+            scalars = None if others else keywords.active_scalars(mesh)
+        mesh, chosen = keywords.colored(mesh, scalars, drawing)
+        angle = keywords.shading_of(drawing)
+        several, named = isinstance(mesh, pv.MultiBlock), list(blocks.named_blocks(mesh))
+        clouds = [keywords.is_cloud(block, own) for block, _ in named]
+        if any(clouds):
+            mesh = pv.MultiBlock()
+            for (block, path), is_cloud in zip(named, clouds, strict=True):
+                if not is_cloud:
+                    mesh.append(block, path.lstrip("/"))
+        sources, used = sources_of(mesh, scene, own, angle)
+        if getattr(plotter, "notebook", False):
+            guard()
+        lit, colors = iter(sources), keywords.block_colors(drawing)
+        actors = []
+        for number, ((block, path), is_cloud) in enumerate(zip(named, clouds, strict=True)):
+            keywords_of = drawing | next(colors)
+            if several and drawing.get("name") is not None:
+                keywords_of["name"] = f"{drawing['name']}-{number}"
+            lacks = several and chosen not in (*block.point_data, *block.cell_data)
+            here = None if lacks else chosen
+            if is_cloud:
+                actors.append(_add_cloud(plotter, block, here, keywords_of))
+                continue
+            source = next(lit)
+            if not block.n_points:
+                continue
+            shown, tints = (here, {}) if here is not None else tinted(source.mesh)
+            keywords_of = tints | keywords_of | {"line_diameter": line_diameter}
+            actor = self._add(plotter, source, used, light, shown, keywords_of, follow=True)
+            live = self._live_of(actor)
+            assert live is not None
+            live.name = path.lstrip("/") or str(drawing.get("name") or "")
+            actors.append(actor)
+        if not several and not actors:
+            raise ValueError(_check.message("mesh", "a mesh with points", "none"))
+        return actors if several else actors[0]
+
+    def add_key(
+        self,
+        scene: Scene | None = None,
+        /,
+        *,
+        question: Question | None = None,
+        corner: Corner = "auto",
+        size: float = 0.2,
+        color: ColorLike | None = None,
+        **options: Any,
+    ) -> pv.PolyData:
+        """Draw the key of the light in a corner of the picture, with its words.
+
+        Parameters
+        ----------
+        scene : Scene, optional
+            Scene whose light the key explains. Default: the scene of the first mesh of
+            :meth:`add_mesh`, with the exponent of its light, and its colour map where it is
+            coloured by values.
+        question : {"direction", "slope", "heading", "shape", "value"}, optional
+            What the key tells. Default: the question of the preset, see
+            :func:`vizlight.presets.key`.
+        corner : {"auto", "lower left", "lower right", "upper left", "upper right"}
+            Corner of the picture. ``"auto"``: the one in which the data have the fewest points when
+            the first frame is drawn.
+        size : float, default: 0.2
+            Width of the key, as a share of the shorter side of the picture, from 0.02 to 1.
+        color : colour, optional
+            Colour of the words. Default: black on a light background, white on a dark one.
+        **options
+            Keywords of :func:`vizlight.presets.key`: exponent, conditioned, cmap, clim.
+
+        Returns
+        -------
+        pyvista.PolyData
+            The key.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If an argument does not fit; if there is neither a scene nor a mesh with live light.
+        RuntimeError
+            If the plotter is closed.
+
+        Notes
+        -----
+        Lights that follow the view have the same key in all views. The key of fixed lights is made
+        for the camera when it is added.
+        """
+        plotter = self._open_plotter()
+        _check.choice("corner", corner, ("auto", *PLACES))
+        size = _check.number("size", size, low=0.02, high=1.0)
+        if scene is None:
+            scene, own = self._first_light(plotter, question)
+            options = own | options
+        made = key(scene, **({"question": question} | options))
+        ink = _check.color("color", color)
+        if ink is None:
+            ink = ink_on(plotter.background_color)
+        CornerKey(made, corner, size, ink).show(plotter.renderer)
+        return made
+
+    def _first_light(
+        self, plotter: pv.BasePlotter, question: Question | None
+    ) -> tuple[Scene, dict[str, Any]]:
+        """Return the scene of the first mesh with live light, and its options of a key."""
+        for actor in items(plotter.renderer.GetActors()):
+            live = self._live_of(actor)
+            if live is not None:
+                lit_by = live.scene_of(plotter.renderer, actor)
+                options: dict[str, Any] = {"exponent": live.source.options.exponent}
+                table = actor.GetMapper().GetLookupTable()
+                valued = live.scalars is not None and isinstance(table, pv.LookupTable)
+                # The default light is made for values; without values it tells the shape.
+                if question is None and question_of(lit_by) == "value":
+                    question = "value" if valued else "shape"
+                if question == "value" and valued:
+                    title = titled(str(live.given), lacking=live.lacks_values())
+                    options |= {"cmap": table, "title": title}
+                return lit_by, options | {"question": question}
+        expected, remedy = "a scene, or a mesh with live light", "pass the scene of the picture"
+        raise ValueError(_check.message("scene", expected, None, remedy))
+
+    def export_html(
+        self, path: str | Path, /, *, title: str = "", panel: bool = True, key: bool = True
+    ) -> Path:
+        """Write one HTML file that shows the meshes, whose light follows the eye of the reader.
+
+        The page has the meshes of :meth:`add_mesh` that are visible, and the camera, the
+        background and the scalar bars of the plotter; see :func:`vizlight.live_html`.
+
+        Parameters
+        ----------
+        path : path
+            Path of the file, which ends in .html or .htm. An existing file is replaced.
+        title : str, default: ""
+            Title of the page.
+        panel : bool, default: True
+            Whether the panel of the sliders is open at first.
+        key : bool, default: True
+            Whether the key is shown where the light of the first mesh comes from a preset.
+
+        Returns
+        -------
+        pathlib.Path
+            Path of the file.
+
+        Raises
+        ------
+        FileError
+            If the file cannot be written.
+        RuntimeError
+            If the plotter is closed.
+        ValueError
+            If no mesh has live light.
+
+        Warns
+        -----
+        UserWarning
+            If the light of a mesh does not follow the eye, or what is drawn beside the meshes is
+            left out.
+        """
+        plotter, shown = self._open_plotter(), self.shown()
+        if not plotter.camera_set:
+            plotter.renderer.view_isometric(render=False)
+        return write_page(path, shown, plotter, title=title, panel=panel, key=key)
+
+    def shown(self) -> list[Shown]:
+        """Return the visible meshes with live light, for a page.
+
+        Returns
+        -------
+        list of Shown
+
+        Raises
+        ------
+        ValueError
+            If there is none.
+
+        Warns
+        -----
+        UserWarning
+            If there are actors without live light, which a page leaves out.
+        """
+        found: list[Shown] = []
+        others = 0
+        for actor in items(self._open_plotter().renderer.GetActors()):
+            live = self._live_of(actor)
+            if not actor.GetVisibility():
+                continue
+            if live is None or live.painter is None:
+                others += 1
+            else:
+                found.append(Shown(live.name or f"mesh {len(found) + 1}", live, actor))
+        if not found:
+            remedy = "add a mesh by plotter.vizlight.add_mesh"
+            raise ValueError(_check.message("plotter", "a mesh with live light", "none", remedy))
+        if others:
+            _check.warn(f"{others} actors without light of vizlight are not in the page")
+        return found
+
+    def explain(self, actor: vtkActor, /) -> str:
+        """Return where the light of an actor is computed and why, and what of it.
+
+        Parameters
+        ----------
+        actor : pyvista.Actor
+            Actor that :meth:`add_mesh` returned.
+
+        Returns
+        -------
+        str
+
+        Raises
+        ------
+        ValueError
+            If the actor has no live light.
+        """
+        live = self._lit_by_us(actor)
+        assert live.painter is not None
+        plotter = self._open_plotter()
+        return live.painter.explain(live, live.scene_of(plotter.renderer, actor))
+
+    def set_scene(self, actor: vtkActor, scene: Scene, /) -> None:
+        """Light an actor by another scene, from the next frame on; nothing else is computed again.
+
+        Parameters
+        ----------
+        actor : pyvista.Actor
+            Actor that :meth:`add_mesh` returned.
+        scene : Scene
+            Lights, material and depth cue, as for :meth:`add_mesh`.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If it is no scene, or the actor has no live light.
+        """
+        _check.instance("scene", scene, Scene)
+        self._lit_by_us(actor).set_scene(scene, actor)
+
+    @property
+    def has_live_light(self) -> bool:
+        """Whether the plotter shows a mesh whose light follows the camera."""
+        return any(holder.live is not None for holder in self._holders.values())
+
+    def _lit_by_us(self, actor: vtkActor) -> Live:
+        expected = "one of plotter.vizlight.add_mesh"
+        if not hasattr(actor, "GetAddressAsString"):
+            raise TypeError(_check.message("actor", expected, _check.describe(actor)))
+        live = self._live_of(actor)
+        if live is None or live.painter is None:
+            raise ValueError(_check.message("actor", expected, _check.describe(actor)))
+        return live
+
+    def _live_of(self, actor: vtkActor) -> Live | None:
+        holder = self._holders.get(_address(actor))
+        return None if holder is None else holder.live
+
+    def _open_plotter(self) -> pv.BasePlotter:
+        plotter = self._plotter()
+        if plotter is None or plotter.render_window is None:
+            remedy = "make another pyvista.Plotter"
+            raise RuntimeError(_check.message("plotter", "an open plotter", "a closed one", remedy))
+        return plotter
+
+    def _add(
+        self,
+        plotter: pv.BasePlotter,
+        source: Source,
+        scene: Scene | None,
+        light: LightAt,
+        scalars: str | None,
+        drawing: dict[str, Any],
+        *,
+        follow: bool,
+    ) -> pv.Actor:
+        """Draw one source, light it once, and let its light follow."""
+        drawing = dict(drawing)
+        stroke = _stroke(source, drawing)
+        reason = "asked for" if light == "points" else _reason(source, drawing, stroke)
+        live = Live(source, scene, follow=follow, by_surface=not reason)
+        if light == "fragments" and reason:
+            _check.warn(f"light='fragments': the light is computed at the points, because {reason}")
+        rendered = drawing.pop("render", True)
+        if scalars is not None:
+            live.color_by(scalars, drawing.pop("component", None), at_points=bool(reason))
+            drawing["scalars"] = live.scalars
+            if live.has_colors():
+                drawing["rgb"] = True
+            else:
+                drawing["cmap"] = default_map(drawing.get("cmap"))
+                drawing["nan_color"] = default_nan_color(drawing.get("nan_color"))
+                bar = {"title": scalars, **(drawing.get("scalar_bar_args") or {})}
+                drawing["scalar_bar_args"] = bar
+        painter: Points | Fragments = (
+            Points(reason, stroke.diameter) if reason else Fragments(stroke)
+        )
+        if stroke.round and reason and stroke.diameter is None:
+            drawing["render_lines_as_tubes"] = True
+        live.painter = painter
+        painter.attach(live)
+        drawing = painter.drawing(live, drawing)
+        actor: pv.Actor = plotter.add_mesh(
+            live.drawn, smooth_shading=False, split_sharp_edges=False, render=False, **drawing
+        )
+        if scene is None and not drawing.keys() & keywords.MATERIAL:
+            own, default = actor.prop, Material()
+            if (own.ambient, own.diffuse, own.specular) == UNTOUCHED:
+                own.ambient, own.diffuse = default.ambient, default.diffuse
+                own.specular = default.specular
+        try:
+            painter.start(live, actor)
+            live.start(plotter.renderer, actor)
+        except (TypeError, ValueError):
+            plotter.remove_actor(actor, render=False)
+            raise
+        invalid = live.invalid()
+        if invalid and follow:
+            _check.warn(unlit(invalid, source.inputs.count))
+        if scalars is not None and (invalid or live.lacks_values()):
+            for bar in plotter.scalar_bars.values():
+                if bar.GetLookupTable() is actor.mapper.lookup_table:
+                    name_no_data(bar)
+        self._keep(plotter, live, actor)
+        if rendered:
+            plotter.render()
+        return actor
+
+    def _keep(self, plotter: pv.BasePlotter, live: Live, actor: pv.Actor) -> None:
+        """Tie a live light to its actor, and observe the renderers."""
+        guard_exports(plotter)
+        # The actor owns its observer: without the actor nothing is left of the light.
+        holder = _Holder(live)
+        actor.AddObserver("DeleteEvent", holder.release)
+        self._holders[_address(actor)] = holder
+        me = weakref.ref(self)
+
+        def update(renderer: vtkRenderer, _: str) -> None:
+            component = me()
+            if component is not None:
+                component._update(renderer)
+
+        def forget() -> None:
+            component = me()
+            if component is not None and not component.has_live_light:
+                component._stop()
+
+        weakref.finalize(holder, forget)
+        observed = {_address(renderer) for renderer, _ in self._observed}
+        for renderer in plotter.renderers:
+            if _address(renderer) not in observed:
+                # PyVista's own render callbacks come after the frame is drawn.
+                self._observed.append((renderer, renderer.AddObserver("StartEvent", update)))
+
+    def _update(self, renderer: vtkRenderer) -> None:
+        """Light what a renderer is about to draw, and say once what does not show."""
+        lost, any_live = set(), False
+        for actor in items(renderer.GetActors()):
+            live = self._live_of(actor)
+            if live is not None:
+                any_live = True
+                live.update(renderer, actor)
+            elif is_copy(actor):
+                lost.add("a copy of an actor has light that does not follow; add its mesh instead")
+        if any_live and renderer.GetPass() is not None:
+            passes = [name for kind, name in UNLIT_PASSES.items() if has_pass(renderer, kind)]
+            lost |= {f"{name} of PyVista do not show on meshes with live light" for name in passes}
+        for text in sorted(lost - self._lost):
+            _check.warn(text)
+        self._lost |= lost
+
+    def _stop(self) -> None:
+        """Remove the observers of the renderers."""
+        for renderer, tag in self._observed:
+            renderer.RemoveObserver(tag)
+        self._observed.clear()
+
+    def __plotter_close__(self) -> None:
+        """Let go of everything when the plotter closes."""
+        self._stop()
+        for holder in list(self._holders.values()):
+            holder.release()
+        self._holders.clear()
+
+    def __plotter_deep_clean__(self) -> None:
+        """Let go of everything when the plotter is cleaned."""
+        self.__plotter_close__()
+
+
+def name_no_data(bar: vtkScalarBarActor) -> None:
+    """Let a scalar bar name the colour of what is not data."""
+    bar.SetDrawNanAnnotation(True)
+    bar.SetNanAnnotation(NO_DATA_NAME)
+
+
+class _Holder:
+    """What an actor holds of its live light; VTK may keep the actor of a closed plotter."""
+
+    def __init__(self, live: Live) -> None:
+        self.live: Live | None = live
+
+    def release(self, *_: object) -> None:
+        """Let go of the light."""
+        self.live = None
+
+
+def _address(thing: vtkObject) -> str:
+    return str(thing.GetAddressAsString(""))
+
+
+def _add_cloud(
+    plotter: pv.BasePlotter, mesh: pv.DataSet, scalars: str | None, drawing: dict[str, Any]
+) -> pv.Actor:
+    """Add points that have nothing for light to fall on, in the colours that a lit mesh has."""
+    if scalars is None:
+        drawing = {"color": True} | drawing
+    else:
+        own = {"cmap": default_map(drawing.get("cmap"))}
+        own["nan_color"] = default_nan_color(drawing.get("nan_color"))
+        drawing = drawing | ({"rgb": True} if are_colors(values_of(mesh, scalars)) else own)
+    actor: pv.Actor = plotter.add_mesh(mesh, scalars=scalars, **drawing)
+    return actor
+
+
+def _stroke(source: Source, drawing: dict[str, Any]) -> Stroke:
+    """Take from keywords how lines are drawn; a surface has none."""
+    diameter = drawing.pop("line_diameter", None)
+    if not has_lines_only(source.mesh):
+        return Stroke()
+    wide = diameter is not None or drawing.get("line_width", pv.global_theme.line_width) > 1
+    return Stroke(diameter, bool(drawing.pop("render_lines_as_tubes", False)) and wide)
+
+
+def _reason(source: Source, drawing: dict[str, Any], stroke: Stroke) -> str:
+    """Return why the light cannot be computed in each fragment, or an empty string."""
+    if drawing.get("render_points_as_spheres") or drawing.get("render_lines_as_tubes"):
+        return "VTK shades spheres and tubes by normals of their own"
+    return unfit(source.inputs, source.options, source.mesh, stroke)
+
+
+def add_recorded(
+    plotter: pv.BasePlotter, mesh: pv.DataSet, name: str, **drawing: Any
+) -> pv.Actor | None:
+    """Add a mesh with the light of its record, as its own view sees it, in each fragment.
+
+    Parameters
+    ----------
+    plotter : pyvista.Plotter
+        Plotter.
+    mesh : pyvista.DataSet
+        Mesh with the light of a filter; not changed.
+    name : str
+        Name of the light, or ``"rgb"`` for its colours or the colours of :func:`vizlight.tint`.
+    **drawing
+        Keywords of ``pyvista.Plotter.add_mesh``, and ``line_diameter``.
+
+    Returns
+    -------
+    pyvista.Actor or None
+        None, and nothing is added, if the mesh has no such light, the record does not suffice, or
+        the light cannot be computed in each fragment.
+    """
+    given: tuple[object, object] = plotter, mesh
+    if not isinstance(given[0], pv.BasePlotter):
+        got = _check.describe(given[0])
+        raise TypeError(_check.message("plotter", "a pyvista.Plotter", got))
+    blocks.check(mesh)
+    if isinstance(given[1], pv.MultiBlock):
+        remedy = "add its blocks one after the other"
+        raise TypeError(_check.message("mesh", "one dataset", "a MultiBlock", remedy))
+    _check.text("name", name, expected="the name of the light")
+    light = DEFAULT_NAME if name == RGB else name
+    scalars, colors = tinted(mesh, warn=False) if name == RGB else (None, {})
+    maker = light if scalars is None else RGB
+    if not relight.is_lit(mesh, light) or name not in records.made(mesh, maker):
+        return None
+    try:
+        (source,), scene = relight.from_record(mesh, name=light)
+    except (TypeError, ValueError):
+        # The array says more than the record.
+        return None
+    if _reason(source, {}, _stroke(source, dict(drawing))):
+        return None
+    used = scene if name == RGB else colorless(scene)
+    own: Component = plotter.vizlight
+    return own._add(plotter, source, used, "auto", scalars, colors | drawing, follow=False)

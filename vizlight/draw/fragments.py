@@ -1,0 +1,315 @@
+"""Light in each fragment: the plan as GLSL by shader replacement on an actor."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyvista as pv
+
+from vizlight.draw import dialects, glsl, program, strokes
+from vizlight.draw.live import NORMALS, TANGENTS
+from vizlight.draw.program import Stroke
+from vizlight.filters import lighting
+from vizlight.mesh import hull, point_arrays
+from vizlight.model import kernels
+from vizlight.reading import polylines
+from vizlight.scene.light import NO_ATTENUATION, WHITE
+from vizlight.scene.vtk import LARGEST_POWER
+from vizlight.shading.decide import decide
+from vizlight.shading.inputs import Layout
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
+
+    from vizlight._types import Array, Bools, Indices
+    from vizlight.draw.live import Live
+    from vizlight.draw.program import Uniform
+    from vizlight.filters.relight import Source
+    from vizlight.scene import Light, Scene, View
+    from vizlight.shading.inputs import ArraySource, ShadingInputs
+    from vizlight.shading.options import ShadingOptions
+    from vizlight.shading.plan import Plan
+
+#: Share of the edges along which the tangent may reverse before its sign counts as arbitrary.
+REVERSED = 0.02
+
+
+def unfit(
+    inputs: ShadingInputs,
+    options: ShadingOptions,
+    mesh: pv.DataSet,
+    stroke: Stroke = Stroke(),  # noqa: B008 (a tuple is not changed)
+) -> str:
+    """Return why a source cannot be lit in each fragment, or an empty string.
+
+    Parameters
+    ----------
+    inputs : ShadingInputs
+    options : ShadingOptions
+    mesh : pyvista.DataSet
+        Mesh that is drawn.
+    stroke : Stroke
+        How its lines are drawn.
+
+    Returns
+    -------
+    str
+    """
+    layout = inputs.layout
+    alone = layout._replace(normals=False, dimmed=False, occluded=False) == Layout(k=1)
+    if stroke.round and (options.conditioned or not alone):
+        return "only lines that are lit by their tangents alone can be round"
+    reason = unfit_layout(layout, options, stroke)
+    if not reason and inputs.tangents is not None and _reverses(inputs, mesh):
+        return "the tangents reverse from point to point, so their sign is arbitrary"
+    return reason
+
+
+def unfit_layout(
+    layout: Layout,
+    options: ShadingOptions,
+    stroke: Stroke = Stroke(),  # noqa: B008
+) -> str:
+    """Return why inputs of a layout cannot be lit in each fragment, or an empty string."""
+    if layout.n != 3:
+        return f"light in {layout.n}-space has no direction in the picture"
+    if layout.k not in (None, 1):
+        return f"{layout.k} tangents per point span a plane, which is not interpolated"
+    if options.model == "cylinder" and not stroke.round:
+        return "the highlight of a cylinder is an integral that GLSL has no function for"
+    if layout.shadowed:
+        return "t of the cos-theta shadow is known at the points"
+    if layout.dimmed:
+        return "the shares of light inside a bundle are known at the points"
+    if layout.base:
+        return "base tangents span a plane, which is not interpolated"
+    return ""
+
+
+def _reverses(inputs: ShadingInputs, mesh: pv.DataSet) -> bool:
+    """Return whether tangents at neighbouring points often point against each other."""
+    tangents = _rows(inputs, inputs.tangents)
+    starts, ends = _edges(mesh)
+    if tangents is None or not len(starts):
+        return False
+    cosine = np.einsum("ij,ij->i", tangents[starts], tangents[ends])
+    return bool(np.count_nonzero(cosine < -0.5) > REVERSED * len(starts))
+
+
+def _edges(mesh: pv.DataSet) -> tuple[Indices, Indices]:
+    """Return the points at both ends of consecutive corners of the cells that are drawn."""
+    surface = mesh if isinstance(mesh, pv.PolyData) else None
+    if surface is None:
+        shell, ids = hull.outer_surface(mesh)
+        starts, ends = (ids[corners] for corners in _edges(shell))
+        inside = (starts >= 0) & (ends >= 0)
+        return starts[inside], ends[inside]
+    pairs = []
+    for cells in (surface.GetLines(), surface.GetPolys(), surface.GetStrips()):
+        ids = pv.convert_array(cells.GetConnectivityArray())
+        inside = np.ones(len(ids), dtype=np.bool_)
+        inside[pv.convert_array(cells.GetOffsetsArray())[1:] - 1] = False
+        first = np.flatnonzero(inside)
+        pairs.append((ids[first], ids[first + 1]))
+    starts, ends = (np.concatenate(side) for side in zip(*pairs, strict=True))
+    return starts, ends
+
+
+class Fragments:
+    """Light computed in each fragment, from tangents and normals that VTK interpolates.
+
+    They are the active tangents and normals of the drawn mesh, so that PyVista's own mapper is
+    kept, with its colours and its scalar bar.
+    """
+
+    light = "fragments"
+
+    def __init__(self, stroke: Stroke = Stroke()) -> None:  # noqa: B008 (a tuple is not changed)
+        self._stroke = stroke
+        self._key: object = None
+        self._plan: Plan | None = None
+        #: Height of the fur whose normal has the length 2.
+        self.tallest = 0.0
+        #: Height fields that the eye sees from behind.
+        self._averted: Bools = np.zeros(0, dtype=np.bool_)
+
+    def attach(self, live: Live) -> None:
+        """Give the drawn mesh its tangents and normals, of unit length in float32."""
+        inputs, data = live.source.inputs, live.drawn.GetPointData()
+        tangents, normals = (
+            _rows(inputs, rows, live) for rows in (inputs.tangents, inputs.normals)
+        )
+        carried = tangents
+        if inputs.occlusion is not None:
+            # The length of a tangent, which a surface does not have, carries the ambient share.
+            share = live.picked(np.asarray(inputs.occlusion[:], dtype=np.float64))
+            share = 1 + np.where(share >= 0, share, 1.0)
+            along = np.array([[1.0, 0.0, 0.0]]) if tangents is None else tangents
+            carried = share[:, np.newaxis] * along
+        if carried is not None:
+            point_arrays.attach_rows(live.drawn, TANGENTS, carried.astype(np.float32))
+            data.SetActiveTangents(TANGENTS)
+        if normals is None:
+            # VTK lights lines, and so draws with a shader for them, only if they have normals.
+            normals = tangents
+            if self._stroke != Stroke():
+                normals = live.picked(polylines.line_tangents(live.source.mesh))
+        elif inputs.fur_height is not None:
+            # The length of a normal, which light does not need, carries the height of the fur.
+            height = live.picked(np.asarray(inputs.fur_height[:], dtype=np.float64))
+            self.tallest = float(np.max(height, initial=0.0)) or 1.0
+            normals = normals * (1 + height[:, np.newaxis] / self.tallest)
+        elif (sided := live.source.sided) is not None:
+            if len(self._averted) <= np.max(sided.open, initial=1):
+                self._averted = sided.averted_fields(inputs.points, None)
+            lean = live.picked(_lean_lengths(live.source, self._averted))
+            normals = normals * lean[:, np.newaxis]
+        if normals is not None:
+            point_arrays.attach_rows(live.drawn, NORMALS, normals.astype(np.float32))
+            data.SetActiveNormals(NORMALS)
+
+    def drawing(self, live: Live, drawing: dict[str, Any]) -> dict[str, Any]:
+        """Return the keywords of ``plotter.add_mesh``."""
+        drawing = drawing | {"lighting": True}
+        if live.scalars is None:
+            own = None if live.scene is None else (live.scene.material.color or WHITE)
+            given = drawing.get("color")
+            usual = WHITE if drawing.get("texture") is not None else True
+            drawing["color"] = (usual if own is None else own) if given is None else given
+        return drawing
+
+    def start(self, live: Live, actor: vtkActor) -> None:
+        """Give an actor the material of the scene, as far as VTK can have it."""
+        prop = actor.GetProperty()
+        prop.SetInterpolationToPhong()
+        if live.scene is None:
+            return
+        material = live.scene.material
+        prop.SetAmbient(min(material.ambient, 1.0))
+        prop.SetDiffuse(min(material.diffuse, 1.0))
+        prop.SetSpecular(min(material.specular, 1.0))
+        prop.SetSpecularPower(min(material.shininess, LARGEST_POWER))
+        prop.SetSpecularColor(*(material.specular_color or WHITE))
+
+    def paint(self, live: Live, scene: Scene, renderer: vtkRenderer, actor: vtkActor) -> None:
+        """Write the shader of a scene if it is another one, and set its uniforms."""
+        self.see(live, live.placed(actor), scene.view)
+        scene = lighting.fit_depth_cue(scene, [live.placed(actor)])
+        data = live.scalars is not None
+        if data:
+            scene = without_highlight(scene)
+        lights = [light.seen_from(scene.view) for light in scene.lights if light.intensity > 0]
+        key, prop = _structure(scene, lights, live.source), actor.GetProperty()
+        stroke, renew = self._stroke, key != self._key or self._plan is None
+        plan = self._plan
+        if renew or plan is None:
+            plan = exact_plan(scene, live.source, stroke)
+        # VTK has a specular colour only where it has lights of its own.
+        shown = program.Shown(prop.GetAmbient(), prop.GetDiffuse(), prop.GetSpecularColor())
+        given = program.numbers(
+            scene, lights, shown=shown, fur=plan.fur, tallest=self.tallest, data=data
+        )
+        if renew:
+            turned = live.source.sided is not None
+            written = program.write(plan, turned=turned, stroke=stroke, data=data)
+            texts = dialects.VTK.replacements(written, given)
+            if stroke != Stroke():
+                texts = strokes.widened(actor, texts, stroke)
+            strokes.replace(actor, texts)
+            self._key, self._plan = key, plan
+        _set_uniforms(given, renderer, actor)
+
+    def see(self, live: Live, placed: ShadingInputs, view: View | None) -> None:
+        """Attach normals that tell which side of height fields an eye sees, if it is another."""
+        sided = live.source.sided
+        if sided is None or placed.normals is None:
+            return
+        vectors = np.asarray(placed.normals[:])
+        averted = dataclasses.replace(sided, vectors=vectors).averted_fields(placed.points, view)
+        if not np.array_equal(averted, self._averted):
+            self._averted = averted
+            self.attach(live)
+
+    def explain(self, live: Live, scene: Scene) -> str:
+        """Return what is computed in each fragment."""
+        fitted = lighting.fit_depth_cue(scene, [live.source.inputs])
+        if live.scalars is not None:
+            fitted = without_highlight(fitted)
+        plan = decide(fitted, *_drawn_as(live.source, self._stroke))
+        return f"light in each fragment\n{plan.explain()}"
+
+
+def without_highlight(scene: Scene) -> Scene:
+    """Return a scene for colours of data, which no highlight hides."""
+    return scene.replace(material=dataclasses.replace(scene.material, specular=0.0))
+
+
+def _drawn_as(source: Source, stroke: Stroke) -> tuple[Layout, ShadingOptions]:
+    """Return the layout and the options of a source, or of the cylinders of its lines."""
+    if stroke.round:
+        occluded = source.inputs.occlusion is not None
+        return Layout(normals=True, occluded=occluded), source.options.for_surface()
+    return source.inputs.layout, source.options
+
+
+def exact_plan(scene: Scene, source: Source, stroke: Stroke = Stroke()) -> Plan:  # noqa: B008
+    """Return the plan of a source."""
+    layout, options = _drawn_as(source, stroke)
+    return decide(scene, layout, dataclasses.replace(options, components=False))
+
+
+def _structure(scene: Scene, lights: Sequence[Light], source: Source) -> tuple[object, ...]:
+    """Return what a shader holds as constants, in a form that can be compared."""
+    material, cue = scene.material, scene.depth_cue
+    return (
+        [(light.position is None, light.attenuation == NO_ATTENUATION) for light in lights],
+        material.diffuse > 0, material.specular > 0, glsl.is_plain(material.shininess),
+        None if cue is None else cue.smooth,
+        source.inputs.layout, source.options, source.sided is None,
+    )  # fmt: skip
+
+
+def _rows(
+    inputs: ShadingInputs, rows: ArraySource | None, live: Live | None = None
+) -> Array | None:
+    """Return unit vectors, one per point, or with ``live`` per point that is drawn."""
+    if rows is None:
+        return None
+    vectors = np.asarray(rows[0 : rows.shape[0]]).reshape(-1, 3)
+    if len(vectors) != inputs.count:
+        vectors = np.repeat(vectors, inputs.repeat, axis=0)
+    unit = kernels.unit_rows(vectors if live is None else live.picked(vectors))
+    unit[~np.all(np.isfinite(unit), axis=1)] = 0
+    return unit
+
+
+def _lean_lengths(source: Source, averted: Bools) -> Array:
+    """Return lengths of normals, which carry from 1 to 2 the lean from -1 to 1.
+
+    A lean of 1 stands for points that no eye turns.
+    """
+    sided = source.sided
+    assert sided is not None
+    lean = sided.leaning(source.facing, averted)
+    turned = (sided.facts()[:, 1] > 0) | (source.facing == "eye")
+    return np.where(turned, 1.5 + 0.5 * np.clip(0.0 if lean is None else lean, -1.0, 0.98), 2.0)
+
+
+def _set_uniforms(given: Iterable[Uniform], renderer: vtkRenderer, actor: vtkActor) -> None:
+    """Set what a program is given, in the coordinates of the camera."""
+    view = pv.array_from_vtkmatrix(renderer.GetActiveCamera().GetViewTransformMatrix())
+    uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
+    for name, kind, value, space in given:
+        numbers = list(value)
+        if space:
+            moved = view[:3, :3] @ np.asarray(value[:3], dtype=np.float64)
+            moved = moved / np.linalg.norm(moved) if space == "direction" else moved + view[:3, 3]
+            numbers[:3] = moved.tolist()
+        if kind == "float":
+            uniforms.SetUniformf(name, numbers[0])
+        else:
+            getattr(uniforms, f"SetUniform{len(numbers)}f")(name, numbers)

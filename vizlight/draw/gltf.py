@@ -1,0 +1,262 @@
+"""glTF files with the light that does not depend on the eye as colours of the points."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import struct
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from vizlight import _check, files
+from vizlight._version import __version__
+from vizlight.draw.fixed import LEFT_OUT, fixed_colors
+from vizlight.draw.live import lifted
+from vizlight.draw.sources import sources_of, tinted
+from vizlight.filters.tint import color_table, map_colors, values_of
+from vizlight.mesh import blocks, hull
+from vizlight.scene import Scene, View
+from vizlight.shading.options import LightOptions
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import pyvista as pv
+    from numpy.typing import NDArray
+
+    from vizlight.filters.relight import Source
+    from vizlight.filters.tint import ColorMap
+
+__all__ = ["save_gltf"]
+
+#: Component types of glTF by NumPy's, and targets of buffers.
+_KINDS = {"<f4": 5126, "<u2": 5123, "<u4": 5125}
+_VERTICES, _INDICES = 34962, 34963
+#: Quaternion that turns z, which is up in PyVista, to y, which is up in glTF.
+_UPRIGHT = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
+
+
+def save_gltf(
+    mesh: pv.DataSet | pv.MultiBlock,
+    /,
+    scene: Scene | None,
+    path: str | Path,
+    *,
+    scalars: str | None = None,
+    cmap: ColorMap = None,
+    clim: Sequence[float] | float | None = None,
+    **options: Any,
+) -> Path:
+    """Write a glTF file (.glb) with the colours of a lit mesh, as any viewer shows them.
+
+    The colours of the points hold ambient and diffuse light. The highlight and the depth cue depend
+    on the eye, which the file does not know, and are left out; ``asset.extras`` of the file says
+    so. :func:`vizlight.live_html` writes light that follows the eye.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet or pyvista.MultiBlock
+        Mesh, which is not changed; of a volume its surface is written. Each block is a node.
+    scene : Scene or None
+        Lights and material. None for the record of a lit mesh. The view counts only for what needs
+        one, such as a headlight, which is then fixed, with a warning.
+    path : path
+        Path of the file, which ends in .glb. An existing file is replaced.
+    scalars : str, optional
+        Name of the point array that gives the colours. Default: the material's, or the array of
+        :func:`vizlight.tint` for a mesh that it returned.
+    cmap, clim
+        Colour map and its ends, as for :func:`vizlight.tint`.
+    **options
+        Options of :func:`vizlight.illuminate`, except ``name`` and ``components``.
+
+    Returns
+    -------
+    pathlib.Path
+        Path of the file.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument does not fit, as for :func:`vizlight.illuminate`.
+    FileError
+        If the file cannot be written.
+
+    Warns
+    -----
+    UserWarning
+        If a part of the light is fixed as the view of the scene sees it.
+
+    Notes
+    -----
+    ``COLOR_0`` with ``KHR_materials_unlit``: colours are linear by the standard, so that what a
+    picture of PyVista shows is decoded from sRGB, to 16 bits. Positions are float32 from the centre
+    of the mesh, which is the translation of the node.
+    """
+    path = files.check_output(path, (".glb",))
+    blocks.check(mesh)
+    _check.instance("scene", scene, Scene, optional=True)
+    known = {field.name for field in dataclasses.fields(LightOptions)} - {"name", "components"}
+    for name in options.keys() - known:
+        expected = "an option of vizlight.illuminate"
+        raise TypeError(_check.message("options", expected, repr(name)))
+    sources, used = sources_of(mesh, scene, options)
+    if used is None:
+        remedy = "pass a Scene, or a mesh that a filter has lit"
+        raise ValueError(_check.message("scene", "a scene or the record of one", None, remedy))
+    names = [path.lstrip("/") for _, path in blocks.named_blocks(mesh)]
+    file, fixed = _File(), set()
+    colors = _colors(sources, scalars, cmap, clim)
+    for source, name, own in zip(sources, names, colors, strict=True):
+        if not source.mesh.n_points:
+            continue
+        n = int(source.inputs.points.shape[1])
+        here = lifted(used, n)
+        if here.view is None:
+            here = here.replace(view=View.isometric(n))
+        lit, seen = fixed_colors(source, here, own)
+        file.add(name or "mesh", source.mesh, lit)
+        fixed |= {seen} - {""}
+    if not file.nodes:
+        raise ValueError(_check.message("mesh", "a mesh with points", "none"))
+    said = f"; {' and '.join(sorted(fixed))} as from the scene's view" if fixed else ""
+    data = file.content(f"vizlight {__version__}", LEFT_OUT + said)
+    written = files.replace_file(path, lambda draft: Path(draft).write_bytes(data))
+    if fixed:
+        _check.warn(f"{path.name}: {LEFT_OUT}{said}")
+    return written
+
+
+def _colors(
+    sources: Sequence[Source],
+    scalars: str | None,
+    cmap: ColorMap,
+    clim: Sequence[float] | float | None,
+) -> list[NDArray[np.uint8] | None]:
+    """Return for each source the colours of data, None for the colour of the material."""
+    if scalars is not None:
+        values = [values_of(source.mesh, scalars) for source in sources]
+        table = color_table(values, cmap=cmap, clim=clim)
+        return [map_colors(table, value) for value in values]
+    found: list[NDArray[np.uint8] | None] = []
+    for source in sources:
+        name, own = tinted(source.mesh)
+        if name is None:
+            found.append(None)
+        else:
+            value = values_of(source.mesh, name, own["component"])
+            found.append(map_colors(own["cmap"], value))
+    return found
+
+
+class _File:
+    """Nodes of a binary glTF 2.0 file, and its buffer."""
+
+    def __init__(self) -> None:
+        self.nodes: list[dict[str, object]] = []
+        self.meshes: list[dict[str, object]] = []
+        self.accessors: list[dict[str, object]] = []
+        self.views: list[dict[str, object]] = []
+        self.buffer = bytearray()
+        self.clear = False
+
+    def add(self, name: str, mesh: pv.DataSet, colors: NDArray[np.uint8]) -> None:
+        """Add a mesh with the colours of its points."""
+        surface, ids = hull.outer_surface(mesh)
+        flat = surface.triangulate(pass_verts=True, pass_lines=True)
+        points = np.asarray(surface.points, dtype=np.float64)
+        good = np.all(np.abs(points) < 1e38, axis=1)
+        drawn = points[good] if np.any(good) else np.zeros((1, 3))
+        centre = (drawn.min(axis=0) + drawn.max(axis=0)) / 2
+        # A control point of a curved cell, which has no index, is not lit.
+        shown = np.where(ids[:, np.newaxis] >= 0, colors[ids], np.uint8(0))
+        self.clear |= bool(np.any(shown[:, 3] < 255))
+        # glTF knows no number that is not finite in float32; no cell with one is drawn.
+        rows = np.where(good[:, np.newaxis], points - centre, 0.0)
+        attributes = {
+            "POSITION": self.put(rows, "<f4", "VEC3", _VERTICES, ends=True),
+            "COLOR_0": self.put(_linear(shown), "<u2", "VEC4", _VERTICES, normalized=True),
+        }
+        primitives: list[dict[str, object]] = []
+        for mode, cells, size in ((0, flat.verts, 1), (1, flat.lines, 2), (4, flat.faces, 3)):
+            corners = np.asarray(cells).reshape(-1, size + 1)[:, 1:]
+            corners = corners[np.all(good[corners], axis=1)]
+            if len(corners):
+                index = self.put(corners.reshape(-1, 1), "<u4", "SCALAR", _INDICES)
+                primitives.append(
+                    {"attributes": attributes, "indices": index, "material": 0, "mode": mode}
+                )
+        if not primitives:
+            return
+        self.nodes.append({"name": name, "mesh": len(self.meshes), "translation": centre.tolist()})
+        self.meshes.append({"name": name, "primitives": primitives})
+
+    def put(
+        self, rows: NDArray[np.generic], kind: str, shape: str, target: int, **extra: bool
+    ) -> int:
+        """Append an array to the buffer and return the index of its accessor."""
+        data = np.ascontiguousarray(rows, kind)
+        self.views.append(
+            {
+                "buffer": 0, "byteOffset": len(self.buffer), "byteLength": data.nbytes,
+                "target": target,
+            }
+        )  # fmt: skip
+        self.buffer += data.tobytes()
+        accessor: dict[str, object] = {
+            "bufferView": len(self.views) - 1, "componentType": _KINDS[kind], "count": len(data),
+            "type": shape,
+        }  # fmt: skip
+        if extra.pop("ends", False):
+            accessor |= {"min": data.min(axis=0).tolist(), "max": data.max(axis=0).tolist()}
+        self.accessors.append(accessor | extra)
+        return len(self.accessors) - 1
+
+    def content(self, generator: str, said: str) -> bytes:
+        """Return the file."""
+        root = {
+            "name": "z up", "rotation": _UPRIGHT, "children": list(range(1, len(self.nodes) + 1))
+        }  # fmt: skip
+        material: dict[str, object] = {
+            "doubleSided": True,
+            "extensions": {"KHR_materials_unlit": {}},
+            "pbrMetallicRoughness": {"roughnessFactor": 1.0, "metallicFactor": 0.0},
+        }
+        if self.clear:
+            material["alphaMode"] = "BLEND"
+        text = json.dumps(
+            {
+                "asset": {"version": "2.0", "generator": generator, "extras": {"light": said}},
+                "extensionsUsed": ["KHR_materials_unlit"],
+                "scene": 0,
+                "scenes": [{"nodes": [0]}],
+                "nodes": [root, *self.nodes],
+                "meshes": self.meshes,
+                "materials": [material],
+                "accessors": self.accessors,
+                "bufferViews": self.views,
+                "buffers": [{"byteLength": len(self.buffer)}],
+            },
+            allow_nan=False,
+        ).encode()
+        text += b" " * (-len(text) % 4)
+        data = bytes(self.buffer) + b"\0" * (-len(self.buffer) % 4)
+        size = 12 + 8 + len(text) + 8 + len(data)
+        return b"".join(
+            [
+                struct.pack("<4sII", b"glTF", 2, size),
+                struct.pack("<I4s", len(text), b"JSON"), text,
+                struct.pack("<I4s", len(data), b"BIN\0"), data,
+            ]
+        )  # fmt: skip
+
+
+def _linear(colors: NDArray[np.uint8]) -> NDArray[np.floating[Any]]:
+    """Return colours as glTF has them: linear, opacity as it is, in 16 bits."""
+    shown = colors / 255.0
+    rgb = shown[:, :3]
+    decoded = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+    found: NDArray[np.floating[Any]] = np.rint(65535 * np.column_stack([decoded, shown[:, 3]]))
+    return found

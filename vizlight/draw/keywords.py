@@ -1,0 +1,194 @@
+"""Keywords of PyVista for what is lit: which are its own, which are the light's, and colours."""
+
+from __future__ import annotations
+
+import inspect
+import itertools
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyvista as pv
+from pyvista.plotting.colors import get_cycler
+
+from vizlight import _check
+from vizlight.filters import relight
+from vizlight.mesh import blocks, records
+from vizlight.shading.options import FeatureAngle, LightOptions, unknown_option
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from vizlight.scene import Scene
+
+#: Options of light that a live light takes; an actor has a name of its own.
+LIGHT = {*inspect.signature(LightOptions).parameters} - {"name", "components"}
+#: Coefficients that a scene has and PyVista takes as keywords.
+MATERIAL = {"ambient", "diffuse", "specular", "specular_power"}
+#: Other names that PyVista knows for its keywords.
+ALIASES = {
+    "rng": "clim", "colormap": "cmap", "backface_culling": "culling", "rgba": "rgb",
+}  # fmt: skip
+#: Keywords of ``add_mesh`` that its signature does not name.
+_MORE = {"vertex_color", "vertex_style", "vertex_opacity", "theme"}
+#: Names of the arrays that hold colours given as an array, and colours as bytes.
+GIVEN, BYTES = "Data", "vizlight rgb"
+
+
+def sorted_out(
+    function: str, options: dict[str, Any], scene: Scene | None, more: Iterable[str] = ()
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return options of light, and keywords of ``pyvista.Plotter.add_mesh`` by their own names.
+
+    Raises
+    ------
+    TypeError
+        If neither knows a name; the nearest one is named.
+    ValueError
+        If there is both a scene and a coefficient of a material.
+    """
+    drawn = {*inspect.signature(pv.Plotter.add_mesh).parameters, *ALIASES, *_MORE}
+    drawn -= {"self", "mesh", "kwargs"}
+    for name, value in options.items():
+        if name not in drawn | LIGHT:
+            known = [*sorted(LIGHT), *sorted({*drawn, *more} - LIGHT)]
+            raise TypeError(unknown_option(function, name, known))
+        if name in MATERIAL and scene is not None and value is not None:
+            remedy = "pass Scene(material=Material(...))"
+            expected = "the material of the scene, or no scene"
+            raise ValueError(_check.message(name, expected, f"both ({value})", remedy))
+    own = {name: value for name, value in options.items() if name in LIGHT}
+    drawing = {ALIASES.get(name, name): options[name] for name in options if name not in LIGHT}
+    return own, drawing
+
+
+def shading_of(drawing: dict[str, Any]) -> FeatureAngle:
+    """Take from keywords how round a surface looks: the angle at which its points are split."""
+    smooth, split = drawing.pop("smooth_shading", None), drawing.pop("split_sharp_edges", None)
+    if smooth is False:
+        return 0.0
+    if split is None:
+        return "auto"
+    return float(pv.global_theme.sharp_edges_feature_angle) if split else None
+
+
+def left_to_pyvista(drawing: dict[str, Any]) -> str | None:
+    """Return why PyVista draws a mesh with its own light: None if not, empty if that was asked."""
+    if drawing.get("lighting") is False:
+        return ""
+    if drawing.get("pbr"):
+        return "pbr=True is a material that only PyVista's light has"
+    if drawing.get("style") == "points_gaussian":
+        return "style='points_gaussian' draws splats, which have no normals"
+    return None
+
+
+def is_cloud(mesh: pv.DataSet, own: dict[str, Any]) -> bool:
+    """Return whether a mesh is points alone, for which no light is asked and that have none."""
+    asked = own.keys() & {"tangents", "normals", "facing"}
+    if asked or mesh.point_data.active_normals is not None or relight.is_lit(mesh):
+        return False
+    kinds = pv.PolyData | pv.PointSet | pv.UnstructuredGrid
+    return isinstance(mesh, kinds) and mesh.n_points > 0 and mesh.max_cell_dimensionality == 0
+
+
+def block_colors(drawing: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """Take ``multi_colors`` from keywords, and yield each block's after another."""
+    if not drawing.pop("multi_colors", False):
+        return itertools.repeat({})
+    return ({"color": row["color"]} for row in itertools.cycle(get_cycler("default")))  # type: ignore[no-untyped-call]
+
+
+def active_scalars(mesh: pv.DataSet | pv.MultiBlock) -> str | None:
+    """Return the active scalars that all blocks share, unless a filter of light made them."""
+    names = set()
+    for block in blocks.all_blocks(mesh):
+        if not block.n_points:
+            continue
+        kind, name = block.active_scalars_info
+        if name is None:
+            return None
+        data = block.point_data if kind == pv.FieldAssociation.POINT else block.cell_data
+        if name in records.all_made(block) or np.asarray(data[name]).dtype.kind not in "iubf":
+            return None
+        names.add(name)
+    return names.pop() if len(names) == 1 else None
+
+
+def colored(
+    mesh: pv.DataSet | pv.MultiBlock, scalars: str | ArrayLike | None, drawing: dict[str, Any]
+) -> tuple[pv.DataSet | pv.MultiBlock, str | None]:
+    """Return a mesh whose colours are an array by name, and the name.
+
+    Colours that are given as an array, or as numbers of ``rgb=True``, or as cell data beside point
+    data of the same name, are attached to a shallow copy.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an array does not fit.
+    """
+    if scalars is None:
+        return mesh, None
+    rgb = bool(drawing.pop("rgb", False))
+    of_cells = drawing.pop("preference", "point") == "cell"
+    if not isinstance(scalars, str):
+        if isinstance(mesh, pv.MultiBlock):
+            remedy = "attach it to the blocks"
+            expected, got = "the name of an array for a MultiBlock", _check.describe(scalars)
+            raise TypeError(_check.message("scalars", expected, got, remedy))
+        return _attached(mesh, GIVEN, scalars, rgb=rgb, of_cells=of_cells), GIVEN
+    _check.text("scalars", scalars, expected="the name of an array")
+    every = list(blocks.all_blocks(mesh))
+    at = [_array(block, scalars, of_cells=of_cells) for block in every]
+    both = any(scalars in block.point_data and scalars in block.cell_data for block in every)
+    if not (rgb or (both and of_cells)):
+        return mesh, scalars
+    name = BYTES if rgb else GIVEN
+    made = (
+        block if values is None else _attached(block, name, values, rgb=rgb, of_cells=of_cells)
+        for block, values in zip(every, at, strict=True)
+    )
+    return blocks.like(mesh, made), name
+
+
+def _array(mesh: pv.DataSet, name: str, *, of_cells: bool) -> NDArray[np.generic] | None:
+    """Return an array of a mesh, of its points or of its cells."""
+    places = (mesh.cell_data, mesh.point_data) if of_cells else (mesh.point_data, mesh.cell_data)
+    return next((np.asarray(data[name]) for data in places if name in data), None)
+
+
+def _attached(
+    mesh: pv.DataSet, name: str, values: ArrayLike, *, rgb: bool, of_cells: bool
+) -> pv.DataSet:
+    """Return a shallow copy of a mesh with an array, colours as bytes."""
+    rows = _check.reals("scalars", values)
+    if rgb:
+        rows = as_bytes(rows)
+    counts = [mesh.n_cells, mesh.n_points] if of_cells else [mesh.n_points, mesh.n_cells]
+    if rows.ndim not in (1, 2) or len(rows) not in counts:
+        expected = f"{mesh.n_points} rows, one per point, or {mesh.n_cells}, one per cell"
+        raise ValueError(_check.message("scalars", expected, rows))
+    copy = mesh.copy(deep=False)
+    at_cells = len(rows) == mesh.n_cells and (of_cells or len(rows) != mesh.n_points)
+    (copy.cell_data if at_cells else copy.point_data)[name] = rows
+    return copy
+
+
+def as_bytes(colors: NDArray[np.generic]) -> NDArray[np.uint8]:
+    """Return colours as bytes: those given as bytes as they are, others from 0 to 1 as shares.
+
+    Raises
+    ------
+    ValueError
+        If they have neither three nor four components.
+    """
+    if colors.ndim != 2 or colors.shape[1] not in (3, 4):
+        expected = "colours of 3 or 4 components for rgb=True"
+        raise ValueError(_check.message("scalars", expected, colors))
+    if colors.dtype == np.uint8:
+        return np.asarray(colors)
+    shares = np.asarray(colors, dtype=np.float64)
+    scale = 255.0 if np.nanmax(shares, initial=0.0) <= 1.0 else 1.0
+    return np.asarray(np.clip(np.nan_to_num(shares) * scale, 0, 255), dtype=np.uint8)

@@ -1,0 +1,382 @@
+"""Movies and PNG sequences: of lit meshes, and of a mesh that rotates in n-space."""
+
+from __future__ import annotations
+
+import importlib
+import itertools
+import os
+import warnings
+from collections.abc import Mapping, Sized
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+import pyvista as pv
+from PIL import Image
+
+from vizlight import _check
+from vizlight._progress import progress
+from vizlight.draw import render
+from vizlight.draw.cameras import Mesh, common_bounds
+from vizlight.files import check_output, replace_file
+from vizlight.filters.project import ProjectOptions, project
+from vizlight.filters.tint import RGB
+from vizlight.mesh.blocks import all_blocks
+from vizlight.shading.options import named
+from vizlight.shading.results import DEFAULT_NAME
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from vizlight._types import VectorLike
+    from vizlight.filters.project import LightWhen
+    from vizlight.scene import Scene
+    from vizlight.shading.options import Exponent, Facing, Model, Precision
+
+    Picture = NDArray[np.uint8]
+
+Item = TypeVar("Item")
+
+__all__ = ["MovieError", "save", "turn"]
+
+FORMATS = (".png", ".gif", ".mp4")
+TURN = 2 * np.pi
+#: Options of :func:`vizlight.project` that determine the positions of the projected points.
+PLACING = ("positions", "frame", "distance", "hyperplane", "cut")
+
+
+class MovieError(RuntimeError):
+    """The package that writes movies is not installed; the message says how to install it."""
+
+
+def save(
+    frames: Iterable[Mesh | render.Panel | Picture],
+    path: str | Path,
+    /,
+    *,
+    fps: float = 24.0,
+    camera: pv.Camera | None = None,
+    picture: render.PlotterKeywords | None = None,
+    progress_bar: bool = False,
+) -> list[Path]:
+    """Save a picture of each lit mesh, such as :func:`vizlight.pathlines` yields, as a movie.
+
+    Parameters
+    ----------
+    frames : iterable of meshes or Panels, or of pictures
+        Meshes to draw, one after the other; or pictures, arrays of uint8 of one shape (height,
+        width, 3), such as :func:`vizlight.draw.render.pictures` makes. They are written as they
+        come.
+    path : path
+        Path of a movie or of a sequence of PNGs, as for :func:`turn`.
+    fps : float, default: 24.0
+        Frames per second of a movie, up to 100.
+    camera : pyvista.Camera, optional
+        Camera of all frames. Default: one that shows them all; the frames are then kept in memory
+        until the last is there. Pictures have theirs.
+    picture : mapping, optional
+        Further options of :func:`vizlight.draw.render.make_plotter`, for meshes.
+    progress_bar : bool, default: False
+        Show progress on standard error.
+
+    Returns
+    -------
+    list of pathlib.Path
+        Paths of the files written.
+
+    Raises
+    ------
+    MovieError, BackendError, TypeError, ValueError
+        As for :func:`turn`; also if there is no frame.
+    """
+    path = _check_movie(path)
+    _check.iterable("frames", frames, "an iterable of meshes or Panels, or of pictures")
+    drawing = _drawing(picture)
+    fps = _check.number("fps", fps, low=0.01, high=100.0)
+    writer = _writer(path, fps, drawing["size"])
+    known = len(frames) if isinstance(frames, Sized) else 0
+    rest: Iterator[Any] = iter(frames)
+    first = next(rest, None)
+    if first is None:
+        raise ValueError(_check.message("frames", "one mesh, Panel or picture or more", "none"))
+    rest = itertools.chain([first], rest)
+    if isinstance(first, np.ndarray):
+        for name, value in (("camera", camera), ("picture", picture)):
+            if value is not None:
+                expected = "none beside frames that are pictures"
+                raise ValueError(_check.message(name, expected, "one"))
+        _check_picture(first, first.shape)
+        writer = _writer(path, fps, first.shape[1::-1])
+        drawn: Iterator[Picture] = (_check_picture(each, first.shape) for each in rest)
+    else:
+        rest = map(_check_mesh, rest)
+        if camera is None:
+            meshes = list(rest)
+            known, rest = len(meshes), iter(meshes)
+            bare = [mesh.mesh if isinstance(mesh, render.Panel) else mesh for mesh in meshes]
+            camera = render.camera_on(common_bounds("frames", bare))
+        drawing["camera"] = camera
+        drawn = render.pictures(rest, **drawing)
+    with progress("draw", known, show=progress_bar) as report:
+        return writer(_counted(drawn, report, 0))
+
+
+@named
+def turn(
+    mesh: Mesh,
+    path: str | Path,
+    /,
+    *,
+    scene: Scene | None = None,
+    plane: str | tuple[int, int] = "xw",
+    frames: int = 72,
+    angle: float = TURN,
+    fps: float = 24.0,
+    camera: pv.Camera | None = None,
+    picture: render.PlotterKeywords | None = None,
+    rotation: object = None,
+    hyperplane: tuple[VectorLike, float] | None = None,
+    distance: float | None = None,
+    positions: str | None = "position",
+    frame: str | None = "frame",
+    vectors: str | Sequence[str] | None = None,
+    cut: bool = False,
+    light: LightWhen = "before",
+    tangents: str | ArrayLike | None = None,
+    normals: str | ArrayLike | None = None,
+    facing: Facing = "auto",
+    conditioned: bool | str | None = False,
+    line_field: bool = False,
+    occlusion: str | None = None,
+    name: str = "luminance",
+    exponent: Exponent = "compensated",
+    model: Model = "phong",
+    components: bool = False,
+    precision: Precision | None = None,
+    progress_bar: bool = False,
+) -> list[Path]:
+    """Rotate a mesh in a plane of n-space, light it at every step, and save the pictures.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet or pyvista.MultiBlock
+        Mesh with positions and a frame in n-space, as for :func:`vizlight.project`. It is not
+        changed.
+    path : path
+        Path of a movie, ``.gif`` or ``.mp4``, or of a sequence: ``turn.png`` stands for
+        ``turn_0000.png``, ``turn_0001.png`` and so on. The folder must exist. An earlier
+        sequence of the same name is overwritten; its frames beyond the last new one are removed.
+    scene : Scene, optional
+        Scene that lights the mesh, fixed while the mesh rotates. Without a scene the mesh's
+        active scalars are drawn: luminance from 0 to 1, other scalars from their minimum to
+        their maximum.
+    plane : str or (int, int), default: "xw"
+        Plane of the rotation, as for :func:`vizlight.geometry.nspace.projection.plane_rotation`.
+    frames : int, default: 72
+        Number of frames. Frame i is at ``i / frames`` of the angle.
+    angle : float, default: 2 pi
+        Angle of the whole rotation in radians.
+    fps : float, default: 24.0
+        Frames per second of a movie, up to 100.
+    camera : pyvista.Camera, optional
+        Camera of all frames. Default: one that shows the whole mesh at every step.
+    picture : mapping, optional
+        Further options of :func:`vizlight.draw.render.make_plotter`: size, scalars, cmap, clim,
+        background.
+    progress_bar : bool, default: False
+        Show progress on standard error.
+    rotation, hyperplane, distance, positions, frame, vectors, cut, light
+        As for :func:`vizlight.project`.
+    tangents, normals, facing, conditioned, line_field, occlusion
+        As for :func:`vizlight.illuminate`.
+    name, exponent, model, components, precision
+        As for :func:`vizlight.illuminate`.
+
+    Returns
+    -------
+    list of pathlib.Path
+        Paths of the files written.
+
+    Raises
+    ------
+    MovieError
+        If the path names a movie and imageio is not installed. Raised before anything is
+        drawn.
+    BackendError
+        If no OpenGL library can draw here.
+    TypeError, ValueError
+        If an argument does not fit, or a file cannot be written. No partial file is left: the
+        complete pictures of a sequence remain, but no part of a movie.
+
+    Warns
+    -----
+    UserWarning
+        Once, with the number of frames affected, if :func:`vizlight.project` warns.
+    """
+    asked = ProjectOptions.of(locals())
+    path = _check_movie(path)
+    count = _check.integer("frames", frames, low=1)
+    whole = _check.number("angle", angle)
+    fps = _check.number("fps", fps, low=0.01, high=100.0)
+    drawing = _drawing(picture)
+    if scene is not None:
+        drawing.setdefault("scalars", RGB if scene.colored else asked.name)
+    else:
+        _draw_active(mesh, drawing)
+    writer = _writer(path, fps, drawing["size"])
+    options = asked.changed()
+    before = options.pop("rotation", None)
+    notes: list[str] = []
+
+    def steps(settings: Mapping[str, Any], scene: Scene | None) -> Iterator[Mesh]:
+        for i in range(count):
+            turned = (plane, whole * i / count)
+            rotation = turned if before is None else [before, turned]
+            with warnings.catch_warnings(record=True) as caught:
+                warnings.simplefilter("always")
+                step = project(mesh, scene=scene, rotation=rotation, **settings)
+            notes.extend(str(warning.message) for warning in caught[:1])
+            yield step
+
+    with progress("turn", 2 * count if camera is None else count, show=progress_bar) as report:
+        done = 0
+        if camera is None:
+            # The light does not affect the positions, so the camera is found without it.
+            placing = {name: value for name, value in options.items() if name in PLACING}
+            unlit = _counted(steps(placing, None), report, done)
+            bounds = _check.coordinates("mesh", common_bounds("mesh", unlit))
+            camera = render.camera_on(bounds)
+            done = count
+            notes.clear()
+        drawing["camera"] = camera
+        files = writer(_counted(render.pictures(steps(options, scene), **drawing), report, done))
+    if notes:
+        _check.warn(f"in {len(notes)} of {count} frames: {notes[0]}")
+    return files
+
+
+def _check_movie(path: object) -> Path:
+    """Return the path of a movie or of a sequence that can be written."""
+    if not isinstance(path, str | os.PathLike):
+        raise TypeError(_check.message("path", "the path of a file", _check.describe(path)))
+    return check_output(Path(path), FORMATS)
+
+
+def _check_picture(picture: object, shape: tuple[int, ...]) -> Picture:
+    """Return a picture of a movie whose pictures all have one shape."""
+    own = picture if isinstance(picture, np.ndarray) else None
+    if own is None or own.dtype != np.uint8 or own.ndim != 3 or own.shape[2] != 3 or not own.size:
+        expected = "pictures, each an array of uint8 of shape (height, width, 3)"
+        raise ValueError(_check.message("frames", expected, _check.describe(picture)))
+    if own.shape != shape:
+        expected = f"pictures of one shape, {shape} as the first"
+        raise ValueError(_check.message("frames", expected, own.shape))
+    return own
+
+
+def _check_mesh(frame: object) -> object:
+    """Return a frame that is a mesh or a Panel."""
+    mesh = frame.mesh if isinstance(frame, render.Panel) else frame
+    if not isinstance(mesh, pv.DataSet | pv.MultiBlock):
+        expected = "meshes or Panels, or pictures alone"
+        raise TypeError(_check.message("frames", expected, _check.describe(mesh)))
+    return frame
+
+
+def _drawing(picture: render.PlotterKeywords | None) -> render.PlotterKeywords:
+    """Return the validated options of the pictures, except the camera."""
+    if not (picture is None or isinstance(picture, Mapping)):
+        raise TypeError(_check.message("picture", "a mapping", _check.describe(picture)))
+    drawing: render.PlotterKeywords = {"size": (640, 480)}
+    drawing.update(picture or {})
+    if "camera" in drawing:
+        raise ValueError(_check.message("picture", "no camera", "one", "pass it as camera="))
+    known = set(render.PlotterKeywords.__annotations__) - {"camera"}
+    for name in drawing:
+        if name not in known:
+            expected = f"options of a picture ({', '.join(sorted(known))})"
+            raise ValueError(_check.message("picture", expected, repr(name)))
+    return drawing
+
+
+def _draw_active(mesh: Mesh, drawing: render.PlotterKeywords) -> None:
+    """Choose the scalars of a mesh that is not lit: the requested ones, otherwise the active."""
+    parts = [block for block in all_blocks(mesh) if block.n_points]
+    if not parts:
+        return
+    name = drawing.setdefault("scalars", parts[0].active_scalars_name or "")
+    arrays = [np.asarray(part[name]) for part in parts if name in part.array_names]
+    if not arrays or any(x.ndim == 2 and x.shape[1] != 3 for x in arrays):
+        expected = "a scene, or a mesh with active scalars of 1 or 3 components"
+        raise ValueError(_check.message("scene", expected, f"none, and {name!r}"))
+    if "clim" not in drawing and name != DEFAULT_NAME and (ends := _range(arrays)):
+        drawing["clim"] = ends
+
+
+def _range(arrays: Iterable[NDArray[np.generic]]) -> tuple[float, float] | None:
+    """Return the minimum and the maximum of the finite numbers in arrays of one component."""
+    numbers = [x for x in arrays if x.ndim == 1 and x.dtype.kind in "biuf"]
+    finite = np.concatenate([[], *(x[np.isfinite(x)] for x in numbers)])
+    if not finite.size:
+        return None
+    low, high = float(finite.min()), float(finite.max())
+    return (low, high) if low < high else (low - 0.5, low + 0.5)
+
+
+def _counted(items: Iterable[Item], report: Callable[[int], None], done: int) -> Iterator[Item]:
+    """Yield the items and report the number of items so far, counted from ``done``."""
+    for item in items:
+        done += 1
+        report(done)
+        yield item
+
+
+def _writer(path: Path, fps: float, size: object) -> Callable[[Iterator[Picture]], list[Path]]:
+    """Return the function that writes pictures to files, after checking what it needs."""
+    pixels = render.pixels_of(size)
+    if path.suffix.lower() == ".png":
+        return lambda pictures: _write_sequence(path, pictures)
+    _need("imageio")
+    options = {"duration": 1000 / fps, "loop": 0}
+    if path.suffix.lower() == ".mp4":
+        _need("imageio_ffmpeg")
+        if any(side % 2 for side in pixels):
+            expected = "an even width and height for MP4"
+            raise ValueError(_check.message("size", expected, f"{pixels[0]}x{pixels[1]}"))
+        options = {"fps": fps, "macro_block_size": 2}
+    return lambda pictures: [replace_file(path, lambda to: _write_movie(to, pictures, options))]
+
+
+def _need(package: str) -> None:
+    try:
+        importlib.import_module(package)
+    except ImportError as error:
+        raise MovieError(
+            f"no movie: {package} is not installed; pip install 'vizlight[movie]', "
+            "or write a sequence of PNGs with a path that ends in .png"
+        ) from error
+
+
+def _write_sequence(path: Path, pictures: Iterable[Picture]) -> list[Path]:
+    files = []
+    for i, picture in enumerate(pictures):
+        name = path.with_name(f"{path.stem}_{i:04d}.png")
+        files.append(replace_file(name, Image.fromarray(picture).save))
+    for i in itertools.count(len(files)):
+        # Frames left over from an earlier, longer sequence would play at the end of this one.
+        name = path.with_name(f"{path.stem}_{i:04d}.png")
+        if not name.is_file():
+            return files
+        name.unlink()
+    return files
+
+
+def _write_movie(path: str, pictures: Iterable[Picture], options: Mapping[str, float]) -> None:
+    """Write the pictures one by one, so that memory does not grow with their number."""
+    import imageio.v2
+
+    with imageio.v2.get_writer(path, mode="I", **options) as movie:
+        for picture in pictures:
+            movie.append_data(picture)

@@ -1,0 +1,367 @@
+"""Light in each fragment in ParaView, which needs no plugin: shader text and properties to set."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import string
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from vizlight import _check, files
+from vizlight.draw import dialects, program
+from vizlight.draw.fragments import Fragments, unfit, unfit_layout, without_highlight
+from vizlight.draw.live import NORMALS, TANGENTS, Live
+from vizlight.draw.sources import sources_of
+from vizlight.filters.tint import color_table
+from vizlight.mesh import blocks
+from vizlight.scene import Scene, View
+from vizlight.scene.light import WHITE
+from vizlight.shading.decide import decide
+from vizlight.shading.display import NO_DATA, NO_DATA_NAME
+from vizlight.shading.inputs import Layout
+from vizlight.shading.options import LightOptions, ShadingOptions, named
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    import pyvista as pv
+    from numpy.typing import ArrayLike
+
+    from vizlight.draw.program import Program
+    from vizlight.shading.options import Exponent, Facing, Model
+    from vizlight.shading.plan import Plan
+
+__all__ = ["Shader", "save", "shader"]
+
+#: The camera in its own coordinates, as ParaView has it.
+EYE = View(direction=(0, 0, 1))
+#: Options of light that a program of fragments has no use for.
+WITHOUT = (
+    "positions", "feature_angle", "line_field", "bundle", "occlusion",
+    "name", "components", "precision",
+)  # fmt: skip
+#: How normals are turned, by ``facing``; otherwise they stay as they are.
+TOWARD: dict[str, Literal["eye", "face"]] = {"auto": "face", "eye": "eye"}
+SUFFIX = ".py"
+#: Number of colours by which ParaView is told a map.
+COLORS = 33
+_COLORED = string.Template("""\
+ColorBy(display, ("POINTS", $name))
+table = GetColorTransferFunction($name)
+table.ColorSpace, table.RGBPoints, table.NanColor = "RGB", $points, $nan
+display.RescaleTransferFunctionToDataRange(False, True)
+display.SetScalarBarVisibility(view, True)
+bar = GetScalarBar(table, view)
+bar.DrawNanAnnotation, bar.NanAnnotation = 1, $no_data""")
+_SCRIPT = string.Template("""\
+# Shows a mesh in ParaView with light in each fragment: paraview --script=THIS.py, or Run Script in
+# the Python shell; pvpython for a picture.
+import inspect
+
+if not hasattr(inspect, "getargspec"):
+    # Debian's ParaView 5.11 calls what its Python has no more.
+    inspect.getargspec = inspect.getfullargspec
+
+from paraview.simple import *
+
+source = $source
+view = GetActiveViewOrCreate("RenderView")
+display = Show(source, view)
+$colors
+properties = $properties
+names = properties["SelectNormalArray"], properties["SelectTangentArray"]
+for name in names:
+    if name != "None" and source.PointData.GetArray(name) is None:
+        raise RuntimeError(f"the source has no point array {name!r}")
+if names[1] != "None" and source.PointData.GetArray(names[1]).GetDataType() != 10:
+    raise RuntimeError(f"{names[1]}: ParaView passes an array of float32 alone; convert it")
+for name, value in properties.items():
+    setattr(display, name, value)
+${end}Render(view)
+""")
+
+
+@dataclass(frozen=True)
+class Shader:
+    """Text and properties of a representation in ParaView.
+
+    Parameters
+    ----------
+    shader_replacements : str
+        Text, in JSON, of the property ``ShaderReplacements``.
+    properties : dict of str to object
+        Values of the other properties, by the names that ``pvpython`` has for them.
+    scalars : str or None
+        Name of the point array that gives the colours.
+    """
+
+    shader_replacements: str
+    properties: Mapping[str, object]
+    scalars: str | None = None
+
+    def script(self, source: str | Path | None = None) -> str:
+        """Return a script for ``pvpython``, ``paraview --script`` and ParaView's Python shell.
+
+        Parameters
+        ----------
+        source : path, optional
+            Path of a file that is opened. Default: the source that is selected.
+
+        Returns
+        -------
+        str
+
+        Examples
+        --------
+        >>> import vizlight
+        >>> scene = vizlight.Scene(lights=vizlight.Light(direction=(1, 1, 1)))
+        >>> made = vizlight.paraview.shader(scene, tangents="V", conditioned=True)
+        >>> "GetActiveSource()" in made.script()
+        True
+        """
+        values = {**self.properties, "ShaderReplacements": self.shader_replacements}
+        lines = "".join(f"    {name!r}: {value!r},\n" for name, value in values.items())
+        return _SCRIPT.substitute(
+            source="GetActiveSource()" if source is None else f"OpenDataFile({str(source)!r})",
+            colors="ColorBy(display, None)" if self.scalars is None else _colored(self.scalars),
+            properties=f"{{\n{lines}}}",
+            end="" if source is None else "ResetCamera(view)\n",
+        )
+
+
+def _colored(name: str) -> str:
+    """Return statements that colour by an array, by the map of data where none is named."""
+    colors = np.asarray(color_table([], clim=(0, 1), n_colors=COLORS).values)[:, :3] / 255
+    points = np.column_stack([np.linspace(0, 1, COLORS), colors]).round(4)
+    return _COLORED.substitute(
+        name=repr(name),
+        points=points.ravel().tolist(),
+        nan=[round(channel, 4) for channel in NO_DATA],
+        no_data=repr(NO_DATA_NAME),
+    )
+
+
+@named
+def shader(
+    scene: Scene,
+    /,
+    *,
+    scalars: str | None = None,
+    tangents: str | ArrayLike | None = None,
+    normals: str | ArrayLike | None = None,
+    facing: Facing = "auto",
+    conditioned: bool | str | None = False,
+    exponent: Exponent = "compensated",
+    model: Model = "phong",
+) -> Shader:
+    """Return what shows the light of a scene in each fragment in an unchanged ParaView.
+
+    The light follows ParaView's camera, which takes the place of the view of the scene; ParaView's
+    own lights have no effect. The properties Ambient and Diffuse scale it, but not on colours of
+    data, which stay readable as in :func:`vizlight.tint`.
+
+    Parameters
+    ----------
+    scene : Scene
+        Lights, material and depth cue in 3-space, in the coordinates of the data. Lights
+        that follow the view turn with the camera.
+    scalars : str, optional
+        Name of the point array that gives the colours, by ``vizlight.maps.even`` unless PyVista's
+        theme was changed. Default: the colour of the material.
+    tangents, normals, facing, conditioned, exponent, model
+        As for :func:`vizlight.illuminate`.
+
+    Returns
+    -------
+    Shader
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument does not fit; if the light of a fragment needs more than one tangent and a
+        normal (``model="cylinder"``, ``conditioned=`` by an array, *n*-space); or if the depth cue
+        has no ends, which without the mesh are not known.
+
+    See Also
+    --------
+    save : A mesh with the arrays that its light needs, and the script that shows it.
+    vizlight.vtk : The plugin that lights points in ParaView.
+
+    Notes
+    -----
+    Written for ParaView 5.11, whose representations have the property ``ShaderReplacements``: 99 %
+    of the pixels are within 2 of 255 of the light of a plotter. A position of a light is rounded to
+    float32, which is 0.25 at 5e6 from the origin. Light turns with a representation that is moved
+    by its own ``Position`` or ``Orientation``; move the data in place of that. The text does not
+    reach what ParaView draws with shaders of its own: tubes, spheres, ray tracing and volumes.
+    """
+    asked = LightOptions.of(locals())
+    tangents, normals = (_named(name, getattr(asked, name)) for name in ("tangents", "normals"))
+    if isinstance(asked.conditioned, str):
+        expected, remedy = "True or False in ParaView", "vizlight.illuminate lights the points"
+        got = repr(asked.conditioned)
+        raise ValueError(_check.message("conditioned", expected, got, remedy))
+    if normals is None and (tangents is None or asked.conditioned):
+        normals = "Normals"
+    layout = Layout(k=None if tangents is None else 1, normals=normals is not None)
+    scalars = _named("scalars", scalars)
+    plan = _plan(scene, layout, asked, data=scalars is not None)
+    written = program.write(
+        plan, turned=False, toward=TOWARD.get(asked.facing, ""), data=scalars is not None
+    )
+    return _made(scene, plan, written, tangents, normals, scalars)
+
+
+def save(
+    mesh: pv.DataSet,
+    /,
+    scene: Scene | None,
+    path: str | Path,
+    *,
+    scalars: str | None = None,
+    **options: Any,
+) -> Path:
+    """Write a script that shows a mesh in ParaView with light in each fragment, and the mesh.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh, which is not changed; of a volume its surface is written.
+    scene : Scene or None
+        As for :func:`shader`. None for the record of a lit mesh.
+    path : path
+        Path of the script, which ends in .py. The mesh, with the tangents and normals of its
+        light, is beside it: ``NAME-paraview.vtp`` for ``NAME.py``. Existing files are replaced.
+    scalars : str, optional
+        Name of the point array that gives the colours, as for :func:`shader`.
+    **options
+        Options of :func:`vizlight.illuminate`, except ``name`` and ``components``.
+
+    Returns
+    -------
+    pathlib.Path
+        Path of the script, which ``paraview --script=`` runs.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument does not fit, the light cannot be computed in each fragment, with the
+        reason, or the mesh has several blocks.
+    FileError
+        If a file cannot be written.
+    """
+    path = files.check_output(path, (SUFFIX,))
+    blocks.check(mesh)
+    _check.instance("scene", scene, Scene, optional=True)
+    sources, used = sources_of(mesh, scene, options)
+    if len(sources) != 1:
+        expected, remedy = "one block", "write a script for each"
+        raise ValueError(_check.message("mesh", expected, f"{len(sources)} blocks", remedy))
+    if used is None:
+        remedy = "pass a Scene, or a mesh that a filter has lit"
+        raise ValueError(_check.message("scene", "a scene or the record of one", None, remedy))
+    (source,) = sources
+    if scalars is not None:
+        _check.text("scalars", scalars, expected="the name of a point array")
+    if scalars is not None and scalars not in source.mesh.point_data:
+        raise ValueError(_check.message("scalars", "the name of a point array", repr(scalars)))
+    if reason := unfit(source.inputs, source.options, source.mesh):
+        raise ValueError(_unfit(reason))
+    plan = _plan(used, source.inputs.layout, source.options, data=scalars is not None)
+    live, painter = Live(source, used, follow=True, by_surface=True), Fragments()
+    painter.attach(live)
+    painter.see(live, source.inputs, used.view)
+    written = program.write(plan, turned=source.sided is not None, data=scalars is not None)
+    made = _made(used, plan, written, TANGENTS, NORMALS, scalars, tallest=painter.tallest)
+    data = files.write_mesh(live.drawn, beside(path))
+    text = made.script(data.resolve())
+    return files.replace_file(path, lambda draft: Path(draft).write_text(text, "utf-8"))
+
+
+def beside(path: Path) -> Path:
+    """Return the path of the mesh that a script shows."""
+    return path.with_name(f"{path.stem}-paraview.vtp")
+
+
+def _named(name: str, value: object) -> str | None:
+    if value is not None and not isinstance(value, str):
+        expected = "the name of a point array that the data have in ParaView"
+        raise TypeError(_check.message(name, expected, _check.describe(value)))
+    return value
+
+
+def _unfit(reason: str) -> str:
+    remedy = "vizlight.illuminate lights the points, which ParaView shows as they are"
+    return _check.message("light", "what a fragment can compute in ParaView", reason, remedy)
+
+
+def _plan(scene: Scene, layout: Layout, options: ShadingOptions, *, data: bool) -> Plan:
+    """Return the plan of a scene as ParaView's camera sees it, on colours of data or without.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If the scene does not fit, or the light cannot be computed in each fragment.
+    """
+    _check.instance("scene", scene, Scene)
+    if scene.n not in (None, 3):
+        raise ValueError(_check.message("scene", "vectors of 3 components", scene.n))
+    _check.instance("scene", scene, Scene)
+    if reason := unfit_layout(layout, options):
+        raise ValueError(_unfit(reason))
+    cue = scene.depth_cue
+    if cue is not None and (cue.front is None or cue.back is None):
+        expected, remedy = "both ends for ParaView", "pass DepthCue(front=, back=), distances"
+        raise ValueError(_check.message("depth_cue", expected, "none or one", remedy))
+    bare = dataclasses.replace(options, components=False)
+    seen = without_highlight(scene) if data else scene
+    return decide(seen.replace(view=EYE), layout, bare)
+
+
+def _made(
+    scene: Scene,
+    plan: Plan,
+    written: Program,
+    tangents: str | None,
+    normals: str | None,
+    scalars: str | None,
+    *,
+    tallest: float = 0.0,
+) -> Shader:
+    """Return the text of a program and the properties that it needs."""
+    material = scene.material
+    shown = program.Shown(
+        min(material.ambient, 1.0), min(material.diffuse, 1.0), material.specular_color or WHITE
+    )
+    lights = [light for light in scene.lights if light.intensity > 0]
+    seen, fixed = scene.replace(view=EYE), [light.seen_from(EYE) for light in lights]
+    given = program.numbers(
+        seen, fixed, shown=shown, fur=plan.fur, tallest=tallest, data=scalars is not None
+    )
+    # What stands with the camera has its numbers in view coordinates already.
+    own = {"vizEye", "vizAxis", "vizFrom"}
+    own |= {f"vizLight{i}" for i, light in enumerate(lights) if light.follows_view}
+    given = [number._replace(space="") if number.name in own else number for number in given]
+    normal_array, tangent_array, dialect = normals, None, dialects.PARAVIEW
+    if not plan.surface:
+        normal_array, tangent_array, dialect = tangents, normals, dialects.PARAVIEW_TANGENTS
+    replacements = [
+        {"type": stage.lower(), "original": mark, "replacement": text}
+        for stage, mark, text in dialect.replacements(written, given)
+    ]
+    color = list(material.color or WHITE)
+    properties: dict[str, object] = {
+        "AmbientColor": color,
+        "DiffuseColor": color,
+        "Ambient": shown.ambient,
+        "Diffuse": shown.diffuse,
+        "Interpolation": "Gouraud",
+        "SelectNormalArray": normal_array,
+        "SelectTangentArray": tangent_array or "None",
+        "UseShaderReplacements": 1,
+    }
+    return Shader(json.dumps(replacements, indent=1), properties, scalars)

@@ -1,0 +1,487 @@
+"""Offscreen pictures of lit meshes; the light is computed beforehand by the filters."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal, TypedDict, get_args
+
+import numpy as np
+import pyvista as pv
+
+from vizlight import _check
+from vizlight.draw import strokes
+from vizlight.draw.backends import (
+    Backend,
+    BackendError,
+    Probe,
+    choose_backend,
+    probe,
+    window_class,
+)
+from vizlight.draw.cameras import Mesh, camera_on, common_bounds, over_shoulder
+from vizlight.draw.corner import CornerKey, ink_on
+from vizlight.draw.program import Stroke
+from vizlight.files import check_output, replace_file
+from vizlight.filters.tint import RGB, unlit_colors
+from vizlight.mesh import records
+from vizlight.mesh.blocks import all_blocks, check
+from vizlight.mesh.polylines import backdrop
+from vizlight.reading import polylines
+from vizlight.reading.polylines import has_lines_only
+from vizlight.shading.display import NO_DATA, displayable
+from vizlight.shading.results import DEFAULT_NAME, VALID
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+    from typing_extensions import Unpack
+
+    from vizlight._types import ColorLike
+
+__all__ = [
+    "Backend",
+    "BackendError",
+    "Panel",
+    "PlotterKeywords",
+    "Probe",
+    "camera_on",
+    "choose_backend",
+    "make_plotter",
+    "over_shoulder",
+    "pictures",
+    "probe",
+    "save_png",
+]
+
+AntiAliasing = Literal["auto", "ssaa", "msaa", "fxaa"]
+PictureLight = Literal["auto", "points"]
+
+#: Supersampling draws at twice the size, and drivers support at most 16384 pixels per side.
+LARGEST_SIDE, LARGEST_AREA = 8192, 33_000_000
+#: Distance by which lines are drawn nearer to the eye than a surface on which they lie, as a share
+#: of the size of what is drawn: enough for triangles not to hide the lines between them.
+LIFT = 3e-3
+#: Width of a key, as a share of the shorter side of the picture.
+KEY_SIZE = 0.2
+#: Width of a line that supersampling draws one pixel wide, as measured from pictures of lines of 1
+#: to 40 pixels: twice the size, and VTK's lines are a tenth narrower there.
+SUPERSAMPLED = 2 / 0.9
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One picture among others: a mesh, the name of the array that colours it, and a title."""
+
+    mesh: Mesh
+    scalars: str = "luminance"
+    title: str = ""
+
+    def __post_init__(self) -> None:
+        _check.text("scalars", self.scalars, expected="the name of an array")
+        if not isinstance(self.title, str):
+            raise TypeError(_check.message("title", "a string", _check.describe(self.title)))
+
+
+class PlotterKeywords(TypedDict, total=False):
+    """Keyword options of :func:`make_plotter`."""
+
+    camera: pv.Camera | None
+    rows: int
+    size: tuple[int, int]
+    scalars: str
+    cmap: str
+    clim: tuple[float, float]
+    bar: str
+    background: ColorLike | None
+    line_width: float
+    line_diameter: float | None
+    render_lines_as_tubes: bool
+    anti_aliasing: AntiAliasing | None
+    backend: Backend | None
+    light: PictureLight
+    key: pv.PolyData | None
+
+
+def make_plotter(
+    panels: Mesh | Panel | Sequence[Mesh | Panel],
+    /,
+    *,
+    camera: pv.Camera | None = None,
+    rows: int = 1,
+    size: tuple[int, int] = (1200, 800),
+    scalars: str | None = None,
+    cmap: str = "gray",
+    clim: tuple[float, float] = (0.0, 1.0),
+    bar: str = "",
+    background: ColorLike | None = None,
+    line_width: float = 1.0,
+    line_diameter: float | None = None,
+    render_lines_as_tubes: bool = False,
+    anti_aliasing: AntiAliasing | None = "auto",
+    backend: Backend | None = None,
+    light: PictureLight = "auto",
+    key: pv.PolyData | None = None,
+) -> pv.Plotter:
+    """Return an offscreen plotter that shows lit meshes on a grid of panels with one camera.
+
+    Parameters
+    ----------
+    panels : mesh, Panel, or sequence of them
+        Meshes to draw, from left to right.
+    camera : pyvista.Camera, optional
+        Camera of all panels. Default: :func:`camera_on` all the meshes.
+    rows : int, default: 1
+        Number of rows of panels, which are filled one after the other.
+    size : (int, int), default: (1200, 800)
+        Width and height of the whole picture in pixels, each at most 8192, with at most
+        33 million pixels in all.
+    scalars : str, optional
+        Name of the point or cell array that colours a mesh given without a :class:`Panel`.
+        Three components are taken as a colour. Default: the colours of a mesh that
+        :func:`vizlight.tint` returned, otherwise ``"luminance"``.
+    cmap : str, default: "gray"
+        Name of the colour map for arrays of one component.
+    clim : (float, float), default: (0.0, 1.0)
+        Values at the two ends of the colour map.
+    bar : str, optional
+        Title of a scalar bar in the last panel, which should include the unit. Default: no bar.
+    background : colour, optional
+        Background colour. Default: black if all meshes consist of lines only, otherwise white.
+    line_width : float, default: 1.0
+        Width of lines in pixels of the picture, whatever the anti-aliasing. Beside surfaces lines
+        are drawn nearer to the eye, by 0.3 % of the bounding box's diagonal and at the same pixels,
+        so that a surface on which they lie does not hide them.
+    line_diameter : float, optional
+        Diameter of lines in the unit of the mesh, in place of ``line_width``: nearer lines are
+        wider. They are bands that face the eye, at least half a pixel wide.
+    render_lines_as_tubes : bool, default: False
+        Whether lines wider than a pixel have, across their width, the light of the cylinder that
+        they stand for: its mean is the light of ``model="cylinder"``. Lines keep their own light
+        where it cannot be computed in each fragment, as with ``light="points"``, on a surface that
+        conditions it, or in a bundle.
+    anti_aliasing : {"auto", "ssaa", "msaa", "fxaa"} or None, default: "auto"
+        Method of anti-aliasing: supersampling, multisampling, FXAA, or none. "auto" is
+        supersampling where there are lines, which are then drawn narrower than a pixel, else
+        multisampling, which takes a third of the time. VTK before 9.7 draws several supersampled
+        panels in one place; they are multisampled there.
+    backend : {"egl", "osmesa"}, optional
+        OpenGL library; see :func:`choose_backend`.
+    light : {"auto", "points"}
+        What is drawn: "points", the array as it is, interpolated between the points. "auto", the
+        light of its record, computed in each fragment, where the array is a light that allows it
+        (in gray from 0 to 1, or ``rgb``): it is right between the points too. A scene that is
+        exported to a page needs "points", because the page has no such shaders.
+    key : pyvista.PolyData, optional
+        Key of the light, as :func:`vizlight.presets.key` returns it, in the corner of the last
+        panel where it covers the least of the data.
+
+    Returns
+    -------
+    pyvista.Plotter
+        Plotter, which the caller must close.
+
+    Raises
+    ------
+    BackendError
+        If no OpenGL library can draw here.
+    TypeError, ValueError
+        If there is nothing to draw, an array is missing, or an option does not fit.
+    """
+    shown = _check_panels(panels, scalars)
+    _check_options(camera, cmap, clim, anti_aliasing)
+    _check.text("bar", bar, expected="a title")
+    _check.choice("light", light, get_args(PictureLight))
+    plain = cmap == "gray" and tuple(clim) == (0.0, 1.0) and not bar
+    pixels = pixels_of(size)
+    rows = min(_check.integer("rows", rows, low=1), len(shown))
+    columns = math.ceil(len(shown) / rows)
+    line_width = _check.number("line_width", line_width, low=0.1, high=1000.0)
+    if line_diameter is not None:
+        line_diameter = _check.positive("line_diameter", line_diameter)
+    tubes = _check.boolean("render_lines_as_tubes", render_lines_as_tubes)
+    back = _background_of(shown, background)
+    if camera is None:
+        camera = _camera_on_all(shown, aspect=pixels[0] * rows / (pixels[1] * columns))
+    ink = ink_on(back)
+    with window_class(choose_backend(backend)):
+        plotter = pv.Plotter(
+            off_screen=True, shape=(rows, columns), window_size=pixels, border=False
+        )
+    if anti_aliasing == "auto":
+        thin = any(has_lines_only(mesh) for panel in shown for mesh in all_blocks(panel.mesh))
+        anti_aliasing = "ssaa" if thin else "msaa"
+    if anti_aliasing == "ssaa" and len(shown) > 1 and pv.vtk_version_info < (9, 7):
+        anti_aliasing = "msaa"
+    try:
+        for number, panel in enumerate(shown):
+            plotter.subplot(*divmod(number, columns))
+            plotter.background_color = back
+            if anti_aliasing is not None:
+                plotter.enable_anti_aliasing(anti_aliasing)
+            else:  # PyVista's theme asks for several samples of a pixel all the same
+                plotter.render_window.SetMultiSamples(0)  # type: ignore[union-attr]
+            # PyVista supersamples for FXAA too where the driver lacks that.
+            drawn = plotter.renderer.GetPass()
+            pixel = SUPERSAMPLED if drawn is not None and drawn.IsA("vtkSSAAPass") else 1.0
+            lines = {"line_width": line_width * pixel, "line_diameter": line_diameter}
+            lines["render_lines_as_tubes"] = tubes
+            lit = light == "auto" and plain
+            _draw(plotter, panel, cmap, clim, lines, camera, fragments=lit)
+            if panel.title:
+                text = plotter.add_text(panel.title, position="upper_edge", font_size=10, color=ink)
+                # VTK sets it so near to the edge that letters touch it.
+                text.GetTextProperty().SetLineOffset(8)
+            plotter.camera = camera.copy()  # type: ignore[no-untyped-call]
+            plotter.reset_camera_clipping_range()
+        if key is not None:
+            CornerKey(key, "auto", KEY_SIZE, ink_on(back)).show(plotter.renderer)
+        if bar:
+            made = plotter.add_scalar_bar(  # type: ignore[call-arg]
+                title=bar, color=ink, n_labels=3, fmt="%.1f", vertical=True, height=0.7, width=0.1,
+                position_x=0.82, position_y=0.12,
+            )  # fmt: skip
+            if any(panel.scalars + VALID in mesh.point_data for mesh in all_blocks(panel.mesh)):
+                from vizlight.draw.component import name_no_data
+
+                name_no_data(made)
+    except BaseException:
+        plotter.close()
+        raise
+    return plotter
+
+
+def _default_scalars(mesh: object) -> str:
+    """Return the array that colours a mesh: what :func:`vizlight.tint` gave it, else its light."""
+    parts = list(all_blocks(mesh)) if isinstance(mesh, Mesh) else []
+    tinted = [
+        (records.read(part, RGB) or {}).get("filter") == "tint"
+        and part.point_data.active_scalars_name == RGB
+        for part in parts
+    ]
+    return RGB if tinted and all(tinted) else DEFAULT_NAME
+
+
+def _check_panels(
+    panels: Mesh | Panel | Sequence[Mesh | Panel], scalars: str | None
+) -> list[Panel]:
+    """Return the panels to draw, each with the array that colours it."""
+    items: Sequence[Any] = panels if isinstance(panels, list | tuple) else [panels]
+    shown = [
+        item
+        if isinstance(item, Panel)
+        else Panel(item, _default_scalars(item) if scalars is None else scalars)
+        for item in items
+    ]
+    if not shown:
+        raise ValueError(_check.message("panels", "one mesh or more", "none"))
+    for panel in shown:
+        if not isinstance(panel.mesh, Mesh):
+            raise TypeError(
+                _check.message("panels", "PyVista meshes or Panels", _check.describe(panel.mesh))
+            )
+        check(panel.mesh)
+        for mesh in all_blocks(panel.mesh):
+            if panel.scalars not in mesh.point_data and panel.scalars not in mesh.cell_data:
+                known = ", ".join(map(repr, [*mesh.point_data, *mesh.cell_data])) or "none"
+                expected = f"a point array or a cell array ({known})"
+                lit = panel.scalars == DEFAULT_NAME
+                remedy = "light the mesh first, by vizlight.illuminate" if lit else ""
+                raise ValueError(_check.message("scalars", expected, repr(panel.scalars), remedy))
+            data = mesh.point_data if panel.scalars in mesh.point_data else mesh.cell_data
+            array = data[panel.scalars]
+            if array.dtype.kind not in "biuf" or array.shape[1:] not in ((), (1,), (3,), (4,)):
+                expected = "real numbers of 1 component, or colours of 3 or 4"
+                got = f"{panel.scalars!r} of shape {array.shape} and type {array.dtype}"
+                raise ValueError(_check.message("scalars", expected, got))
+    return shown
+
+
+def _check_options(camera: object, cmap: str, clim: object, anti_aliasing: object) -> None:
+    """Check options that are passed on to PyVista, whose messages do not name them."""
+    if camera is not None and not hasattr(camera, "GetPosition"):
+        raise TypeError(_check.message("camera", "a pyvista.Camera", _check.describe(camera)))
+    ends = _check.vector("clim", clim)
+    if len(ends) != 2 or not ends[0] < ends[1]:
+        raise ValueError(_check.message("clim", "a lower and a higher number", clim))
+    try:
+        pv.LookupTable(cmap)
+    except (TypeError, ValueError) as error:
+        got = _check.describe(cmap)
+        raise ValueError(_check.message("cmap", "the name of a colour map", got)) from error
+    _check.choice("anti_aliasing", anti_aliasing, get_args(AntiAliasing), optional=True)
+
+
+def _background_of(shown: Sequence[Panel], background: ColorLike | None) -> pv.Color:
+    """Return the requested background, otherwise the one on which the meshes stand out."""
+    if (channels := _check.color("background", background)) is not None:
+        return pv.Color(channels)
+    return pv.Color(backdrop(mesh for panel in shown for mesh in all_blocks(panel.mesh)))
+
+
+def _camera_on_all(shown: Sequence[Panel], aspect: float) -> pv.Camera:
+    """Return a camera that shows the meshes of all panels."""
+    _check.coordinates("panels", common_bounds("panels", [panel.mesh for panel in shown]))
+    meshes = pv.MultiBlock([block for panel in shown for block in all_blocks(panel.mesh)])
+    return camera_on(meshes, aspect=aspect)
+
+
+def save_png(
+    panels: Mesh | Panel | Sequence[Mesh | Panel],
+    path: str | Path,
+    /,
+    **options: Unpack[PlotterKeywords],
+) -> Path:
+    """Draw lit meshes offscreen with one camera and save the picture as a PNG file.
+
+    Parameters
+    ----------
+    panels : mesh, Panel, or sequence of them
+        Meshes to draw, from left to right.
+    path : path
+        Path of the picture, in an existing folder.
+    **options
+        Options of :func:`make_plotter`: camera, rows, size, scalars, cmap, clim, bar, background,
+        line_width, line_diameter, render_lines_as_tubes, anti_aliasing, backend, light, key.
+
+    Returns
+    -------
+    pathlib.Path
+        Path of the picture.
+
+    Raises
+    ------
+    BackendError
+        If no OpenGL library can draw here.
+    TypeError, ValueError
+        If an option does not fit, as in :func:`make_plotter`, or the file cannot be written. No
+        partial file is left.
+    """
+    path = check_output(path, (".png",))
+    plotter = make_plotter(panels, **options)
+    try:
+        return replace_file(path, plotter.screenshot, doing="draw")
+    finally:
+        plotter.close()
+
+
+def pictures(
+    sequence: Iterable[Mesh | Panel | Sequence[Mesh | Panel]],
+    /,
+    **options: Unpack[PlotterKeywords],
+) -> Iterator[NDArray[np.uint8]]:
+    """Yield one picture after the other, all drawn with the same options.
+
+    Parameters
+    ----------
+    sequence : iterable
+        Panels of each picture, as :func:`make_plotter` takes them.
+    **options
+        Options of :func:`make_plotter`. With ``camera=`` the eye is the same in all pictures.
+
+    Yields
+    ------
+    ndarray of uint8, shape (height, width, 3)
+
+    Raises
+    ------
+    BackendError, TypeError, ValueError
+        As for :func:`make_plotter`.
+    """
+    _check.iterable("sequence", sequence, "an iterable of meshes, Panels or lists of them")
+    for panels in sequence:
+        plotter = make_plotter(panels, **options)
+        try:
+            picture = np.array(plotter.screenshot(return_img=True))
+        finally:
+            plotter.close()
+        yield picture
+
+
+def pixels_of(size: object) -> list[int]:
+    """Return width and height in pixels, if a picture of that size can be drawn.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If the size is not two positive integers within the limits of anti-aliasing.
+    """
+    if _check.reals("size", size).shape != (2,):
+        raise ValueError(_check.message("size", "(width, height) in pixels", _check.describe(size)))
+    sides = _check.vector("size", size)
+    pixels = [_check.integer("size", int(p) if p == int(p) else p, low=1) for p in sides]
+    if max(pixels) > LARGEST_SIDE or pixels[0] * pixels[1] > LARGEST_AREA:
+        limit = f"at most {LARGEST_SIDE} pixels per side and {LARGEST_AREA // 10**6} million in all"
+        raise ValueError(_check.message("size", limit, f"{pixels[0]}x{pixels[1]}"))
+    return pixels
+
+
+def _draw(
+    plotter: pv.Plotter, panel: Panel, cmap: Any, clim: tuple[float, float],
+    width: dict[str, Any], camera: pv.Camera, *, fragments: bool,
+) -> None:  # fmt: skip
+    blocks = [mesh for mesh in all_blocks(panel.mesh) if mesh.n_points]
+    of_lines = [has_lines_only(mesh) for mesh in blocks]
+    size = LIFT * max((mesh.length for mesh in blocks), default=0.0)
+    for mesh, lines in zip(blocks, of_lines, strict=True):
+        shown = mesh.copy(deep=False)
+        if lines and not all(of_lines):
+            # Assigning to shown.points would move the points that it shares with the mesh.
+            shown.SetPoints(pv.vtk_points(_lifted(np.asarray(mesh.points), camera, size)))
+        if fragments and _add_in_fragments(plotter, shown, panel.scalars, width):
+            continue
+        diameter = width["line_diameter"] if lines else None
+        if diameter is not None:
+            shown["vizlight along"] = polylines.line_tangents(mesh).astype(np.float32)
+            shown.point_data.active_normals_name = "vizlight along"
+        of_points = panel.scalars in mesh.point_data
+        values = np.asarray((mesh.point_data if of_points else mesh.cell_data)[panel.scalars])
+        colour = values.ndim == 2
+        if colour and values.dtype != np.uint8:
+            # VTK wraps around above 1, so a bright highlight would turn black.
+            values = np.column_stack([displayable(values[:, :3]), np.clip(values[:, 3:], 0, 1)])
+        light = DEFAULT_NAME if panel.scalars == RGB else panel.scalars
+        if of_points and light + VALID in mesh.point_data and values.dtype != np.uint8:
+            values = np.where(mesh[light + VALID], values.T, NO_DATA[0] if colour else np.nan).T
+        actor = plotter.add_mesh(
+            shown,
+            scalars=values,
+            preference="point" if of_points else "cell",
+            rgb=colour,
+            cmap=None if colour else cmap,
+            clim=None if colour else clim,
+            nan_color=NO_DATA,
+            lighting=False,
+            line_width=width["line_width"],
+            show_scalar_bar=False,
+        )
+        if diameter is not None:
+            strokes.widen(actor, Stroke(diameter))
+        if (records.read(mesh, panel.scalars) or {}).get("filter") == "tint":
+            # The colours are drawn as they are; a scalar bar shows those before they were lit.
+            table = unlit_colors(mesh, panel.scalars)
+            actor.mapper.lookup_table, actor.mapper.scalar_range = table, table.scalar_range
+
+
+def _add_in_fragments(
+    plotter: pv.Plotter, mesh: pv.DataSet, name: str, width: dict[str, Any]
+) -> bool:
+    """Add a mesh whose light is computed in each fragment; lines that cannot be round are flat."""
+    drawing = width | {"show_scalar_bar": False}
+    flat = drawing | {"render_lines_as_tubes": False}
+    from vizlight.draw.component import add_recorded
+
+    return any(add_recorded(plotter, mesh, name, **options) for options in (drawing, flat))
+
+
+def _lifted(points: NDArray[np.floating[Any]], camera: pv.Camera, by: float) -> Any:
+    """Return points that are nearer to the eye and stay at the same pixels."""
+    eye = np.array(camera.position)
+    toward = eye - np.asarray(points, dtype=np.float64)
+    if camera.parallel_projection:
+        back = eye - np.array(camera.focal_point)
+        return points + by * back / np.linalg.norm(back)
+    distance = np.linalg.norm(toward, axis=1, keepdims=True)
+    return points + toward * np.minimum(by / np.where(distance > 0, distance, 1), 0.5)

@@ -1,0 +1,180 @@
+"""``mesh.vizlight.plot``: a mesh whose light follows the camera, shown as ``pyvista.plot`` does."""
+
+from __future__ import annotations
+
+import inspect
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pyvista as pv
+
+from vizlight import _check
+from vizlight.draw import keywords
+from vizlight.files import check_output
+from vizlight.filters.sky import SKY
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from vizlight.draw.live import LightAt
+    from vizlight.scene import Scene
+
+__all__ = ["plot"]
+
+#: Endings of the names of pictures that VTK writes.
+PICTURES = (".png", ".jpeg", ".jpg", ".bmp", ".tif", ".tiff")
+#: Keywords of ``pyvista.plot`` that a new plotter takes.
+_WINDOW = ("off_screen", "notebook", "theme", "border", "border_color", "border_width")
+#: Keywords of ``pyvista.plot`` by which it shows the plotter.
+_SHOWN = (
+    "auto_close", "interactive", "full_screen", "return_img", "before_close_callback",
+    "jupyter_kwargs", "return_viewer", "return_cpos",
+)  # fmt: skip
+#: Keywords of ``pyvista.plot`` that its signature does not name.
+_MORE = {"edl", "show_grid", "auto_close", "camera"}
+
+
+def plot(
+    mesh: pv.DataSet | pv.MultiBlock,
+    /,
+    *,
+    scene: Scene | None = None,
+    light: LightAt = "auto",
+    scalars: str | ArrayLike | None = None,
+    camera: pv.Camera | None = None,
+    window_size: tuple[int, int] | None = None,
+    screenshot: str | Path | bool | None = None,
+    jupyter_backend: str | None = None,
+    sky: bool = False,
+    **options: Any,
+) -> object:
+    """Show a mesh whose light follows the camera.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet or pyvista.MultiBlock
+        Mesh that is lit and drawn; not changed.
+    scene, light, scalars
+        As for ``plotter.vizlight.add_mesh``.
+    camera : pyvista.Camera, optional
+        First camera. Default: ``cpos``, or one that shows the whole mesh.
+    window_size : (int, int), optional
+        Width and height in pixels.
+    screenshot : path or bool, optional
+        Path of a picture of the last view, or whether it is returned.
+    jupyter_backend : str, optional
+        Backend of a notebook; ``"html"`` shows the page of :func:`vizlight.live_html` in a frame.
+    sky : bool, default: False
+        Whether the ambient light is that of a sky: ``occlusion="sky"``.
+    **options
+        Keywords of ``pyvista.plot``, such as ``cpos``, ``zoom``, ``background``, ``off_screen`` and
+        ``text``, and of ``plotter.vizlight.add_mesh``: options of :func:`vizlight.illuminate` and
+        keywords of ``pyvista.Plotter.add_mesh``.
+
+    Returns
+    -------
+    object
+        What ``pyvista.plot`` returns: the widget of a notebook, or what ``return_img`` and
+        ``return_cpos`` ask for; otherwise None.
+
+    Raises
+    ------
+    TypeError, ValueError
+        As for ``plotter.vizlight.add_mesh``.
+
+    Warns
+    -----
+    UserWarning
+        If ``volume=True``: PyVista draws volumes with its own light.
+    """
+    if _check.boolean("sky", sky):
+        options = {"occlusion": SKY} | options
+    named = {*inspect.signature(pv.plot).parameters} - {"var_item", "kwargs"} | _MORE
+    given = {name: options.pop(name) for name in [*options] if name in named}
+    keywords.sorted_out("mesh.vizlight.plot", options, scene, more=named)
+    if window_size is not None:
+        window_size = _size(window_size)
+    if camera is not None and not hasattr(camera, "GetPosition"):
+        raise TypeError(_check.message("camera", "a pyvista.Camera", _check.describe(camera)))
+    if isinstance(screenshot, str | Path):
+        screenshot = check_output(screenshot, PICTURES)
+    if jupyter_backend is not None:
+        _check.text("jupyter_backend", jupyter_backend)
+    for name in ("off_screen", "notebook"):
+        if given.get(name) is not None:
+            _check.boolean(name, given[name])
+    window = {name: given.pop(name) for name in _WINDOW if name in given}
+    size = None if window_size is None else list(window_size)
+    plotter: Any = pv.Plotter(window_size=size, **window)
+    try:
+        if given.pop("volume", False):
+            _check.warn("volume=True: PyVista draws the volume with its own light")
+            plotter.add_volume(mesh, scalars=scalars, **options)
+        else:
+            plotter.vizlight.add_mesh(mesh, scene=scene, light=light, scalars=scalars, **options)
+        shown = {name: given.pop(name) for name in _SHOWN if name in given}
+        _furnish(plotter, **given)
+        if camera is not None:
+            plotter.camera = camera.copy()  # type: ignore[no-untyped-call]
+    except BaseException:
+        plotter.close()
+        raise
+    # Outside a notebook PyVista warns that it ignores the backend.
+    backend = jupyter_backend if plotter.notebook else None
+    return plotter.show(screenshot=screenshot or False, jupyter_backend=backend, **shown)
+
+
+def _size(window_size: object) -> tuple[int, int]:
+    sides = _check.vector("window_size", window_size)
+    if len(sides) != 2 or not all(1 <= side <= 1 << 14 for side in sides):
+        expected = "(width, height), each from 1 to 16384 pixels"
+        raise ValueError(_check.message("window_size", expected, sides))
+    return int(sides[0]), int(sides[1])
+
+
+def _furnish(
+    plotter: Any,
+    *,
+    background: Any = None,
+    text: str = "",
+    show_axes: bool | None = None,
+    show_bounds: bool = False,
+    show_grid: bool = False,
+    cpos: Any = None,
+    zoom: float | str | None = None,
+    parallel_projection: bool = False,
+    anti_aliasing: Any = None,
+    eye_dome_lighting: bool = False,
+    edl: bool = False,
+    ssao: bool = False,
+) -> None:
+    """Give a plotter what the keywords of ``pyvista.plot`` ask for beside the mesh."""
+    if isinstance(background, str | Path) and Path(background).is_file():
+        plotter.add_background_image(background)
+    elif background is not None:
+        plotter.background_color = _check.color("background", background)
+    if plotter.theme.axes.show if show_axes is None else show_axes:
+        (plotter.add_box_axes if plotter.theme.axes.box else plotter.add_axes)()
+    if text:
+        plotter.add_text(text)
+    if show_grid:
+        plotter.show_grid()
+    elif show_bounds:
+        plotter.show_bounds()
+    if cpos is not None:
+        plotter.camera_position = cpos
+    else:
+        plotter.camera_position = plotter.get_default_cam_pos()
+        plotter.camera_set = False
+    if anti_aliasing is False:
+        plotter.disable_anti_aliasing()
+    elif anti_aliasing is not None:
+        plotter.enable_anti_aliasing("msaa" if anti_aliasing is True else anti_aliasing)
+    if eye_dome_lighting or edl:
+        plotter.enable_eye_dome_lighting()
+    if parallel_projection:
+        plotter.enable_parallel_projection()
+    if ssao:
+        plotter.enable_ssao()
+    if zoom is not None:
+        plotter.camera.zoom(zoom)

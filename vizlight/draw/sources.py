@@ -1,0 +1,105 @@
+"""What a caller asks to be lit: sources by the record of a mesh or by options, and its colours."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyvista as pv
+
+from vizlight import _check
+from vizlight.draw.live import headlight_scene, lifted
+from vizlight.filters import relight
+from vizlight.filters.tint import RGB, unlit_colors
+from vizlight.mesh import blocks, hull, records
+from vizlight.mesh.normals import split_where_computed
+from vizlight.model import kernels
+from vizlight.reading.normals import computed_normals
+from vizlight.reading.orientation import MANY_SHARP, SHARP
+from vizlight.reading.parts import uses_normals
+from vizlight.shading.options import LightOptions
+
+if TYPE_CHECKING:
+    from vizlight.filters.relight import Source
+    from vizlight.scene import Scene
+    from vizlight.shading.options import FeatureAngle
+
+
+def sources_of(
+    mesh: pv.DataSet | pv.MultiBlock,
+    scene: Scene | None,
+    options: dict[str, Any],
+    angle: FeatureAngle = "auto",
+) -> tuple[list[Source], Scene | None]:
+    """Return what is lit: by the record of the mesh, or by options.
+
+    Without a record surfaces are split at edges of an angle, unless ``feature_angle`` is given.
+    """
+    if not options and relight.is_lit(mesh):
+        return relight.from_record(mesh, scene)
+    asked = LightOptions(**({"feature_angle": angle} | options))
+    mesh = blocks.like(mesh, (_split(block, asked) for block in blocks.all_blocks(mesh)))
+    asked = dataclasses.replace(asked, feature_angle=None)
+    spaces = {
+        np.shape(block.point_data[asked.positions])[-1]
+        for block in blocks.all_blocks(mesh)
+        if asked.positions is not None and asked.positions in block.point_data
+    }
+    n = max(spaces, default=3)
+    provisional = headlight_scene(n) if scene is None else lifted(scene, n)
+    if provisional.view is None and provisional.n in (None, n):
+        # Which side of an open surface is lit is then the camera's to say.
+        provisional = provisional.replace(view=headlight_scene(n).view)
+    return relight.from_options(mesh, provisional, asked), scene
+
+
+def _split(mesh: pv.DataSet, asked: LightOptions) -> pv.DataSet:
+    """Return a surface whose points are split at sharp edges, the mesh itself if there are none."""
+    if not (mesh.n_points and mesh.n_cells and isinstance(asked.tangents, str | None)):
+        return mesh
+    if asked.positions is not None or asked.normals is not None or not uses_normals(mesh, asked):
+        return mesh
+    bare, given = mesh, mesh.point_data.active_normals_name
+    if given is not None:
+        bare = mesh.copy(deep=False)
+        bare.point_data.active_normals_name = None
+    surface = bare
+    if isinstance(bare, pv.UnstructuredGrid) or bare.GetMaxSpatialDimension() == 3:
+        surface = hull.outer_surface(bare)[0]
+    if not isinstance(surface, pv.PolyData):
+        return mesh
+    split = split_where_computed(surface, asked.feature_angle)
+    if split is surface:
+        return mesh
+    averaged = given is None or asked.feature_angle != "auto" or _fit_no_face(split, given)
+    return split if averaged else mesh
+
+
+def _fit_no_face(split: pv.PolyData, given: str) -> bool:
+    """Return whether normals from before a split fit neither side of many edges."""
+    own, new = kernels.unit_rows(split.point_data[given]), computed_normals(split).vectors
+    cosine, known = np.abs(np.einsum("ij,ij->i", own, new)), np.any(new, axis=1)
+    apart = known & (cosine < np.cos(np.radians(SHARP / 2)))
+    # Faces without area come from points that were rounded; their edges are no creases.
+    return bool(np.mean(apart) > MANY_SHARP >= np.mean(~known))
+
+
+def tinted(mesh: pv.DataSet, *, warn: bool = True) -> tuple[str | None, dict[str, Any]]:
+    """Return the array and the colours of a mesh that tint returned.
+
+    With ``warn`` a warning is given where the mesh has no such array.
+    """
+    record = records.read(mesh, RGB) or {}
+    if record.get("filter") != "tint":
+        return None, {}
+    options = record["options"]
+    name = options["scalars"]
+    if name not in (*mesh.point_data, *mesh.cell_data):
+        if warn:
+            _check.warn(
+                f"the light is shown without colours: they are those of {name}, which the mesh has "
+                "no array of; attach it, and pass its name to vizlight.tint"
+            )
+        return None, {}
+    return name, {"cmap": unlit_colors(mesh), "component": options["component"]}

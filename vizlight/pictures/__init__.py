@@ -1,1 +1,0 @@
-"""Pictures of lit meshes: offscreen rendering, movies, and tests that compare pictures."""

@@ -1,1 +1,0 @@
-"""Light that follows the camera of a plotter, at the points or in each fragment."""
