@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import pyvista as pv
+from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
 
 import vizlight
 from vizlight import files, pieces
@@ -470,6 +471,15 @@ def test_no_cut_of_a_binary_ply_file_of_polygons_is_read(cells, tmp_path):
         path.write_bytes(whole[:end])
         with pytest.raises(files.FileError, match="file: expected a "):
             files.read(path)
+
+
+@pytest.mark.parametrize("suffix", [".vtu", ".vtk"])
+def test_a_grid_without_cells_is_written(suffix, tmp_path):
+    made = vtkUnstructuredGrid()
+    made.SetPoints(pv.vtk_points(np.eye(3)))
+    for mesh in (pv.PolyData(), pv.PolyData().cast_to_unstructured_grid(), pv.wrap(made)):
+        path = files.write_mesh(mesh, tmp_path / f"a{suffix}")
+        assert pv.read(path).n_points == mesh.n_points
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names")

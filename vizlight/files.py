@@ -20,7 +20,12 @@ import pyvista as pv
 from vtkmodules import vtkIOXML
 from vtkmodules.util.misc import calldata_type
 from vtkmodules.util.vtkConstants import VTK_STRING
-from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
+from vtkmodules.vtkCommonCore import (
+    vtkLogger,
+    vtkOutputWindow,
+    vtkStringOutputWindow,
+    vtkUnsignedCharArray,
+)
 
 from vizlight import _check, _supervise
 from vizlight.mesh import (
@@ -608,6 +613,8 @@ def _solid(field: pv.ImageData) -> pv.PolyData:
 def _to_save(mesh: pv.DataSet) -> pv.DataSet:
     """Return a copy, because PyVista notes the types of arrays in what it saves."""
     own = mesh.copy(deep=False)
+    if isinstance(own, pv.UnstructuredGrid) and own.GetCells() is None:
+        own.SetCells(vtkUnsignedCharArray(), pv.CellArray())  # VTK's writer ends the process
     for data in (own.GetPointData(), own.GetCellData()):
         for kind in range(data.NUM_ATTRIBUTES):
             # VTK ends the process where the active normals or vectors are text.
