@@ -193,6 +193,7 @@ def test_bad_input(tmp_path):
         render.camera_on(sphere.bounds, (1, 1, 1), up=(2, 2, 2))
     for options, words in (
         ({"clim": (0, 1, 2)}, "clim: expected a lower and a higher number"),
+        ({"clim": (1, 1)}, "clim: expected a lower and a higher number"),
         ({"cmap": "greyish"}, "cmap: expected the name of a colour map, got 'greyish'"),
         (
             {"anti_aliasing": "best"},

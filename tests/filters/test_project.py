@@ -61,15 +61,6 @@ def test_pushed_frame_is_tangent_to_what_is_seen():
     assert along.min() > 0.999
 
 
-def test_vtk_transforms_leave_positions_alone_and_project_does_not(torus):
-    """Why the filter is there."""
-    moved = torus.rotate_z(30, transform_all_input_vectors=True, inplace=False)
-    np.testing.assert_array_equal(moved["position"], torus["position"])
-    turned = project(torus, rotation=("xy", np.pi / 6))
-    np.testing.assert_allclose(turned.points, moved.points, atol=1e-12)
-    assert np.abs(turned["position"] - torus["position"]).max() > 0.3
-
-
 def test_light_before_is_the_light_in_four_space(torus):
     lit = project(torus, rotation=TURN, distance=3.0, scene=SCENE4, light="before")
     turned = project(torus, rotation=TURN)
@@ -182,20 +173,6 @@ def test_tangents_of_a_cut_are_along_it(shape, bound):
     for end in (0, 1):
         along = np.abs(np.sum(unit * np.asarray(curve["frame"])[ends[long, end]], axis=1))
         assert along.min() > bound
-
-
-def test_a_cut_does_not_depend_on_the_basis_at_each_point(torus, random):
-    other = torus.copy()
-    signs = random.choice([-1, 1], (torus.n_points, 2, 1))
-    other["frame"] = (frames(torus, "frame", 4) * signs).reshape(-1, 8)
-    one, two = (project(m, hyperplane=PLANE, scene=SCENE4) for m in (torus, other))
-    np.testing.assert_allclose(one["luminance"], two["luminance"], atol=1e-13)
-    sphere = vizlight.manifold(manifolds.sphere3(resolution=5))
-    other = sphere.copy()
-    turns = np.linalg.qr(random.standard_normal((sphere.n_points, 3, 3)))[0]
-    other["frame"] = (turns @ frames(sphere, "frame", 4)).reshape(-1, 12)
-    one, two = (project(m, hyperplane=PLANE, scene=SCENE4) for m in (sphere, other))
-    np.testing.assert_allclose(one["luminance"], two["luminance"], atol=1e-13)
 
 
 def test_a_point_without_tangents_leaves_none_in_the_cut(torus):

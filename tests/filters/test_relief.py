@@ -70,7 +70,7 @@ def test_a_turned_grid_has_its_shadow_turned(kind, angle):
         np.testing.assert_allclose(other[name], one[name], atol=2e-6)
 
 
-@pytest.mark.parametrize("angle", [1e-5, 0.05, 0.2, 0.4, 10, 89.9])
+@pytest.mark.parametrize("angle", [1e-5, 0.2, 89.9])
 @pytest.mark.parametrize("kind", ["ImageData", "StructuredGrid"])
 @pytest.mark.parametrize(
     ("size", "spacing", "origin"),

@@ -249,7 +249,9 @@ def test_extreme_powers(r):
         assert value.error[3] == pytest.approx(63.75, abs=1e-4)
 
 
-@pytest.mark.parametrize(("rho", "r", "factor"), [(np.pi, 0.1, 1), (3.14, 0.1, 1), (3.0, 2, 0.5)])
+@pytest.mark.parametrize(
+    ("rho", "r", "factor"), [(np.pi, 0.1, 1), (3.14, 0.1, 1), (3.0, 2, 0.5), (1.0, 1, 1)]
+)
 def test_pixel_error_near_the_far_side(rho, r, factor):
     """Where cos(rho / 2) is small it is not 1 - sin^2."""
     with mp.workdps(50):

@@ -257,3 +257,11 @@ def test_each_height_field_of_a_mesh_shows_its_own_side():
 def test_a_sheet_that_folds_back_is_no_height_field():
     tube = pv.Cylinder(capping=False, resolution=40).triangulate()
     assert np.all(normals.computed_normals(tube).open == 1)
+
+
+def test_each_connected_piece_has_a_number():
+    both = pv.Sphere() + pv.Sphere(center=(3, 0, 0))
+    numbers = normals.piece_numbers(both)
+    left = np.asarray(both.points)[:, 0] < 1.5
+    assert len(np.unique(numbers[left])) == len(np.unique(numbers[~left])) == 1
+    assert len(np.unique(numbers)) == 2
