@@ -408,6 +408,7 @@ def test_legibility_is_printed_and_the_script_does_the_same(tmp_path, monkeypatc
     assert "--legibility: expected one mesh, lit as a whole" in error
 
 
+@pytest.mark.filterwarnings("default")
 def test_a_file_that_vtk_warns_of_is_refused_in_one_line(tmp_path, capfd):
     path = tmp_path / "a.vtk"
     path.write_text("# vtk DataFile Version g.1\nwords\nASCII\nDATASET NONE\n")
