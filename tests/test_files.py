@@ -414,6 +414,17 @@ def test_no_cut_of_a_text_with_counts_is_read(suffix, tmp_path):
             files.read(path)
 
 
+@pytest.mark.parametrize(("suffix", "cells"), [("f3grid", "* ZONES"), ("mdpa", "Begin Elements")])
+def test_a_text_that_ends_before_its_cells_is_refused(suffix, cells, tmp_path):
+    meshio = pytest.importorskip("meshio")
+    path = tmp_path / f"a.{suffix}"
+    meshio.Mesh(np.eye(4, 3), [("tetra", [[0, 1, 2, 3]])]).write(path)
+    assert files.read(path).n_cells == 1
+    path.write_text(path.read_text().partition(cells)[0])
+    with pytest.raises(files.FileError, match="it has no cells"):
+        files.read(path)
+
+
 def test_what_meshio_says_is_a_warning_or_left_to_the_error(tmp_path, capfd):
     meshio = pytest.importorskip("meshio")
     path = tmp_path / "a.su2"

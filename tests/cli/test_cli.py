@@ -406,3 +406,13 @@ def test_legibility_is_printed_and_the_script_does_the_same(tmp_path, monkeypatc
     code, _, error = run(capfd, "light", "ball.vtp", "-o", "lit.pvtp", "--legibility")
     assert code == 2
     assert "--legibility: expected one mesh, lit as a whole" in error
+
+
+@pytest.mark.filterwarnings("default")
+def test_a_file_that_vtk_warns_of_is_refused_in_one_line(tmp_path, capfd):
+    path = tmp_path / "a.vtk"
+    path.write_text("# vtk DataFile Version g.1\nwords\nASCII\nDATASET NONE\n")
+    assert cli.main(["light", str(path), "-o", str(tmp_path / "b.vtk")]) == 2
+    err = capfd.readouterr().err
+    assert "Cannot read file version" in err
+    assert err.count("\n") == 1

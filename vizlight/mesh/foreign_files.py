@@ -121,11 +121,14 @@ def _of_meshio(path: Path, kinds: Sequence[str] = ()) -> pv.DataSet:
                 raise
         else:
             break
+    if not found.cells:
+        raise ValueError("it has no cells")
+    found.cell_sets = {}
+    mesh = pv.from_meshio(found)
     if _SAID.texts:
         more = f" (the first of {len(_SAID.texts)} warnings)" if len(_SAID.texts) > 1 else ""
         _check.warn(f"file: '{path}': {_SAID.texts[0]}{more}")
-    found.cell_sets = {}
-    return pv.from_meshio(found)
+    return mesh
 
 
 #: What meshio said to each thread.
