@@ -143,6 +143,7 @@ CALLS = {
     "files.read": lambda: {"path": saved()},
     "files.surface_of": lambda: {"mesh": flow(), "contour": None},
     "files.warped": lambda: {"mesh": hills(), "name": "h", "factor": 1.0},
+    "files.with_vectors": lambda: {"mesh": hills(), "names": "h,h"},
     "files.write_mesh": lambda: {"mesh": ball(), "path": Path("out.vtp")},
     **{
         f"filters.{name}.{name}": make

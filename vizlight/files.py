@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["FileError", "read", "surface_of", "warped", "write_mesh"]
+__all__ = ["FileError", "read", "surface_of", "warped", "with_vectors", "write_mesh"]
 
 #: File formats that keep point and field arrays, by type of mesh.
 FORMATS: dict[str, tuple[str, ...]] = {
@@ -409,17 +409,17 @@ def surface_of(
     return found
 
 
-def with_vectors(mesh: pv.DataSet, /, *components: str) -> pv.DataSet:
+def with_vectors(mesh: pv.DataSet, names: str, /) -> pv.DataSet:
     """Return a mesh with a point array of vectors, given the names of their components.
 
     Parameters
     ----------
     mesh : pyvista.DataSet
         Mesh, which is not changed.
-    *components : str
-        Names of two or three arrays of one component; a third that is missing is 0. Together,
-        joined by commas, they are the name of the vectors. Arrays of cells are averaged to the
-        points.
+    names : str
+        Names of two or three arrays of one component, separated by commas, such as ``"u,v"``,
+        which is the name of the vectors too. A third component that is missing is 0. Arrays of
+        cells are averaged to the points.
 
     Returns
     -------
@@ -427,14 +427,18 @@ def with_vectors(mesh: pv.DataSet, /, *components: str) -> pv.DataSet:
 
     Raises
     ------
-    ValueError
-        If an array does not exist.
+    TypeError, ValueError
+        If an array does not exist, or there are not two or three.
     """
     _dataset(mesh)
-    found = point_arrays.averaged(mesh, *components).copy(deep=False)
-    columns = [_scalars(found, "components", name) for name in components]
+    _check.text("names", names, expected="names of arrays, separated by commas")
+    every = names.split(",")
+    if len(every) not in (2, 3):
+        raise ValueError(_check.message("names", "two or three names", repr(names)))
+    found = point_arrays.averaged(mesh, *every).copy(deep=False)
+    columns = [_scalars(found, "names", name) for name in every]
     columns += [np.zeros_like(columns[0])] * (3 - len(columns))
-    found.point_data[",".join(components)] = np.column_stack(columns)
+    found.point_data[names] = np.column_stack(columns)
     return found
 
 

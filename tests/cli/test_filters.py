@@ -374,7 +374,7 @@ def test_components_of_vectors_are_joined(folder, capfd):
         assert code == 0
     parts, whole = pv.read("parts-lit.vtp"), pv.read("whole-lit.vtp")
     np.testing.assert_array_equal(parts["luminance"], whole["luminance"])
-    joined = vizlight.files.with_vectors(pv.read("parts.vti"), "v", "u")
+    joined = vizlight.files.with_vectors(pv.read("parts.vti"), "v,u")
     np.testing.assert_array_equal(joined["v,u"][:, [1, 0, 2]], pv.read("whole.vti")["V"])
     code, _, _ = run(capfd, "streamlines", "parts.vti", "--vectors", "u,v", "-o", "lines.vtp")
     assert code == 0

@@ -136,7 +136,7 @@ def joined(mesh: Step, names: object) -> Step:
     if unknown := [name for name in every if name not in there]:
         expected = f"the name of an array of vectors, or names U,V of components, {one_of(there)}"
         raise ValueError(message("arrays", expected, ", ".join(map(repr, unknown))))
-    return Step("joined", "files.with_vectors", mesh, *every)
+    return Step("joined", "files.with_vectors", mesh, names)
 
 
 def check_flow(file: Path, mesh: pv.DataSet, vectors: str | tuple[str, str] | None) -> None:
