@@ -6,12 +6,14 @@ import os
 import shutil
 import subprocess
 import sys
+import warnings
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
 import pyvista as pv
+from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
 
 import vizlight
 from vizlight import files, pieces
@@ -472,6 +474,15 @@ def test_no_cut_of_a_binary_ply_file_of_polygons_is_read(cells, tmp_path):
             files.read(path)
 
 
+@pytest.mark.parametrize("suffix", [".vtu", ".vtk"])
+def test_a_grid_without_cells_is_written(suffix, tmp_path):
+    made = vtkUnstructuredGrid()
+    made.SetPoints(pv.vtk_points(np.eye(3)))
+    for mesh in (pv.PolyData(), pv.PolyData().cast_to_unstructured_grid(), pv.wrap(made)):
+        path = files.write_mesh(mesh, tmp_path / f"a{suffix}")
+        assert pv.read(path).n_points == mesh.n_points
+
+
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names")
 def test_pipes_are_refused_at_once(tmp_path):
     pipe = tmp_path / "a.vtp"
@@ -561,6 +572,36 @@ def test_files_whose_standard_has_y_up_stand_upright(tmp_path):
     tall.save(tmp_path / "a.ply")
     assert np.argmax(files.read(tmp_path / "a.ply").bounds_size) == 1
     assert np.argmax(files.read(tmp_path / "a.wrl").bounds_size) == 2
+
+
+def test_files_of_scenes_are_read_without_a_screen(tmp_path, monkeypatch):
+    """VTK warns of the screen that its importers ask for, and reads all the same."""
+    monkeypatch.delenv("VTK_DEFAULT_OPENGL_WINDOW", raising=False)
+    monkeypatch.delenv("DISPLAY", raising=False)
+    path = tmp_path / "a.wrl"
+    corners = "0 0 0, 1 0 0, 0 1 0, 0 0 1"
+    path.write_text(
+        "#VRML V2.0 utf8\nShape { geometry IndexedFaceSet { coord Coordinate { point "
+        f"[{corners}] }}"
+        " coordIndex [0, 2, 1, -1, 0, 1, 3, -1, 1, 2, 3, -1, 0, 3, 2, -1] } }\n"
+    )
+    assert files.read(path).n_points == 4
+
+
+def test_groups_of_faces_beside_lines_are_left_out(tmp_path):
+    path = tmp_path / "a.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\nusemtl a\nf 1 2 3\np 1\n")
+    words = r"arrays without a row for each cell are left out: \['GroupIds'"
+    with warnings.catch_warnings():
+        # PyVista warns of them too, by its own class.
+        warnings.filterwarnings("ignore", message="PolyData mesh is not valid")
+        with pytest.warns(UserWarning, match=words):
+            found = files.read(path)
+    assert (found.n_cells, len(found.cell_data)) == (3, 0)
+    bad = found.copy()
+    pv.PolyData.GetCellData(bad).AddArray(pv.convert_array(np.zeros(1), "odd"))
+    with pytest.raises(ValueError, match="expected cell arrays of 3 rows, one per cell, got 'odd'"):
+        vizlight.illuminate(bad, feature_angle=30)
 
 
 def test_cells_without_a_corner_are_refused(tmp_path):

@@ -20,7 +20,12 @@ import pyvista as pv
 from vtkmodules import vtkIOXML
 from vtkmodules.util.misc import calldata_type
 from vtkmodules.util.vtkConstants import VTK_STRING
-from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
+from vtkmodules.vtkCommonCore import (
+    vtkLogger,
+    vtkOutputWindow,
+    vtkStringOutputWindow,
+    vtkUnsignedCharArray,
+)
 
 from vizlight import _check, _supervise
 from vizlight.mesh import (
@@ -77,6 +82,8 @@ READERS = {
 _ORIGIN = re.compile(r"\A[\w ]+: In .*, line \d+\s+(?:\S+ \(\w+\): )?")
 
 
+#: What VTK says where no screen is, whose importers of VRML and 3DS make a window that none needs.
+_SCREEN = "bad X server connection"
 #: What VTK says of an OpenFOAM file that is whole, but in a language that it has only a part of.
 _DIRECTIVE = re.compile(r"Error reading line \d+ of (\S+): Unsupported directive (\w+)")
 #: Begin of the names of temporary folders, and seconds after which one without a lock is swept.
@@ -176,7 +183,7 @@ def read(
         except SystemExit as error:  # so ends meshio where it finds a fault
             reason = f"its reader ended with {error.code}"
     unread = [match for match in map(_DIRECTIVE.search, errors) if match]
-    errors = [error for error in errors if not _DIRECTIVE.search(error)]
+    errors = [error for error in errors if not _DIRECTIVE.search(error) and _SCREEN not in error]
     if not isinstance(mesh, pv.DataSet) or mesh.n_points == 0:
         reason = f"no points: {errors[0]}" if errors else reason
         got, remedy = f"'{path}' ({reason})", foreign_files.missing(path)
@@ -207,6 +214,12 @@ def _listed(overlay: object) -> list[object]:
 def _whole(found: Any, suffix: str, overlays: Sequence[Path]) -> Any:
     """Return one upright mesh of what a file of a suffix holds, with the values over it."""
     mesh = blocks.one_grid(found) if isinstance(found, pv.MultiBlock) else found
+    # VTK's reader of OBJ gives groups and materials to the faces alone, also beside lines.
+    odd = [key for key in mesh.cell_data if len(mesh.cell_data[key]) != mesh.n_cells]
+    for key in odd:
+        del mesh.cell_data[key]
+    if odd:
+        _check.warn(f"file: arrays without a row for each cell are left out: {odd}")
     if suffix in SOUPS and mesh.GetMaxSpatialDimension() == 2 and not overlays:
         mesh = welding.welded(blocks.surface(mesh, "file"))
     for path in overlays:
@@ -608,6 +621,8 @@ def _solid(field: pv.ImageData) -> pv.PolyData:
 def _to_save(mesh: pv.DataSet) -> pv.DataSet:
     """Return a copy, because PyVista notes the types of arrays in what it saves."""
     own = mesh.copy(deep=False)
+    if isinstance(own, pv.UnstructuredGrid) and own.GetCells() is None:
+        own.SetCells(vtkUnsignedCharArray(), pv.CellArray())  # VTK's writer ends the process
     for data in (own.GetPointData(), own.GetCellData()):
         for kind in range(data.NUM_ATTRIBUTES):
             # VTK ends the process where the active normals or vectors are text.

@@ -21,7 +21,7 @@ from vizlight.files import FileError
 
 FAR = Light(direction=(1, 0.9, 0.5))
 #: Folder with the npm package gltf-validator: that of the viewer's recipe, or of a variable.
-MODULES = Path(vizlight.__file__).parent / "plotting" / "web" / "node_modules"
+MODULES = Path(vizlight.__file__).parent / "draw" / "web" / "node_modules"
 MODULES = Path(os.environ.get("VIZLIGHT_NODE_MODULES", MODULES))
 
 

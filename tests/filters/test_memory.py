@@ -94,6 +94,22 @@ def test_a_result_has_memory_of_its_own(name):
 
 
 @pytest.mark.filterwarnings("ignore")
+def test_flags_of_the_mesh_stay_flags():
+    mesh = pv.ImageData(dimensions=(4, 4, 4))
+    mesh["V"] = np.tile(np.float32([1, 0.2, 0.1]), (64, 1))
+    seen = vizlight.sky(mesh, error=0.1)
+    assert seen["sky_valid"].dtype == np.bool_
+    vizlight.streamlines(seen, SCENE, vectors="V", seeds=3)
+    assert seen["sky_valid"].dtype == np.bool_
+    mesh["V"][:3] = np.nan
+    lit = vizlight.illuminate(mesh, SCENE, tangents="V")
+    shared = lit.copy(deep=False)
+    shared["V"] = np.ones((64, 3))
+    vizlight.illuminate(shared, SCENE, tangents="V", inplace=True)
+    assert lit["luminance_valid"].dtype == np.bool_
+
+
+@pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("name", sorted(set(FILTERS) - {"project", "bas_relief", "satin"}))
 def test_a_record_makes_the_result_again(name):
     make, filter_, options = FILTERS[name]

@@ -435,6 +435,8 @@ def _middles(bands: Bands, light: _Light) -> tuple[Array, Array]:
 
 def _rgb(bands: Bands, light: _Light) -> Array | None:
     """Return the colour at the centre of each polygon, with the brightness of its band."""
+    if not len(bands.values):
+        return None
     lit = light.lit(*_middles(bands, light))
     return None if lit.rgb is None else _as_bright(lit.rgb, np.asarray(lit.luminance), bands)
 

@@ -566,7 +566,8 @@ def _bare(mesh: pv.DataSet, own: set[str]) -> pv.DataSet:
     bare = mesh.copy(deep=False)
     for key in list(bare.point_data):
         if key in own or np.asarray(bare.point_data[key]).dtype.kind not in "biuf":
-            del bare.point_data[key]
+            # PyVista's own way forgets in the mesh, too, that an array is one of flags.
+            bare.GetPointData().RemoveArray(key)
     return bare
 
 

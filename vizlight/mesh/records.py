@@ -36,7 +36,8 @@ def attach(
 ) -> None:
     """Attach point arrays in place of earlier ones of a name, and activate the one of that name."""
     for stale in made(mesh, name):
-        del mesh.point_data[stale]
+        # PyVista's own way forgets in other copies, too, that an array is one of flags.
+        point_data(mesh).RemoveArray(stale)
     for own, array in arrays.items():
         point_arrays.attach_rows(mesh, own, array)
     point_arrays.activate(mesh, name)

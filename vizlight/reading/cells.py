@@ -323,7 +323,7 @@ POLYDATA: tuple[tuple[Callable[[Any], int], Callable[[Any], vtkCellArray]], ...]
 
 
 def check_whole(mesh: object, name: str, where: str = "") -> None:
-    """Check that arrays have a row for each point, and that cells have points that exist.
+    """Check that arrays have a row for each point or cell, and that cells have points that exist.
 
     VTK ends the process where they have not. Anything but a dataset passes.
 
@@ -335,13 +335,16 @@ def check_whole(mesh: object, name: str, where: str = "") -> None:
     if not isinstance(mesh, vtkDataSet):
         return
     count = mesh.GetNumberOfPoints()
-    data = point_data(mesh)
-    for i in range(data.GetNumberOfArrays()):
-        array = data.GetAbstractArray(i)
-        if array is not None and array.GetNumberOfTuples() != count:
-            expected = f"point arrays of {count} rows, one per point"
-            got = f"{array.GetName()!r} with {array.GetNumberOfTuples()}"
-            raise ValueError(where + _check.message(name, expected, got, "remove the array"))
+    for of, data, rows in (
+        ("point", point_data(mesh), count),
+        ("cell", cell_data(mesh), mesh.GetNumberOfCells()),
+    ):
+        for i in range(data.GetNumberOfArrays()):
+            array = data.GetAbstractArray(i)
+            if array is not None and array.GetNumberOfTuples() != rows:
+                expected = f"{of} arrays of {rows} rows, one per {of}"
+                got = f"{array.GetName()!r} with {array.GetNumberOfTuples()}"
+                raise ValueError(where + _check.message(name, expected, got, "remove the array"))
     if isinstance(mesh, vtkPolyData):
         kinds = [kind(mesh) for number, kind in POLYDATA if number(mesh)]
     else:

@@ -1,0 +1,56 @@
+"""A sample of the random walks of ``python tests/walks.py``, and faults that they find."""
+
+from __future__ import annotations
+
+import io
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import pyvista as pv
+import walks
+from hostile import seeds
+
+pytestmark = pytest.mark.skipif(not hasattr(sys, "getdlopenflags"), reason="forks")
+
+
+def test_forty_walks():
+    # A process without threads, which forks.
+    run = subprocess.run(
+        [sys.executable, walks.__file__, "40", "--seed", "3"],
+        check=False,
+        capture_output=True,
+        text=True,
+    )
+    assert (run.returncode, run.stdout) == (0, "40 walks, 0 failed\n"), run.stdout + run.stderr
+
+
+def test_a_walk_is_repeated_by_its_number(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    said = io.StringIO()
+    assert walks.walk(1, 8, said) == walks.walk(1, 8, said)
+
+
+def raw(mesh, random):
+    return mesh.points[len(mesh.points)]
+
+
+def changed(mesh, random):
+    mesh.points[0] = 9
+    return mesh
+
+
+def dark(mesh, random):
+    mesh = mesh.copy()
+    mesh["luminance"] = np.full(mesh.n_points, np.nan)
+    return mesh
+
+
+@pytest.mark.parametrize(
+    ("step", "words"), [(raw, "raw IndexError"), (changed, "changed"), (dark, "not finite")]
+)
+def test_faults_are_found(step, words):
+    wrong, _ = walks.fault("illuminate", step, seeds.ball(), np.random.default_rng(0))
+    assert words in wrong
+    assert isinstance(walks.MESHES["two"](), pv.MultiBlock)
