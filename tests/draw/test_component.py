@@ -578,7 +578,9 @@ DRAWN = {
 }
 
 
-@pytest.mark.parametrize(("drawn", "model"), zip(DRAWN, ["phong", "cylinder"] * 2, strict=True))
+@pytest.mark.parametrize(
+    ("drawn", "model"), list(zip(DRAWN, ["phong", "cylinder"] * 2, strict=True))
+)
 @pytest.mark.parametrize("lights", ["kit", "none", "one", "two"])
 def test_a_bundle_dims_the_lights_of_the_plotter_where_they_are_now(drawn, lights, model):
     """Against the filter by the scene of the plotter, before and after everything has moved."""
