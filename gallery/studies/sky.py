@@ -1,15 +1,18 @@
-"""The light of the sky: error against time, for fields and for surfaces.
+"""The light of the sky: error against time, for fields and for surfaces, beside other packages.
 
 Fields are fractal ground of a root mean square slope; the truth at random nodes follows 512
 azimuths through every cell. Surfaces are a bumpy ball; the truth at its points has 16 times the
-rays of the finest row.
+rays of the finest row. Packages beside vizlight are measured where they are installed, each against
+its own definition: RVT's sky-view factor weighs the sky by solid angle, without the cosine, and so
+does libigl's ambient occlusion; trimesh follows the same rays as vizlight by the same Embree.
 """
 
 from __future__ import annotations
 
+import importlib
 import time
 from functools import cache, partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista as pv
@@ -27,8 +30,10 @@ if TYPE_CHECKING:
 
 #: Nodes along a side of a field, and its slopes; errors that are asked for.
 SIDE, SLOPES, ASKED = 512, (0.3, 1.0), (0.02, 0.01, 0.005, 0.002)
-#: Places and azimuths of the truth of a field.
-PLACES, AZIMUTHS = 100, 512
+#: Places and azimuths of the truth of a field, rays of the truth of a surface for libigl.
+PLACES, AZIMUTHS, RAYS = 100, 512, 1 << 14
+#: Directions and radii of RVT, rays of libigl and of trimesh.
+RVT, IGL, TRIMESH = ((16, 10), (16, 50), (32, 100)), (64, 256, 1024), (64, 256)
 
 
 def ground(side: int, slope: float, seed: int = 1) -> Array:
@@ -108,6 +113,25 @@ def of_field(side: int, slope: float, error: float) -> list[Row]:
     return [row]
 
 
+def of_rvt(side: int, slope: float, directions: int, radius: int) -> list[Row]:
+    """Return the row of RVT, against its own definition from the same horizons."""
+    try:
+        vis: Any = importlib.import_module("rvt.vis")
+    except ImportError:
+        return []
+    z = ground(side, slope)
+    at, _, t, _ = horizons(side, slope)
+    true = (1 - t / np.sqrt(1 + t * t)).mean(axis=1)
+    start = time.process_time()
+    made = vis.sky_view_factor(
+        dem=z, resolution=1, svf_n_dir=directions, svf_r_max=radius, svf_noise=0
+    )["svf"]
+    cost = time.process_time() - start
+    missed = np.abs(np.asarray(made)[tuple(at.T)] - true)
+    asked = f"{directions} directions, radius {radius}"
+    return [_row(f"RVT, slope {slope:g}", asked, missed, cost / z.size, np.nan, directions, "")]
+
+
 @cache
 def surface_truth(points: int) -> tuple[pv.PolyData, Array]:
     """Return a bumpy ball and the sky of its points."""
@@ -131,6 +155,45 @@ def of_surface(points: int, error: float) -> list[Row]:
     return [row]
 
 
+def of_libigl(points: int, rays: int) -> list[Row]:
+    """Return the row of libigl, against its own definition: a sky without the cosine."""
+    try:
+        igl: Any = importlib.import_module("igl")
+    except ImportError:
+        return []
+    ball, _ = surface_truth(points)
+    vertices, faces = np.asarray(ball.points, np.float64), np.asarray(ball.regular_faces, np.int64)
+    normals = np.asarray(ball.point_data["Normals"], np.float64)
+    true = igl.ambient_occlusion(vertices, faces, vertices + 2e-6 * normals, normals, RAYS)
+    start = time.process_time()
+    made = igl.ambient_occlusion(vertices, faces, vertices + 2e-6 * normals, normals, rays)
+    cost = time.process_time() - start
+    missed = np.abs(np.asarray(made) - np.asarray(true))
+    return [_row("libigl", rays, missed, cost / len(vertices), np.nan, rays, "")]
+
+
+def of_trimesh(points: int, rays: int) -> list[Row]:
+    """Return the row of trimesh's rays by Embree, in random directions by the cosine."""
+    try:
+        trimesh: Any = importlib.import_module("trimesh")
+    except ImportError:
+        return []
+    ball, true = surface_truth(points)
+    mesh = trimesh.Trimesh(np.asarray(ball.points), ball.regular_faces, process=False)
+    normals = np.asarray(ball.point_data["Normals"], np.float64)
+    random = np.random.default_rng(0)
+    start = time.process_time()
+    shares = np.zeros(len(true))
+    for _ in range(rays):
+        way = random.normal(size=normals.shape)
+        way = normals + way / np.linalg.norm(way, axis=1, keepdims=True)
+        hit = mesh.ray.intersects_any(np.asarray(ball.points) + 2e-6 * normals, way)
+        shares += ~np.asarray(hit)
+    cost = time.process_time() - start
+    missed = np.abs(shares / rays - true)
+    return [_row("trimesh by Embree", rays, missed, cost / len(true), np.nan, rays, "")]
+
+
 def _row(
     way: str, asked: float | str, missed: Array, seconds: float, stated: float, count: float,
     beside: str,
@@ -147,8 +210,12 @@ def steps(quick: bool) -> Sequence[Callable[[], list[Row]]]:
     side, points = (192, 2500) if quick else (SIDE, 16000)
     if not _compiled.active():
         side = 64
+    few = 1 if quick else None
     made = [partial(of_field, side, slope, error) for slope in SLOPES for error in ASKED]
-    return made + [partial(of_surface, points, error) for error in (0.04, 0.02, 0.01)]
+    made += [partial(of_rvt, side, slope, *how) for slope in SLOPES for how in RVT[:few]]
+    made += [partial(of_surface, points, error) for error in (0.04, 0.02, 0.01)]
+    made += [partial(of_libigl, points, rays) for rays in IGL[:few]]
+    return made + [partial(of_trimesh, points, rays) for rays in TRIMESH[:few]]
 
 
 STUDY = Study(
