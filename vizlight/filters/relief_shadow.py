@@ -40,9 +40,9 @@ if TYPE_CHECKING:
     from vizlight.mesh.casters import Caster
     from vizlight.shading.options import FeatureAngle
 
-#: Share of a surface in which shadows end from which a warning is given, and sides of triangles, in
-#: cells of the raster, that are long.
-SMEARED, WIDE = 0.3, 4.0
+#: Share of a surface in which shadows end from which a warning is given, and sides of triangles
+#: that are long: as a share of the mesh's longest side, or in cells of the raster.
+SMEARED, LONG, WIDE = 0.3, 0.2, 4.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -174,7 +174,7 @@ def relief_shadow(
     -----
     UserWarning
         Once, with the count, if points have no height or no normal. Once, if shadows end within
-        triangles that are more than 0.3 of a surface, with ``raster`` within long ones.
+        long triangles that are more than 0.3 of a surface.
 
     Notes
     -----
@@ -267,9 +267,10 @@ def _warn_of_wide(mesh: pv.DataSet, t: Array, raster: float | None) -> None:
         area = np.nan_to_num(np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)) / 2
     # A shadow's edge lies between a corner in light and one in shadow.
     across = (np.ptp(t[corners], axis=1) > 1 / 2).any(axis=1)
+    long = LONG
     if raster is not None:
-        spacing = raster / unit or (area.sum() / mesh.n_points) ** 0.5
-        across &= np.linalg.norm(sides, axis=2).max(axis=1) > WIDE * spacing
+        long = WIDE * (raster / unit or (area.sum() / mesh.n_points) ** 0.5)
+    across &= np.linalg.norm(sides, axis=2).max(axis=1) > long
     share = float(area[across].sum() / area.sum()) if area.any() else 0.0
     if share > SMEARED:
         _check.warn(
