@@ -261,17 +261,17 @@ def _warn_of_wide(mesh: pv.DataSet, t: Array, raster: float | None) -> None:
     if not isinstance(mesh, pv.PolyData):
         return
     corners, unit = triangles(mesh), blocks.box(mesh)[1]
-    with np.errstate(invalid="ignore", over="ignore"):
+    with np.errstate(all="ignore"):
         points = np.asarray(mesh.points, np.float64)[corners] / unit
         sides = points - np.roll(points, 1, axis=1)
         area = np.nan_to_num(np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)) / 2
-    # A shadow's edge lies between a corner in light and one in shadow.
-    across = (np.ptp(t[corners], axis=1) > 1 / 2).any(axis=1)
-    long = LONG
-    if raster is not None:
-        long = WIDE * (raster / unit or (area.sum() / mesh.n_points) ** 0.5)
-    across &= np.linalg.norm(sides, axis=2).max(axis=1) > long
-    share = float(area[across].sum() / area.sum()) if area.any() else 0.0
+        # A shadow's edge lies between a corner in light and one in shadow.
+        across = (np.ptp(t[corners], axis=1) > 1 / 2).any(axis=1)
+        long = LONG
+        if raster is not None:
+            long = WIDE * (raster / unit or (area.sum() / mesh.n_points) ** 0.5)
+        across &= np.linalg.norm(sides, axis=2).max(axis=1) > long
+        share = float(area[across].sum() / area.sum()) if area.any() else 0.0
     if share > SMEARED:
         _check.warn(
             f"shadows end within triangles that are {share:.0%} of the surface, and are "

@@ -117,9 +117,9 @@ def warn_of_contradiction(meshes: Sequence[pv.DataSet], value: object) -> None:
         corners = triangles(mesh)
         corners = corners[:: max(len(corners) // MOST_FACES, 1)]
         a, b, c = np.asarray(places(mesh)[corners], np.float64).transpose(1, 0, 2)
-        faces, own = np.cross(b - a, c - a), np.asarray(rows[corners], np.float64).mean(axis=1)
-        area, size = (np.sqrt(np.einsum("ij,ij->i", x, x)) for x in (faces, own))
-        with np.errstate(invalid="ignore", over="ignore"):
+        with np.errstate(all="ignore"):
+            faces, own = np.cross(b - a, c - a), np.asarray(rows[corners], np.float64).mean(axis=1)
+            area, size = (np.sqrt(np.einsum("ij,ij->i", x, x)) for x in (faces, own))
             off = np.abs(np.einsum("ij,ij->i", faces, own)) < area * size / 2
             share = float(np.sum(area, where=off) / np.sum(area))
         if share > CONTRADICT:

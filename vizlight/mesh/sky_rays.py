@@ -379,8 +379,9 @@ def beside(points: Array, triangles: Indices, ways: Array) -> tuple[Array, Array
 def facing(points: Array, triangles: Indices, ways: Array) -> Array:
     """Return normals of triangles, as long as twice their areas, on the side of their points'."""
     a, b, c = points[triangles].transpose(1, 0, 2)
-    normals = np.cross(b - a, c - a)
-    side = np.einsum("ij,ikj->i", normals, ways[triangles])
+    with np.errstate(all="ignore"):
+        normals = np.cross(b - a, c - a)
+        side = np.einsum("ij,ikj->i", normals, ways[triangles])
     return np.asarray(normals * np.where(side < 0, -1.0, 1.0)[:, np.newaxis])
 
 
