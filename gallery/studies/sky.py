@@ -1,6 +1,6 @@
 """The light of the sky: error against time, for fields and for surfaces, beside other packages.
 
-Fields are fractal ground of a root mean square slope; the truth at random nodes follows 512
+Fields are fractal ground of a root mean square slope; the truth at random nodes follows 1,024
 azimuths through every cell. Surfaces are a bumpy ball; the truth at its points has 16 times the
 rays of the finest row. Packages beside vizlight are measured where they are installed, each against
 its own definition: RVT's sky-view factor weighs the sky by solid angle, without the cosine, and so
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 #: Nodes along a side of a field, and its slopes; errors that are asked for.
 SIDE, SLOPES, ASKED = 512, (0.3, 1.0), (0.02, 0.01, 0.005, 0.002)
 #: Places and azimuths of the truth of a field, rays of the truth of a surface for libigl.
-PLACES, AZIMUTHS, RAYS = 100, 512, 1 << 14
+PLACES, AZIMUTHS, RAYS = 100, 1024, 1 << 14
 #: Directions and radii of RVT, rays of libigl and of trimesh.
 RVT, IGL, TRIMESH = ((16, 10), (16, 50), (32, 100)), (64, 256, 1024), (64, 256)
 
@@ -60,25 +60,31 @@ def bumpy(points: int) -> pv.PolyData:
 def horizons(side: int, slope: float) -> tuple[Indices, Array, Array, Array]:
     """Return nodes, the two slopes of the ground there, and the slopes of their horizons.
 
-    Heights are those of the bilinear surface at dense distances, beyond the border those there.
+    Heights are the bilinear surface's, at dense distances nearby and wherever a ray crosses a line
+    of the grid; beyond the border those there.
     """
     z = ground(side, slope)
     at = np.random.default_rng(9).integers(0, side, (PLACES, 2))
     across, along = np.gradient(z, axis=0), np.gradient(z, axis=1)
     turn = 2 * np.pi * (np.arange(AZIMUTHS) + 0.5) / AZIMUTHS
+    x, y = np.cos(turn)[:, np.newaxis], np.sin(turn)[:, np.newaxis]
+    # The first stands for the surface right beside the node, where an arc may be steepest.
+    near = np.broadcast_to(np.append(1e-6, np.arange(1, 200) / 25), (AZIMUTHS, 200))
     t = np.zeros((PLACES, AZIMUTHS))
-    distances = np.concatenate([np.arange(1, 200) / 25, np.arange(8, 4 * side, 0.1)])
     for n, (j, i) in enumerate(at):
         going = np.arange(AZIMUTHS)
-        for s in np.array_split(distances, len(distances) // 32):
-            px = np.clip(i + s * np.cos(turn[going])[:, np.newaxis], 0, side - 1)
-            py = np.clip(j + s * np.sin(turn[going])[:, np.newaxis], 0, side - 1)
+        for lines in np.array_split(np.arange(4 * side), side // 8):
+            crossed = lines[lines > 0]
+            ways = crossed / np.abs(x), crossed / np.abs(y)
+            s = np.concatenate([*ways, near] if not lines[0] else ways, axis=1)[going]
+            px = np.clip(i + s * x[going], 0, side - 1)
+            py = np.clip(j + s * y[going], 0, side - 1)
             a, b = (np.minimum(p.astype(int), side - 2) for p in (px, py))
             u, v = px - a, py - b
             low, high = (z[b + k, a] + u * (z[b + k, a + 1] - z[b + k, a]) for k in (0, 1))
             steep = ((low + v * (high - low) - z[j, i]) / s).max(axis=1)
             t[n, going] = np.maximum(t[n, going], steep)
-            going = going[(z.max() - z[j, i]) / s[-1] > t[n, going]]
+            going = going[(z.max() - z[j, i]) / (lines[-1] + 1) > t[n, going]]
             if not len(going):
                 break
     slopes = np.stack([along[tuple(at.T)], across[tuple(at.T)]], axis=1)
