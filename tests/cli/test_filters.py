@@ -622,3 +622,13 @@ def test_steps_without_a_flow_name_those_that_have_one(folder, capfd):
     for asked in ("3:", "x", "all --time 1"):
         code, _, err = run(capfd, *arguments, "--times", *asked.split(), "-o", "out")
         assert (code, "--times: expected all, or indices of steps" in err) == (2, True)
+
+
+def test_the_picture_of_a_share_is_not_white_on_white(tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    pv.Sphere().save("ball.stl")
+    for words, gray in (("", True), ("--background white", False)):
+        code, _, error = run(capfd, "sky", "ball.stl", "-o", "sky.png", *words.split())
+        assert code == 0, error
+        corner = pv.read("sky.png")["PNGImage"][0]
+        assert (np.abs(corner.astype(int) - 128).max() < 3) == gray

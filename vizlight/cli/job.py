@@ -213,8 +213,10 @@ def _picture(job: Job, path: Path, out: Output) -> Step:
     from vizlight.shading.results import part_name
 
     scalars = job.scalars or (part_name(job.name, "rgb") if job.look.colored else job.name)
+    # A share that is 1 at most points is white, as paper is.
+    plain = "gray" if job.scalars == job.name else None
     options = {
-        "background": out.background,
+        "background": out.background or plain,
         "line_width": None if out.line_width == 1 else out.line_width,
         "backend": out.backend,
         "clim": job.clim,
