@@ -206,7 +206,13 @@ def light_mesh(
         known.append(sided)
     # New points see the sky of the refined mesh.
     early = dataclasses.replace(options, occlusion=None) if error else options
-    taken = with_sky(taken, early.occlusion)
+    finer = options.feature_angle is not None
+    skied = with_sky(taken, early.occlusion, finer=finer)
+    known = [
+        sided if one.n_points == other.n_points else None
+        for sided, one, other in zip(known, skied, taken, strict=True)
+    ]
+    taken = skied
     # Each mesh is refined alone, and has shares of light inside its own bundle.
     groups, parts = batches.parts_of(
         taken, [path for _, path in named], scene, early,
