@@ -183,8 +183,11 @@ def _measure(got: Pixels, expected: Pixels, background: ColorLike | None) -> Dif
     if (channels := _check.color("background", background)) is not None:
         back = 255.0 * np.array(pv.Color(channels).float_rgb)
     else:
-        colours, counts = np.unique(expected.reshape(-1, 3), axis=0, return_counts=True)
-        back = colours[np.argmax(counts)].astype(np.float64)
+        colours = expected.reshape(-1, 3)
+        # Numbers are sorted ten times as fast as rows.
+        numbers = colours @ np.array([65536, 256, 1])
+        _, places, counts = np.unique(numbers, return_index=True, return_counts=True)
+        back = colours[places[np.argmax(counts)]].astype(np.float64)
     # Differences of unsigned bytes would wrap around below 0.
     a, b = got.astype(np.float64), expected.astype(np.float64)
     drawn, wanted = (np.abs(x - back).sum(axis=(0, 1)) for x in (a, b))
