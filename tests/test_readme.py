@@ -137,7 +137,7 @@ def test_the_lines_that_ci_runs_are_there():
 
 
 def test_readme_is_short():
-    assert len(text_of(README).splitlines()) <= 150
+    assert len(text_of(README).splitlines()) <= 120
 
 
 def test_every_link_of_readme_is_a_file():
