@@ -52,6 +52,7 @@ html_theme_options = {
         "index": [],
         "examples/index": [],
         "peers": [],
+        "timed": [],
         # Code needs the width; a second pattern that matches a page would be a warning.
         **{f"guide/{page.stem}": [] for page in (HERE / "guide").glob("*.rst")},
     },
@@ -71,6 +72,7 @@ html_sidebars = {
     "studies/**": [],
     "sources": [],
     "peers": [],
+    "timed": [],
     "scaling": [],
     "robustness": [],
     "examples/**": [],
