@@ -34,6 +34,7 @@ extensions = [
     "_mathml",
     "_peers",
     "_scenes",
+    "_social",
     "_studies",
 ]
 templates_path = ["_templates"]
