@@ -172,8 +172,8 @@ def open_in_browser(page, picture, profile):
     return messages, np.asarray(Image.open(picture).convert("RGB"))
 
 
-#: Messages of the theme and the viewer that are not errors.
-HARMLESS = re.compile(r"Got invalid theme mode|\[PST\]|hashes,scene|GPU stall|GL Driver Message")
+#: Messages of the viewer that are not errors.
+HARMLESS = re.compile(r"hashes,scene|GPU stall|GL Driver Message")
 
 
 def errors(messages):

@@ -42,6 +42,8 @@ templates_path = ["_templates"]
 exclude_patterns = ["_build", "**sg_execution_times.rst"]
 html_theme = "pydata_sphinx_theme"
 html_title = "vizlight"
+# Without it the theme complains on the console of the browser.
+html_context = {"default_mode": "auto"}
 html_static_path = ["_static"]
 html_css_files = ["pages.css"]
 html_js_files = [("scenes.js", {"defer": "defer"})]
