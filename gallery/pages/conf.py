@@ -73,6 +73,8 @@ html_sidebars = {
     "architecture": [],
     "studies": [],
     "studies/**": [],
+    "readers": [],
+    "bounds": [],
     "sources": [],
     "peers": [],
     "timed": [],
