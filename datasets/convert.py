@@ -37,8 +37,8 @@ FIBRES = "dipy/data/files/tracks300.trk"
 DOG = "dm_control/suite/dog_assets/SKINbody.stl"
 FAULT = "matplotlib/mpl-data/sample_data/jacksboro_fault_dem.npz"
 BRAIN = "nilearn/datasets/data/mni_icbm152_{}_tal_nlin_sym_09a_converted.nii.gz"
-#: West, east, south and north of the Himalaya in degrees.
-HIMALAYA = (70.0, 104.0, 24.0, 42.0)
+#: West, east, south and north of the islands of Hawaii, in degrees east and north.
+HAWAII = (196.0, 209.0, 16.0, 25.0)
 
 
 def _saved(mesh: Any, name: str) -> Path:
@@ -167,13 +167,13 @@ def winds_of_july(source: Path) -> Path:
     return _saved(out.clean(tolerance=0), "winds_of_july.vtp")
 
 
-def himalaya(source: Path) -> Path:
-    """Write the heights of Tibet and what surrounds it, every 5 minutes of arc, in metres."""
+def hawaii(source: Path) -> Path:
+    """Write the heights of the islands and the sea floor, every 5 minutes of arc, in metres."""
     with netcdf_file(source, "r", mmap=False) as file:
         east, north, heights = (
             np.array(file.variables[name].data) for name in ("ETOPO05_X", "ETOPO05_Y", "ROSE")
         )
-    west, last, south, top = HIMALAYA
+    west, last, south, top = HAWAII
     columns = (east >= west - 0.01) & (east <= last + 0.01)
     rows = (north >= south - 0.01) & (north <= top + 0.01)
     heights = np.rint(heights[np.ix_(rows, columns)]).astype(np.int16)
@@ -183,7 +183,7 @@ def himalaya(source: Path) -> Path:
         spacing=(DEGREE / 12 * np.cos(latitude), DEGREE / 12, 1.0),
     )
     out.point_data["elevation"] = heights.ravel()
-    return _saved(out, "himalaya.vti")
+    return _saved(out, "hawaii.vti")
 
 
 def carotid(source: Path) -> Path:
@@ -220,7 +220,7 @@ def brain(wheel: Path) -> Path:
 if __name__ == "__main__":
     makers = (
         rotating_disk, fibre_bundle, earth_relief, dog, jacksboro_fault, winds_of_july,
-        himalaya, carotid, brain,
+        hawaii, carotid, brain,
     )  # fmt: skip
     for make, source in zip(makers, sys.argv[1:], strict=True):
         made = make(Path(source))

@@ -22,10 +22,11 @@ scene = presets.shape().replace(material=Material(ambient=0.3, diffuse=0.7, spec
 plotter = pv.Plotter(off_screen=True, shape=(1, 2), window_size=(1800, 760), border=False)
 plotter.set_background("#10141a", all_renderers=True)
 plain = plotter.add_mesh(cortex, color="white", smooth_shading=True, show_scalar_bar=False)
-plotter.camera = render.camera_on(cortex.bounds, (-1, 0.25, 0.3), aspect=1.2, zoom=1.6)
+plotter.camera = render.camera_on(cortex.bounds, (-1, 0.25, 0.3), aspect=1.2, zoom=1.52)
 plain = Scene.from_plotter(plotter, actor=plain)
 plotter.subplot(0, 1)
-plotter.vizlight.add_mesh(cortex, scene=scene, occlusion="sky")
+lit = cortex.vizlight.illuminate(scene, occlusion="sky")
+plotter.vizlight.add_mesh(lit)
 plotter.vizlight.add_key(scene)
 plotter.link_views()
 plotter.enable_anti_aliasing("ssaa")
@@ -34,5 +35,5 @@ plotter.show(auto_close=False)
 # %%
 # What can be read in this light, and in PyVista's:
 
-for light in (scene, plain):
-    print(vizlight.legibility(cortex, light, view=plotter.camera))
+for mesh, light in ((lit, scene), (cortex, plain)):
+    print(vizlight.legibility(mesh, light, view=plotter.camera))

@@ -85,14 +85,14 @@ def test_the_winds_are_what_the_readme_tells():
     assert outward.min() > 0.9
 
 
-def test_the_himalaya_is_what_the_readme_tells():
-    """Its highest point is Distaghil Sar, at 36.33 degrees north and 75.19 east, to two cells."""
-    ground = vizlight.load_example("himalaya.vti")
-    assert ground.dimensions == (409, 217, 1)
+def test_hawaii_is_what_the_readme_tells():
+    """Its highest point is Mauna Loa, at 19.48 degrees north and 155.61 west, to three cells."""
+    ground = vizlight.load_example("hawaii.vti")
+    assert ground.dimensions == (157, 109, 1)
     height = np.asarray(ground["elevation"])
-    assert (height.min(), height.max()) == (-10, 7833)
-    top = ground.points[height.argmax()] / ground.spacing / 12 + (70, 24, 0)
-    assert top[:2] == pytest.approx((75.19, 36.33), abs=1 / 6)
+    assert (height.min(), height.max()) == (-5831, 2804)
+    top = ground.points[height.argmax()] / ground.spacing / 12 + (-164, 16, 0)
+    assert top[:2] == pytest.approx((-155.61, 19.48), abs=1 / 4)
 
 
 def test_the_scan_is_what_the_readme_tells():
@@ -115,7 +115,7 @@ def test_unknown_data():
     with pytest.raises(
         ValueError,
         match=r"name: expected one of \['brain.vti', 'carotid.vti', 'dog.vtp', 'earth_relief.vti', "
-        r"'fibre_bundle.vtp', 'himalaya.vti', 'jacksboro_fault.vti', 'rotating_disk.vtu', "
+        r"'fibre_bundle.vtp', 'hawaii.vti', 'jacksboro_fault.vti', 'rotating_disk.vtu', "
         r"'winds_of_july.vtp'\], got 'x'",
     ):
         vizlight.example_path("x")
