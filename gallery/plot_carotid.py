@@ -25,7 +25,7 @@ plotter = pv.Plotter(off_screen=True, window_size=(1500, 1000))
 plotter.camera = render.camera_on((8, 76, 2, 46, 0, 44), (1, -0.9, 0.25), aspect=1.5, zoom=1.7)
 eye = -np.array(plotter.camera.direction)
 rim = 1 - np.abs(np.asarray(vessel["Normals"]) @ eye)  # 1 where the wall is seen edge-on
-vessel["glass"] = (np.outer(rim**2, (0, 0, 0, 190)) + (205, 228, 255, 10)).astype(np.uint8)
+vessel["glass"] = (rim[:, np.newaxis] ** 2 * [0, 0, 0, 190] + [205, 228, 255, 10]).astype("u1")
 
 plotter.set_background("#0e1420")
 bar = {"color": "white", "n_labels": 3, "fmt": "%.0f", "vertical": True, "position_y": 0.42}
