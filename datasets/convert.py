@@ -1,13 +1,16 @@
 """Make the embedded data: ``python datasets/convert.py SOURCE ...``, in the order of the functions.
 
 The command ``pip download --no-deps mayavi==4.9.0 dipy==1.12.1 dm_control==1.0.50
-matplotlib==3.11.2`` fetches the wheels. Relief and winds are the files ``etopo20.cdf`` and
-``monthly_navy_winds.cdf`` in ``usr/share/ferret-vis/data`` of Debian's package ferret-datasets: the
-command ``apt-get download ferret-datasets`` fetches the package, ``dpkg-deb -x`` unpacks it.
+matplotlib==3.11.2 nilearn==0.14.1`` fetches the wheels. Reliefs and winds are the files
+``etopo20.cdf``, ``etopo5.cdf`` and ``monthly_navy_winds.cdf`` in ``usr/share/ferret-vis/data`` of
+Debian's package ferret-datasets: the command ``apt-get download ferret-datasets`` fetches the
+package, ``dpkg-deb -x`` unpacks it. ``carotid.vtk`` is in the data of VTK, which PyVista downloads
+by ``pyvista.examples.download_carotid()``.
 """
 
 from __future__ import annotations
 
+import gzip
 import hashlib
 import io
 import sys
@@ -18,7 +21,13 @@ from typing import Any
 
 import numpy as np
 import pyvista as pv
+from scipy import ndimage
 from scipy.io import netcdf_file
+from vtkmodules.vtkIOXML import (
+    vtkXMLImageDataWriter,
+    vtkXMLPolyDataWriter,
+    vtkXMLUnstructuredGridWriter,
+)
 
 HERE = Path(__file__).parent
 #: Length of a degree of latitude in metres.
@@ -27,6 +36,24 @@ DISK = "mayavi/tests/data/disk_out_ref.ex2"
 FIBRES = "dipy/data/files/tracks300.trk"
 DOG = "dm_control/suite/dog_assets/SKINbody.stl"
 FAULT = "matplotlib/mpl-data/sample_data/jacksboro_fault_dem.npz"
+BRAIN = "nilearn/datasets/data/mni_icbm152_{}_tal_nlin_sym_09a_converted.nii.gz"
+#: West, east, south and north of the islands of Hawaii, in degrees east and north.
+HAWAII = (196.0, 209.0, 16.0, 25.0)
+
+
+def _saved(mesh: Any, name: str) -> Path:
+    """Write a mesh as small as VTK can: LZMA keeps half of what its usual compression does."""
+    kinds = {".vti": vtkXMLImageDataWriter, ".vtp": vtkXMLPolyDataWriter}
+    path = HERE / name
+    writer: Any = kinds.get(path.suffix, vtkXMLUnstructuredGridWriter)()
+    writer.SetInputData(mesh)
+    writer.SetFileName(str(path))
+    writer.SetCompressorTypeToLZMA()
+    writer.SetCompressionLevel(9)
+    writer.SetBlockSize(1 << 24)
+    writer.EncodeAppendedDataOff()
+    writer.Write()
+    return path
 
 
 def rotating_disk(wheel: Path) -> Path:
@@ -40,9 +67,7 @@ def rotating_disk(wheel: Path) -> Path:
     out.points = out.points.astype(np.float32)
     for name in out.point_data:
         out.point_data[name] = out.point_data[name].astype(np.float32)
-    path = HERE / "rotating_disk.vtu"
-    out.save(path)
-    return path
+    return _saved(out, "rotating_disk.vtu")
 
 
 def fibre_bundle(wheel: Path) -> Path:
@@ -65,9 +90,7 @@ def fibre_bundle(wheel: Path) -> Path:
     out.points = np.concatenate(points).astype(np.float32)
     offsets = np.concatenate([[0], np.cumsum(sizes)])
     out.SetLines(pv.CellArray.from_arrays(offsets, np.arange(offsets[-1])))
-    path = HERE / "fibre_bundle.vtp"
-    out.save(path)
-    return path
+    return _saved(out, "fibre_bundle.vtp")
 
 
 def earth_relief(source: Path) -> Path:
@@ -90,18 +113,14 @@ def earth_relief(source: Path) -> Path:
     if not (np.allclose(west, grid[0], atol=1e-3) and np.allclose(north, grid[1], atol=1e-3)):
         raise ValueError("source: expected a grid of 20 minutes of arc; take etopo20.cdf")
     out.point_data["elevation"] = heights.ravel()
-    path = HERE / "earth_relief.vti"
-    out.save(path)
-    return path
+    return _saved(out, "earth_relief.vti")
 
 
 def dog(wheel: Path) -> Path:
     """Write the skin of the dog with its equal points merged."""
     with tempfile.TemporaryDirectory() as folder, zipfile.ZipFile(wheel) as archive:
         skin: Any = pv.read(archive.extract(DOG, folder))
-    path = HERE / "dog.vtp"
-    skin.clean().save(path)
-    return path
+    return _saved(skin.clean(), "dog.vtp")
 
 
 def jacksboro_fault(wheel: Path) -> Path:
@@ -115,9 +134,7 @@ def jacksboro_fault(wheel: Path) -> Path:
         spacing=(DEGREE * np.cos(latitude) * degrees[0], DEGREE * degrees[1], 1.0),
     )
     out.point_data["elevation"] = heights.ravel()
-    path = HERE / "jacksboro_fault.vti"
-    out.save(path)
-    return path
+    return _saved(out, "jacksboro_fault.vti")
 
 
 def winds_of_july(source: Path) -> Path:
@@ -147,13 +164,64 @@ def winds_of_july(source: Path) -> Path:
     out: Any = pv.PolyData.from_regular_faces(up.reshape(-1, 3), faces)
     out.points = out.points.astype(np.float32)
     out.point_data["wind"] = vectors.reshape(-1, 3).astype(np.float32)
-    path = HERE / "winds_of_july.vtp"
-    out.clean(tolerance=0).save(path)
-    return path
+    return _saved(out.clean(tolerance=0), "winds_of_july.vtp")
+
+
+def hawaii(source: Path) -> Path:
+    """Write the heights of the islands and the sea floor, every 5 minutes of arc, in metres."""
+    with netcdf_file(source, "r", mmap=False) as file:
+        east, north, heights = (
+            np.array(file.variables[name].data) for name in ("ETOPO05_X", "ETOPO05_Y", "ROSE")
+        )
+    west, last, south, top = HAWAII
+    columns = (east >= west - 0.01) & (east <= last + 0.01)
+    rows = (north >= south - 0.01) & (north <= top + 0.01)
+    heights = np.rint(heights[np.ix_(rows, columns)]).astype(np.int16)
+    latitude = np.radians((south + top) / 2)
+    out = pv.ImageData(
+        dimensions=(heights.shape[1], heights.shape[0], 1),
+        spacing=(DEGREE / 12 * np.cos(latitude), DEGREE / 12, 1.0),
+    )
+    out.point_data["elevation"] = heights.ravel()
+    return _saved(out, "hawaii.vti")
+
+
+def carotid(source: Path) -> Path:
+    """Write the flow in arteries of the neck, speed to 1 and velocity to 1 / 32."""
+    scan: Any = pv.read(source)
+    out = pv.ImageData(dimensions=scan.dimensions, spacing=scan.spacing)
+    out.point_data["brightness"] = np.rint(scan["scalars"]).astype(np.int16)
+    out.point_data["velocity"] = (np.rint(32 * scan["vectors"]) / 32).astype(np.float32)
+    return _saved(out, "carotid.vti")
+
+
+def brain(wheel: Path) -> Path:
+    """Write the left half of the mean brain of 152 people: white and half of gray matter."""
+    parts = []
+    with zipfile.ZipFile(wheel) as archive:
+        for kind in ("wm", "gm"):
+            content = gzip.decompress(archive.read(BRAIN.format(kind)))
+            data = np.frombuffer(content, np.uint8, 197 * 233 * 189, 352)
+            parts.append(data.reshape((197, 233, 189), order="F") / 255)
+    # The middle is 98 mm from the left.
+    matter = ndimage.gaussian_filter((parts[0] + 0.5 * parts[1])[:99], 0.7)
+    places = np.stack(np.meshgrid(*(np.arange(0, n, 1.5) for n in matter.shape), indexing="ij"))
+    matter = ndimage.map_coordinates(matter, places, order=3, mode="nearest")
+    matter = np.clip(np.rint(100 * matter), 20, 80).astype(np.uint8)
+    used = np.argwhere(matter > 20)
+    first, last = used.min(axis=0), used.max(axis=0) + 1
+    matter = matter[tuple(map(slice, first, last))]
+    corner = np.array([-98.0, -134.0, -72.0]) + 1.5 * first
+    out = pv.ImageData(dimensions=matter.shape, spacing=(1.5,) * 3, origin=corner)
+    out.point_data["matter"] = matter.ravel(order="F")
+    return _saved(out, "brain.vti")
 
 
 if __name__ == "__main__":
-    makers = (rotating_disk, fibre_bundle, earth_relief, dog, jacksboro_fault, winds_of_july)
+    makers = (
+        rotating_disk, fibre_bundle, earth_relief, dog, jacksboro_fault, winds_of_july,
+        hawaii, carotid, brain,
+    )  # fmt: skip
     for make, source in zip(makers, sys.argv[1:], strict=True):
         made = make(Path(source))
         sys.stdout.write(f"{hashlib.sha256(made.read_bytes()).hexdigest()}  {made.name}\n")

@@ -2,38 +2,38 @@
 What is the shape?
 ==================
 
-A mountain fault, three times as high as it is. Left: PyVista's light. Right: three coloured lamps
+The left half of the mean brain of 152 people. Left: PyVista's light. Right: three coloured lamps
 half way between the eye and the picture plane, and a white one at the eye
-(``vizlight.presets.shape``). Each slope has a colour of its own, which the ball in the corner
-shows at the place of the same slope; under white lamps many slopes look the same.
-
-The normal of the surface is read with a median error of some 3 degrees, in PyVista's light of more
-than 20.
+(``vizlight.presets.shape``): each slope has a colour, which the ball shows at the place of the same
+slope. The light of the sky (``vizlight.sky``) darkens the folds. The normal is read with a median
+error of 3 degrees; in PyVista's light of 24.
 """
 
 import pyvista as pv
 
 import vizlight
-from vizlight import Scene, presets
+from vizlight import Material, Scene, presets, render
 
-fault = vizlight.load_example("jacksboro_fault.vti").warp_by_scalar("elevation", factor=3)
-fault = fault.extract_surface(algorithm="dataset_surface")
-scene = presets.shape()
+cortex = vizlight.load_example("brain.vti").contour([55.5]).connectivity("largest")
+# Some points deep in folds see nothing of the sky: a warning says how many.
+cortex = vizlight.sky(cortex, error=0.05)
+scene = presets.shape().replace(material=Material(ambient=0.3, diffuse=0.7, specular=0))
 
-plotter = pv.Plotter(off_screen=True, shape=(1, 2), window_size=(1400, 640), border=False)
-terrain = plotter.add_mesh(fault, color="white", smooth_shading=True)
-plotter.view_vector((0.3, -1, 1.2), (0, 0, 1))
-plain = Scene.from_plotter(plotter, actor=terrain)
+plotter = pv.Plotter(off_screen=True, shape=(1, 2), window_size=(1800, 760), border=False)
+plotter.set_background("#10141a", all_renderers=True)
+plain = plotter.add_mesh(cortex, color="white", smooth_shading=True, show_scalar_bar=False)
+plotter.camera = render.camera_on(cortex.bounds, (-1, 0.25, 0.3), aspect=1.2, zoom=1.52)
+plain = Scene.from_plotter(plotter, actor=plain)
 plotter.subplot(0, 1)
-plotter.vizlight.add_mesh(fault, scene=scene)
-plotter.vizlight.add_key(scene, corner="upper right")
+lit = cortex.vizlight.illuminate(scene, occlusion="sky")
+plotter.vizlight.add_mesh(lit)
+plotter.vizlight.add_key(scene)
 plotter.link_views()
-plotter.camera.zoom(1.15)
-plotter.enable_anti_aliasing("msaa")
+plotter.enable_anti_aliasing("ssaa")
 plotter.show(auto_close=False)
 
 # %%
 # What can be read in this light, and in PyVista's:
 
-for light in (scene, plain):
-    print(vizlight.legibility(fault, light, view=plotter.camera))
+for mesh, light in ((lit, scene), (cortex, plain)):
+    print(vizlight.legibility(mesh, light, view=plotter.camera))

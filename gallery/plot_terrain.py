@@ -1,69 +1,41 @@
 """
-Shadows of a mountain ridge
-===========================
+Islands under a low sun
+=======================
 
-The Jacksboro fault in Tennessee, 30 km by 32 km, with the sun in the north-west at 12 degrees,
-coloured by elevation from 236 m (green) to 1,076 m (white). The light is the cos-theta shadow
-``t``: it equals the cosine where the sun is not blocked and is dark where a ridge stands in the
-way. The edges of shadows are soft over 60 m, because the light is gathered that far below the
-ground. Heights are doubled.
+Hawaii and the sea floor around it, heights 9 times as they are, under a low sun in the west and the
+light of the sky. ``t``, the cos-theta shadow, is the sunlight that arrives: 0 behind a ridge, the
+cosine where nothing is in the way. The sky's light is the share of it that each point sees, so that
+valleys are dark also out of the sun. One call finds both: ``relief_shadow(..., occlusion="sky")``.
 """
 
-import matplotlib.pyplot as plt
-import numpy as np
+import pyvista as pv
+from matplotlib.colors import LinearSegmentedColormap
 
 import vizlight
 from vizlight import Light, Material, Scene, render
 
-terrain = vizlight.load_example("jacksboro_fault.vti")
-columns, rows, _ = terrain.dimensions
-heights = np.asarray(terrain["elevation"], dtype=float)
-hues = plt.get_cmap("gist_earth")(np.interp(heights, (236, 1076), (0.35, 1)))[:, :3]
-slopes = np.gradient(2 * heights.reshape(rows, columns), *terrain.spacing[1::-1])
-normal = np.stack([-slopes[1], -slopes[0], np.ones((rows, columns))], axis=-1).reshape(-1, 3)
-normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+tints = ["#1d3f72", "#2b6a9c", "#6fb0cc", "#d6ecec", "#5f9a52", "#b5965f", "#f4efe6"]
+places = [0, 0.3, 0.58, 0.665, 0.67, 0.83, 1]  # of heights from -5800 to 2860 m: 0.67 is the coast
+tints = LinearSegmentedColormap.from_list("sea and land", list(zip(places, tints, strict=True)))
+relief = vizlight.load_example("hawaii.vti").resample(8.0, interpolation="bspline")
+material = Material(ambient=0.65, diffuse=1.25, specular=0)
+scene = Scene(lights=Light(direction=(-0.85, 0.25, 0.4)), material=material)
+options = {"elevation": "elevation", "exaggeration": 9, "depth": 1500}
+lit = vizlight.relief_shadow(relief, scene, lit=True, occlusion="sky", **options)
+lit = vizlight.tint(lit, "elevation", cmap=tints, clim=(-5800, 2860))
+ground = lit.warp_by_scalar("elevation", factor=9)
 
-
-def shadowed(degrees):
-    """Return the terrain in two colours: lit by t, and by the cosine of the classic hillshade."""
-    e = np.radians(degrees)
-    toward = np.array([-np.cos(e) * 0.8, np.cos(e) * 0.6, np.sin(e)])
-    scene = Scene(lights=Light(direction=toward), material=Material(specular=0))
-    lit = vizlight.relief_shadow(terrain, scene, depth=60, elevation="elevation", exaggeration=2)
-    for name, share in (("shadow", lit["t"]), ("hillshade", np.maximum(normal @ toward, 0))):
-        # Level ground has the same brightness under each sun.
-        light = 0.1 + 0.45 * np.asarray(share) / np.sin(e)
-        lit[name] = np.clip(1.15 * hues * light[:, np.newaxis], 0, 1)
-    return lit
-
-
-ground = shadowed(12).cast_to_structured_grid()
-ground.points[:, 2] = 2 * heights
-camera = render.camera_on(ground.bounds, (0.35, -1, 0.8), aspect=1.5, zoom=2.1)
+islands = (4.1e5, 10e5, 2.2e5, 6.6e5, -4e4, 2e4)
+camera = render.camera_on(islands, (0.3, -1, 1.3), aspect=1.5, zoom=1.5)
 plotter = render.make_plotter(
-    render.Panel(ground, "shadow"), camera=camera, size=(1500, 1000), background="#e6edf2"
+    render.Panel(ground, "rgb"), camera=camera, size=(1500, 1000), background="#1f4a7c"
 )
-plotter.show()
-
-# %%
-# The south of it from above with the sun at 10, 25 and 45 degrees. Upper row: the classic
-# hillshade, the clamped cosine, in which no ridge casts a shadow: at 10 degrees the hill on the
-# right is bright although the ridge stands before the sun. Lower row: ``t``. Where nothing is in
-# the way the two agree. Level ground has the same brightness in all panels.
-
-SOUTH = (120, 295, 20, 150, 0, 0)
-panels = [
-    render.Panel(lit, name, f"{name}, sun {degrees} degrees")
-    for name in ("hillshade", "shadow")
-    for degrees, lit in (
-        (degrees, shadowed(degrees).extract_subset(SOUTH)) for degrees in (10, 25, 45)
-    )
-]
-plotter = render.make_plotter(
-    panels,
-    camera=render.camera_on(panels[0].mesh.bounds, (0, 0, 1), parallel=True, zoom=1.28),
-    rows=2,
-    size=(1500, 1000),
-    background="white",
+plotter.add_mesh(pv.Box((4.6e5, 5.6e5, 2e5, 2.06e5, -3.9e4, -3.8e4)), color="white")
+plotter.add_mesh(
+    pv.Arrow(start=(4.4e5, 2e5, -3.8e4), direction=(0, 1, 0), scale=6e4), color="white"
+)
+words = {"shape": None, "show_points": False, "text_color": "white", "font_size": 26}
+plotter.add_point_labels(
+    [(4.8e5, 2.15e5, -3.8e4), (4.34e5, 2.65e5, -3.8e4)], ["100 km", "N"], **words
 )
 plotter.show()

@@ -1,43 +1,41 @@
 """
-Turning in 4-space
-==================
+A Hopf fibration, turning
+=========================
 
-A torus in 4-space rotates in the xw plane, while light, eye and camera stay fixed. In the upper
-row it is lit in 4-space, before the projection: the light moves over it as over a rigid body,
-although its projection to 3-space swells, passes through itself and turns inside out. In the lower
-row the projected surface is lit in 3-space, after the projection. The paint is the fourth
-coordinate before the turn.
-
-``vizlight.movie.turn(mesh, "turn.gif", scene=scene, distance=3.0)`` writes the whole turn.
+Three tori of the Hopf fibration: 84 circles in 4-space, any two of which are linked once. They
+turn in the xw plane, and are lit in 4-space before they are projected: light, eye and camera stay
+where they are, so that the light moves over the circles as over a rigid body, although in 3-space
+they swell, pass through one another, and turn inside out. Colour tells the tori apart.
 """
 
+from pathlib import Path
+from tempfile import mkdtemp
+
 import numpy as np
+import pyvista as pv
 
 import vizlight
 from vizlight import Light, Material, Scene, View, render
 from vizlight.geometry import manifolds
 
-torus = vizlight.manifold(manifolds.torus(1.5, 0.75, resolution=(192, 128)))
-material = Material(ambient=0.08, diffuse=0.8, specular=0.27, shininess=25)
-camera = render.camera_on((-3, 3, -2, 2, -1, 1), (0.3, -1, 0.8), zoom=1.6)
-in_3 = Scene(
-    lights=Light(direction=(0.2, -0.8, 0.9)), view=View.from_camera(camera), material=material
-)
-in_4 = Scene(
-    lights=Light(direction=(0.2, -0.8, 0.9, 0.3)),
-    view=View(direction=(0.3, -1, 0.8, 0)),
-    material=material,
-)
+turn, height = np.meshgrid(np.linspace(0, 2 * np.pi, 29)[1:], (-0.7, 0.0, 0.7))
+base = np.stack([np.cos(turn), np.sin(turn), height / np.sqrt(1 - height**2)], axis=-1)
+fibres = vizlight.manifold(manifolds.hopf_fibres(base.reshape(-1, 3), resolution=192))
+fibres["torus"] = np.repeat([0.0, 1.0, 2.0], fibres.n_points // 3)
+material = Material(ambient=0.18, diffuse=0.85, specular=0.5, shininess=20)
+scene = Scene(lights=Light(direction=(-0.5, -0.5, 1, 0.4)), material=material)
+scene = scene.replace(view=View(direction=(0.3, -1, 0.6, 0)))
 
-fourth = np.asarray(torus["position"])[:, 3].copy()
-panels = []
-for light, scene in (("before", in_4), ("after", in_3)):
-    for angle in (0, 30, 60, 90, 120):
-        turned = vizlight.project(
-            torus, rotation=("xw", np.radians(angle)), distance=3.0, scene=scene, light=light
-        )
-        painted = vizlight.tint(turned, fourth, cmap="RdYlBu_r")
-        panels.append(render.Panel(painted, "rgb", f"{light}, {angle} degrees"))
-
-plotter = render.make_plotter(panels, camera=camera, rows=2, size=(2000, 760), background="#203048")
+plotter = pv.Plotter(off_screen=True, window_size=(400, 380))
+plotter.background_color = "#101a2a"
+plotter.camera = render.camera_on((-1.7, 1.7, -1.7, 1.7, -1.5, 1.5), (0.3, -1, 0.6), zoom=1.52)
+plotter.enable_anti_aliasing("ssaa")
+plotter.open_gif(Path(mkdtemp()) / "turning.gif", fps=9)
+for angle in np.linspace(0, np.pi, 26, endpoint=False):
+    lit = vizlight.project(
+        fibres, rotation=("xw", angle), distance=1.3, scene=scene, light="before"
+    )
+    lit = vizlight.tint(lit, "torus", cmap=["#f08a5d", "#58c4a3", "#8a96f0"])
+    plotter.vizlight.add_mesh(lit, line_diameter=0.055, name="fibres", show_scalar_bar=False)
+    plotter.write_frame()
 plotter.show()

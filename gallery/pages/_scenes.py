@@ -6,7 +6,6 @@ allow for files on disk. Each scene is therefore a page of its own with light th
 
 from __future__ import annotations
 
-import ast
 import html
 import json
 import re
@@ -27,53 +26,67 @@ INTERACTIVE = ("plot_winds", "plot_complex_curve")
 #: What the page of one view runs: it tells the others beside it how its camera was moved.
 LINK = (Path(__file__).parent / "link.js").read_text("utf-8")
 
-# Questions of a reader, lines and flows, surfaces, terrain, 4-space, formulas; scripts that are not
-# listed come last.
-ORDER = [
-    "plot_read_direction", "plot_read_slope", "plot_read_heading", "plot_read_shape",
-    "plot_read_value",
-    "plot_winds", "plot_live", "plot_lines", "plot_bundle",
-    "plot_principal_lines", "plot_streaklines", "plot_satin", "plot_fur",
-    "plot_depth_cue",
-    "plot_sky", "plot_terrain_day", "plot_terrain", "plot_earth", "plot_bas_relief",
-    "plot_seeping_light",
-    "plot_codimension", "plot_turning", "plot_complex_curve",
-    "plot_field_in_4_space", "plot_highlights", "plot_highlights_shapes",
-    "plot_isoluminance",
-]  # fmt: skip
+#: Sections of the gallery, their scripts, and what a reader who cannot see the pictures is told.
+SECTIONS = {
+    "Which way does it run?": {
+        "plot_winds": "Globe of winds in hues of their direction, with lines, coasts and a disc",
+        "plot_read_direction": "A globe with arrows, and one in hues of the wind's direction",
+        "plot_principal_lines": "Gyroid, plain and engraved by lines of its curvature",
+        "plot_satin": "Satin ball lit by its threads, with a highlight across them",
+    },
+    "How steep is it, and which end is near?": {
+        "plot_read_slope": "Arch of nerve fibres: tan tubes, and white to dark by slope",
+        "plot_read_heading": "Arch of nerve fibres in grays, and in hues of the near end",
+        "plot_fur": "Head and shoulders of a golden dog whose hair lies back",
+    },
+    "What is the shape?": {
+        "plot_read_shape": "Folds of a brain in gray, and in hues of their slopes under a sky",
+        "plot_sky": "Valleys, folds and a coral darkened by the sky that they do not see",
+        "plot_isoluminance": "Solids in bands of equal luminance between black contours",
+    },
+    "What is the value?": {
+        "plot_read_value": "A surface in viridis and in a map of one lightness, with their bars",
+        "plot_carotid": "Lines of blood by speed inside arteries of clear glass",
+    },
+    "How deep is the shadow?": {
+        "plot_terrain": "Hawaii rises from a blue sea floor, with shadows toward the east",
+        "plot_terrain_day": "Ridges at five hours of a day, and the mean sunlight of each slope",
+        "plot_bas_relief": "Relief of a dog under one moving light, and with deeper shadows",
+        "plot_seeping_light": "Dog before a light, whose ears glow as if of wax",
+    },
+    "What is there in 4-space?": {
+        "plot_codimension": "Eight tori and curves on tori, uncompensated and compensated",
+        "plot_complex_curve": "Graph of a complex function at four steps of a turn",
+    },
+    "How does it move?": {
+        "plot_turning": "Three tori of linked circles turn inside out",
+        "plot_streaklines": "Smoke rolls up in vortices that drift to the right",
+    },
+}
+#: Descriptions of the scripts, in the order of the gallery; those not listed come last.
+ALTS = {script: alt for scripts in SECTIONS.values() for script, alt in scripts.items()}
+ORDER = list(ALTS)
 
 #: Scripts whose thumbnail is made from the first picture; others have it from the last.
-FIRST = (
-    "plot_bundle", "plot_fur", "plot_lines", "plot_principal_lines", "plot_satin", "plot_terrain",
-)  # fmt: skip
+FIRST = ("plot_principal_lines", "plot_satin", "plot_sky")
 
 #: Part of a picture that its thumbnail shows: left, top, right and bottom as shares of 1. Other
 #: thumbnails show the whole.
 PARTS = {
     "plot_bas_relief": (0.01, 0.045, 0.325, 0.46),
-    "plot_bundle": (0.5, 0.08, 1.0, 0.92),
-    "plot_codimension": (0.25, 0.6, 0.5, 1.0),
+    "plot_codimension": (0.0, 0.56, 0.5, 1.0),
+    "plot_carotid": (0.1, 0.05, 0.9, 0.9),
     "plot_complex_curve": (0.1, 0.05, 0.9, 1.0),
-    "plot_depth_cue": (0.67, 0.06, 1.0, 0.5),
-    "plot_earth": (0.05, 0.06, 0.55, 0.46),
-    "plot_field_in_4_space": (0.667, 0.07, 1.0, 1.0),
-    "plot_highlights": (0.15, 0.06, 0.9, 0.5),
-    "plot_highlights_shapes": (0.0, 0.08, 0.5, 0.92),
     "plot_isoluminance": (0.25, 0.56, 0.5, 1.0),
-    "plot_lines": (0.5, 0.05, 1.0, 1.0),
     "plot_principal_lines": (0.5, 0.0, 1.0, 1.0),
     "plot_read_direction": (0.5, 0.08, 1.0, 1.0),
     "plot_read_heading": (0.5, 0.05, 1.0, 1.0),
-    "plot_read_shape": (0.5, 0.1, 1.0, 0.9),
+    "plot_read_shape": (0.5, 0.0, 1.0, 0.85),
     "plot_read_slope": (0.5, 0.05, 1.0, 1.0),
     "plot_read_value": (0.5, 0.1, 1.0, 1.0),
     "plot_satin": (0.0, 0.08, 0.5, 0.75),
     "plot_seeping_light": (0.67, 0.06, 1.0, 0.75),
-    "plot_sky": (0.5, 0.05, 1.0, 0.95),
     "plot_terrain_day": (0.37, 0.05, 0.63, 0.49),
-    "plot_terrain": (0.05, 0.08, 0.95, 0.98),
-    "plot_turning": (0.4, 0.06, 0.61, 0.5),
-    "plot_winds": (0.08, 0.1, 0.92, 0.8),
 }
 
 #: Width of the thumbnails of movies in pixels.
@@ -147,9 +160,7 @@ def reset(_conf, script):
 
 def scrape(block, block_vars, gallery_conf):
     """Return reST for the pictures and scenes that a block of a script has drawn."""
-    # The title of the script is the description of the picture.
-    text = Path(block_vars["src_file"]).read_text("utf-8")
-    about = ast.get_docstring(ast.parse(text)).partition("\n")[0]
+    about = ALTS[Path(block_vars["src_file"]).stem]
     if plt.get_fignums():
         # The script shows a chart; what its study has drawn is not shown.
         pv.close_all()
@@ -209,6 +220,31 @@ def cut_thumbnails(app):
         _shrink(thumbnail)
 
 
+def cut_index(app):
+    """Part the page of thumbnails into sections, and describe the thumbnails."""
+    page = Path(app.srcdir) / "examples" / "index.rst"
+    head, rest = page.read_text("utf-8").split(".. thumbnail-parent-div-open\n")
+    tiles, foot = rest.split(".. thumbnail-parent-div-close\n")
+    opened = head.rindex(".. raw:: html")
+    grid, close = head[opened:], foot[: foot.index("</div>") + 6]
+    found = {}
+    for tile in tiles.split("\n\n\n"):
+        if name := re.search(r"/examples/(\w+)`", tile):
+            found[name[1]] = tile.replace(":alt:", f":alt: {ALTS[name[1]]}")
+    parts = [
+        "\n\n".join([title, "-" * len(title), grid, *map(found.get, scripts), close])
+        for title, scripts in SECTIONS.items()
+    ]
+    text = "\n\n".join([head[:opened], *parts, foot[len(close) :]])
+    page.write_text(text.replace("\n\n---", "\n---"), "utf-8")
+
+
+def load_late(_app, _page, _template, context, _doctree):
+    """Let browsers load pictures when they come near, all but the first."""
+    first, image, rest = context.get("body", "").partition("<img ")
+    context["body"] = first + image + rest.replace("<img ", '<img loading="lazy" ')
+
+
 def _shrink(path):
     """Draw a movie as small as its thumbnail is shown; sphinx-gallery copies it as it is."""
     with Image.open(path) as movie:
@@ -227,4 +263,6 @@ def setup(app):
     # What is drawn after the scripts, for the studies, needs no page.
     app.connect("builder-inited", lambda _: reset(None, ""))
     app.connect("builder-inited", cut_thumbnails, priority=900)
+    app.connect("builder-inited", cut_index, priority=900)
+    app.connect("html-page-context", load_late)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
