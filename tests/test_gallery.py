@@ -238,6 +238,20 @@ def test_pages_fit_and_load_nothing_from_elsewhere(chromium, width, scheme):
 
 
 @browser
+@pytest.mark.skipif("VIZLIGHT_AXE" not in os.environ, reason="no axe.min.js of axe-core named")
+def test_axe_finds_nothing(chromium):
+    axe = Path(os.environ["VIZLIGHT_AXE"]).read_text(encoding="utf-8")
+    example = sorted(path.stem for path in (PAGES / "examples").glob("plot_read_*.html"))[0]
+    with chromium.new_context() as context:
+        for name in [*FIRST, LONGEST, f"examples/{example}"]:
+            page, _, _ = visit(context, name)
+            page.evaluate(axe)
+            found = page.evaluate("axe.run().then(made => made.violations.map(one => one.id))")
+            assert not found, name
+            page.close()
+
+
+@browser
 def test_the_first_page_is_light(chromium):
     with chromium.new_context() as context:
         page, read_files, _ = visit(context, "index")
