@@ -3,7 +3,7 @@
 The tests read the pages from the folder into which README's command builds them. Tests that need a
 browser use Debian's ``chromium``. If ``VIZLIGHT_PAGES`` names the folder of the pages, a missing
 page or browser is an error; otherwise the tests are skipped. Of the notebooks two are run, or all
-if ``VIZLIGHT_NOTEBOOKS`` is "all". ``VIZLIGHT_AXE`` names the axe.min.js of axe-core, if it is there.
+if ``VIZLIGHT_NOTEBOOKS`` is "all". ``VIZLIGHT_AXE`` names the axe.min.js of axe-core, if any.
 """
 
 from __future__ import annotations
