@@ -63,7 +63,7 @@ blue = Material(ambient=0.3, diffuse=0.7, specular=0, color=(0.10, 0.17, 0.38))
 after = pv.MultiBlock([vizlight.illuminate(surface, scene.replace(material=blue)), lines])
 
 panels = [render.Panel(before, "rgb"), render.Panel(after, "rgb")]
-options = {"camera": camera, "size": (1600, 800), "line_diameter": 0.042}
+options = {"camera": camera, "size": (1400, 700), "line_diameter": 0.042}
 plotter = render.make_plotter(panels, background="black", **options)
 plotter.show()
 
