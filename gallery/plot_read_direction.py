@@ -24,7 +24,7 @@ lic.SetInputDataObject(wind)
 lic.ScalarVisibilityOff()
 field = {"tangents": "wind", "exponent": 2}
 ways = {
-    "plain: 45": lambda plotter: None,
+    "plain: 45": lambda _: None,
     "arrows: 13": lambda plotter: plotter.add_mesh(arrows, color="black"),
     "LIC: 3.3": lambda plotter: plotter.add_actor(pv.Actor(mapper=lic)),
     "lines: 1.7": lambda plotter: plotter.add_mesh(lines, color="black", line_width=2.5),

@@ -172,8 +172,8 @@ def open_in_browser(page, picture, profile):
     return messages, np.asarray(Image.open(picture).convert("RGB"))
 
 
-#: Messages of the theme and the viewer that are not errors.
-HARMLESS = re.compile(r"Got invalid theme mode|\[PST\]|hashes,scene|GPU stall|GL Driver Message")
+#: Messages of the viewer that are not errors.
+HARMLESS = re.compile(r"hashes,scene|GPU stall|GL Driver Message")
 
 
 def errors(messages):
@@ -194,19 +194,23 @@ def visit(context, name):
     page, read_files, said = context.new_page(), set(), []
     page.on("request", lambda request: read_files.add(request.url))
     page.on("console", lambda message: said.append((message.type, message.text)))
-    page.goto((PAGES / f"{name}.html").as_uri())
+    path, _, query = name.partition(".html?")
+    address = (PAGES / f"{path}.html").as_uri()
+    page.goto(f"{address}?{query}" if query else address)
     return page, read_files, errors(said)
 
 
 FIRST = [
     "index",
     "guide/index",
-    "guide/lights",
+    "guide/direction",
     "examples/index",
     "formulas",
     "architecture",
     "api",
     "studies",
+    "peers",
+    "timed",
 ]
 LONGEST = "api/vizlight.geometry.contours.isoluminance"
 
@@ -253,6 +257,46 @@ def test_keys_reach_the_content_and_the_search_finds(chromium):
         page.keyboard.press("Enter")
         page.wait_for_selector("#search-results li a")
         assert "streamlines" in page.inner_text("#search-results").lower()
+
+
+@browser
+@pytest.mark.parametrize(
+    ("word", "page"),
+    [
+        ("colorbar", "What value"),
+        ("transparent", "What value"),
+        ("tractography", "tractography"),
+        ("opacity", "What value"),
+        ("jagged", "How wrong"),
+        ("dark", "Troubleshooting"),
+        ("EGL", "Troubleshooting"),
+        ("cell data", "What value"),
+    ],
+)
+def test_the_search_finds_the_words_of_users(chromium, word, page):
+    with chromium.new_context() as context:
+        found, _, said = visit(context, f"search.html?q={word}")
+        found.wait_for_selector("#search-results li a")
+        found.wait_for_function(
+            "title => document.querySelector('#search-results').innerText.includes(title)", arg=page
+        )
+        assert not said
+
+
+def test_every_page_has_a_title_a_description_and_a_picture():
+    raw = "https://raw.githubusercontent.com/vizlight/vizlight/main/"
+    titles = {}
+    for page in pages():
+        text = page.read_text(encoding="utf-8")
+        title = re.search(r"<title>([^<]+)</title>", text)[1].strip()
+        assert titles.setdefault(title, page) is page, title
+        if page.name in ("search.html", "genindex.html", "py-modindex.html"):
+            continue
+        for name in ('name="description"', 'property="og:description"', 'property="og:title"'):
+            (content,) = re.findall(rf'<meta {name} content="([^"]+)"', text)
+            assert len(content) > 2, page
+        (picture,) = re.findall(r'<meta property="og:image" content="([^"]+)"', text)
+        assert (ROOT / picture.removeprefix(raw)).is_file()
 
 
 @browser

@@ -80,8 +80,21 @@ def test_the_table_is_that_of_the_scripts():
 
 def test_each_picture_is_kept_and_no_other():
     pictures = {kept.picture(scene, script) for scene, script in kept.todo()}
-    assert pictures == set(kept.HERE.glob("*/*.png"))
+    assert pictures == set(kept.HERE.glob("*/*.webp"))
     for path in pictures:
         assert path.stat().st_size <= 150_000, path
         with Image.open(path) as picture:
             assert np.asarray(picture.convert("RGB")).std() > 20, path
+
+
+def test_the_six_sheets_are_kept():
+    sheets = module("sheets")
+    kept_sheets = {path.stem: path for path in kept.HERE.glob("sheet_*.webp")}
+    assert set(kept_sheets) == {f"sheet_{name}" for name in sheets.SETS}
+    text = (PAGES / "peers.rst").read_text(encoding="utf-8")
+    for name, path in kept_sheets.items():
+        assert path.stat().st_size <= 300_000
+        assert f"peers/{name}.webp" in text
+        with Image.open(path) as picture:
+            assert picture.width == 4 * sheets.SIZE[0]
+            assert np.asarray(picture.convert("RGB")).std() > 20, name

@@ -24,15 +24,13 @@ pytestmark = pytest.mark.opengl
 HERE = Path(__file__).parent
 SIZE = (300, 220)
 
+CROSSED = ["streamlines", "fibres", "depth_cue", "exact_line_light"]
 #: Limits beside the defaults, with the reason.
 LIMITS = {
     # Thousands of lines of a pixel or less: other anti-aliasing dims them all.
-    "fur": {"brightness": 0.04},
+    "fur": {"brightness": 0.04, "pixels": 0.1},
     # Lines in front of one another: which is nearer can change at a crossing.
-    "streamlines": {"block": 20.0},
-    "fibres": {"block": 20.0},
-    "depth_cue": {"block": 20.0},
-    "exact_line_light": {"block": 20.0},
+    **{name: {"block": 7.0, "pixels": 0.06} for name in CROSSED},
 }
 
 

@@ -29,6 +29,9 @@ if TYPE_CHECKING:
     P = ParamSpec("P")
     R = TypeVar("R")
 
+# pytest leaves the frames of this module out of tracebacks.
+__tracebackhide__ = True
+
 describe, message, one_of = _words.describe, _words.message, _words.one_of
 
 #: Largest intensity, coefficient or power: the product of three of them fits float32.

@@ -14,15 +14,20 @@ DESIGN = re.compile(
     r'\s*<(?:link|script)[^>]* (?:href|src)="[^"]*\b(?:sphinx-design\.min\.css|'
     r'design-tabs\.js)[^"]*"[^>]*>(?:</script>)?'
 )
+#: Buttons of the menu of names, which have an icon alone.
+BUTTON = re.compile(r'<summary>(?=<span class="toctree-toggle")')
+#: What the theme writes to the console of the browser.
+MESSAGE = re.compile(r"console\.(?:log|info)\(")
 #: Names of modules and functions, which are too long for one row of a telephone.
 TITLE = re.compile(r"(?<=<h1>)[\w.]+(?=<)")
 
 
 def lighten(text):
-    """Return a page without unused scripts, whose title may be broken after a dot."""
+    """Return a page without unused scripts, with names for buttons and titles that may break."""
     text = UNUSED.sub("", text)
     if 'class="sd-' not in text:
         text = DESIGN.sub("", text)
+    text = BUTTON.sub('<summary aria-label="Show or hide what is below">', text)
     return TITLE.sub(lambda name: re.sub(r"([._])", r"\1<wbr>", name[0]), text)
 
 
@@ -32,6 +37,8 @@ def lighten_all(app, error):
         for page in app.outdir.rglob("*.html"):
             if page.name != "search.html" and "_static" not in page.parts:
                 page.write_text(lighten(page.read_text("utf-8")), "utf-8")
+        script = app.outdir / "_static" / "scripts" / "pydata-sphinx-theme.js"
+        script.write_text(MESSAGE.sub("void(", script.read_text("utf-8")), "utf-8")
 
 
 def setup(app):

@@ -38,6 +38,7 @@ def write(app):
                 reason = _plain(f"Not measured here: {error}.")
                 page = [name, "=" * len(name), "", reason]
                 (folder / f"{name}.rst").write_text("\n".join(page) + "\n", encoding="utf-8")
+                (folder / f"_{name}.txt").write_text(f"{reason}\n", encoding="utf-8")
                 overview.append([f":doc:`{name} <studies/{name}>`", "", reason])
                 continue
             command = f"python gallery/studies {name} --quick"
@@ -47,6 +48,12 @@ def write(app):
         cells = [[_plain(studies.number(cell)) for cell in row] for row in rows]
         approximates, reference = _plain(study.approximates), _plain(study.reference)
         overview.append([f":doc:`{name} <studies/{name}>`", approximates, reference])
+        # The page of all charts includes this one.
+        chart = [
+            f".. figure:: studies/{name}.png", f"   :alt: {study.error} over {study.cost}", "",
+            f"   :doc:`studies/{name}`: {approximates}.",
+        ]  # fmt: skip
+        (folder / f"_{name}.txt").write_text("\n".join(chart) + "\n", encoding="utf-8")
         page = [
             name, "=" * len(name), "",
             f"Approximated: {approximates}.", "",

@@ -34,6 +34,7 @@ extensions = [
     "_mathml",
     "_peers",
     "_scenes",
+    "_social",
     "_studies",
 ]
 templates_path = ["_templates"]
@@ -41,6 +42,8 @@ templates_path = ["_templates"]
 exclude_patterns = ["_build", "**sg_execution_times.rst"]
 html_theme = "pydata_sphinx_theme"
 html_title = "vizlight"
+# Without it the theme complains on the console of the browser.
+html_context = {"default_mode": "auto"}
 html_static_path = ["_static"]
 html_css_files = ["pages.css"]
 html_js_files = [("scenes.js", {"defer": "defer"})]
@@ -52,6 +55,7 @@ html_theme_options = {
         "index": [],
         "examples/index": [],
         "peers": [],
+        "timed": [],
         # Code needs the width; a second pattern that matches a page would be a warning.
         **{f"guide/{page.stem}": [] for page in (HERE / "guide").glob("*.rst")},
     },
@@ -69,8 +73,11 @@ html_sidebars = {
     "architecture": [],
     "studies": [],
     "studies/**": [],
+    "readers": [],
+    "bounds": [],
     "sources": [],
     "peers": [],
+    "timed": [],
     "scaling": [],
     "robustness": [],
     "examples/**": [],

@@ -217,5 +217,5 @@ STUDY = Study(
     error="error of the mean share of light",
     cost="ns per point",
     steps=steps,
-    axes=("parameter", "error"),
+    axes=("cost", "error"),
 )

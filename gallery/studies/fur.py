@@ -123,5 +123,5 @@ STUDY = Study(
         partial(measure, 48 if quick else 128, segments, 3 if quick else 5)
         for segments in ((1, 3, 7) if quick else (1, 2, 3, 5, 7, 12))
     ],
-    axes=("parameter", "error"),
+    axes=("cost", "error"),
 )

@@ -175,5 +175,5 @@ STUDY = Study(
     error="mean error of t",
     cost="ns per point",
     steps=steps,
-    axes=("parameter", "error"),
+    axes=("cost", "error"),
 )

@@ -50,7 +50,7 @@ def test_the_picture_is_that_of_the_whole(parts, capfd, view, tmp_path):
     more = (*CONTOUR, "--size", "150x100", *view)
     lit = ("light", *parts, *more, "-o", "lit.pvtp", "-o", "lit.png")
     assert run(capfd, *lit)[::2] == (0, "")
-    assert run(capfd, "light", "whole.vtu", *more, "--facing", "eye", "-o", "lit.vtp")[0] == 0
+    assert run(capfd, "light", "whole.vtu", *more, "-o", "lit.vtp")[0] == 0
     whole = vizlight.read("lit.vtp")
     seen = vizlight.provenance(whole)["scene"]["view"]
     one = vizlight.provenance(pv.read(sorted(tmp_path.glob("lit/*.vtp"))[0]))["scene"]["view"]
@@ -100,8 +100,7 @@ def test_the_script_does_the_same(parts, capfd):
     assert vizlight.read("a.pvtp")["r"] == pytest.approx((level.min() + level.max()) / 2)
 
 
-def test_creases_are_told_and_split_if_asked(tmp_path, monkeypatch, capfd):
-    """One file is split at its creases by itself; pieces have the same light with an angle."""
+def test_pieces_are_split_at_creases_as_one_file(tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(tmp_path)
     box = pv.Box(level=40).triangulate().clean()
     box.clear_data()
@@ -113,12 +112,8 @@ def test_creases_are_told_and_split_if_asked(tmp_path, monkeypatch, capfd):
         part.save(f"part{i}.vtp")
     parts = ("light", "part0.vtp", "part1.vtp", "--view", "3,2,1", "-o", "a.pvtp")
     code, _, err = run(capfd, *parts)
-    assert (code, len(err.splitlines())) == (0, 1)
-    assert "of the edges are creases" in err
-    assert "--feature-angle 30" in err
-    code, _, err = run(capfd, *parts, "--feature-angle", "30")
     assert (code, err) == (0, "")
-    assert run(capfd, "light", "whole.vtp", *parts[3:5], "--facing", "eye", "-o", "b.vtp")[0] == 0
+    assert run(capfd, "light", "whole.vtp", *parts[3:5], "-o", "b.vtp")[0] == 0
     lit, whole = vizlight.read("a.pvtp"), vizlight.read("b.vtp")
     assert len(np.unique(whole["luminance"])) < len(box.points)
     own, other = (
@@ -138,7 +133,6 @@ def test_creases_are_told_and_split_if_asked(tmp_path, monkeypatch, capfd):
         (("-o", "a.pvtp", "--workers", "0"), "--workers: expected an integer of at least 1"),
         (("-o", "a.pvtp", "--workers", "2", "--scheduler", "x"), "--workers or --scheduler"),
         (("-o", "a.pvtp", "--clip", "x:2"), "--clip: expected no such option for pieces"),
-        (("-o", "a.pvtp", "--feature-angle", "auto"), "such as 30"),
         (("-o", "a.pvtp", "--contour", "s"), "contour: expected a point array of one component"),
         (("-o", "a.pvtp", "--contour", "r", "--level", "99"), "level: expected a value between"),
         (("-o", "a.pvtp", "--up", "1,1,1"), "up: expected a direction across the view"),

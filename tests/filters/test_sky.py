@@ -144,30 +144,59 @@ def step(length=4):
 
 def test_points_of_creases_see_the_sky_of_each_side():
     part = step()
-    found = vizlight.sky(part)
-    assert found.n_points == vizlight.mesh.normals.split_edges(part, "auto").n_points == 36
+    split = vizlight.mesh.normals.split_edges(part, "auto")
+    assert split.n_points == 36
+    found = vizlight.sky(split, feature_angle=None)
     assert "sky_valid" not in found.point_data
     # Beside the end of the inner edge something between a half and three quarters is free.
     inner = (found.points[:, :2] == [2, 1]).all(axis=1)
     assert np.sort(found["sky"][inner]).tolist() == pytest.approx([0.63] * 4 + [1] * 2, abs=0.05)
     assert found["sky"][~inner].min() > 0.9
-    with pytest.warns(UserWarning, match="sky changes inside of triangles"):
-        whole = vizlight.sky(part, feature_angle=None)
-    assert whole.n_points == part.n_points == 12
-    vizlight.sky(part, inplace=True)
-    assert part.n_points == 36
-    lit = vizlight.illuminate(part, SCENE, occlusion="sky", components=True)
-    np.testing.assert_allclose(lit["ambient"], 0.5 * part["sky"], atol=1e-6)
 
 
-def test_a_sky_that_changes_inside_of_triangles_is_told():
+def test_triangles_inside_of_which_the_sky_changes_are_split():
     part = step(20)
-    with pytest.warns(UserWarning, match=r"sky changes inside .*subdivide_adaptive\(") as told:
-        found = vizlight.sky(part)
-    between = vizlight.provenance(found, "sky")["between"]
+    part["place"] = part.points
+    part["label"] = np.arange(part.n_points)
+    with pytest.warns(UserWarning, match="sky changes inside .*; feature_angle=30 splits") as told:
+        coarse = vizlight.sky(part, feature_angle=None)
+    assert coarse.n_points == part.n_points == 12
+    between = vizlight.provenance(coarse, "sky")["between"]
     assert f"off by {between:.2f} or more" in str(told[0].message)
-    fine = vizlight.sky(part.subdivide_adaptive(max_edge_len=0.4), error=0.05)
+    fine = vizlight.sky(part)
     assert vizlight.provenance(fine, "sky")["between"] < 0.1
+    assert fine.volume == pytest.approx(part.volume)
+    assert fine.area == pytest.approx(part.area)
+    np.testing.assert_allclose(fine["place"], fine.points, atol=1e-5)
+    assert set(fine["label"]) == set(range(12))
+    sides = fine.extract_all_edges().compute_cell_sizes()["Length"]
+    assert sides.max() <= part.length / 32 + 1e-6
+    # It is lit as it was: its creases stay, and new points have the normals of their faces.
+    lit = vizlight.illuminate(fine, SCENE, occlusion="sky", components=True)
+    np.testing.assert_allclose(lit["ambient"], 0.5 * fine["sky"], atol=1e-6)
+    plain = vizlight.illuminate(part, SCENE, feature_angle="auto", components=True)
+    assert len(np.unique(lit["diffuse"].round(4))) == len(np.unique(plain["diffuse"].round(4)))
+    for made in (
+        vizlight.illuminate(part, SCENE, occlusion="sky", feature_angle="auto"),
+        vizlight.sky(part, inplace=True),
+    ):
+        assert made.n_points == fine.n_points
+    assert part.n_points == fine.n_points
+
+
+def test_a_coarse_ball_stays_round_where_its_triangles_are_split():
+    """New points have normals between those of the corners, not of the flat faces."""
+    ball = pv.Sphere(theta_resolution=12, phi_resolution=12).triangulate()
+    mesh = ball + pv.Plane(i_size=4, j_size=4, i_resolution=1, j_resolution=1).translate(
+        (0, 0, -0.5)
+    )
+    mesh.clear_data()
+    lit = vizlight.illuminate(mesh, SCENE, occlusion="sky", feature_angle=80, components=True)
+    round_ = lit.points[:, 2] > -0.4
+    assert np.count_nonzero(round_) > 2 * ball.n_points
+    away = lit.points[round_] / np.linalg.norm(lit.points[round_], axis=1)[:, None]
+    cosine = (lit["vizlight_normals"][round_, :3] * away).sum(axis=1)
+    assert cosine.min() > np.cos(np.radians(5))
 
 
 def test_points_that_see_nothing_are_counted():

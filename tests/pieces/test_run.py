@@ -33,6 +33,7 @@ def image():
 
 def cut(grid, folder, labels, suffix):
     """Write the parts of a mesh by a label per cell."""
+    folder.mkdir(exist_ok=True)
     for i in np.unique(labels):
         which = np.flatnonzero(labels == i)
         part = grid.extract_cells(which, pass_point_ids=False, pass_cell_ids=False)
@@ -95,16 +96,68 @@ def test_an_isosurface_in_12_pieces_is_lit_as_the_whole(image, tmp_path, kind, o
         grid = grid.compute_derivative(scalars="s", gradient="gradient")
     whole = grid.contour([LEVEL], scalars="s")
     # The ends of the depth cue are found for pieces as for the whole.
-    assert_as_whole(lit, vizlight.illuminate(whole, SCENE, facing="eye", **options))
+    assert_as_whole(lit, vizlight.illuminate(whole, SCENE, **options))
 
 
-@pytest.mark.parametrize("kind", ["slabs", "random cells"])
-def test_a_surface_in_pieces_is_lit_as_the_whole(tmp_path, kind):
-    ball = pv.Sphere(theta_resolution=40, phi_resolution=40)
-    ball.clear_data()
-    files = cut(ball, tmp_path, cuts(ball, 5)[kind], "vtp")
-    lit = pieces.light(files, SCENE, out=tmp_path / "lit.pvtp")
-    assert_as_whole(lit, vizlight.illuminate(ball, SCENE, facing="eye"))
+def sheet(z):
+    """Return a wavy height field about a height, small beside a ball."""
+    x, y = np.meshgrid(np.linspace(-1, 1, 24), np.linspace(-1, 1, 20))
+    return pv.StructuredGrid(x, y, z + 0.3 * np.sin(3 * x) * np.cos(2 * y))
+
+
+def surface(kind):
+    """Return a surface of one part or several, open and closed, wound outward or not."""
+    ball = pv.Sphere(theta_resolution=24, phi_resolution=24)
+    height = sheet(3).extract_surface(algorithm="geometry").triangulate()
+    made = {
+        "ball": lambda: ball,
+        "sheet": lambda: height,
+        "bowl": lambda: ball.clip("z", origin=(0, 0, 0.1), invert=False),
+        "nearly closed": lambda: ball.clip("z", origin=(0, 0, 0.4)),
+        "several": lambda: pv.merge(
+            [ball, ball.translate((3, 0, 0)).flip_faces(), height, height.translate((3, 0, 0))]
+        ),
+        "solid": lambda: pv.ImageData(dimensions=(7, 6, 5)).cast_to_unstructured_grid(),
+    }[kind]()
+    made = made if isinstance(made, pv.UnstructuredGrid) else made.extract_surface(
+        algorithm="geometry"
+    )  # fmt: skip
+    made.clear_data()
+    return made
+
+
+@pytest.mark.filterwarnings("ignore:.* of the edges are sharper")  # of the box, as a whole too
+@pytest.mark.parametrize("kind", ["ball", "sheet", "bowl", "nearly closed", "several", "solid"])
+@pytest.mark.parametrize("view", [SCENE.view, View(direction=(0.2, 0.1, -1)), None], ids=str)
+def test_a_surface_in_pieces_has_the_sides_of_the_whole(tmp_path, kind, view):
+    whole = surface(kind)
+    scene = Scene(lights=SCENE.lights, view=view)
+    suffix = "vtp" if isinstance(whole, pv.PolyData) else "vtu"
+    label = "sectors" if kind in ("sheet", "several") else "random cells"
+    files = cut(whole, tmp_path, cuts(whole, 5)[label], suffix)
+    lit = pieces.light(files, scene, out=tmp_path / f"lit.p{suffix}")
+    assert_as_whole(lit, vizlight.illuminate(whole, scene))
+
+
+@pytest.mark.parametrize("below", [False, True])
+def test_given_normals_in_pieces_have_the_sides_of_the_whole(tmp_path, below):
+    scene = Scene(view=View(direction=(0.2, 0.1, -1 if below else 1)))
+    for i, whole in enumerate((surface("ball"), surface("sheet"))):
+        inward = whole.compute_normals(flip_normals=True, split_vertices=False, cell_normals=False)
+        whole["N"] = inward.point_data["Normals"]
+        files = cut(whole, tmp_path / str(i), cuts(whole, 5)["sectors"], "vtp")
+        lit = pieces.light(files, scene, normals="N", out=tmp_path / f"lit{i}.pvtp")
+        assert_as_whole(lit, vizlight.illuminate(whole, scene, normals="N"))
+
+
+@pytest.mark.parametrize("below", [False, True])
+def test_a_sheet_in_slabs_is_lit_as_the_whole(tmp_path, below):
+    scene = Scene(view=View(direction=(0.2, 0.1, -1 if below else 1)))
+    whole = sheet(0)
+    whole.save(tmp_path / "sheet.vts")
+    lit = pieces.light(tmp_path / "sheet.vts", scene, slab=0.004, out=tmp_path / "lit.pvts")
+    assert len(lit.files) > 2
+    assert_as_whole(lit, vizlight.illuminate(whole, scene))
 
 
 def corners(mesh):
@@ -115,12 +168,13 @@ def corners(mesh):
     return dict(zip(map(tuple, np.round(keys, 5).tolist()), light.ravel(), strict=True))
 
 
-def test_creases_in_pieces_are_lit_as_the_whole(tmp_path):
+@pytest.mark.parametrize("angle", [30, "auto"])
+def test_creases_in_pieces_are_lit_as_the_whole(tmp_path, angle):
     box = pv.Cube(center=(0.01, 0, 0)).triangulate().subdivide(3).clean()
     box.clear_data()
     files = cut(box, tmp_path, np.random.default_rng(0).integers(0, 4, box.n_cells), "vtp")
-    lit = pieces.light(files, SCENE, out=tmp_path / "lit.pvtp", feature_angle=30)
-    whole = corners(vizlight.illuminate(box, SCENE, facing="eye", feature_angle=30))
+    lit = pieces.light(files, SCENE, out=tmp_path / "lit.pvtp", feature_angle=angle)
+    whole = corners(vizlight.illuminate(box, SCENE, feature_angle=angle))
     found = {}
     for path in lit.files:
         found |= corners(pv.read(path))
@@ -199,7 +253,7 @@ def test_a_grid_is_lit_slab_by_slab(image, tmp_path, kind):
     )  # fmt: skip
     assert len(lit.files) > 2
     whole = image.compute_derivative(scalars="s", gradient="gradient").contour([LEVEL], scalars="s")
-    whole = vizlight.illuminate(whole, lit.scene, facing="eye", normals="gradient")
+    whole = vizlight.illuminate(whole, lit.scene, normals="gradient")
     assert lit.cells == whole.n_cells
     values = np.concatenate([pv.read(path)["luminance"] for path in lit.files])
     assert set(np.round(values, 5)) <= set(np.round(whole["luminance"], 5)) or kind != "vti"
@@ -404,9 +458,7 @@ def test_pieces_without_points_pass_as_parallel_writers_make_them(balls):
         ({"source": [3]}, r"sources: expected a path"),
         ({"source": {"a": 3}}, r"sources: expected paths, patterns"),
         ({"scene": 3}, r"scene: expected"),
-        ({"facing": "auto"}, r"facing: expected 'eye' or 'as given'"),
-        ({"facing": "outward"}, r"facing: expected 'eye' or 'as given'"),
-        ({"feature_angle": "auto"}, r"feature_angle: expected a number or None"),
+        ({"facing": "outward"}, r"facing: expected 'auto', 'eye' or 'as given'"),
         ({"bundle": True}, r"bundle: expected no such option"),
         ({"tangets": "V"}, r"tangets: expected an option of illuminate.*tangents"),
         ({"tangents": np.zeros((3, 3))}, r"tangents: expected the name of a point array"),

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 
 #: What ``--workers`` stands for.
 PROCESSES = "vizlight.pieces.Processes"
-#: Share of edges from which creases are seen in a picture.
-NOTED = 0.001
 
 
 def are_asked(out: Output, pieces: Pieces) -> bool:
@@ -70,6 +68,8 @@ def light(
     if len(indices) > 1:
         expected = "one index of pieces"
         raise ValueError(message("output", expected, ", ".join(map(str, indices))))
+    if indices[0].suffix == ".pvtp":
+        given = {"feature_angle": "auto"} | given
     runs: dict[str, Any] = _runs(pieces)
     shown = {"progress_bar": True} if out.progress else {}
     asked: dict[str, Any] = {"contour": target.contour, "level": target.level, "slab": pieces.slab}
@@ -105,13 +105,6 @@ def light(
     low, high = made.ranges[name]
     if high > 1:
         complain(f"{name} is from {low:.3g} to {high:.3g}; above 1 it is white in a picture")
-    from vizlight.reading.orientation import MANY_SHARP, SHARP
-
-    if NOTED <= made.sharp <= MANY_SHARP:  # more is said by the library
-        complain(
-            f"{made.sharp:.1%} of the edges are creases, across which light is averaged; one file "
-            f"is split there by itself, pieces are by --feature-angle {SHARP:g}"
-        )
     say(f"mesh     {made.path}")
     return max((draw(step.run) for step in drawn), default=OK)
 

@@ -62,8 +62,7 @@ def light(
     ----------
     files
         Mesh to light; several are lit one by one, or all as pieces of one where the output ends in
-        .pvtp, .pvtu, .pvti, .pvtr or .pvts: a grid slab by slab. Only one file is split at its
-        creases by itself, pieces by --feature-angle.
+        .pvtp, .pvtu, .pvti, .pvtr or .pvts: a grid slab by slab.
     explain
         Print what is computed and what is skipped.
     legibility

@@ -11,6 +11,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.draw.live import headlight_scene, lifted
 from vizlight.filters import relight
+from vizlight.filters.sky import SKY, with_sky
 from vizlight.filters.tint import RGB, unlit_colors
 from vizlight.mesh import blocks, hull, records
 from vizlight.mesh.normals import split_where_computed
@@ -40,6 +41,8 @@ def sources_of(
         return relight.from_record(mesh, scene)
     asked = LightOptions(**({"feature_angle": angle} | options))
     mesh = blocks.like(mesh, (_split(block, asked) for block in blocks.all_blocks(mesh)))
+    if asked.feature_angle is not None and asked.occlusion == SKY:
+        mesh = blocks.like(mesh, iter(with_sky([*blocks.all_blocks(mesh)], SKY, finer=True)))
     asked = dataclasses.replace(asked, feature_angle=None)
     spaces = {
         np.shape(block.point_data[asked.positions])[-1]

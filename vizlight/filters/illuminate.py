@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from vizlight.mesh.blocks import MeshT
     from vizlight.reading.normals import Sided
+    from vizlight.reading.sides import Told
     from vizlight.scene import Scene
     from vizlight.shading.options import Exponent, Facing, FeatureAngle, Model, Precision
 
@@ -185,8 +186,12 @@ def light_mesh(
     progress_bar: bool = False,
     error: float | None = None,
     max_points: int | None = None,
+    told: Told | None = None,
 ) -> MeshT:
-    """Light a mesh by options that are checked; see :func:`illuminate` and :func:`refine`."""
+    """Light a mesh by options that are checked; see :func:`illuminate` and :func:`refine`.
+
+    ``told`` is what the whole decides of its sides, where the mesh is a part of one.
+    """
     scene = as_scene(scene)
     named = blocks.check(mesh)
     inplace = _check.boolean("inplace", inplace)
@@ -201,11 +206,17 @@ def light_mesh(
         known.append(sided)
     # New points see the sky of the refined mesh.
     early = dataclasses.replace(options, occlusion=None) if error else options
-    taken = with_sky(taken, early.occlusion)
+    finer = options.feature_angle is not None
+    skied = with_sky(taken, early.occlusion, finer=finer)
+    known = [
+        sided if one.n_points == other.n_points else None
+        for sided, one, other in zip(known, skied, taken, strict=True)
+    ]
+    taken = skied
     # Each mesh is refined alone, and has shares of light inside its own bundle.
     groups, parts = batches.parts_of(
         taken, [path for _, path in named], scene, early,
-        join=not (error or options.bundle), known=known,
+        join=not (error or options.bundle), known=known, told=told,
     )  # fmt: skip
     _tell_of_averages(named, options)
     rest: list[refining.Left] = []

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkPointSet, vtkPolyData
 
 from vizlight import _check, _progress
 from vizlight._version import __version__
 from vizlight.geometry.relief.sky import LARGEST, LEAST
-from vizlight.mesh import blocks, normals, point_arrays, records
+from vizlight.mesh import blocks, normals, point_arrays, records, splitting
 from vizlight.mesh.sky import VOXELS, skies
+from vizlight.model import kernels
 from vizlight.reading.cells import places, point_data
+from vizlight.reading.normals import computed_normals
+from vizlight.reading.orientation import SHARP
 from vizlight.reading.polylines import has_lines_only
 from vizlight.shading.options import Options, check_sides, named
 from vizlight.shading.results import VALID, digest, plain
@@ -22,7 +27,6 @@ from vizlight.verify.report import noted_sky
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    import pyvista as pv
     from numpy.typing import NDArray
 
     from vizlight.mesh.blocks import MeshT
@@ -39,6 +43,8 @@ FOR_LIGHT = (0.02, 2 * VOXELS)
 FOR_POINTS = (0.01, VOXELS)
 #: Error between the points from which a picture shows the triangles.
 BENT = 0.1
+#: Number of sides of triangles across a surface that is made finer, and of points it may have.
+ACROSS, MOST = 32, 1 << 17
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,8 +110,9 @@ def sky(
     feature_angle : float, "auto" or None, default: "auto"
         Angle in degrees between two faces of a PolyData surface above which points on their common
         edge are split, as by :func:`vizlight.illuminate`: each of them sees the sky of its own
-        side. The result then has more points than the mesh. None: a point of an edge has one sky,
-        that of its mean normal.
+        side. Large triangles inside of which the sky changes are split too. The result then has
+        more points than the mesh. None: the points stay, and one of an edge has one sky, that of
+        its mean normal.
     name : str, default: "sky"
         Name of the result.
     inplace, progress_bar
@@ -163,13 +170,14 @@ def sky(
     records.refuse_overwriting(chosen, asked.name, [asked.name, asked.name + VALID, *own])
     meshes = [block for block, _ in chosen]
     taken = [_split(block, asked) for block in meshes]
-    found = _found(taken, asked, show=progress_bar)
+    finer = asked.feature_angle is not None
+    taken, found = _found_finer(taken, asked, finer=finer, show=progress_bar)
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
     lit = [
         own if own is not block or inplace else own.copy()
         for own, block in zip(taken, meshes, strict=True)
     ]
-    _attach(lit, found, asked)
+    _attach(lit, found, asked, finer=finer)
     if not inplace:
         return blocks.like(mesh, iter(lit))
     for split, block in zip(lit, meshes, strict=True):
@@ -185,21 +193,25 @@ def with_sky(
     elevation: str | None = None,
     factor: float = 1.0,
     up: Sequence[float] | None = None,
+    finer: bool = False,
 ) -> list[pv.DataSet]:
     """Return meshes with the array of their share of the ambient light.
 
     Where its name is "sky" and some mesh has none, it is computed for all, as :func:`sky` does with
-    an error of 0.02, lines as voxels; those meshes are shallow copies. ``elevation`` and ``factor``
-    are the same as in :func:`vizlight.relief_shadow`.
+    an error of 0.02, lines as voxels; those meshes are shallow copies, or with ``finer`` meshes of
+    smaller triangles where the sky changes inside of triangles. ``elevation`` and ``factor`` are
+    the same as in :func:`vizlight.relief_shadow`.
     """
     if occlusion is not None:
         _warn_if_stale(meshes, occlusion)
     if occlusion != SKY or all(SKY in mesh.point_data for mesh in meshes):
         return list(meshes)
     asked = SkyOptions(error=_error(meshes, FOR_LIGHT), up=up, feature_angle=None)
-    found = _found(meshes, asked, show=False, elevation=elevation, factor=factor)
-    lit = [mesh.copy(deep=False) for mesh in meshes]
-    _attach(lit, found, asked)
+    taken, found = _found_finer(
+        meshes, asked, finer=finer, show=False, elevation=elevation, factor=factor
+    )
+    lit = [mesh.copy(deep=False) for mesh in taken]
+    _attach(lit, found, asked, finer=finer)
     return lit
 
 
@@ -248,6 +260,44 @@ def _warn_if_stale(meshes: Sequence[pv.DataSet], name: str) -> None:
         return
 
 
+def _found_finer(
+    meshes: Sequence[pv.DataSet], asked: SkyOptions, *, finer: bool, **how: Any
+) -> tuple[list[pv.DataSet], list[Sky]]:
+    """Return meshes and their skies, with ``finer`` by smaller triangles where these are needed."""
+    found = _found(meshes, asked, **how)
+    if not finer:
+        return list(meshes), found
+    fine = [
+        _finer(mesh) if made.between > BENT else mesh
+        for mesh, made in zip(meshes, found, strict=True)
+    ]
+    if all(one is other for one, other in zip(fine, meshes, strict=True)):
+        return fine, found
+    return fine, _found(fine, asked, **how)
+
+
+def _finer(mesh: pv.DataSet) -> pv.DataSet:
+    """Return a surface of faces with sides of a part of its size, anything else as it is.
+
+    It looks as smooth as it was: its normals are those of the surface, interpolated.
+    """
+    if not isinstance(mesh, pv.PolyData):
+        return mesh
+    side = max(mesh.length / ACROSS, 2 * (mesh.area / MOST) ** 0.5)
+    sided = normals.kept(mesh) or computed_normals(mesh)
+    bare = mesh.copy(deep=False)
+    bare.point_data[normals.KEPT] = np.concatenate([sided.vectors, sided.facts()], axis=1)
+    fine = splitting.with_sides(bare, side)
+    if fine.n_points == mesh.n_points:
+        return mesh
+    rows = np.asarray(fine.point_data.pop(normals.KEPT), dtype=np.float64)
+    vectors, lean = kernels.unit_rows(rows[:, :3]).astype(np.float32), rows[:, 3]
+    number = np.rint(rows[:, 4]).astype(np.intp)
+    made = dataclasses.replace(sided, vectors=vectors, lean=lean, open=number, kept=False)
+    normals.keep(fine, made)
+    return fine
+
+
 def _found(
     meshes: Sequence[pv.DataSet],
     asked: SkyOptions,
@@ -268,7 +318,9 @@ def _found(
         return found
 
 
-def _attach(meshes: Sequence[pv.DataSet], found: Sequence[Sky], asked: SkyOptions) -> None:
+def _attach(
+    meshes: Sequence[pv.DataSet], found: Sequence[Sky], asked: SkyOptions, *, finer: bool
+) -> None:
     """Attach skies to meshes, with their records."""
     lost = total = dark = 0
     bent, length = 0.0, 0.0
@@ -305,9 +357,11 @@ def _attach(meshes: Sequence[pv.DataSet], found: Sequence[Sky], asked: SkyOption
             "other faces touch them"
         )
     if bent > BENT:
-        side = float(f"{length / 50:.1g}")
+        remedy = f"feature_angle={SHARP:g} splits them"
+        if finer:
+            side = float(f"{length / (2 * ACROSS):.1g}")
+            remedy = f"mesh.triangulate().subdivide_adaptive(max_edge_len={side:g}) splits them"
         _check.warn(
             f"the sky changes inside of triangles: 1 of 20 places between the points is off by "
-            f"{bent:.2f} or more; smaller triangles show it: "
-            f"mesh.triangulate().subdivide_adaptive(max_edge_len={side:g}) before"
+            f"{bent:.2f} or more; {remedy}"
         )

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from vizlight._types import Indices
     from vizlight.reading.normals import Sided
     from vizlight.reading.parts import Part
+    from vizlight.reading.sides import Told
     from vizlight.scene import Scene
     from vizlight.shading.options import LightOptions
 
@@ -76,10 +77,12 @@ def parts_of(
     *,
     join: bool,
     known: Sequence[Sided | None] = (),
+    told: Told | None = None,
 ) -> tuple[list[Batch], list[Part]]:
     """Return what meshes are lit by, small ones joined; an error names the path of a mesh.
 
-    ``known`` are the normals of their surfaces, of those where they were computed already.
+    ``known`` are the normals of their surfaces, of those where they were computed already, and
+    ``told`` is what the whole decides of the sides of a single mesh that is a part of it.
     """
     groups = _batches(meshes, options) if join else _alone(meshes, range(len(meshes)))
     made, parts = [], []
@@ -88,7 +91,7 @@ def parts_of(
         first = group.members[0]
         own = known[first] if known and group.starts is None else None
         try:
-            part = part_of(group.mesh, paths[first], scene, options, group.starts, own)
+            part = part_of(group.mesh, paths[first], scene, options, group.starts, own, told)
         except (TypeError, ValueError):
             if group.starts is None:
                 raise

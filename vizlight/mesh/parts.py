@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from vizlight._types import Indices
     from vizlight.reading.normals import Sided
     from vizlight.reading.parts import Part
+    from vizlight.reading.sides import Told
     from vizlight.scene import Scene
     from vizlight.shading.inputs import ShadingInputs
     from vizlight.shading.options import LightOptions
@@ -33,12 +34,14 @@ def part_of(
     options: LightOptions,
     starts: Indices | None = None,
     known: Sided | None = None,
+    told: Told | None = None,
 ) -> Part:
     """Return what one mesh is lit by; see :func:`vizlight.reading.parts.part_of`.
 
-    ``known`` are normals of its surface that were computed already.
+    ``known`` are normals of its surface that were computed already, and ``told`` is what a whole
+    decides of its sides.
     """
     kept = _KEPT if known is None else _KEPT._replace(normals=lambda _: known)
-    part = reading.part_of(mesh, path, scene, options, kept=kept, starts=starts)
+    part = reading.part_of(mesh, path, scene, options, kept=kept, starts=starts, told=told)
     cells = lambda: splitting.simplices(mesh)  # noqa: E731
     return part._replace(inputs=dataclasses.replace(part.inputs, cells=cells))

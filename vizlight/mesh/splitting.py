@@ -291,6 +291,28 @@ def rebuilt(
     return out
 
 
+def with_sides(mesh: pv.PolyData, most: float) -> pv.PolyData:
+    """Return a surface whose triangles have sides of at most a length, and all its arrays.
+
+    Points at equal places stay apart; what is between them is interpolated as by :func:`rebuilt`.
+    """
+    parents, origin = triangles(mesh)
+    points = np.asarray(mesh.points, dtype=np.float64)
+    cells, places = Cells(points, parents), points
+    fresh = np.arange(len(parents))
+    while len(fresh):
+        numbers, _ = cells.edges(fresh)
+        corners = places[cells.corners[fresh]]
+        away = corners - np.roll(corners, -1, axis=1)
+        chosen = np.unique(numbers[np.einsum("ijk,ijk->ij", away, away) > most * most])
+        if not len(chosen):
+            break
+        fresh = cells.split(chosen, np.full(len(chosen), 0.5))
+        step = cells.steps[-1]
+        places = np.concatenate([places, places[step.corners].mean(axis=1)])
+    return rebuilt(mesh, cells, origin, {})
+
+
 def _split_lines(lines: vtkCellArray, parts: Cells, shares: scipy.sparse.csr_array) -> pv.CellArray:
     """Return polylines with the new points of their segments."""
     if not len(parts.corners):  # lines of one point

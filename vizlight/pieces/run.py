@@ -20,6 +20,8 @@ from vizlight.pieces.kinds import INDEX, PieceError, index_files, union
 from vizlight.pieces.sources import pieces_of
 from vizlight.pieces.survey import check_alike, job_of, nothing_found, prepared
 from vizlight.pieces.workers import RETRIES, Work, checked
+from vizlight.reading import sides
+from vizlight.reading.orientation import SHARP
 from vizlight.scene import Scene
 from vizlight.shading.options import LightOptions, unknown_option
 from vizlight.shading.results import unlit
@@ -61,9 +63,6 @@ class Lit:
         Value of the contoured array on the isosurface.
     empty : int
         Number of pieces that have no point.
-    sharp : float
-        Share of edges that are creases, across which light was averaged, as the mean over the
-        pieces by their cells; ``feature_angle=30`` splits the points there.
     """
 
     path: Path
@@ -75,7 +74,6 @@ class Lit:
     scene: Scene = field(repr=False)
     level: float | None
     empty: int
-    sharp: float = 0.0
 
 
 def light(
@@ -134,9 +132,10 @@ def light(
         Whether progress is shown on standard error.
     **options
         Options of the filter. ``normals="gradient"`` with ``contour`` takes the gradient of the
-        contoured array. ``facing`` is "eye" by default, or "as given": a piece cannot tell on
-        which side of a surface the outside is. ``feature_angle`` is a number or None: whether
-        sharp edges are creases is a question of the whole.
+        contoured array. ``facing="auto"``, the default, and ``feature_angle="auto"`` are questions
+        of the whole, which cost a reading of their own; ``facing="eye"`` costs none. With
+        ``ghost=0``, as for the steps of a series, each piece is a whole. ``"outward"`` is not known
+        of open surfaces in pieces.
 
     Returns
     -------
@@ -160,8 +159,8 @@ def light(
 
     Notes
     -----
-    Light of a piece equals the light of the whole by the same options (``facing="eye"``, unless it
-    is given) within 1e-6, normals on borders and the ends of a depth cue included. The memory of a
+    Light of a piece equals the light of the whole by the same options within 1e-6, normals on
+    borders, sides and the ends of a depth cue included. The memory of a
     process is bounded by its piece with its ghost cells, one neighbour at a time (all of them with
     ``ghost`` above 1), and the result: 0.55 GB for slabs of 64 MB of a file of any size. The files
     move to their place when all are written, so that a worker that is killed leaves no part of one;
@@ -205,7 +204,8 @@ def light(
         targets = [drafts / f"{path.stem}_{i:04d}" for i in range(len(parts))]
         outputs = [folder / f"{target.name}{job.suffix}" for target in targets]
         _spare_sources(parts, path, outputs)
-        calls = [(piece, job, target) for piece, target in zip(parts, targets, strict=True)]
+        job, told = _told(parts, job, work)
+        calls = [*zip(parts, [job] * len(parts), targets, told, strict=True)]
         done: list[Done] = []
         with report.workers(lambda: sum(one.points for one in done)):
             done += work.each(task.light, calls, "light")
@@ -247,17 +247,34 @@ def _common_options(
             raise TypeError(_check.message(name, expected, _check.describe(options[name])))
     fields = {one.name for one in dataclasses.fields(LightOptions)}
     asked = LightOptions(**{name: value for name, value in options.items() if name in fields})
-    if asked.feature_angle == "auto":
-        remedy = "pass a number of degrees, such as 30: a piece does not know the whole's creases"
-        raise ValueError(_check.message("feature_angle", "a number or None", "'auto'", remedy))
-    if options.get("facing", "eye") not in ("eye", "as given"):
-        remedy = "a piece cannot tell which side of the whole is outside"
-        got = repr(options["facing"])
-        raise ValueError(_check.message("facing", "'eye' or 'as given'", got, remedy))
+    if asked.facing == "outward":
+        remedy = "what is closed faces outward by facing='auto'"
+        expected = "'auto', 'eye' or 'as given'"
+        raise ValueError(_check.message("facing", expected, "'outward'", remedy))
     if options.get("normals") == task.GRADIENT and contour is not None and not ghost:
         raise ValueError(_check.message("ghost", "1 at least beside normals='gradient'", ghost))
-    sided = asked.tangents is None or asked.conditioned is True
-    return ({"facing": "eye"} if sided else {}) | options
+    return dict(options)
+
+
+def _told(parts: list[Piece], job: Job, work: Work) -> tuple[Job, list[sides.Told | None]]:
+    """Return the job, and what the whole decides of the sides of each piece, where it does."""
+    asked = LightOptions.of(job.options)
+    told: list[sides.Told | None] = [None] * len(parts)
+    sharp = asked.feature_angle == "auto"
+    if not job.ghost or not (asked.facing == "auto" or sharp):
+        return job, told  # without neighbours each piece is a whole
+    if asked.tangents is not None and asked.conditioned is not True:
+        return job, told
+    found = work.each(task.look, [(piece, job) for piece in parts], "sides")
+    at = [i for i, one in enumerate(found) if one is not None]
+    looks = [one for one in found if one is not None]
+    if sharp:
+        angle = SHARP if looks and sides.creases(looks) else None
+        job = dataclasses.replace(job, options={**job.options, "feature_angle": angle})
+    if asked.facing == "auto" and looks:
+        for i, one in zip(at, sides.decided(looks), strict=True):
+            told[i] = one
+    return job, told
 
 
 def _spare_sources(parts: Sequence[Piece], path: Path, outputs: Sequence[Path]) -> None:
@@ -326,5 +343,4 @@ def _result(path: Path, folder: Path, done: Sequence[Done], job: Job) -> Lit:
         scene=job.scene,
         level=job.level,
         empty=len(done) - len(full),
-        sharp=sharp,
     )

@@ -12,13 +12,15 @@ import pyvista as pv
 
 from vizlight import _check, _compiled, _pool, files
 from vizlight.draw import cameras
-from vizlight.filters.illuminate import illuminate
+from vizlight.filters.illuminate import illuminate, light_mesh
 from vizlight.filters.streamlines import streamlines
 from vizlight.mesh import normals, records
 from vizlight.pieces.ghosts import GHOST
 from vizlight.pieces.kinds import INDEX, SUFFIX, Piece, PieceError
-from vizlight.reading.polylines import has_lines_only
+from vizlight.reading import hull, sides
+from vizlight.reading.parts import uses_normals
 from vizlight.shading import engine
+from vizlight.shading.options import LightOptions
 from vizlight.shading.results import record_key
 
 if TYPE_CHECKING:
@@ -34,6 +36,8 @@ T = TypeVar("T")
 FILTERS = {"illuminate": illuminate, "streamlines": streamlines}
 #: Name of the gradient of the contoured array, which gives normals that no cut changes.
 GRADIENT = "gradient"
+#: Name, for a while, of a mask of the points inside a volume, which have no normals.
+INSIDE = "vizlight_inside"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -156,8 +160,27 @@ def _tried(piece: Piece, found: Callable[[], T]) -> T | None:
         raise PieceError(f"piece {piece.name}: {error}") from error
 
 
-def light(piece: Piece, job: Job, target: Path) -> Done:
-    """Light a piece and write it to a path without its suffix.
+def look(piece: Piece, job: Job) -> sides.Look | None:
+    """Return what a piece tells of the sides of the whole, None where its light has none."""
+    mesh = read(piece, job.ghost)
+    if job.contour is not None:
+        mesh = _tried(piece, partial(isosurface, mesh, job)) or mesh
+    options = LightOptions.of(job.options)
+    if not mesh.n_points or not uses_normals(mesh, options):
+        return None
+    if hasattr(mesh, "GetExtent") and 1 not in mesh.dimensions:
+        return None  # a grid that fills space is closed, and so is each slab of it
+    around = pv.wrap(mesh.NewInstance())
+    around.CopyStructure(mesh)
+    around.cell_data[GHOST] = np.asarray(mesh.cell_data[GHOST], dtype=np.float32)
+    ghosts = np.asarray(around.cell_data_to_point_data().point_data[GHOST])
+    return _tried(piece, partial(sides.look, mesh, ghosts, options.normals, job.scene.view))
+
+
+def light(piece: Piece, job: Job, target: Path, told: sides.Told | None = None) -> Done:
+    """Light a piece, of whose sides the whole may have told, and write it to a path.
+
+    The path has no suffix.
 
     Raises
     ------
@@ -175,7 +198,7 @@ def light(piece: Piece, job: Job, target: Path) -> Done:
             if share is not None and mesh.n_points and share not in mesh.point_data:
                 expected, remedy = "a point array that every piece has", "take the whole's sky"
                 raise ValueError(_check.message("occlusion", expected, repr(share), remedy))
-            lit, sharp = _lit(mesh, piece, job)
+            lit, sharp = _lit(mesh, piece, job, told)
         del mesh
         done = _described(lit, job)
         done.sharp = sharp
@@ -195,14 +218,17 @@ def light(piece: Piece, job: Job, target: Path) -> Done:
     return done
 
 
-def _lit(mesh: pv.DataSet, piece: Piece, job: Job) -> tuple[Any, float | None]:
+def _lit(
+    mesh: pv.DataSet, piece: Piece, job: Job, told: sides.Told | None
+) -> tuple[Any, float | None]:
     """Return the own part of a piece, lit, and its share of sharp edges where that is known."""
     if not mesh.n_points:
         return mesh, None
-    options = dict(job.options)
-    if options.get("tangents") is None and has_lines_only(mesh):
-        options.pop("facing", None)  # lines have no sides
-    lit: Any = FILTERS[job.filter](mesh, job.scene, **options)  # type: ignore[operator]
+    lit: Any
+    if job.filter == "illuminate":
+        lit = light_mesh(mesh, job.scene, LightOptions.of(job.options), told=told)
+    else:
+        lit = streamlines(mesh, job.scene, **job.options)
     record, made = records.read(lit, job.name), records.made(lit, job.name)
     kept = records.read(lit, normals.KEPT)
     sharp = None if kept is None else records.share(kept, "sharp")
@@ -210,6 +236,11 @@ def _lit(mesh: pv.DataSet, piece: Piece, job: Job) -> tuple[Any, float | None]:
         # They belong to the piece with its ghost cells, and would be checked in vain.
         del lit.point_data[stale]
         del lit.field_data[record_key(stale)]
+    if not isinstance(lit, pv.PolyData) and hull.dimension(lit) == 3:
+        inside = np.ones(lit.n_points, dtype=np.bool_)
+        on_surface = hull.outer_surface(lit)[1]
+        inside[on_surface[on_surface >= 0]] = False
+        lit.point_data[INSIDE] = inside
     own = piece.own(lit) if job.filter == "illuminate" else lit
     valid = f"{job.name}_valid"
     if valid not in own.point_data:
@@ -242,6 +273,7 @@ def isosurface(mesh: pv.DataSet, job: Job) -> pv.PolyData:
 
 def _described(lit: Any, job: Job) -> Done:
     """Return what is in a lit piece."""
+    inside = np.asarray(lit.point_data.pop(INSIDE, np.zeros(lit.n_points, dtype=np.bool_)))
     done = Done(points=lit.n_points, cells=lit.n_cells)
     if not lit.n_points:
         return done
@@ -259,7 +291,8 @@ def _described(lit: Any, job: Job) -> Done:
                 finite = finite[np.isfinite(finite)]
                 if finite.size:
                     done.ranges[name] = [float(finite.min()), float(finite.max())]
-    done.invalid = int(np.count_nonzero(~np.asarray(lit.point_data[f"{job.name}_valid"], bool)))
+    valid = np.asarray(lit.point_data[f"{job.name}_valid"], dtype=np.bool_)
+    done.invalid = int(np.count_nonzero(~valid & ~inside))
     if hasattr(lit, "GetExtent"):
         done.extent = [int(x) for x in lit.GetExtent()]
     if isinstance(lit, pv.ImageData):

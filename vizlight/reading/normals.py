@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from vtkmodules.vtkCommonCore import vtkPoints
@@ -48,6 +48,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Bools, Dataset, Indices
     from vizlight.reading.grids import Grid
+    from vizlight.reading.sides import Told
     from vizlight.scene import View
     from vizlight.shading.inputs import ArraySource
     from vizlight.shading.options import Facing
@@ -83,6 +84,9 @@ class Sided:
         Whether they are computed from the surface, not an array of the user.
     inside : int or ndarray
         Number of points of a volume that are not on its surface; one for each mesh of a batch.
+    averted : ndarray of bool, or None
+        By the numbers of ``open``, the height fields that show the eye their back, where that is
+        known from a whole of which these points are a part; a single one says that none is open.
     """
 
     vectors: Array
@@ -92,11 +96,12 @@ class Sided:
     kept: bool = False
     computed: bool = False
     inside: int | Indices = 0
+    averted: Bools | None = None
 
     @property
     def any_open(self) -> bool:
         """Whether a piece has a border."""
-        return bool(np.any(self.open))
+        return bool(np.any(self.open)) if self.averted is None else len(self.averted) > 1
 
     def part(self, i: int, rows: slice | Indices, /) -> Sided:
         """Return what belongs to a mesh of a batch, by its number and its points."""
@@ -108,6 +113,7 @@ class Sided:
             self.kept,
             self.computed,
             int(self.inside[i]) if isinstance(self.inside, np.ndarray) else self.inside,
+            self.averted,
         )
 
     def facts(self) -> Array:
@@ -131,22 +137,15 @@ class Sided:
         some of the points, with ``w`` the direction toward the eye and ``d`` the distance from it.
         Without a view they are seen from above.
         """
+        if self.averted is not None:
+            return self.averted
         most = int(np.max(self.open, initial=1))
         if most < 2 or self.lean is None:
             return np.zeros(most + 1, dtype=np.bool_)
         count = len(self.vectors)
         some = slice(0, count, max(count // SEEN, 1))
         number = np.broadcast_to(self.open, count)[some]
-        if view is None:
-            shown = self.vectors[some, 2]
-        elif view.parallel:
-            shown = self.vectors[some] @ np.asarray(view.direction, dtype=np.float64)
-        else:
-            away = np.asarray(view.position) - np.asarray(points[some], dtype=np.float64)
-            toward, far = kernels.unit(away.T)
-            with np.errstate(all="ignore"):
-                shown = kernels.dot(self.vectors[some].T, toward) / far / far
-        shown = np.where(np.isfinite(shown), shown, 0.0)
+        shown = facing_of(self.vectors[some], points[some], view)
         found: Bools = np.bincount(number, shown, most + 1) < 0
         found[:2] = False
         return found
@@ -171,6 +170,20 @@ class Sided:
             return limited
         own = np.abs(lean)
         return np.where(field, np.where(averted[number], -own, own), limited)
+
+
+def facing_of(normals: Array, points: NDArray[np.generic], view: View | None) -> Array:
+    """Return how much of what an eye sees shows it the side of each normal: ``N . w / d^2``."""
+    if view is None:
+        shown = normals[:, 2]
+    elif view.parallel:
+        shown = normals @ np.asarray(view.direction, dtype=np.float64)
+    else:
+        away = np.asarray(view.position) - np.asarray(points, dtype=np.float64)
+        toward, far = kernels.unit(away.T)
+        with np.errstate(all="ignore"):
+            shown = kernels.dot(normals.T, toward) / far / far
+    return np.where(np.isfinite(shown), shown, 0.0)
 
 
 class Turned:
@@ -215,11 +228,13 @@ def sided_normals(
     *,
     kept: Callable[[Any], Sided | None] | None = None,
     starts: Indices | None = None,
+    told: Told | None = None,
 ) -> Sided:
     """Return normals with their sides: those in ``value``, of the mesh, or of its surface.
 
     With ``starts`` the mesh is a batch of members that stay apart. ``kept`` is a function of
-    the mesh that returns normals of its surface which are known already, or None.
+    the mesh that returns normals of its surface which are known already, or None. ``told`` is what
+    the whole, of which the mesh is a part, decides of its sides.
 
     Raises
     ------
@@ -230,31 +245,36 @@ def sided_normals(
     if given is None:
         if facing == "as given":
             return computed_normals(mesh, as_wound=True, sides=False, starts=starts)
+        if told is not None:
+            return computed_normals(mesh, told=told)
         return (kept and kept(mesh)) or computed_normals(mesh, starts=starts)
     if given.dtype.kind != "f":
         given = given.astype(np.float64)
     if facing in ("eye", "as given") or n != 3:
         return Sided(given)
-    if grids.in_parts(mesh):
+    if told is None and grids.in_parts(mesh):
         return _sided_grid(mesh, given)
     surface, origin = _skin(mesh)
     if surface is None:
         return Sided(given)
     own = given if origin is None else np.where(origin[:, np.newaxis] < 0, 0, given[origin])
     owners = Owners(starts, origin)
-    closed = is_closed(surface, owners)
-    inward = closed & _inward(places(surface), np.flatnonzero(used(surface)), own, owners)
     size = [len(given)] if starts is None else np.diff(starts)
     mesh_of = np.repeat(np.arange(owners.count), size)
+    if told is None:
+        closed = is_closed(surface, owners)
+        inward = closed & _inward(places(surface), np.flatnonzero(used(surface)), own, owners)
+    else:
+        inward = told.sign < 0
     if inward.any():
         given = given * np.where(inward, -1, 1).astype(given.dtype)[mesh_of, np.newaxis]
-    side = sides_of(given, mesh_of, ~closed)
+    side = sides_of(given, mesh_of, ~closed) if told is None else told.number
     lean = None
     if np.any(side > 1):
         lean = _lean_of_given(Shape(surface, owners), own)
         lean = lean if origin is None else scattered(lean, origin, len(given))
         lean = np.where((side > 1)[mesh_of], lean, 0)
-    return Sided(given, lean, open=side[mesh_of])
+    return Sided(given, lean, open=side[mesh_of], averted=None if told is None else told.averted)
 
 
 def _lean_of_given(shape: Shape, normals: Array) -> Array:
@@ -332,6 +352,7 @@ def computed_normals(
     as_wound: bool = False,
     sides: bool = True,
     starts: Indices | None = None,
+    told: Told | None = None,
 ) -> Sided:
     """Return the normals of a mesh's outer surface, zero at points that are not on it.
 
@@ -355,6 +376,8 @@ def computed_normals(
         Whether lean and share of sharp edges are found.
     starts : ndarray of int, optional
         First point of each mesh of a batch, and the number of points.
+    told : Told, optional
+        What the whole, of which this is a part, decides of the pieces.
 
     Raises
     ------
@@ -364,35 +387,30 @@ def computed_normals(
     count = mesh.GetNumberOfPoints()
     if count == 0:
         return Sided(np.zeros((0, 3), dtype=np.float32), computed=True)
-    if grids.in_parts(mesh):
+    if told is None and grids.in_parts(mesh):
         return _of_grid(mesh, view, as_wound=as_wound, sides=sides)
-    surface, origin = _skin(mesh)
-    if surface is None and starts is None and is_scan(mesh):
+    found = wound_normals(mesh, as_wound=as_wound, starts=starts)
+    if found is None and starts is None and is_scan(mesh):
         return _of_cloud(mesh, view)
-    if surface is None:
+    if found is None:
         expected, got = "a surface, whose normals are lit", f"a {type(mesh).__name__} without faces"
         remedy = "name its tangent vectors by tangents= or its normals by normals="
         raise ValueError(_check.message("mesh", expected, got, remedy))
-    owners = Owners(starts, origin)
-    shape = Shape(surface, owners)
-    vectors = _by_vtk(surface, shape, as_wound=as_wound)
-    vectors[~used(surface)] = 0
-    first = joined(shape.points, surface)
-    if first is not None:
-        least = float(np.cos(np.radians(SHARP)))
-        vectors, first = common_normals(shape.points, shape.triangles, vectors, first, least)
-        shape.triangles = first[shape.triangles]
+    shape, vectors, first, origin = found
+    owners = shape.owners
     lean, border = None, shape.open | shape.inside_out
     side: Indices = border.astype(np.intp)
     sharp: Array = np.zeros(owners.count)
     inside = np.zeros(owners.count, dtype=np.intp)
     if sides or not as_wound:
         survey = shape.survey(vectors)
-        if not as_wound:
+        if told is not None:
+            shape.turn(told.sign < 0, vectors, survey)
+        elif not as_wound:
             shape.orient(vectors, survey, view)
         if sides:
             lean = survey.lean if first is None else survey.lean[first]
-            side = sides_of(vectors, shape.piece, border)
+            side = sides_of(vectors, shape.piece, border) if told is None else told.number
             sharp = crease_share(shape.edge_counts(survey.faces, survey.full))
     number = side[shape.piece]
     if origin is not None:
@@ -402,8 +420,56 @@ def computed_normals(
         vectors = scattered(vectors, origin, count)
         number = scattered(number.astype(np.float64), origin, count).astype(np.intp)
         lean = None if lean is None else scattered(lean, origin, count)
-    all_of = Sided(vectors, lean, number, sharp, computed=True, inside=inside)
+    averted = None if told is None else told.averted
+    all_of = Sided(vectors, lean, number, sharp, computed=True, inside=inside, averted=averted)
     return all_of.part(0, slice(None)) if starts is None else all_of
+
+
+class Wound(NamedTuple):
+    """The outer surface of a mesh, and normals that agree with each other on each of its pieces.
+
+    Attributes
+    ----------
+    shape : Shape
+    vectors : ndarray, shape (n_points, 3)
+        Normals of the points of the surface, zero where no face is.
+    first : ndarray of int, shape (n_points,), or None
+        First of the points that slivers join with each.
+    origin : ndarray of int, shape (n_points,), or None
+        Point of the mesh that each point of the surface is; None for a surface.
+    """
+
+    shape: Shape
+    vectors: Array
+    first: Indices | None
+    origin: Indices | None
+
+
+def wound_normals(
+    mesh: Dataset,
+    *,
+    as_wound: bool = False,
+    starts: Indices | None = None,
+    side: NDArray[np.int8] | None = None,
+) -> Wound | None:
+    """Return the outer surface of a mesh and the normals of its points, None where it has none.
+
+    With ``side`` the mesh is a part of another, see :attr:`Shape.side`.
+    """
+    surface, origin = _skin(mesh)
+    if surface is None:
+        return None
+    if side is not None and origin is not None:
+        side = side[origin]
+    shape = Shape(surface, Owners(starts, origin), side)
+    vectors = _by_vtk(surface, shape, as_wound=as_wound)
+    vectors[~used(surface)] = 0
+    first = joined(shape.points, surface)
+    if first is not None:
+        least = float(np.cos(np.radians(SHARP)))
+        vectors, first = common_normals(shape.points, shape.triangles, vectors, first, least)
+        shape.triangles = first[shape.triangles]
+    return Wound(shape, vectors, first, origin)
 
 
 def is_scan(mesh: Dataset) -> bool:

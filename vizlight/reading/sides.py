@@ -1,0 +1,214 @@
+"""Told of a surface that is read part by part: what each part tells, and the whole decides."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+
+from vizlight import _pool
+from vizlight.model import kernels
+from vizlight.reading.edges import BLOCK, place_numbers
+from vizlight.reading.normals import facing_of, given_normals, wound_normals
+from vizlight.reading.orientation import crease_share, middles, sides_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from vizlight._types import Array, Bools, Dataset, Indices
+    from vizlight.scene import View
+
+#: Number of directions in which the outermost normals of a piece are searched for, and number of
+#: normals up to which all are taken.
+AROUND = 64
+
+
+class Look(NamedTuple):
+    """What a part of a surface tells; its pieces are those of :class:`.orientation.Shape`.
+
+    Attributes
+    ----------
+    open : ndarray of bool, shape (count,)
+        Pieces with a border, or whose faces have no common side.
+    far : ndarray, shape (count, 6, 2)
+        Coordinate of the outermost point of each piece along x, -x, y and so on, minus infinity
+        without one, and the component of its normal there.
+    shown : ndarray, shape (count,)
+        Sum of :func:`~vizlight.reading.normals.facing_of`.
+    normals, of : ndarray, shape (m, 3), and ndarray of int, shape (m,)
+        The outermost normals of each piece, and their pieces.
+    places, at, along : ndarray, shape (b,), (b,) and (b, 3)
+        Numbers of the places of points that other parts have too, their pieces and normals.
+    edges : ndarray of int, shape (4, 1)
+        See :meth:`.orientation.Shape.edge_counts`.
+    """
+
+    open: Bools
+    far: Array
+    shown: Array
+    normals: Array
+    of: Indices
+    places: NDArray[np.uint64]
+    at: Indices
+    along: Array
+    edges: Indices
+
+
+class Told(NamedTuple):
+    """What the whole decides of the pieces of a part.
+
+    Attributes
+    ----------
+    sign : ndarray, shape (count,)
+        1 or -1, by which the normals of the part are multiplied.
+    number : ndarray of int, shape (count,)
+        See :attr:`vizlight.reading.normals.Sided.open`.
+    averted : ndarray of bool
+        See :attr:`vizlight.reading.normals.Sided.averted`.
+    """
+
+    sign: Array
+    number: Indices
+    averted: Bools
+
+
+def look(mesh: Dataset, ghosts: Array, value: object, view: View | None) -> Look | None:
+    """Return what a part of a surface tells, None where it has no surface.
+
+    Parameters
+    ----------
+    mesh : vtkDataSet
+        The part, with the cells of other parts that share a point with it.
+    ghosts : ndarray, shape (n_points,)
+        Share of the cells around each point that belong to other parts.
+    value : str or None
+        Name of normals; with such, or with normals that the mesh has, the surface is one piece.
+    view : View or None
+        Eye that sees it.
+    """
+    side = np.where(ghosts < 1, 0, -1).astype(np.int8)
+    given = given_normals(mesh, value, 3)
+    found = wound_normals(mesh, side=side)
+    if found is None:
+        return None
+    shape, vectors, _, origin = found
+    survey = shape.survey(vectors)
+    edges = shape.edge_counts(survey.faces, survey.full)
+    piece, border = shape.piece, shape.open | shape.inside_out
+    of_mesh = np.arange(len(piece)) if origin is None else origin
+    if given is not None:
+        vectors = given[of_mesh]
+        piece, border = np.zeros_like(piece), np.array([shape.open.any()])
+    has = np.isfinite(vectors).all(axis=1) & vectors.any(axis=1) & shape.finite
+    has &= (of_mesh >= 0) & (ghosts[of_mesh] < 1)
+    own, joint = np.flatnonzero(has), np.flatnonzero(has & (ghosts[of_mesh] > 0))
+    points, at, count = shape.points[own], piece[own], len(border)
+    normals = vectors[own].astype(np.float64)
+    far = np.tile([-np.inf, 0.0], (count, 6, 1))
+    for i in range(6):
+        sign = 1 - 2 * (i % 2)
+        along = sign * points[:, i // 2].astype(np.float64)
+        np.maximum.at(far[:, i, 0], at, along)
+        last = np.flatnonzero(along == far[at, i, 0])
+        far[at[last], i, 1] = sign * normals[last, i // 2]
+    shown = np.zeros(count)
+    shown += np.bincount(at, facing_of(normals, points, view), count)
+    rows = _outermost(normals, at, count)
+    return Look(
+        border, far, shown, normals[rows], at[rows],
+        place_numbers(shape.points[joint]), piece[joint], vectors[joint].astype(np.float64), edges,
+    )  # fmt: skip
+
+
+def _outermost(normals: Array, piece: Indices, count: int) -> Indices:
+    """Return the normals of each piece that lean most from their middle, in all directions."""
+    middle = middles(normals, piece, np.ones(count, dtype=np.bool_))
+    order = np.argsort(piece, kind="stable")
+    size = np.bincount(piece, minlength=count)
+    first = np.concatenate([[0], np.cumsum(size)])
+    found = [order[(size <= AROUND)[piece[order]]]]
+    angles = 2 * np.pi * np.arange(AROUND) / AROUND
+    for i in np.flatnonzero(size > AROUND):
+        rows = order[first[i] : first[i + 1]]
+        cosine = normals[rows] @ middle[i]
+        # One that is averted from the middle tells that there is no height field.
+        found.append(rows[[cosine.argmin()]])
+        if cosine.min() <= 0:
+            found.append(rows[[cosine.argmax()]])
+            continue
+        _, u, v = np.linalg.svd(middle[i][np.newaxis])[2]
+        directions = np.outer(u, np.cos(angles)) + np.outer(v, np.sin(angles))
+        most, which = np.full(AROUND, -np.inf), np.zeros(AROUND, dtype=np.intp)
+        for block in _pool.blocks(len(rows), BLOCK):
+            leaning = (normals[rows[block]] @ directions) / cosine[block, np.newaxis]
+            best = leaning.argmax(axis=0)
+            top = leaning[best, np.arange(AROUND)]
+            which = np.where(top > most, best + block.start, which)
+            most = np.maximum(top, most)
+        found.append(rows[np.unique(which)])
+    return np.concatenate(found)
+
+
+def decided(looks: Sequence[Look]) -> list[Told]:
+    """Return for each part what the whole decides of its pieces."""
+    count = [len(one.open) for one in looks]
+    start = np.cumsum([0, *count])
+    total = int(start[-1])
+    group, sign, torn = _joined(looks, start[:-1], total)
+    whole = int(group.max(initial=-1)) + 1
+    border = np.zeros(whole, dtype=np.bool_)
+    border[group[np.concatenate([one.open for one in looks]) | torn]] = True
+    far = np.concatenate([one.far for one in looks])
+    outward = np.zeros(whole)
+    for i in range(6):
+        most = np.full(whole, -np.inf)
+        np.maximum.at(most, group, far[:, i, 0])
+        there = np.flatnonzero(np.isfinite(far[:, i, 0]) & (far[:, i, 0] == most[group]))
+        component = np.zeros(whole)
+        component[group[there]] = sign[there] * far[there, i, 1]
+        outward += component
+    sign = sign * np.where(~border & (outward < 0), -1, 1)[group]
+    of = np.concatenate([one.of + first for one, first in zip(looks, start[:-1], strict=True)])
+    normals = np.concatenate([one.normals for one in looks]) * sign[of][:, np.newaxis]
+    number = sides_of(normals, group[of], border)
+    shown = np.bincount(group, sign * np.concatenate([one.shown for one in looks]), whole)
+    averted = np.zeros(int(number.max(initial=0)) + 1, dtype=np.bool_)
+    averted[number[number > 1]] = shown[number > 1] < 0
+    own = number[group]
+    return [
+        Told(sign[first : first + n], own[first : first + n], averted)
+        for first, n in zip(start[:-1], count, strict=True)
+    ]
+
+
+def _joined(looks: Sequence[Look], start: Indices, total: int) -> tuple[Indices, Array, Bools]:
+    """Return the piece of the whole that each piece of a part belongs to, and the sign there.
+
+    The last is a mask of those that no signs bring to one side, as in a Klein bottle.
+    """
+    places = np.concatenate([one.places for one in looks])
+    at = np.concatenate([one.at + first for one, first in zip(looks, start, strict=True)])
+    along = np.concatenate([one.along for one in looks])
+    order = np.argsort(places, kind="stable")
+    twice = np.flatnonzero(places[order[1:]] == places[order[:-1]])
+    one, other = order[twice], order[twice + 1]
+    pairs, number = np.unique(at[one] * total + at[other], return_inverse=True)
+    agree = np.bincount(number, kernels.dot(along[one].T, along[other].T), len(pairs)) >= 0
+    a, b = np.divmod(pairs, max(total, 1))
+    # Each piece stands twice, the second time turned over.
+    ends = np.where(agree, b, b + total), np.where(agree, b + total, b)
+    rows, columns = np.concatenate([a, a + total]), np.concatenate(ends)
+    graph = coo_matrix((np.ones(len(rows)), (rows, columns)), shape=(2 * total, 2 * total))
+    label = connected_components(graph, directed=False)[1]
+    up, down = label[:total], label[total:]
+    group = np.unique(np.minimum(up, down), return_inverse=True)[1].reshape(-1)
+    return group, np.where(up <= down, 1.0, -1.0), up == down
+
+
+def creases(looks: Sequence[Look]) -> bool:
+    """Return whether the sharp edges of the whole are creases."""
+    return bool(crease_share(np.sum([one.edges for one in looks], axis=0))[0] > 0)
