@@ -142,7 +142,7 @@ def of_rvt(side: int, slope: float, directions: int, radius: int) -> list[Row]:
 def surface_truth(points: int) -> tuple[pv.PolyData, Array]:
     """Return a bumpy ball and the sky of its points."""
     ball = bumpy(points)
-    return ball, np.asarray(vizlight.sky(ball, error=0.0015)["sky"], np.float64)
+    return ball, np.asarray(vizlight.sky(ball, error=0.0015, feature_angle=None)["sky"], np.float64)
 
 
 def of_surface(points: int, error: float) -> list[Row]:
