@@ -50,7 +50,6 @@ SECTIONS = {
     },
     "How deep is the shadow?": {
         "plot_terrain": "Hawaii rises from a blue sea floor, with shadows toward the east",
-        "plot_sky": (0.69, 0.5, 1.0, 1.0),
         "plot_terrain_day": "Ridges at five hours of a day, and the mean sunlight of each slope",
         "plot_bas_relief": "Relief of a dog under one moving light, and with deeper shadows",
         "plot_seeping_light": "Dog before a light, whose ears glow as if of wax",
