@@ -74,3 +74,4 @@ for title in list(ways)[:4]:
 for name, light in (("white light", Scene()), ("light of direction", hue)):
     read = legibility(wind, light, view=plotter.camera, **field).direction
     print(f"{name}: {read.legend_median:.1f} degrees")
+pv.close_all()  # these views are no pictures

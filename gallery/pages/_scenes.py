@@ -79,7 +79,7 @@ PARTS = {
     "plot_complex_curve": (0.1, 0.05, 0.9, 1.0),
     "plot_isoluminance": (0.25, 0.56, 0.5, 1.0),
     "plot_principal_lines": (0.5, 0.0, 1.0, 1.0),
-    "plot_read_direction": (0.33, 0.04, 0.67, 0.5),
+    "plot_read_direction": (0.67, 0.53, 1.0, 1.0),
     "plot_read_heading": (0.5, 0.05, 1.0, 1.0),
     "plot_read_shape": (0.5, 0.0, 1.0, 0.85),
     "plot_read_slope": (0.5, 0.05, 1.0, 1.0),
@@ -87,7 +87,7 @@ PARTS = {
     "plot_satin": (0.0, 0.08, 0.5, 0.75),
     "plot_seeping_light": (0.67, 0.06, 1.0, 0.75),
     "plot_sky": (0.69, 0.5, 1.0, 1.0),
-    "plot_terrain_day": (0.37, 0.05, 0.63, 0.49),
+    "plot_terrain_day": (0.37, 0.1, 0.63, 0.42),
 }
 
 #: Width of the thumbnails of movies in pixels.
