@@ -4,12 +4,9 @@ What is the value?
 
 The speed of a gas on an isosurface of its temperature. Left: PyVista's light and highlight on
 ``viridis``: many colours of the picture are on no bar. Right: light that keeps the colour
-(``vizlight.presets.value``) on a map of one lightness and one chroma
-(``vizlight.maps.even``), which light cannot turn into another colour of the bar.
-
-Each pixel is read by the colour of the bar that is nearest to it. On the right 95 of 100 pixels
-are read to 2 % of the range; ``viridis`` in the same light to 29 %, because its own lightness is
-taken for light.
+(``vizlight.presets.value``) on a map of one lightness and one chroma (``vizlight.maps.even``). Each
+pixel is read by the colour of the bar that is nearest to it: on the right 95 of 100 to 2 % of the
+range, ``viridis`` in the same light to 29 %, because its own lightness is taken for light.
 """
 
 import numpy as np

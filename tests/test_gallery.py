@@ -110,6 +110,28 @@ def test_every_script_has_a_page_a_picture_and_no_error():
             assert np.asarray(picture.convert("L")).std() > 5, script.stem
 
 
+def test_pages_of_examples_are_light():
+    """A page and its pictures; scenes are loaded when their tab is opened."""
+    for page in [PAGES / "examples" / "index.html", *(PAGES / "examples").glob("plot_*.html")]:
+        text = page.read_text(encoding="utf-8")
+        pictures = {page.parent / unquote(u) for u in re.findall(r'<img[^>]* src="([^"]+)"', text)}
+        size = len(text) + sum(picture.stat().st_size for picture in pictures)
+        assert size < 1.5e6, (page.name, size)
+
+
+def test_the_gallery_has_sections_of_described_pictures():
+    text = (PAGES / "examples" / "index.html").read_text(encoding="utf-8")
+    sections = re.split(r"<h2>", text)[1:]
+    assert [section.partition("<")[0][-1] for section in sections] == ["?"] * len(sections)
+    shown = [re.findall(r"sphx_glr_(plot_\w+)_thumb", section) for section in sections]
+    scripts = sorted(script.stem for script in (ROOT / "gallery").glob("plot_*.py"))
+    assert sorted(name for names in shown for name in names) == scripts
+    assert all(shown)
+    pictures = re.findall(r"<img[^>]*>", text)
+    assert all(len(re.search(r'alt="([^"]*)"', picture)[1]) > 20 for picture in pictures)
+    assert all('loading="lazy"' in picture for picture in pictures[1:])
+
+
 def notebooks():
     """Return the notebooks to run; which two depends on the text of all, and on nothing else."""
     found = sorted((PAGES / "_downloads").rglob("plot_*.ipynb"), key=lambda path: path.name)
