@@ -87,7 +87,7 @@ PARTS = {
     "plot_satin": (0.0, 0.08, 0.5, 0.75),
     "plot_seeping_light": (0.67, 0.06, 1.0, 0.75),
     "plot_sky": (0.69, 0.5, 1.0, 1.0),
-    "plot_terrain_day": (0.37, 0.1, 0.63, 0.42),
+    "plot_terrain_day": (0.39, 0.12, 0.61, 0.39),
 }
 
 #: Width of the thumbnails of movies in pixels.
