@@ -38,6 +38,7 @@ RETURNED = {
     "draw.backends.Probe": "returned by probe",
     "pieces.run.Lit": "returned by light",
     "draw.testing.Difference": "returned by difference",
+    "draw.snapshots.same_picture": "a fixture, made by pytest for each test",
     "draw.component.Component": "made by PyVista for each plotter",
     "draw.paraview.Shader": "returned by shader",
     "shading.engine.Shading": "returned by shade",
@@ -79,13 +80,11 @@ def public():
                 and not issubclass(value, Exception)
                 and home.startswith("vizlight")
             ):
-                if not (
-                    hasattr(value, "__total__")
-                    or f"{home}.{value.__qualname__}".partition(".")[2] in RETURNED
-                ):
+                if not hasattr(value, "__total__"):
                     found[f"{home}.{value.__qualname__}"] = value
                 found.update(methods(value))
-    return {name.partition(".")[2]: value for name, value in sorted(found.items())}
+    short = {name.partition(".")[2]: value for name, value in sorted(found.items())}
+    return {name: value for name, value in short.items() if name not in RETURNED}
 
 
 def methods(kind):

@@ -10,6 +10,7 @@ import pyvista as pv
 from pyvista.plotting.colors import color_synonyms, hex_colors
 
 from vizlight import _check
+from vizlight.shading.options import LightOptions
 
 
 @pytest.mark.parametrize(
@@ -104,3 +105,8 @@ def test_a_masked_number_is_none():
 def test_colours_have_the_names_of_pyvista():
     for name in [*hex_colors, *color_synonyms, "Alice-Blue", "#12aBcd", "0x102030", "11223344"]:
         assert _check.color("color", name) == pv.Color(name).float_rgb, name
+
+
+def test_flags_become_truth_values():
+    assert LightOptions(line_field=1).line_field is True
+    assert LightOptions(components=np.False_).components is False

@@ -3,7 +3,7 @@
 The tests read the pages from the folder into which README's command builds them. Tests that need a
 browser use Debian's ``chromium``. If ``VIZLIGHT_PAGES`` names the folder of the pages, a missing
 page or browser is an error; otherwise the tests are skipped. Of the notebooks two are run, or all
-if ``VIZLIGHT_NOTEBOOKS`` is "all".
+if ``VIZLIGHT_NOTEBOOKS`` is "all". ``VIZLIGHT_AXE`` names the axe.min.js of axe-core, if any.
 """
 
 from __future__ import annotations
@@ -256,6 +256,20 @@ def test_pages_fit_and_load_nothing_from_elsewhere(chromium, width, scheme):
             # Pictures have their own light in dark pages too.
             filters = "[...document.images].map(image => getComputedStyle(image).filter)"
             assert set(page.evaluate(filters)) <= {"none"}, name
+            page.close()
+
+
+@browser
+@pytest.mark.skipif("VIZLIGHT_AXE" not in os.environ, reason="no axe.min.js of axe-core named")
+def test_axe_finds_nothing(chromium):
+    axe = Path(os.environ["VIZLIGHT_AXE"]).read_text(encoding="utf-8")
+    example = sorted(path.stem for path in (PAGES / "examples").glob("plot_read_*.html"))[0]
+    with chromium.new_context() as context:
+        for name in [*FIRST, LONGEST, f"examples/{example}"]:
+            page, _, _ = visit(context, name)
+            page.evaluate(axe)
+            found = page.evaluate("axe.run().then(made => made.violations.map(one => one.id))")
+            assert not found, name
             page.close()
 
 

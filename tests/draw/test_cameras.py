@@ -133,3 +133,8 @@ def test_a_camera_copies_no_mesh():
         _, peak = tracemalloc.get_traced_memory()
         tracemalloc.stop()
         assert peak < 2.5 * 65_536 * 10 * 8
+
+
+def test_the_default_direction_is_a_diagonal():
+    default, diagonal = (render.camera_on(pv.Cube(), *way) for way in ((), ((2, 2, 2),)))
+    np.testing.assert_allclose(default.position, diagonal.position)

@@ -90,8 +90,10 @@ def test_tracts_of_dsi_studio(tmp_path):
         blob += struct.pack("<I3i", line.size, *line[0]) + steps.tobytes()
     parts = {"track": np.frombuffer(blob, np.uint8), "trans_to_mni": np.diag([-2.0, 2, 2, 1])}
     scipy.io.savemat(tmp_path / "a.mat", parts, format="4", oned_as="row")
-    (tmp_path / "a.tt.gz").write_bytes(gzip.compress((tmp_path / "a.mat").read_bytes()))
+    (tmp_path / "a.mat").rename(tmp_path / "a.tt")
+    (tmp_path / "a.tt.gz").write_bytes(gzip.compress((tmp_path / "a.tt").read_bytes()))
     mesh = vizlight.read(tmp_path / "a.tt.gz")
+    np.testing.assert_array_equal(vizlight.read(tmp_path / "a.tt").points, mesh.points)
     assert [mesh.get_cell(i).n_points for i in range(mesh.n_cells)] == [2, 5]
     np.testing.assert_allclose(mesh.points, np.concatenate(lines) / 32 * (-2, 2, 2))
 

@@ -106,6 +106,15 @@ def test_a_cut_tractogram_is_refused(name, cut, tmp_path):
         vizlight.read(path)
 
 
+def test_a_file_of_abaqus_is_not_one_of_avs(tmp_path):
+    pytest.importorskip("meshio")
+    lines = "*NODE", "1, 0, 0, 0", "2, 1, 0, 0", "3, 0, 1, 0", "*ELEMENT, TYPE=S3", "1, 1, 2, 3"
+    (tmp_path / "a.inp").write_text("\n".join(lines))
+    mesh = vizlight.read(tmp_path / "a.inp")
+    assert mesh.n_cells == 1
+    np.testing.assert_array_equal(mesh.points, [[0, 0, 0], [1, 0, 0], [0, 1, 0]])
+
+
 @pytest.mark.filterwarnings("ignore:.*of the edges are sharper")
 def test_a_tetrahedron_in_a_file_that_meshio_reads(tmp_path):
     pytest.importorskip("meshio")

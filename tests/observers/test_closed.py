@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from closed_cases import CASES
 
-from vizlight.observers import direction, matching, shape, slope, value
+from vizlight.observers import colors, direction, matching, shape, slope, value
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -85,3 +85,8 @@ def test_a_broken_meter_is_noticed(monkeypatch, mutate):
     mutate(monkeypatch)
     with pytest.raises(AssertionError):
         CASES[MUTATIONS[mutate]]()
+
+
+def test_black_and_white_have_the_ends_of_lightness():
+    np.testing.assert_allclose(colors.lab(np.zeros(3)), 0, atol=1e-12)
+    np.testing.assert_allclose(colors.lab(np.ones(3)), [100, 0, 0], atol=0.01)

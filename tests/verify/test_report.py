@@ -34,6 +34,7 @@ from vizlight.mesh import casters
 from vizlight.model import formulas
 from vizlight.shading import algebra
 from vizlight.verify import oracle, rays
+from vizlight.verify import report as reports
 
 SCENE = Scene(
     lights=[Light(direction=(1, 1, 1)), Light(position=(2, 3, 4), attenuation=(1, 0.1, 0.01))],
@@ -124,6 +125,7 @@ def test_every_shadow_of_every_light(name, monkeypatch):
         mesh = relief_shadow(make(), scene, depth=0.5 if make is terrain else 0.05, **options)
     (run,) = told.runs
     assert (run.points, run.terms, run.invalid) == (mesh.n_points, ("t",), 0)
+    assert not run.tinted
     assert run.bytes == mesh["t"].nbytes
     assert run.sample > 30
     assert run.error < (4e-3 if make is terrain else 1e-9)
@@ -385,3 +387,10 @@ def test_points_that_workers_light_are_counted_as_not_measured(tmp_path):
     with vizlight.report() as found:
         vizlight.pieces.light(tmp_path / "a.vtp", scene, out=tmp_path / "lit.pvtp")
     assert (found.points, found.elsewhere) == (842, 0)
+
+
+@pytest.mark.parametrize(
+    ("share", "words"), [(1.0, "100 %"), (0.95, "100 %"), (0.2501, "30 %"), (0.0031, "0.4 %")]
+)
+def test_a_bound_of_a_share_is_rounded_up_to_one_digit(share, words):
+    assert reports._confident(share) == f"95 %: fewer than {words}"

@@ -12,6 +12,7 @@ import pytest
 import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkTable
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
+from vtkmodules.vtkFiltersCore import vtkReverseSense
 from vtkmodules.vtkFiltersSources import vtkPlaneSource, vtkSphereSource
 
 import vizlight
@@ -265,3 +266,19 @@ def test_it_runs_where_there_is_no_pyvista():
     )
     low, high = lit.get_data_range("luminance")
     assert run.stdout.strip() == f"({float(low)}, {float(high)})"
+
+
+def test_normals_as_given_stay_so_in_pieces():
+    """A sphere turned inside out is lit on the side that it says, not on that of the eye."""
+    source, turned = vtkSphereSource(), vtkReverseSense()
+    turned.SetInputConnection(source.GetOutputPort())
+    turned.ReverseNormalsOn()
+    light = {}
+    for facing in ("as given", "eye"):
+        lit = Illuminate(SCENE, facing=facing)
+        lit.SetInputConnection(turned.GetOutputPort())
+        lit.UpdatePiece(0, 2, 0)
+        part = pv.wrap(lit.GetOutput())
+        toward = np.asarray(part["Normals"]) @ (1, 0.9, 0.5)
+        light[facing] = part["luminance"][toward < -1.2].mean()
+    assert light["eye"] > light["as given"] + 0.2

@@ -251,13 +251,13 @@ def _lines(run: Run) -> list[str]:
 
 def _confident(share: float) -> str:
     """Return a bound of a share, rounded up to one digit, with its confidence."""
-    digits = 1 - math.floor(math.log10(share)) if share < 1 else 0
+    digits = 1 - math.floor(math.log10(share))
     up = math.ceil(share * 10.0 ** (digits - 1)) / 10.0 ** (digits - 1)
     return f"95 %: fewer than {_percent(up)}"
 
 
 def _percent(share: float) -> str:
-    return f"{100 * share:.2g} %"
+    return f"{float(f'{100 * share:.2g}'):g} %"
 
 
 _ACTIVE: contextvars.ContextVar[Report | None] = contextvars.ContextVar("report", default=None)
