@@ -5,8 +5,8 @@ Which way does the field run?
 The winds of July in six ways, with the median error in degrees at which a place is read; 45 is
 chance. Arrows, LIC and lines are read by a machine that follows strokes, the lights by their keys.
 Evenly spaced lines read as well as the light of ``presets.direction``, in which every place reads
-on its own, also where no line runs; white light has no key to the direction. Both together make
-:doc:`the winds of July </examples/plot_winds>`.
+on its own, also where no line runs; white light has no key to the direction. Both together are in
+the example *The winds of July*.
 """
 
 import matplotlib.pyplot as plt
